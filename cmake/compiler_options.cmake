@@ -1,0 +1,41 @@
+# Warnings, vector instruction set and precompiled headers of our own targets.
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    set(_photonav_march x86-64-v3)
+endif()
+set(PHOTONAV_MARCH "${_photonav_march}" CACHE STRING
+    "instruction set given to -march: x86-64-v3 (AVX2), native, or empty for the compiler's default")
+
+find_program(CCACHE ccache)
+if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+        CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE})
+endif()
+
+# Never -ffast-math: it breaks Eigen's fixed-size inverses without a word.
+# The instruction set is PUBLIC because the alignment of Eigen's types depends on it.
+function(photonav_compiler_options target)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    if(PHOTONAV_MARCH)
+        target_compile_options(${target} PUBLIC -march=${PHOTONAV_MARCH})
+    endif()
+    target_compile_options(${target} PRIVATE
+        -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-psabi
+        -fno-math-errno -fno-trapping-math -fpch-preprocess
+        $<$<BOOL:${PHOTONAV_WERROR}>:-Werror>
+        $<$<BOOL:${PHOTONAV_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize-recover=undefined;-fno-omit-frame-pointer;-O1>)
+    if(PHOTONAV_SANITIZE)
+        target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+    endif()
+    target_precompile_headers(${target} PRIVATE
+        <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <memory>
+        <optional> <random> <span> <stdexcept> <string> <unordered_map> <vector>)
+endfunction()

@@ -1,0 +1,19 @@
+# `cmake --install` and find_package(photonav): targets photonav::core and photonav::planning.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/photonav)
+set_target_properties(photonav_core PROPERTIES EXPORT_NAME core)
+set_target_properties(photonav_planning PROPERTIES EXPORT_NAME planning)
+install(TARGETS photonav_core photonav_planning EXPORT photonav_targets)
+install(TARGETS photonav)
+install(DIRECTORY src/ planning/ DESTINATION include/photonav FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/photonav/config)
+install(EXPORT photonav_targets NAMESPACE photonav:: DESTINATION ${_config_dir})
+configure_package_config_file(cmake/photonavConfig.cmake.in
+    ${PROJECT_BINARY_DIR}/photonavConfig.cmake INSTALL_DESTINATION ${_config_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/photonavConfigVersion.cmake
+    COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/photonavConfig.cmake
+    ${PROJECT_BINARY_DIR}/photonavConfigVersion.cmake cmake/dependencies.cmake
+    DESTINATION ${_config_dir})

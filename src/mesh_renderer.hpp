@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Views of a textured triangle scene by ray casting (the only includer of Embree is its .cpp).
+#pragma once
+
+#include <memory>
+
+#include "scene.hpp"
+#include "view.hpp"
+
+namespace photonav {
+
+class MeshRenderer : public ViewSource {
+  public:
+    explicit MeshRenderer(Scene scene);
+    ~MeshRenderer() override;
+    MeshRenderer(MeshRenderer&&) noexcept;
+    MeshRenderer& operator=(MeshRenderer&&) noexcept;
+
+    void render(const Camera& camera, const Pose& T_c_w, View& view) const override;
+
+    const Scene& scene() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace photonav

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SE(3) in the notation of Barfoot and Furgale, "Associating Uncertainty With Three-Dimensional
+// Poses for Use in Estimation Problems", T-RO 2014 (cited as BF14). Twists are (rho, phi).
+#pragma once
+
+#include "types.hpp"
+
+namespace photonav {
+
+/// phi^: the cross-product matrix, phi^ v = phi x v.
+Eigen::Matrix3d hat(const Eigen::Vector3d& phi);
+
+/// exp(xi^), BF14 eq. (3): rotation exp(phi^), translation J(phi) rho.
+Pose expSE3(const Vector6& xi);
+
+/// The twist with expSE3(logSE3(T)) = T and a rotation angle in [0, pi].
+Vector6 logSE3(const Pose& T);
+
+/// Ad(T) = [C, r^ C; 0, C]: T exp(xi^) T^-1 = exp((Ad(T) xi)^), BF14 eq. (4).
+Matrix6 adjoint(const Pose& T);
+
+/// Left Jacobian of SE(3): exp((xi + d)^) = exp((J(xi) d)^) exp(xi^) to first order in d, BF14
+/// eq. (100).
+Matrix6 leftJacobian(const Vector6& xi);
+
+/// Inverse of the left Jacobian. Singular at rotations of 2 pi only.
+Matrix6 leftJacobianInverse(const Vector6& xi);
+
+}  // namespace photonav

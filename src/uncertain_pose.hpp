@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Poses with covariance: propagation along motions and update by information.
+//
+// A belief is T = exp(xi^) mean with xi ~ N(0, covariance), xi in the frame the pose maps into (for
+// T_c_w: the camera frame), on the left, ordered (rho, phi). Units m^2, m rad, rad^2.
+#pragma once
+
+#include "types.hpp"
+
+namespace photonav {
+
+struct UncertainPose {
+    Pose mean = Pose::Identity();
+    Matrix6 covariance = Matrix6::Zero();
+};
+
+enum class PropagationOrder { second, fourth };
+
+/// Rotation standard deviation [rad] beyond which the fourth-order terms are not trusted.
+inline constexpr double kFourthOrderMaxRotationSigma = 0.5;
+
+struct CompoundedCovariance {
+    Matrix6 covariance;
+    bool fellBack = false;  ///< fourth order was asked for, second order was given (see below)
+};
+
+/// Covariance of T_c_a = T_c_b T_b_a for independent factors, BF14 eq. (55) ff.
+///
+/// Second order is motion + Ad(T_c_b) prior Ad(T_c_b)^T; fourth order adds the terms of BF14's A
+/// and B. Fourth order falls back to second where the rotation standard deviation of a factor
+/// exceeds kFourthOrderMaxRotationSigma or the sum would lose positive semi-definiteness.
+/// @param adjointMotion Ad of the mean motion T_c_b
+/// @param motion covariance of T_c_b, in frame c
+/// @param prior covariance of T_b_a, in frame b
+CompoundedCovariance compoundCovariance(const Matrix6& adjointMotion, const Matrix6& motion,
+                                        const Matrix6& prior, PropagationOrder order);
+
+/// T_c_a = T_c_b T_b_a with its covariance.
+UncertainPose compound(const UncertainPose& T_c_b, const UncertainPose& T_b_a,
+                       PropagationOrder order = PropagationOrder::fourth);
+
+/// T_a_b from T_b_a: the covariance is carried to frame a by the adjoint.
+UncertainPose inverse(const UncertainPose& T_b_a);
+
+/// Covariance after a measurement with Fisher information `information` in the same frame:
+/// (information + covariance^-1)^-1, computed as (1 + covariance information)^-1 covariance, which
+/// holds for singular (also zero) covariance and information. The result is symmetric.
+Matrix6 updateCovariance(const Matrix6& covariance, const Matrix6& information);
+
+/// tr_W(covariance) = tr(rho block) + length^2 tr(phi block): m^2, with `length` [m] the distance
+/// at which a rotation error is felt.
+double weightedTrace(const Matrix6& covariance, double characteristicLength = 1.0);
+
+}  // namespace photonav
