@@ -2,6 +2,8 @@
 // Clearance: how far a point is from the nearest obstacle.
 #pragma once
 
+#include <vector>
+
 #include "scene.hpp"
 #include "textured_octree.hpp"
 
@@ -11,8 +13,8 @@ namespace photonav {
 class DistanceMap {
   public:
     struct Options {
-        double maxDistance = 1.0;  ///< clearances beyond this read as this [m]
-        UnknownPolicy unknown = UnknownPolicy::occupied;
+        double maxDistance = 1.0;  ///< clearances beyond this read as this [m]; at most 180 cells
+        UnknownPolicy unknown = UnknownPolicy::occupied;  ///< of map cells no ray has visited
     };
 
     /// No obstacles anywhere: every clearance is maxDistance.
@@ -21,21 +23,52 @@ class DistanceMap {
     /// Obstacles are the occupied (and, by policy, the unknown) cells of the map.
     /// @param bounds where clearance will be asked for [m]; obstacles up to maxDistance outside
     ///        it count
+    /// @throws std::invalid_argument for empty bounds, a maxDistance that is not positive or above
+    ///         180 cells, or a grid above 2e9 bytes (the message says which resolution would fit)
     DistanceMap(const class TexturedOcTree& map, const Eigen::AlignedBox3d& bounds,
                 const Options& options);
 
-    /// Obstacles are the triangles, sampled into cells of `resolution` [m].
+    /// Obstacles are all cells that a triangle touches (and, along slanted outlines, some of their
+    /// neighbours); cells are cubes of `resolution` [m] around
+    /// the multiples of it. Throws as above; `unknown` does not matter, a scene knows everything.
     DistanceMap(const Scene& scene, double resolution, const Eigen::AlignedBox3d& bounds,
                 const Options& options);
 
-    /// Distance from p_w to the nearest obstacle cell [m], capped at maxDistance; interpolated
-    /// between cell centres, less half a cell. Outside the bounds: the value at the nearest cell.
-    double clearance(const Eigen::Vector3d& p_w) const;
+    /// Distance from p_w to the nearest obstacle cell [m], capped at maxDistance: the distance
+    /// between cell centres, interpolated, less half a cell (so it is negative, down to minus half
+    /// a cell, inside an obstacle). Outside the bounds: the value at the nearest cell. Thread-safe.
+    double clearance(const Eigen::Vector3d& p_w) const {
+        if (grid_.empty()) return maxDistance_;
+        const Eigen::Vector3d q = ((p_w - firstCentre_) * inverseResolution_)
+                                      .cwiseMax(0.)
+                                      .cwiseMin(lastCorner_ + Eigen::Vector3d::Ones());
+        const Eigen::Vector3d corner = q.cwiseMin(lastCorner_);
+        const Eigen::Array3i i = corner.array().cast<int>();
+        const Eigen::Vector3f t = (q - i.cast<double>().matrix()).cast<float>();
+        const float* c =
+            grid_.data() + (std::size_t(i.z()) * size_.y() + i.y()) * size_.x() + i.x();
+        const std::ptrdiff_t dy = size_.x();
+        const std::ptrdiff_t dz = dy * size_.y();
+        const auto alongX = [&](const float* d) { return d[0] + t.x() * (d[1] - d[0]); };
+        const auto alongY = [&](const float* d) {
+            const float near = alongX(d);
+            return near + t.y() * (alongX(d + dy) - near);
+        };
+        const float near = alongY(c);
+        return near + t.z() * (alongY(c + dz) - near);
+    }
 
     double maxDistance() const { return maxDistance_; }
 
   private:
+    void compute(struct ObstacleCells& cells);
+
     double maxDistance_;
+    double inverseResolution_ = 0.;
+    Eigen::Vector3d firstCentre_ = Eigen::Vector3d::Zero();  ///< of the first cell [m]
+    Eigen::Vector3d lastCorner_ = Eigen::Vector3d::Zero();   ///< last cell to interpolate from
+    Eigen::Array3i size_ = Eigen::Array3i::Zero();           ///< cells
+    std::vector<float> grid_;  ///< clearance at cell centres [m], x fastest; empty: no obstacle
 };
 
 }  // namespace photonav

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "distance_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace photonav {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+Triangle triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+    Triangle t;
+    t.corners = {a.cast<float>(), b.cast<float>(), c.cast<float>()};
+    t.uv.fill(Eigen::Vector2f::Zero());
+    return t;
+}
+
+Scene randomTriangles(int count, std::mt19937& random) {
+    std::uniform_real_distribution<double> position(-1.5, 1.5);
+    const auto point = [&] {
+        return Vector3d(position(random), position(random), position(random));
+    };
+    Scene scene;
+    for (int i = 0; i < count; ++i) {
+        const Vector3d a = point();
+        scene.triangles.push_back(triangle(a, a + 0.3 * point(), a + 0.3 * point()));
+    }
+    return scene;
+}
+
+Vector3d randomInside(const AlignedBox3d& box, std::mt19937& random) {
+    std::uniform_real_distribution<double> unit(0., 1.);
+    const Vector3d t(unit(random), unit(random), unit(random));
+    return box.min() + t.cwiseProduct(box.sizes());
+}
+
+double distanceToTriangle(const Triangle& t, const Vector3d& p, int samples) {
+    const Vector3d a = t.corners[0].cast<double>();
+    const Vector3d ab = t.corners[1].cast<double>() - a;
+    const Vector3d ac = t.corners[2].cast<double>() - a;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= samples; ++i) {
+        for (int j = 0; i + j <= samples; ++j) {
+            least = std::min(least, (a + ab * i / samples + ac * j / samples - p).norm());
+        }
+    }
+    return least;
+}
+
+TEST(DistanceMap, EmptySceneIsFreeEverywhere) {
+    const DistanceMap map(Scene{}, 0.05, AlignedBox3d(Vector3d::Zero(), Vector3d::Ones()),
+                          {.maxDistance = 0.7});
+    EXPECT_EQ(map.clearance(Vector3d(0.5, 0.5, 0.5)), 0.7);
+    EXPECT_EQ(DistanceMap(0.4).clearance(Vector3d::Zero()), 0.4);
+}
+
+TEST(DistanceMap, MatchesBruteForceOverSampledTriangles) {
+    std::mt19937 random(1);
+    const Scene scene = randomTriangles(12, random);
+    const double resolution = 0.1;
+    const AlignedBox3d bounds(Vector3d(-1., -1.2, -0.9), Vector3d(1.3, 1., 1.));
+    const DistanceMap map(scene, resolution, bounds, {.maxDistance = 0.8});
+    for (int i = 0; i < 300; ++i) {
+        const Vector3d p = randomInside(bounds, random);
+        double expected = std::numeric_limits<double>::infinity();
+        for (const auto& t : scene.triangles) {
+            expected = std::min(expected, distanceToTriangle(t, p, 100));
+        }
+        expected = std::min(expected, 0.8);
+        const double clearance = map.clearance(p);
+        // The surface is anywhere in its cell, half a cell is taken off, and slanted outlines take
+        // a neighbouring cell with them.
+        EXPECT_LE(clearance, std::min(0.8, expected + 0.4 * resolution) + 1e-6) << p.transpose();
+        EXPECT_GE(clearance, std::min(0.8, expected - 2. * resolution) - 1e-6) << p.transpose();
+    }
+}
+
+TEST(DistanceMap, SlantedTrianglesHaveNoGaps) {
+    std::mt19937 random(2);
+    const AlignedBox3d bounds(Vector3d::Constant(-2.), Vector3d::Constant(2.));
+    for (int i = 0; i < 20; ++i) {
+        const Scene scene = randomTriangles(1, random);
+        const DistanceMap map(scene, 0.07, bounds, {.maxDistance = 0.5});
+        const auto& t = scene.triangles[0].corners;
+        std::uniform_real_distribution<float> unit(0.F, 1.F);
+        for (int k = 0; k < 200; ++k) {
+            const float a = unit(random);
+            const float b = unit(random) * (1.F - a);
+            const Eigen::Vector3f p = t[0] + a * (t[1] - t[0]) + b * (t[2] - t[0]);
+            // Of the eight centres around p, its own cell is an obstacle and no other is far.
+            EXPECT_LE(map.clearance(p.cast<double>()), 0.07);
+        }
+    }
+}
+
+TEST(DistanceMap, TriangleWithoutAreaIsStillAnObstacle) {
+    Scene scene;
+    scene.triangles = {triangle({0., 0., 0.}, {0.5, 0.5, 0.5}, {1., 1., 1.})};
+    const AlignedBox3d bounds(Vector3d::Constant(-1.), Vector3d::Constant(2.));
+    const DistanceMap map(scene, 0.1, bounds, {.maxDistance = 0.5});
+    EXPECT_LT(map.clearance(Vector3d(0.5, 0.5, 0.5)), 0.1);
+    EXPECT_EQ(map.clearance(Vector3d(-0.9, 1.9, 0.)), 0.5);
+}
+
+TEST(DistanceMap, FloorIsExactToHalfACell) {
+    Scene scene;
+    scene.triangles = {triangle({-5., -5., 0.}, {5., -5., 0.}, {5., 5., 0.}),
+                       triangle({-5., -5., 0.}, {5., 5., 0.}, {-5., 5., 0.})};
+    const AlignedBox3d bounds(Vector3d(-4., -4., -1.), Vector3d(4., 4., 3.));
+    const DistanceMap map(scene, 0.05, bounds, {.maxDistance = 1.});
+    for (double z = 0.; z < 3.; z += 0.013) {
+        const double expected = std::min(z - 0.025, 1.);
+        EXPECT_NEAR(map.clearance(Vector3d(0.31, -2.77, z)), expected,
+                    1e-5 + (z > 0.97 && z < 1.1 ? 0.02 : 0.));
+    }
+    EXPECT_LT(map.clearance(Vector3d(0.3, 0.3, 0.)), 0.);
+}
+
+TEST(DistanceMap, ObstaclesOutsideTheBoundsCount) {
+    Scene wall;
+    wall.triangles = {triangle({1.5, -9., -9.}, {1.5, 9., -9.}, {1.5, 0., 9.})};
+    const AlignedBox3d bounds(Vector3d::Zero(), Vector3d::Ones());
+    const DistanceMap map(wall, 0.1, bounds, {.maxDistance = 1.});
+    EXPECT_NEAR(map.clearance(Vector3d(1., 0.5, 0.5)), 0.45, 1e-5);
+    EXPECT_NEAR(map.clearance(Vector3d(1.4, 0.5, 0.5)), 0.35, 1e-5);  // the last cell's value
+    EXPECT_EQ(map.clearance(Vector3d(-100., 0.5, 0.5)), 1.);
+    const DistanceMap far(wall, 0.1, bounds, {.maxDistance = 0.3});
+    EXPECT_FLOAT_EQ(far.clearance(Vector3d(1., 0.5, 0.5)), 0.3);
+}
+
+TEST(DistanceMap, RejectsWhatCannotWork) {
+    const AlignedBox3d box(Vector3d::Zero(), Vector3d::Ones());
+    const auto build = [](double resolution, const AlignedBox3d& bounds, double maxDistance) {
+        return DistanceMap(Scene{}, resolution, bounds, {.maxDistance = maxDistance});
+    };
+    EXPECT_THROW(build(0., box, 1.), std::invalid_argument);
+    EXPECT_THROW(build(0.1, AlignedBox3d(), 1.), std::invalid_argument);
+    EXPECT_THROW(build(0.1, box, 0.), std::invalid_argument);
+    EXPECT_THROW(build(0.001, box, 1.), std::invalid_argument);  // 1000 cells of reach
+    try {
+        build(0.01, AlignedBox3d(Vector3d::Zero(), Vector3d::Constant(100.)), 1.);
+        FAIL() << "4 TB were not refused";
+    } catch (const std::invalid_argument& error) {
+        EXPECT_NE(std::string(error.what()).find("would fit"), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace photonav
