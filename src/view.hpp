@@ -25,8 +25,9 @@ class ViewSource {
 
 /// The camera's point spread, applied by every renderer as its last step: a 3x3 binomial filter of
 /// the intensity, so that edges are about three pixels wide and their gradients mean something.
-/// Pixels with an invalid neighbour (depth 0) keep their value; a constant image stays constant to
-/// the bit.
+/// Pixels with an invalid neighbour (depth 0) keep their value, beyond the border the image goes on
+/// linearly, and a constant image stays constant to the bit.
+/// @throws std::invalid_argument when intensity and depth differ in size
 void applyPointSpread(View& view);
 
 }  // namespace photonav
