@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A recorded flight: images with depth and camera poses, loaded one at a time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "view.hpp"
+
+namespace photonav {
+
+/// One recorded moment.
+struct Frame {
+    double timestamp = 0.;  ///< of the colour image [s]
+    Pose T_c_w = Pose::Identity();
+    View view;  ///< measured; depth 0: no measurement
+};
+
+/// What a dataset holds, without the images.
+struct Sequence {
+    struct Entry {
+        double timestamp = 0.;  ///< of the colour image [s]
+        Pose T_c_w = Pose::Identity();
+        std::string colourFile;
+        std::string depthFile;
+    };
+    struct Skipped {
+        std::string file;
+        std::string reason;
+    };
+
+    Camera camera;
+    bool cameraAssumed = false;  ///< the dataset does not say; this is the format's usual one
+    double depthScale = 5000.;   ///< depth image value of one metre
+    std::vector<Entry> frames;   ///< in order of time
+    std::vector<Skipped> skipped;
+};
+
+}  // namespace photonav

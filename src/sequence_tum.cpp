@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sequence_tum.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <opencv2/imgcodecs.hpp>
+
+#include "text_table.hpp"
+#include "trajectory.hpp"
+#include "yaml_reader.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct StampedFile {
+    double timestamp;
+    std::string file;
+};
+
+struct Pair {
+    StampedFile colour;
+    StampedFile depth;
+};
+
+std::vector<StampedFile> readFileList(const fs::path& folder, const std::string& name) {
+    std::vector<StampedFile> list;
+    for (const TextRow& row : readTable((folder / name).string(), 2)) {
+        list.push_back({row.number(0), (folder / row.text(1)).string()});
+        const std::size_t n = list.size();
+        if (n > 1 && list[n - 1].timestamp < list[n - 2].timestamp) {
+            row.fail("timestamp is smaller than the one before");
+        }
+    }
+    if (list.empty()) throw InputError((folder / name).string(), "", "no images");
+    return list;
+}
+
+std::vector<Pair> readAssociation(const fs::path& folder, const std::string& name) {
+    std::vector<Pair> pairs;
+    for (const TextRow& row : readTable((folder / name).string(), 4)) {
+        Pair pair{{row.number(0), (folder / row.text(1)).string()},
+                  {row.number(2), (folder / row.text(3)).string()}};
+        if (row.text(1).starts_with("depth")) std::swap(pair.colour, pair.depth);
+        if (!pairs.empty() && pair.colour.timestamp < pairs.back().colour.timestamp) {
+            row.fail("timestamp is smaller than the one before");
+        }
+        pairs.push_back(std::move(pair));
+    }
+    if (pairs.empty()) throw InputError((folder / name).string(), "", "no images");
+    return pairs;
+}
+
+/// Index of the depth image of every colour image, or -1: closest pairs first, as the benchmark's
+/// associate.py.
+std::vector<int> associate(const std::vector<StampedFile>& colour,
+                           const std::vector<StampedFile>& depth, double tolerance) {
+    struct Candidate {
+        double difference;
+        int colour;
+        int depth;
+    };
+    std::vector<Candidate> candidates;
+    for (std::size_t i = 0; i < colour.size(); ++i) {
+        const double time = colour[i].timestamp;
+        auto j =
+            std::lower_bound(depth.begin(), depth.end(), time - tolerance,
+                             [](const StampedFile& file, double t) { return file.timestamp < t; });
+        for (; j != depth.end() && j->timestamp <= time + tolerance; ++j) {
+            candidates.push_back({std::abs(j->timestamp - time), static_cast<int>(i),
+                                  static_cast<int>(j - depth.begin())});
+        }
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const auto& a, const auto& b) { return a.difference < b.difference; });
+    std::vector<int> partner(colour.size(), -1);
+    std::vector<bool> taken(depth.size(), false);
+    for (const auto& candidate : candidates) {
+        if (partner[candidate.colour] >= 0 || taken[candidate.depth]) continue;
+        partner[candidate.colour] = candidate.depth;
+        taken[candidate.depth] = true;
+    }
+    return partner;
+}
+
+std::vector<Pair> readPairs(const fs::path& folder, double tolerance, Sequence& sequence) {
+    for (const char* name : {"assoc.txt", "associations.txt"}) {
+        if (fs::exists(folder / name)) return readAssociation(folder, name);
+    }
+    const auto colour = readFileList(folder, "rgb.txt");
+    const auto depth = readFileList(folder, "depth.txt");
+    const auto partner = associate(colour, depth, tolerance);
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < colour.size(); ++i) {
+        if (partner[i] >= 0) {
+            pairs.push_back({colour[i], depth[partner[i]]});
+        } else {
+            sequence.skipped.push_back(
+                {colour[i].file, fmt::format("no depth image within {} s", tolerance)});
+        }
+    }
+    if (pairs.empty()) {
+        throw InputError((folder / "depth.txt").string(), "",
+                         fmt::format("no depth image within {} s of any colour image", tolerance));
+    }
+    return pairs;
+}
+
+void readCamera(const fs::path& folder, Sequence& sequence) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const std::string file = (folder / "camera.yaml").string();
+    sequence.cameraAssumed = !fs::exists(file);
+    Camera& camera = sequence.camera;
+    camera.width = 640;
+    camera.height = 480;
+    std::array<double, 4> intrinsics = {525., 525., 319.5, 239.5};
+    if (!sequence.cameraAssumed) {
+        YamlMap yaml(file, loadYaml(file));
+        const auto require = [&](const std::string& key) {
+            if (!yaml.has(key)) yaml.fail(key, "missing");
+            return key;
+        };
+        yaml.read(require("width"), camera.width);
+        yaml.read(require("height"), camera.height);
+        if (camera.width == 0) yaml.fail("width", "is zero");
+        if (camera.height == 0) yaml.fail("height", "is zero");
+        yaml.readNumber(require("fx"), intrinsics[0], 1e-3, kInfinity);
+        yaml.readNumber(require("fy"), intrinsics[1], 1e-3, kInfinity);
+        yaml.readNumber(require("cx"), intrinsics[2], -kInfinity, kInfinity);
+        yaml.readNumber(require("cy"), intrinsics[3], -kInfinity, kInfinity);
+        yaml.readNumber("depth_scale", sequence.depthScale, 1e-6, kInfinity);
+        yaml.finish();
+    }
+    camera.intrinsics =
+        vpCameraParameters(intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]);
+}
+
+/// Libraries pad a truncated JPEG with grey and call it a success, so its end is checked here.
+bool isTruncatedJpeg(const std::vector<unsigned char>& bytes) {
+    if (bytes.size() < 2 || bytes[0] != 0xFF || bytes[1] != 0xD8) return false;
+    const std::array<unsigned char, 2> end = {0xFF, 0xD9};
+    return std::search(bytes.end() - std::min<std::ptrdiff_t>(bytes.size(), 1024), bytes.end(),
+                       end.begin(), end.end()) == bytes.end();
+}
+
+cv::Mat readImage(const std::string& file, int flags, const Camera& camera) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw InputError(file, "", "no such file");
+    const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(in), {}};
+    const cv::Mat image =
+        bytes.empty() || isTruncatedJpeg(bytes) ? cv::Mat() : cv::imdecode(bytes, flags);
+    if (image.empty()) throw InputError(file, "", "not an image, or damaged");
+    if (image.cols != int(camera.width) || image.rows != int(camera.height)) {
+        throw InputError(file, "",
+                         fmt::format("{}x{} pixels, but the camera has {}x{}", image.cols,
+                                     image.rows, camera.width, camera.height));
+    }
+    return image;
+}
+
+}  // namespace
+
+Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
+    if (!fs::is_directory(folder)) throw InputError(folder, "", "no such folder");
+    if (fs::is_empty(folder)) throw InputError(folder, "", "the folder is empty");
+    Sequence sequence;
+    readCamera(folder, sequence);
+    if (options.depthScale) sequence.depthScale = *options.depthScale;
+    const auto pairs = readPairs(folder, options.tolerance, sequence);
+    const std::string groundtruth = (fs::path(folder) / "groundtruth.txt").string();
+    const Trajectory trajectory = readTrajectory(groundtruth);
+    for (const auto& [colour, depth] : pairs) {
+        const auto T_w_c =
+            poseAt(trajectory, colour.timestamp, options.tolerance, options.maxPoseGap);
+        if (T_w_c) {
+            sequence.frames.push_back(
+                {colour.timestamp, T_w_c->inverse(), colour.file, depth.file});
+        } else {
+            sequence.skipped.push_back(
+                {colour.file, fmt::format("no pose within {} s", options.tolerance)});
+        }
+    }
+    if (sequence.frames.empty()) {
+        throw InputError(groundtruth, "",
+                         fmt::format("no pose within {} s of any image", options.tolerance));
+    }
+    return sequence;
+}
+
+Frame loadFrame(const Sequence& sequence, std::size_t index) {
+    const Sequence::Entry& entry = sequence.frames.at(index);
+    const Camera& camera = sequence.camera;
+    const cv::Mat grey =
+        readImage(entry.colourFile, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION, camera);
+    const cv::Mat depth = readImage(entry.depthFile, cv::IMREAD_UNCHANGED, camera);
+    if (depth.type() != CV_16UC1) {
+        throw InputError(entry.depthFile, "", "expected one channel of 16 bits");
+    }
+    Frame frame{entry.timestamp, entry.T_c_w, {}};
+    frame.view.intensity.resize(camera.height, camera.width);
+    frame.view.depth.resize(camera.height, camera.width);
+    const auto metres = static_cast<float>(1. / sequence.depthScale);
+    for (unsigned v = 0; v < camera.height; ++v) {
+        const auto* g = grey.ptr<std::uint8_t>(static_cast<int>(v));
+        const auto* d = depth.ptr<std::uint16_t>(static_cast<int>(v));
+        for (unsigned u = 0; u < camera.width; ++u) {
+            frame.view.intensity[v][u] = static_cast<float>(g[u]) / 255.F;
+            frame.view.depth[v][u] = static_cast<float>(d[u]) * metres;
+        }
+    }
+    return frame;
+}
+
+}  // namespace photonav

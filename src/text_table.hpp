@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Strict reading of text tables with blanks between the fields, as TUM's and evo's files are.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace photonav {
+
+/// One line of a table; complains with its file and line.
+class TextRow {
+  public:
+    TextRow(std::string file, int line, std::vector<std::string> fields)
+        : file_(std::move(file)), line_(line), fields_(std::move(fields)) {}
+
+    const std::string& text(std::size_t column) const { return fields_[column]; }
+
+    /// @throws InputError unless the whole field is a finite number
+    double number(std::size_t column) const;
+
+    /// @throws InputError "FILE: line N: reason"
+    [[noreturn]] void fail(const std::string& reason) const;
+
+  private:
+    std::string file_;
+    int line_;
+    std::vector<std::string> fields_;
+};
+
+/// All rows of a file but blank lines and those that start with '#'.
+/// @throws InputError for a missing file and for a row that does not have `columns` fields
+std::vector<TextRow> readTable(const std::string& file, std::size_t columns);
+
+}  // namespace photonav

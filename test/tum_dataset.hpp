@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A small recording for tests: a camera that looks down on a textured floor, in the TUM layout.
+#pragma once
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+
+#include "camera.hpp"
+#include "error.hpp"
+
+namespace photonav::test {
+
+namespace fs = std::filesystem;
+
+/// A folder of this test's own, gone when the test is.
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+        path_ = fs::temp_directory_path() /
+                fmt::format("photonav-{}-{}-{}", info->test_suite_name(), info->name(), getpid());
+        fs::remove_all(path_);
+        fs::create_directories(path_);
+    }
+    ~TemporaryFolder() { fs::remove_all(path_); }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
+};
+
+inline void writeText(const fs::path& file, const std::string& text) {
+    std::ofstream(file) << text;
+}
+
+/// Grey value of the floor z = 0.
+inline double floorTexture(double x, double y) {
+    return 0.5 + 0.2 * std::sin(5. * x) + 0.2 * std::cos(4. * y);
+}
+
+struct FloorDataset {
+    unsigned width = 80;
+    unsigned height = 60;
+    double focal = 60.;
+    double cameraHeight = 1.5;  ///< [m]
+    int frames = 6;             ///< one every 0.1 s and 0.1 m along x
+
+    Pose T_w_c(int i) const {
+        Pose pose = cameraMount(std::numbers::pi / 2.);
+        pose.translation() = Eigen::Vector3d(0.1 * i, 0., cameraHeight);
+        return pose;
+    }
+
+    void write(const fs::path& folder) const {
+        fs::create_directories(folder / "rgb");
+        fs::create_directories(folder / "depth");
+        std::string rgb = "# timestamp filename\n";
+        std::string depth = rgb;
+        std::string poses = "# timestamp tx ty tz qx qy qz qw\n";
+        for (int i = 0; i < frames; ++i) {
+            const double time = 100. + 0.1 * i;
+            rgb += fmt::format("{:.6f} rgb/{}.png\n", time, i);
+            depth += fmt::format("{:.6f} depth/{}.png\n", time + 0.005, i);
+            const Pose pose = T_w_c(i);
+            const Eigen::Quaterniond q(pose.linear());
+            poses += fmt::format("{:.6f} {} {} {} {} {} {} {}\n", time, pose.translation().x(),
+                                 pose.translation().y(), pose.translation().z(), q.x(), q.y(),
+                                 q.z(), q.w());
+            writeImages(folder, i);
+        }
+        writeText(folder / "rgb.txt", rgb);
+        writeText(folder / "depth.txt", depth);
+        writeText(folder / "groundtruth.txt", poses);
+        writeText(folder / "camera.yaml",
+                  fmt::format("width: {}\nheight: {}\nfx: {}\nfy: {}\ncx: {}\ncy: {}\n", width,
+                              height, focal, focal, 0.5 * (width - 1), 0.5 * (height - 1)));
+    }
+
+    void writeImages(const fs::path& folder, int i) const {
+        cv::Mat grey(int(height), int(width), CV_8UC1);
+        const cv::Mat depth(int(height), int(width), CV_16UC1, cv::Scalar(5000. * cameraHeight));
+        const Pose pose = T_w_c(i);
+        for (int v = 0; v < grey.rows; ++v) {
+            for (int u = 0; u < grey.cols; ++u) {
+                const Eigen::Vector3d p_w =
+                    pose * (cameraHeight * Eigen::Vector3d((u - 0.5 * (width - 1)) / focal,
+                                                           (v - 0.5 * (height - 1)) / focal, 1.));
+                grey.at<std::uint8_t>(v, u) =
+                    static_cast<std::uint8_t>(std::lround(255. * floorTexture(p_w.x(), p_w.y())));
+            }
+        }
+        cv::imwrite((folder / fmt::format("rgb/{}.png", i)).string(), grey);
+        cv::imwrite((folder / fmt::format("depth/{}.png", i)).string(), depth);
+    }
+};
+
+/// Runs `action` and checks that it throws an InputError whose message has all `parts`.
+template <typename Action>
+void expectInputError(Action action, const std::vector<std::string>& parts) {
+    try {
+        action();
+        ADD_FAILURE() << "no error; expected one about "
+                      << fmt::format("{}", fmt::join(parts, ", "));
+    } catch (const InputError& error) {
+        const std::string message = error.what();
+        for (const auto& part : parts) {
+            EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks: " << part;
+        }
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    }
+}
+
+}  // namespace photonav::test
