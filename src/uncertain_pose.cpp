@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "uncertain_pose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "se3.hpp"
+
+namespace photonav {
+
+namespace {
+
+using Eigen::Matrix3d;
+
+/// A covariance by its blocks [P, R; R^T, S]; P and S are symmetric.
+struct Blocks {
+    Matrix3d P, R, S;
+
+    Blocks() = default;
+    explicit Blocks(const Matrix6& m)
+        : P(m.topLeftCorner<3, 3>()), R(m.topRightCorner<3, 3>()), S(m.bottomRightCorner<3, 3>()) {}
+
+    Blocks& operator+=(const Blocks& other) {
+        P += other.P;
+        R += other.R;
+        S += other.S;
+        return *this;
+    }
+
+    Matrix6 matrix() const {
+        Matrix6 m;
+        m.topLeftCorner<3, 3>() = P;
+        m.topRightCorner<3, 3>() = R;
+        m.bottomLeftCorner<3, 3>() = R.transpose();
+        m.bottomRightCorner<3, 3>() = S;
+        return m;
+    }
+};
+
+Matrix3d symmetricSum(const Matrix3d& M) { return M + M.transpose(); }
+
+/// tr(A^T B)
+double dot(const Matrix3d& A, const Matrix3d& B) { return A.cwiseProduct(B).sum(); }
+
+/// Ad Sigma Ad^T for Ad = [C, r^ C; 0, C]: rotate the blocks, then shift them by the lever arm r.
+Blocks transport(const Matrix6& Ad, const Blocks& prior) {
+    const Matrix3d C = Ad.topLeftCorner<3, 3>();
+    const Matrix3d X = Ad.topRightCorner<3, 3>() * C.transpose();  // r^
+    const Matrix3d R = C * prior.R * C.transpose();
+    Blocks carried;
+    carried.S = C * prior.S * C.transpose();
+    carried.S = 0.5 * symmetricSum(carried.S);
+    carried.R = R + X * carried.S;
+    const Matrix3d P = C * prior.P * C.transpose() + X * R.transpose() - carried.R * X;
+    carried.P = 0.5 * symmetricSum(P);
+    return carried;
+}
+
+/// BF14's A and B terms, multiplied out and collected by products: 9 instead of the 36 of the
+/// formula as printed. Note <<A, B>> = <<A>><<B>> + <<BA>>: a sum.
+Blocks collectedFourthOrderTerms(const Blocks& a, const Blocks& b) {
+    const double sa = a.S.trace(), ra = a.R.trace(), pa = a.P.trace();
+    const double sb = b.S.trace(), rb = b.R.trace(), pb = b.P.trace();
+    const Matrix3d I = Matrix3d::Identity();
+    const Matrix3d aRt = a.R.transpose();
+    const Matrix3d bRt = b.R.transpose();
+
+    Blocks f;
+    f.S = 5. / 12. * (symmetricSum(a.S * b.S) - sa * b.S - sb * a.S) +
+          0.25 * (sa * sb - dot(a.S, b.S)) * I;
+
+    f.R = a.S * (1. / 12. * b.R + 0.25 * bRt) + (1. / 6. * b.R + 1. / 3. * bRt) * a.S +
+          b.S * (1. / 12. * a.R + 0.25 * aRt) + (1. / 6. * a.R + 1. / 3. * aRt) * b.S -
+          sa * (1. / 6. * b.R + 0.25 * bRt) - sb * (1. / 6. * a.R + 0.25 * aRt) -
+          5. / 12. * (ra * b.S + rb * a.S) +
+          0.25 * (sa * rb + sb * ra - dot(b.R, a.S) - dot(a.R, b.S)) * I;
+
+    const Matrix3d half = 1. / 3. * (a.S * b.P + b.S * a.P) +
+                          a.R * (5. / 12. * bRt + 1. / 12. * b.R) +
+                          aRt * (0.25 * b.R + 1. / 12. * bRt) - 5. / 12. * (ra * b.R + rb * a.R);
+    f.P = symmetricSum(half) - 5. / 12. * (sa * b.P + sb * a.P) - 0.25 * (pb * a.S + pa * b.S) +
+          (0.25 * (sa * pb + sb * pa - dot(a.S, b.P) - dot(a.P, b.S)) +
+           0.5 * (ra * rb - dot(a.R, b.R))) *
+              I;
+    return f;
+}
+
+/// Whether the LDL^T pivots of m are positive once the diagonal is raised by 1e-12 of the largest
+/// variance of its block, in units of its own: m^2 and rad^2 do not mix. NaN is not.
+bool isPositiveSemidefinite(const Matrix6& m) {
+    constexpr double kTolerance = 1e-12;
+    constexpr double kTiny = 1e-290;  // keeps an all-zero block solvable
+    const double shiftP = kTolerance * std::max({m(0, 0), m(1, 1), m(2, 2)}) + kTiny;
+    const double shiftS = kTolerance * std::max({m(3, 3), m(4, 4), m(5, 5)}) + kTiny;
+    Matrix6 a = m;
+    bool positive = true;
+    for (int k = 0; k < 6; ++k) {
+        const double pivot = a(k, k) + (k < 3 ? shiftP : shiftS);
+        positive = positive && pivot > 0.;
+        const double inverse = 1. / pivot;
+        for (int j = k + 1; j < 6; ++j) {
+            const double factor = a(j, k) * inverse;
+            for (int i = j; i < 6; ++i) a(i, j) -= factor * a(i, k);
+        }
+    }
+    return positive;
+}
+
+}  // namespace
+
+Matrix6 fourthOrderTerms(const Matrix6& first, const Matrix6& second) {
+    return collectedFourthOrderTerms(Blocks(first), Blocks(second)).matrix();
+}
+
+CompoundedCovariance compoundCovariance(const Matrix6& adjointMotion, const Matrix6& motion,
+                                        const Matrix6& prior, PropagationOrder order) {
+    const Blocks first(motion);
+    const Blocks second = transport(adjointMotion, Blocks(prior));
+    Blocks sum = first;
+    sum += second;
+    if (order == PropagationOrder::second) return {sum.matrix(), false};
+
+    constexpr double kMaxVariance = kFourthOrderMaxRotationSigma * kFourthOrderMaxRotationSigma;
+    if (first.S.trace() <= kMaxVariance && second.S.trace() <= kMaxVariance) {
+        Blocks fourth = sum;
+        fourth += collectedFourthOrderTerms(first, second);
+        const Matrix6 covariance = fourth.matrix();
+        if (isPositiveSemidefinite(covariance)) return {covariance, false};
+    }
+    return {sum.matrix(), true};
+}
+
+UncertainPose compound(const UncertainPose& T_c_b, const UncertainPose& T_b_a,
+                       PropagationOrder order) {
+    return {T_c_b.mean * T_b_a.mean,
+            compoundCovariance(adjoint(T_c_b.mean), T_c_b.covariance, T_b_a.covariance, order)
+                .covariance};
+}
+
+UncertainPose inverse(const UncertainPose& T_b_a) {
+    const Pose T_a_b = T_b_a.mean.inverse();
+    return {T_a_b, transport(adjoint(T_a_b), Blocks(T_b_a.covariance)).matrix()};
+}
+
+Matrix6 updateCovariance(const Matrix6& covariance, const Matrix6& information) {
+    // Gaussian elimination of [1 + covariance information | covariance] with partial pivoting, by
+    // whole rows, which fill vector registers.
+    constexpr int kColumns = 12;
+    alignas(64) double a[6][kColumns];
+    for (int i = 0; i < 6; ++i) {
+        for (int j = 0; j < 6; ++j) a[i][j] = i == j ? 1. : 0.;
+        for (int k = 0; k < 6; ++k) {
+            for (int j = 0; j < 6; ++j) a[i][j] += covariance(k, i) * information(j, k);
+        }
+        for (int j = 0; j < 6; ++j) a[i][6 + j] = covariance(j, i);
+    }
+    for (int k = 0; k < 6; ++k) {
+        int pivot = k;
+        for (int i = k + 1; i < 6; ++i) {
+            if (std::abs(a[i][k]) > std::abs(a[pivot][k])) pivot = i;
+        }
+        if (pivot != k) std::swap(a[pivot], a[k]);
+        const double inverse = 1. / a[k][k];
+        for (int i = k + 1; i < 6; ++i) {
+            const double factor = a[i][k] * inverse;
+            for (int j = 0; j < kColumns; ++j) a[i][j] -= factor * a[k][j];
+        }
+    }
+    Matrix6 x;
+    for (int k = 5; k >= 0; --k) {
+        double row[6];
+        for (int j = 0; j < 6; ++j) row[j] = a[k][6 + j];
+        for (int i = k + 1; i < 6; ++i) {
+            for (int j = 0; j < 6; ++j) row[j] -= a[k][i] * x(j, i);
+        }
+        const double inverse = 1. / a[k][k];
+        for (int j = 0; j < 6; ++j) x(j, k) = row[j] * inverse;
+    }
+    return 0.5 * (x + x.transpose());
+}
+
+bool isCovariance(const Matrix6& matrix) {
+    if (!matrix.allFinite()) return false;
+    const double scale = matrix.cwiseAbs().maxCoeff();
+    const double asymmetry = (matrix - matrix.transpose()).cwiseAbs().maxCoeff();
+    return asymmetry <= 1e-12 * scale && isPositiveSemidefinite(matrix);
+}
+
+double weightedTrace(const Matrix6& covariance, double characteristicLength) {
+    return covariance.diagonal().head<3>().sum() +
+           characteristicLength * characteristicLength * covariance.diagonal().tail<3>().sum();
+}
+
+}  // namespace photonav
