@@ -1,1 +1,152 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "belief.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "se3.hpp"
+
+namespace photonav {
+namespace ob = ompl::base;
+
+void BeliefOptions::check() const {
+    if (!(alpha >= 0. && alpha <= 1.)) throw std::invalid_argument("alpha is outside [0, 1]");
+    if (!(kappa >= 0.)) throw std::invalid_argument("kappa is negative");
+    if (!(ds > 0.)) throw std::invalid_argument("ds is not positive");
+    if (!isCovariance(initialCovariance)) {
+        throw std::invalid_argument("the initial covariance is not positive semi-definite");
+    }
+    if (!isCovariance(motionNoise)) {
+        throw std::invalid_argument("the motion noise is not positive semi-definite");
+    }
+}
+
+BeliefModel::BeliefModel(const FlightSpace& space, InformationField field,
+                         const BeliefOptions& options)
+    : space_(space), field_(std::move(field)), options_(options) {
+    options_.check();
+    const Matrix6 toCamera = adjoint(field_.mount().inverse());
+    initialCamera_ = toCamera * options_.initialCovariance * toCamera.transpose();
+    noiseCamera_ = toCamera * options_.motionNoise * toCamera.transpose();
+}
+
+Belief BeliefModel::root() const { return {initialCamera_, 0.}; }
+
+Motion BeliefModel::motion(const ob::State* from, const ob::State* to) const {
+    const double length = space_.space()->distance(from, to);
+    const bool perVertex = options_.cost == CostRule::perVertex;
+    const int steps =
+        perVertex ? 1 : std::max(1, static_cast<int>(std::ceil(length / options_.ds - 1e-9)));
+    return {from, to, length, steps, {}};
+}
+
+Belief BeliefModel::fly(const Belief& belief, Motion& motion, bool backward) {
+    if (motion.views.empty()) look(motion);
+    const auto start = std::chrono::steady_clock::now();
+    const bool perVertex = options_.cost == CostRule::perVertex;
+    const double step = motion.length / motion.steps;
+    const double shareOfView = perVertex ? 1. : step / options_.ds;
+    const Matrix6 noise = step * noiseCamera_;
+
+    Matrix6 covariance = belief.covariance;
+    double charge = 0.;
+    double traceAfter = trace(covariance);
+    for (int k = 0; k < motion.steps; ++k) {
+        const auto moved =
+            compoundCovariance(stepAdjoint(motion, k, backward), noise, covariance, options_.order);
+        fallbacks_ += moved.fellBack ? 1 : 0;
+        covariance = moved.covariance;
+        charge += 0.5 * step * (traceAfter + trace(covariance));  // the trace before the update
+        const auto& view = *motion.views[backward ? motion.steps - 1 - k : k + 1];
+        if (!view.isZero) {
+            covariance = updateCovariance(covariance, shareOfView * view.information);
+        }
+        traceAfter = trace(covariance);
+    }
+    if (perVertex) charge = traceAfter;
+    propagations_ += motion.steps;
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return {covariance, belief.cost + options_.alpha * motion.length +
+                            (1. - options_.alpha) * options_.kappa * charge};
+}
+
+void BeliefModel::look(Motion& motion) {
+    motion.views.resize(motion.steps + 1);
+    for (int k = 0; k <= motion.steps; ++k) {
+        motion.views[k] = &field_.at(
+            space_.poseBetween(motion.from, motion.to, static_cast<double>(k) / motion.steps));
+    }
+}
+
+/// Ad(T_{k+1,k}) of the camera for the k-th step flown.
+Matrix6 BeliefModel::stepAdjoint(const Motion& motion, int k, bool backward) const {
+    if (space_.kind() == StateKind::position) {
+        // The heading is fixed: the camera moves by a constant vector and does not turn.
+        const Eigen::Vector3d way = space_.position(motion.to) - space_.position(motion.from);
+        const Eigen::Vector3d step_b = way * ((backward ? -1. : 1.) / motion.steps);
+        Pose T_next_last = Pose::Identity();
+        T_next_last.translation() = -(field_.mount().linear().transpose() * step_b);
+        return adjoint(T_next_last);
+    }
+    const double direction = backward ? -1. : 1.;
+    const double begin = backward ? motion.steps - k : k;
+    const Pose T_w_last =
+        space_.poseBetween(motion.from, motion.to, begin / motion.steps) * field_.mount();
+    const Pose T_w_next =
+        space_.poseBetween(motion.from, motion.to, (begin + direction) / motion.steps) *
+        field_.mount();
+    return adjoint(T_w_next.inverse() * T_w_last);
+}
+
+std::vector<BeliefPoint> BeliefModel::evaluate(const std::vector<const ob::State*>& path) {
+    std::vector<BeliefPoint> points;
+    if (path.empty()) return points;
+    const Pose T_w_b = space_.bodyPose(path.front());
+    points.push_back({.T_w_b = T_w_b,
+                      .covariance = initialCamera_,
+                      .traceBefore = trace(initialCamera_),
+                      .trace = trace(initialCamera_),
+                      .information = field_.at(T_w_b).information,
+                      .isWaypoint = true});
+    for (std::size_t i = 1; i < path.size(); ++i) evaluateMotion(path[i - 1], path[i], points);
+    return points;
+}
+
+void BeliefModel::evaluateMotion(const ob::State* from, const ob::State* to,
+                                 std::vector<BeliefPoint>& points) {
+    const Motion way = motion(from, to);
+    const Pose T_c_b = field_.mount().inverse();
+    const double step = way.length / way.steps;
+    const bool perVertex = options_.cost == CostRule::perVertex;
+    for (int k = 1; k <= way.steps; ++k) {
+        const BeliefPoint last = points.back();
+        BeliefPoint next;
+        next.T_w_b = space_.poseBetween(way.from, way.to, static_cast<double>(k) / way.steps);
+        const UncertainPose T_last_w{T_c_b * last.T_w_b.inverse(), last.covariance};
+        const UncertainPose T_next_last{T_c_b * next.T_w_b.inverse() * T_last_w.mean.inverse(),
+                                        step * noiseCamera_};
+        next.covariance = compound(T_next_last, T_last_w, options_.order).covariance;
+        next.traceBefore = trace(next.covariance);
+        next.information = field_.at(next.T_w_b).information;
+        const Matrix6 gain = (perVertex ? 1. : step / options_.ds) * next.information;
+        next.covariance =
+            (Matrix6::Identity() + next.covariance * gain).partialPivLu().solve(next.covariance);
+        next.covariance = 0.5 * (next.covariance + next.covariance.transpose()).eval();
+        next.trace = trace(next.covariance);
+        next.distance = last.distance + step;
+        const double charge = perVertex ? next.trace : 0.5 * step * (last.trace + next.traceBefore);
+        next.cost =
+            last.cost + options_.alpha * step + (1. - options_.alpha) * options_.kappa * charge;
+        next.isWaypoint = k == way.steps;
+        points.push_back(next);
+    }
+}
+
+void BeliefModel::clear() {
+    field_.clear();
+    propagations_ = fallbacks_ = 0;
+    seconds_ = 0.;
+}
+
+}  // namespace photonav

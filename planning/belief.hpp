@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Beliefs along motions: propagate, look, update at fixed steps, and what that costs.
+#pragma once
+
+#include <vector>
+
+#include "flight_space.hpp"
+#include "information_field.hpp"
+#include "uncertain_pose.hpp"
+
+namespace photonav {
+
+/// How uncertainty is charged along a motion.
+enum class CostRule {
+    integral,  ///< (1 - alpha) kappa times the integral of the trace over the way flown
+    perVertex  ///< the paper's eq. (16): (1 - alpha) kappa tr(Sigma) at each vertex, one view there
+};
+
+struct BeliefOptions {
+    double alpha = 0.1;  ///< trade-off in [0, 1]: 1 is the shortest way, 0 the most certain one
+    double kappa =
+        2.5;           ///< metres of detour that 1 m of flight at tr(Sigma) = 1 m^2 is worth [1/m]
+    double ds = 0.25;  ///< way flown between views [m]
+    double characteristicLength = 1.0;  ///< weighs rad^2 against m^2 in the trace [m]
+    PropagationOrder order = PropagationOrder::fourth;
+    CostRule cost = CostRule::integral;
+    Matrix6 initialCovariance = Matrix6::Zero();  ///< at the start, body frame
+    Matrix6 motionNoise = Matrix6::Zero();        ///< per metre of motion, body frame
+
+    /// @throws std::invalid_argument for alpha outside [0, 1], kappa < 0, ds <= 0, a covariance
+    ///         that is not symmetric positive semi-definite
+    void check() const;
+};
+
+/// What is known at a vertex: covariance of T_c_w (camera frame, left, (rho, phi)) and
+/// cost-to-come.
+struct Belief {
+    Matrix6 covariance;
+    double cost = 0.;
+};
+
+/// A straight motion between two states, cut in equal steps no longer than ds. Remembers the views
+/// along it, so that it can be flown again, in both directions, by other beliefs.
+struct Motion {
+    const ompl::base::State* from = nullptr;
+    const ompl::base::State* to = nullptr;
+    double length = 0.;  ///< metric of the flight space [m]
+    int steps = 0;
+    std::vector<const InformationField::Entry*> views;  ///< steps + 1 of them, or none yet
+};
+
+/// One point of an evaluated path.
+struct BeliefPoint {
+    Pose T_w_b;
+    double distance = 0.;     ///< way flown so far, metric of the flight space [m]
+    Matrix6 covariance;       ///< after the update, camera frame
+    double traceBefore = 0.;  ///< weighted trace before the update
+    double trace = 0.;        ///< weighted trace after the update
+    double cost = 0.;         ///< cost so far
+    Matrix6 information;      ///< of the view from here, camera frame
+    bool isWaypoint = false;  ///< a state of the path, not a step in between
+};
+
+class BeliefModel {
+  public:
+    /// @throws std::invalid_argument as BeliefOptions::check()
+    BeliefModel(const FlightSpace& space, InformationField field, const BeliefOptions& options);
+
+    /// The belief at the start: the initial covariance at cost 0.
+    Belief root() const;
+
+    Motion motion(const ompl::base::State* from, const ompl::base::State* to) const;
+
+    /// The belief at the end of a motion (or at its beginning, flown backward).
+    /// For each step: propagate, charge, look, update. A step shorter than ds is worth its share
+    /// of a view, so the same way brings the same information wherever its vertices are.
+    Belief fly(const Belief& belief, Motion& motion, bool backward = false);
+
+    /// Cost of a motion that no belief can undercut: alpha times its length.
+    double lowerBound(double length) const { return options_.alpha * length; }
+
+    /// The belief at every step of a path, by plain composition of uncertain poses: slow, and
+    /// sharing only the definitions with fly(), so that each checks the other.
+    std::vector<BeliefPoint> evaluate(const std::vector<const ompl::base::State*>& path);
+
+    /// One motion of evaluate(): appends its steps to `points`, whose last one is the beginning.
+    void evaluateMotion(const ompl::base::State* from, const ompl::base::State* to,
+                        std::vector<BeliefPoint>& points);
+
+    const FlightSpace& space() const { return space_; }
+    const BeliefOptions& options() const { return options_; }
+    const InformationField& field() const { return field_; }
+
+    std::size_t propagations() const { return propagations_; }
+    std::size_t fallbacks() const { return fallbacks_; }  ///< steps done in second order after all
+    double seconds() const { return seconds_; }           ///< spent in fly(), views excluded
+    void clear();                                         ///< forgets views and counters
+
+  private:
+    void look(Motion& motion);
+    Matrix6 stepAdjoint(const Motion& motion, int k, bool backward) const;
+    double trace(const Matrix6& covariance) const {
+        return weightedTrace(covariance, options_.characteristicLength);
+    }
+
+    FlightSpace space_;
+    InformationField field_;
+    BeliefOptions options_;
+    Matrix6 initialCamera_;  // options_.initialCovariance in the camera frame
+    Matrix6 noiseCamera_;    // options_.motionNoise in the camera frame
+    std::size_t propagations_ = 0;
+    std::size_t fallbacks_ = 0;
+    double seconds_ = 0.;
+};
+
+}  // namespace photonav

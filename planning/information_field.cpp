@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "information_field.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+namespace photonav {
+
+InformationModel photometricModel(const ViewSource& map, const Camera& camera,
+                                  const PhotometricOptions& options) {
+    auto view = std::make_shared<View>();
+    return [&map, camera, options, view](const Pose& T_c_w) {
+        map.render(camera, T_c_w, *view);
+        return photometricInformation(*view, camera, options);
+    };
+}
+
+InformationField::InformationField(InformationModel model, const Pose& T_b_c,
+                                   const Options& options)
+    : model_(std::move(model)), T_b_c_(T_b_c), options_(options) {
+    if (!(options.positionPitch > 0. && options.rotationPitch > 0.)) {
+        throw std::invalid_argument("information field: the pitch must be positive");
+    }
+}
+
+const InformationField::Entry& InformationField::at(const Pose& T_w_b) {
+    ++queries_;
+    const Cell cell = cellOf(T_w_b);
+    if (const auto known = index_.find(cell); known != index_.end()) return entries_[known->second];
+    const auto start = std::chrono::steady_clock::now();
+    const Matrix6 information = model_((centreOf(cell) * T_b_c_).inverse());
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    index_.emplace(cell, static_cast<std::uint32_t>(entries_.size()));
+    return entries_.emplace_back(Entry{information, information.isZero(0.)});
+}
+
+void InformationField::clear() {
+    index_.clear();
+    entries_.clear();
+    queries_ = 0;
+    seconds_ = 0.;
+}
+
+InformationField::Cell InformationField::cellOf(const Pose& T_w_b) const {
+    Cell cell{};
+    const auto round = [](double x) { return static_cast<std::int32_t>(std::lround(x)); };
+    for (int i = 0; i < 3; ++i) cell[i] = round(T_w_b.translation()[i] / options_.positionPitch);
+    if (!T_w_b.linear().isIdentity(0.)) {
+        const Eigen::AngleAxisd rotation(T_w_b.linear());
+        const Eigen::Vector3d phi = rotation.angle() * rotation.axis();
+        for (int i = 0; i < 3; ++i) cell[3 + i] = round(phi[i] / options_.rotationPitch);
+    }
+    return cell;
+}
+
+Pose InformationField::centreOf(const Cell& cell) const {
+    Pose T_w_b = Pose::Identity();
+    T_w_b.translation() = options_.positionPitch * Eigen::Vector3d(cell[0], cell[1], cell[2]);
+    const Eigen::Vector3d phi = options_.rotationPitch * Eigen::Vector3d(cell[3], cell[4], cell[5]);
+    if (phi.squaredNorm() > 0.) {
+        T_w_b.linear() = Eigen::AngleAxisd(phi.norm(), phi.normalized()).toRotationMatrix();
+    }
+    return T_w_b;
+}
+
+std::size_t InformationField::CellHash::operator()(const Cell& cell) const {
+    std::uint64_t hash = 0;
+    for (const std::int32_t component : cell) {
+        hash = (hash ^ static_cast<std::uint32_t>(component)) * 0x9E3779B97F4A7C15ULL;
+        hash ^= hash >> 29;
+    }
+    return hash;
+}
+
+}  // namespace photonav

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a view from a body pose is worth, evaluated lazily and remembered.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <functional>
+#include <unordered_map>
+
+#include "photometric.hpp"
+#include "view.hpp"
+
+namespace photonav {
+
+/// Fisher information of one view, in the camera frame, as a function of the camera pose. Swap it
+/// to plan with another sensor model.
+using InformationModel = std::function<Matrix6(const Pose& T_c_w)>;
+
+/// The model of the paper: render what the camera would see, sum its photometric Jacobians.
+/// `map` must outlive the returned function.
+InformationModel photometricModel(const ViewSource& map, const Camera& camera,
+                                  const PhotometricOptions& options);
+
+/// Information over body poses, one view per cell of a pose grid.
+///
+/// The view is taken at the *centre* of the cell, so that the value depends on the pose alone and
+/// not on who asked first: a path costs the same whenever it is evaluated.
+class InformationField {
+  public:
+    struct Options {
+        double positionPitch = 0.1;   ///< edge of a cell [m]
+        double rotationPitch = 0.09;  ///< per component of the rotation vector [rad]
+    };
+
+    struct Entry {
+        Matrix6 information;  ///< camera frame, left perturbation
+        bool isZero;          ///< nothing to see: the update can be skipped
+    };
+
+    /// @param T_b_c camera mount
+    /// @throws std::invalid_argument unless both pitches are positive
+    InformationField(InformationModel model, const Pose& T_b_c, const Options& options);
+
+    /// The information of the view from the cell of T_w_b. The reference stays valid until clear().
+    const Entry& at(const Pose& T_w_b);
+
+    const Pose& mount() const { return T_b_c_; }
+    std::size_t views() const { return entries_.size(); }
+    std::size_t cacheHits() const { return queries_ - entries_.size(); }
+    double seconds() const { return seconds_; }  ///< spent in the model
+    void clear();
+
+  private:
+    using Cell = std::array<std::int32_t, 6>;
+    struct CellHash {
+        std::size_t operator()(const Cell& cell) const;
+    };
+
+    Cell cellOf(const Pose& T_w_b) const;
+    Pose centreOf(const Cell& cell) const;
+
+    InformationModel model_;
+    Pose T_b_c_;
+    Options options_;
+    std::unordered_map<Cell, std::uint32_t, CellHash> index_;
+    std::deque<Entry> entries_;
+    std::size_t queries_ = 0;
+    double seconds_ = 0.;
+};
+
+}  // namespace photonav
