@@ -35,7 +35,7 @@ struct BeliefOptions {
 /// What is known at a vertex: covariance of T_c_w (camera frame, left, (rho, phi)) and
 /// cost-to-come.
 struct Belief {
-    Matrix6 covariance;
+    Matrix6 covariance = Matrix6::Zero();
     double cost = 0.;
 };
 
@@ -51,14 +51,14 @@ struct Motion {
 
 /// One point of an evaluated path.
 struct BeliefPoint {
-    Pose T_w_b;
-    double distance = 0.;     ///< way flown so far, metric of the flight space [m]
-    Matrix6 covariance;       ///< after the update, camera frame
-    double traceBefore = 0.;  ///< weighted trace before the update
-    double trace = 0.;        ///< weighted trace after the update
-    double cost = 0.;         ///< cost so far
-    Matrix6 information;      ///< of the view from here, camera frame
-    bool isWaypoint = false;  ///< a state of the path, not a step in between
+    Pose T_w_b = Pose::Identity();
+    double distance = 0.;                   ///< way flown so far, metric of the flight space [m]
+    Matrix6 covariance = Matrix6::Zero();   ///< after the update, camera frame
+    double traceBefore = 0.;                ///< weighted trace before the update
+    double trace = 0.;                      ///< weighted trace after the update
+    double cost = 0.;                       ///< cost so far
+    Matrix6 information = Matrix6::Zero();  ///< of the view from here, camera frame
+    bool isWaypoint = false;                ///< a state of the path, not a step in between
 };
 
 class BeliefModel {

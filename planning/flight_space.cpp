@@ -41,6 +41,15 @@ ob::StateSpacePtr makeSpace(StateKind kind, const Eigen::AlignedBox3d& box, doub
     return space;
 }
 
+/// One of OMPL's samplers with a generator of its own seed.
+template <typename Sampler>
+class Seeded : public Sampler {
+  public:
+    Seeded(const ob::StateSpace* space, std::uint32_t seed) : Sampler(space) {
+        this->rng_.setLocalSeed(seed);
+    }
+};
+
 class ClearanceChecker : public ob::StateValidityChecker {
   public:
     ClearanceChecker(ob::SpaceInformation* si, const FlightSpace& space, Clearance clearance,
@@ -183,6 +192,22 @@ void FlightSpace::setState(ob::State* state, const Eigen::Vector3d& position, do
         values = state->as<ob::RealVectorStateSpace::StateType>()->values;
     }
     Eigen::Map<Eigen::Vector3d>{values} = position;
+}
+
+ob::StateSamplerPtr FlightSpace::sampler(std::uint32_t seed) const {
+    using PositionSampler = Seeded<ob::RealVectorStateSampler>;
+    if (kind_ == StateKind::position) return std::make_shared<PositionSampler>(space_.get(), seed);
+    const auto& parts = *space_->as<ob::CompoundStateSpace>();
+    auto sampler = std::make_shared<ob::CompoundStateSampler>(space_.get());
+    const auto* positions = parts.getSubspace(0).get();
+    const auto* rotations = parts.getSubspace(1).get();
+    sampler->addSampler(std::make_shared<PositionSampler>(positions, seed), 1.);
+    if (kind_ == StateKind::se3) {
+        sampler->addSampler(std::make_shared<Seeded<ob::SO3StateSampler>>(rotations, ~seed), 1.);
+    } else {
+        sampler->addSampler(std::make_shared<Seeded<ob::SO2StateSampler>>(rotations, ~seed), 1.);
+    }
+    return sampler;
 }
 
 int FlightSpace::dimension() const {

@@ -6,6 +6,7 @@
 #include <ompl/base/SpaceInformation.h>
 #include <ompl/base/StateSpace.h>
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -39,6 +40,9 @@ class FlightSpace {
     Pose poseBetween(const ompl::base::State* from, const ompl::base::State* to,
                      double fraction) const;
     void setState(ompl::base::State* state, const Eigen::Vector3d& position, double yaw) const;
+
+    /// Uniform sampler with its own seed: what it draws depends on nothing else in the process.
+    ompl::base::StateSamplerPtr sampler(std::uint32_t seed) const;
 
     /// Number of directions that have an extent, and the volume they span in the metric: what the
     /// connection radius of RRT* depends on.

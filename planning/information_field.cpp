@@ -45,7 +45,9 @@ void InformationField::clear() {
 
 InformationField::Cell InformationField::cellOf(const Pose& T_w_b) const {
     Cell cell{};
-    const auto round = [](double x) { return static_cast<std::int32_t>(std::lround(x)); };
+    // Boundaries are shifted off round numbers: a pose like 0.25 m must not change cells with the
+    // last bit of how it was computed.
+    const auto round = [](double x) { return static_cast<std::int32_t>(std::lround(x + 1e-7)); };
     for (int i = 0; i < 3; ++i) cell[i] = round(T_w_b.translation()[i] / options_.positionPitch);
     if (!T_w_b.linear().isIdentity(0.)) {
         const Eigen::AngleAxisd rotation(T_w_b.linear());

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <limits>
+#include <numbers>
+
+#include "yaml_reader.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kDegree = std::numbers::pi / 180.;
+constexpr double kTiny = 1e-6;
+
+const std::vector<std::string> kUnknown{"free", "occupied"};
+const std::vector<std::string> kSpaces{"auto", "xyz", "xyz_yaw", "se3"};
+const std::vector<std::string> kCosts{"integral", "per_vertex"};
+const std::vector<std::string> kOrders{"fourth", "second"};
+
+/// Degrees below the horizon of a mount name or number; nothing when it is neither.
+std::optional<double> mountDegrees(const std::string& mount) {
+    if (mount == "down") return 90.;
+    if (mount == "front45") return 45.;
+    if (mount == "forward") return 0.;
+    try {
+        std::size_t used = 0;
+        const double degrees = std::stod(mount, &used);
+        if (used == mount.size() && degrees >= -90. && degrees <= 90.) return degrees;
+    } catch (const std::exception&) {
+    }
+    return std::nullopt;
+}
+
+/// Sets node[a][b] = value for the override "a.b=value".
+void applyOverride(YAML::Node root, const std::string& text) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0) {
+        throw InputError("--set", text, "expected key.path=value");
+    }
+    const std::string path = text.substr(0, equals);
+    std::string value = text.substr(equals + 1);
+    if (path.ends_with(".file") && !value.empty()) value = fs::absolute(value).string();
+    YAML::Node node = root;
+    for (std::size_t begin = 0; begin <= path.size();) {
+        const std::size_t end = std::min(path.find('.', begin), path.size());
+        const std::string key = path.substr(begin, end - begin);
+        if (!node.IsMap() && !node.IsNull()) throw InputError("--set", path, "no such key");
+        if (end == path.size()) {
+            try {
+                node[key] = YAML::Load(value);
+            } catch (const YAML::Exception&) {
+                throw InputError("--set", path, "cannot read the value '" + value + "'");
+            }
+        } else if (!node[key].IsDefined()) {
+            node[key] = YAML::Node(YAML::NodeType::Map);
+        }
+        node.reset(YAML::Node(node[key]));
+        begin = end + 1;
+    }
+}
+
+std::string resolve(const std::string& path, const std::string& configFile) {
+    if (path.empty() || fs::path(path).is_absolute()) return path;
+    return fs::weakly_canonical(fs::absolute(configFile).parent_path() / path).string();
+}
+
+void readWorld(YamlMap& root, Config& config) {
+    YamlMap scene = root.map("scene");
+    scene.read("file", config.sceneFile);
+    scene.finish();
+    YamlMap map = root.map("map");
+    map.read("file", config.mapFile);
+    std::string toPlanner = "occupied";
+    std::string toCamera = "free";
+    map.readChoice("unknown", toPlanner, kUnknown);
+    map.readChoice("unknown_to_camera", toCamera, kUnknown);
+    map.finish();
+    config.unknownToPlanner = toPlanner == "free" ? UnknownPolicy::free : UnknownPolicy::occupied;
+    config.unknownToCamera = toCamera == "free" ? UnknownPolicy::free : UnknownPolicy::occupied;
+    config.sceneFile = resolve(config.sceneFile, root.file());
+    config.mapFile = resolve(config.mapFile, root.file());
+    if (config.sceneFile.empty() == config.mapFile.empty()) {
+        root.fail("scene.file", "give either scene.file or map.file");
+    }
+}
+
+Place readPlace(YamlMap& root, const std::string& key, const Eigen::AlignedBox3d& bounds) {
+    if (!root.has(key)) root.fail(key, "missing");
+    std::vector<double> numbers;
+    root.readNumbers(key, numbers, 3, 4);
+    Place place{Eigen::Vector3d(numbers[0], numbers[1], numbers[2]), std::nullopt};
+    if (numbers.size() == 4) place.yaw = numbers[3];
+    if (!bounds.contains(place.position)) root.fail(key, "outside the bounds");
+    return place;
+}
+
+Eigen::AlignedBox3d readBounds(YamlMap& root) {
+    if (!root.has("bounds")) root.fail("bounds", "missing");
+    std::vector<std::vector<double>> corners;
+    root.read("bounds", corners);
+    if (corners.size() != 2 || corners[0].size() != 3 || corners[1].size() != 3) {
+        root.fail("bounds", "expected [[x, y, z], [x, y, z]]");
+    }
+    const Eigen::AlignedBox3d box(Eigen::Vector3d(corners[0].data()),
+                                  Eigen::Vector3d(corners[1].data()));
+    if (!box.min().allFinite() || !box.max().allFinite()) {
+        root.fail("bounds", "not a finite number");
+    }
+    if (box.isEmpty()) root.fail("bounds", "the first corner must be the lower one");
+    return box;
+}
+
+void readFlight(YamlMap& root, Config& config) {
+    config.bounds = readBounds(root);
+    config.start = readPlace(root, "start", config.bounds);
+    config.goal = readPlace(root, "goal", config.bounds);
+    std::string space = "auto";
+    root.readChoice("space", space, kSpaces);
+    if (space == "auto") space = config.start.yaw || config.goal.yaw ? "xyz_yaw" : "xyz";
+    config.space = space == "xyz"       ? StateKind::position
+                   : space == "xyz_yaw" ? StateKind::positionYaw
+                                        : StateKind::se3;
+    YamlMap robot = root.map("robot");
+    robot.readNumber("radius", config.robotRadius, 0., kInfinity);
+    robot.readNumber("clearance_resolution", config.clearanceResolution, 1e-3, 10.);
+    robot.finish();
+}
+
+void readCamera(YamlMap& root, Config& config) {
+    YamlMap camera = root.map("camera");
+    camera.read("mount", config.camera.mount);
+    if (!mountDegrees(config.camera.mount)) {
+        camera.fail("mount", "'" + config.camera.mount +
+                                 "' is not down, front45, forward or degrees below the horizon");
+    }
+    double width = config.camera.width;
+    double height = config.camera.height;
+    camera.readNumber("width", width, 8., 8192.);
+    camera.readNumber("height", height, 8., 8192.);
+    config.camera.width = static_cast<unsigned>(width);
+    config.camera.height = static_cast<unsigned>(height);
+    camera.readNumber("hfov", config.camera.hfov, 1., 170.);
+    camera.readNumber("sigma", config.photometric.sigma, kTiny, 1.);
+    camera.readNumber("information_scale", config.photometric.scale, 0., kInfinity);
+    double stride = config.photometric.stride;
+    camera.readNumber("stride", stride, 1., 64.);
+    config.photometric.stride = static_cast<int>(stride);
+    camera.finish();
+}
+
+Matrix6 readVariances(YamlMap& map, const std::string& key, const Vector6& standard) {
+    Vector6 variances = standard;
+    map.readVector<6>(key, variances);
+    if ((variances.array() < 0.).any()) map.fail(key, "negative variance");
+    return variances.asDiagonal();
+}
+
+void readNoise(YamlMap& root, Config& config) {
+    YamlMap noise = root.map("noise");
+    config.belief.initialCovariance = readVariances(
+        noise, "initial", (Vector6() << 1e-2, 1e-2, 1e-2, 1e-5, 1e-5, 1e-4).finished());
+    config.belief.motionNoise = readVariances(
+        noise, "motion", (Vector6() << 1e-4, 1e-4, 1e-4, 4.5e-6, 4.5e-6, 1.35e-4).finished());
+    std::string order = "fourth";
+    noise.readChoice("propagation", order, kOrders);
+    config.belief.order = order == "fourth" ? PropagationOrder::fourth : PropagationOrder::second;
+    noise.finish();
+}
+
+void readCount(YamlMap& map, const std::string& key, unsigned& value, double least) {
+    double number = value;
+    map.readNumber(key, number, least, 1e8);
+    if (number != std::floor(number)) map.fail(key, "not a whole number");
+    value = static_cast<unsigned>(number);
+}
+
+void readPlanner(YamlMap& root, Config& config) {
+    YamlMap planner = root.map("planner");
+    planner.readChoice("name", config.planner, plannerNames());
+    planner.readNumber("alpha", config.belief.alpha, 0., 1.);
+    planner.readNumber("kappa", config.belief.kappa, 0., kInfinity);
+    planner.readNumber("ds", config.belief.ds, 1e-3, kInfinity);
+    std::string cost = "integral";
+    planner.readChoice("cost", cost, kCosts);
+    config.belief.cost = cost == "integral" ? CostRule::integral : CostRule::perVertex;
+    planner.readNumber("characteristic_length", config.belief.characteristicLength, 0., kInfinity);
+    readCount(planner, "vertices", config.vertices, 2.);
+    readCount(planner, "labels", config.labels, 1.);
+    planner.readNumber("range", config.growth.range, 0., kInfinity);
+    planner.readNumber("goal_bias", config.growth.goalBias, 1e-4, 1.);
+    planner.readNumber("rewire_factor", config.growth.rewireFactor, kTiny, kInfinity);
+    planner.readNumber("rotation_weight", config.rotationWeight, 0., kInfinity);
+    planner.readNumber("view_pitch", config.field.positionPitch, kTiny, kInfinity);
+    planner.readNumber("view_rotation_pitch", config.field.rotationPitch, kTiny, 3.2);
+    planner.read("compare_with_rrt_star", config.compareWithRrtStar);
+    planner.finish();
+}
+
+}  // namespace
+
+Camera CameraConfig::camera() const { return makeCamera(width, height, hfov * kDegree); }
+
+Pose CameraConfig::T_b_c() const { return cameraMount(mountDegrees(mount).value() * kDegree); }
+
+const std::vector<std::string>& plannerNames() {
+    static const std::vector<std::string> names{"belief_rrt_star", "pa_rrt_star", "rrt_star"};
+    return names;
+}
+
+Config loadConfig(const std::string& file, const std::vector<std::string>& overrides) {
+    YAML::Node node = loadYaml(file);
+    for (const auto& text : overrides) applyOverride(node, text);
+    YamlMap root(file, node);
+    Config config;
+    config.file = file;
+    readWorld(root, config);
+    readFlight(root, config);
+    readCamera(root, config);
+    readNoise(root, config);
+    readPlanner(root, config);
+    double seed = config.seed;
+    root.readNumber("seed", seed, 1., 4294967295.);
+    config.seed = static_cast<std::uint32_t>(seed);
+    root.finish();
+    return config;
+}
+
+std::string toYaml(const Config& c) {
+    const auto place = [](const Place& p) {
+        std::vector<double> numbers(p.position.data(), p.position.data() + 3);
+        if (p.yaw) numbers.push_back(*p.yaw);
+        return fmt::format("[{}]", fmt::join(numbers, ", "));
+    };
+    const auto corner = [](const Eigen::Vector3d& p) {
+        return fmt::format("[{}, {}, {}]", p.x(), p.y(), p.z());
+    };
+    const auto variances = [](const Matrix6& m) {
+        const Vector6 d = m.diagonal();
+        return fmt::format("[{}]", fmt::join(d.data(), d.data() + 6, ", "));
+    };
+    const auto policy = [](UnknownPolicy p) { return kUnknown[p == UnknownPolicy::occupied]; };
+    std::string text;
+    const auto line = [&](const std::string& s) { text += s + "\n"; };
+    line(c.mapFile.empty()
+             ? fmt::format("scene:\n  file: {}", c.sceneFile)
+             : fmt::format("map:\n  file: {}\n  unknown: {}\n  unknown_to_camera: {}", c.mapFile,
+                           policy(c.unknownToPlanner), policy(c.unknownToCamera)));
+    line(fmt::format("bounds: [{}, {}]", corner(c.bounds.min()), corner(c.bounds.max())));
+    line(fmt::format("space: {}", kSpaces[1 + static_cast<int>(c.space)]));
+    line(fmt::format("start: {}\ngoal: {}", place(c.start), place(c.goal)));
+    line(fmt::format("robot:\n  radius: {}\n  clearance_resolution: {}", c.robotRadius,
+                     c.clearanceResolution));
+    line(
+        fmt::format("camera:\n  mount: {}\n  width: {}\n  height: {}\n  hfov: {}\n  sigma: {}\n"
+                    "  information_scale: {}\n  stride: {}",
+                    c.camera.mount, c.camera.width, c.camera.height, c.camera.hfov,
+                    c.photometric.sigma, c.photometric.scale, c.photometric.stride));
+    line(fmt::format("noise:\n  initial: {}\n  motion: {}\n  propagation: {}",
+                     variances(c.belief.initialCovariance), variances(c.belief.motionNoise),
+                     kOrders[c.belief.order == PropagationOrder::second]));
+    line(
+        fmt::format("planner:\n  name: {}\n  alpha: {}\n  kappa: {}\n  ds: {}\n  cost: {}\n"
+                    "  characteristic_length: {}\n  vertices: {}\n  labels: {}",
+                    c.planner, c.belief.alpha, c.belief.kappa, c.belief.ds,
+                    kCosts[c.belief.cost == CostRule::perVertex], c.belief.characteristicLength,
+                    c.vertices, c.labels));
+    line(
+        fmt::format("  range: {}\n  goal_bias: {}\n  rewire_factor: {}\n  rotation_weight: {}\n"
+                    "  view_pitch: {}\n  view_rotation_pitch: {}\n  compare_with_rrt_star: {}",
+                    c.growth.range, c.growth.goalBias, c.growth.rewireFactor, c.rotationWeight,
+                    c.field.positionPitch, c.field.rotationPitch, c.compareWithRrtStar));
+    line(fmt::format("seed: {}", c.seed));
+    return text;
+}
+
+}  // namespace photonav

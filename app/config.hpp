@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One planning problem, as the YAML file says it: the home of every default a user can override.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "belief.hpp"
+#include "belief_planner.hpp"
+#include "camera.hpp"
+#include "photometric.hpp"
+#include "textured_octree.hpp"
+
+namespace photonav {
+
+/// [x, y, z] or [x, y, z, yaw] in the world [m, rad].
+struct Place {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    std::optional<double> yaw;
+};
+
+struct CameraConfig {
+    std::string mount = "down";  ///< down, front45, forward, or degrees below the horizon
+    double hfov = 70.;           ///< horizontal field of view [degrees]
+    unsigned width = 188;
+    unsigned height = 120;
+
+    Camera camera() const;
+    Pose T_b_c() const;
+};
+
+struct Config {
+    std::string file;  ///< where this was read from
+
+    std::string sceneFile;  ///< procedural scene (.yaml) or mesh; absolute. Either this
+    std::string mapFile;    ///< or a textured OctoMap (.ot, .bt); absolute
+    UnknownPolicy unknownToPlanner = UnknownPolicy::occupied;
+    UnknownPolicy unknownToCamera = UnknownPolicy::free;
+
+    Eigen::AlignedBox3d bounds;
+    StateKind space = StateKind::position;
+    Place start;
+    Place goal;
+    double robotRadius = 0.2;           ///< [m]
+    double clearanceResolution = 0.05;  ///< cells that a scene is sampled into for clearance [m]
+
+    CameraConfig camera;
+    PhotometricOptions photometric;
+    BeliefOptions belief;
+    InformationField::Options field;
+
+    std::string planner = "belief_rrt_star";
+    unsigned vertices = 2500;
+    unsigned labels = 5;
+    GrowthOptions growth;
+    double rotationWeight = 0.25;  ///< metres that a radian of rotation counts
+    bool compareWithRrtStar = true;
+
+    std::uint32_t seed = 1;
+};
+
+/// Names that `planner.name` accepts.
+const std::vector<std::string>& plannerNames();
+
+/// Reads a config and applies overrides "key.path=value" on top. Paths in the file are relative to
+/// the file, paths in overrides to the working directory.
+/// @throws InputError naming file, key and reason for anything unknown, missing or out of range
+Config loadConfig(const std::string& file, const std::vector<std::string>& overrides = {});
+
+/// The complete config, defaults filled in, as YAML that loadConfig() reads back.
+std::string toYaml(const Config& config);
+
+}  // namespace photonav

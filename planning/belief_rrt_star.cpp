@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "belief_rrt_star.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <queue>
+
+namespace photonav {
+namespace ob = ompl::base;
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kFirstSearch = 100;  // vertices
+constexpr double kSearchGrowth = 2.;       // of the roadmap between searches
+
+// A covariance within this share of another counts as not better, or near-copies fill the labels.
+constexpr double kDominanceSlack = 0.02;
+
+}  // namespace
+
+BeliefRRTstar::BeliefRRTstar(const ob::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
+                             unsigned labels, const GrowthOptions& growth)
+    : BeliefPlanner(si, std::move(model), "belief_rrt_star", growth), maxLabels_(labels) {
+    params_.declareParam<unsigned>(
+        "labels", [this](unsigned v) { maxLabels_ = v; }, [this] { return maxLabels_; });
+}
+
+void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near) {
+    edgesOf_.resize(vertices_.size());
+    for (Vertex* vertex : near) {
+        Edge& edge = edges_.emplace_back(
+            Edge{vertex, &fresh, model_->motion(vertex->state, fresh.state), std::nullopt});
+        edgesOf_[vertex->index].push_back(&edge);
+        edgesOf_[fresh.index].push_back(&edge);
+    }
+    edgesOf_[fresh.index].front()->isFree = true;
+    if (!goals_.empty() && vertices_.size() >= std::max(nextSearch_, kFirstSearch)) {
+        search();
+        nextSearch_ = static_cast<std::size_t>(kSearchGrowth * vertices_.size());
+    }
+}
+
+/// Best-first over labels (vertex, belief). Costs only grow along a path, so labels settle at each
+/// vertex in the order of their cost, and the first one at a goal is the best path of the roadmap.
+void BeliefRRTstar::search() {
+    edgesOf_.resize(vertices_.size());
+    settled_.clear();
+    labelsOf_.assign(vertices_.size(), {});
+    if (goals_.empty()) return;
+
+    const auto toGoal = distancesToGoal();
+    const auto later = [](const auto& a, const auto& b) { return a->bound > b->bound; };
+    Open open;
+    for (Vertex* start : starts_) {
+        const double bound = model_->lowerBound(toGoal[start->index]);
+        open.push_back(std::make_unique<Label>(Label{start, -1, start->belief, bound}));
+    }
+    while (!open.empty()) {
+        std::pop_heap(open.begin(), open.end(), later);
+        const auto label = std::move(open.back());
+        open.pop_back();
+        auto& labels = labelsOf_[label->vertex->index];
+        if (labels.size() >= maxLabels_) continue;
+        if (isDominated(*label->vertex, label->belief.covariance)) continue;
+        labels.push_back(static_cast<int>(settled_.size()));
+        settled_.push_back(*label);
+        if (label->vertex->isGoal) return offerPath(labels.back());
+        expand(labels.back(), toGoal, open);
+    }
+}
+
+/// Shortest way to a goal over edges not known to be blocked: times alpha, what no belief can beat.
+std::vector<double> BeliefRRTstar::distancesToGoal() const {
+    std::vector<double> distance(vertices_.size(), kInfinity);
+    using Entry = std::pair<double, const Vertex*>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+    for (const Vertex* goal : goals_) {
+        distance[goal->index] = 0.;
+        open.emplace(0., goal);
+    }
+    while (!open.empty()) {
+        const auto [way, vertex] = open.top();
+        open.pop();
+        if (way > distance[vertex->index]) continue;
+        for (const Edge* edge : edgesOf_[vertex->index]) {
+            if (!edge->isFree.value_or(true)) continue;
+            const Vertex* next = edge->from == vertex ? edge->to : edge->from;
+            if (way + edge->motion.length >= distance[next->index]) continue;
+            distance[next->index] = way + edge->motion.length;
+            open.emplace(distance[next->index], next);
+        }
+    }
+    return distance;
+}
+
+void BeliefRRTstar::expand(int label, const std::vector<double>& toGoal, Open& open) {
+    const auto later = [](const auto& a, const auto& b) { return a->bound > b->bound; };
+    const Vertex* vertex = settled_[label].vertex;
+    const Belief& belief = settled_[label].belief;
+    for (Edge* edge : edgesOf_[vertex->index]) {
+        const bool backward = edge->to == vertex;
+        Vertex* next = backward ? edge->from : edge->to;
+        if (labelsOf_[next->index].size() >= maxLabels_) continue;
+        const double rest = toGoal[next->index];
+        if (belief.cost + model_->lowerBound(edge->motion.length + rest) >= bestCost()) continue;
+        if (!edge->isFree) edge->isFree = motionIsFree(*edge->from, *edge->to);
+        if (!*edge->isFree) continue;
+
+        const Belief arrival = model_->fly(belief, edge->motion, backward);
+        const double bound = arrival.cost + model_->lowerBound(rest);
+        if (bound >= bestCost() || isDominated(*next, arrival.covariance)) continue;
+        open.push_back(std::make_unique<Label>(Label{next, label, arrival, bound}));
+        std::push_heap(open.begin(), open.end(), later);
+    }
+}
+
+/// Labels settled earlier cost less, so the covariance decides: Sigma' <= (1 + slack) Sigma.
+bool BeliefRRTstar::isDominated(const Vertex& vertex, const Matrix6& covariance) const {
+    for (const int label : labelsOf_[vertex.index]) {
+        const Matrix6 excess =
+            (1. + kDominanceSlack) * covariance - settled_[label].belief.covariance;
+        if ((excess.diagonal().array() < 0.).any()) continue;
+        if (excess.llt().info() == Eigen::Success) return true;
+    }
+    return false;
+}
+
+void BeliefRRTstar::offerPath(int label) {
+    const double cost = settled_[label].belief.cost;
+    std::vector<const ob::State*> path;
+    for (; label >= 0; label = settled_[label].parent) {
+        path.push_back(settled_[label].vertex->state);
+    }
+    std::reverse(path.begin(), path.end());
+    offer(cost, path);
+}
+
+void BeliefRRTstar::clear() {
+    BeliefPlanner::clear();
+    edges_.clear();
+    edgesOf_.clear();
+    settled_.clear();
+    labelsOf_.clear();
+    nextSearch_ = 0;
+}
+
+std::vector<TreeNode> BeliefRRTstar::tree() const {
+    std::vector<TreeNode> nodes;
+    nodes.reserve(settled_.size());
+    for (const Label& label : settled_) {
+        nodes.push_back(
+            {label.vertex->state, label.parent, label.belief.cost, label.belief.covariance});
+    }
+    return nodes;
+}
+
+}  // namespace photonav

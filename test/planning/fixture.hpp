@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A planning problem without images: what a view is worth is a formula, so tests know the answer.
+#pragma once
+
+#include <ompl/base/ProblemDefinition.h>
+#include <ompl/base/ScopedState.h>
+
+#include <memory>
+#include <numbers>
+
+#include "audit.hpp"
+#include "belief_rrt_star.hpp"
+#include "perception_rrt_star.hpp"
+
+namespace photonav::test {
+
+namespace ob = ompl::base;
+
+inline Vector6 vector6(double a, double b, double c, double d, double e, double f) {
+    return (Vector6() << a, b, c, d, e, f).finished();
+}
+
+/// A downward camera that sees x for 4.5 < x < 6 and everything for x > 8 (stripes, then texture).
+inline Matrix6 stripesThenTexture(const Pose& T_c_w) {
+    const double x = T_c_w.inverse().translation().x();
+    Matrix6 information = Matrix6::Zero();
+    if (x > 4.5 && x < 6.) {
+        // world x is image up for the downward camera: camera -y
+        const Vector6 j = vector6(0., 1., 0., 0.5, 0., 0.2);
+        information = 400. * j * j.transpose();
+    } else if (x > 8.) {
+        information = vector6(900., 900., 400., 3e3, 3e3, 2e3).asDiagonal();
+    }
+    return information;
+}
+
+inline Eigen::AlignedBox3d box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    return {low, high};
+}
+
+struct Problem {
+    StateKind kind = StateKind::position;
+    Eigen::AlignedBox3d bounds = box({0., 0., 2.}, {10., 10., 2.});
+    Eigen::Vector3d start{1., 1., 2.};
+    Eigen::Vector3d goal{1., 9., 2.};
+    InformationModel information = stripesThenTexture;
+    Clearance clearance = [](const Eigen::Vector3d&) { return 1.; };
+    BeliefOptions belief = defaultBelief();
+    GrowthOptions growth{};
+
+    static BeliefOptions defaultBelief() {
+        BeliefOptions options;
+        options.alpha = 0.15;
+        options.initialCovariance = vector6(.1, .1, .05, 1e-5, 1e-5, 1e-4).asDiagonal();
+        options.motionNoise = vector6(1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-4).asDiagonal();
+        return options;
+    }
+
+    FlightSpace space() const { return {kind, bounds}; }
+    ob::SpaceInformationPtr spaceInformation() const {
+        return makeSpaceInformation(space(), clearance, 0.2);
+    }
+    std::shared_ptr<BeliefModel> model() const {
+        return std::make_shared<BeliefModel>(
+            space(), InformationField(information, cameraMount(std::numbers::pi / 2), {}), belief);
+    }
+    ob::ProblemDefinitionPtr definition(const ob::SpaceInformationPtr& si) const {
+        ob::ScopedState<> from(si);
+        ob::ScopedState<> to(si);
+        space().setState(from.get(), start, 0.);
+        space().setState(to.get(), goal, 0.);
+        auto definition = std::make_shared<ob::ProblemDefinition>(si);
+        definition->setStartAndGoalStates(from, to);
+        return definition;
+    }
+
+    /// "rrt_star", "pa_rrt_star" or "belief_rrt_star", set up on this problem.
+    std::shared_ptr<BeliefPlanner> planner(const std::string& name, unsigned labels = 5) const {
+        Problem problem = *this;
+        if (name == "rrt_star") problem.belief.alpha = 1.;
+        const auto si = spaceInformation();
+        std::shared_ptr<BeliefPlanner> planner;
+        if (name == "belief_rrt_star") {
+            planner = std::make_shared<BeliefRRTstar>(si, problem.model(), labels, growth);
+        } else {
+            planner = std::make_shared<PerceptionRRTstar>(si, problem.model(), growth);
+        }
+        planner->setProblemDefinition(definition(si));
+        planner->setup();
+        return planner;
+    }
+};
+
+/// Grows the planner until it has this many vertices.
+inline ob::PlannerStatus grow(BeliefPlanner& planner, std::size_t vertices) {
+    return planner.solve(ob::PlannerTerminationCondition(
+        [&] { return planner.vertices() >= vertices || planner.iterations() > 50 * vertices; }));
+}
+
+}  // namespace photonav::test
