@@ -46,7 +46,6 @@ void BeliefRRTstar::search() {
     edgesOf_.resize(vertices_.size());
     settled_.clear();
     labelsOf_.assign(vertices_.size(), {});
-    if (goals_.empty()) return;
 
     const auto toGoal = distancesToGoal();
     const auto later = [](const auto& a, const auto& b) { return a->bound > b->bound; };
@@ -71,6 +70,7 @@ void BeliefRRTstar::search() {
 
 /// Shortest way to a goal over edges not known to be blocked: times alpha, what no belief can beat.
 std::vector<double> BeliefRRTstar::distancesToGoal() const {
+    if (goals_.empty()) return std::vector<double>(vertices_.size(), 0.);
     std::vector<double> distance(vertices_.size(), kInfinity);
     using Entry = std::pair<double, const Vertex*>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
@@ -97,18 +97,19 @@ void BeliefRRTstar::expand(int label, const std::vector<double>& toGoal, Open& o
     const auto later = [](const auto& a, const auto& b) { return a->bound > b->bound; };
     const Vertex* vertex = settled_[label].vertex;
     const Belief& belief = settled_[label].belief;
+    const double limit = bestCost() * (1. + 1e-12);  // finds the best path known so far again
     for (Edge* edge : edgesOf_[vertex->index]) {
         const bool backward = edge->to == vertex;
         Vertex* next = backward ? edge->from : edge->to;
         if (labelsOf_[next->index].size() >= maxLabels_) continue;
         const double rest = toGoal[next->index];
-        if (belief.cost + model_->lowerBound(edge->motion.length + rest) >= bestCost()) continue;
+        if (belief.cost + model_->lowerBound(edge->motion.length + rest) > limit) continue;
         if (!edge->isFree) edge->isFree = motionIsFree(*edge->from, *edge->to);
         if (!*edge->isFree) continue;
 
         const Belief arrival = model_->fly(belief, edge->motion, backward);
         const double bound = arrival.cost + model_->lowerBound(rest);
-        if (bound >= bestCost() || isDominated(*next, arrival.covariance)) continue;
+        if (bound > limit || isDominated(*next, arrival.covariance)) continue;
         open.push_back(std::make_unique<Label>(Label{next, label, arrival, bound}));
         std::push_heap(open.begin(), open.end(), later);
     }

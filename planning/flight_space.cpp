@@ -84,9 +84,9 @@ class ClearanceMotionValidator : public ob::MotionValidator {
         : ob::MotionValidator(si), space_(space) {}
 
     bool checkMotion(const ob::State* from, const ob::State* to) const override {
-        const double reached = reachableFraction(from, to);
-        (reached >= 1. ? valid_ : invalid_)++;
-        return reached >= 1.;
+        const bool isFree = si_->isValid(to) && reachableFraction(from, to) >= 1.;
+        (isFree ? valid_ : invalid_)++;
+        return isFree;
     }
 
     bool checkMotion(const ob::State* from, const ob::State* to,
@@ -104,7 +104,6 @@ class ClearanceMotionValidator : public ob::MotionValidator {
   private:
     double reachableFraction(const ob::State* from, const ob::State* to) const {
         const auto& checker = static_cast<const ClearanceChecker&>(*si_->getStateValidityChecker());
-        if (!checker.isValid(to)) return 0.;
         const Eigen::Vector3d start = space_.position(from);
         const Eigen::Vector3d motion = space_.position(to) - start;
         const double length = motion.norm();
@@ -114,7 +113,7 @@ class ClearanceMotionValidator : public ob::MotionValidator {
             if (margin <= 0.) return std::max(0., travelled - kMinStep) / length;
             travelled += std::max(margin, kMinStep);
         }
-        return 1.;
+        return si_->isValid(to) ? 1. : std::max(0., length - kMinStep) / std::max(length, kMinStep);
     }
 
     FlightSpace space_;

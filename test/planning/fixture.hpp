@@ -20,15 +20,15 @@ inline Vector6 vector6(double a, double b, double c, double d, double e, double 
     return (Vector6() << a, b, c, d, e, f).finished();
 }
 
-/// A downward camera that sees x for 4.5 < x < 6 and everything for x > 8 (stripes, then texture).
+/// A downward camera that sees x for 4 < x < 5 and everything for x > 6 (stripes, then texture).
 inline Matrix6 stripesThenTexture(const Pose& T_c_w) {
     const double x = T_c_w.inverse().translation().x();
     Matrix6 information = Matrix6::Zero();
-    if (x > 4.5 && x < 6.) {
+    if (x > 4. && x < 5.) {
         // world x is image up for the downward camera: camera -y
         const Vector6 j = vector6(0., 1., 0., 0.5, 0., 0.2);
         information = 400. * j * j.transpose();
-    } else if (x > 8.) {
+    } else if (x > 6.) {
         information = vector6(900., 900., 400., 3e3, 3e3, 2e3).asDiagonal();
     }
     return information;
@@ -41,8 +41,8 @@ inline Eigen::AlignedBox3d box(const Eigen::Vector3d& low, const Eigen::Vector3d
 struct Problem {
     StateKind kind = StateKind::position;
     Eigen::AlignedBox3d bounds = box({0., 0., 2.}, {10., 10., 2.});
-    Eigen::Vector3d start{1., 1., 2.};
-    Eigen::Vector3d goal{1., 9., 2.};
+    Eigen::Vector3d start{3., 1., 2.};
+    Eigen::Vector3d goal{3., 9., 2.};
     InformationModel information = stripesThenTexture;
     Clearance clearance = [](const Eigen::Vector3d&) { return 1.; };
     BeliefOptions belief = defaultBelief();
@@ -50,9 +50,9 @@ struct Problem {
 
     static BeliefOptions defaultBelief() {
         BeliefOptions options;
-        options.alpha = 0.15;
-        options.initialCovariance = vector6(.1, .1, .05, 1e-5, 1e-5, 1e-4).asDiagonal();
-        options.motionNoise = vector6(1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-4).asDiagonal();
+        options.alpha = 0.05;
+        options.initialCovariance = vector6(.02, .02, .01, 1e-5, 1e-5, 1e-4).asDiagonal();
+        options.motionNoise = vector6(1e-2, 1e-2, 1e-2, 1e-5, 1e-5, 1e-4).asDiagonal();
         return options;
     }
 

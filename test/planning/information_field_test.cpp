@@ -66,7 +66,7 @@ TEST(InformationField, LooksFromWithinHalfACell) {
 TEST(InformationField, KnowsWhenThereIsNothingToSee) {
     InformationField field(stripesThenTexture, cameraMount(std::numbers::pi / 2), {});
     EXPECT_TRUE(field.at(bodyAt(1., 1.)).isZero);
-    EXPECT_FALSE(field.at(bodyAt(5., 1.)).isZero);
+    EXPECT_FALSE(field.at(bodyAt(4.5, 1.)).isZero);
 }
 
 TEST(InformationField, AModelThatThrowsLeavesItUsable) {
