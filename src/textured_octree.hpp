@@ -2,10 +2,13 @@
 // The map of record: an OctoMap whose leaves carry the grey value of their six faces.
 #pragma once
 
-#include <octomap/OccupancyOcTreeBase.h>
 #include <octomap/OcTreeNode.h>
+#include <octomap/OccupancyOcTreeBase.h>
 
 #include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 
 #include "view.hpp"
@@ -19,11 +22,63 @@ enum class UnknownPolicy { free, occupied };
 struct FaceTexture {
     float mean = 0.F;    ///< grey value in [0, 1]
     float weight = 0.F;  ///< sum of observation weights; 0: never seen
+
+    bool observed() const { return weight > 0.F; }
+    /// Weighted running mean; observing the mean itself leaves it as it is, to the bit.
+    void observe(float grey, float addedWeight);
+    bool operator==(const FaceTexture&) const = default;
 };
 
+/// Log-odds occupancy and six faces. Inner nodes carry occupancy only.
 class TexturedOcTreeNode : public octomap::OcTreeNode {
   public:
     std::array<FaceTexture, 6> faces;
+
+    TexturedOcTreeNode() = default;
+    TexturedOcTreeNode(const TexturedOcTreeNode& other);  ///< with all children, as OctoMap's
+    TexturedOcTreeNode& operator=(const TexturedOcTreeNode&) = delete;
+
+    /// Mean over the observed faces by weight; nothing when no face was ever observed.
+    std::optional<float> meanGrey() const;
+
+    // What OctoMap asks of a node type; pruning merges leaves only when their faces agree as well.
+    void copyData(const TexturedOcTreeNode& from);
+    bool operator==(const TexturedOcTreeNode& other) const;
+    std::istream& readData(std::istream& stream);
+    std::ostream& writeData(std::ostream& stream) const;
 };
+
+/// An OctoMap of textured nodes, registered with OctoMap's factory as "TexturedOcTree" (so that
+/// octomap::AbstractOcTree::read() knows its files). A cell is unknown (no node), free or occupied.
+class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
+  public:
+    /// @param resolution edge of a cell [m] @throws std::invalid_argument unless positive
+    explicit TexturedOcTree(double resolution);
+
+    TexturedOcTree* create() const override { return new TexturedOcTree(resolution); }
+    std::string getTreeType() const override { return "TexturedOcTree"; }
+    void expandNode(TexturedOcTreeNode* node) override;
+
+    /// The root, made when the tree is empty.
+    TexturedOcTreeNode& obtainRoot();
+
+    /// One observation of up to 64 cells: the brick of 4 x 4 x 4 cells that begins at `corner`
+    /// (a multiple of four). Bit 8 * i + j of the masks is child j of child i in OctoMap's order.
+    /// The same effect as updateNode() on each cell, for a fraction of the time.
+    /// @param texture called for every hit cell after its occupancy was raised
+    void updateBrick(const octomap::OcTreeKey& corner, std::uint64_t missed, std::uint64_t hit,
+                     const std::function<void(TexturedOcTreeNode&, unsigned bit)>& texture);
+
+  private:
+    struct BrickUpdate;
+    void updateRecursively(TexturedOcTreeNode& node, bool justMade, unsigned level,
+                           const BrickUpdate& update, unsigned firstBit);
+};
+
+/// Bit of a cell in its brick of 4 x 4 x 4, from the two low bits of its key.
+constexpr unsigned brickBit(unsigned x, unsigned y, unsigned z) {
+    return (x & 1U) | (y & 1U) << 1U | (z & 1U) << 2U | (x & 2U) << 2U | (y & 2U) << 3U |
+           (z & 2U) << 4U;
+}
 
 }  // namespace photonav

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An image with depth becomes part of the map.
+#pragma once
+
+#include "textured_octree.hpp"
+
+namespace photonav {
+
+struct FusionOptions {
+    double minRange = 0.2;    ///< nearer depths are not trusted [m], along the optical axis
+    double maxRange = 4.0;    ///< farther surfaces are not entered; the space up to it is free [m]
+    double depthJump = 0.05;  ///< a relative second difference of inverse depth above this is a
+                              ///< depth edge, where sensors smear: the pixel is dropped
+};
+
+/// Fuses one observation into the map.
+///
+/// Ray policy: every cell that holds the surface point of a pixel becomes more occupied, once per
+/// view; every other cell that the ray from the camera to the first such point crosses becomes more
+/// free, once per view. One ray per end cell is cast, not one per pixel (neighbouring rays cross
+/// the same cells); where a cell is both end and crossed, the end counts. Behind surfaces, and
+/// along pixels without depth (not positive, or below minRange), nothing changes: unknown cells
+/// stay unknown.
+///
+/// The faces of an end cell that look toward the camera, and are not covered by another end cell,
+/// take the mean grey value of the cell's pixels with weight (pixels) * |n . d|, n the face's
+/// normal and d the direction from the camera to the cell.
+/// @throws std::invalid_argument when image, depth and camera differ in size, the pose is not
+///         finite, or the space in view is too large for the map (see maxRange)
+void fuse(TexturedOcTree& map, const View& observed, const Camera& camera, const Pose& T_c_w,
+          const FusionOptions& options = {});
+
+}  // namespace photonav

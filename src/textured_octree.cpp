@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "textured_octree.hpp"
+
+namespace photonav {
+namespace {
+
+/// OctoMap's factory keeps one empty tree of every type it can read.
+void registerWithOctomap() {
+    struct Registration : TexturedOcTree {
+        Registration() : TexturedOcTree(0.1) {
+            clearKeyRays();
+            AbstractOcTree::registerTreeType(this);
+        }
+    };
+    static Registration registration;
+}
+
+[[maybe_unused]] const bool kRegistered = (registerWithOctomap(), true);
+
+template <class T>
+void readRaw(std::istream& stream, T& value) {
+    stream.read(reinterpret_cast<char*>(&value), sizeof(value));
+}
+
+template <class T>
+void writeRaw(std::ostream& stream, const T& value) {
+    stream.write(reinterpret_cast<const char*>(&value), sizeof(value));
+}
+
+}  // namespace
+
+void FaceTexture::observe(float grey, float addedWeight) {
+    weight += addedWeight;
+    mean += (grey - mean) * (addedWeight / weight);
+}
+
+TexturedOcTreeNode::TexturedOcTreeNode(const TexturedOcTreeNode& other)
+    : octomap::OcTreeNode(), faces(other.faces) {
+    value = other.value;
+    if (other.children == nullptr) return;
+    allocChildren();
+    for (unsigned i = 0; i < 8; ++i) {
+        if (const auto* child = static_cast<const TexturedOcTreeNode*>(other.children[i])) {
+            children[i] = new TexturedOcTreeNode(*child);
+        }
+    }
+}
+
+std::optional<float> TexturedOcTreeNode::meanGrey() const {
+    FaceTexture all;
+    for (const FaceTexture& face : faces) {
+        if (face.observed()) all.observe(face.mean, face.weight);
+    }
+    return all.observed() ? std::optional(all.mean) : std::nullopt;
+}
+
+void TexturedOcTreeNode::copyData(const TexturedOcTreeNode& from) {
+    octomap::OcTreeNode::copyData(from);
+    faces = from.faces;
+}
+
+bool TexturedOcTreeNode::operator==(const TexturedOcTreeNode& other) const {
+    return value == other.value && faces == other.faces;
+}
+
+// Occupancy, a byte that says which faces were observed, and those faces' mean and weight: most
+// nodes are free space and take five bytes.
+std::istream& TexturedOcTreeNode::readData(std::istream& stream) {
+    std::uint8_t observed = 0;
+    readRaw(stream, value);
+    readRaw(stream, observed);
+    for (unsigned f = 0; f < 6; ++f) {
+        if ((observed >> f & 1U) == 0) continue;
+        readRaw(stream, faces[f].mean);
+        readRaw(stream, faces[f].weight);
+    }
+    return stream;
+}
+
+std::ostream& TexturedOcTreeNode::writeData(std::ostream& stream) const {
+    unsigned observed = 0;
+    for (unsigned f = 0; f < 6; ++f) observed |= static_cast<unsigned>(faces[f].observed()) << f;
+    writeRaw(stream, value);
+    writeRaw(stream, static_cast<std::uint8_t>(observed));
+    for (const FaceTexture& face : faces) {
+        if (!face.observed()) continue;
+        writeRaw(stream, face.mean);
+        writeRaw(stream, face.weight);
+    }
+    return stream;
+}
+
+TexturedOcTree::TexturedOcTree(double cellSize)
+    : octomap::OccupancyOcTreeBase<TexturedOcTreeNode>(cellSize) {
+    if (!(cellSize > 0.)) throw std::invalid_argument("TexturedOcTree: resolution not positive");
+}
+
+void TexturedOcTree::expandNode(TexturedOcTreeNode* node) {
+    OccupancyOcTreeBase::expandNode(node);
+    node->faces = {};
+}
+
+TexturedOcTreeNode& TexturedOcTree::obtainRoot() {
+    if (root == nullptr) {
+        root = new TexturedOcTreeNode;
+        ++tree_size;
+        size_changed = true;
+    }
+    return *root;
+}
+
+struct TexturedOcTree::BrickUpdate {
+    octomap::OcTreeKey corner;
+    std::uint64_t missed, hit;
+    const std::function<void(TexturedOcTreeNode&, unsigned)>& texture;
+
+    /// Which children of a node `level` levels above the cells hold cells of this update.
+    bool concerns(unsigned level, unsigned child, unsigned firstBit) const {
+        if (level > 2)
+            return child == octomap::computeChildIdx(corner, static_cast<int>(level) - 1);
+        const std::uint64_t cells =
+            level == 2 ? 0xFFULL << (8 * child) : 1ULL << (firstBit + child);
+        return ((missed | hit) & cells) != 0;
+    }
+};
+
+void TexturedOcTree::updateBrick(
+    const octomap::OcTreeKey& corner, std::uint64_t missed, std::uint64_t hit,
+    const std::function<void(TexturedOcTreeNode&, unsigned bit)>& texture) {
+    if ((missed | hit) == 0) return;
+    const bool empty = root == nullptr;
+    updateRecursively(obtainRoot(), empty, tree_depth, {corner, missed & ~hit, hit, texture}, 0);
+}
+
+void TexturedOcTree::updateRecursively(TexturedOcTreeNode& node, bool justMade, unsigned level,
+                                       const BrickUpdate& update, unsigned firstBit) {
+    if (level == 0) {
+        const bool hit = (update.hit >> firstBit & 1U) != 0;
+        updateNodeLogOdds(&node, hit ? prob_hit_log : prob_miss_log);
+        if (hit) update.texture(node, firstBit);
+        return;
+    }
+    const bool pruned = !justMade && !nodeHasChildren(&node);
+    if (pruned && update.hit == 0 && node.getLogOdds() <= clamping_thres_min) return;
+    if (pruned) expandNode(&node);
+    for (unsigned i = 0; i < 8; ++i) {
+        if (!update.concerns(level, i, firstBit)) continue;
+        const bool make = !nodeChildExists(&node, i);
+        TexturedOcTreeNode* child = make ? createNodeChild(&node, i) : getNodeChild(&node, i);
+        updateRecursively(*child, make, level - 1, update, level == 2 ? 8 * i : firstBit + i);
+    }
+    if (!pruneNode(&node)) node.updateOccupancyChildren();
+}
+
+}  // namespace photonav
