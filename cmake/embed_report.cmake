@@ -1,8 +1,56 @@
 # The report page: app/report_page/ and Debian's three.js and Chart.js inlined into the executable,
-# so that report.html opens anywhere, offline.
+# so that report.html opens anywhere, offline. Included by the project it declares the build step;
+# run as a script (cmake -P) it is the build step.
+
 function(photonav_embed_report target)
     find_file(THREE_JS three.min.js PATHS /usr/share/javascript/three NO_DEFAULT_PATH REQUIRED)
     find_file(ORBIT_CONTROLS_JS OrbitControls.js
         PATHS /usr/share/javascript/three/examples/js/controls NO_DEFAULT_PATH REQUIRED)
     find_file(CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js NO_DEFAULT_PATH REQUIRED)
+    mark_as_advanced(THREE_JS ORBIT_CONTROLS_JS CHART_JS)
+
+    set(page ${PROJECT_SOURCE_DIR}/app/report_page)
+    set(script ${PROJECT_SOURCE_DIR}/cmake/embed_report.cmake)
+    set(generated ${PROJECT_BINARY_DIR}/generated/report_page.cpp)
+    add_custom_command(OUTPUT ${generated}
+        COMMAND ${CMAKE_COMMAND} -DOUTPUT=${generated} -DPAGE=${page} -DTHREE_JS=${THREE_JS}
+            -DORBIT_CONTROLS_JS=${ORBIT_CONTROLS_JS} -DCHART_JS=${CHART_JS} -P ${script}
+        DEPENDS ${script} ${page}/page.html ${page}/page.css ${page}/page.js
+            ${THREE_JS} ${ORBIT_CONTROLS_JS} ${CHART_JS}
+        COMMENT "Inlining the report page" VERBATIM)
+    target_sources(${target} PRIVATE ${generated})
+    set_source_files_properties(${generated} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
+
+if(NOT CMAKE_SCRIPT_MODE_FILE)
+    return()
+endif()
+
+# Puts the content of `file` where the page says `mark`.
+function(inline mark file)
+    file(READ ${file} content)
+    if(mark MATCHES "JS")
+        # Inside <script> only these two can confuse a browser; the first is written otherwise in
+        # any string or regular expression, the second occurs in no sane script.
+        string(REPLACE "</script" "<\\/script" content "${content}")
+        string(FIND "${content}" "<!--" comment)
+        if(comment GREATER -1)
+            message(FATAL_ERROR "${file} contains <!--, which cannot be inlined")
+        endif()
+    endif()
+    string(REPLACE "@${mark}@" "${content}" html "${html}")
+    set(html "${html}" PARENT_SCOPE)
+endfunction()
+
+file(READ ${PAGE}/page.html html)
+inline(PAGE_CSS ${PAGE}/page.css)
+inline(THREE_JS ${THREE_JS})
+inline(ORBIT_CONTROLS_JS ${ORBIT_CONTROLS_JS})
+inline(CHART_JS ${CHART_JS})
+inline(PAGE_JS ${PAGE}/page.js)
+file(WRITE ${OUTPUT} "#include <string_view>
+namespace photonav {
+extern const std::string_view kReportPage;
+const std::string_view kReportPage = R\"photonav_page(${html})photonav_page\";
+}  // namespace photonav
+")

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report.hpp"
+
+#include <map>
+#include <stdexcept>
+#include <string_view>
+
+#include "atomic_file.hpp"
+
+namespace photonav {
+
+/// app/report_page and its libraries in one piece, made by cmake/embed_report.cmake.
+extern const std::string_view kReportPage;
+
+namespace {
+
+constexpr std::string_view kDataMark = "@PHOTONAV_DATA@";
+
+/// JSON inside <script>: no '<' may be left that could end or open an element.
+std::string escapedForScript(const std::string& text) {
+    std::string escaped;
+    escaped.reserve(text.size());
+    for (const char character : text)
+        if (character == '<')
+            escaped += "\\u003c";
+        else
+            escaped += character;
+    return escaped;
+}
+
+struct VoxelSum {
+    Eigen::Vector3d center;
+    double grey = 0.0;
+    double count = 0.0;
+};
+
+/// Mean grey value of the voxels in each cell of a grid of edge length `size`.
+ReportVoxels coarsened(const std::vector<Eigen::Vector3f>& centers,
+                       const std::vector<std::uint8_t>& grey, double size) {
+    std::map<std::array<long, 3>, VoxelSum> cells;
+    for (std::size_t i = 0; i < centers.size(); ++i) {
+        const Eigen::Vector3d cell = (centers[i].cast<double>() / size).array().floor();
+        VoxelSum& sum =
+            cells[{std::lround(cell.x()), std::lround(cell.y()), std::lround(cell.z())}];
+        sum.center = (cell.array() + 0.5) * size;
+        sum.grey += grey[i];
+        sum.count += 1.0;
+    }
+    ReportVoxels voxels;
+    voxels.size = size;
+    for (const auto& [index, sum] : cells) {
+        for (int k = 0; k < 3; ++k) voxels.centers.push_back(static_cast<float>(sum.center[k]));
+        voxels.grey.push_back(static_cast<std::uint8_t>(std::lround(sum.grey / sum.count)));
+    }
+    return voxels;
+}
+
+}  // namespace
+
+ReportMesh makeReportMesh(const Scene& scene) {
+    ReportMesh mesh;
+    for (const Texture& texture : scene.textures) mesh.images.push_back(greyPng(texture.image));
+    for (const Triangle& triangle : scene.triangles) {
+        for (const Eigen::Vector3f& corner : triangle.corners)
+            mesh.positions.insert(mesh.positions.end(), corner.data(), corner.data() + 3);
+        for (const Eigen::Vector2f& uv : triangle.uv)
+            mesh.uv.insert(mesh.uv.end(), uv.data(), uv.data() + 2);
+        mesh.textures.push_back(triangle.texture);
+    }
+    return mesh;
+}
+
+ReportVoxels makeReportVoxels(const std::vector<Eigen::Vector3f>& centers,
+                              const std::vector<std::uint8_t>& grey, double size,
+                              std::size_t limit) {
+    if (centers.size() != grey.size() || size <= 0.0)
+        throw std::invalid_argument("makeReportVoxels: one grey value per voxel of positive size");
+    ReportVoxels voxels = coarsened(centers, grey, size);
+    while (voxels.grey.size() > limit) voxels = coarsened(centers, grey, size *= 2.0);
+    return voxels;
+}
+
+void writeReport(const std::filesystem::path& file, const ReportData& data) {
+    const std::size_t mark = kReportPage.find(kDataMark);
+    std::string page(kReportPage.substr(0, mark));
+    page += escapedForScript(
+        toJson(data).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    page += kReportPage.substr(mark + kDataMark.size());
+    writeFileAtomically(file, page);
+}
+
+}  // namespace photonav
