@@ -4,19 +4,14 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
-#include "types.hpp"
+#include "texture.hpp"
 
 namespace photonav {
 
-/// A grey texture in [0, 1] (display-referred: what an 8-bit camera would store, divided by 255).
-/// Texture coordinates (u, v) in [0, 1) span the image, v downward from its first row; it repeats.
-struct Texture {
-    ImageF image;
-};
-
-/// A triangle with its own corners: world frame, metres.
+/// A triangle with its own corners: world frame, metres. Both sides are visible.
 struct Triangle {
     std::array<Eigen::Vector3f, 3> corners;
     std::array<Eigen::Vector2f, 3> uv;
@@ -29,5 +24,33 @@ struct Scene {
 
     Eigen::AlignedBox3d boundingBox() const;
 };
+
+/// Reads .yaml and .yml as a procedural scene (scene_yaml.hpp), anything else as a mesh
+/// (mesh_io.hpp). @throws InputError
+Scene loadScene(const std::string& file);
+
+/// Adds a texture and returns its index, which surfaces refer to.
+std::uint32_t addTexture(Scene& scene, Texture texture);
+
+/// A parallelogram with corner, corner + u, corner + v. Texture coordinates run along u and v in
+/// metres from the corner; seen from where u points right and v points down an image is upright.
+/// @param offset texture position at the corner [m]
+void addPlane(Scene& scene, const Eigen::Vector3d& corner, const Eigen::Vector3d& u,
+              const Eigen::Vector3d& v, std::uint32_t texture,
+              const Eigen::Vector2d& offset = Eigen::Vector2d::Zero());
+
+/// The six faces of an axis-aligned box.
+void addBox(Scene& scene, const Eigen::Vector3d& min, const Eigen::Vector3d& max,
+            std::uint32_t texture);
+
+/// An upright wall along a polyline on the ground, joints mitred.
+struct Wall {
+    std::vector<Eigen::Vector2d> footprint;  ///< centre line, x-y [m], at least two points
+    double height = 2.5;                     ///< [m]
+    double thickness = 0.1;                  ///< [m]
+    double bottom = 0.;                      ///< z of its foot [m]
+    bool closed = false;                     ///< the last point is joined to the first
+};
+void addWall(Scene& scene, const Wall& wall, std::uint32_t texture);
 
 }  // namespace photonav
