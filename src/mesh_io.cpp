@@ -25,8 +25,7 @@ bool isGltf(const std::string& file) {
 
 /// Maps file coordinates to the world: the file's up axis becomes z, units become metres.
 Eigen::Affine3d fileToWorld(const std::string& file, const MeshOptions& options) {
-    const bool yUp =
-        options.up == UpAxis::y || (options.up == UpAxis::automatic && isGltf(file));
+    const bool yUp = options.up == UpAxis::y || (options.up == UpAxis::automatic && isGltf(file));
     Eigen::Affine3d T_w_file(Eigen::Scaling(options.scale));
     if (yUp) {
         Eigen::Matrix3d turn;  // a quarter turn about x, without rounding
@@ -68,8 +67,8 @@ class MeshReader {
     Scene read() {
         addNode(*input_.mRootNode, T_w_file_);
         if (scene_.triangles.empty()) {
-            throw InputError(file_, "", dropped_ > 0 ? "all triangles are degenerate"
-                                                     : "contains no triangles");
+            throw InputError(
+                file_, "", dropped_ > 0 ? "all triangles are degenerate" : "contains no triangles");
         }
         return std::move(scene_);
     }
@@ -106,8 +105,9 @@ class MeshReader {
             triangle.corners[k] = (T_w_mesh * Eigen::Vector3d(p.x, p.y, p.z)).cast<float>();
             triangle.uv[k] = coordinates(mesh, vertex, surface);
             if (!triangle.corners[k].allFinite() || !triangle.uv[k].allFinite()) {
-                throw InputError(file_, "", "vertex " + std::to_string(vertex) + " of mesh '" +
-                                                mesh.mName.C_Str() + "' is not finite");
+                throw InputError(file_, "",
+                                 "vertex " + std::to_string(vertex) + " of mesh '" +
+                                     mesh.mName.C_Str() + "' is not finite");
             }
         }
         const Eigen::Vector3f a = triangle.corners[1] - triangle.corners[0];
@@ -187,9 +187,9 @@ class MeshReader {
         ImageF image(texture.mHeight, texture.mWidth);
         for (unsigned i = 0; i < image.getSize(); ++i) {
             const aiTexel& t = texture.pcData[i];
-            image.bitmap[i] = static_cast<float>(
-                greyOfLinear({factor[0] * decodeSrgb(t.r / 255.), factor[1] * decodeSrgb(t.g / 255.),
-                              factor[2] * decodeSrgb(t.b / 255.)}));
+            image.bitmap[i] = static_cast<float>(greyOfLinear(
+                {factor[0] * decodeSrgb(t.r / 255.), factor[1] * decodeSrgb(t.g / 255.),
+                 factor[2] * decodeSrgb(t.b / 255.)}));
         }
         return image;
     }

@@ -25,7 +25,8 @@ struct MeshOptions {
 /// Grey values are display-referred: base-colour textures (sRGB) are decoded, multiplied by the
 /// linear base-colour factor, summed to luma in linear light and encoded again. Where there is no
 /// texture, vertex colours are used (interpolated), else the factor alone.
-/// @throws InputError when the file cannot be read, has no usable triangle, has coordinates that are
+/// @throws InputError when the file cannot be read, has no usable triangle, has coordinates that
+/// are
 ///         not finite, or names a texture that cannot be read
 Scene loadMesh(const std::string& file, const MeshOptions& options = {});
 

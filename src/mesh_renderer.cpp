@@ -115,8 +115,7 @@ class RayCaster {
 }  // namespace
 
 struct MeshRenderer::Impl {
-    explicit Impl(Scene input)
-        : scene(std::move(input)), caster(scene.triangles), shader(scene) {}
+    explicit Impl(Scene input) : scene(std::move(input)), caster(scene.triangles), shader(scene) {}
 
     Scene scene;
     RayCaster caster;

@@ -30,7 +30,8 @@ WallSides wallSides(const Wall& wall) {
         const bool last = i + 1 == n && !wall.closed;
         const Eigen::Vector2d& before = points[(i + n - 1) % n];
         const Eigen::Vector2d& after = points[(i + 1) % n];
-        const Eigen::Vector2d in = leftNormal(first ? points[i] : before, first ? after : points[i]);
+        const Eigen::Vector2d in =
+            leftNormal(first ? points[i] : before, first ? after : points[i]);
         const Eigen::Vector2d out = last ? in : leftNormal(points[i], after);
         const double cosine = 1. + in.dot(out);
         if (!(cosine > 0.1)) throw std::invalid_argument("wall: footprint turns back on itself");
@@ -96,12 +97,12 @@ void addBox(Scene& scene, const Eigen::Vector3d& min, const Eigen::Vector3d& max
     const Eigen::Vector3d x(size.x(), 0., 0.);
     const Eigen::Vector3d y(0., size.y(), 0.);
     const Eigen::Vector3d z(0., 0., size.z());
-    addPlane(scene, min + y + z, x, -y, texture);          // top
-    addPlane(scene, min, x, y, texture);                   // bottom
-    addPlane(scene, min + z, x, -z, texture);              // towards -y
-    addPlane(scene, max, -x, -z, texture);                 // towards +y
-    addPlane(scene, min + y + z, -y, -z, texture);         // towards -x
-    addPlane(scene, min + x + z, y, -z, texture);          // towards +x
+    addPlane(scene, min + y + z, x, -y, texture);   // top
+    addPlane(scene, min, x, y, texture);            // bottom
+    addPlane(scene, min + z, x, -z, texture);       // towards -y
+    addPlane(scene, max, -x, -z, texture);          // towards +y
+    addPlane(scene, min + y + z, -y, -z, texture);  // towards -x
+    addPlane(scene, min + x + z, y, -z, texture);   // towards +x
 }
 
 void addWall(Scene& scene, const Wall& wall, std::uint32_t texture) {
@@ -123,8 +124,10 @@ void addWall(Scene& scene, const Wall& wall, std::uint32_t texture) {
         upright(right[i], right[j], along);
         upright(left[j], left[i], along);
         for (const double z : {low, high}) {
-            addQuad(scene, {lifted(right[i], z), lifted(right[j], z), lifted(left[j], z),
-                            lifted(left[i], z)}, texture, {along, 0.});
+            addQuad(
+                scene,
+                {lifted(right[i], z), lifted(right[j], z), lifted(left[j], z), lifted(left[i], z)},
+                texture, {along, 0.});
         }
         along += (wall.footprint[j] - wall.footprint[i]).norm();
     }

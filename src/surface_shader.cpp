@@ -25,11 +25,11 @@ struct Affine {
 /// What one triangle looks like from one camera.
 struct Surface {
     std::uint32_t id = VisibilityImage::kNothing;
-    bool edgeOn = false;         ///< the camera lies in its plane: nothing to see
-    float nearest, farthest;     ///< bounds of the inverse depth over the corners [1/m]
-    Affine inverseDepth;         ///< [1/m]
-    Affine u, v;                 ///< (texel coordinate - its value at the camera) / depth [1/m]
-    float footprint;             ///< texels^2 per pixel, times depth^3
+    bool edgeOn = false;      ///< the camera lies in its plane: nothing to see
+    float nearest, farthest;  ///< bounds of the inverse depth over the corners [1/m]
+    Affine inverseDepth;      ///< [1/m]
+    Affine u, v;              ///< (texel coordinate - its value at the camera) / depth [1/m]
+    float footprint;          ///< texels^2 per pixel, times depth^3
     const MipTexture* texture;
     /// Per pyramid level: scale of texel coordinates, and the texel coordinate at the camera split
     /// into a whole and a fractional part, so that nothing is lost far from the texture's origin.
@@ -99,9 +99,8 @@ void setUp(Surface& surface, const Triangle& triangle, const MipTexture& texture
 
     // The map pixel -> texel is projective, H / inverse depth: its area factor is
     // det H / (inverse depth)^3, and det H = normal . (uGradient x vGradient) / distance / (fx fy).
-    surface.footprint =
-        static_cast<float>(std::abs(normal.dot(uGradient.cross(vGradient)) / distance) /
-                           (camera.fx() * camera.fy()));
+    surface.footprint = static_cast<float>(
+        std::abs(normal.dot(uGradient.cross(vGradient)) / distance) / (camera.fx() * camera.fy()));
 }
 
 /// The surfaces met so far in this view; a triangle that maps to a taken place replaces it.
@@ -208,8 +207,7 @@ Float clamped(Float x, float low, float high) {
 /// The pixels of a strip that see one triangle.
 void shadeStrip(const Surface& surface, Float x, float y, Int active, Float& depth, Float& grey) {
     if (surface.edgeOn) return;
-    const Float z =
-        1.F / clamped(surface.inverseDepth(x, y), surface.farthest, surface.nearest);
+    const Float z = 1.F / clamped(surface.inverseDepth(x, y), surface.farthest, surface.nearest);
     const Float u = surface.u(x, y) * z;
     const Float v = surface.v(x, y) * z;
     depth = active ? z : depth;

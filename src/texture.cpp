@@ -115,9 +115,9 @@ ImageF greyOf(const cv::Mat& file, const std::array<double, 3>& factor) {
             const float* p = row + static_cast<std::ptrdiff_t>(u) * channels;
             const bool colour = channels >= 3;
             const float b = linear(p[0]);
-            grey[v][u] = static_cast<float>(greyOfLinear({factor[0] * (colour ? linear(p[2]) : b),
-                                                          factor[1] * (colour ? linear(p[1]) : b),
-                                                          factor[2] * b}));
+            grey[v][u] = static_cast<float>(
+                greyOfLinear({factor[0] * (colour ? linear(p[2]) : b),
+                              factor[1] * (colour ? linear(p[1]) : b), factor[2] * b}));
         }
     }
     return grey;
@@ -158,10 +158,10 @@ Texture valueNoise(const NoiseOptions& options) {
     demand(options.mean - reach >= 0. && options.mean + reach <= 1.,
            "noise: mean plus or minus the sum of amplitudes leaves [0, 1]");
 
-    Texture texture{ImageF(texels(options.size.y(), options.texel),
-                           texels(options.size.x(), options.texel),
-                           static_cast<float>(options.mean)),
-                    options.size};
+    Texture texture{
+        ImageF(texels(options.size.y(), options.texel), texels(options.size.x(), options.texel),
+               static_cast<float>(options.mean)),
+        options.size};
     std::mt19937 random(options.seed);
     for (std::size_t i = 0; i < amplitudes.size(); ++i) {
         demand(options.cells[i] > 0., "noise: cell sizes must be positive");

@@ -29,12 +29,12 @@ Texture uniformTexture(double grey);
 /// Sum of smooth random fields, one per cell size. It tiles without a seam: cells are stretched a
 /// little so that a whole number of them fits `size`.
 struct NoiseOptions {
-    Eigen::Vector2d size{4., 4.};                 ///< extent of one repetition [m]
-    std::vector<double> cells{0.6, 0.3, 0.15};    ///< lattice pitches [m]
-    std::vector<double> amplitudes{};             ///< per pitch; empty: 0.4 shared equally
-    double mean = 0.5;                            ///< grey value
+    Eigen::Vector2d size{4., 4.};               ///< extent of one repetition [m]
+    std::vector<double> cells{0.6, 0.3, 0.15};  ///< lattice pitches [m]
+    std::vector<double> amplitudes{};           ///< per pitch; empty: 0.4 shared equally
+    double mean = 0.5;                          ///< grey value
     unsigned seed = 1;
-    double texel = 0.01;                          ///< [m]
+    double texel = 0.01;  ///< [m]
 };
 Texture valueNoise(const NoiseOptions& options = {});
 
