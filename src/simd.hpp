@@ -4,6 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
 
 namespace photonav::simd {
 
@@ -17,5 +22,64 @@ inline constexpr int kWidth = 4;
 
 using Float [[gnu::vector_size(kWidth * 4)]] = float;
 using Int [[gnu::vector_size(kWidth * 4)]] = std::int32_t;  // also masks: -1 true, 0 false
+
+inline Float splat(float value) { return Float{} + value; }
+inline Int splat(int value) { return Int{} + value; }
+inline Float toFloat(const Int& a) { return __builtin_convertvector(a, Float); }
+inline Float min(const Float& a, const Float& b) { return a < b ? a : b; }
+inline Float abs(const Float& a) { return a < 0.F ? -a : a; }
+inline Float clamp(const Float& a, float low, float high) {
+    const Float raised = a > low ? a : splat(low);
+    return raised < high ? raised : splat(high);
+}
+inline Int clamp(const Int& a, const Int& low, const Int& high) {
+    const Int raised = a > low ? a : low;
+    return raised < high ? raised : high;
+}
+
+/// 0, 1, 2, ...
+inline Float ramp() {
+    Float lanes;
+    for (int i = 0; i < kWidth; ++i) lanes[i] = static_cast<float>(i);
+    return lanes;
+}
+
+/// For |a| < 2^31.
+inline Int floor(const Float& a) {
+    const Int truncated = __builtin_convertvector(a, Int);
+    return truncated + (toFloat(truncated) > a);
+}
+
+inline bool any(const Int& mask) {
+#if defined(__AVX512F__)
+    return _mm512_test_epi32_mask(reinterpret_cast<__m512i>(mask),
+                                  reinterpret_cast<__m512i>(mask)) != 0;
+#elif defined(__AVX2__)
+    return _mm256_testz_si256(reinterpret_cast<__m256i>(mask), reinterpret_cast<__m256i>(mask)) ==
+           0;
+#else
+    return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+#endif
+}
+
+/// The four bytes that begin at base + Scale * index, per lane.
+template <int Scale>
+inline Int gather(const void* base, const Int& index) {
+#if defined(__AVX512F__)
+    return reinterpret_cast<Int>(
+        _mm512_i32gather_epi32(reinterpret_cast<__m512i>(index), base, Scale));
+#elif defined(__AVX2__)
+    return reinterpret_cast<Int>(_mm256_i32gather_epi32(static_cast<const int*>(base),
+                                                        reinterpret_cast<__m256i>(index), Scale));
+#else
+    Int result;
+    for (int i = 0; i < kWidth; ++i) {
+        std::int32_t lane;
+        std::memcpy(&lane, static_cast<const char*>(base) + std::ptrdiff_t(Scale) * index[i], 4);
+        result[i] = lane;
+    }
+    return result;
+#endif
+}
 
 }  // namespace photonav::simd
