@@ -193,6 +193,23 @@ void fillBox(ObstacleCells& cells, const Eigen::Array3i& first, const Eigen::Arr
     }
 }
 
+/// Marks the leaves below a node whose first cell is `first`, at a height above the finest level.
+void markNode(const TexturedOcTree& map, const TexturedOcTreeNode* node,
+              const Eigen::Array3i& first, int height, ObstacleCells& cells) {
+    const int size = 1 << height;
+    const Eigen::Array3i origin = cells.first - cells.reach;
+    if ((first + size <= origin).any() || (first >= origin + cells.outer()).any()) return;
+    if (!map.nodeHasChildren(node)) {
+        fillBox(cells, first, first + size, map.isNodeOccupied(node) ? 1 : 0);
+        return;
+    }
+    for (unsigned i = 0; i < 8; ++i) {
+        if (!map.nodeChildExists(node, i)) continue;
+        const Eigen::Array3i half(i & 1, (i >> 1) & 1, i >> 2);
+        markNode(map, map.getNodeChild(node, i), first + half * (size / 2), height - 1, cells);
+    }
+}
+
 /// Marks the cells a triangle touches: for every column of cells along the axis closest to the
 /// normal whose square overlaps the triangle's outline, the cells its plane crosses in that square
 /// (Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", 2010). In cells.
@@ -250,6 +267,18 @@ void markTriangle(const std::array<Eigen::Vector3d, 3>& corners, ObstacleCells& 
 }
 
 }  // namespace
+
+DistanceMap::DistanceMap(const TexturedOcTree& map, const Eigen::AlignedBox3d& bounds,
+                         const Options& options)
+    : maxDistance_(options.maxDistance) {
+    const bool unknownIsObstacle = options.unknown == UnknownPolicy::occupied;
+    ObstacleCells cells =
+        makeCells(bounds, map.getResolution(), 0.5, maxDistance_, unknownIsObstacle ? 1 : 0);
+    const int height = static_cast<int>(map.getTreeDepth());
+    const Eigen::Array3i first = Eigen::Array3i::Constant(-(1 << (height - 1)));
+    if (map.getRoot() != nullptr) markNode(map, map.getRoot(), first, height, cells);
+    compute(cells);
+}
 
 DistanceMap::DistanceMap(const Scene& scene, double resolution, const Eigen::AlignedBox3d& bounds,
                          const Options& options)

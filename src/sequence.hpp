@@ -10,7 +10,7 @@
 namespace photonav {
 
 /// One recorded moment.
-struct Frame {
+struct RecordedFrame {
     double timestamp = 0.;  ///< of the colour image [s]
     Pose T_c_w = Pose::Identity();
     View view;  ///< measured; depth 0: no measurement

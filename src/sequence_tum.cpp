@@ -194,7 +194,7 @@ Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
     return sequence;
 }
 
-Frame loadFrame(const Sequence& sequence, std::size_t index) {
+RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
     const Sequence::Entry& entry = sequence.frames.at(index);
     const Camera& camera = sequence.camera;
     const cv::Mat grey =
@@ -203,7 +203,7 @@ Frame loadFrame(const Sequence& sequence, std::size_t index) {
     if (depth.type() != CV_16UC1) {
         throw InputError(entry.depthFile, "", "expected one channel of 16 bits");
     }
-    Frame frame{entry.timestamp, entry.T_c_w, {}};
+    RecordedFrame frame{entry.timestamp, entry.T_c_w, {}};
     frame.view.intensity.resize(camera.height, camera.width);
     frame.view.depth.resize(camera.height, camera.width);
     const auto metres = static_cast<float>(1. / sequence.depthScale);

@@ -30,6 +30,6 @@ Sequence readTumSequence(const std::string& folder, const TumOptions& options = 
 /// Loads the images of frame `index`: 8-bit colour by OpenCV's grey conversion to [0, 1], 16-bit
 /// depth to metres along the optical axis.
 /// @throws InputError for a file that is missing, damaged or of another size than the camera's
-Frame loadFrame(const Sequence& sequence, std::size_t index);
+RecordedFrame loadFrame(const Sequence& sequence, std::size_t index);
 
 }  // namespace photonav

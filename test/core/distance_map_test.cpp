@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "distance_map.hpp"
 
+#include <dynamicEDT3D/dynamicEDTOctomap.h>
 #include <gtest/gtest.h>
+#include <octomap/OcTree.h>
 
 #include <random>
 
@@ -129,6 +131,78 @@ TEST(DistanceMap, ObstaclesOutsideTheBoundsCount) {
     EXPECT_EQ(map.clearance(Vector3d(-100., 0.5, 0.5)), 1.);
     const DistanceMap far(wall, 0.1, bounds, {.maxDistance = 0.3});
     EXPECT_FLOAT_EQ(far.clearance(Vector3d(1., 0.5, 0.5)), 0.3);
+}
+
+/// Random boxes in a room whose upper part nobody has seen; the same cells in both kinds of map.
+struct RandomRoom {
+    static constexpr double kResolution = 0.1;
+    TexturedOcTree map{kResolution};
+    octomap::OcTree plain{kResolution};
+
+    explicit RandomRoom(std::mt19937& random) {
+        std::bernoulli_distribution obstacle(0.004);
+        for (int x = -16; x < 16; ++x) {
+            for (int y = -16; y < 16; ++y) {
+                for (int z = -8; z < 8; ++z) {
+                    const octomap::OcTreeKey key(32768 + x, 32768 + y, 32768 + z);
+                    const bool occupied = obstacle(random);
+                    map.updateNode(key, occupied);
+                    plain.updateNode(key, occupied);
+                }
+            }
+        }
+    }
+};
+
+TEST(DistanceMap, MatchesDynamicEdtAtCellCentres) {
+    std::mt19937 random(4);
+    RandomRoom room(random);
+    const double half = 0.5 * RandomRoom::kResolution;
+    const AlignedBox3d bounds(Vector3d(-1.45, -1.45, -0.65), Vector3d(1.45, 1.45, 1.75));
+    for (const auto unknown : {UnknownPolicy::free, UnknownPolicy::occupied}) {
+        const DistanceMap map(room.map, bounds, {.maxDistance = 0.6, .unknown = unknown});
+        // The reference counts cells outside its box as free, so it gets a larger one.
+        DynamicEDTOctomap reference(2.F, &room.plain, octomap::point3d(-3, -3, -3),
+                                    octomap::point3d(3, 3, 3), unknown == UnknownPolicy::occupied);
+        reference.update();
+        int below = 0;
+        for (double x = -1.45; x < 1.5; x += 0.1) {
+            for (double y = -1.45; y < 1.5; y += 0.1) {
+                for (double z = -0.65; z < 1.8; z += 0.1) {
+                    const octomap::point3d p(static_cast<float>(x), static_cast<float>(y),
+                                             static_cast<float>(z));
+                    const double expected =
+                        std::min<double>(reference.getDistance(p) - half, map.maxDistance());
+                    ASSERT_NEAR(map.clearance(Vector3d(x, y, z)), expected, 1e-5)
+                        << x << ' ' << y << ' ' << z;
+                    below += expected < map.maxDistance() ? 1 : 0;
+                }
+            }
+        }
+        EXPECT_GT(below, 1000);
+    }
+}
+
+TEST(DistanceMap, MergedCellsCountInFull) {
+    TexturedOcTree map(0.1);
+    for (unsigned i = 0; i < 512; ++i) {
+        map.updateNode(octomap::OcTreeKey(32768 + i % 8, 32768 + i / 8 % 8, 32768 + i / 64), true);
+    }
+    map.prune();
+    ASSERT_LT(map.getNumLeafNodes(), 512U);
+    const AlignedBox3d bounds(Vector3d(-1., 0., 0.), Vector3d(2., 0.8, 0.8));
+    const DistanceMap distance(map, bounds, {.unknown = UnknownPolicy::free});
+    EXPECT_NEAR(distance.clearance(Vector3d(-0.45, 0.45, 0.75)), 0.45, 1e-5);
+    EXPECT_NEAR(distance.clearance(Vector3d(1.25, 0.45, 0.05)), 0.45, 1e-5);
+    EXPECT_LT(distance.clearance(Vector3d(0.4, 0.4, 0.4)), 0.);
+}
+
+TEST(DistanceMap, UnvisitedMapFollowsThePolicy) {
+    const TexturedOcTree map(0.1);
+    const AlignedBox3d bounds(Vector3d::Zero(), Vector3d::Ones());
+    const Vector3d centre = Vector3d::Constant(0.5);
+    EXPECT_LT(DistanceMap(map, bounds, {.unknown = UnknownPolicy::occupied}).clearance(centre), 0.);
+    EXPECT_EQ(DistanceMap(map, bounds, {.unknown = UnknownPolicy::free}).clearance(centre), 1.);
 }
 
 TEST(DistanceMap, RejectsWhatCannotWork) {

@@ -36,7 +36,7 @@ TEST_F(TumSequence, ReadsWhatWasRecorded) {
     EXPECT_TRUE(sequence.skipped.empty());
     EXPECT_FALSE(sequence.cameraAssumed);
     EXPECT_EQ(sequence.camera.fx(), 60.);
-    const Frame frame = loadFrame(sequence, 3);
+    const RecordedFrame frame = loadFrame(sequence, 3);
     EXPECT_NEAR(frame.timestamp, 100.3, 1e-9);
     EXPECT_TRUE(frame.T_c_w.isApprox(dataset.T_w_c(3).inverse(), 1e-6));
     ASSERT_EQ(frame.view.intensity.getWidth(), 80U);
@@ -51,7 +51,7 @@ TEST_F(TumSequence, ReadsWhatWasRecorded) {
 
 TEST_F(TumSequence, ColourImagesBecomeGrey) {
     cv::imwrite((path / "rgb/0.png").string(), cv::Mat(60, 80, CV_8UC3, cv::Scalar(200, 100, 50)));
-    const Frame frame = loadFrame(read(), 0);
+    const RecordedFrame frame = loadFrame(read(), 0);
     EXPECT_NEAR(frame.view.intensity[5][5], (0.114 * 200 + 0.587 * 100 + 0.299 * 50) / 255., 0.003);
 }
 
@@ -177,7 +177,7 @@ TEST_F(TumSequence, ReadsARealRecording) {
     const Sequence sequence = readTumSequence((root / "rgbd_office").string());
     EXPECT_EQ(sequence.frames.size(), 240U);
     EXPECT_EQ(sequence.depthScale, 1000.);
-    const Frame frame = loadFrame(sequence, 100);
+    const RecordedFrame frame = loadFrame(sequence, 100);
     double valid = 0.;
     for (unsigned v = 0; v < 480; ++v) {
         for (unsigned u = 0; u < 640; ++u) valid += frame.view.depth[v][u] > 0.4F ? 1. : 0.;
