@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -28,21 +27,34 @@ template <int kWidth>
 struct Simd {
     // typedef: g++ drops the attribute from an alias when the size depends on a parameter.
     typedef float Float __attribute__((vector_size(kWidth * sizeof(float))));
+    typedef double Double __attribute__((vector_size(kWidth * sizeof(double))));
+
+    static Float loadUnaligned(const float* p) {
+        Float f;
+        std::memcpy(&f, p, sizeof(f));
+        return f;
+    }
 };
 
 // --- Which pixels count: written once, for a float and for a vector of them -------------------
 
-/// 1 / depth; NaN, which fails every test below, where there is no surface.
-float inverseDepth(float depth) {
-    return depth > 0.F ? 1.F / depth : std::numeric_limits<float>::quiet_NaN();
-}
+/// Stands for the inverse depth of nothing: fails every test below, yet is finite, so that zero
+/// times it is zero.
+constexpr float kNoSurface = -1e30F;
+
+float inverseDepthOf(float depth) { return depth > 0.F ? 1.F / depth : kNoSurface; }
 
 /// Inverse depth is linear along any line on a plane, however oblique: its second difference shows
-/// edges. False when one of the three is NaN.
+/// edges. False when one of the three is no surface.
 template <typename T>
-auto isSmooth(T before, T centre, T after, T limit) {
-    const T curvature = before + after - 2.F * centre;
-    return (curvature <= limit) & (-curvature <= limit);
+T curvature(T before, T centre, T after) {
+    const T c = before + after - 2.F * centre;
+    return c > -c ? c : -c;
+}
+
+template <typename T>
+auto isSmooth(T horizontal, T vertical, T limit) {
+    return (horizontal > vertical ? horizontal : vertical) <= limit;
 }
 
 template <typename T>
@@ -55,150 +67,193 @@ int firstInStride(int stride) { return 1 + stride / 2; }
 
 // --- The kernel -------------------------------------------------------------------------------
 
-/// Three consecutive rows of intensity and inverse depth, padded so that whole vectors can be
-/// read. The padding has no depth, so it does not count.
+/// Three consecutive rows of intensity and inverse depth in whole, aligned vectors: lane 0 of
+/// vector 0 is column 1, the first that can count. The padding has no surface, so it does not.
+template <int kWidth>
 class RowWindow {
   public:
-    RowWindow(const View& view, int padding)
-        : view_(view), width_(view.intensity.getWidth()), pitch_(width_ + padding) {
-        intensity_.resize(3 * pitch_, 0.F);
-        inverseDepth_.resize(3 * pitch_, std::numeric_limits<float>::quiet_NaN());
-    }
+    using Float = typename Simd<kWidth>::Float;
+
+    explicit RowWindow(const View& view)
+        : view_(view),
+          width_(view.intensity.getWidth()),
+          vectors_((width_ - 2 + kWidth - 1) / kWidth),
+          intensity_(3 * (vectors_ + 2), Float{}),
+          inverseDepth_(3 * (vectors_ + 2), Float{} + kNoSurface) {}
+
+    std::size_t vectors() const { return vectors_; }
 
     /// Brings in row v; it can be read until row v + 3 comes.
     void load(unsigned v) {
-        const std::size_t start = (v % 3) * pitch_;
-        std::copy_n(view_.intensity[v], width_, &intensity_[start]);
+        float* intensity = reinterpret_cast<float*>(&intensity_[start(v)]);
+        float* inverse = reinterpret_cast<float*>(&inverseDepth_[start(v)]);
         const float* depth = view_.depth[v];
-        for (std::size_t u = 0; u < width_; ++u) inverseDepth_[start + u] = inverseDepth(depth[u]);
+        std::copy_n(view_.intensity[v], width_, intensity - 1);
+        inverse[-1] = inverseDepthOf(depth[0]);
+        for (std::size_t u = 1; u < width_; ++u) inverse[u - 1] = inverseDepthOf(depth[u]);
     }
 
-    const float* intensity(unsigned v) const { return &intensity_[(v % 3) * pitch_]; }
-    const float* inverseDepthRow(unsigned v) const { return &inverseDepth_[(v % 3) * pitch_]; }
+    const Float* intensity(unsigned v) const { return &intensity_[start(v)]; }
+    const Float* inverseDepth(unsigned v) const { return &inverseDepth_[start(v)]; }
 
   private:
+    std::size_t start(unsigned v) const { return (v % 3) * (vectors_ + 2) + 1; }
+
     const View& view_;
     std::size_t width_;
-    std::size_t pitch_;
-    std::vector<float> intensity_;
-    std::vector<float> inverseDepth_;
+    std::size_t vectors_;
+    std::vector<Float> intensity_, inverseDepth_;
 };
 
-/// The Jacobian of one image row, column by column of J, and its products summed over the row.
+/// J of one image row after the other, and the sum of its products.
 template <int kWidth>
 class RowKernel {
   public:
     using Float = typename Simd<kWidth>::Float;
+    using Double = typename Simd<kWidth>::Double;
 
-    RowKernel(const Camera& camera, const PhotometricOptions& options)
-        : camera_(camera), options_(options) {
-        const std::size_t columns = camera.width + kWidth;
-        x_.resize(columns, 0.F);
-        halfFx_.resize(columns, 0.F);
-        halfFy_.resize(columns, 0.F);
-        const int first = firstInStride(options.stride);
-        for (int u = first; u + 1 < static_cast<int>(camera.width); ++u) {
-            x_[u] = static_cast<float>((u - camera.cx()) / camera.fx());
-            if ((u - first) % options.stride != 0) continue;
-            halfFx_[u] = static_cast<float>(0.5 * camera.fx());
-            halfFy_[u] = static_cast<float>(0.5 * camera.fy());
+    RowKernel(const Camera& camera, const PhotometricOptions& options, std::size_t vectors)
+        : camera_(camera),
+          options_(options),
+          x_(vectors),
+          inStride_(vectors, Float{}),
+          jacobian_(vectors) {
+        float* x = reinterpret_cast<float*>(x_.data());
+        float* inStride = reinterpret_cast<float*>(inStride_.data());
+        for (unsigned u = 1; u <= vectors * kWidth; ++u) {
+            x[u - 1] = static_cast<float>((u - camera.cx()) / camera.fx());
         }
-        vectors_ = (camera.width - 2 + kWidth - 1) / kWidth;
-        jacobian_.resize(vectors_);
+        for (unsigned u = firstInStride(options.stride); u + 1 < camera.width;
+             u += options.stride) {
+            inStride[u - 1] = 1.F;
+        }
     }
 
-    void add(const RowWindow& rows, unsigned v, Matrix6& sum) {
+    void add(const RowWindow<kWidth>& rows, unsigned v) {
         fill(rows, v);
-        // Two passes, because 21 sums and the factors do not fit in 16 registers.
-        addProducts<0, 2>(sum);
-        addProducts<2, 6>(sum);
+        if (options_.stride > 1) applyStride();
+        // Two passes, because 21 sums and their factors do not fit in 16 registers.
+        addProducts<0, 2>();
+        addProducts<2, 6>();
+        if (++rowsInLanes_ == kRowsInLanes) flush();
+    }
+
+    /// sum J^T J over all rows added
+    Matrix6 sum() {
+        flush();
+        Vector6 unit;  // what fill() leaves out: half the focal length and two signs
+        unit << 1., 1., -1., -1., 1., 1.;
+        unit *= 0.5 * camera_.fx();
+        Matrix6 sum;
+        for (int i = 0; i < 6; ++i) {
+            for (int j = i; j < 6; ++j) {
+                std::array<double, kWidth> lane;
+                std::memcpy(lane.data(), &wideLanes_[i][j], sizeof(lane));
+                sum(i, j) = unit[i] * unit[j] * std::accumulate(lane.begin(), lane.end(), 0.);
+                sum(j, i) = sum(i, j);
+            }
+        }
+        return sum;
     }
 
   private:
-    static Float load(const float* p) {
-        Float f;
-        std::memcpy(&f, p, sizeof(f));
-        return f;
-    }
+    using Row = std::array<Float, 6>;
 
-    void fill(const RowWindow& rows, unsigned v) {
+    /// Rows summed in single precision, each lane on its own, before they go to double precision.
+    static constexpr int kRowsInLanes = 4;
+
+    void fill(const RowWindow<kWidth>& rows, unsigned v) {
+        const auto lanesBefore = [](const Float* p) {
+            return Simd<kWidth>::loadUnaligned(reinterpret_cast<const float*>(p) - 1);
+        };
+        const auto lanesAfter = [](const Float* p) {
+            return Simd<kWidth>::loadUnaligned(reinterpret_cast<const float*>(p) + 1);
+        };
         const float y = static_cast<float>((v - camera_.cy()) / camera_.fy());
+        const float aspect = static_cast<float>(camera_.fy() / camera_.fx());
         const float jump = static_cast<float>(options_.depthJump);
         const float saturation = static_cast<float>(options_.saturation);
-        const float* I = rows.intensity(v);
-        const float* W = rows.inverseDepthRow(v);
-        const float* above = rows.intensity(v - 1);
-        const float* below = rows.intensity(v + 1);
-        const float* aboveW = rows.inverseDepthRow(v - 1);
-        const float* belowW = rows.inverseDepthRow(v + 1);
-        const Float zero = {};
-        for (std::size_t i = 0; i < vectors_; ++i) {
-            const std::size_t u = 1 + i * kWidth;
-            Float w = load(W + u);
-            const Float limit = jump * w;
-            const auto counts = isSmooth(load(W + u - 1), w, load(W + u + 1), limit) &
-                                isSmooth(load(aboveW + u), w, load(belowW + u), limit) &
-                                isExposed(load(I + u), saturation);
-            w = counts ? w : zero;
-            Float gx = (load(I + u + 1) - load(I + u - 1)) * load(&halfFx_[u]);
-            Float gy = (load(below + u) - load(above + u)) * load(&halfFy_[u]);
-            gx = counts ? gx : zero;
-            gy = counts ? gy : zero;
-            const Float x = load(&x_[u]);
+        const Float* I = rows.intensity(v);
+        const Float* above = rows.intensity(v - 1);
+        const Float* below = rows.intensity(v + 1);
+        const Float* W = rows.inverseDepth(v);
+        const Float* aboveW = rows.inverseDepth(v - 1);
+        const Float* belowW = rows.inverseDepth(v + 1);
+        for (std::size_t i = 0; i < jacobian_.size(); ++i) {
+            const Float w = W[i];
+            const auto counts =
+                isSmooth<Float>(curvature<Float>(lanesBefore(W + i), w, lanesAfter(W + i)),
+                                curvature<Float>(aboveW[i], w, belowW[i]), jump * w) &
+                isExposed(I[i], saturation);
+            const Float gx = counts ? lanesAfter(I + i) - lanesBefore(I + i) : Float{};
+            const Float gy = counts ? aspect * (below[i] - above[i]) : Float{};
+            const Float x = x_[i];
             const Float s = x * gx + y * gy;
-            jacobian_[i] = {gx * w, gy * w, -s * w, -(y * s + gy), x * s + gx, x * gy - y * gx};
+            jacobian_[i] = {gx * w, gy * w, s * w, y * s + gy, x * s + gx, x * gy - y * gx};
         }
     }
 
+    void applyStride() {
+        for (std::size_t i = 0; i < jacobian_.size(); ++i) {
+            for (Float& column : jacobian_[i]) column *= inStride_[i];
+        }
+    }
+
+    /// Adds the products of columns i in [kFirst, kEnd) with columns j >= i to the lanes.
     template <int kFirst, int kEnd>
-    void addProducts(Matrix6& sum) const {
-        Float products[6][6] = {};
-        for (const std::array<Float, 6>& J : jacobian_) {
+    void addProducts() {
+        std::array<Row, 6> sums = {};
+        for (const Row& J : jacobian_) {
 #pragma GCC unroll 6
             for (int i = kFirst; i < kEnd; ++i) {
 #pragma GCC unroll 6
-                for (int j = i; j < 6; ++j) products[i][j] += J[i] * J[j];
+                for (int j = i; j < 6; ++j) sums[i][j] += J[i] * J[j];
             }
         }
+#pragma GCC unroll 6
         for (int i = kFirst; i < kEnd; ++i) {
+#pragma GCC unroll 6
+            for (int j = i; j < 6; ++j) lanes_[i][j] += sums[i][j];
+        }
+    }
+
+    void flush() {
+        for (int i = 0; i < 6; ++i) {
             for (int j = i; j < 6; ++j) {
-                std::array<float, kWidth> lanes;
-                std::memcpy(lanes.data(), &products[i][j], sizeof(lanes));
-                sum(i, j) += std::accumulate(lanes.begin(), lanes.end(), 0.F);
+                wideLanes_[i][j] += __builtin_convertvector(lanes_[i][j], Double);
             }
         }
+        lanes_ = {};
+        rowsInLanes_ = 0;
     }
 
     const Camera& camera_;
     const PhotometricOptions& options_;
-    std::vector<float> x_, halfFx_, halfFy_;  ///< 0 in columns that the stride skips
-    std::size_t vectors_ = 0;
-    std::vector<std::array<Float, 6>> jacobian_;
+    std::vector<Float> x_, inStride_;
+    std::vector<Row> jacobian_;  ///< of the current row
+    std::array<Row, 6> lanes_ = {};
+    std::array<std::array<Double, 6>, 6> wideLanes_ = {};
+    int rowsInLanes_ = 0;
 };
 
 double weight(const PhotometricOptions& options) {
     return options.scale * options.stride * options.stride / (options.sigma * options.sigma);
 }
 
-bool hasInterior(const View& view) {
-    return view.intensity.getWidth() >= 3 && view.intensity.getHeight() >= 3;
-}
-
 }  // namespace
 
 Matrix6 photometricInformation(const View& view, const Camera& camera,
                                const PhotometricOptions& options) {
-    Matrix6 sum = Matrix6::Zero();
-    if (!hasInterior(view)) return sum;
-    RowWindow rows(view, kLanes);
-    RowKernel<kLanes> kernel(camera, options);
+    if (camera.width < 3 || camera.height < 3) return Matrix6::Zero();
+    RowWindow<kLanes> rows(view);
+    RowKernel<kLanes> kernel(camera, options, rows.vectors());
     const unsigned first = firstInStride(options.stride);
     unsigned next = 0;
     for (unsigned v = first; v + 1 < camera.height; v += options.stride) {
         for (next = std::max(next, v - 1); next <= v + 1; ++next) rows.load(next);
-        kernel.add(rows, v, sum);
+        kernel.add(rows, v);
     }
-    return weight(options) * Matrix6(sum.selfadjointView<Eigen::Upper>());
+    return weight(options) * kernel.sum();
 }
 
 Vector6 pixelJacobian(const View& view, const Camera& camera, unsigned u, unsigned v,
@@ -209,14 +264,13 @@ Vector6 pixelJacobian(const View& view, const Camera& camera, unsigned u, unsign
     };
     if (!inStride(u, camera.width) || !inStride(v, camera.height)) return Vector6::Zero();
 
-    const auto inverseDepthAt = [&](unsigned row, unsigned column) {
-        return inverseDepth(view.depth[row][column]);
-    };
     const ImageF& I = view.intensity;
-    const float w = inverseDepthAt(v, u);
-    const float limit = static_cast<float>(options.depthJump) * w;
-    if (!isSmooth(inverseDepthAt(v, u - 1), w, inverseDepthAt(v, u + 1), limit) ||
-        !isSmooth(inverseDepthAt(v - 1, u), w, inverseDepthAt(v + 1, u), limit) ||
+    const auto W = [&](unsigned row, unsigned column) {
+        return inverseDepthOf(view.depth[row][column]);
+    };
+    const float w = W(v, u);
+    if (!isSmooth(curvature(W(v, u - 1), w, W(v, u + 1)), curvature(W(v - 1, u), w, W(v + 1, u)),
+                  static_cast<float>(options.depthJump) * w) ||
         !isExposed(I[v][u], static_cast<float>(options.saturation))) {
         return Vector6::Zero();
     }
