@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map_fusion.hpp"
 
-#include <bit>
 #include <cmath>
-#include <limits>
+#include <cstring>
 #include <stdexcept>
+#include <utility>
 
 namespace photonav {
 namespace {
@@ -12,8 +12,8 @@ namespace {
 using Eigen::Array3i;
 using Eigen::Vector3d;
 
-constexpr int kKeyOfZero = 32768;     // OctoMap's key of the cell that begins at the origin
-constexpr double kMaxBricks = 6.4e7;  // 4^3 cells each: 1.5 GB of scratch memory
+constexpr int kKeyOfZero = 32768;  // OctoMap's key of the cell that begins at the origin
+constexpr double kMaxCells = 2e9;  // one byte of scratch memory each
 constexpr std::int32_t kNoPixels = -1;
 
 /// What the pixels that end in a cell have seen.
@@ -22,92 +22,93 @@ struct CellPixels {
     unsigned count = 0;
 };
 
-/// The cells in view, in bricks of 4 x 4 x 4 that match the octree's: which were crossed by a ray,
-/// which were hit and what was seen there. Coordinates are in cells, OctoMap's keys less
-/// kKeyOfZero.
+/// The cells in view: which were crossed by a ray, which were hit and what was seen there. A dense
+/// box, x fastest, that begins and ends at bricks of 4 x 4 x 4 cells of the octree. Coordinates are
+/// in cells, OctoMap's keys less kKeyOfZero.
 class Scan {
   public:
-    Scan(const Eigen::AlignedBox3d& cells)
+    explicit Scan(const Eigen::AlignedBox3d& cells)
         : first_(cells.min().array().floor().cast<int>() / 4 * 4 - 4),
           bricks_((cells.max().array().floor().cast<int>() - first_) / 4 + 2),
-          crossed_(size(), 0),
-          hit_(size(), 0),
-          pixelsOf_(size(), kNoPixels) {}
+          stride_{1, 4 * bricks_.x(), 16L * bricks_.x() * bricks_.y()},
+          crossed_(64 * bricks_.cast<std::size_t>().prod(), 0),
+          pixelsOf_(bricks_.cast<std::size_t>().prod(), kNoPixels) {}
 
-    static double bricksNeeded(const Eigen::AlignedBox3d& cells) {
-        return (cells.sizes().array() / 4. + 3.).prod();
+    static double cellsNeeded(const Eigen::AlignedBox3d& cells) {
+        return (cells.sizes().array() + 12.).prod();
     }
 
     /// @returns whether the cell was hit for the first time
     bool addPixel(const Array3i& cell, float grey) {
-        const auto [brick, bit] = locate(cell);
-        if (pixelsOf_[brick] == kNoPixels) {
-            pixelsOf_[brick] = static_cast<std::int32_t>(pixels_.size());
+        std::int32_t& index = pixelsOf_[brickOf(cell)];
+        if (index == kNoPixels) {
+            index = static_cast<std::int32_t>(pixels_.size());
             pixels_.emplace_back();
         }
-        CellPixels& seen = pixels_[pixelsOf_[brick]][bit];
+        CellPixels& seen = pixels_[index][bitOf(cell)];
         seen.greySum += grey;
-        hit_[brick] |= 1ULL << bit;
         return seen.count++ == 0;
     }
 
-    bool isCrossed(const Array3i& cell) const {
-        const auto [brick, bit] = locate(cell);
-        return (crossed_[brick] >> bit & 1U) != 0;
-    }
+    /// @returns whether the cell was crossed for the first time
+    bool cross(const Array3i& cell) { return std::exchange(crossed_[place(cell)], 1) == 0; }
 
-    bool isHit(const Array3i& cell) const {
-        const auto [brick, bit] = locate(cell);
-        return (hit_[brick] >> bit & 1U) != 0;
-    }
-
-    void cross(const Array3i& cell) {
-        const auto [brick, bit] = locate(cell);
-        crossed_[brick] |= 1ULL << bit;
-    }
+    /// Crosses the cells from the eye up to, not including, the one that holds `end`.
+    void castRay(const Vector3d& eye, const Vector3d& end);
 
     void apply(TexturedOcTree& map, const Vector3d& eye) const;
 
   private:
-    struct Place {
-        std::size_t brick;
-        unsigned bit;
-    };
-    Place locate(const Array3i& cell) const {
-        const Array3i c = cell - first_;
-        return {(std::size_t(c.z() >> 2) * bricks_.y() + (c.y() >> 2)) * bricks_.x() + (c.x() >> 2),
-                brickBit(c.x(), c.y(), c.z())};
+    bool isHit(const Array3i& cell) const {
+        const std::int32_t index = pixelsOf_[brickOf(cell)];
+        return index != kNoPixels && pixels_[index][bitOf(cell)].count > 0;
     }
-    std::size_t size() const { return std::size_t(bricks_.x()) * bricks_.y() * bricks_.z(); }
+    std::size_t brickOf(const Array3i& cell) const {
+        const Array3i c = cell - first_;
+        return (std::size_t(c.z() >> 2) * bricks_.y() + (c.y() >> 2)) * bricks_.x() + (c.x() >> 2);
+    }
+    unsigned bitOf(const Array3i& cell) const {  // first_ is a multiple of 4
+        return brickBit(cell.x(), cell.y(), cell.z());
+    }
+    std::ptrdiff_t place(const Array3i& cell) const {
+        const Array3i c = cell - first_;
+        return c.x() + c.y() * stride_[1] + c.z() * stride_[2];
+    }
+    std::uint64_t crossedInBrick(const Array3i& corner) const;
+    std::uint64_t hitInBrick(std::int32_t index) const;
     void observeFaces(TexturedOcTreeNode& node, const Array3i& cell, const CellPixels& seen,
                       const Vector3d& eye) const;
 
     Array3i first_, bricks_;
-    std::vector<std::uint64_t> crossed_, hit_;
-    std::vector<std::int32_t> pixelsOf_;
+    std::array<std::ptrdiff_t, 3> stride_;
+    std::vector<std::uint8_t> crossed_;   // per cell; bytes, since setting bits waits for memory
+    std::vector<std::int32_t> pixelsOf_;  // per brick: index into pixels_
     std::vector<std::array<CellPixels, 64>> pixels_;
 };
 
-/// Marks the cells from the eye up to, not including, the one that holds `end` (Amanatides & Woo).
-void castRay(Scan& scan, const Vector3d& eye, const Vector3d& end) {
-    Array3i cell = eye.array().floor().cast<int>();
+/// Amanatides and Woo's traversal, without branches: which axis is next is a coin toss.
+void Scan::castRay(const Vector3d& eye, const Vector3d& end) {
+    const Array3i cell = eye.array().floor().cast<int>();
     const Array3i last = end.array().floor().cast<int>();
     const Vector3d d = end - eye;
-    Array3i step;
-    Vector3d next, delta;
+    std::array<double, 3> next, delta;
+    std::array<std::ptrdiff_t, 3> step;
     for (int a = 0; a < 3; ++a) {
-        step[a] = d[a] < 0. ? -1 : 1;
-        delta[a] = d[a] == 0. ? std::numeric_limits<double>::infinity() : 1. / std::abs(d[a]);
         const double gap = d[a] < 0. ? eye[a] - cell[a] : cell[a] + 1. - eye[a];
-        next[a] = d[a] == 0. ? delta[a] : gap * delta[a];
+        delta[a] = 1. / std::max(std::abs(d[a]), 1e-9);
+        next[a] = gap * delta[a];
+        step[a] = d[a] < 0. ? -stride_[a] : stride_[a];
     }
+    auto [x, y, z] = next;
+    std::uint8_t* crossed = &crossed_[place(cell)];
     for (int n = (last - cell).abs().sum(); n > 0; --n) {
-        scan.cross(cell);
-        int axis = 0;
-        if (next[1] < next[axis]) axis = 1;
-        if (next[2] < next[axis]) axis = 2;
-        cell[axis] += step[axis];
-        next[axis] += delta[axis];
+        *crossed = 1;
+        const bool xFirst = (x <= y) & (x <= z), yFirst = !xFirst & (y <= z);
+        const bool zFirst = !xFirst & !yFirst;
+        crossed += xFirst ? step[0] : yFirst ? step[1] : step[2];
+        x += xFirst ? delta[0] : 0.;
+        y += yFirst ? delta[1] : 0.;
+        z += zFirst ? delta[2] : 0.;
     }
 }
 
@@ -126,6 +127,28 @@ void Scan::observeFaces(TexturedOcTreeNode& node, const Array3i& cell, const Cel
     }
 }
 
+std::uint64_t Scan::crossedInBrick(const Array3i& corner) const {
+    std::uint64_t bits = 0;
+    for (unsigned z = 0; z < 4; ++z) {
+        for (unsigned y = 0; y < 4; ++y) {
+            std::uint32_t row = 0;  // four cells along x
+            std::memcpy(&row, &crossed_[place(corner) + y * stride_[1] + z * stride_[2]], 4);
+            const std::uint64_t spread =
+                (row & 1U) | (row >> 7U & 2U) | (row >> 8U & 0x100U) | (row >> 15U & 0x200U);
+            bits |= spread << brickBit(0, y, z);
+        }
+    }
+    return bits;
+}
+
+std::uint64_t Scan::hitInBrick(std::int32_t index) const {
+    std::uint64_t bits = 0;
+    for (unsigned bit = 0; index != kNoPixels && bit < 64; ++bit) {
+        bits |= std::uint64_t{pixels_[index][bit].count > 0} << bit;
+    }
+    return bits;
+}
+
 void Scan::apply(TexturedOcTree& map, const Vector3d& eye) const {
     std::size_t brick = 0;
     Array3i corner;
@@ -137,10 +160,12 @@ void Scan::apply(TexturedOcTree& map, const Vector3d& eye) const {
     for (int z = 0; z < bricks_.z(); ++z) {
         for (int y = 0; y < bricks_.y(); ++y) {
             for (int x = 0; x < bricks_.x(); ++x, ++brick) {
-                if ((crossed_[brick] | hit_[brick]) == 0) continue;
                 corner = first_ + 4 * Array3i(x, y, z);
+                const std::uint64_t crossed = crossedInBrick(corner);
+                const std::uint64_t hit = hitInBrick(pixelsOf_[brick]);
+                if ((crossed | hit) == 0) continue;
                 const auto key = (corner + kKeyOfZero).cast<octomap::key_type>().eval();
-                map.updateBrick({key.x(), key.y(), key.z()}, crossed_[brick], hit_[brick], texture);
+                map.updateBrick({key.x(), key.y(), key.z()}, crossed, hit, texture);
             }
         }
     }
@@ -203,7 +228,7 @@ void fuse(TexturedOcTree& map, const View& observed, const Camera& camera, const
     checkInput(observed, camera, T_c_w);
     const CellFrame frame(camera, T_c_w, map.getResolution());
     const Eigen::AlignedBox3d box = frame.frustum(farthest(observed.depth, options.maxRange));
-    if (!(Scan::bricksNeeded(box) < kMaxBricks) ||
+    if (!(Scan::cellsNeeded(box) < kMaxCells) ||
         !(box.min().minCoeff() > 8 - kKeyOfZero && box.max().maxCoeff() < kKeyOfZero - 8)) {
         throw std::invalid_argument("fuse: the space in view is too large for the map's cells");
     }
@@ -215,9 +240,9 @@ void fuse(TexturedOcTree& map, const View& observed, const Camera& camera, const
             if (atDepthEdge(observed.depth, v, u, options.depthJump)) continue;
             const Vector3d end = frame.point(u, v, std::min(z, options.maxRange));
             const Array3i cell = end.array().floor().cast<int>();
-            const bool first = z > options.maxRange ? !scan.isCrossed(cell)
+            const bool first = z > options.maxRange ? scan.cross(cell)
                                                     : scan.addPixel(cell, observed.intensity[v][u]);
-            if (first) castRay(scan, frame.eye, end);
+            if (first) scan.castRay(frame.eye, end);
         }
     }
     scan.apply(map, frame.eye);

@@ -30,6 +30,27 @@ std::uint16_t quantised(float grey) {
     return static_cast<std::uint16_t>(std::lround(std::clamp(grey, 0.F, 1.F) * 65535.F));
 }
 
+/// Calls use(leaf, lowest, edge) for every leaf, both in cells counted from `lowest` of the root.
+/// Far quicker than OctoMap's iterators.
+template <class Use>
+void forEachLeaf(const TexturedOcTree& map, const TexturedOcTreeNode& node, const Array3i& lowest,
+                 int edge, const Use& use) {
+    bool leaf = true;
+    for (unsigned i = 0; i < 8; ++i) {
+        if (!map.nodeChildExists(&node, i)) continue;
+        leaf = false;
+        const Array3i offset(i & 1U, i >> 1U & 1U, i >> 2U & 1U);
+        forEachLeaf(map, *map.getNodeChild(&node, i), lowest + offset * (edge / 2), edge / 2, use);
+    }
+    if (leaf) use(node, lowest, edge);
+}
+
+template <class Use>
+void forEachLeaf(const TexturedOcTree& map, const Array3i& origin, const Use& use) {
+    if (map.size() == 0) return;
+    forEachLeaf(map, *map.getRoot(), Array3i(-kKeyOfZero - origin), 2 * kKeyOfZero, use);
+}
+
 /// Builds a VoxelGrid in the order of its member functions.
 class GridBuilder {
   public:
@@ -45,7 +66,6 @@ class GridBuilder {
     /// Grey value of the plane at a cell's face; negative: none.
     using Window = std::array<std::array<int, 8>, 8>;
 
-    void visit(const TexturedOcTreeNode& node, unsigned depth, const Array3i& lowest);
     void setCells(const TexturedOcTreeNode& leaf, const Array3i& from, const Array3i& to);
     void setSurface(const TexturedOcTreeNode& leaf, int x, int y, int z);
     const BrickSurface* surfaceAt(const Array3i& cell) const;
@@ -60,13 +80,15 @@ class GridBuilder {
 
 void GridBuilder::layOut() {
     grid_.resolution = map_.getResolution();
-    Eigen::Array3d low = Eigen::Array3d::Zero(), high = Eigen::Array3d::Zero();
-    if (map_.size() > 0) {
-        map_.getMetricMin(low.x(), low.y(), low.z());
-        map_.getMetricMax(high.x(), high.y(), high.z());
-    }
-    grid_.first = (low / grid_.resolution).round().cast<int>() - 1;
-    grid_.size = (high / grid_.resolution).round().cast<int>() + 1 - grid_.first;
+    Array3i low = Array3i::Constant(kKeyOfZero), high = Array3i::Constant(-kKeyOfZero);
+    forEachLeaf(map_, Array3i::Zero(),
+                [&](const TexturedOcTreeNode&, const Array3i& lowest, int edge) {
+                    low = low.min(lowest);
+                    high = high.max(lowest + edge);
+                });
+    if (map_.size() == 0) low = high = Array3i::Zero();
+    grid_.first = low - 1;
+    grid_.size = high - low + 2;
     const double cells = grid_.size.cast<double>().prod();
     if (cells > kMaxCells) {
         throw std::invalid_argument(fmt::format(
@@ -89,19 +111,10 @@ void GridBuilder::fill(UnknownPolicy unknown) {
             }
         }
     }
-    if (map_.size() > 0) visit(*map_.getRoot(), 0, -kKeyOfZero - grid_.first);
-}
-
-void GridBuilder::visit(const TexturedOcTreeNode& node, unsigned depth, const Array3i& lowest) {
-    const int edge = 1 << (map_.getTreeDepth() - depth);
-    bool leaf = true;
-    for (unsigned i = 0; i < 8; ++i) {
-        if (!map_.nodeChildExists(&node, i)) continue;
-        leaf = false;
-        const Array3i offset(i & 1U, i >> 1U & 1U, i >> 2U & 1U);
-        visit(*map_.getNodeChild(&node, i), depth + 1, lowest + offset * (edge / 2));
-    }
-    if (leaf) setCells(node, lowest, lowest + edge);
+    forEachLeaf(map_, grid_.first,
+                [&](const TexturedOcTreeNode& leaf, const Array3i& lowest, int edge) {
+                    setCells(leaf, lowest, lowest + edge);
+                });
 }
 
 void GridBuilder::setCells(const TexturedOcTreeNode& leaf, const Array3i& from, const Array3i& to) {
