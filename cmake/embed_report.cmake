@@ -10,13 +10,14 @@ function(photonav_embed_report target)
     mark_as_advanced(THREE_JS ORBIT_CONTROLS_JS CHART_JS)
 
     set(page ${PROJECT_SOURCE_DIR}/app/report_page)
+    set(parts ${THREE_JS} ${ORBIT_CONTROLS_JS} ${CHART_JS} ${page}/page.css ${page}/data.js
+        ${page}/map3d.js ${page}/view3d.js ${page}/charts.js ${page}/page.js)
     set(script ${PROJECT_SOURCE_DIR}/cmake/embed_report.cmake)
     set(generated ${PROJECT_BINARY_DIR}/generated/report_page.cpp)
     add_custom_command(OUTPUT ${generated}
-        COMMAND ${CMAKE_COMMAND} -DOUTPUT=${generated} -DPAGE=${page} -DTHREE_JS=${THREE_JS}
-            -DORBIT_CONTROLS_JS=${ORBIT_CONTROLS_JS} -DCHART_JS=${CHART_JS} -P ${script}
-        DEPENDS ${script} ${page}/page.html ${page}/page.css ${page}/page.js
-            ${THREE_JS} ${ORBIT_CONTROLS_JS} ${CHART_JS}
+        COMMAND ${CMAKE_COMMAND} -DOUTPUT=${generated} -DPAGE=${page}/page.html "-DPARTS=${parts}"
+            -P ${script}
+        DEPENDS ${script} ${page}/page.html ${parts}
         COMMENT "Inlining the report page" VERBATIM)
     target_sources(${target} PRIVATE ${generated})
     set_source_files_properties(${generated} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
@@ -26,28 +27,22 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
     return()
 endif()
 
-# Puts the content of `file` where the page says `mark`.
-function(inline mark file)
-    file(READ ${file} content)
-    if(mark MATCHES "JS")
+# Every part goes where the page says @name@.
+file(READ ${PAGE} html)
+foreach(part IN LISTS PARTS)
+    get_filename_component(name ${part} NAME)
+    file(READ ${part} content)
+    if(name MATCHES "[.]js$")
         # Inside <script> only these two can confuse a browser; the first is written otherwise in
         # any string or regular expression, the second occurs in no sane script.
         string(REPLACE "</script" "<\\/script" content "${content}")
         string(FIND "${content}" "<!--" comment)
         if(comment GREATER -1)
-            message(FATAL_ERROR "${file} contains <!--, which cannot be inlined")
+            message(FATAL_ERROR "${part} contains <!--, which cannot be inlined")
         endif()
     endif()
-    string(REPLACE "@${mark}@" "${content}" html "${html}")
-    set(html "${html}" PARENT_SCOPE)
-endfunction()
-
-file(READ ${PAGE}/page.html html)
-inline(PAGE_CSS ${PAGE}/page.css)
-inline(THREE_JS ${THREE_JS})
-inline(ORBIT_CONTROLS_JS ${ORBIT_CONTROLS_JS})
-inline(CHART_JS ${CHART_JS})
-inline(PAGE_JS ${PAGE}/page.js)
+    string(REPLACE "@${name}@" "${content}" html "${html}")
+endforeach()
 file(WRITE ${OUTPUT} "#include <string_view>
 namespace photonav {
 extern const std::string_view kReportPage;

@@ -36,7 +36,7 @@ inline ImageF sampleFloor(unsigned side) {
 /// What a camera above (x, y) of the floor [-1, 9] x [-0.5, 9.5] sees, roughly.
 inline ImageF sampleView(const ImageF& floor, const Eigen::Vector3d& position) {
     const double pixelsPerMetre = floor.getWidth() / 10.0;
-    ImageF image(188, 120);
+    ImageF image(120, 188);
     for (unsigned v = 0; v < 120; ++v)
         for (unsigned u = 0; u < 188; ++u) {
             const double x = position.x() + 1 - (v - 59.5) * 0.0149;

@@ -1,0 +1,107 @@
+// Curves along the path and of the search.
+'use strict';
+
+/// @param onPick called with the index of the waypoint nearest to a click
+function createCharts(onPick) {
+  const charts = [];
+  let selectedDistance = null;
+
+  const nearestWaypoint = (distance) => waypoints.reduce((best, waypoint, i) =>
+      Math.abs(waypoint.point.distance - distance) <
+      Math.abs(waypoints[best].point.distance - distance) ? i : best, 0);
+
+  /// A vertical line where the selected waypoint is.
+  const selectionLine = {
+    id: 'selectionLine',
+    afterDatasetsDraw(chart) {
+      if (selectedDistance === null) return;
+      const x = chart.scales.x.getPixelForValue(selectedDistance), {top, bottom} = chart.chartArea;
+      chart.ctx.save();
+      chart.ctx.strokeStyle = cssColor('--quiet');
+      chart.ctx.setLineDash([4, 4]);
+      chart.ctx.beginPath();
+      chart.ctx.moveTo(x, top);
+      chart.ctx.lineTo(x, bottom);
+      chart.ctx.stroke();
+      chart.ctx.restore();
+    },
+  };
+
+  function axis(title, log) {
+    return {
+      type: log ? 'logarithmic' : 'linear',
+      title: {display: true, text: title, color: cssColor('--quiet')},
+      grid: {color: cssColor('--rule')},
+      ticks: {
+        color: cssColor('--quiet'),
+        maxRotation: 0,
+        callback: (value) => {
+          if (!log) return String(Number(value.toPrecision(6))).replace('-', '−');
+          const exponent = Math.log10(value);
+          return Math.abs(exponent - Math.round(exponent)) < 1e-6 ? `10${superscript(Math.round(exponent))}` : '';
+        },
+      },
+    };
+  }
+
+  function draw(id, curves, xTitle, yTitle, {log = false, alongPath = true} = {}) {
+    const names = curves.length > 1;
+    charts.push(new Chart(document.getElementById(id), {
+      type: 'line',
+      data: {datasets: curves},
+      plugins: alongPath ? [selectionLine] : [],
+      options: {
+        animation: false, responsive: true, maintainAspectRatio: false, parsing: false, normalized: true,
+        interaction: {mode: 'nearest', axis: 'x', intersect: false},
+        elements: {point: {radius: 0, hitRadius: 8}, line: {borderWidth: 2.2}},
+        scales: {x: axis(xTitle, false), y: {...axis(yTitle, log), beginAtZero: alongPath && !log}},
+        plugins: {
+          legend: {display: names, align: 'start',
+                   labels: {boxWidth: 14, boxHeight: 2, color: cssColor('--ink')}},
+          tooltip: {callbacks: {
+            title: (items) => `${xTitle.replace(/ \[.*/, '')} ${say(items[0].parsed.x, alongPath ? 'm' : '')}`,
+            label: (item) => `${item.dataset.label}: ${say(item.parsed.y)}`,
+          }},
+        },
+        onClick: (event, _, chart) => {
+          if (alongPath && waypoints.length) onPick(nearestWaypoint(chart.scales.x.getValueForPixel(event.x)));
+        },
+      },
+    }));
+  }
+
+  function curvesOf(key, log) {
+    return paths.map((path) => ({
+      label: path.name, borderColor: path.color, backgroundColor: path.color,
+      data: path.points.filter((point) => typeof point[key] === 'number' && (!log || point[key] > 0))
+          .map((point) => ({x: point.distance, y: point[key]})),
+    }));
+  }
+
+  function drawAll(log) {
+    charts.splice(0).forEach((chart) => chart.destroy());
+    if (paths.length) {
+      draw('trace-chart', curvesOf('trace', log), 'distance [m]', 'trace [m²]', {log});
+      draw('cost-chart', curvesOf('cost', false), 'distance [m]', 'cost');
+    }
+    const progress = data.progress.filter((step) => typeof step.cost === 'number')
+        .map((step) => ({x: step.vertices, y: step.cost}));
+    if (progress.length)
+      draw('progress-chart', [{
+        label: 'best cost', data: progress, stepped: 'before',
+        borderColor: paths.length ? paths[0].color : cssColor('--accent'),
+        backgroundColor: cssColor('--accent'),
+      }], 'vertices', 'best cost', {alongPath: false});
+    for (const [id, shown] of [['trace-box', paths.length], ['cost-box', paths.length],
+                               ['progress-box', progress.length]])
+      document.getElementById(id).hidden = !shown;
+  }
+
+  return {
+    drawAll,
+    select(index) {
+      selectedDistance = waypoints[index].point.distance;
+      for (const chart of charts) chart.draw();
+    },
+  };
+}
