@@ -22,11 +22,11 @@ void BeliefOptions::check() const {
     }
 }
 
-BeliefModel::BeliefModel(const FlightSpace& space, InformationField field,
+BeliefModel::BeliefModel(const FlightSpace& space, std::shared_ptr<InformationField> field,
                          const BeliefOptions& options)
     : space_(space), field_(std::move(field)), options_(options) {
     options_.check();
-    const Matrix6 toCamera = adjoint(field_.mount().inverse());
+    const Matrix6 toCamera = adjoint(field_->mount().inverse());
     initialCamera_ = toCamera * options_.initialCovariance * toCamera.transpose();
     noiseCamera_ = toCamera * options_.motionNoise * toCamera.transpose();
 }
@@ -74,7 +74,7 @@ Belief BeliefModel::fly(const Belief& belief, Motion& motion, bool backward) {
 void BeliefModel::look(Motion& motion) {
     motion.views.resize(motion.steps + 1);
     for (int k = 0; k <= motion.steps; ++k) {
-        motion.views[k] = &field_.at(
+        motion.views[k] = &field_->at(
             space_.poseBetween(motion.from, motion.to, static_cast<double>(k) / motion.steps));
     }
 }
@@ -86,16 +86,16 @@ Matrix6 BeliefModel::stepAdjoint(const Motion& motion, int k, bool backward) con
         const Eigen::Vector3d way = space_.position(motion.to) - space_.position(motion.from);
         const Eigen::Vector3d step_b = way * ((backward ? -1. : 1.) / motion.steps);
         Pose T_next_last = Pose::Identity();
-        T_next_last.translation() = -(field_.mount().linear().transpose() * step_b);
+        T_next_last.translation() = -(field_->mount().linear().transpose() * step_b);
         return adjoint(T_next_last);
     }
     const double direction = backward ? -1. : 1.;
     const double begin = backward ? motion.steps - k : k;
     const Pose T_w_last =
-        space_.poseBetween(motion.from, motion.to, begin / motion.steps) * field_.mount();
+        space_.poseBetween(motion.from, motion.to, begin / motion.steps) * field_->mount();
     const Pose T_w_next =
         space_.poseBetween(motion.from, motion.to, (begin + direction) / motion.steps) *
-        field_.mount();
+        field_->mount();
     return adjoint(T_w_next.inverse() * T_w_last);
 }
 
@@ -107,7 +107,7 @@ std::vector<BeliefPoint> BeliefModel::evaluate(const std::vector<const ob::State
                       .covariance = initialCamera_,
                       .traceBefore = trace(initialCamera_),
                       .trace = trace(initialCamera_),
-                      .information = field_.at(T_w_b).information,
+                      .information = field_->at(T_w_b).information,
                       .isWaypoint = true});
     for (std::size_t i = 1; i < path.size(); ++i) evaluateMotion(path[i - 1], path[i], points);
     return points;
@@ -116,7 +116,7 @@ std::vector<BeliefPoint> BeliefModel::evaluate(const std::vector<const ob::State
 void BeliefModel::evaluateMotion(const ob::State* from, const ob::State* to,
                                  std::vector<BeliefPoint>& points) {
     const Motion way = motion(from, to);
-    const Pose T_c_b = field_.mount().inverse();
+    const Pose T_c_b = field_->mount().inverse();
     const double step = way.length / way.steps;
     const bool perVertex = options_.cost == CostRule::perVertex;
     for (int k = 1; k <= way.steps; ++k) {
@@ -128,7 +128,7 @@ void BeliefModel::evaluateMotion(const ob::State* from, const ob::State* to,
                                         step * noiseCamera_};
         next.covariance = compound(T_next_last, T_last_w, options_.order).covariance;
         next.traceBefore = trace(next.covariance);
-        next.information = field_.at(next.T_w_b).information;
+        next.information = field_->at(next.T_w_b).information;
         const Matrix6 gain = (perVertex ? 1. : step / options_.ds) * next.information;
         next.covariance =
             (Matrix6::Identity() + next.covariance * gain).partialPivLu().solve(next.covariance);
@@ -144,7 +144,7 @@ void BeliefModel::evaluateMotion(const ob::State* from, const ob::State* to,
 }
 
 void BeliefModel::clear() {
-    field_.clear();
+    field_->clear();
     propagations_ = fallbacks_ = 0;
     seconds_ = 0.;
 }

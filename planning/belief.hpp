@@ -2,6 +2,7 @@
 // Beliefs along motions: propagate, look, update at fixed steps, and what that costs.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "flight_space.hpp"
@@ -64,7 +65,9 @@ struct BeliefPoint {
 class BeliefModel {
   public:
     /// @throws std::invalid_argument as BeliefOptions::check()
-    BeliefModel(const FlightSpace& space, InformationField field, const BeliefOptions& options);
+    /// @param field what is seen from where; may be shared, so that nothing is looked at twice
+    BeliefModel(const FlightSpace& space, std::shared_ptr<InformationField> field,
+                const BeliefOptions& options);
 
     /// The belief at the start: the initial covariance at cost 0.
     Belief root() const;
@@ -87,9 +90,12 @@ class BeliefModel {
     void evaluateMotion(const ompl::base::State* from, const ompl::base::State* to,
                         std::vector<BeliefPoint>& points);
 
+    /// Fisher information of the view from a body pose, camera frame.
+    const Matrix6& informationAt(const Pose& T_w_b) { return field_->at(T_w_b).information; }
+
     const FlightSpace& space() const { return space_; }
     const BeliefOptions& options() const { return options_; }
-    const InformationField& field() const { return field_; }
+    const InformationField& field() const { return *field_; }
 
     std::size_t propagations() const { return propagations_; }
     std::size_t fallbacks() const { return fallbacks_; }  ///< steps done in second order after all
@@ -104,7 +110,7 @@ class BeliefModel {
     }
 
     FlightSpace space_;
-    InformationField field_;
+    std::shared_ptr<InformationField> field_;
     BeliefOptions options_;
     Matrix6 initialCamera_;  // options_.initialCovariance in the camera frame
     Matrix6 noiseCamera_;    // options_.motionNoise in the camera frame

@@ -171,7 +171,9 @@ TEST(Belief, NoiseIsGivenInTheBodyFrame) {
     // Forward camera: the body's x is the optical axis, so x noise ends up in camera z.
     Problem problem;
     problem.belief.initialCovariance = vector6(1., 2., 3., .1, .2, .3).asDiagonal();
-    BeliefModel model(problem.space(), InformationField(problem.information, cameraMount(0.), {}),
+    BeliefModel model(problem.space(),
+                      std::make_shared<InformationField>(problem.information, cameraMount(0.),
+                                                         InformationField::Options{}),
                       problem.belief);
     const Vector6 camera = model.root().covariance.diagonal();
     EXPECT_TRUE(camera.isApprox(vector6(2., 3., 1., .2, .3, .1), 1e-12)) << camera.transpose();

@@ -62,7 +62,10 @@ struct Problem {
     }
     std::shared_ptr<BeliefModel> model() const {
         return std::make_shared<BeliefModel>(
-            space(), InformationField(information, cameraMount(std::numbers::pi / 2), {}), belief);
+            space(),
+            std::make_shared<InformationField>(information, cameraMount(std::numbers::pi / 2),
+                                               InformationField::Options{}),
+            belief);
     }
     ob::ProblemDefinitionPtr definition(const ob::SpaceInformationPtr& si) const {
         ob::ScopedState<> from(si);

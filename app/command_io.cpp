@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "command_io.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "error.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+
+void prepareFolder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw InputError(folder.string(), "", "cannot be made: " + error.message());
+    if (access(folder.c_str(), W_OK | X_OK) != 0) {
+        throw InputError(folder.string(), "", "not writable");
+    }
+}
+
+fs::path resultFolder(const CommandOptions& options, const std::string& command) {
+    fs::path folder = options.out;
+    if (folder.empty()) {
+        folder = fs::path("out") / (command + "-" + fs::path(options.config).stem().string());
+    }
+    prepareFolder(folder);
+    return folder;
+}
+
+ProgressLine::ProgressLine(bool quiet) : enabled_(!quiet && isatty(STDERR_FILENO) != 0) {}
+
+ProgressLine::~ProgressLine() {
+    if (enabled_ && width_ > 0) fmt::print(stderr, "\r{:{}}\r", "", width_);
+}
+
+void ProgressLine::show(const std::string& text) {
+    if (!enabled_) return;
+    fmt::print(stderr, "\r{:{}}", text, width_);
+    std::fflush(stderr);
+    width_ = text.size();
+}
+
+nlohmann::json finiteOrNull(double value) {
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+
+}  // namespace photonav

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What all commands share: the result folder and the terminal.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace photonav {
+
+enum ExitCode { kDone = 0, kNoAnswer = 1, kBadInput = 2, kInterrupted = 130 };
+
+struct CommandOptions {
+    std::string config;                  ///< YAML file
+    std::vector<std::string> overrides;  ///< key.path=value
+    std::filesystem::path out;           ///< result folder; empty: out/<command>-<config name>
+    bool quiet = false;                  ///< no progress, no summary
+    bool json = false;                   ///< result.json on standard output as well
+    std::string commandLine;             ///< as typed, for the report
+};
+
+/// Makes the result folder and checks that files can be written there, before any work is done.
+/// @throws InputError otherwise
+void prepareFolder(const std::filesystem::path& folder);
+
+/// The folder of the options, or the default one, prepared.
+std::filesystem::path resultFolder(const CommandOptions& options, const std::string& command);
+
+/// A single line on standard error that is overwritten on a terminal, and dropped elsewhere.
+class ProgressLine {
+  public:
+    explicit ProgressLine(bool quiet);
+    ~ProgressLine();
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+    void show(const std::string& text);
+
+  private:
+    bool enabled_;
+    std::size_t width_ = 0;
+};
+
+/// A JSON number, or null where there is none (infinite or NaN).
+nlohmann::json finiteOrNull(double value);
+
+}  // namespace photonav

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "info_command.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+
+#include "atomic_file.hpp"
+#include "error.hpp"
+#include "plan_report.hpp"
+#include "se3.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+struct Direction {
+    const char* name;
+    const char* what;
+};
+constexpr std::array<Direction, 6> kDirections{{{"right", "moves to the right"},
+                                                {"down", "moves down in the image"},
+                                                {"forward", "moves along the optical axis"},
+                                                {"about_right", "turns about the image's x axis"},
+                                                {"about_down", "turns about the image's y axis"},
+                                                {"about_forward", "turns about the optical axis"}}};
+
+/// "x,y,z" or "x,y,z,yaw".
+Place parsePlace(const std::string& text) {
+    std::vector<double> numbers;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        double number = 0.;
+        const auto [last, error] = std::from_chars(text.data() + begin, text.data() + end, number);
+        if (error != std::errc{} || last != text.data() + end || !std::isfinite(number)) break;
+        numbers.push_back(number);
+        begin = end + 1;
+        if (end == text.size() && (numbers.size() == 3 || numbers.size() == 4)) {
+            Place place{Eigen::Vector3d(numbers.data()), std::nullopt};
+            if (numbers.size() == 4) place.yaw = numbers[3];
+            return place;
+        }
+    }
+    throw InputError("--at", text, "expected x,y,z or x,y,z,yaw");
+}
+
+Pose bodyAt(const Place& place) {
+    Pose T_w_b = Pose::Identity();
+    T_w_b.linear() =
+        Eigen::AngleAxisd(place.yaw.value_or(0.), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    T_w_b.translation() = place.position;
+    return T_w_b;
+}
+
+/// Standard deviation of the position after one view, starting from the initial covariance [m].
+Eigen::ArrayXXd positionSigma(PlanRun& run, const Config& config, const Eigen::AlignedBox2d& area,
+                              const Eigen::ArrayXXd& information, double height, double yaw) {
+    const Matrix6 toCamera = adjoint(config.camera.T_b_c().inverse());
+    const Matrix6 prior = toCamera * config.belief.initialCovariance * toCamera.transpose();
+    Eigen::ArrayXXd sigma = information;  // NaN where the robot cannot be
+    for (int i = 0; i < sigma.rows(); ++i) {
+        for (int j = 0; j < sigma.cols(); ++j) {
+            if (!std::isfinite(sigma(i, j))) continue;
+            const Eigen::Vector3d position(
+                area.min().x() + (i + 0.5) * area.sizes().x() / sigma.rows(),
+                area.min().y() + (j + 0.5) * area.sizes().y() / sigma.cols(), height);
+            const Matrix6& gain = run.informationAt(bodyAt({position, yaw}));
+            sigma(i, j) = std::sqrt(updateCovariance(prior, gain).topLeftCorner<3, 3>().trace());
+        }
+    }
+    return sigma;
+}
+
+json resultOf(const Place& place, const Matrix6& Lambda, double height,
+              const Eigen::AlignedBox2d& area, const Eigen::ArrayXXd& information) {
+    json lambda = json::array();
+    for (int i = 0; i < 6; ++i) {
+        for (int j = i; j < 6; ++j) lambda.push_back(Lambda(i, j));
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Lambda, Eigen::EigenvaluesOnly);
+    json rows = json::array();
+    for (int j = 0; j < information.cols(); ++j) {
+        json row = json::array();
+        for (int i = 0; i < information.rows(); ++i) row.push_back(finiteOrNull(information(i, j)));
+        rows.push_back(row);
+    }
+    return {{"schema", 1},
+            {"command", "info"},
+            {"version", PHOTONAV_VERSION},
+            {"view",
+             {{"position", {place.position.x(), place.position.y(), place.position.z()}},
+              {"yaw", place.yaw.value_or(0.)},
+              {"information_frame", "camera, order (rho, phi), upper triangle by rows"},
+              {"information", lambda},
+              {"information_trace", Lambda.trace()},
+              {"min_eigenvalue", std::max(0., eigen.eigenvalues()[0])}}},
+            {"grid",
+             {{"quantity", "trace of the Fisher information of one view"},
+              {"height", height},
+              {"min", {area.min().x(), area.min().y()}},
+              {"max", {area.max().x(), area.max().y()}},
+              {"rows_from_smallest_y", rows}}}};
+}
+
+/// The predicted view and its contribution images, all directions together and one by one.
+std::vector<NamedFigure> viewFigures(const View& view, const Config& config) {
+    const Camera camera = config.camera.camera();
+    const auto contribution = [&](const auto&... direction) {
+        return contributionPng(view.intensity,
+                               contributionImage(view, camera, direction..., config.photometric));
+    };
+    std::vector<NamedFigure> figures{
+        {"view.png", {"The predicted view.", greyPng(view.intensity)}},
+        {"contribution.png", {"The pixels that help, all directions together.", contribution()}}};
+    for (int i = 0; i < 6; ++i) {
+        figures.push_back({fmt::format("contribution_{}.png", kDirections[i].name),
+                           {fmt::format("The pixels that tell about {}.", kDirections[i].what),
+                            contribution(Vector6(Vector6::Unit(i)))}});
+    }
+    return figures;
+}
+
+}  // namespace
+
+int runInfo(const InfoOptions& options) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    const Config config = loadConfig(options.config, options.overrides);
+    const Place place = options.at ? parsePlace(*options.at) : config.start;
+    const double height = options.height.value_or(config.start.position.z());
+    const World world(config);
+    PlanRun run(config, world);
+    const auto folder = resultFolder(options, "info");
+
+    const Eigen::AlignedBox2d area(config.bounds.min().head<2>(), config.bounds.max().head<2>());
+    Eigen::ArrayXXd information;
+    Eigen::ArrayXXd sigma;
+    {
+        ProgressLine line(options.quiet);
+        line.show("looking around");
+        const double yaw = place.yaw.value_or(0.);
+        information = informationGrid(run, area, height, yaw, options.cells);
+        sigma = positionSigma(run, config, area, information, height, yaw);
+    }
+    View view;
+    world.views().render(config.camera.camera(), (bodyAt(place) * config.camera.T_b_c()).inverse(),
+                         view);
+
+    const auto heatMap = [&](const char* title, const char* label, const Eigen::ArrayXXd& values) {
+        return drawHeatMap(
+            {fmt::format("{} at {:.2f} m", title, height), label, area, values, true});
+    };
+    auto figures = viewFigures(view, config);
+    figures.insert(
+        figures.begin(),
+        {{"information.png",
+          {"Trace of the Fisher information of one view.",
+           heatMap("What a view is worth", "trace of the Fisher information", information)}},
+         {"uncertainty.png",
+          {"Standard deviation of the position after one view.",
+           heatMap("What a view leaves unknown", "1 sigma of the position [m]", sigma)}}});
+
+    const Matrix6 Lambda = photometricInformation(view, config.camera.camera(), config.photometric);
+    json result = resultOf(place, Lambda, height, area, information);
+
+    ReportData report;
+    report.title = fs::path(config.file).stem().string();
+    report.subtitle = "What the camera can know from a view.";
+    report.commandLine = options.commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.result.erase("grid");
+    report.config = toYaml(config);
+    report.start = place.position;
+    report.goal = config.goal.position;
+    world.describe(report);
+    writeResultFolder(folder, report, figures);
+    result["time"]["total_s"] = seconds();
+    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+    if (options.json) {
+        fmt::print("{}\n", result.dump(2));
+    } else if (!options.quiet) {
+        fmt::print("information trace {:.4g}, smallest eigenvalue {:.4g}\nreport: {}\n",
+                   Lambda.trace(), result["view"]["min_eigenvalue"].get<double>(),
+                   (folder / "report.html").string());
+    }
+    return kDone;
+}
+
+}  // namespace photonav

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plan_command.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "atomic_file.hpp"
+#include "plan_report.hpp"
+#include "plan_run.hpp"
+
+namespace photonav {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::string progressText(const ReportProgress& progress, unsigned vertices) {
+    const double rest = progress.seconds / static_cast<double>(progress.vertices) *
+                        (vertices - std::min<double>(vertices, progress.vertices));
+    const std::string cost = std::isfinite(progress.cost)
+                                 ? fmt::format("best cost {:.3f}", progress.cost)
+                                 : "no path yet";
+    return fmt::format("{} of {} vertices, {}, {} views, about {:.0f} s left", progress.vertices,
+                       vertices, cost, progress.views, rest);
+}
+
+void printSummary(const PlanOutcome& outcome, const std::optional<JudgedPath>& baseline,
+                  const std::filesystem::path& folder, double seconds) {
+    const auto row = [](const JudgedPath& path) {
+        fmt::print("{:<16} {:>8.2f} m {:>12.4f} {:>12.4f} {:>10.3f}\n", path.planner, path.length,
+                   path.meanTrace, path.goalTrace, path.cost);
+    };
+    fmt::print("{:<16} {:>10} {:>12} {:>12} {:>10}\n", "planner", "length", "mean trace",
+               "goal trace", "cost");
+    if (outcome.path)
+        row(*outcome.path);
+    else
+        fmt::print("no path found with {} vertices\n", outcome.vertices);
+    if (baseline) row(*baseline);
+    if (outcome.audit) {
+        fmt::print("audit: {} beliefs replayed, cost error {:.1e}, covariance error {:.1e}\n",
+                   outcome.audit->nodes, outcome.audit->maxCostError,
+                   outcome.audit->maxCovarianceError);
+    }
+    fmt::print("{} vertices, {} views, {:.2f} s\n", outcome.vertices, outcome.views, seconds);
+    fmt::print("report: {}\n", (folder / "report.html").string());
+}
+
+}  // namespace
+
+int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
+    const auto begin = Clock::now();
+    const auto seconds = [&] {
+        return std::chrono::duration<double>(Clock::now() - begin).count();
+    };
+    const Config config = loadConfig(options.config, options.overrides);
+    const World world(config);
+    PlanRun run(config, world);
+    const auto folder = resultFolder(options, "plan");
+
+    PlanOutcome outcome;
+    std::optional<JudgedPath> baseline;
+    {
+        ProgressLine line(options.quiet);
+        outcome = run.solve(config.planner, options.audit, interrupted,
+                            [&](const ReportProgress& progress) {
+                                line.show(progressText(progress, config.vertices));
+                            });
+        if (config.compareWithRrtStar && config.planner != "rrt_star" && !interrupted) {
+            line.show("RRT* for comparison");
+            baseline = run.solve("rrt_star", false, interrupted, [](const auto&) {}).path;
+        }
+    }
+    const bool stopped = interrupted;
+    nlohmann::json result = planResult(config, outcome, baseline, stopped);
+    writePlanReport(folder, config, world, run, outcome, baseline, options.commandLine, result);
+    result["time"]["total_s"] = seconds();
+    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+
+    if (options.json)
+        fmt::print("{}\n", result.dump(2));
+    else if (!options.quiet)
+        printSummary(outcome, baseline, folder, seconds());
+    if (stopped) return kInterrupted;
+    return outcome.path ? kDone : kNoAnswer;
+}
+
+}  // namespace photonav

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `photonav plan`: a perception-aware path in a known scene or map.
+#pragma once
+
+#include <atomic>
+
+#include "command_io.hpp"
+
+namespace photonav {
+
+struct PlanOptions : CommandOptions {
+    bool audit = false;  ///< replay every stored belief from the start
+};
+
+/// Plans and writes result.json, config.yaml, path.tum, top_view.png, trace.png, information.png,
+/// report.json and report.html.
+/// @param interrupted when set, planning ends with what it has (exit code 130)
+/// @return the exit code
+/// @throws InputError for bad input, before anything is written
+int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted);
+
+}  // namespace photonav

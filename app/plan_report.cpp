@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plan_report.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "atomic_file.hpp"
+#include "command_io.hpp"
+#include "trajectory.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+constexpr std::size_t kMaxViews = 60;       // pictures in the report
+constexpr double kPicturePixel = 0.025;     // of the top view's background [m]
+constexpr double kMaxPicturePixels = 800.;  // along its longer side
+constexpr int kHeatMapCells = 40;
+
+const char* spaceName(StateKind kind) {
+    return kind == StateKind::position ? "xyz" : kind == StateKind::positionYaw ? "xyz_yaw" : "se3";
+}
+
+json jsonOf(const BeliefPoint& point) {
+    const Eigen::Vector3d p = point.T_w_b.translation();
+    std::vector<double> covariance;
+    for (int i = 0; i < 6; ++i) {
+        for (int j = i; j < 6; ++j) covariance.push_back(point.covariance(i, j));
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(point.information, Eigen::EigenvaluesOnly);
+    return {{"position", {p.x(), p.y(), p.z()}},
+            {"yaw", yawOf(point.T_w_b)},
+            {"waypoint", point.isWaypoint},
+            {"distance", point.distance},
+            {"trace", point.trace},
+            {"trace_before_view", point.traceBefore},
+            {"cost", point.cost},
+            {"covariance", covariance},
+            {"information_trace", point.information.trace()},
+            {"min_eigenvalue", std::max(0., eigen.eigenvalues()[0])}};
+}
+
+json jsonOf(const JudgedPath& path) {
+    return {{"planner", path.planner},
+            {"cost", path.cost},
+            {"length", path.length},
+            {"mean_trace", path.meanTrace},
+            {"goal_trace", path.goalTrace}};
+}
+
+UncertainPose belief(const BeliefPoint& point, const Pose& T_b_c) {
+    return {(point.T_w_b * T_b_c).inverse(), point.covariance};
+}
+
+DrawnPath drawn(const JudgedPath& path, const Pose& T_b_c, const Color& color) {
+    DrawnPath result{path.planner, color, {}};
+    for (const BeliefPoint& point : path.points) {
+        result.points.push_back(
+            makePathPoint(belief(point, T_b_c), point.trace, point.distance, point.cost));
+    }
+    return result;
+}
+
+/// What the camera would see at the waypoints, and which pixels help.
+std::vector<ReportView> waypointViews(const JudgedPath& path, const Config& config,
+                                      const World& world) {
+    std::vector<std::size_t> waypoints;
+    for (std::size_t i = 0; i < path.points.size(); ++i) {
+        if (path.points[i].isWaypoint) waypoints.push_back(i);
+    }
+    const std::size_t stride = 1 + waypoints.size() / kMaxViews;
+    const Camera camera = config.camera.camera();
+    std::vector<ReportView> views;
+    View view;
+    for (std::size_t k = 0; k < waypoints.size(); k += stride) {
+        const std::size_t i = waypoints[k];
+        const Pose T_c_w = (path.points[i].T_w_b * config.camera.T_b_c()).inverse();
+        world.views().render(camera, T_c_w, view);
+        views.push_back(
+            {i, greyPng(view.intensity),
+             contributionPng(view.intensity, contributionImage(view, camera, config.photometric))});
+    }
+    return views;
+}
+
+Eigen::AlignedBox2d areaOf(const Config& config) {
+    Eigen::AlignedBox2d area(config.bounds.min().head<2>(), config.bounds.max().head<2>());
+    area.min().array() -= config.robotRadius;
+    area.max().array() += config.robotRadius;
+    return area;
+}
+
+TopView topView(const Config& config, const World& world, const PlanOutcome& outcome,
+                const std::vector<DrawnPath>& paths) {
+    TopView view;
+    view.title = fmt::format("{}, alpha {}", config.planner, outcome.alpha);
+    view.area = areaOf(config);
+    const double pixel = std::max(kPicturePixel, view.area.sizes().maxCoeff() / kMaxPicturePixels);
+    view.background = world.pictureFromAbove(view.area, config.bounds.max().z(), pixel);
+    view.trees = {{"search tree", kTreeColor, outcome.tree}};
+    view.paths = paths;
+    view.start = config.start.position;
+    view.goal = config.goal.position;
+    return view;
+}
+
+HeatMap heatMap(const Config& config, PlanRun& run) {
+    const double height = config.start.position.z();
+    const double yaw = config.start.yaw.value_or(0.);
+    HeatMap map;
+    map.title = fmt::format("What a view is worth at {:.2f} m", height);
+    map.label = "trace of the Fisher information";
+    map.area = areaOf(config);
+    map.values = informationGrid(run, map.area, height, yaw, kHeatMapCells);
+    map.logScale = true;
+    return map;
+}
+
+void writeTrajectory(const fs::path& file, const JudgedPath& path, const Pose& T_b_c) {
+    Trajectory trajectory;  // one metre per second
+    for (const BeliefPoint& point : path.points) {
+        trajectory.push_back({point.distance, point.T_w_b * T_b_c});
+    }
+    writeTrajectory(file.string(), trajectory);
+}
+
+std::string verdict(const PlanOutcome& outcome, const std::optional<JudgedPath>& baseline) {
+    if (!outcome.path) return "No path was found.";
+    const JudgedPath& path = *outcome.path;
+    if (!baseline) return fmt::format("A path of {:.2f} m.", path.length);
+    return fmt::format(
+        "{:.2f} m instead of the shortest way's {:.2f} m, and the pose at the goal known to {:.1f} "
+        "cm instead of {:.1f} cm (1 sigma, root of the trace).",
+        path.length, baseline->length, 100. * std::sqrt(path.goalTrace),
+        100. * std::sqrt(baseline->goalTrace));
+}
+
+}  // namespace
+
+json planResult(const Config& config, const PlanOutcome& outcome,
+                const std::optional<JudgedPath>& baseline, bool interrupted) {
+    const double tree = outcome.planSeconds - outcome.viewSeconds - outcome.beliefSeconds;
+    json result{{"schema", 1},
+                {"command", "plan"},
+                {"version", PHOTONAV_VERSION},
+                {"status", interrupted    ? "interrupted"
+                           : outcome.path ? "done"
+                                          : "no path"},
+                {"seed", config.seed},
+                {"planner", config.planner},
+                {"space", spaceName(config.space)},
+                {"alpha", outcome.alpha},
+                {"cost", nullptr},
+                {"length", nullptr},
+                {"mean_trace", nullptr},
+                {"goal_trace", nullptr},
+                {"vertices", outcome.vertices},
+                {"iterations", outcome.iterations},
+                {"views", outcome.views},
+                {"cache_hits", outcome.cacheHits},
+                {"second_order_fallbacks", outcome.fallbacks},
+                {"time",
+                 {{"total_s", nullptr},
+                  {"views_s", outcome.viewSeconds},
+                  {"beliefs_s", outcome.beliefSeconds},
+                  {"tree_s", tree}}},
+                {"audit", nullptr},
+                {"covariance_frame",
+                 "camera, left perturbation T_c_w = exp(xi) mean, order (rho, phi), upper triangle "
+                 "by rows"},
+                {"path", json::array()}};
+    if (outcome.audit) {
+        result["audit"] = {{"max_cost_error", outcome.audit->maxCostError},
+                           {"max_covariance_error", outcome.audit->maxCovarianceError},
+                           {"beliefs", outcome.audit->nodes}};
+    }
+    if (baseline) result["baseline"] = jsonOf(*baseline);
+    if (!outcome.path) return result;
+    result.update(jsonOf(*outcome.path));
+    for (const BeliefPoint& point : outcome.path->points) result["path"].push_back(jsonOf(point));
+    return result;
+}
+
+void writePlanReport(const fs::path& folder, const Config& config, const World& world, PlanRun& run,
+                     const PlanOutcome& outcome, const std::optional<JudgedPath>& baseline,
+                     const std::string& commandLine, const json& result) {
+    const Camera camera = config.camera.camera();
+    const Pose T_b_c = config.camera.T_b_c();
+    ReportData report;
+    report.title = fs::path(config.file).stem().string();
+    report.subtitle = verdict(outcome, baseline);
+    report.commandLine = commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.config = toYaml(config);
+    world.describe(report);
+    report.trees = {{"search tree", kTreeColor, outcome.tree}};
+    if (outcome.path) report.paths.push_back(drawn(*outcome.path, T_b_c, kPathColor));
+    if (baseline) report.paths.push_back(drawn(*baseline, T_b_c, kBaselineColor));
+    report.start = config.start.position;
+    report.goal = config.goal.position;
+    report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),
+                          2. * std::atan(0.5 * camera.height / camera.fy())};
+    if (outcome.path) report.views = waypointViews(*outcome.path, config, world);
+    report.progress = outcome.progress;
+
+    std::vector<NamedFigure> figures{
+        {"top_view.png",
+         {"From above: search tree, paths and 3 sigma ellipses of the position.",
+          drawTopView(topView(config, world, outcome, report.paths))}},
+        {"information.png",
+         {"What one view is worth, over the area.", drawHeatMap(heatMap(config, run))}}};
+    if (!report.paths.empty()) {
+        figures.push_back({"trace.png",
+                           {"Trace of the pose covariance along the way.",
+                            drawTrace("Uncertainty along the way", report.paths, true)}});
+    }
+    if (outcome.path) writeTrajectory(folder / "path.tum", *outcome.path, T_b_c);
+    writeResultFolder(folder, report, figures);
+}
+
+void writeResultFolder(const fs::path& folder, ReportData& report,
+                       const std::vector<NamedFigure>& figures) {
+    for (const NamedFigure& named : figures) {
+        writeFileAtomically(folder / named.name, named.figure.image);
+        report.figures.push_back(named.figure);
+    }
+    writeFileAtomically(folder / "config.yaml", report.config);
+    writeFileAtomically(folder / "report.json", toJson(report).dump());
+    writeReport(folder / "report.html", report);
+}
+
+Eigen::ArrayXXd informationGrid(PlanRun& run, const Eigen::AlignedBox2d& area, double height,
+                                double yaw, int cells) {
+    const double step = area.sizes().maxCoeff() / cells;
+    const int nx = std::max(1, static_cast<int>(std::lround(area.sizes().x() / step)));
+    const int ny = std::max(1, static_cast<int>(std::lround(area.sizes().y() / step)));
+    Eigen::ArrayXXd values =
+        Eigen::ArrayXXd::Constant(nx, ny, std::numeric_limits<double>::quiet_NaN());
+    Pose T_w_b = Pose::Identity();
+    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    for (int i = 0; i < nx; ++i) {
+        for (int j = 0; j < ny; ++j) {
+            T_w_b.translation() << area.min().x() + (i + 0.5) * area.sizes().x() / nx,
+                area.min().y() + (j + 0.5) * area.sizes().y() / ny, height;
+            if (run.isFlyable(T_w_b.translation())) {
+                values(i, j) = run.informationAt(T_w_b).trace();
+            }
+        }
+    }
+    return values;
+}
+
+}  // namespace photonav

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The results of a plan: numbers, figures, page.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "plan_run.hpp"
+
+namespace photonav {
+
+/// result.json of `photonav plan`; time.total_s (until the report is drawn) is the caller's to
+/// fill.
+nlohmann::json planResult(const Config& config, const PlanOutcome& outcome,
+                          const std::optional<JudgedPath>& baseline, bool interrupted);
+
+/// Writes config.yaml, path.tum, top_view.png, trace.png, information.png, report.json,
+/// report.html.
+void writePlanReport(const std::filesystem::path& folder, const Config& config, const World& world,
+                     PlanRun& run, const PlanOutcome& outcome,
+                     const std::optional<JudgedPath>& baseline, const std::string& commandLine,
+                     const nlohmann::json& result);
+
+/// A figure and the file it goes to.
+struct NamedFigure {
+    std::string name;
+    ReportFigure figure;
+};
+
+/// Writes the figures (also into the report), config.yaml, report.json and report.html. result.json
+/// comes last and is the command's: where it is, the folder is complete.
+void writeResultFolder(const std::filesystem::path& folder, ReportData& report,
+                       const std::vector<NamedFigure>& figures);
+
+/// tr(Lambda) of the view from every cell of a horizontal grid; NaN where the robot cannot be.
+/// @param cells about how many along the longer side
+Eigen::ArrayXXd informationGrid(PlanRun& run, const Eigen::AlignedBox2d& area, double height,
+                                double yaw, int cells);
+
+}  // namespace photonav

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plan_run.hpp"
+
+#include <fmt/format.h>
+#include <ompl/base/goals/GoalState.h>
+#include <ompl/base/goals/GoalStates.h>
+#include <ompl/geometric/PathGeometric.h>
+
+#include <chrono>
+#include <numbers>
+#include <set>
+
+#include "belief_rrt_star.hpp"
+#include "error.hpp"
+#include "perception_rrt_star.hpp"
+
+namespace photonav {
+namespace ob = ompl::base;
+namespace {
+
+constexpr int kFreeHeadings = 8;               // goals offered where the goal has no yaw
+constexpr std::size_t kProgressInterval = 50;  // vertices
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The tree's motions between positions, each once however many beliefs flew it.
+std::vector<Edge> drawnEdges(const BeliefPlanner& planner) {
+    const FlightSpace& space = planner.model().space();
+    const auto nodes = planner.tree();
+    std::set<std::pair<const ob::State*, const ob::State*>> drawn;
+    std::vector<Edge> edges;
+    for (const TreeNode& node : nodes) {
+        if (node.parent < 0) continue;
+        const ob::State* parent = nodes[node.parent].state;
+        if (!drawn.emplace(std::minmax(parent, node.state)).second) continue;
+        edges.push_back(
+            {space.position(parent).cast<float>(), space.position(node.state).cast<float>()});
+    }
+    return edges;
+}
+
+}  // namespace
+
+PlanRun::PlanRun(const Config& config, const World& world)
+    : config_(config),
+      world_(world),
+      space_(config.space, config.bounds, config.rotationWeight),
+      si_(makeSpaceInformation(
+          space_, [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
+          config.robotRadius)),
+      field_(std::make_shared<InformationField>(
+          photometricModel(world.views(), config.camera.camera(), config.photometric),
+          config.camera.T_b_c(), config.field)),
+      judge_(makeModel(config.planner == "rrt_star" ? 1. : config.belief.alpha)) {
+    checkPlace("start", config.start);
+    checkPlace("goal", config.goal);
+}
+
+bool PlanRun::isFlyable(const Eigen::Vector3d& p_w) const {
+    return world_.clearance(p_w) > config_.robotRadius;
+}
+
+void PlanRun::checkPlace(const std::string& key, const Place& place) const {
+    if (isFlyable(place.position)) return;
+    throw InputError(config_.file, key,
+                     fmt::format("in collision: clearance {:.3f} m, robot.radius {} m",
+                                 world_.clearance(place.position), config_.robotRadius));
+}
+
+PlanOutcome PlanRun::solve(const std::string& name, bool audit,
+                           const std::atomic<bool>& interrupted,
+                           const std::function<void(const ReportProgress&)>& onProgress) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto planner = makePlanner(name);
+    const BeliefModel& model = planner->model();
+    PlanOutcome outcome;
+    const auto report = [&] {
+        outcome.progress.push_back(
+            {planner->vertices(), secondsSince(begin), planner->bestCost(), model.field().views()});
+        onProgress(outcome.progress.back());
+    };
+    std::size_t next = kProgressInterval;
+    const auto isDone = [&] {
+        if (planner->vertices() >= next) {
+            report();
+            next = planner->vertices() + kProgressInterval;
+        }
+        // A goal that cannot be reached is sampled in vain: give up in the end.
+        const bool isHopeless = planner->iterations() > 200UL * config_.vertices;
+        return interrupted || isHopeless || planner->vertices() >= config_.vertices;
+    };
+    planner->solve(ob::PlannerTerminationCondition(isDone));
+    report();
+
+    outcome.alpha = model.options().alpha;
+    outcome.vertices = planner->vertices();
+    outcome.iterations = planner->iterations();
+    outcome.views = model.field().views();
+    outcome.cacheHits = model.field().cacheHits();
+    outcome.fallbacks = model.fallbacks();
+    outcome.planSeconds = secondsSince(begin);
+    outcome.viewSeconds = model.field().seconds();
+    outcome.beliefSeconds = model.seconds();
+    outcome.tree = drawnEdges(*planner);
+    if (audit) outcome.audit = auditTree(*planner);
+    if (planner->getProblemDefinition()->hasExactSolution()) outcome.path = judge(*planner);
+    return outcome;
+}
+
+std::shared_ptr<BeliefPlanner> PlanRun::makePlanner(const std::string& name) const {
+    GrowthOptions growth = config_.growth;
+    growth.seed = config_.seed;
+    const auto model = makeModel(name == "rrt_star" ? 1. : config_.belief.alpha);
+    std::shared_ptr<BeliefPlanner> planner;
+    if (name == "belief_rrt_star") {
+        planner = std::make_shared<BeliefRRTstar>(si_, model, config_.labels, growth);
+    } else {
+        planner = std::make_shared<PerceptionRRTstar>(si_, model, growth);
+    }
+    planner->setProblemDefinition(definition());
+    planner->setup();
+    return planner;
+}
+
+std::shared_ptr<BeliefModel> PlanRun::makeModel(double alpha) const {
+    BeliefOptions options = config_.belief;
+    options.alpha = alpha;
+    return std::make_shared<BeliefModel>(space_, field_, options);
+}
+
+ob::ProblemDefinitionPtr PlanRun::definition() const {
+    auto definition = std::make_shared<ob::ProblemDefinition>(si_);
+    ob::ScopedState<> state(si_);
+    space_.setState(state.get(), config_.start.position, config_.start.yaw.value_or(0.));
+    definition->addStartState(state);
+    const bool anyHeading = config_.space == StateKind::positionYaw && !config_.goal.yaw;
+    auto goals = std::make_shared<ob::GoalStates>(si_);
+    for (int i = 0; i < (anyHeading ? kFreeHeadings : 1); ++i) {
+        const double yaw =
+            config_.goal.yaw.value_or(0.) + 2. * std::numbers::pi * i / kFreeHeadings;
+        space_.setState(state.get(), config_.goal.position, yaw);
+        goals->addState(state);
+    }
+    definition->setGoal(goals);
+    return definition;
+}
+
+JudgedPath PlanRun::judge(const BeliefPlanner& planner) {
+    const auto path = planner.getProblemDefinition()->getSolutionPath();
+    std::vector<const ob::State*> states;
+    for (const ob::State* state : path->as<ompl::geometric::PathGeometric>()->getStates()) {
+        states.push_back(state);
+    }
+    JudgedPath judged{.planner = planner.getName(), .points = judge_->evaluate(states)};
+    double integral = 0.;
+    for (std::size_t i = 1; i < judged.points.size(); ++i) {
+        const BeliefPoint& last = judged.points[i - 1];
+        const BeliefPoint& next = judged.points[i];
+        judged.length += (next.T_w_b.translation() - last.T_w_b.translation()).norm();
+        integral += 0.5 * (next.distance - last.distance) * (last.trace + next.traceBefore);
+    }
+    const BeliefPoint& goal = judged.points.back();
+    judged.cost = goal.cost;
+    judged.meanTrace = goal.distance > 0. ? integral / goal.distance : goal.trace;
+    judged.goalTrace = goal.trace;
+    return judged;
+}
+
+}  // namespace photonav

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A config becomes a planner, a planner becomes a path with beliefs.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+
+#include "audit.hpp"
+#include "config.hpp"
+#include "world.hpp"
+
+namespace photonav {
+
+/// A path as it was judged: by the photometric beliefs along it, whoever planned it.
+struct JudgedPath {
+    std::string planner;
+    std::vector<BeliefPoint> points;
+    double cost = 0.;       ///< with the config's alpha and kappa
+    double length = 0.;     ///< of the positions [m]
+    double meanTrace = 0.;  ///< integral of the trace over the way flown, by its length
+    double goalTrace = 0.;  ///< after the last view
+};
+
+/// What planning took and gave.
+struct PlanOutcome {
+    std::optional<JudgedPath> path;  ///< none: the goal was not reached
+    double alpha = 0.;
+    std::size_t vertices = 0, iterations = 0, views = 0, cacheHits = 0, fallbacks = 0;
+    double planSeconds = 0., viewSeconds = 0., beliefSeconds = 0.;
+    std::vector<ReportProgress> progress;
+    std::vector<Edge> tree;  ///< of positions, in w [m]
+    std::optional<Audit> audit;
+};
+
+/// Start, goal and robot of a config in a world, and the planners that solve them.
+class PlanRun {
+  public:
+    /// @throws InputError for a start or goal in collision
+    PlanRun(const Config& config, const World& world);
+
+    /// Grows the planner of this name until it has the config's number of vertices.
+    /// @param onProgress called now and then while planning
+    PlanOutcome solve(const std::string& planner, bool audit, const std::atomic<bool>& interrupted,
+                      const std::function<void(const ReportProgress&)>& onProgress);
+
+    /// The information of a view from here, remembered; for heat maps.
+    const Matrix6& informationAt(const Pose& T_w_b) { return judge_->informationAt(T_w_b); }
+    bool isFlyable(const Eigen::Vector3d& p_w) const;
+
+    const FlightSpace& space() const { return space_; }
+
+  private:
+    void checkPlace(const std::string& key, const Place& place) const;
+    ompl::base::ProblemDefinitionPtr definition() const;
+    std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name) const;
+    std::shared_ptr<BeliefModel> makeModel(double alpha) const;
+    JudgedPath judge(const BeliefPlanner& planner);
+
+    const Config& config_;
+    const World& world_;
+    FlightSpace space_;
+    ompl::base::SpaceInformationPtr si_;
+    std::shared_ptr<InformationField> field_;
+    std::shared_ptr<BeliefModel> judge_;
+};
+
+}  // namespace photonav

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "error.hpp"
+#include "mesh_renderer.hpp"
+#include "octree_file.hpp"
+#include "scene.hpp"
+#include "voxel_renderer.hpp"
+
+namespace photonav {
+
+World::World(const Config& config) {
+    try {
+        if (config.mapFile.empty())
+            loadScene(config);
+        else
+            loadMap(config);
+    } catch (const std::invalid_argument& error) {  // too large a grid for these bounds
+        throw InputError(config.file, "bounds", error.what());
+    }
+}
+
+void World::loadScene(const Config& config) {
+    auto renderer = std::make_unique<MeshRenderer>(photonav::loadScene(config.sceneFile));
+    const MeshRenderer* mesh = renderer.get();
+    extent_ = mesh->scene().boundingBox();
+    distances_ = DistanceMap(mesh->scene(), config.clearanceResolution, config.bounds,
+                             {.maxDistance = std::max(1., 2. * config.robotRadius)});
+    describe_ = [mesh](ReportData& report) { report.mesh = makeReportMesh(mesh->scene()); };
+    views_ = std::move(renderer);
+}
+
+void World::loadMap(const Config& config) {
+    const std::shared_ptr<TexturedOcTree> map = loadTexturedOcTree(config.mapFile);
+    views_ = std::make_unique<VoxelRenderer>(*map, config.unknownToCamera);
+    distances_ = DistanceMap(
+        *map, config.bounds,
+        {.maxDistance = std::max(1., 2. * config.robotRadius), .unknown = config.unknownToPlanner});
+    map->getMetricMin(extent_.min().x(), extent_.min().y(), extent_.min().z());
+    map->getMetricMax(extent_.max().x(), extent_.max().y(), extent_.max().z());
+    describe_ = [map](ReportData& report) {
+        map->expand();
+        std::vector<Eigen::Vector3f> centers;
+        std::vector<std::uint8_t> grey;
+        for (auto leaf = map->begin_leafs(); leaf != map->end_leafs(); ++leaf) {
+            if (!map->isNodeOccupied(*leaf)) continue;
+            centers.emplace_back(leaf.getX(), leaf.getY(), leaf.getZ());
+            grey.push_back(
+                static_cast<std::uint8_t>(std::lround(255.F * leaf->meanGrey().value_or(0.5F))));
+        }
+        report.voxels = makeReportVoxels(centers, grey, map->getResolution());
+    };
+}
+
+ImageF World::pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const {
+    // Small tiles, each seen by a camera of its own from right above, scaled for the lowest
+    // surface.
+    constexpr unsigned kTile = 16;
+    const auto pixels = [&](double extent) {
+        return static_cast<unsigned>(std::ceil(extent / pixelSize / kTile)) * kTile;
+    };
+    const unsigned width = std::max(kTile, pixels(area.sizes().x()));
+    const unsigned height = std::max(kTile, pixels(area.sizes().y()));
+    const double step = area.sizes().x() / width;
+    const double depth = std::max(z - extent_.min().z(), pixelSize);
+    const Camera camera = makeCamera(kTile, kTile, 2. * std::atan(0.5 * kTile * step / depth));
+    Pose T_w_c = Pose::Identity();  // image right is world x, image down is world -y
+    T_w_c.linear() = Eigen::Vector3d(1., -1., -1.).asDiagonal();
+    ImageF picture(height, width);
+    View view;
+    for (unsigned v = 0; v < height; v += kTile) {
+        for (unsigned u = 0; u < width; u += kTile) {
+            T_w_c.translation() << area.min().x() + (u + 0.5 * kTile) * step,
+                area.max().y() - (v + 0.5 * kTile) * area.sizes().y() / height, z;
+            views_->render(camera, T_w_c.inverse(), view);
+            for (unsigned row = 0; row < kTile; ++row) {
+                for (unsigned column = 0; column < kTile; ++column) {
+                    const bool isSeen = view.depth[row][column] > 0.F;
+                    picture[v + row][u + column] = isSeen ? view.intensity[row][column] : 1.F;
+                }
+            }
+        }
+    }
+    return picture;
+}
+
+}  // namespace photonav
