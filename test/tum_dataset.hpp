@@ -41,7 +41,7 @@ inline void writeText(const fs::path& file, const std::string& text) {
     std::ofstream(file) << text;
 }
 
-/// Grey value of the floor z = 0.
+/// Grey value of the floor.
 inline double floorTexture(double x, double y) {
     return 0.5 + 0.2 * std::sin(5. * x) + 0.2 * std::cos(4. * y);
 }
@@ -50,12 +50,13 @@ struct FloorDataset {
     unsigned width = 80;
     unsigned height = 60;
     double focal = 60.;
-    double cameraHeight = 1.5;  ///< [m]
+    double floorHeight = 0.02;  ///< [m], not where cells of round sizes meet
+    double cameraHeight = 1.5;  ///< above the floor [m]
     int frames = 6;             ///< one every 0.1 s and 0.1 m along x
 
     Pose T_w_c(int i) const {
         Pose pose = cameraMount(std::numbers::pi / 2.);
-        pose.translation() = Eigen::Vector3d(0.1 * i, 0., cameraHeight);
+        pose.translation() = Eigen::Vector3d(0.1 * i, 0., floorHeight + cameraHeight);
         return pose;
     }
 

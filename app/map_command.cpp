@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map_command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "atomic_file.hpp"
+#include "error.hpp"
+#include "map_comparison.hpp"
+#include "octree_file.hpp"
+#include "report.hpp"
+#include "sequence_tum.hpp"
+#include "trajectory.hpp"
+#include "voxel_renderer.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t kStrips = 4;
+
+class Stopwatch {
+  public:
+    /// Seconds since the last call (or the beginning).
+    double lap() {
+        const auto now = Clock::now();
+        const double seconds = std::chrono::duration<double>(now - last_).count();
+        last_ = now;
+        return seconds;
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point last_ = Clock::now();
+};
+
+void checkOptions(const MapOptions& options) {
+    const auto require = [](bool good, const char* option, const std::string& reason) {
+        if (!good) throw InputError(option, "", reason);
+    };
+    const auto positive = [&](double value, const char* option) {
+        require(std::isfinite(value) && value > 0., option,
+                fmt::format("{} is not a positive number", value));
+    };
+    positive(options.resolution, "--resolution");
+    positive(options.tolerance, "--tolerance");
+    positive(options.fusion.maxRange, "--max-range");
+    require(options.fusion.minRange < options.fusion.maxRange, "--max-range",
+            fmt::format("not above the least range, {} m", options.fusion.minRange));
+    if (options.depthScale) positive(*options.depthScale, "--depth-scale");
+    require(options.every >= 1, "--every", "must be at least 1");
+    const auto& axes = axisNames();
+    require(std::find(axes.begin(), axes.end(), options.up) != axes.end(), "--up",
+            fmt::format("'{}' is not one of {}", options.up, fmt::join(axes, ", ")));
+}
+
+/// Finds out before the work whether its results can be written.
+void makeFolder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw InputError(folder.string(), "", "cannot be made: " + error.message());
+    const fs::path probe = folder / "result.json.probe";
+    writeFileAtomically(probe, "");
+    fs::remove(probe, error);
+}
+
+/// The frames to use, in the world of the map.
+Sequence readAligned(const MapOptions& options, std::size_t& recorded) {
+    TumOptions tum;
+    tum.tolerance = options.tolerance;
+    tum.depthScale = options.depthScale;
+    Sequence sequence = readTumSequence(options.dataset, tum);
+    recorded = sequence.frames.size() + sequence.skipped.size();
+    Pose T_recorded_w = Pose::Identity();
+    T_recorded_w.linear() = worldUpRotation(options.up).transpose();
+    std::vector<Sequence::Entry> used;
+    for (std::size_t i = 0; i < sequence.frames.size(); i += std::size_t(options.every)) {
+        used.push_back(sequence.frames[i]);
+        used.back().T_c_w = used.back().T_c_w * T_recorded_w;
+    }
+    sequence.frames = std::move(used);
+    return sequence;
+}
+
+struct FusedFrames {
+    std::size_t count = 0;  ///< less than all when interrupted
+    double loadSeconds = 0.;
+    double fuseSeconds = 0.;
+};
+
+FusedFrames fuseFrames(const MapOptions& options, const Sequence& sequence,
+                       const std::atomic<bool>& interrupted, TexturedOcTree& map) {
+    FusedFrames fused;
+    Stopwatch watch;
+    while (fused.count < sequence.frames.size() && !interrupted) {
+        const RecordedFrame frame = loadFrame(sequence, fused.count);
+        fused.loadSeconds += watch.lap();
+        try {
+            fuse(map, frame.view, sequence.camera, frame.T_c_w, options.fusion);
+        } catch (const std::invalid_argument& error) {  // sizes are checked: cells are too small
+            throw InputError("--resolution", "", error.what());
+        }
+        fused.fuseSeconds += watch.lap();
+        ++fused.count;
+        if (options.progress) options.progress(fused.count, sequence.frames.size());
+    }
+    return fused;
+}
+
+Trajectory trajectoryOf(const Sequence& sequence, std::size_t count) {
+    Trajectory trajectory;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto& entry = sequence.frames[i];
+        trajectory.push_back({entry.timestamp, entry.T_c_w.inverse()});
+    }
+    return trajectory;
+}
+
+struct Strip {
+    std::size_t index;
+    Png picture;
+};
+
+/// Predicts every n-th frame and says how well; keeps strips of a few.
+json compareFrames(const MapOptions& options, const Sequence& sequence, const TexturedOcTree& map,
+                   const std::atomic<bool>& interrupted, std::vector<Strip>& strips) {
+    if (options.compareEvery < 1) return json::array();
+    const VoxelRenderer renderer(map, UnknownPolicy::occupied);
+    const auto step = std::size_t(options.compareEvery);
+    const std::size_t count = (sequence.frames.size() + step - 1) / step;
+    json compared = json::array();
+    View predicted;
+    for (std::size_t k = 0; k < count && !interrupted; ++k) {
+        const RecordedFrame frame = loadFrame(sequence, k * step);
+        renderer.render(sequence.camera, frame.T_c_w, predicted);
+        const ViewDifference d = compareViews(frame.view, predicted);
+        compared.push_back({{"timestamp", frame.timestamp},
+                            {"predicted", d.predicted},
+                            {"mean_abs_intensity", d.meanIntensity},
+                            {"median_abs_intensity", d.medianIntensity},
+                            {"contrast", d.contrast},
+                            {"mean_abs_depth", d.meanDepth},
+                            {"median_abs_depth", d.medianDepth}});
+        const std::size_t every = std::max<std::size_t>(1, count / kStrips);
+        if (k % every == every / 2 && strips.size() < kStrips) {
+            strips.push_back(
+                {k * step, comparisonPng(frame.view, predicted,
+                                         fmt::format("observed at {:.3f} s", frame.timestamp))});
+        }
+    }
+    return compared;
+}
+
+json meansOf(const json& compared) {
+    json means = json::object();
+    for (const auto& frame : compared) {
+        for (const auto& [key, value] : frame.items()) {
+            if (key == "timestamp") continue;
+            means[key] = means.value(key, 0.) + value.get<double>() / double(compared.size());
+        }
+    }
+    return means;
+}
+
+json vectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+/// Cells of the finest size, free and occupied, and the box of the occupied ones [m].
+json voxelsJson(const TexturedOcTree& map, ReportVoxels& voxels) {
+    std::size_t free = 0;
+    std::size_t occupied = 0;
+    Eigen::AlignedBox3d box;
+    std::vector<Eigen::Vector3f> centers;
+    std::vector<std::uint8_t> grey;
+    for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+        const std::size_t cells = std::size_t(1) << (3 * (map.getTreeDepth() - leaf.getDepth()));
+        if (!map.isNodeOccupied(*leaf)) {
+            free += cells;
+            continue;
+        }
+        occupied += cells;
+        const Eigen::Vector3d center(leaf.getX(), leaf.getY(), leaf.getZ());
+        const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * leaf.getSize());
+        box.extend(center - half);
+        box.extend(center + half);
+        // Faces decide whether leaves merge, so an occupied leaf is nearly always a single cell.
+        centers.push_back(center.cast<float>());
+        grey.push_back(
+            static_cast<std::uint8_t>(std::lround(255.F * leaf->meanGrey().value_or(0.5F))));
+    }
+    voxels = makeReportVoxels(centers, grey, map.getResolution());
+    json result = {{"occupied", occupied}, {"free", free}};
+    if (!box.isEmpty()) result["bounds"] = {vectorJson(box.min()), vectorJson(box.max())};
+    return result;
+}
+
+json datasetJson(const MapOptions& options, const Sequence& sequence) {
+    const Camera& camera = sequence.camera;
+    const Eigen::Matrix3d R = worldUpRotation(options.up);
+    return {{"folder", fs::absolute(options.dataset).lexically_normal().string()},
+            {"camera",
+             {{"width", camera.width},
+              {"height", camera.height},
+              {"fx", camera.fx()},
+              {"fy", camera.fy()},
+              {"cx", camera.cx()},
+              {"cy", camera.cy()},
+              {"assumed", sequence.cameraAssumed}}},
+            {"depth_scale", sequence.depthScale},
+            {"up", options.up},
+            {"map_from_recorded_rotation",
+             {vectorJson(R.row(0)), vectorJson(R.row(1)), vectorJson(R.row(2))}}};
+}
+
+json framesJson(const MapOptions& options, const Sequence& sequence, std::size_t recorded,
+                std::size_t used) {
+    json skipped = json::array();
+    for (const auto& [file, reason] : sequence.skipped) {
+        skipped.push_back({{"file", file}, {"reason", reason}});
+    }
+    return {{"recorded", recorded}, {"used", used}, {"every", options.every}, {"skipped", skipped}};
+}
+
+ReportTable summary(const json& result) {
+    const auto& means = result["comparison"]["mean"];
+    const auto number = [&](const char* key, double factor, const char* format) {
+        if (!means.contains(key)) return std::string("not compared");
+        return fmt::format(fmt::runtime(format), factor * means[key].get<double>());
+    };
+    const auto& frames = result["frames"];
+    return {
+        "Map",
+        {{"frames used", fmt::format("{} of {}", frames["used"].get<std::size_t>(),
+                                     frames["recorded"].get<std::size_t>())},
+         {"cell", fmt::format("{} m", result["resolution"].get<double>())},
+         {"occupied cells", result["voxels"]["occupied"].dump()},
+         {"free cells", result["voxels"]["free"].dump()},
+         {"predicted pixels", number("predicted", 100., "{:.1f} %")},
+         {"mean absolute difference of grey values", number("mean_abs_intensity", 1., "{:.4f}")},
+         {"the same for one uniform grey", number("contrast", 1., "{:.4f}")},
+         {"mean absolute difference of depth", number("mean_abs_depth", 1., "{:.4f} m")},
+         {"fusion of one frame",
+          fmt::format("{:.1f} ms", result["time"]["fuse_per_frame_s"].get<double>() * 1e3)}}};
+}
+
+DrawnPath flown(const Trajectory& trajectory) {
+    DrawnPath path;
+    path.name = "camera";
+    for (const auto& stamped : trajectory) {
+        PathPoint point;
+        point.T_w_c = stamped.T_w_c;
+        point.position = stamped.T_w_c.translation();
+        if (!path.points.empty()) {
+            const PathPoint& before = path.points.back();
+            point.distance = before.distance + (point.position - before.position).norm();
+        }
+        path.points.push_back(point);
+    }
+    return path;
+}
+
+void writeMapReport(const MapOptions& options, const json& result, const Camera& camera,
+                    const Trajectory& trajectory, ReportVoxels voxels,
+                    const std::vector<Strip>& strips) {
+    ReportData report;
+    report.title = "Map of " + fs::path(options.dataset).lexically_normal().filename().string();
+    report.subtitle = "A textured OctoMap, and what it predicts where the camera was.";
+    report.commandLine = options.commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.voxels = std::move(voxels);
+    report.paths = {flown(trajectory)};
+    report.start = trajectory.front().T_w_c.translation();
+    report.goal = trajectory.back().T_w_c.translation();
+    report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),
+                          2. * std::atan(0.5 * camera.height / camera.fy())};
+    for (const auto& strip : strips) {
+        report.figures.push_back({fmt::format("Used frame {}", strip.index), strip.picture});
+    }
+    report.tables = {summary(result)};
+    writeReport(options.out / "report.html", report);
+}
+
+}  // namespace
+
+MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted) {
+    checkOptions(options);
+    makeFolder(options.out);
+    Stopwatch watch;
+    json time;
+    std::size_t recorded = 0;
+    const Sequence sequence = readAligned(options, recorded);
+    time["read_s"] = watch.lap();
+
+    TexturedOcTree map(options.resolution);
+    const FusedFrames fused = fuseFrames(options, sequence, interrupted, map);
+    const std::size_t used = fused.count;
+    time["load_images_s"] = fused.loadSeconds;
+    time["fuse_s"] = fused.fuseSeconds;
+    time["fuse_per_frame_s"] = fused.fuseSeconds / double(std::max<std::size_t>(1, used));
+    watch.lap();
+    saveTexturedOcTree(map, (options.out / "map.ot").string());
+    saveColorOcTree(map, (options.out / "map_color.ot").string());
+    saveBinaryOcTree(map, (options.out / "map.bt").string());
+    const Trajectory trajectory = trajectoryOf(sequence, used);
+    writeTrajectory((options.out / "trajectory.tum").string(), trajectory);
+    time["write_s"] = watch.lap();
+
+    std::vector<Strip> strips;
+    const json compared = compareFrames(options, sequence, map, interrupted, strips);
+    time["compare_s"] = watch.lap();
+    ReportVoxels voxels;
+    MapReport report;
+    report.exitCode = interrupted ? 130 : 0;
+    report.result = {{"schema", 1},
+                     {"command", "map"},
+                     {"version", PHOTONAV_VERSION},
+                     {"interrupted", report.exitCode != 0},
+                     {"dataset", datasetJson(options, sequence)},
+                     {"frames", framesJson(options, sequence, recorded, used)},
+                     {"resolution", options.resolution},
+                     {"min_range", options.fusion.minRange},
+                     {"max_range", options.fusion.maxRange},
+                     {"voxels", voxelsJson(map, voxels)},
+                     {"time", time},
+                     {"comparison", {{"mean", meansOf(compared)}, {"frames", compared}}}};
+    for (std::size_t i = 0; i < strips.size(); ++i) {
+        writeFileAtomically(options.out / fmt::format("comparison_{}.png", i), strips[i].picture);
+    }
+    writeFileAtomically(options.out / "result.json", report.result.dump(2) + "\n");
+    if (used > 0) {
+        writeMapReport(options, report.result, sequence.camera, trajectory, std::move(voxels),
+                       strips);
+    }
+    return report;
+}
+
+}  // namespace photonav

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map_command.hpp"
+
+#include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
+
+#include "octree_file.hpp"
+#include "trajectory.hpp"
+#include "tum_dataset.hpp"
+
+namespace photonav {
+namespace {
+
+using test::expectInputError;
+using test::writeText;
+
+class MapCommand : public testing::Test {
+  protected:
+    MapCommand() {
+        dataset.write(data);
+        options.dataset = data.string();
+        options.out = folder.path() / "out";
+        options.compareEvery = 2;
+    }
+
+    /// Expects an InputError, and (but for a folder that cannot be written) nothing in the results.
+    void expectRejected(const std::vector<std::string>& parts) const {
+        expectInputError([&] { runMap(options, running); }, parts);
+        EXPECT_FALSE(test::fs::exists(options.out / "result.json"));
+    }
+
+    test::TemporaryFolder folder;
+    test::fs::path data = folder.path() / "data";
+    test::FloorDataset dataset;
+    MapOptions options;
+    std::atomic<bool> running{false};
+};
+
+TEST_F(MapCommand, MapsATexturedFloorAndPredictsItsImages) {
+    std::size_t calls = 0;
+    options.progress = [&](std::size_t done, std::size_t total) {
+        EXPECT_EQ(done, ++calls);
+        EXPECT_EQ(total, 6U);
+    };
+    const MapReport report = runMap(options, running);
+    EXPECT_EQ(report.exitCode, 0);
+    EXPECT_EQ(calls, 6U);
+    const auto& result = report.result;
+    EXPECT_EQ(result["command"], "map");
+    EXPECT_EQ(result["frames"]["used"], 6);
+    // 2 m x 1.5 m in view and 0.5 m of motion, cells of 5 cm
+    EXPECT_NEAR(result["voxels"]["occupied"].get<double>(), 2.5 * 1.5 / 0.0025, 150.);
+    EXPECT_GT(result["voxels"]["free"].get<double>(), 5000.);
+    const auto& mean = result["comparison"]["mean"];
+    EXPECT_EQ(result["comparison"]["frames"].size(), 3U);
+    EXPECT_GT(mean["predicted"].get<double>(), 0.9);
+    EXPECT_LT(mean["mean_abs_intensity"].get<double>(), 0.03);
+    EXPECT_GT(mean["contrast"].get<double>(), 4. * mean["mean_abs_intensity"].get<double>());
+    EXPECT_LT(mean["mean_abs_depth"].get<double>(), 0.05);
+}
+
+TEST_F(MapCommand, WritesWhatOtherProgramsRead) {
+    const MapReport report = runMap(options, running);
+    for (const char* name : {"comparison_0.png", "comparison_2.png", "report.html"}) {
+        EXPECT_TRUE(test::fs::exists(options.out / name)) << name;
+    }
+    const auto file = [&](const char* name) { return (options.out / name).string(); };
+    EXPECT_GT(loadTexturedOcTree(file("map.ot"))->size(), 1000U);
+    const std::unique_ptr<octomap::AbstractOcTree> colour(
+        octomap::AbstractOcTree::read(file("map_color.ot")));
+    EXPECT_NE(dynamic_cast<octomap::ColorOcTree*>(colour.get()), nullptr);
+    EXPECT_GT(octomap::OcTree(file("map.bt")).size(), 1000U);
+    const Trajectory trajectory = readTrajectory(file("trajectory.tum"));
+    ASSERT_EQ(trajectory.size(), 6U);
+    EXPECT_TRUE(trajectory[2].T_w_c.isApprox(dataset.T_w_c(2), 1e-5));
+    std::ifstream json(file("result.json"));
+    EXPECT_EQ(nlohmann::json::parse(json), report.result);
+}
+
+TEST_F(MapCommand, TurnsTheRecordedWorldUpright) {
+    options.up = "-y";  // the recorded floor becomes a wall
+    const MapReport report = runMap(options, running);
+    const auto& bounds = report.result["voxels"]["bounds"];
+    EXPECT_LE(bounds[1][0].get<double>() - bounds[0][0].get<double>(), 0.1 + 1e-9);
+    EXPECT_GT(bounds[1][1].get<double>() - bounds[0][1].get<double>(), 1.5);
+    EXPECT_LT(report.result["comparison"]["mean"]["mean_abs_intensity"].get<double>(), 0.03);
+    EXPECT_EQ(report.result["dataset"]["up"], "-y");
+}
+
+TEST_F(MapCommand, UsesEveryNthFrameAndListsTheSkipped) {
+    options.every = 3;
+    std::ofstream(data / "rgb.txt", std::ios::app) << "900 rgb/0.png\n";
+    const MapReport report = runMap(options, running);
+    EXPECT_EQ(report.result["frames"]["recorded"], 7);
+    EXPECT_EQ(report.result["frames"]["used"], 2);
+    ASSERT_EQ(report.result["frames"]["skipped"].size(), 1U);
+    EXPECT_EQ(report.result["frames"]["skipped"][0]["reason"], "no depth image within 0.02 s");
+}
+
+TEST_F(MapCommand, InterruptedItKeepsWhatItHas) {
+    options.progress = [&](std::size_t done, std::size_t) { running = done == 2; };
+    const MapReport report = runMap(options, running);
+    EXPECT_EQ(report.exitCode, 130);
+    EXPECT_TRUE(report.result["interrupted"].get<bool>());
+    EXPECT_EQ(report.result["frames"]["used"], 2);
+    EXPECT_EQ(readTrajectory((options.out / "trajectory.tum").string()).size(), 2U);
+    EXPECT_GT(loadTexturedOcTree((options.out / "map.ot").string())->size(), 100U);
+}
+
+TEST_F(MapCommand, InterruptedBeforeTheFirstFrameItStillEndsInOrder) {
+    running = true;
+    const MapReport report = runMap(options, running);
+    EXPECT_EQ(report.exitCode, 130);
+    EXPECT_EQ(report.result["frames"]["used"], 0);
+    EXPECT_TRUE(test::fs::exists(options.out / "result.json"));
+}
+
+TEST_F(MapCommand, RejectsOptionsOutOfRange) {
+    const auto rejected = [&](auto change, const std::vector<std::string>& parts) {
+        const MapOptions good = options;
+        change();
+        expectRejected(parts);
+        options = good;
+    };
+    rejected([&] { options.resolution = 0.; }, {"--resolution", "not a positive"});
+    rejected([&] { options.resolution = std::nan(""); }, {"--resolution"});
+    rejected([&] { options.every = 0; }, {"--every", "at least 1"});
+    rejected([&] { options.up = "w"; }, {"--up", "'w'", "-y"});
+    rejected([&] { options.fusion.maxRange = -1.; }, {"--max-range"});
+    rejected([&] { options.fusion.maxRange = 0.1; }, {"--max-range", "least range"});
+    rejected([&] { options.depthScale = 0.; }, {"--depth-scale"});
+    rejected([&] { options.resolution = 1e-5; }, {"--resolution", "too large"});
+}
+
+TEST_F(MapCommand, RejectsAFolderItCannotWriteBeforeTheWork) {
+    writeText(folder.path() / "file", "");
+    options.out = folder.path() / "file" / "out";
+    options.progress = [](std::size_t, std::size_t) { ADD_FAILURE() << "work was done"; };
+    expectRejected({"file/out", "cannot be"});
+    options.out = "/proc/photonav";
+    expectRejected({"/proc/photonav", "cannot be"});
+}
+
+TEST_F(MapCommand, RejectsDamagedDatasets) {
+    options.dataset = (folder.path() / "nothing").string();
+    expectRejected({"nothing", "no such folder"});
+    options.dataset = data.string();
+    cv::imwrite((data / "depth/3.png").string(), cv::Mat(30, 40, CV_16UC1, cv::Scalar(1)));
+    expectRejected({"depth/3.png", "40x30", "80x60"});
+    test::fs::resize_file(data / "rgb/2.png", 100);
+    expectRejected({"rgb/2.png", "damaged"});
+    std::ofstream(data / "camera.yaml", std::ios::app) << "fxx: 1\n";
+    expectRejected({"camera.yaml", "fxx"});
+    test::fs::remove(data / "camera.yaml");
+    writeText(data / "groundtruth.txt", "100 0 0 nan 0 0 0 1\n");
+    expectRejected({"groundtruth.txt", "line 1", "not a finite number"});
+}
+
+}  // namespace
+}  // namespace photonav
