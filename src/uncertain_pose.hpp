@@ -16,8 +16,10 @@ struct UncertainPose {
 
 enum class PropagationOrder { second, fourth };
 
-/// Rotation standard deviation [rad] beyond which the fourth-order terms are not trusted.
-inline constexpr double kFourthOrderMaxRotationSigma = 0.5;
+/// Rotation standard deviation [rad] beyond which the fourth-order terms are not trusted. Against
+/// Monte Carlo they are closer than the second order alone in the Frobenius norm up to 1.3 rad in
+/// either factor, in trace only up to 1 rad.
+inline constexpr double kFourthOrderMaxRotationSigma = 1.0;
 
 struct CompoundedCovariance {
     Matrix6 covariance;

@@ -254,13 +254,13 @@ TEST(Compound, NothingUncertainStaysCertain) {
 
 TEST(Guard, FallsBackWhereTheRotationIsTooUncertain) {
     Matrix6 motion = Matrix6::Zero();
-    motion(5, 5) = 0.49 * 0.49;
+    motion(5, 5) = std::pow(0.99 * kFourthOrderMaxRotationSigma, 2);
     Matrix6 prior = Matrix6::Identity() * 1e-4;
     const auto below =
         compoundCovariance(Matrix6::Identity(), motion, prior, PropagationOrder::fourth);
     EXPECT_FALSE(below.fellBack);
     EXPECT_FALSE(sameCovariance(below.covariance, motion + prior, 1e-6));
-    motion(5, 5) = 0.51 * 0.51;
+    motion(5, 5) = std::pow(1.01 * kFourthOrderMaxRotationSigma, 2);
     for (bool swapped : {false, true}) {
         const auto above = compoundCovariance(Matrix6::Identity(), swapped ? prior : motion,
                                               swapped ? motion : prior, PropagationOrder::fourth);

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How uncertain is a pose after ten uncertain motions? Positions spread along a banana; a Gaussian
+// on the Lie algebra bends with it. Second and fourth order against 10 000 samples.
+#include <cstdio>
+#include <numbers>
+#include <random>
+
+#include "plot.hpp"
+#include "se3.hpp"
+#include "uncertain_pose.hpp"
+
+using namespace photonav;
+
+namespace {
+
+constexpr int kMotions = 10;
+constexpr int kSamples = 10000;
+
+//! [motion]
+/// The robot moves 1 m forward and does not quite know how far it has turned. T_b_a maps the old
+/// body frame a to the new one b, hence the minus.
+UncertainPose oneMetreForward() {
+    UncertainPose T_b_a;
+    T_b_a.mean.translation() << -1., 0., 0.;
+    T_b_a.covariance(5, 5) = 0.03;  // yaw variance [rad^2]: a standard deviation of 10 degrees
+    return T_b_a;
+}
+//! [motion]
+
+Eigen::Vector2d position(const Pose& T_k_w) { return T_k_w.inverse().translation().head<2>(); }
+
+//! [samples]
+/// What really happens: every motion errs on its own, and later ones start where earlier ones
+/// ended.
+std::vector<Pose> samplePoses(const UncertainPose& motion) {
+    std::mt19937 random(1);
+    std::normal_distribution<double> yawError(0., std::sqrt(motion.covariance(5, 5)));
+    std::vector<Pose> poses(kSamples, Pose::Identity());
+    for (Pose& T_k_w : poses) {
+        for (int k = 0; k < kMotions; ++k) {
+            T_k_w = expSE3(yawError(random) * Vector6::Unit(5)) * motion.mean * T_k_w;
+        }
+    }
+    return poses;
+}
+//! [samples]
+
+//! [covariance]
+/// The covariance of the samples about the mean, where it belongs: in the Lie algebra.
+Matrix6 sampleCovariance(const std::vector<Pose>& poses, const Pose& mean) {
+    Matrix6 covariance = Matrix6::Zero();
+    for (const Pose& T : poses) {
+        const Vector6 xi = logSE3(T * mean.inverse());
+        covariance += xi * xi.transpose() / static_cast<double>(poses.size());
+    }
+    return covariance;
+}
+//! [covariance]
+
+//! [contour]
+/// Three standard deviations of (x, y), with the yaw that is most likely there, carried to
+/// positions by exp: an ellipse on the Lie algebra, bent as the samples are.
+Plot::Points contour(const UncertainPose& belief) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(
+        belief.covariance.topLeftCorner<2, 2>());
+    Eigen::Matrix<double, 6, 2> axes = Eigen::Matrix<double, 6, 2>::Zero();
+    for (int i = 0; i < 2; ++i) {
+        const double sigma = std::sqrt(std::max(0., eigen.eigenvalues()[i]));
+        if (sigma < 1e-6) continue;  // second order: no spread along x at all
+        axes.col(i) = belief.covariance.leftCols<2>() * eigen.eigenvectors().col(i) / sigma;
+    }
+    Plot::Points points;
+    for (int i = 0; i <= 360; ++i) {
+        const double t = i * std::numbers::pi / 180.;
+        const Vector6 xi = 3. * axes * Eigen::Vector2d(std::cos(t), std::sin(t));
+        points.push_back(position(expSE3(xi) * belief.mean));
+    }
+    return points;
+}
+//! [contour]
+
+/// What a Gaussian in x and y would draw.
+Plot::Points flatEllipse(const Plot::Points& positions) {
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
+    for (const auto& p : positions) mean += p / kSamples;
+    for (const auto& p : positions) square += (p - mean) * (p - mean).transpose() / kSamples;
+    const Eigen::Matrix2d root = square.llt().matrixL();
+    Plot::Points points;
+    for (int i = 0; i <= 360; ++i) {
+        const double t = i * std::numbers::pi / 180.;
+        points.push_back(mean + 3. * root * Eigen::Vector2d(std::cos(t), std::sin(t)));
+    }
+    return points;
+}
+
+}  // namespace
+
+int main() {
+    //! [propagate]
+    const UncertainPose motion = oneMetreForward();
+    UncertainPose second;  // starts at the world's origin, certain
+    UncertainPose fourth;
+    for (int k = 0; k < kMotions; ++k) {
+        second = compound(motion, second, PropagationOrder::second);
+        fourth = compound(motion, fourth, PropagationOrder::fourth);
+    }
+    //! [propagate]
+
+    const std::vector<Pose> samples = samplePoses(motion);
+    const Matrix6 truth = sampleCovariance(samples, fourth.mean);
+    std::printf("trace of the covariance after %d motions of 1 m\n", kMotions);
+    std::printf("  samples       %7.3f\n", truth.trace());
+    for (const auto& [name, belief] :
+         {std::pair{"second order", second}, {"fourth order", fourth}}) {
+        std::printf("  %s  %7.3f   Frobenius error %.3f\n", name, belief.covariance.trace(),
+                    (belief.covariance - truth).norm());
+    }
+
+    Plot::Points positions;
+    for (const Pose& T_k_w : samples) positions.push_back(position(T_k_w));
+    Plot plot({Eigen::Vector2d(-1., -9.), Eigen::Vector2d(13., 9.)}, 50.);
+    plot.dots(positions, {70, 130, 180}, 0.35);
+    plot.curve(flatEllipse(positions), {150, 150, 150}, 2, true);
+    plot.curve(contour(fourth), {20, 60, 160}, 2);
+    plot.curve(contour(second), {230, 120, 20}, 2);
+    plot.curve({{0., 0.}, position(fourth.mean)}, {40, 40, 40}, 2);
+    plot.label("10 000 sampled positions", {70, 130, 180});
+    plot.label("Gaussian in x and y, 3 sigma", {150, 150, 150});
+    plot.label("second order on SE(3), 3 sigma", {230, 120, 20});
+    plot.label("fourth order on SE(3), 3 sigma", {20, 60, 160});
+    plot.save("pose_uncertainty.png");
+    std::puts("wrote pose_uncertainty.png");
+}
