@@ -47,11 +47,12 @@ TexturedOcTreeNode::TexturedOcTreeNode(const TexturedOcTreeNode& other)
 }
 
 std::optional<float> TexturedOcTreeNode::meanGrey() const {
-    FaceTexture all;
+    double sum = 0., weight = 0.;
     for (const FaceTexture& face : faces) {
-        if (face.observed()) all.observe(face.mean, face.weight);
+        sum += static_cast<double>(face.weight) * face.mean;
+        weight += face.weight;
     }
-    return all.observed() ? std::optional(all.mean) : std::nullopt;
+    return weight > 0. ? std::optional(static_cast<float>(sum / weight)) : std::nullopt;
 }
 
 void TexturedOcTreeNode::copyData(const TexturedOcTreeNode& from) {

@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cmath>
+#include <deque>
 #include <stdexcept>
 
 namespace photonav {
@@ -21,34 +22,17 @@ struct BrickSurface {
     std::uint64_t occupied = 0;
     std::uint64_t known = 0;                 ///< occupied, and some face of the cell was observed
     std::array<std::uint64_t, 6> exposed{};  ///< known, and the cell before this face is not solid
-    std::array<std::array<std::uint16_t, 64>, 6> grey;
+    std::array<std::array<std::uint16_t, 6>, 64> grey;  ///< of the faces of known cells
 };
 
 unsigned cellBit(int x, int y, int z) { return (x & 3) | (y & 3) << 2 | (z & 3) << 4; }
 
 std::uint16_t quantised(float grey) {
-    return static_cast<std::uint16_t>(std::lround(std::clamp(grey, 0.F, 1.F) * 65535.F));
+    return static_cast<std::uint16_t>(std::clamp(grey, 0.F, 1.F) * 65535.F + 0.5F);
 }
 
-/// Calls use(leaf, lowest, edge) for every leaf, both in cells counted from `lowest` of the root.
-/// Far quicker than OctoMap's iterators.
-template <class Use>
-void forEachLeaf(const TexturedOcTree& map, const TexturedOcTreeNode& node, const Array3i& lowest,
-                 int edge, const Use& use) {
-    bool leaf = true;
-    for (unsigned i = 0; i < 8; ++i) {
-        if (!map.nodeChildExists(&node, i)) continue;
-        leaf = false;
-        const Array3i offset(i & 1U, i >> 1U & 1U, i >> 2U & 1U);
-        forEachLeaf(map, *map.getNodeChild(&node, i), lowest + offset * (edge / 2), edge / 2, use);
-    }
-    if (leaf) use(node, lowest, edge);
-}
-
-template <class Use>
-void forEachLeaf(const TexturedOcTree& map, const Array3i& origin, const Use& use) {
-    if (map.size() == 0) return;
-    forEachLeaf(map, *map.getRoot(), Array3i(-kKeyOfZero - origin), 2 * kKeyOfZero, use);
+Array3i childCorner(const Array3i& lowest, int edge, unsigned child) {
+    return lowest + edge / 2 * Array3i(child & 1U, child >> 1U & 1U, child >> 2U & 1U);
 }
 
 /// Builds a VoxelGrid in the order of its member functions.
@@ -63,30 +47,32 @@ class GridBuilder {
     void makePatches();
 
   private:
-    /// Grey value of the plane at a cell's face; negative: none.
-    using Window = std::array<std::array<int, 8>, 8>;
-
+    void extendBox(const TexturedOcTreeNode& node, const Array3i& lowest, int edge, Array3i& low,
+                   Array3i& high) const;
+    void visit(const TexturedOcTreeNode& node, const Array3i& lowest, int edge);
     void setCells(const TexturedOcTreeNode& leaf, const Array3i& from, const Array3i& to);
     void setSurface(const TexturedOcTreeNode& leaf, int x, int y, int z);
-    const BrickSurface* surfaceAt(const Array3i& cell) const;
+    void gatherNeighbours(const Array3i& brick);
+    void makePatches(std::int32_t index);
+    // Cells counted from the corner of the brick whose neighbours were gathered, -4 to 7.
     int faceGrey(const Array3i& cell, int face) const;
     int surfaceGrey(const Array3i& cell, int face) const;
-    void makePatch(const Array3i& corner, int face, int layer, std::uint16_t valid);
+    void makePatch(int face, int layer, std::uint16_t valid);
 
     VoxelGrid& grid_;
     const TexturedOcTree& map_;
-    std::vector<BrickSurface> surfaces_{1};  // index as in VoxelGrid::brickTextures
+    std::array<const BrickSurface*, 27> neighbours_{};
+    std::deque<BrickSurface> surfaces_{1};  // index as in VoxelGrid::brickTextures
 };
 
 void GridBuilder::layOut() {
     grid_.resolution = map_.getResolution();
     Array3i low = Array3i::Constant(kKeyOfZero), high = Array3i::Constant(-kKeyOfZero);
-    forEachLeaf(map_, Array3i::Zero(),
-                [&](const TexturedOcTreeNode&, const Array3i& lowest, int edge) {
-                    low = low.min(lowest);
-                    high = high.max(lowest + edge);
-                });
-    if (map_.size() == 0) low = high = Array3i::Zero();
+    if (map_.size() > 0) {
+        extendBox(*map_.getRoot(), Array3i::Constant(-kKeyOfZero), 2 * kKeyOfZero, low, high);
+    } else {
+        low = high = Array3i::Zero();
+    }
     grid_.first = low - 1;
     grid_.size = high - low + 2;
     const double cells = grid_.size.cast<double>().prod();
@@ -100,6 +86,21 @@ void GridBuilder::layOut() {
     grid_.brickTextures.assign(std::size_t(grid_.bricks.prod()), 0);
 }
 
+/// Extends the box by the leaves below a node, but goes only where it may grow.
+void GridBuilder::extendBox(const TexturedOcTreeNode& node, const Array3i& lowest, int edge,
+                            Array3i& low, Array3i& high) const {
+    if ((lowest >= low).all() && (lowest + edge <= high).all()) return;
+    bool leaf = true;
+    for (unsigned i = 0; i < 8; ++i) {
+        if (!map_.nodeChildExists(&node, i)) continue;
+        leaf = false;
+        extendBox(*map_.getNodeChild(&node, i), childCorner(lowest, edge, i), edge / 2, low, high);
+    }
+    if (!leaf) return;
+    low = low.min(lowest);
+    high = high.max(lowest + edge);
+}
+
 void GridBuilder::fill(UnknownPolicy unknown) {
     const std::size_t cells = std::size_t(grid_.size.x()) * grid_.size.y() * grid_.size.z();
     grid_.distance.assign(cells + 3, kFar);
@@ -111,10 +112,18 @@ void GridBuilder::fill(UnknownPolicy unknown) {
             }
         }
     }
-    forEachLeaf(map_, grid_.first,
-                [&](const TexturedOcTreeNode& leaf, const Array3i& lowest, int edge) {
-                    setCells(leaf, lowest, lowest + edge);
-                });
+    if (map_.size() > 0) visit(*map_.getRoot(), -kKeyOfZero - grid_.first, 2 * kKeyOfZero);
+}
+
+/// A plain recursion: far quicker than OctoMap's iterators.
+void GridBuilder::visit(const TexturedOcTreeNode& node, const Array3i& lowest, int edge) {
+    bool leaf = true;
+    for (unsigned i = 0; i < 8; ++i) {
+        if (!map_.nodeChildExists(&node, i)) continue;
+        leaf = false;
+        visit(*map_.getNodeChild(&node, i), childCorner(lowest, edge, i), edge / 2);
+    }
+    if (leaf) setCells(node, lowest, lowest + edge);
 }
 
 void GridBuilder::setCells(const TexturedOcTreeNode& leaf, const Array3i& from, const Array3i& to) {
@@ -143,7 +152,7 @@ void GridBuilder::setSurface(const TexturedOcTreeNode& leaf, int x, int y, int z
     surface.known |= 1ULL << bit;
     for (int f = 0; f < 6; ++f) {
         const FaceTexture& face = leaf.faces[f];
-        surface.grey[f][bit] = quantised(face.observed() ? face.mean : *mean);
+        surface.grey[bit][f] = quantised(face.observed() ? face.mean : *mean);
     }
 }
 
@@ -189,15 +198,30 @@ void GridBuilder::measureDistances() {
     }
 }
 
+/// Cells of a brick at coordinate 0 of an axis; the next layer is `kLayerShift` bits further.
+constexpr std::array<std::uint64_t, 3> kFirstLayer{0x1111111111111111, 0x000F000F000F000F,
+                                                   0x000000000000FFFF};
+constexpr std::array<int, 3> kLayerShift{1, 4, 16};
+
 /// Cells of a brick whose neighbour on the given side is in the mask, the neighbouring brick's mask
 /// on that side given.
 std::uint64_t fromNeighbour(std::uint64_t here, std::uint64_t beyond, int axis, bool positive) {
-    constexpr std::array<std::uint64_t, 3> kFirstLayer{0x1111111111111111, 0x000F000F000F000F,
-                                                       0x000000000000FFFF};
-    const int shift = 1 << 2 * axis;
+    const int shift = kLayerShift[axis];
     const std::uint64_t first = kFirstLayer[axis], last = first << 3 * shift;
     return positive ? (here & ~first) >> shift | (beyond & first) << 3 * shift
                     : (here & ~last) << shift | (beyond & last) >> 3 * shift;
+}
+
+/// One layer of a brick's mask as bit 4 * q + p.
+std::uint16_t layerOf(std::uint64_t mask, int axis, int layer) {
+    mask = mask >> kLayerShift[axis] * layer & kFirstLayer[axis];
+    if (axis == 2 || mask == 0) return static_cast<std::uint16_t>(mask);
+    std::uint64_t bits = 0;
+    for (int cell = 0; cell < 16; ++cell) {
+        const int bit = axis == 0 ? 4 * cell : (cell & 3) | cell >> 2 << 4;
+        bits |= (mask >> bit & 1U) << cell;
+    }
+    return static_cast<std::uint16_t>(bits);
 }
 
 void GridBuilder::findExposedFaces() {
@@ -225,15 +249,26 @@ void GridBuilder::findExposedFaces() {
     }
 }
 
-const BrickSurface* GridBuilder::surfaceAt(const Array3i& cell) const {
-    if ((cell < 0).any() || (cell >= grid_.size).any()) return &surfaces_[0];
-    return &surfaces_[grid_.brickTextures[grid_.brickIndex(cell.x(), cell.y(), cell.z())]];
+void GridBuilder::gatherNeighbours(const Array3i& brick) {
+    const Array3i end = grid_.bricks;
+    std::size_t i = 0;
+    for (int z = brick.z() - 1; z <= brick.z() + 1; ++z) {
+        for (int y = brick.y() - 1; y <= brick.y() + 1; ++y) {
+            for (int x = brick.x() - 1; x <= brick.x() + 1; ++x) {
+                const bool inside =
+                    x >= 0 && y >= 0 && z >= 0 && x < end.x() && y < end.y() && z < end.z();
+                const std::size_t at = (std::size_t(z) * end.y() + y) * end.x() + x;
+                neighbours_[i++] = &surfaces_[inside ? grid_.brickTextures[at] : 0];
+            }
+        }
+    }
 }
 
 int GridBuilder::faceGrey(const Array3i& cell, int face) const {
-    const BrickSurface* surface = surfaceAt(cell);
+    const BrickSurface& surface =
+        *neighbours_[9 * (cell.z() >> 2) + 3 * (cell.y() >> 2) + (cell.x() >> 2) + 13];
     const unsigned bit = cellBit(cell.x(), cell.y(), cell.z());
-    return (surface->exposed[face] >> bit & 1U) != 0 ? surface->grey[face][bit] : -1;
+    return (surface.exposed[face] >> bit & 1U) != 0 ? surface.grey[bit][face] : -1;
 }
 
 /// The surface goes on over steps of one cell, out or in: real floors are never flat to the cell,
@@ -249,16 +284,31 @@ int GridBuilder::surfaceGrey(const Array3i& cell, int face) const {
     return grey;
 }
 
+/// The surface around one layer of a brick: grey values at p, q = -2 ... 5, negative where it does
+/// not go on.
+struct Window {
+    std::array<std::array<int, 8>, 8> grey;
+
+    bool hasGaps() const {
+        for (int q = 1; q < 7; ++q) {
+            for (int p = 1; p < 7; ++p) {
+                if (grey[q][p] < 0) return true;
+            }
+        }
+        return false;
+    }
+};
+
 /// Where the surface does not go on, it takes the mean of its neighbours along the edges, or else
 /// of those across the corners: the same from every patch, so that patches agree where they meet.
-int continued(const std::array<std::array<int, 8>, 8>& window, int p, int q) {
-    if (window[q][p] >= 0) return window[q][p];
+int continued(const Window& window, int p, int q) {
+    if (window.grey[q][p] >= 0) return window.grey[q][p];
     constexpr std::array<std::array<int, 2>, 8> kAround{
         {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
     for (int begin = 0; begin < 8; begin += 4) {
         int sum = 0, count = 0;
         for (int i = begin; i < begin + 4; ++i) {
-            const int grey = window[q + kAround[i][1]][p + kAround[i][0]];
+            const int grey = window.grey[q + kAround[i][1]][p + kAround[i][0]];
             if (grey < 0) continue;
             sum += grey;
             ++count;
@@ -268,16 +318,25 @@ int continued(const std::array<std::array<int, 8>, 8>& window, int p, int q) {
     return 0;
 }
 
-void GridBuilder::makePatch(const Array3i& corner, int face, int layer, std::uint16_t valid) {
+void GridBuilder::makePatch(int face, int layer, std::uint16_t valid) {
     const int axis = face / 2, pAxis = axis == 0 ? 1 : 0, qAxis = axis == 2 ? 1 : 2;
+    const auto greyAt = [&](int p, int q) {
+        Array3i cell;
+        cell[axis] = layer;
+        cell[pAxis] = p - 2;
+        cell[qAxis] = q - 2;
+        return surfaceGrey(cell, face);
+    };
     Window window;
-    for (int q = 0; q < 8; ++q) {
-        for (int p = 0; p < 8; ++p) {
-            Array3i cell = corner;
-            cell[axis] += layer;
-            cell[pAxis] += p - 2;
-            cell[qAxis] += q - 2;
-            window[q][p] = surfaceGrey(cell, face);
+    for (int q = 1; q < 7; ++q) {
+        for (int p = 1; p < 7; ++p) window.grey[q][p] = greyAt(p, q);
+    }
+    if (window.hasGaps()) {
+        for (int i = 0; i < 8; ++i) {
+            window.grey[0][i] = greyAt(i, 0);
+            window.grey[7][i] = greyAt(i, 7);
+            window.grey[i][0] = greyAt(0, i);
+            window.grey[i][7] = greyAt(7, i);
         }
     }
     FacePatch& patch = grid_.patches.emplace_back();
@@ -297,24 +356,23 @@ void GridBuilder::makePatches() {
     for (int z = 0; z < grid_.bricks.z(); ++z) {
         for (int y = 0; y < grid_.bricks.y(); ++y) {
             for (int x = 0; x < grid_.bricks.x(); ++x, ++brick) {
-                const std::int32_t index = grid_.brickTextures[brick];
-                for (int i = 0; index > 0 && i < VoxelGrid::kPatchesPerBrick; ++i) {
-                    const int face = i / 4, layer = i % 4, axis = face / 2;
-                    const int pShift = axis == 0 ? 2 : 0, qShift = axis == 2 ? 2 : 4;
-                    std::uint16_t valid = 0;
-                    for (int cell = 0; cell < 16; ++cell) {
-                        const int bit =
-                            (cell & 3) << pShift | cell >> 2 << qShift | layer << 2 * axis;
-                        valid |= static_cast<std::uint16_t>(
-                            (surfaces_[index].exposed[face] >> bit & 1U) << cell);
-                    }
-                    if (valid == 0) continue;
-                    grid_.patchOf[std::size_t(index) * VoxelGrid::kPatchesPerBrick + i] =
-                        static_cast<std::int32_t>(grid_.patches.size());
-                    makePatch(4 * Array3i(x, y, z), face, layer, valid);
-                }
+                if (grid_.brickTextures[brick] == 0) continue;
+                gatherNeighbours({x, y, z});
+                makePatches(grid_.brickTextures[brick]);
             }
         }
+    }
+}
+
+void GridBuilder::makePatches(std::int32_t index) {
+    const BrickSurface& surface = surfaces_[index];
+    for (int i = 0; i < VoxelGrid::kPatchesPerBrick; ++i) {
+        const int face = i / 4, layer = i % 4;
+        const std::uint16_t valid = layerOf(surface.exposed[face], face / 2, layer);
+        if (valid == 0) continue;
+        grid_.patchOf[std::size_t(index) * VoxelGrid::kPatchesPerBrick + i] =
+            static_cast<std::int32_t>(grid_.patches.size());
+        makePatch(face, layer, valid);
     }
 }
 
