@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an image is worth: from the Jacobian of one pixel to the Fisher information of a view, and
+// to the question which pixels tell which direction of motion.
+#include <cstdio>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "luminance_feature.hpp"
+#include "mesh_renderer.hpp"
+#include "photometric.hpp"
+#include "uncertain_pose.hpp"
+#include "visp_bridge.hpp"
+
+using namespace photonav;
+
+namespace {
+
+View lookDownAt(const Texture& texture, const Camera& camera) {
+    Scene floor;
+    addPlane(floor, {-5., 5., 0.}, {10., 0., 0.}, {0., -10., 0.}, addTexture(floor, texture));
+    Pose T_w_c = cameraMount(std::numbers::pi / 2.);  // straight down: image up is world x
+    T_w_c.translation() << 0., 0., 2.;
+    View view;
+    MeshRenderer(floor).render(camera, T_w_c.inverse(), view);
+    return view;
+}
+
+//! [by-hand]
+/// d intensity / d xi of pixel (u, v): image gradient times projection times motion of the point.
+Vector6 jacobianByHand(const View& view, const Camera& camera, unsigned u, unsigned v) {
+    const double gu = 0.5 * (view.intensity[v][u + 1] - view.intensity[v][u - 1]);
+    const double gv = 0.5 * (view.intensity[v + 1][u] - view.intensity[v - 1][u]);
+    const double x = (u - camera.cx()) / camera.fx();
+    const double y = (v - camera.cy()) / camera.fy();
+    const double Z = view.depth[v][u];
+    Vector6 Ju, Jv;  // how the pixel moves with (rho, phi)
+    Ju << 1. / Z, 0., -x / Z, -x * y, 1. + x * x, -y;
+    Jv << 0., 1. / Z, -y / Z, -1. - y * y, x * y, x;
+    return gu * camera.fx() * Ju + gv * camera.fy() * Jv;
+}
+//! [by-hand]
+
+void compareOnePixel(const View& view, const Camera& camera) {
+    //! [one-pixel]
+    const unsigned u = 70;
+    const unsigned v = 50;
+    const Vector6 byHand = jacobianByHand(view, camera, u, v);
+    const Vector6 byPhotonav = pixelJacobian(view, camera, u, v);
+    PixelDepthLuminance feature;  // ViSP's luminance feature with every pixel's own depth
+    feature.buildFrom(view, camera);
+    const vpMatrix L = feature.interaction();
+    const Eigen::Map<const Vector6> byVisp(L[(v - 1) * (camera.width - 2) + u - 1]);
+    //! [one-pixel]
+    std::printf("J of pixel (%u, %u)\n", u, v);
+    for (const auto& [name, J] : {std::pair<const char*, Vector6>{"by hand ", byHand},
+                                  {"photonav", byPhotonav},
+                                  {"ViSP    ", byVisp}}) {
+        std::printf("  %s", name);
+        for (double j : J) std::printf(" %9.5f", j);
+        std::puts("");
+    }
+}
+
+void compareWholeImage(const View& view, const Camera& camera) {
+    //! [whole-image]
+    const double sigma = PhotometricOptions{}.sigma;
+    PixelDepthLuminance feature;
+    feature.buildFrom(view, camera);
+    const Matrix6 byVisp = matrix6FromVisp(feature.interaction().AtA()) / (sigma * sigma);
+    const Matrix6 byKernel = photometricInformation(view, camera);  // stores no Jacobian
+    //! [whole-image]
+    std::printf("Fisher information: ViSP's J^T J and the kernel differ by %.0e\n",
+                (byVisp - byKernel).norm() / byVisp.norm());
+}
+
+void report(const char* name, const View& view, const Camera& camera) {
+    //! [worth]
+    UncertainPose belief;
+    belief.covariance.diagonal() << 1e-2, 1e-2, 1e-2, 1e-4, 1e-4, 1e-4;  // 0.1 m, 0.01 rad
+    const Matrix6 information = photometricInformation(view, camera);
+    const Matrix6 after = updateCovariance(belief.covariance, information);
+    //! [worth]
+    const Vector6 sigma = 1e3 * after.diagonal().cwiseSqrt();
+    std::printf("%s: after one image sigma is %6.2f %6.2f %6.2f mm and %5.2f %5.2f %5.2f mrad\n",
+                name, sigma[0], sigma[1], sigma[2], sigma[3], sigma[4], sigma[5]);
+}
+
+/// The view, and which of its pixels tell motion along image x, image y and the optical axis.
+cv::Mat pictures(const View& view, const Camera& camera) {
+    const auto picture = [](const ImageF& image, double scale) {
+        const cv::Mat grey(image.getHeight(), image.getWidth(), CV_32F, image.bitmap);
+        cv::Mat bytes, large;
+        grey.convertTo(bytes, CV_8U, 255. * scale);
+        cv::resize(bytes, large, {}, 2., 2., cv::INTER_NEAREST);
+        cv::copyMakeBorder(large, large, 4, 4, 4, 4, cv::BORDER_CONSTANT, {255});
+        return large;
+    };
+    std::vector<cv::Mat> row = {picture(view.intensity, 1.)};
+    //! [contribution]
+    for (int axis = 0; axis < 3; ++axis) {
+        const ImageF contribution = contributionImage(view, camera, Vector6::Unit(axis));
+        row.push_back(picture(contribution, 1. / 5e4));  // white: 5e4 / m^2 from one pixel
+    }
+    //! [contribution]
+    cv::Mat all;
+    cv::hconcat(row, all);
+    return all;
+}
+
+}  // namespace
+
+int main() {
+    const Camera camera = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
+    const View noise = lookDownAt(valueNoise(), camera);
+    const View bars = lookDownAt(stripes({.alongV = true}), camera);  // along world x, image y
+
+    compareOnePixel(noise, camera);
+    compareWholeImage(noise, camera);
+    report("noise  ", noise, camera);
+    report("stripes", bars, camera);
+
+    cv::Mat sheet;
+    cv::vconcat(pictures(noise, camera), pictures(bars, camera), sheet);
+    if (!cv::imwrite("information.png", sheet)) return 1;
+    std::puts("wrote information.png: view; pixels that tell x, y, z");
+}
