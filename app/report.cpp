@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <string_view>
@@ -75,9 +78,30 @@ ReportVoxels makeReportVoxels(const std::vector<Eigen::Vector3f>& centers,
                               std::size_t limit) {
     if (centers.size() != grey.size() || size <= 0.0)
         throw std::invalid_argument("makeReportVoxels: one grey value per voxel of positive size");
-    ReportVoxels voxels = coarsened(centers, grey, size);
+    ReportVoxels voxels{{}, grey, size};
+    for (const Eigen::Vector3f& center : centers)
+        voxels.centers.insert(voxels.centers.end(), center.data(), center.data() + 3);
     while (voxels.grey.size() > limit) voxels = coarsened(centers, grey, size *= 2.0);
     return voxels;
+}
+
+ReportVoxels makeReportVoxels(const TexturedOcTree& map) {
+    std::vector<Eigen::Vector3f> centers;
+    std::vector<std::uint8_t> grey;
+    const double size = map.getResolution();
+    for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+        if (!map.isNodeOccupied(*leaf)) continue;
+        const float value = std::clamp(leaf->meanGrey().value_or(0.5F), 0.F, 1.F);
+        const int cells = static_cast<int>(std::lround(leaf.getSize() / size));  // of a pruned leaf
+        const Eigen::Vector3d corner(leaf.getX(), leaf.getY(), leaf.getZ());
+        for (int i = 0; i < cells * cells * cells; ++i) {
+            const Eigen::Vector3d cell(i % cells, i / cells % cells, i / cells / cells);
+            centers.push_back(
+                (corner.array() + size * (cell.array() + 0.5 - 0.5 * cells)).cast<float>());
+            grey.push_back(static_cast<std::uint8_t>(std::lround(255.F * value)));
+        }
+    }
+    return makeReportVoxels(centers, grey, size);
 }
 
 void writeReport(const std::filesystem::path& file, const ReportData& data) {

@@ -13,6 +13,7 @@
 #include "figures.hpp"
 #include "pictures.hpp"
 #include "scene.hpp"
+#include "textured_octree.hpp"
 
 namespace photonav {
 
@@ -87,6 +88,9 @@ ReportMesh makeReportMesh(const Scene& scene);
 ReportVoxels makeReportVoxels(const std::vector<Eigen::Vector3f>& centers,
                               const std::vector<std::uint8_t>& grey, double size,
                               std::size_t limit = 400000);
+
+/// The occupied cells of a map with the mean grey value of their faces (0.5 where never observed).
+ReportVoxels makeReportVoxels(const TexturedOcTree& map);
 
 /// Large arrays as base64 of little-endian float32, uint32 or uint8, pictures as base64 of PNG.
 nlohmann::json toJson(const ReportData& data);

@@ -2,7 +2,9 @@
 #include "report.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -146,6 +148,26 @@ TEST(ReportVoxels, CoarsenedWhenTooMany) {
     EXPECT_DOUBLE_EQ(coarse.size, 0.1);
     EXPECT_EQ(std::count(coarse.grey.begin(), coarse.grey.end(), 40), 32);
     EXPECT_FLOAT_EQ(coarse.centers[0], 0.05F);
+}
+
+TEST(ReportVoxels, OccupiedCellsOfAMap) {
+    TexturedOcTree map(0.1);
+    for (int i = 0; i < 8; ++i) {  // all children of one node, alike: they may be pruned
+        const octomap::point3d at(0.05F + 0.1F * (i & 1), 0.05F + 0.1F * (i >> 1 & 1),
+                                  0.05F + 0.1F * (i >> 2));
+        map.updateNode(at, true)->faces[5] = {0.4F, 1.F};
+    }
+    map.updateNode(octomap::point3d(1.05F, 0.05F, 0.05F), false);
+    map.updateNode(octomap::point3d(2.05F, 0.05F, 0.05F), true);
+    map.prune();
+    const ReportVoxels voxels = makeReportVoxels(map);
+    EXPECT_DOUBLE_EQ(voxels.size, 0.1);
+    ASSERT_EQ(voxels.grey.size(), 9U);
+    EXPECT_EQ(std::count(voxels.grey.begin(), voxels.grey.end(), 102), 8);
+    EXPECT_EQ(std::count(voxels.grey.begin(), voxels.grey.end(), 128), 1);
+    Eigen::Map<const Eigen::Matrix3Xf> centers(voxels.centers.data(), 3, 9);
+    EXPECT_NEAR(centers.row(1).maxCoeff(), 0.15, 1e-6);
+    EXPECT_NEAR(centers.row(2).minCoeff(), 0.05, 1e-6);
 }
 
 }  // namespace
