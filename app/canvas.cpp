@@ -79,6 +79,7 @@ void Canvas::polyline(const std::vector<Point>& points, const Color& color, doub
 
 void Canvas::fill(const std::vector<Point>& convexPolygon, const Color& color) {
     std::vector<cv::Point> corners;
+    corners.reserve(convexPolygon.size());
     for (const Point& point : convexPolygon) corners.push_back(image_->fixed(point));
     cv::fillConvexPoly(image_->window, corners, bgr(color), cv::LINE_AA, kShift);
 }

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <ranges>
 #include <stdexcept>
 
 #include "plot.hpp"
@@ -253,8 +254,7 @@ Png drawTopView(const TopView& view) {
         for (const DrawnTree& tree : view.trees) drawTree(plot, tree);
         if (view.ellipseScale > 0.0)
             for (const DrawnPath& path : view.paths) drawEllipses(plot, path, view.ellipseScale);
-        for (auto path = view.paths.rbegin(); path != view.paths.rend(); ++path)
-            drawRoute(plot, *path);
+        for (const DrawnPath& path : std::views::reverse(view.paths)) drawRoute(plot, path);
         drawMarker(canvas, plot.at(view.start.x(), view.start.y()), kStart);
         drawMarker(canvas, plot.at(view.goal.x(), view.goal.y()), kGoal);
     }
@@ -284,11 +284,11 @@ Png drawTrace(const std::string& title, const std::vector<DrawnPath>& paths, boo
     plot.drawGrid();
     {
         const auto clipped = canvas.clip(frame);
-        for (auto path = paths.rbegin(); path != paths.rend(); ++path) {
+        for (const DrawnPath& path : std::views::reverse(paths)) {
             std::vector<Canvas::Point> curve;
-            for (const PathPoint& point : path->points)
+            for (const PathPoint& point : path.points)
                 curve.push_back(plot.at(point.distance, point.trace));
-            canvas.polyline(curve, path->color, 2.6);
+            canvas.polyline(curve, path.color, 2.6);
         }
     }
     plot.drawAxes();

@@ -94,12 +94,13 @@ ReportVoxels makeReportVoxels(const TexturedOcTree& map) {
         const float value = std::clamp(leaf->meanGrey().value_or(0.5F), 0.F, 1.F);
         const int cells = static_cast<int>(std::lround(leaf.getSize() / size));  // of a pruned leaf
         const Eigen::Vector3d corner(leaf.getX(), leaf.getY(), leaf.getZ());
-        for (int i = 0; i < cells * cells * cells; ++i) {
-            const Eigen::Vector3d cell(i % cells, i / cells % cells, i / cells / cells);
-            centers.push_back(
-                (corner.array() + size * (cell.array() + 0.5 - 0.5 * cells)).cast<float>());
-            grey.push_back(static_cast<std::uint8_t>(std::lround(255.F * value)));
-        }
+        for (int z = 0; z < cells; ++z)
+            for (int y = 0; y < cells; ++y)
+                for (int x = 0; x < cells; ++x) {
+                    const Eigen::Array3d cell = Eigen::Array3d(x, y, z) + 0.5 - 0.5 * cells;
+                    centers.emplace_back((corner.array() + size * cell).cast<float>());
+                    grey.push_back(static_cast<std::uint8_t>(std::lround(255.F * value)));
+                }
     }
     return makeReportVoxels(centers, grey, size);
 }

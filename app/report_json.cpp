@@ -106,7 +106,7 @@ class Node {
     template <int Rows, int Cols>
     Eigen::Matrix<double, Rows, Cols> matrix() const {
         Eigen::Matrix<double, Rows, Cols> result;
-        if (!value_.is_array() || value_.size() != Rows * Cols)
+        if (!value_.is_array() || value_.size() != std::size_t{Rows} * Cols)
             fail("a list of " + std::to_string(Rows * Cols) + " numbers is expected");
         Eigen::Index k = 0;
         forEach([&](const Node& entry) {
