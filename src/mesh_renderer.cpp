@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "rasterizer.hpp"
 #include "simd.hpp"
 #include "surface_shader.hpp"
 
@@ -28,6 +29,9 @@ constexpr auto intersect = rtcIntersect8;
 using RayPacket = RTCRayHit4;
 constexpr auto intersect = rtcIntersect4;
 #endif
+
+/// With at least so many pixels per triangle of the scene, rasterizing beats ray packets.
+constexpr std::size_t kPixelsPerTriangle = 4;
 
 struct Release {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -115,10 +119,11 @@ class RayCaster {
 }  // namespace
 
 struct MeshRenderer::Impl {
-    explicit Impl(Scene input) : scene(std::move(input)), caster(scene.triangles), shader(scene) {}
+    explicit Impl(Scene input) : scene(std::move(input)), caster(scene.triangles), rasterizer(scene.triangles), shader(scene) {}
 
     Scene scene;
     RayCaster caster;
+    Rasterizer rasterizer;
     SurfaceShader shader;
 };
 
@@ -134,7 +139,11 @@ void MeshRenderer::render(const Camera& camera, const Pose& T_c_w, View& view) c
     visible.resize(camera.width, camera.height);
     view.intensity.resize(camera.height, camera.width);
     view.depth.resize(camera.height, camera.width);
-    impl_->caster.cast(camera, T_c_w, visible);
+    if (impl_->scene.triangles.size() * kPixelsPerTriangle <= camera.width * camera.height) {
+        impl_->rasterizer.rasterize(camera, T_c_w, visible);
+    } else {
+        impl_->caster.cast(camera, T_c_w, visible);
+    }
     impl_->shader.shade(camera, T_c_w, visible, view);
     applyPointSpread(view);
 }

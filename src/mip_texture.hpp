@@ -2,33 +2,45 @@
 // Texture pyramids, laid out for bilinear lookup.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "types.hpp"
 
 namespace photonav {
 
-/// Successively halved, area-averaged copies of a texture down to 1 x 1. Every level carries one
-/// more column and row that repeat the first, so that the right and lower neighbours of any texel
-/// are always the next ones in memory.
+/// Successively halved, area-averaged copies of a texture down to 1 x 1, in 16 bits per grey value.
+/// Every entry holds a texel and its right, lower and lower right neighbours (around the edges: the
+/// texture repeats), so that a bilinear lookup is a single load.
 class MipTexture {
   public:
     struct Level {
-        int width, height;  ///< without the repeated column and row
-        int pitch;          ///< floats from row to row
-        std::size_t start;  ///< of the first texel
+        float width, height;                ///< texels
+        float inverseWidth, inverseHeight;  ///< 1 / width, 1 / height
+        int pitch;                          ///< entries from row to row
+        std::size_t start;                  ///< of the first entry
     };
+    static constexpr float kOne = 65535.F;  ///< what grey value 1 is stored as
 
     explicit MipTexture(const ImageF& image);
 
     const std::vector<Level>& levels() const { return levels_; }
-    const float* texels(std::size_t level) const { return texels_.data() + levels_[level].start; }
+
+    /// Four texels per entry from the lowest bits up: here, right, below, below right.
+    const std::uint64_t* quads(std::size_t level) const {
+        return quads_.data() + levels_[level].start;
+    }
+
+    /// The grey value of a texture without detail.
+    std::optional<float> uniform() const { return uniform_; }
 
   private:
     void append(const ImageF& image);
 
     std::vector<Level> levels_;
-    std::vector<float> texels_;
+    std::vector<std::uint64_t> quads_;
+    std::optional<float> uniform_;
 };
 
 }  // namespace photonav

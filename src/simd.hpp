@@ -26,7 +26,9 @@ using Int [[gnu::vector_size(kWidth * 4)]] = std::int32_t;  // also masks: -1 tr
 inline Float splat(float value) { return Float{} + value; }
 inline Int splat(int value) { return Int{} + value; }
 inline Float toFloat(const Int& a) { return __builtin_convertvector(a, Float); }
+inline Int toInt(const Float& a) { return __builtin_convertvector(a, Int); }  ///< towards zero
 inline Float min(const Float& a, const Float& b) { return a < b ? a : b; }
+inline Float max(const Float& a, const Float& b) { return a > b ? a : b; }
 inline Float abs(const Float& a) { return a < 0.F ? -a : a; }
 inline Float clamp(const Float& a, float low, float high) {
     const Float raised = a > low ? a : splat(low);
@@ -49,6 +51,39 @@ inline Int floor(const Float& a) {
     const Int truncated = __builtin_convertvector(a, Int);
     return truncated + (toFloat(truncated) > a);
 }
+
+/// The nearest whole number, for |a| < 2^22; either one of two that are equally near.
+inline Float rounded(const Float& a) {
+    constexpr float kMagic = 12582912.F;  // 1.5 * 2^23: the sum has no bits for a fraction
+    return (a + kMagic) - kMagic;
+}
+
+template <typename Vector, typename T>
+Vector load(const T* from) {
+    Vector result;
+    std::memcpy(&result, from, sizeof(result));
+    return result;
+}
+
+template <typename Vector, typename T>
+void store(T* to, const Vector& vector) {
+    std::memcpy(to, &vector, sizeof(vector));
+}
+
+/// Bit i is set where lane i of the mask is.
+inline unsigned bits(const Int& mask) {
+#if defined(__AVX512F__)
+    return _mm512_test_epi32_mask(reinterpret_cast<__m512i>(mask), reinterpret_cast<__m512i>(mask));
+#elif defined(__AVX2__)
+    return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
+#else
+    unsigned result = 0;
+    for (int i = 0; i < kWidth; ++i) result |= mask[i] ? 1U << i : 0U;
+    return result;
+#endif
+}
+
+inline constexpr unsigned kAllLanes = (1U << kWidth) - 1U;
 
 inline bool any(const Int& mask) {
 #if defined(__AVX512F__)

@@ -4,15 +4,22 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 #include "simd.hpp"
 
 namespace photonav {
 namespace {
 
+using simd::bits;
 using simd::Float;
 using simd::Int;
 using simd::kWidth;
+using simd::rounded;
+using simd::splat;
+using simd::toFloat;
+using simd::toInt;
 
 constexpr int kMostLevels = 17;  // a texture has at most 32768 texels along a side
 
@@ -49,12 +56,13 @@ Affine affineInPixels(const Eigen::Vector3d& perRay, const Camera& camera) {
 void setLevels(Surface& surface, const Eigen::Vector2d& texelAtCamera) {
     const auto& levels = surface.texture->levels();
     for (std::size_t k = 0; k < levels.size(); ++k) {
-        const double uScale = static_cast<double>(levels[k].width) / levels[0].width;
-        const double vScale = static_cast<double>(levels[k].height) / levels[0].height;
+        const double uScale = double{levels[k].width} / levels[0].width;
+        const double vScale = double{levels[k].height} / levels[0].height;
         const double u = texelAtCamera.x() * uScale - 0.5;
         const double v = texelAtCamera.y() * vScale - 0.5;
-        const double uWhole = std::fmod(std::floor(u), levels[k].width);
-        const double vWhole = std::fmod(std::floor(v), levels[k].height);
+        const auto whole = [](double x, double n) { return std::floor(x) - n * std::floor(x / n); };
+        const double uWhole = whole(u, levels[k].width);
+        const double vWhole = whole(v, levels[k].height);
         surface.levels[k] = {static_cast<float>(uScale),
                              static_cast<float>(vScale),
                              static_cast<float>(uWhole),
@@ -81,6 +89,8 @@ void setUp(Surface& surface, const Triangle& triangle, const MipTexture& texture
     surface.nearest = smallest > 1e-6 ? static_cast<float>(1. / smallest) : 1e6F;
     surface.farthest = largest > 1e-6 ? static_cast<float>(1. / largest) : 1e6F;
     surface.inverseDepth = affineInPixels(normal / distance, camera);
+
+    if (texture.uniform()) return;
 
     // Texel coordinates are linear in the point: gradients from the values at the corners.
     const Eigen::Vector3d alongA = b.cross(normal) / normal.squaredNorm();
@@ -128,42 +138,52 @@ class SurfaceCache {
     std::array<Surface, 256> surfaces_;
 };
 
-Float splat(float x) { return Float{} + x; }
-Float toFloat(Int x) { return __builtin_convertvector(x, Float); }
-
-Float floorOf(Float x) {
-    const Float truncated = toFloat(__builtin_convertvector(x, Int));
-    return truncated > x ? truncated - 1.F : truncated;
+/// i modulo n for whole numbers.
+[[gnu::always_inline]] inline Float wrapped(Float i, float n, float inverse) {
+    return i - n * rounded((i + 0.5F) * inverse - 0.5F);
 }
 
-Float wrapped(Float i, int n) {
-    const auto size = static_cast<float>(n);
-    return i - size * floorOf((i + 0.5F) * (1.F / size));
+/// The 16-bit halves of 32 bits.
+struct Halves {
+    Float low, high;
+    explicit Halves(Int bits) : low(toFloat(bits & 0xffff)), high(toFloat((bits >> 16) & 0xffff)) {}
+};
+
+using Quads [[gnu::vector_size(kWidth * 4)]] = std::int64_t;
+
+/// The entries for lanes 0 and 1 (plus `shift`) of each block of four.
+template <int shift, std::size_t... i>
+[[gnu::always_inline]] inline Quads gathered(const std::uint64_t* quads, Int index,
+                                             std::index_sequence<i...> /*lanes*/) {
+    return Quads{static_cast<std::int64_t>(quads[index[i / 2 * 4 + i % 2 + shift]])...};
 }
 
-Float bilinear(const Surface& surface, std::size_t level, Float u, Float v) {
-    const MipTexture::Level& image = surface.texture->levels()[level];
-    const Surface::Level& origin = surface.levels[level];
+/// A texture's grey values, times MipTexture::kOne, at one pyramid level.
+[[gnu::always_inline]] inline Float bilinear(const MipTexture& texture, std::size_t level,
+                                             const Surface::Level& origin, Float u, Float v) {
+    const MipTexture::Level& image = texture.levels()[level];
     const Float x = u * origin.uScale + origin.uPart;
     const Float y = v * origin.vScale + origin.vPart;
-    const Float column = floorOf(x);
-    const Float row = floorOf(y);
+    const Float column = rounded(x - 0.5F);  // floor, or one less with x - column = 1: the same
+    const Float row = rounded(y - 0.5F);
     const Int index =
-        __builtin_convertvector(wrapped(row + origin.vWhole, image.height), Int) * image.pitch +
-        __builtin_convertvector(wrapped(column + origin.uWhole, image.width), Int);
-    const float* texels = surface.texture->texels(level);
-    Float a, b, c, d;
-    for (int i = 0; i < kWidth; ++i) {
-        const float* texel = texels + index[i];
-        a[i] = texel[0];
-        b[i] = texel[1];
-        c[i] = texel[image.pitch];
-        d[i] = texel[image.pitch + 1];
-    }
+        toInt(wrapped(row + origin.vWhole, image.height, image.inverseHeight)) * image.pitch +
+        toInt(wrapped(column + origin.uWhole, image.width, image.inverseWidth));
+
+    // In each block of four lanes two go to either vector, so that upper and lower texels come
+    // apart by one shuffle within the block.
+    const std::uint64_t* quads = texture.quads(level);
+    const auto half = std::make_index_sequence<kWidth / 2>{};
+    const auto first = std::bit_cast<Int>(gathered<0>(quads, index, half));
+    const auto second = std::bit_cast<Int>(gathered<2>(quads, index, half));
+    Int even{};
+    for (int i = 0; i < kWidth; ++i) even[i] = i / 4 * 4 + i % 2 * 2 + (i % 4 / 2) * kWidth;
+    const Halves above(__builtin_shuffle(first, second, even));
+    const Halves below(__builtin_shuffle(first, second, even + 1));
     const Float s = x - column;
-    const Float above = a + (b - a) * s;
-    const Float below = c + (d - c) * s;
-    return above + (below - above) * (y - row);
+    const Float top = above.low + (above.high - above.low) * s;
+    const Float bottom = below.low + (below.high - below.low) * s;
+    return top + (bottom - top) * (y - row);
 }
 
 /// log2 by exponent and mantissa: exact at powers of two, linear between, continuous.
@@ -172,59 +192,41 @@ Float roughLog2(Float x) {
     return toFloat(bits) * (1.F / (1 << 23)) - 127.F;
 }
 
-Float trilinear(const Surface& surface, Float z, Float u, Float v, Int active) {
-    const std::size_t count = surface.texture->levels().size();
-    if (count == 1) return splat(*surface.texture->texels(0));
+/// @param active bits of the lanes that count
+Float trilinear(const Surface& surface, Float z, Float u, Float v, unsigned active) {
+    const MipTexture& texture = *surface.texture;
+    const std::size_t count = texture.levels().size();
     const auto coarsest = static_cast<float>(count - 1);
-    Float level = 0.5F * roughLog2(surface.footprint * z * z * z);
-    level = level < 0.F ? Float{} : level;
-    level = level > coarsest ? splat(coarsest) : level;
-    const Int whole = __builtin_convertvector(level, Int);
+    const Float level = simd::clamp(0.5F * roughLog2(surface.footprint * z * z * z), 0.F, coarsest);
+    const Int whole = toInt(level);
     const Float part = level - toFloat(whole);
 
-    int first = static_cast<int>(count) - 1;
-    int last = 0;
-    for (int i = 0; i < kWidth; ++i) {
-        if (!active[i]) continue;
-        first = std::min(first, whole[i]);
-        last = std::max(last, whole[i]);
-    }
     Float grey{};
-    for (int k = first; k <= last; ++k) {
-        const Float fine = bilinear(surface, k, u, v);
-        const std::size_t next = std::min<std::size_t>(k + 1, count - 1);
-        const Float coarse = bilinear(surface, next, u, v);
-        grey = whole == k ? fine + (coarse - fine) * part : grey;
+    for (unsigned todo = active; todo != 0;) {
+        const auto k = static_cast<std::size_t>(whole[std::countr_zero(todo)]);
+        const Int here = whole == static_cast<int>(k);
+        const std::size_t next = std::min(k + 1, count - 1);
+        const Float fine = bilinear(texture, k, surface.levels[k], u, v);
+        const Float coarse = bilinear(texture, next, surface.levels[next], u, v);
+        grey = here ? fine + (coarse - fine) * part : grey;
+        todo &= ~bits(here);
     }
-    return grey;
-}
-
-Float clamped(Float x, float low, float high) {
-    x = x < low ? splat(low) : x;
-    return x > high ? splat(high) : x;
+    return grey * (1.F / MipTexture::kOne);
 }
 
 /// The pixels of a strip that see one triangle.
 void shadeStrip(const Surface& surface, Float x, float y, Int active, Float& depth, Float& grey) {
     if (surface.edgeOn) return;
-    const Float z = 1.F / clamped(surface.inverseDepth(x, y), surface.farthest, surface.nearest);
+    const Float z =
+        1.F / simd::clamp(surface.inverseDepth(x, y), surface.farthest, surface.nearest);
+    depth = active ? z : depth;
+    if (const auto uniform = surface.texture->uniform()) {
+        grey = active ? splat(*uniform) : grey;
+        return;
+    }
     const Float u = surface.u(x, y) * z;
     const Float v = surface.v(x, y) * z;
-    depth = active ? z : depth;
-    grey = active ? trilinear(surface, z, u, v, active) : grey;
-}
-
-Int firstLanes(unsigned count) {
-    Int mask{};
-    for (int i = 0; i < kWidth; ++i) mask[i] = static_cast<unsigned>(i) < count ? -1 : 0;
-    return mask;
-}
-
-int firstActive(Int mask) {
-    for (int i = 0; i < kWidth; ++i) {
-        if (mask[i]) return i;
-    }
-    return -1;
+    grey = active ? trilinear(surface, z, u, v, bits(active)) : grey;
 }
 
 }  // namespace
@@ -242,26 +244,31 @@ SurfaceShader::SurfaceShader(const Scene& scene) : scene_(&scene) {
 void SurfaceShader::shade(const Camera& camera, const Pose& T_c_w, const VisibilityImage& visible,
                           View& view) const {
     SurfaceCache surfaces(*scene_, textures_, camera, T_c_w);
-    Float lane{};
-    for (int i = 0; i < kWidth; ++i) lane[i] = static_cast<float>(i);
+    const Float lane = simd::ramp();
     for (unsigned y = 0; y < camera.height; ++y) {
         const std::uint32_t* ids = visible.row(y);
         for (unsigned x = 0; x < camera.width; x += kWidth) {
             const unsigned count = std::min<unsigned>(kWidth, camera.width - x);
-            Int id;
-            std::memcpy(&id, ids + x, sizeof(id));
-            Int todo = firstLanes(count) & (id != static_cast<int>(VisibilityImage::kNothing));
+            const Int id = simd::load<Int>(ids + x);
+            unsigned todo = bits(id != static_cast<int>(VisibilityImage::kNothing)) &
+                            (simd::kAllLanes >> (kWidth - count));
             Float depth{};
             Float grey{};
-            for (int i = firstActive(todo); i >= 0; i = firstActive(todo)) {
-                const Int active = todo & (id == id[i]);
-                shadeStrip(surfaces[static_cast<std::uint32_t>(id[i])],
+            while (todo != 0) {
+                const int first = id[std::countr_zero(todo)];
+                const Int active = id == first;
+                shadeStrip(surfaces[static_cast<std::uint32_t>(first)],
                            lane + static_cast<float>(x), static_cast<float>(y), active, depth,
                            grey);
-                todo &= ~active;
+                todo &= ~bits(active);
             }
-            std::memcpy(view.depth[y] + x, &depth, count * sizeof(float));
-            std::memcpy(view.intensity[y] + x, &grey, count * sizeof(float));
+            if (count == kWidth) {
+                simd::store(view.depth[y] + x, depth);
+                simd::store(view.intensity[y] + x, grey);
+            } else {
+                std::memcpy(view.depth[y] + x, &depth, count * sizeof(float));
+                std::memcpy(view.intensity[y] + x, &grey, count * sizeof(float));
+            }
         }
     }
 }
