@@ -32,8 +32,8 @@ Scene hall() {
     std::uniform_real_distribution<double> size(0.2, 0.8);
     while (scene.triangles.size() < 2292) {
         const Eigen::Vector3d corner(place(random), place(random), 0.);
-        addBox(scene, corner,
-               corner + Eigen::Vector3d(size(random), size(random), size(random)), crates);
+        addBox(scene, corner, corner + Eigen::Vector3d(size(random), size(random), size(random)),
+               crates);
     }
     return scene;
 }
@@ -169,9 +169,10 @@ void compare(const char* name, double belowHorizon, const MeshRenderer& renderer
         renderer.render(camera, T_c_w, view);
         sink = photometricInformation(view, camera).trace();
     });
-    fmt::print("{:<10} single rays {:7.1f} us + ViSP {:6.1f} us | ours {:6.1f} us + {:5.1f} us, "
-               "together {:6.1f} us | {:5.1f}x\n",
-               name, rays, visps, ours, info, both, (rays + visps) / both);
+    fmt::print(
+        "{:<10} single rays {:7.1f} us + ViSP {:6.1f} us | ours {:6.1f} us + {:5.1f} us, "
+        "together {:6.1f} us | {:5.1f}x\n",
+        name, rays, visps, ours, info, both, (rays + visps) / both);
 }
 
 }  // namespace

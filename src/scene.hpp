@@ -14,7 +14,8 @@ namespace photonav {
 /// A triangle with its own corners: world frame, metres. Both sides are visible.
 struct Triangle {
     std::array<Eigen::Vector3f, 3> corners;
-    std::array<Eigen::Vector2f, 3> uv;
+    std::array<Eigen::Vector2f, 3> uv{Eigen::Vector2f::Zero(), Eigen::Vector2f::Zero(),
+                                      Eigen::Vector2f::Zero()};
     std::uint32_t texture = 0;  ///< index into Scene::textures
 };
 
