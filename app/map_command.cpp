@@ -75,6 +75,7 @@ Sequence readAligned(const MapOptions& options, std::size_t& recorded) {
     TumOptions tum;
     tum.tolerance = options.tolerance;
     tum.depthScale = options.depthScale;
+    tum.cameraFile = options.cameraFile;
     Sequence sequence = readTumSequence(options.dataset, tum);
     recorded = sequence.frames.size() + sequence.skipped.size();
     Pose T_recorded_w = Pose::Identity();
@@ -210,7 +211,8 @@ json datasetJson(const MapOptions& options, const Sequence& sequence) {
               {"fy", camera.fy()},
               {"cx", camera.cx()},
               {"cy", camera.cy()},
-              {"assumed", sequence.cameraAssumed}}},
+              {"assumed", sequence.cameraAssumed},
+              {"depth_registered_here", sequence.depthIntrinsics.has_value()}}},
             {"depth_scale", sequence.depthScale},
             {"up", options.up},
             {"map_from_recorded_rotation",

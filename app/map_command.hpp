@@ -20,6 +20,7 @@ struct MapOptions {
     std::string up = "z";              ///< axis of the recorded world that points up
     int every = 1;                     ///< use every n-th frame
     double tolerance = 0.02;           ///< of timestamps, see TumOptions [s]
+    std::string cameraFile;            ///< instead of the dataset's camera.yaml
     std::optional<double> depthScale;  ///< depth image value of one metre, instead of the dataset's
     FusionOptions fusion;
     int compareEvery = 10;    ///< predict every n-th used frame from the finished map; 0: none

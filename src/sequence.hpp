@@ -2,6 +2,7 @@
 // A recorded flight: images with depth and camera poses, loaded one at a time.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,9 @@ struct Sequence {
         std::string reason;
     };
 
-    Camera camera;
+    Camera camera;  ///< of the colour images, and of the views loaded
+    /// Of the depth images when it differs; same size and centre of projection are assumed.
+    std::optional<vpCameraParameters> depthIntrinsics;
     bool cameraAssumed = false;  ///< the dataset does not say; this is the format's usual one
     double depthScale = 5000.;   ///< depth image value of one metre
     std::vector<Entry> frames;   ///< in order of time

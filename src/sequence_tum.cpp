@@ -113,33 +113,36 @@ std::vector<Pair> readPairs(const fs::path& folder, double tolerance, Sequence& 
     return pairs;
 }
 
-void readCamera(const fs::path& folder, Sequence& sequence) {
+vpCameraParameters readIntrinsics(YamlMap& yaml) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const std::string file = (folder / "camera.yaml").string();
-    sequence.cameraAssumed = !fs::exists(file);
-    Camera& camera = sequence.camera;
-    camera.width = 640;
-    camera.height = 480;
-    std::array<double, 4> intrinsics = {525., 525., 319.5, 239.5};
-    if (!sequence.cameraAssumed) {
-        YamlMap yaml(file, loadYaml(file));
-        const auto require = [&](const std::string& key) {
-            if (!yaml.has(key)) yaml.fail(key, "missing");
-            return key;
-        };
-        yaml.read(require("width"), camera.width);
-        yaml.read(require("height"), camera.height);
-        if (camera.width == 0) yaml.fail("width", "is zero");
-        if (camera.height == 0) yaml.fail("height", "is zero");
-        yaml.readNumber(require("fx"), intrinsics[0], 1e-3, kInfinity);
-        yaml.readNumber(require("fy"), intrinsics[1], 1e-3, kInfinity);
-        yaml.readNumber(require("cx"), intrinsics[2], -kInfinity, kInfinity);
-        yaml.readNumber(require("cy"), intrinsics[3], -kInfinity, kInfinity);
-        yaml.readNumber("depth_scale", sequence.depthScale, 1e-6, kInfinity);
-        yaml.finish();
+    const auto required = [&](const std::string& key, double least) {
+        if (!yaml.has(key)) yaml.fail(key, "missing");
+        double value = 0.;
+        yaml.readNumber(key, value, least, kInfinity);
+        return value;
+    };
+    return {required("fx", 1e-3), required("fy", 1e-3), required("cx", -kInfinity),
+            required("cy", -kInfinity)};
+}
+
+void readCamera(const std::string& file, Sequence& sequence) {
+    YamlMap yaml(file, loadYaml(file));
+    const auto readPixels = [&](const std::string& key, unsigned& value) {
+        if (!yaml.has(key)) yaml.fail(key, "missing");
+        yaml.read(key, value);
+        if (value == 0) yaml.fail(key, "is zero");
+    };
+    readPixels("width", sequence.camera.width);
+    readPixels("height", sequence.camera.height);
+    sequence.camera.intrinsics = readIntrinsics(yaml);
+    yaml.readNumber("depth_scale", sequence.depthScale, 1e-6,
+                    std::numeric_limits<double>::infinity());
+    if (yaml.has("depth_camera")) {
+        YamlMap depthCamera = yaml.map("depth_camera");
+        sequence.depthIntrinsics = readIntrinsics(depthCamera);
+        depthCamera.finish();
     }
-    camera.intrinsics =
-        vpCameraParameters(intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]);
+    yaml.finish();
 }
 
 /// Libraries pad a truncated JPEG with grey and call it a success, so its end is checked here.
@@ -165,13 +168,30 @@ cv::Mat readImage(const std::string& file, int flags, const Camera& camera) {
     return image;
 }
 
+/// For every colour column (or row) the depth column of the same ray, or -1 outside the image.
+std::vector<int> depthPixels(unsigned count, double focal, double centre, double depthFocal,
+                             double depthCentre) {
+    std::vector<int> pixels(count);
+    for (unsigned i = 0; i < count; ++i) {
+        const double j = std::round((i - centre) * depthFocal / focal + depthCentre);
+        pixels[i] = j >= 0. && j < count ? static_cast<int>(j) : -1;
+    }
+    return pixels;
+}
+
 }  // namespace
 
 Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
     if (!fs::is_directory(folder)) throw InputError(folder, "", "no such folder");
     if (fs::is_empty(folder)) throw InputError(folder, "", "the folder is empty");
     Sequence sequence;
-    readCamera(folder, sequence);
+    const std::string inFolder = (fs::path(folder) / "camera.yaml").string();
+    if (!options.cameraFile.empty() || fs::exists(inFolder)) {
+        readCamera(options.cameraFile.empty() ? inFolder : options.cameraFile, sequence);
+    } else {
+        sequence.camera = {640, 480, vpCameraParameters(525., 525., 319.5, 239.5)};
+        sequence.cameraAssumed = true;
+    }
     if (options.depthScale) sequence.depthScale = *options.depthScale;
     const auto pairs = readPairs(folder, options.tolerance, sequence);
     const std::string groundtruth = (fs::path(folder) / "groundtruth.txt").string();
@@ -205,14 +225,23 @@ RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
     }
     RecordedFrame frame{entry.timestamp, entry.T_c_w, {}};
     frame.view.intensity.resize(camera.height, camera.width);
-    frame.view.depth.resize(camera.height, camera.width);
+    frame.view.depth.resize(camera.height, camera.width, 0.F);
+    const vpCameraParameters& k = camera.intrinsics;
+    const vpCameraParameters& d = sequence.depthIntrinsics.value_or(k);
     const auto metres = static_cast<float>(1. / sequence.depthScale);
+    const auto depthColumns =
+        depthPixels(camera.width, k.get_px(), k.get_u0(), d.get_px(), d.get_u0());
+    const auto depthRows =
+        depthPixels(camera.height, k.get_py(), k.get_v0(), d.get_py(), d.get_v0());
     for (unsigned v = 0; v < camera.height; ++v) {
         const auto* g = grey.ptr<std::uint8_t>(static_cast<int>(v));
-        const auto* d = depth.ptr<std::uint16_t>(static_cast<int>(v));
         for (unsigned u = 0; u < camera.width; ++u) {
             frame.view.intensity[v][u] = static_cast<float>(g[u]) / 255.F;
-            frame.view.depth[v][u] = static_cast<float>(d[u]) * metres;
+        }
+        if (depthRows[v] < 0) continue;
+        const auto* z = depth.ptr<std::uint16_t>(depthRows[v]);
+        for (unsigned u = 0; u < camera.width; ++u) {
+            if (depthColumns[u] >= 0) frame.view.depth[v][u] = metres * z[depthColumns[u]];
         }
     }
     return frame;

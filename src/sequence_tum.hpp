@@ -3,15 +3,17 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "sequence.hpp"
 
 namespace photonav {
 
 struct TumOptions {
-    double tolerance = 0.02;           ///< largest time between images, or image and pose [s]
-    double maxPoseGap = 0.1;           ///< interpolate between poses at most this far apart [s]
+    double tolerance = 0.02;  ///< largest time between images, or image and pose [s]
+    double maxPoseGap = 0.1;  ///< interpolate between poses at most this far apart [s]
     std::optional<double> depthScale = {};  ///< overrides what the dataset says
+    std::string cameraFile = {};            ///< instead of the dataset's camera.yaml
 };
 
 /// Reads the tables of a dataset, no images:
@@ -20,15 +22,16 @@ struct TumOptions {
 ///   there, `assoc.txt` or `associations.txt` (`t file t file`, colour first; depth first when the
 ///   first file lies in a folder `depth`), whose pairs are taken as they are;
 /// - `groundtruth.txt`: the pose at the time of the colour image (see poseAt);
-/// - `camera.yaml` when there: width, height, fx, fy, cx, cy [pixels], depth_scale (default 5000).
-///   Without it the benchmark's Kinect is assumed: 640x480, 525, 525, 319.5, 239.5.
+/// - `camera.yaml` when there: width, height, fx, fy, cx, cy [pixels], depth_scale (default 5000),
+///   and for depth images that are not registered to the colour images `depth_camera` with its own
+///   fx, fy, cx, cy. Without it the benchmark's Kinect is assumed: 640x480, 525, 525, 319.5, 239.5.
 /// Images without partner or pose are listed as skipped.
 /// @throws InputError naming file, line or key, and reason; also when no frame is left. Timestamps
 ///         may repeat but never decrease.
 Sequence readTumSequence(const std::string& folder, const TumOptions& options = {});
 
 /// Loads the images of frame `index`: 8-bit colour by OpenCV's grey conversion to [0, 1], 16-bit
-/// depth to metres along the optical axis.
+/// depth to metres along the optical axis, looked up where the colour camera's pixels lie in it.
 /// @throws InputError for a file that is missing, damaged or of another size than the camera's
 RecordedFrame loadFrame(const Sequence& sequence, std::size_t index);
 

@@ -62,6 +62,23 @@ TEST_F(TumSequence, DepthScaleComesFromOptionCameraFileOrStandard) {
     EXPECT_EQ(read({.depthScale = 2500.}).depthScale, 2500.);
 }
 
+TEST_F(TumSequence, UnregisteredDepthIsLookedUpAlongTheSameRay) {
+    cv::Mat depth(60, 80, CV_16UC1);
+    for (int v = 0; v < 60; ++v) {
+        for (int u = 0; u < 80; ++u) depth.at<std::uint16_t>(v, u) = 5000 + 100 * v + u;
+    }
+    cv::imwrite((path / "depth/0.png").string(), depth);
+    const std::string camera = (path / "other.yaml").string();
+    writeText(camera,
+              "width: 80\nheight: 60\nfx: 40\nfy: 40\ncx: 39\ncy: 29\n"
+              "depth_camera: {fx: 60, fy: 80, cx: 39, cy: 30}\n");
+    const View view = loadFrame(read({.cameraFile = camera}), 0).view;
+    // u = 59 is the ray x = 0.5, v = 19 the ray y = -0.25.
+    EXPECT_FLOAT_EQ(view.depth[19][59], (5000 + 100 * 10 + 69) / 5000.F);
+    EXPECT_EQ(view.depth[0][40], 0.F);  // above the depth image
+    EXPECT_EQ(view.depth[29][79], 0.F);
+}
+
 TEST_F(TumSequence, WithoutCameraFileTheBenchmarksKinectIsAssumed) {
     test::fs::remove(path / "camera.yaml");
     const Sequence sequence = read();
@@ -140,6 +157,10 @@ TEST_F(TumSequence, RejectsBadCameraFiles) {
     rejected("width: 80\nheight: 60\nfx: 60\nfy: 60\nfz: 60\n" + centre, {"fz", "camera.yaml"});
     rejected("width: 80\nheight: 60\nfx: 60\nfy: 60\ndepth_scale: 0\n" + centre,
              {"camera.yaml", "depth_scale"});
+    rejected(
+        "width: 80\nheight: 60\nfx: 60\nfy: 60\ndepth_camera: {fx: 1, fy: 1, cx: 0}\n" + centre,
+        {"camera.yaml", "depth_camera.cy", "missing"});
+    expectInputError([&] { read({.cameraFile = "/nowhere.yaml"}); }, {"/nowhere.yaml"});
 }
 
 TEST_F(TumSequence, RejectsBadImages) {
