@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The executable, as a user runs it.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct Run {
+    int exitCode;
+    std::string output;  // standard output and standard error
+};
+
+Run photonav(const std::string& arguments) {
+    const std::string command = std::string(PHOTONAV_BINARY) + " " + arguments + " 2>&1";
+    FILE* pipe = popen(command.c_str(), "r");  // NOLINT(cert-env33-c)
+    Run run{-1, ""};
+    std::array<char, 4096> buffer{};
+    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) run.output += buffer.data();
+    const int status = pclose(pipe);
+    run.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return run;
+}
+
+std::string config(const std::string& name) {
+    return std::string(PHOTONAV_SOURCE_DIR) + "/config/" + name + ".yaml";
+}
+
+class CommandLine : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() /
+                  (std::string("photonav_") +
+                   testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    Run plan(const std::string& arguments, const std::string& name = "two_textures") {
+        return photonav("plan " + config(name) + " --out " + folder_.string() + " " + arguments);
+    }
+
+    json result() const { return json::parse(std::ifstream(folder_ / "result.json")); }
+
+    void expectBadInput(const Run& run, const std::string& reason) const {
+        EXPECT_EQ(run.exitCode, 2) << run.output;
+        EXPECT_NE(run.output.find(reason), std::string::npos) << run.output;
+        EXPECT_TRUE(run.output.starts_with("photonav: ")) << run.output;
+        EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+        EXPECT_FALSE(fs::exists(folder_ / "result.json"));
+    }
+
+    fs::path folder_;
+};
+
+constexpr const char* kQuick = " --set planner.vertices=300 --set planner.view_pitch=0.4 ";
+
+TEST_F(CommandLine, PlanWritesEverythingItPromises) {
+    const Run run = plan(std::string("--audit") + kQuick);
+    ASSERT_EQ(run.exitCode, 0) << run.output;
+    for (const char* name : {"result.json", "config.yaml", "path.tum", "top_view.png", "trace.png",
+                             "information.png", "report.json", "report.html"}) {
+        EXPECT_TRUE(fs::exists(folder_ / name)) << name;
+    }
+    const json r = result();
+    for (const char* key : {"schema", "command", "version", "seed", "planner", "alpha", "cost",
+                            "length", "mean_trace", "goal_trace", "vertices", "iterations", "views",
+                            "cache_hits", "time", "audit", "path"}) {
+        EXPECT_TRUE(r.contains(key)) << key;
+    }
+    for (const char* key : {"total_s", "views_s", "beliefs_s", "tree_s"}) {
+        EXPECT_GE(r["time"][key].get<double>(), 0.) << key;
+    }
+    EXPECT_LT(r["audit"]["max_cost_error"].get<double>(), 1e-9);
+    EXPECT_LT(r["audit"]["max_covariance_error"].get<double>(), 1e-9);
+    EXPECT_EQ(r["path"].front()["position"], json({0., 0., 2.}));
+    EXPECT_EQ(r["path"].back()["position"], json({2., 9., 2.}));
+    EXPECT_EQ(r["path"].back()["covariance"].size(), 21U);
+    EXPECT_NEAR(r["path"].back()["cost"].get<double>(), r["cost"].get<double>(), 1e-9);
+    EXPECT_NEAR(r["path"].back()["trace"].get<double>(), r["goal_trace"].get<double>(), 1e-12);
+}
+
+TEST_F(CommandLine, TheDetourBuysCertainty) {
+    ASSERT_EQ(plan(kQuick).exitCode, 0);
+    const json r = result();
+    EXPECT_GT(r["length"].get<double>(), r["baseline"]["length"].get<double>() + 1.);
+    EXPECT_LT(r["goal_trace"].get<double>(), 0.2 * r["baseline"]["goal_trace"].get<double>());
+    EXPECT_LT(r["cost"].get<double>(), r["baseline"]["cost"].get<double>());
+}
+
+TEST_F(CommandLine, PlansAreDeterministicAndConfigsRerunnable) {
+    ASSERT_EQ(plan(std::string("--seed 7") + kQuick).exitCode, 0);
+    const json first = result();
+    const fs::path copy = folder_.string() + "_config.yaml";
+    fs::copy_file(folder_ / "config.yaml", copy, fs::copy_options::overwrite_existing);
+    ASSERT_EQ(photonav("plan " + copy.string() + " --out " + folder_.string()).exitCode, 0);
+    const json second = result();
+    EXPECT_EQ(first["path"], second["path"]);
+    EXPECT_EQ(first["seed"], 7);
+    fs::remove(copy);
+}
+
+TEST_F(CommandLine, RrtStarRendersNoViewWhilePlanning) {
+    ASSERT_EQ(plan(std::string("--set planner.name=rrt_star") + kQuick).exitCode, 0);
+    EXPECT_EQ(result()["views"], 0);
+    EXPECT_EQ(result()["alpha"], 1.);
+    EXPECT_GT(result()["goal_trace"].get<double>(), 0.1);
+}
+
+TEST_F(CommandLine, NoPathIsExitCodeOneWithResults) {
+    const Run run = plan("--set planner.vertices=2");  // the goal is not among the first two
+    EXPECT_EQ(run.exitCode, 1) << run.output;
+    EXPECT_EQ(result()["status"], "no path");
+    EXPECT_TRUE(result()["path"].empty());
+    EXPECT_TRUE(fs::exists(folder_ / "report.html"));
+}
+
+TEST_F(CommandLine, InfoDrawsHeatMapsAndContributions) {
+    const Run run = photonav("info " + config("two_textures") + " --cells 12 --at 5.5,4,2 --out " +
+                             folder_.string());
+    ASSERT_EQ(run.exitCode, 0) << run.output;
+    for (const char* name : {"result.json", "config.yaml", "information.png", "uncertainty.png",
+                             "view.png", "contribution.png", "contribution_right.png",
+                             "contribution_about_forward.png", "report.html"}) {
+        EXPECT_TRUE(fs::exists(folder_ / name)) << name;
+    }
+    const json r = result();
+    EXPECT_GT(r["view"]["min_eigenvalue"].get<double>(), 0.);
+    const auto& rows = r["grid"]["rows_from_smallest_y"];
+    EXPECT_EQ(rows.front().front().get<double>(), 0.);  // white floor on the left
+    EXPECT_GT(rows.front().back().get<double>(), 1e3);  // texture on the right
+    EXPECT_EQ(rows.size(), 12U);
+}
+
+TEST_F(CommandLine, ReportIsRebuiltFromItsFolder) {
+    ASSERT_EQ(plan(kQuick).exitCode, 0);
+    fs::remove(folder_ / "report.html");
+    EXPECT_EQ(photonav("report " + folder_.string()).exitCode, 0);
+    EXPECT_TRUE(fs::exists(folder_ / "report.html"));
+    std::ofstream(folder_ / "report.json") << "{";
+    EXPECT_EQ(photonav("report " + folder_.string()).exitCode, 2);
+}
+
+TEST_F(CommandLine, BadInputIsOneLineAndExitCodeTwo) {
+    expectBadInput(plan("--set planner.alpha=1.5"), "planner.alpha: 1.5 is outside [0, 1]");
+    expectBadInput(plan("--set planner.alhpa=1"), "did you mean 'alpha'");
+    expectBadInput(plan("--set scene.file=nowhere.yaml"), "nowhere.yaml");
+    expectBadInput(plan("--set goal=[50,0,2]"), "goal: outside the bounds");
+    expectBadInput(plan("--set noise.initial=[-1,0,0,0,0,0]"), "negative variance");
+    expectBadInput(plan("--set camera.hfov=0"), "camera.hfov");
+    expectBadInput(plan("", "no_such_config"), "no such file");
+    expectBadInput(plan("--no-such-flag"), "no-such-flag");
+    expectBadInput(photonav("plan"), "config");
+    expectBadInput(photonav("fly-away"), "fly-away");
+    expectBadInput(photonav("report " + folder_.string()), "report.json");
+    expectBadInput(
+        photonav("info " + config("two_textures") + " --at 1,2 --out " + folder_.string()), "--at");
+}
+
+TEST_F(CommandLine, AStartInsideAnObstacleIsRefused) {
+    expectBadInput(plan("--set bounds=[[-1,-0.5,0.1],[9,9.5,2]] --set start=[0,0,0.1]"),
+                   "start: in collision: clearance");
+}
+
+TEST_F(CommandLine, AFolderThatCannotBeWrittenIsRefusedBeforeWork) {
+    expectBadInput(photonav("plan " + config("two_textures") + " --out /proc/photonav"), "/proc");
+}
+
+TEST_F(CommandLine, CtrlCKeepsTheBestPathSoFar) {
+    const std::string command = "timeout -s INT 3 " + std::string(PHOTONAV_BINARY) + " plan " +
+                                config("two_textures") + " --set planner.vertices=1000000" +
+                                " --set planner.view_pitch=0.5 --out " + folder_.string() +
+                                " >/dev/null 2>&1";
+    const int status = std::system((command + "; exit $?").c_str());  // NOLINT(cert-env33-c)
+    EXPECT_EQ(WEXITSTATUS(status), 124);  // timeout's own: it sent the signal
+    EXPECT_EQ(result()["status"], "interrupted");
+    EXPECT_FALSE(result()["path"].empty());
+}
+
+TEST_F(CommandLine, HelpTeaches) {
+    const Run run = photonav("--help");
+    EXPECT_EQ(run.exitCode, 0);
+    for (const char* word : {"plan", "info", "map", "report", "Exit codes", "two_textures.yaml"}) {
+        EXPECT_NE(run.output.find(word), std::string::npos) << word;
+    }
+}
+
+}  // namespace
+}  // namespace photonav

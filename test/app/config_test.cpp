@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "error.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kTwoTextures = std::string(PHOTONAV_SOURCE_DIR) + "/config/two_textures.yaml";
+
+/// The message of the InputError that loading gives, or "" when it gives none.
+std::string complaint(const std::vector<std::string>& overrides,
+                      const std::string& file = kTwoTextures) {
+    try {
+        loadConfig(file, overrides);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+void expectComplaint(const std::string& override, const std::string& key,
+                     const std::string& reason) {
+    const std::string message = complaint({override});
+    EXPECT_NE(message.find(key), std::string::npos) << override << " -> '" << message << "'";
+    EXPECT_NE(message.find(reason), std::string::npos) << override << " -> '" << message << "'";
+    EXPECT_EQ(message.find('\n'), std::string::npos) << "more than one line: " << message;
+}
+
+TEST(Config, EveryShippedConfigLoads) {
+    for (const auto& entry : fs::directory_iterator(std::string(PHOTONAV_SOURCE_DIR) + "/config")) {
+        if (entry.path().extension() != ".yaml") continue;
+        EXPECT_NO_THROW(loadConfig(entry.path().string())) << entry.path();
+    }
+}
+
+TEST(Config, WrittenConfigReadsBackTheSame) {
+    const Config config =
+        loadConfig(kTwoTextures, {"planner.alpha=0.35", "camera.mount=front45",
+                                  "start=[0, 0, 2, 0.5]", "noise.propagation=second"});
+    const fs::path file = fs::temp_directory_path() / "photonav_config_round_trip.yaml";
+    std::ofstream(file) << toYaml(config);
+    const Config again = loadConfig(file.string());
+    EXPECT_EQ(toYaml(again), toYaml(config));
+    EXPECT_EQ(again.belief.alpha, 0.35);
+    EXPECT_EQ(again.space, StateKind::positionYaw);
+    EXPECT_EQ(again.belief.order, PropagationOrder::second);
+    EXPECT_TRUE(again.camera.T_b_c().isApprox(config.camera.T_b_c()));
+    fs::remove(file);
+}
+
+TEST(Config, PathsAreRelativeToTheFileOrOnTheCommandLineToTheFolderOne) {
+    EXPECT_EQ(loadConfig(kTwoTextures).sceneFile,
+              std::string(PHOTONAV_SOURCE_DIR) + "/config/scenes/two_textures.yaml");
+    EXPECT_EQ(loadConfig(kTwoTextures, {"scene.file=here.yaml"}).sceneFile,
+              (fs::current_path() / "here.yaml").string());
+}
+
+TEST(Config, MountsAreWordsOrDegrees) {
+    const auto axis = [](const std::string& mount) {
+        const Config config = loadConfig(kTwoTextures, {"camera.mount=" + mount});
+        return Eigen::Vector3d(config.camera.T_b_c().linear().col(2));  // optical axis in the body
+    };
+    EXPECT_TRUE(axis("down").isApprox(Eigen::Vector3d(0, 0, -1), 1e-12));
+    EXPECT_TRUE(axis("forward").isApprox(Eigen::Vector3d(1, 0, 0), 1e-12));
+    EXPECT_TRUE(axis("front45").isApprox(axis("45"), 1e-12));
+    EXPECT_NEAR(axis("30").z(), -0.5, 1e-12);
+}
+
+TEST(Config, ComplaintsNameKeyAndReason) {
+    expectComplaint("planner.alhpa=0.5", "planner.alhpa", "did you mean 'alpha'");
+    expectComplaint("planer.alpha=0.5", "planer", "did you mean 'planner'");
+    expectComplaint("planner.alpha=1.5", "planner.alpha", "outside [0, 1]");
+    expectComplaint("planner.alpha=.nan", "planner.alpha", "outside [0, 1]");
+    expectComplaint("planner.alpha=much", "planner.alpha", "'much'");
+    expectComplaint("planner.name=rrt", "planner.name", "belief_rrt_star, pa_rrt_star, rrt_star");
+    expectComplaint("planner.vertices=2.5", "planner.vertices", "whole number");
+    expectComplaint("planner.ds=0", "planner.ds", "below");
+    expectComplaint("noise.initial=[-1, 0, 0, 0, 0, 0]", "noise.initial", "negative variance");
+    expectComplaint("noise.motion=[1, 0, 0]", "noise.motion", "6 numbers, found 3");
+    expectComplaint("noise.motion=[.nan, 0, 0, 0, 0, 0]", "noise.motion", "finite");
+    expectComplaint("camera.hfov=0", "camera.hfov", "outside [1, 170]");
+    expectComplaint("camera.width=0", "camera.width", "outside");
+    expectComplaint("camera.mount=sideways", "camera.mount", "'sideways'");
+    expectComplaint("goal=[2, 90, 2]", "goal", "outside the bounds");
+    expectComplaint("start=[2, 9]", "start", "3 to 4 numbers, found 2");
+    expectComplaint("bounds=[[1, 1, 1], [0, 0, 0]]", "bounds", "lower");
+    expectComplaint("bounds=3", "bounds", "3");
+    expectComplaint("seed=0", "seed", "outside");
+    expectComplaint("map.file=x.ot", "scene.file", "either");
+    expectComplaint("scene.file=", "scene.file", "either");
+    expectComplaint("noequals", "noequals", "key.path=value");
+}
+
+TEST(Config, ComplaintsAboutTheFileItself) {
+    EXPECT_NE(complaint({}, "nowhere.yaml").find("nowhere.yaml: no such file"), std::string::npos);
+    const fs::path file = fs::temp_directory_path() / "photonav_config_broken.yaml";
+    std::ofstream(file) << "planner: [unclosed\n";
+    EXPECT_NE(complaint({}, file.string()).find("line"), std::string::npos);
+    std::ofstream(file) << "just a word\n";
+    EXPECT_NE(complaint({}, file.string()).find("key: value"), std::string::npos);
+    fs::remove(file);
+}
+
+}  // namespace
+}  // namespace photonav
