@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -32,13 +33,16 @@ fs::path resultFolder(const CommandOptions& options, const std::string& command)
 
 ProgressLine::ProgressLine(bool quiet) : enabled_(!quiet && isatty(STDERR_FILENO) != 0) {}
 
-ProgressLine::~ProgressLine() {
+ProgressLine::~ProgressLine() { clear(); }
+
+void ProgressLine::clear() {
     if (enabled_ && width_ > 0) fmt::print(stderr, "\r{:{}}\r", "", width_);
+    width_ = 0;
 }
 
 void ProgressLine::show(const std::string& text) {
     if (!enabled_) return;
-    fmt::print(stderr, "\r{:{}}", text, width_);
+    fmt::print(stderr, "\r{:{}}", text, std::max(width_, text.size()));
     std::fflush(stderr);
     width_ = text.size();
 }

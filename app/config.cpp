@@ -53,7 +53,7 @@ void applyOverride(YAML::Node root, const std::string& text) {
         if (!node.IsMap() && !node.IsNull()) throw InputError("--set", path, "no such key");
         if (end == path.size()) {
             try {
-                node[key] = YAML::Load(value);
+                node[key] = value.empty() ? YAML::Node("") : YAML::Load(value);
             } catch (const YAML::Exception&) {
                 throw InputError("--set", path, "cannot read the value '" + value + "'");
             }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command line: subcommands only.
+// The command line: subcommands and their options, nothing else.
 #include <fmt/format.h>
 #include <ompl/util/Console.h>
 
@@ -11,88 +11,158 @@
 #include "command_io.hpp"
 #include "error.hpp"
 #include "info_command.hpp"
+#include "map_command.hpp"
 #include "plan_command.hpp"
 #include "report.hpp"
 
 namespace {
+
+using namespace photonav;
+
+/// A subcommand and what to do when it was chosen.
+struct Command {
+    CLI::App* parser;
+    std::function<int()> run;
+};
 
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 /// The first Ctrl-C asks politely, the second one does not.
 void onInterrupt(int) {
-    if (interrupted.exchange(true)) std::_Exit(photonav::kInterrupted);
+    if (interrupted.exchange(true)) std::_Exit(kInterrupted);
 }
 
-void addCommon(CLI::App* command, photonav::CommandOptions& options) {
+void addCommon(CLI::App* command, CommandOptions& options) {
     command->add_option("config", options.config, "YAML file of the planning problem")->required();
-    command->add_option("--set", options.overrides, "override a value: key.path=value")
-        ->type_name("KEY=VALUE")
+    command->add_option("--set", options.overrides, "override a value of the config")
+        ->type_name("KEY.PATH=VALUE")
         ->allow_extra_args(false);
     command->add_option("--out", options.out, "result folder (default: out/<command>-<config>)");
     command->add_flag("--quiet", options.quiet, "no progress, no summary");
     command->add_flag("--json", options.json, "result.json on standard output");
 }
 
-int rebuildReport(const std::string& folder) {
-    const std::filesystem::path path(folder);
-    photonav::writeReport(path / "report.html", photonav::readReportData(path / "report.json"));
-    fmt::print("report: {}\n", (path / "report.html").string());
-    return photonav::kDone;
+Command planCommand(CLI::App& app, const std::string& commandLine) {
+    auto options = std::make_shared<PlanOptions>();
+    auto seed = std::make_shared<std::string>();
+    options->commandLine = commandLine;
+    CLI::App* parser =
+        app.add_subcommand("plan", "Plan a perception-aware path in a known scene or map.");
+    addCommon(parser, *options);
+    parser->add_option("--seed", *seed, "of everything random (overrides the config)");
+    parser->add_flag("--audit", options->audit, "replay every stored belief from the start");
+    return {parser, [options, seed] {
+                if (!seed->empty()) options->overrides.push_back("seed=" + *seed);
+                return runPlan(*options, interrupted);
+            }};
+}
+
+Command infoCommand(CLI::App& app, const std::string& commandLine) {
+    auto options = std::make_shared<InfoOptions>();
+    options->commandLine = commandLine;
+    CLI::App* parser = app.add_subcommand(
+        "info", "Show where a view is worth something, and which of its pixels.");
+    addCommon(parser, *options);
+    parser->add_option("--height", options->height, "of the heat map [m] (default: the start's)");
+    parser->add_option("--at", options->at, "x,y,z[,yaw] of the single view (default: the start)");
+    parser->add_option("--cells", options->cells, "along the longer side of the heat map")
+        ->check(CLI::Range(1, 2000))
+        ->capture_default_str();
+    return {parser, [options] { return runInfo(*options); }};
+}
+
+void printSummary(const ReportTable& table, const std::filesystem::path& folder) {
+    for (const auto& [label, value] : table.rows) fmt::print("{:<42}{}\n", label, value);
+    fmt::print("map: {}\nreport: {}\n", (folder / "map.ot").string(),
+               (folder / "report.html").string());
+}
+
+Command mapCommand(CLI::App& app, const std::string& commandLine) {
+    struct Options : MapOptions {
+        bool quiet = false;
+        bool json = false;
+    };
+    auto options = std::make_shared<Options>();
+    options->commandLine = commandLine;
+    CLI::App* parser =
+        app.add_subcommand("map", "Turn a recorded RGB-D sequence into a textured OctoMap.");
+    parser->add_option("dataset", options->dataset, "folder in the TUM RGB-D layout")->required();
+    parser->add_option("--out", options->out, "result folder (default: out/map-<dataset>)");
+    parser->add_option("--resolution", options->resolution, "edge of a cell [m]")
+        ->capture_default_str();
+    parser->add_option("--up", options->up, "axis of the recorded world that points up: x ... -z")
+        ->capture_default_str();
+    parser->add_option("--every", options->every, "use every n-th frame")->capture_default_str();
+    parser->add_option("--min-range", options->fusion.minRange, "nearest depth trusted [m]")
+        ->capture_default_str();
+    parser->add_option("--max-range", options->fusion.maxRange, "farthest surface entered [m]")
+        ->capture_default_str();
+    parser->add_option("--depth-scale", options->depthScale,
+                       "depth image value of one metre (default: the dataset's)");
+    parser->add_option("--tolerance", options->tolerance, "largest difference of timestamps [s]")
+        ->capture_default_str();
+    parser->add_flag("--quiet", options->quiet, "no progress, no summary");
+    parser->add_flag("--json", options->json, "result.json on standard output");
+    return {parser, [options] {
+                if (options->out.empty()) {
+                    const auto name = (std::filesystem::path(options->dataset) / "")
+                                          .lexically_normal()
+                                          .parent_path()
+                                          .filename();
+                    options->out = std::filesystem::path("out") / ("map-" + name.string());
+                }
+                ProgressLine line(options->quiet);
+                options->progress = [&line](std::size_t done, std::size_t total) {
+                    line.show(fmt::format("{} of {} frames fused", done, total));
+                };
+                const MapReport report = runMap(*options, interrupted);
+                line.clear();
+                if (options->json)
+                    fmt::print("{}\n", report.result.dump(2));
+                else if (!options->quiet)
+                    printSummary(report.summary, options->out);
+                return report.exitCode;
+            }};
+}
+
+Command reportCommand(CLI::App& app) {
+    auto folder = std::make_shared<std::filesystem::path>();
+    CLI::App* parser = app.add_subcommand("report", "Rebuild report.html of a result folder.");
+    parser->add_option("folder", *folder, "result folder")->required();
+    return {parser, [folder] {
+                writeReport(*folder / "report.html", readReportData(*folder / "report.json"));
+                fmt::print("report: {}\n", (*folder / "report.html").string());
+                return static_cast<int>(kDone);
+            }};
 }
 
 int run(int argc, char** argv) {
     CLI::App app{
         "photonav: paths on which the camera always sees enough texture to know where it is.\n"
-        "Start with: photonav plan config/two_textures.yaml"};
+        "Start with: photonav plan config/two_textures.yaml",
+        "photonav"};
     app.set_version_flag("--version", PHOTONAV_VERSION);
     app.require_subcommand(1);
     app.footer(
-        "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by Ctrl-C.\n"
-        "Every run writes result.json, config.yaml, figures and report.html into its folder.");
+        "Every run writes result.json, config.yaml, figures and report.html into its folder.\n"
+        "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by Ctrl-C.");
     std::string commandLine = "photonav";
     for (int i = 1; i < argc; ++i) commandLine += std::string(" ") + argv[i];
 
-    photonav::PlanOptions plan;
-    CLI::App* planCommand =
-        app.add_subcommand("plan", "plan a perception-aware path in a known scene or map");
-    addCommon(planCommand, plan);
-    std::string seed;
-    planCommand->add_option("--seed", seed, "seed of everything random (overrides the config)");
-    planCommand->add_flag("--audit", plan.audit, "replay every stored belief from the start");
-
-    photonav::InfoOptions info;
-    CLI::App* infoCommand =
-        app.add_subcommand("info", "where a view is worth something, and which of its pixels");
-    addCommon(infoCommand, info);
-    infoCommand->add_option("--height", info.height, "height of the heat map [m]");
-    infoCommand->add_option("--at", info.at, "x,y,z[,yaw] of the single view");
-    infoCommand->add_option("--cells", info.cells, "cells along the longer side")
-        ->check(CLI::Range(1, 2000));
-
-    std::string reportFolder;
-    CLI::App* reportCommand =
-        app.add_subcommand("report", "rebuild report.html of a result folder");
-    reportCommand->add_option("folder", reportFolder, "result folder")->required();
-
+    const std::array commands{planCommand(app, commandLine), infoCommand(app, commandLine),
+                              mapCommand(app, commandLine), reportCommand(app)};
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);
         fmt::print(stderr, "photonav: {} (see photonav --help)\n", error.what());
-        return photonav::kBadInput;
+        return kBadInput;
     }
-
-    if (planCommand->parsed()) {
-        if (!seed.empty()) plan.overrides.push_back("seed=" + seed);
-        plan.commandLine = commandLine;
-        return photonav::runPlan(plan, interrupted);
+    for (const Command& command : commands) {
+        if (command.parser->parsed()) return command.run();
     }
-    if (infoCommand->parsed()) {
-        info.commandLine = commandLine;
-        return photonav::runInfo(info);
-    }
-    return rebuildReport(reportFolder);
+    return kBadInput;
 }
 
 }  // namespace
@@ -102,11 +172,8 @@ int main(int argc, char** argv) {
     ompl::msg::noOutputHandler();
     try {
         return run(argc, argv);
-    } catch (const photonav::InputError& error) {
-        fmt::print(stderr, "photonav: {}\n", error.what());
-        return photonav::kBadInput;
     } catch (const std::exception& error) {
         fmt::print(stderr, "photonav: {}\n", error.what());
-        return photonav::kBadInput;
+        return kBadInput;
     }
 }

@@ -331,6 +331,7 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
                      {"voxels", voxelsJson(map, voxels)},
                      {"time", time},
                      {"comparison", {{"mean", meansOf(compared)}, {"frames", compared}}}};
+    report.summary = summary(report.result);
     for (std::size_t i = 0; i < strips.size(); ++i) {
         writeFileAtomically(options.out / fmt::format("comparison_{}.png", i), strips[i].picture);
     }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "map_fusion.hpp"
+#include "report.hpp"
 
 namespace photonav {
 
@@ -32,6 +33,7 @@ struct MapOptions {
 
 struct MapReport {
     nlohmann::json result;  ///< what was written as result.json
+    ReportTable summary;    ///< the same in words
     int exitCode = 0;       ///< 130 when interrupted
 };
 

@@ -1,3 +1,5 @@
+cmake_minimum_required(VERSION 3.25)
+
 # Who may include whom: src nothing of ours outside itself, planning only src, app everything.
 # Third-party libraries with heavy headers stay where they are wrapped.
 function(forbid folder pattern reason)

@@ -15,15 +15,15 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-struct Run {
+struct Execution {
     int exitCode;
     std::string output;  // standard output and standard error
 };
 
-Run photonav(const std::string& arguments) {
+Execution photonav(const std::string& arguments) {
     const std::string command = std::string(PHOTONAV_BINARY) + " " + arguments + " 2>&1";
     FILE* pipe = popen(command.c_str(), "r");  // NOLINT(cert-env33-c)
-    Run run{-1, ""};
+    Execution run{-1, ""};
     std::array<char, 4096> buffer{};
     while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) run.output += buffer.data();
     const int status = pclose(pipe);
@@ -45,13 +45,13 @@ class CommandLine : public testing::Test {
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    Run plan(const std::string& arguments, const std::string& name = "two_textures") {
+    Execution plan(const std::string& arguments, const std::string& name = "two_textures") {
         return photonav("plan " + config(name) + " --out " + folder_.string() + " " + arguments);
     }
 
     json result() const { return json::parse(std::ifstream(folder_ / "result.json")); }
 
-    void expectBadInput(const Run& run, const std::string& reason) const {
+    void expectBadInput(const Execution& run, const std::string& reason) const {
         EXPECT_EQ(run.exitCode, 2) << run.output;
         EXPECT_NE(run.output.find(reason), std::string::npos) << run.output;
         EXPECT_TRUE(run.output.starts_with("photonav: ")) << run.output;
@@ -65,7 +65,7 @@ class CommandLine : public testing::Test {
 constexpr const char* kQuick = " --set planner.vertices=300 --set planner.view_pitch=0.4 ";
 
 TEST_F(CommandLine, PlanWritesEverythingItPromises) {
-    const Run run = plan(std::string("--audit") + kQuick);
+    const Execution run = plan(std::string("--audit") + kQuick);
     ASSERT_EQ(run.exitCode, 0) << run.output;
     for (const char* name : {"result.json", "config.yaml", "path.tum", "top_view.png", "trace.png",
                              "information.png", "report.json", "report.html"}) {
@@ -117,7 +117,7 @@ TEST_F(CommandLine, RrtStarRendersNoViewWhilePlanning) {
 }
 
 TEST_F(CommandLine, NoPathIsExitCodeOneWithResults) {
-    const Run run = plan("--set planner.vertices=2");  // the goal is not among the first two
+    const Execution run = plan("--set planner.vertices=2");  // the goal is not among the first two
     EXPECT_EQ(run.exitCode, 1) << run.output;
     EXPECT_EQ(result()["status"], "no path");
     EXPECT_TRUE(result()["path"].empty());
@@ -125,8 +125,8 @@ TEST_F(CommandLine, NoPathIsExitCodeOneWithResults) {
 }
 
 TEST_F(CommandLine, InfoDrawsHeatMapsAndContributions) {
-    const Run run = photonav("info " + config("two_textures") + " --cells 12 --at 5.5,4,2 --out " +
-                             folder_.string());
+    const Execution run = photonav("info " + config("two_textures") +
+                                   " --cells 12 --at 5.5,4,2 --out " + folder_.string());
     ASSERT_EQ(run.exitCode, 0) << run.output;
     for (const char* name : {"result.json", "config.yaml", "information.png", "uncertainty.png",
                              "view.png", "contribution.png", "contribution_right.png",
@@ -160,7 +160,7 @@ TEST_F(CommandLine, BadInputIsOneLineAndExitCodeTwo) {
     expectBadInput(plan("", "no_such_config"), "no such file");
     expectBadInput(plan("--no-such-flag"), "no-such-flag");
     expectBadInput(photonav("plan"), "config");
-    expectBadInput(photonav("fly-away"), "fly-away");
+    expectBadInput(photonav("fly-away"), "subcommand");
     expectBadInput(photonav("report " + folder_.string()), "report.json");
     expectBadInput(
         photonav("info " + config("two_textures") + " --at 1,2 --out " + folder_.string()), "--at");
@@ -187,7 +187,7 @@ TEST_F(CommandLine, CtrlCKeepsTheBestPathSoFar) {
 }
 
 TEST_F(CommandLine, HelpTeaches) {
-    const Run run = photonav("--help");
+    const Execution run = photonav("--help");
     EXPECT_EQ(run.exitCode, 0);
     for (const char* word : {"plan", "info", "map", "report", "Exit codes", "two_textures.yaml"}) {
         EXPECT_NE(run.output.find(word), std::string::npos) << word;
