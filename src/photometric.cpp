@@ -9,19 +9,11 @@
 #include <vector>
 
 #include "se3.hpp"
+#include "simd.hpp"
 
 namespace photonav {
 
 namespace {
-
-// One vector register of the instruction set this file is compiled for.
-#if defined(__AVX512F__)
-constexpr int kLanes = 16;
-#elif defined(__AVX2__)
-constexpr int kLanes = 8;
-#else
-constexpr int kLanes = 4;
-#endif
 
 template <int kWidth>
 struct Simd {
@@ -245,8 +237,8 @@ double weight(const PhotometricOptions& options) {
 Matrix6 photometricInformation(const View& view, const Camera& camera,
                                const PhotometricOptions& options) {
     if (camera.width < 3 || camera.height < 3) return Matrix6::Zero();
-    RowWindow<kLanes> rows(view);
-    RowKernel<kLanes> kernel(camera, options, rows.vectors());
+    RowWindow<simd::kWidth> rows(view);
+    RowKernel<simd::kWidth> kernel(camera, options, rows.vectors());
     const unsigned first = firstInStride(options.stride);
     unsigned next = 0;
     for (unsigned v = first; v + 1 < camera.height; v += options.stride) {

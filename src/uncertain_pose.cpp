@@ -11,50 +11,40 @@ namespace photonav {
 
 namespace {
 
-using Eigen::Matrix3d;
+/// A 3x3 matrix with a row and a column of zeros, because four doubles fill vector registers.
+using Padded = Eigen::Matrix4d;
 
 /// A covariance by its blocks [P, R; R^T, S]; P and S are symmetric.
 struct Blocks {
-    Matrix3d P, R, S;
+    Padded P = Padded::Zero();
+    Padded R = Padded::Zero();
+    Padded S = Padded::Zero();
 
     Blocks() = default;
-    explicit Blocks(const Matrix6& m)
-        : P(m.topLeftCorner<3, 3>()), R(m.topRightCorner<3, 3>()), S(m.bottomRightCorner<3, 3>()) {}
-
-    Blocks& operator+=(const Blocks& other) {
-        P += other.P;
-        R += other.R;
-        S += other.S;
-        return *this;
+    explicit Blocks(const Matrix6& m) {
+        P.topLeftCorner<3, 3>() = m.topLeftCorner<3, 3>();
+        R.topLeftCorner<3, 3>() = m.topRightCorner<3, 3>();
+        S.topLeftCorner<3, 3>() = m.bottomRightCorner<3, 3>();
     }
 
     Matrix6 matrix() const {
         Matrix6 m;
-        m.topLeftCorner<3, 3>() = P;
-        m.topRightCorner<3, 3>() = R;
-        m.bottomLeftCorner<3, 3>() = R.transpose();
-        m.bottomRightCorner<3, 3>() = S;
+        m.topLeftCorner<3, 3>() = P.topLeftCorner<3, 3>();
+        m.topRightCorner<3, 3>() = R.topLeftCorner<3, 3>();
+        m.bottomLeftCorner<3, 3>() = R.topLeftCorner<3, 3>().transpose();
+        m.bottomRightCorner<3, 3>() = S.topLeftCorner<3, 3>();
         return m;
     }
 };
 
-Matrix3d symmetricSum(const Matrix3d& M) { return M + M.transpose(); }
+Padded symmetricSum(const Padded& M) { return M + M.transpose(); }
 
 /// tr(A^T B)
-double dot(const Matrix3d& A, const Matrix3d& B) { return A.cwiseProduct(B).sum(); }
+double dot(const Padded& A, const Padded& B) { return A.cwiseProduct(B).sum(); }
 
-/// Ad Sigma Ad^T for Ad = [C, r^ C; 0, C]: rotate the blocks, then shift them by the lever arm r.
-Blocks transport(const Matrix6& Ad, const Blocks& prior) {
-    const Matrix3d C = Ad.topLeftCorner<3, 3>();
-    const Matrix3d X = Ad.topRightCorner<3, 3>() * C.transpose();  // r^
-    const Matrix3d R = C * prior.R * C.transpose();
-    Blocks carried;
-    carried.S = C * prior.S * C.transpose();
-    carried.S = 0.5 * symmetricSum(carried.S);
-    carried.R = R + X * carried.S;
-    const Matrix3d P = C * prior.P * C.transpose() + X * R.transpose() - carried.R * X;
-    carried.P = 0.5 * symmetricSum(P);
-    return carried;
+Matrix6 transport(const Matrix6& Ad, const Matrix6& covariance) {
+    const Matrix6 carried = Ad * covariance * Ad.transpose();
+    return 0.5 * (carried + carried.transpose());
 }
 
 /// BF14's A and B terms, multiplied out and collected by products: 9 instead of the 36 of the
@@ -62,27 +52,34 @@ Blocks transport(const Matrix6& Ad, const Blocks& prior) {
 Blocks collectedFourthOrderTerms(const Blocks& a, const Blocks& b) {
     const double sa = a.S.trace(), ra = a.R.trace(), pa = a.P.trace();
     const double sb = b.S.trace(), rb = b.R.trace(), pb = b.P.trace();
-    const Matrix3d I = Matrix3d::Identity();
-    const Matrix3d aRt = a.R.transpose();
-    const Matrix3d bRt = b.R.transpose();
+    const Padded aRt = a.R.transpose();
+    const Padded bRt = b.R.transpose();
+    const auto addToDiagonal = [](Padded& M, double x) { M.diagonal().head<3>().array() += x; };
 
     Blocks f;
-    f.S = 5. / 12. * (symmetricSum(a.S * b.S) - sa * b.S - sb * a.S) +
-          0.25 * (sa * sb - dot(a.S, b.S)) * I;
+    f.S = 5. / 12. * (symmetricSum(a.S * b.S) - sa * b.S - sb * a.S);
+    addToDiagonal(f.S, 0.25 * (sa * sb - dot(a.S, b.S)));
 
-    f.R = a.S * (1. / 12. * b.R + 0.25 * bRt) + (1. / 6. * b.R + 1. / 3. * bRt) * a.S +
-          b.S * (1. / 12. * a.R + 0.25 * aRt) + (1. / 6. * a.R + 1. / 3. * aRt) * b.S -
-          sa * (1. / 6. * b.R + 0.25 * bRt) - sb * (1. / 6. * a.R + 0.25 * aRt) -
-          5. / 12. * (ra * b.S + rb * a.S) +
-          0.25 * (sa * rb + sb * ra - dot(b.R, a.S) - dot(a.R, b.S)) * I;
+    const Padded aLeft = 1. / 12. * a.R + 0.25 * aRt;
+    const Padded bLeft = 1. / 12. * b.R + 0.25 * bRt;
+    const Padded aRight = 1. / 6. * a.R + 1. / 3. * aRt;
+    const Padded bRight = 1. / 6. * b.R + 1. / 3. * bRt;
+    f.R.noalias() = a.S * bLeft;
+    f.R.noalias() += bRight * a.S;
+    f.R.noalias() += b.S * aLeft;
+    f.R.noalias() += aRight * b.S;
+    f.R -= sa * (1. / 6. * b.R + 0.25 * bRt) + sb * (1. / 6. * a.R + 0.25 * aRt) +
+           5. / 12. * (ra * b.S + rb * a.S);
+    addToDiagonal(f.R, 0.25 * (sa * rb + sb * ra - dot(b.R, a.S) - dot(a.R, b.S)));
 
-    const Matrix3d half = 1. / 3. * (a.S * b.P + b.S * a.P) +
-                          a.R * (5. / 12. * bRt + 1. / 12. * b.R) +
-                          aRt * (0.25 * b.R + 1. / 12. * bRt) - 5. / 12. * (ra * b.R + rb * a.R);
-    f.P = symmetricSum(half) - 5. / 12. * (sa * b.P + sb * a.P) - 0.25 * (pb * a.S + pa * b.S) +
-          (0.25 * (sa * pb + sb * pa - dot(a.S, b.P) - dot(a.P, b.S)) +
-           0.5 * (ra * rb - dot(a.R, b.R))) *
-              I;
+    Padded half = -5. / 12. * (ra * b.R + rb * a.R);
+    half.noalias() += 1. / 3. * a.S * b.P;
+    half.noalias() += 1. / 3. * b.S * a.P;
+    half.noalias() += a.R * Padded(5. / 12. * bRt + 1. / 12. * b.R);
+    half.noalias() += aRt * Padded(0.25 * b.R + 1. / 12. * bRt);
+    f.P = symmetricSum(half) - 5. / 12. * (sa * b.P + sb * a.P) - 0.25 * (pb * a.S + pa * b.S);
+    addToDiagonal(f.P, 0.25 * (sa * pb + sb * pa - dot(a.S, b.P) - dot(a.P, b.S)) +
+                           0.5 * (ra * rb - dot(a.R, b.R)));
     return f;
 }
 
@@ -115,20 +112,17 @@ Matrix6 fourthOrderTerms(const Matrix6& first, const Matrix6& second) {
 
 CompoundedCovariance compoundCovariance(const Matrix6& adjointMotion, const Matrix6& motion,
                                         const Matrix6& prior, PropagationOrder order) {
-    const Blocks first(motion);
-    const Blocks second = transport(adjointMotion, Blocks(prior));
-    Blocks sum = first;
-    sum += second;
-    if (order == PropagationOrder::second) return {sum.matrix(), false};
+    const Matrix6 carried = transport(adjointMotion, prior);
+    const Matrix6 second = motion + carried;
+    if (order == PropagationOrder::second) return {second, false};
 
     constexpr double kMaxVariance = kFourthOrderMaxRotationSigma * kFourthOrderMaxRotationSigma;
-    if (first.S.trace() <= kMaxVariance && second.S.trace() <= kMaxVariance) {
-        Blocks fourth = sum;
-        fourth += collectedFourthOrderTerms(first, second);
-        const Matrix6 covariance = fourth.matrix();
-        if (isPositiveSemidefinite(covariance)) return {covariance, false};
+    if (motion.diagonal().tail<3>().sum() <= kMaxVariance &&
+        carried.diagonal().tail<3>().sum() <= kMaxVariance) {
+        const Matrix6 fourth = second + fourthOrderTerms(motion, carried);
+        if (isPositiveSemidefinite(fourth)) return {fourth, false};
     }
-    return {sum.matrix(), true};
+    return {second, true};
 }
 
 UncertainPose compound(const UncertainPose& T_c_b, const UncertainPose& T_b_a,
@@ -140,7 +134,7 @@ UncertainPose compound(const UncertainPose& T_c_b, const UncertainPose& T_b_a,
 
 UncertainPose inverse(const UncertainPose& T_b_a) {
     const Pose T_a_b = T_b_a.mean.inverse();
-    return {T_a_b, transport(adjoint(T_a_b), Blocks(T_b_a.covariance)).matrix()};
+    return {T_a_b, transport(adjoint(T_a_b), T_b_a.covariance)};
 }
 
 Matrix6 updateCovariance(const Matrix6& covariance, const Matrix6& information) {
