@@ -27,7 +27,7 @@ inline Pose lookDown(double x, double y, double height, double belowHorizon, dou
     return (T_w_b * cameraMount(belowHorizon)).inverse();
 }
 
-/// The plane z = height over |x|, |y| < extent; each pixel is the mean of 3 x 3 rays.
+/// The plane z = height over |x|, |y| < extent; each pixel is the mean of 2 x 2 rays.
 inline View floorView(const Camera& camera, const Pose& T_c_w, const FloorTexture& texture,
                       double height = 0., double extent = 1e3) {
     View view;
@@ -48,11 +48,11 @@ inline View floorView(const Camera& camera, const Pose& T_c_w, const FloorTextur
             view.depth[v][u] = static_cast<float>(plane(u, v, p));
             if (view.depth[v][u] == 0.F) continue;
             double sum = 0.;
-            for (int i = 0; i < 9; ++i) {
-                plane(u + (i % 3 - 1) / 3., v + (i / 3 - 1) / 3., p);
+            for (int i = 0; i < 4; ++i) {
+                plane(u + 0.5 * (i % 2) - 0.25, v + 0.5 * (i / 2) - 0.25, p);
                 sum += texture(p.x(), p.y());
             }
-            view.intensity[v][u] = static_cast<float>(sum / 9.);
+            view.intensity[v][u] = static_cast<float>(sum / 4.);
         }
     }
     return view;

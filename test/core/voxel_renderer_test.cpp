@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "voxel_renderer.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "core/synthetic_floor.hpp"
+#include "map_fusion.hpp"
+#include "photometric.hpp"
 
 namespace photonav {
 namespace {
@@ -239,6 +242,66 @@ TEST(VoxelRenderer, SurfacesGoOnOverStepsOfOneCell) {
     }
     // The ramp rises by 0.4 grey values per metre: an edge would rise by half a step of 0.02.
     EXPECT_LT(largest, 1.3 * 0.4 * 0.05 * 20. / camera.fx());
+}
+
+/// A floor mapped from noisy images of a camera that flies over it, like a recording.
+TexturedOcTree mapFloor(double resolution, const testing::FloorTexture& texture) {
+    TexturedOcTree map(resolution);
+    const Camera camera = makeCamera(240, 180, 1.1);
+    for (int i = 0; i < 12; ++i) {
+        const Pose T_c_w = lookDown(-0.7 + 0.3 * (i % 6), -0.3 + 0.6 * (i / 6), 1.4, 1.35, 0.3 * i);
+        View view = floorView(camera, T_c_w, texture, 0.02);
+        testing::addNoise(view.intensity, 0.02, i);
+        fuse(map, view, camera, T_c_w);
+    }
+    return map;
+}
+
+double informationTrace(const ViewSource& source, const Camera& camera, const Pose& T_c_w) {
+    View view;
+    source.render(camera, T_c_w, view);
+    return photometricInformation(view, camera).trace();
+}
+
+TEST(VoxelRenderer, UniformFloorsMappedFromNoisyImagesCarryNoInformation) {
+    const Camera camera = makeCamera(188, 120, 1.2);
+    for (const double resolution : {0.05, 0.025}) {
+        const VoxelRenderer carpet(mapFloor(resolution, testing::carpet), UnknownPolicy::free);
+        const VoxelRenderer uniform(mapFloor(resolution, [](double, double) { return 0.5; }),
+                                    UnknownPolicy::free);
+        for (const double belowHorizon : {kDown, 0.9}) {
+            const Pose T_c_w = lookDown(-0.2, 0., 1.4, belowHorizon, 0.2);
+            const double textured = informationTrace(carpet, camera, T_c_w);
+            const double faked = informationTrace(uniform, camera, T_c_w);
+            EXPECT_GT(textured, 0.);
+            EXPECT_LT(faked, 0.01 * textured);
+            RecordProperty(fmt::format("faked_{}_{:.2f}", resolution, belowHorizon),
+                           fmt::format("{:.6f}", faked / textured));
+        }
+    }
+}
+
+TEST(VoxelRenderer, KeepsMostOfTheInformationOfTheOriginalImage) {
+    const Camera camera = makeCamera(188, 120, 1.2);
+    for (const auto& [resolution, least] : {std::pair{0.05, 0.6}, {0.025, 0.85}}) {
+        const VoxelRenderer carpet(mapFloor(resolution, testing::carpet), UnknownPolicy::free);
+        for (const double belowHorizon : {kDown, 0.9}) {
+            const Pose T_c_w = lookDown(-0.2, 0., 1.4, belowHorizon, 0.2);
+            View original = floorView(camera, T_c_w, testing::carpet, 0.02);
+            View seen;
+            carpet.render(camera, T_c_w, seen);
+            for (unsigned i = 0; i < seen.depth.getSize(); ++i) {  // the same pixels in both
+                if (seen.depth.bitmap[i] == 0.F) original.depth.bitmap[i] = 0.F;
+            }
+            applyPointSpread(original);
+            const double kept = photometricInformation(seen, camera).trace() /
+                                photometricInformation(original, camera).trace();
+            EXPECT_GT(kept, least) << resolution << ' ' << belowHorizon;
+            EXPECT_LT(kept, 1.1) << resolution << ' ' << belowHorizon;
+            RecordProperty(fmt::format("kept_{}_{:.2f}", resolution, belowHorizon),
+                           fmt::format("{:.4f}", kept));
+        }
+    }
 }
 
 TEST(VoxelRenderer, UnseenFacesTakeTheirCellsMeanAndUnseenCellsNothing) {
