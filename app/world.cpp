@@ -41,18 +41,7 @@ void World::loadMap(const Config& config) {
         {.maxDistance = std::max(1., 2. * config.robotRadius), .unknown = config.unknownToPlanner});
     map->getMetricMin(extent_.min().x(), extent_.min().y(), extent_.min().z());
     map->getMetricMax(extent_.max().x(), extent_.max().y(), extent_.max().z());
-    describe_ = [map](ReportData& report) {
-        map->expand();
-        std::vector<Eigen::Vector3f> centers;
-        std::vector<std::uint8_t> grey;
-        for (auto leaf = map->begin_leafs(); leaf != map->end_leafs(); ++leaf) {
-            if (!map->isNodeOccupied(*leaf)) continue;
-            centers.emplace_back(leaf.getX(), leaf.getY(), leaf.getZ());
-            grey.push_back(
-                static_cast<std::uint8_t>(std::lround(255.F * leaf->meanGrey().value_or(0.5F))));
-        }
-        report.voxels = makeReportVoxels(centers, grey, map->getResolution());
-    };
+    describe_ = [map](ReportData& report) { report.voxels = makeReportVoxels(*map); };
 }
 
 ImageF World::pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const {
