@@ -27,7 +27,7 @@ class PixelDepthLuminance : public vpFeatureLuminance {
     /// least 3 x 3.
     void buildFrom(const View& view, const Camera& camera, const PhotometricOptions& options = {});
 
-    PixelDepthLuminance* duplicate() const { return new PixelDepthLuminance(*this); }
+    PixelDepthLuminance* duplicate() const override { return new PixelDepthLuminance(*this); }
 };
 
 }  // namespace photonav

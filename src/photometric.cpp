@@ -223,9 +223,9 @@ class RowKernel {
     const PhotometricOptions& options_;
     std::vector<Float> x_, inStride_;
     std::vector<Row> jacobian_;  ///< of the current row
-    std::array<Row, 6> lanes_ = {};
-    std::array<std::array<Double, 6>, 6> wideLanes_ = {};
     int rowsInLanes_ = 0;
+    std::array<std::array<Double, 6>, 6> wideLanes_ = {};
+    std::array<Row, 6> lanes_ = {};
 };
 
 double weight(const PhotometricOptions& options) {

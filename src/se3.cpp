@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <ranges>
 
 namespace photonav {
 
@@ -68,7 +69,7 @@ double inverseJacobianCoefficient(double x) {
                                         3617. / 10670622842880000.,
                                         43867. / 5109094217170944000.};
         double sum = 0.;
-        for (auto it = kSeries.rbegin(); it != kSeries.rend(); ++it) sum = sum * x + *it;
+        for (const double c : kSeries | std::views::reverse) sum = sum * x + c;
         return sum;
     }
     const double half = 0.5 * std::sqrt(x);
