@@ -69,6 +69,7 @@ void writeTrajectory(const std::string& file, const Trajectory& trajectory) {
 
 std::optional<Pose> poseAt(const Trajectory& trajectory, double timestamp, double tolerance,
                            double maxGap) {
+    if (trajectory.empty()) return {};
     const auto after = std::lower_bound(
         trajectory.begin(), trajectory.end(), timestamp,
         [](const StampedPose& pose, double time) { return pose.timestamp < time; });
@@ -86,7 +87,7 @@ std::optional<Pose> poseAt(const Trajectory& trajectory, double timestamp, doubl
          timestamp - (after - 1)->timestamp < after->timestamp - timestamp)) {
         nearest = after - 1;
     }
-    if (trajectory.empty() || std::abs(nearest->timestamp - timestamp) > tolerance) return {};
+    if (std::abs(nearest->timestamp - timestamp) > tolerance) return {};
     return nearest->T_w_c;
 }
 
