@@ -156,7 +156,7 @@ void compare(const char* name, double belowHorizon, const MeshRenderer& renderer
              SingleRays& singleRays) {
     constexpr int kRounds = 400;
     const Camera camera = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
-    Pose T_w_b(Eigen::Translation3d(10., 10., 2.));
+    const Pose T_w_b(Eigen::Translation3d(10., 10., 2.));
     const Pose T_c_w = (T_w_b * cameraMount(belowHorizon)).inverse();
     View view;
     VispInformation visp(camera);

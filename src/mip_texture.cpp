@@ -58,8 +58,8 @@ ImageF halved(const ImageF& fine) {
     return coarse;
 }
 
-std::uint64_t stored(float grey) {
-    return static_cast<std::uint64_t>(std::lround(std::clamp(grey, 0.F, 1.F) * MipTexture::kOne));
+std::uint16_t stored(float grey) {
+    return static_cast<std::uint16_t>(std::lround(std::clamp(grey, 0.F, 1.F) * MipTexture::kOne));
 }
 
 }  // namespace
@@ -85,19 +85,11 @@ void MipTexture::append(const ImageF& image) {
     const auto columns = static_cast<float>(width);
     const auto rows = static_cast<float>(height);
     levels_.push_back(
-        {columns, rows, 1.F / columns, 1.F / rows, static_cast<int>(width), quads_.size()});
-    std::vector<std::uint64_t> here(width), below(width);
-    const auto store = [&](std::vector<std::uint64_t>& row, unsigned v) {
-        for (unsigned u = 0; u < width; ++u) row[u] = stored(image[v][u]);
-    };
-    store(here, 0);
-    for (unsigned v = 0; v < height; ++v) {
-        store(below, (v + 1) % height);
-        for (unsigned u = 0; u < width; ++u) {
-            const unsigned right = u + 1 < width ? u + 1 : 0;
-            quads_.push_back(here[u] | here[right] << 16U | below[u] << 32U | below[right] << 48U);
+        {columns, rows, 1.F / columns, 1.F / rows, static_cast<int>(width + 1), texels_.size()});
+    for (unsigned v = 0; v <= height; ++v) {
+        for (unsigned u = 0; u <= width; ++u) {
+            texels_.push_back(stored(image[v % height][u % width]));
         }
-        here.swap(below);
     }
 }
 

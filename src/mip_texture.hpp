@@ -11,8 +11,8 @@
 namespace photonav {
 
 /// Successively halved, area-averaged copies of a texture down to 1 x 1, in 16 bits per grey value.
-/// Every entry holds a texel and its right, lower and lower right neighbours (around the edges: the
-/// texture repeats), so that a bilinear lookup is a single load.
+/// Every level carries one more column and row that repeat the first, so that a texel's right and
+/// lower neighbours are always where memory says.
 class MipTexture {
   public:
     struct Level {
@@ -27,9 +27,8 @@ class MipTexture {
 
     const std::vector<Level>& levels() const { return levels_; }
 
-    /// Four texels per entry from the lowest bits up: here, right, below, below right.
-    const std::uint64_t* quads(std::size_t level) const {
-        return quads_.data() + levels_[level].start;
+    const std::uint16_t* texels(std::size_t level) const {
+        return texels_.data() + levels_[level].start;
     }
 
     /// The grey value of a texture without detail.
@@ -39,7 +38,7 @@ class MipTexture {
     void append(const ImageF& image);
 
     std::vector<Level> levels_;
-    std::vector<std::uint64_t> quads_;
+    std::vector<std::uint16_t> texels_;
     std::optional<float> uniform_;
 };
 

@@ -21,6 +21,11 @@ using simd::splat;
 using simd::toFloat;
 using simd::toInt;
 
+/// Area of texture that a pixel is taken to integrate, relative to its footprint. Levels and the
+/// interpolation blur, too: this value is the closest to integrating over the pixel (measured for
+/// texels from a third of a pixel to two pixels: half the error that 1 gives).
+constexpr double kFootprint = 0.6;
+
 constexpr int kMostLevels = 17;  // a texture has at most 32768 texels along a side
 
 /// a x + b y + c over the image, x and y in pixels.
@@ -53,9 +58,18 @@ Affine affineInPixels(const Eigen::Vector3d& perRay, const Camera& camera) {
             static_cast<float>(perRay.z() - a * camera.cx() - b * camera.cy())};
 }
 
+/// Prepares the levels that depths between the corners can ask for.
 void setLevels(Surface& surface, const Eigen::Vector2d& texelAtCamera) {
     const auto& levels = surface.texture->levels();
-    for (std::size_t k = 0; k < levels.size(); ++k) {
+    const auto coarsest = static_cast<double>(levels.size() - 1);
+    const auto levelAt = [&](double inverseDepth) {
+        return 0.5 * std::log2(surface.footprint / std::pow(inverseDepth, 3));
+    };
+    const auto first =
+        static_cast<std::size_t>(std::clamp(levelAt(surface.nearest) - 0.1, 0., coarsest));
+    const auto last =
+        static_cast<std::size_t>(std::clamp(levelAt(surface.farthest) + 1.1, 0., coarsest));
+    for (std::size_t k = first; k <= last; ++k) {
         const double uScale = double{levels[k].width} / levels[0].width;
         const double vScale = double{levels[k].height} / levels[0].height;
         const double u = texelAtCamera.x() * uScale - 0.5;
@@ -105,12 +119,13 @@ void setUp(Surface& surface, const Triangle& triangle, const MipTexture& texture
     const Eigen::Vector3d vGradient = stepA.y() * alongA + stepB.y() * alongB;
     surface.u = affineInPixels(uGradient, camera);
     surface.v = affineInPixels(vGradient, camera);
-    setLevels(surface, texel(0) - Eigen::Vector2d(uGradient.dot(p[0]), vGradient.dot(p[0])));
 
     // The map pixel -> texel is projective, H / inverse depth: its area factor is
     // det H / (inverse depth)^3, and det H = normal . (uGradient x vGradient) / distance / (fx fy).
     surface.footprint = static_cast<float>(
-        std::abs(normal.dot(uGradient.cross(vGradient)) / distance) / (camera.fx() * camera.fy()));
+        kFootprint * std::abs(normal.dot(uGradient.cross(vGradient)) / distance) /
+        (camera.fx() * camera.fy()));
+    setLevels(surface, texel(0) - Eigen::Vector2d(uGradient.dot(p[0]), vGradient.dot(p[0])));
 }
 
 /// The surfaces met so far in this view; a triangle that maps to a taken place replaces it.
@@ -138,9 +153,9 @@ class SurfaceCache {
     std::array<Surface, 256> surfaces_;
 };
 
-/// i modulo n for whole numbers.
+/// i modulo n for whole numbers; within [0, n) whatever i is.
 [[gnu::always_inline]] inline Float wrapped(Float i, float n, float inverse) {
-    return i - n * rounded((i + 0.5F) * inverse - 0.5F);
+    return simd::clamp(i - n * rounded((i + 0.5F) * inverse - 0.5F), 0.F, n - 1.F);
 }
 
 /// The 16-bit halves of 32 bits.
@@ -148,15 +163,6 @@ struct Halves {
     Float low, high;
     explicit Halves(Int bits) : low(toFloat(bits & 0xffff)), high(toFloat((bits >> 16) & 0xffff)) {}
 };
-
-using Quads [[gnu::vector_size(kWidth * 4)]] = std::int64_t;
-
-/// The entries for lanes 0 and 1 (plus `shift`) of each block of four.
-template <int shift, std::size_t... i>
-[[gnu::always_inline]] inline Quads gathered(const std::uint64_t* quads, Int index,
-                                             std::index_sequence<i...> /*lanes*/) {
-    return Quads{static_cast<std::int64_t>(quads[index[i / 2 * 4 + i % 2 + shift]])...};
-}
 
 /// A texture's grey values, times MipTexture::kOne, at one pyramid level.
 [[gnu::always_inline]] inline Float bilinear(const MipTexture& texture, std::size_t level,
@@ -170,16 +176,10 @@ template <int shift, std::size_t... i>
         toInt(wrapped(row + origin.vWhole, image.height, image.inverseHeight)) * image.pitch +
         toInt(wrapped(column + origin.uWhole, image.width, image.inverseWidth));
 
-    // In each block of four lanes two go to either vector, so that upper and lower texels come
-    // apart by one shuffle within the block.
-    const std::uint64_t* quads = texture.quads(level);
-    const auto half = std::make_index_sequence<kWidth / 2>{};
-    const auto first = std::bit_cast<Int>(gathered<0>(quads, index, half));
-    const auto second = std::bit_cast<Int>(gathered<2>(quads, index, half));
-    Int even{};
-    for (int i = 0; i < kWidth; ++i) even[i] = i / 4 * 4 + i % 2 * 2 + (i % 4 / 2) * kWidth;
-    const Halves above(__builtin_shuffle(first, second, even));
-    const Halves below(__builtin_shuffle(first, second, even + 1));
+    // A texel and its right neighbour are 32 bits in one piece.
+    const std::uint16_t* texels = texture.texels(level);
+    const Halves above(simd::gather<sizeof(*texels)>(texels, index));
+    const Halves below(simd::gather<sizeof(*texels)>(texels + image.pitch, index));
     const Float s = x - column;
     const Float top = above.low + (above.high - above.low) * s;
     const Float bottom = below.low + (below.high - below.low) * s;
@@ -214,25 +214,63 @@ Float trilinear(const Surface& surface, Float z, Float u, Float v, unsigned acti
     return grey * (1.F / MipTexture::kOne);
 }
 
-/// The pixels of a strip that see one triangle.
-void shadeStrip(const Surface& surface, Float x, float y, Int active, Float& depth, Float& grey) {
-    if (surface.edgeOn) return;
-    const Float z =
-        1.F / simd::clamp(surface.inverseDepth(x, y), surface.farthest, surface.nearest);
-    depth = active ? z : depth;
-    if (const auto uniform = surface.texture->uniform()) {
-        grey = active ? splat(*uniform) : grey;
-        return;
+/// Depth and grey value of one row's pixels.
+struct PixelRow {
+    float* depth;
+    float* grey;
+
+    /// Writes kWidth pixels from x, but not beyond the row. What lies to the right of the pixels
+    /// that are meant gets its own values later.
+    void store(unsigned x, unsigned width, Float z, Float intensity) const {
+        if (x + kWidth <= width) {
+            simd::store(depth + x, z);
+            simd::store(grey + x, intensity);
+        } else {
+            std::memcpy(depth + x, &z, (width - x) * sizeof(float));
+            std::memcpy(grey + x, &intensity, (width - x) * sizeof(float));
+        }
     }
-    const Float u = surface.u(x, y) * z;
-    const Float v = surface.v(x, y) * z;
-    grey = active ? trilinear(surface, z, u, v, bits(active)) : grey;
+};
+
+/// Pixels [begin, end) of row y, which all see the same surface.
+void shadeRun(const Surface& surface, unsigned begin, unsigned end, unsigned width, unsigned row,
+              const PixelRow& pixels) {
+    const auto y = static_cast<float>(row);
+    const auto uniform = surface.texture->uniform();
+    for (unsigned x = begin; x < end; x += kWidth) {
+        if (surface.edgeOn) {
+            pixels.store(x, width, Float{}, Float{});
+            continue;
+        }
+        const Float column = simd::ramp() + static_cast<float>(x);
+        const Float w = surface.inverseDepth(column, y);
+        const Float z = 1.F / simd::clamp(w, surface.farthest, surface.nearest);
+        if (uniform) {
+            pixels.store(x, width, z, splat(*uniform));
+            continue;
+        }
+        const Float u = surface.u(column, y) * z;
+        const Float v = surface.v(column, y) * z;
+        const unsigned active = simd::kAllLanes >> (kWidth - std::min<unsigned>(kWidth, end - x));
+        pixels.store(x, width, z, trilinear(surface, z, u, v, active));
+    }
+}
+
+/// Where the run of pixels that see the same as pixel `begin` ends.
+unsigned endOfRun(const std::uint32_t* ids, unsigned begin, unsigned width) {
+    const auto first = static_cast<int>(ids[begin]);
+    for (unsigned x = begin; x < width; x += kWidth) {
+        const auto other = bits(simd::load<Int>(ids + x) != first);
+        if (other != 0) return std::min<unsigned>(width, x + std::countr_zero(other));
+    }
+    return width;
 }
 
 }  // namespace
 
 void VisibilityImage::resize(unsigned width, unsigned height) {
-    pitch = (width + 15U) / 16U * 16U;
+    constexpr unsigned kMostLanes = 16;
+    pitch = (width + 2U * kMostLanes - 1U) / kMostLanes * kMostLanes;
     ids.resize(std::size_t{pitch} * ((height + 3U) / 4U * 4U));
 }
 
@@ -244,31 +282,18 @@ SurfaceShader::SurfaceShader(const Scene& scene) : scene_(&scene) {
 void SurfaceShader::shade(const Camera& camera, const Pose& T_c_w, const VisibilityImage& visible,
                           View& view) const {
     SurfaceCache surfaces(*scene_, textures_, camera, T_c_w);
-    const Float lane = simd::ramp();
     for (unsigned y = 0; y < camera.height; ++y) {
         const std::uint32_t* ids = visible.row(y);
-        for (unsigned x = 0; x < camera.width; x += kWidth) {
-            const unsigned count = std::min<unsigned>(kWidth, camera.width - x);
-            const Int id = simd::load<Int>(ids + x);
-            unsigned todo = bits(id != static_cast<int>(VisibilityImage::kNothing)) &
-                            (simd::kAllLanes >> (kWidth - count));
-            Float depth{};
-            Float grey{};
-            while (todo != 0) {
-                const int first = id[std::countr_zero(todo)];
-                const Int active = id == first;
-                shadeStrip(surfaces[static_cast<std::uint32_t>(first)],
-                           lane + static_cast<float>(x), static_cast<float>(y), active, depth,
-                           grey);
-                todo &= ~bits(active);
-            }
-            if (count == kWidth) {
-                simd::store(view.depth[y] + x, depth);
-                simd::store(view.intensity[y] + x, grey);
+        const PixelRow pixels{view.depth[y], view.intensity[y]};
+        for (unsigned begin = 0; begin < camera.width;) {
+            const unsigned end = endOfRun(ids, begin, camera.width);
+            if (ids[begin] == VisibilityImage::kNothing) {
+                std::fill(pixels.depth + begin, pixels.depth + end, 0.F);
+                std::fill(pixels.grey + begin, pixels.grey + end, 0.F);
             } else {
-                std::memcpy(view.depth[y] + x, &depth, count * sizeof(float));
-                std::memcpy(view.intensity[y] + x, &grey, count * sizeof(float));
+                shadeRun(surfaces[ids[begin]], begin, end, camera.width, y, pixels);
             }
+            begin = end;
         }
     }
 }

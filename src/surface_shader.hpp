@@ -21,7 +21,7 @@ struct VisibilityImage {
     std::uint32_t* row(unsigned v) { return ids.data() + std::size_t{v} * pitch; }
     const std::uint32_t* row(unsigned v) const { return ids.data() + std::size_t{v} * pitch; }
 
-    unsigned pitch = 0;  ///< of rows, a multiple of 16; also rows are padded to a multiple of 4
+    unsigned pitch = 0;  ///< of rows, beyond the width by a vector; rows in fours
     std::vector<std::uint32_t> ids;
 };
 
@@ -29,9 +29,9 @@ struct VisibilityImage {
 /// (texture coordinates / depth) are affine in the pixel, with coefficients found in double
 /// precision once per triangle and view: smoother in the pose than a ray's own hit distance.
 ///
-/// Textures are looked up trilinearly. The level follows the geometric mean of the pixel's
-/// footprint, sqrt(area): on an oblique surface that blurs the far direction a little less and the
-/// near direction a little more than isotropic footprints would want.
+/// Textures are looked up trilinearly, in 16 bits. The level follows the geometric mean of the
+/// pixel's footprint, sqrt(area): on an oblique surface that blurs the far direction a little less
+/// and the near direction a little more than isotropic footprints would want.
 class SurfaceShader {
   public:
     /// @param scene must outlive this
