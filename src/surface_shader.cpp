@@ -67,8 +67,8 @@ void setLevels(Surface& surface, const Eigen::Vector2d& texelAtCamera) {
     };
     const auto first =
         static_cast<std::size_t>(std::clamp(levelAt(surface.nearest) - 0.1, 0., coarsest));
-    const auto last =
-        static_cast<std::size_t>(std::clamp(levelAt(surface.farthest) + 1.1, 0., coarsest));
+    const auto last =  // at least 1: level 0 is blended with the next one whatever the weight
+        static_cast<std::size_t>(std::clamp(levelAt(surface.farthest) + 1.1, 1., coarsest));
     for (std::size_t k = first; k <= last; ++k) {
         const double uScale = double{levels[k].width} / levels[0].width;
         const double vScale = double{levels[k].height} / levels[0].height;
