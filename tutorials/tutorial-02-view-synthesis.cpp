@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What would a camera see from there? Once from the triangles of a scene, once from an OctoMap that
+// was built by looking at it; and how much of the scene's information survives the cells of a map.
+#include <cstdio>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "map_fusion.hpp"
+#include "mesh_renderer.hpp"
+#include "photometric.hpp"
+#include "voxel_renderer.hpp"
+
+using namespace photonav;
+
+namespace {
+
+//! [scene]
+/// A crate on a carpet, a wall behind. Surfaces are a little off the borders of the map's cells, as
+/// real ones are.
+Scene crateOnCarpet() {
+    Scene scene;
+    const auto carpet = addTexture(scene, valueNoise({.cells = {0.8, 0.4, 0.2}, .seed = 1}));
+    const auto plaster = addTexture(scene, valueNoise({.cells = {1., 0.5}, .mean = 0.6}));
+    const auto boards = addTexture(scene, checker({.cell = 0.28, .softEdge = 0.06}));
+    addPlane(scene, {-4., 4., -0.01}, {8., 0., 0.}, {0., -8., 0.}, carpet);
+    addPlane(scene, {2.51, 4., 2.5}, {0., -8., 0.}, {0., 0., -2.51}, plaster);
+    addBox(scene, {0.61, -0.43, -0.01}, {1.44, 0.42, 0.69}, boards);
+    return scene;
+}
+//! [scene]
+
+Pose bodyAt(const Eigen::Vector3d& position) { return Pose(Eigen::Translation3d(position)); }
+
+//! [map]
+/// Flies over the scene with both cameras and enters what they see into a map.
+TexturedOcTree mapScene(const ViewSource& scene, const Camera& camera, double resolution) {
+    TexturedOcTree map(resolution);
+    View view;
+    for (const double x : {-1., -0.4, 0.2, 0.8}) {
+        for (const double y : {-0.8, 0., 0.8}) {
+            for (const double belowHorizon : {std::numbers::pi / 2., std::numbers::pi / 4.}) {
+                const Pose T_w_c = bodyAt({x, y, 2.}) * cameraMount(belowHorizon);
+                scene.render(camera, T_w_c.inverse(), view);
+                fuse(map, view, camera, T_w_c.inverse());
+            }
+        }
+    }
+    return map;
+}
+//! [map]
+
+//! [compare]
+/// Mean absolute difference of the grey values that both views know.
+double difference(const View& a, const View& b) {
+    double sum = 0.;
+    int pixels = 0;
+    for (unsigned i = 0; i < a.depth.getSize(); ++i) {
+        if (a.depth.bitmap[i] <= 0.F || b.depth.bitmap[i] <= 0.F) continue;
+        sum += std::abs(a.intensity.bitmap[i] - b.intensity.bitmap[i]);
+        ++pixels;
+    }
+    return sum / std::max(1, pixels);
+}
+
+void compare(const char* name, const View& voxels, const View& mesh, const Camera& camera) {
+    const double information = photometricInformation(voxels, camera).trace() /
+                               photometricInformation(mesh, camera).trace();
+    std::printf("  %s  mean absolute difference %.3f   information %3.0f %%\n", name,
+                difference(voxels, mesh), 100. * information);
+}
+//! [compare]
+
+cv::Mat picture(const ImageF& image, double scale = 1.) {
+    const cv::Mat grey(image.getHeight(), image.getWidth(), CV_32F, image.bitmap);
+    cv::Mat bytes, large;
+    grey.convertTo(bytes, CV_8U, 255. * scale);
+    cv::resize(bytes, large, {}, 2., 2., cv::INTER_NEAREST);
+    cv::copyMakeBorder(large, large, 4, 4, 4, 4, cv::BORDER_CONSTANT, {255});
+    return large;
+}
+
+}  // namespace
+
+int main() {
+    const Camera camera = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
+    const MeshRenderer mesh(crateOnCarpet());
+    //! [renderers]
+    const Camera fine = scaled(camera, 2.);  // the map is made from larger images
+    const VoxelRenderer coarseMap(mapScene(mesh, fine, 0.05), UnknownPolicy::free);
+    const VoxelRenderer fineMap(mapScene(mesh, fine, 0.025), UnknownPolicy::free);
+    //! [renderers]
+
+    cv::Mat sheet;
+    for (const auto& [name, belowHorizon] : {std::pair{"downward camera", std::numbers::pi / 2.},
+                                             {"45-degree camera", std::numbers::pi / 4.}}) {
+        //! [views]
+        const Pose T_w_c = bodyAt({0.1, 0.3, 1.8}) * cameraMount(belowHorizon);
+        View truth, coarse, finer;
+        mesh.render(camera, T_w_c.inverse(), truth);
+        coarseMap.render(camera, T_w_c.inverse(), coarse);
+        fineMap.render(camera, T_w_c.inverse(), finer);
+        //! [views]
+        std::printf("%s, from a pose the map was not made from\n", name);
+        compare("cells of 5 cm  ", coarse, truth, camera);
+        compare("cells of 2.5 cm", finer, truth, camera);
+        cv::Mat row;
+        cv::hconcat(std::vector{picture(truth.intensity), picture(truth.depth, 0.25),
+                                picture(coarse.intensity), picture(finer.intensity)},
+                    row);
+        sheet.push_back(row);
+    }
+    if (!cv::imwrite("view_synthesis.png", sheet)) return 1;
+    std::puts("wrote view_synthesis.png: mesh, its depth, map of 5 cm, map of 2.5 cm");
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The paper's first scene for tutorials 4 and 5: a floor that is white on the left and textured on
+// the right (x > 4.95 m), a robot at a height of 2 m, a camera that looks straight down.
+#pragma once
+
+#include <memory>
+#include <numbers>
+#include <string>
+
+#include "belief.hpp"
+#include "mesh_renderer.hpp"
+#include "scene.hpp"
+
+namespace two_textures {
+
+using namespace photonav;
+
+inline MeshRenderer loadFloor(int argc, char** argv) {
+    return MeshRenderer(
+        loadScene(argc > 1 ? argv[1] : PHOTONAV_SOURCE_DIR "/config/scenes/two_textures.yaml"));
+}
+
+inline FlightSpace flightSpace() {
+    return {StateKind::position, {Eigen::Vector3d(-1., -0.5, 2.), Eigen::Vector3d(9., 9.5, 2.)}};
+}
+
+/// What the camera would see over `floor`, remembered by cells of `pitch` metres.
+inline std::shared_ptr<InformationField> views(const ViewSource& floor, double pitch) {
+    const Camera camera = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
+    return std::make_shared<InformationField>(
+        photometricModel(floor, camera, {.sigma = 0.02, .scale = 0.08}),
+        cameraMount(std::numbers::pi / 2.), InformationField::Options{.positionPitch = pitch});
+}
+
+inline BeliefOptions beliefs(double alpha) {
+    BeliefOptions options;
+    options.alpha = alpha;
+    options.initialCovariance.diagonal() << 0.115, 0.115, 0.038, 5e-6, 5e-6, 5e-5;
+    options.motionNoise.diagonal() << 1e-4, 1e-4, 1e-4, 4.5e-6, 4.5e-6, 1.35e-4;  // per metre
+    return options;
+}
+
+}  // namespace two_textures
