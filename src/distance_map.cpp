@@ -203,7 +203,7 @@ void markNode(const TexturedOcTree& map, const TexturedOcTreeNode* node,
         fillBox(cells, first, first + size, map.isNodeOccupied(node) ? 1 : 0);
         return;
     }
-    for (unsigned i = 0; i < 8; ++i) {
+    for (int i = 0; i < 8; ++i) {
         if (!map.nodeChildExists(node, i)) continue;
         const Eigen::Array3i half(i & 1, (i >> 1) & 1, i >> 2);
         markNode(map, map.getNodeChild(node, i), first + half * (size / 2), height - 1, cells);

@@ -12,9 +12,9 @@ namespace photonav {
 
 /// One recorded moment.
 struct RecordedFrame {
-    double timestamp = 0.;  ///< of the colour image [s]
     Pose T_c_w = Pose::Identity();
-    View view;  ///< measured; depth 0: no measurement
+    View view;              ///< measured; depth 0: no measurement
+    double timestamp = 0.;  ///< of the colour image [s]
 };
 
 /// What a dataset holds, without the images.

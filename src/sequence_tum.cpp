@@ -223,7 +223,7 @@ RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
     if (depth.type() != CV_16UC1) {
         throw InputError(entry.depthFile, "", "expected one channel of 16 bits");
     }
-    RecordedFrame frame{entry.timestamp, entry.T_c_w, {}};
+    RecordedFrame frame{entry.T_c_w, {}, entry.timestamp};
     frame.view.intensity.resize(camera.height, camera.width);
     frame.view.depth.resize(camera.height, camera.width, 0.F);
     const vpCameraParameters& k = camera.intrinsics;
