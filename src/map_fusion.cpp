@@ -30,7 +30,8 @@ class Scan {
     explicit Scan(const Eigen::AlignedBox3d& cells)
         : first_(cells.min().array().floor().cast<int>() / 4 * 4 - 4),
           bricks_((cells.max().array().floor().cast<int>() - first_) / 4 + 2),
-          stride_{1, 4 * bricks_.x(), 16L * bricks_.x() * bricks_.y()},
+          stride_{1, std::ptrdiff_t{4} * bricks_.x(),
+                  std::ptrdiff_t{16} * bricks_.x() * bricks_.y()},
           crossed_(64 * bricks_.cast<std::size_t>().prod(), 0),
           pixelsOf_(bricks_.cast<std::size_t>().prod(), kNoPixels) {}
 
@@ -153,8 +154,9 @@ void Scan::apply(TexturedOcTree& map, const Vector3d& eye) const {
     std::size_t brick = 0;
     Array3i corner;
     const auto texture = [&](TexturedOcTreeNode& node, unsigned bit) {
-        const Array3i inside((bit & 1U) | (bit >> 2U & 2U), (bit >> 1U & 1U) | (bit >> 3U & 2U),
-                             (bit >> 2U & 1U) | (bit >> 4U & 2U));
+        const int b = static_cast<int>(bit);
+        const Array3i inside((b & 1) | (b >> 2 & 2), (b >> 1 & 1) | (b >> 3 & 2),
+                             (b >> 2 & 1) | (b >> 4 & 2));
         observeFaces(node, corner + inside, pixels_[pixelsOf_[brick]][bit], eye);
     };
     for (int z = 0; z < bricks_.z(); ++z) {

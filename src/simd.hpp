@@ -46,10 +46,13 @@ inline Float ramp() {
     return lanes;
 }
 
-/// For |a| < 2^31.
+/// For |a| < 2^31; any number else (lanes that do not count may hold anything).
 inline Int floor(const Float& a) {
-    const Int truncated = __builtin_convertvector(a, Int);
-    return truncated + (toFloat(truncated) > a);
+    using Unsigned [[gnu::vector_size(kWidth * 4)]] = std::uint32_t;  // wraps
+    const Int truncated = toInt(a);
+    const Int above = toFloat(truncated) > a;
+    return reinterpret_cast<Int>(reinterpret_cast<Unsigned>(truncated) +
+                                 reinterpret_cast<Unsigned>(above));
 }
 
 /// The nearest whole number, for |a| < 2^22; either one of two that are equally near.

@@ -34,8 +34,11 @@ void FaceTexture::observe(float grey, float addedWeight) {
     mean += (grey - mean) * (addedWeight / weight);
 }
 
+// The base's copy would make children of the base's type.
+// NOLINTNEXTLINE(bugprone-copy-constructor-init)
 TexturedOcTreeNode::TexturedOcTreeNode(const TexturedOcTreeNode& other)
-    : octomap::OcTreeNode(), faces(other.faces) {
+    : octomap::OcTreeNode(),  // NOLINT(readability-redundant-member-init): g++ asks for it
+      faces(other.faces) {
     value = other.value;
     if (other.children == nullptr) return;
     allocChildren();

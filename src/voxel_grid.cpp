@@ -28,11 +28,11 @@ struct BrickSurface {
 unsigned cellBit(int x, int y, int z) { return (x & 3) | (y & 3) << 2 | (z & 3) << 4; }
 
 std::uint16_t quantised(float grey) {
-    return static_cast<std::uint16_t>(std::clamp(grey, 0.F, 1.F) * 65535.F + 0.5F);
+    return static_cast<std::uint16_t>(std::lrint(std::clamp(grey, 0.F, 1.F) * 65535.F));
 }
 
-Array3i childCorner(const Array3i& lowest, int edge, unsigned child) {
-    return lowest + edge / 2 * Array3i(child & 1U, child >> 1U & 1U, child >> 2U & 1U);
+Array3i childCorner(const Array3i& lowest, int edge, int child) {
+    return lowest + edge / 2 * Array3i(child & 1, child >> 1 & 1, child >> 2 & 1);
 }
 
 /// Builds a VoxelGrid in the order of its member functions.
@@ -91,7 +91,7 @@ void GridBuilder::extendBox(const TexturedOcTreeNode& node, const Array3i& lowes
                             Array3i& low, Array3i& high) const {
     if ((lowest >= low).all() && (lowest + edge <= high).all()) return;
     bool leaf = true;
-    for (unsigned i = 0; i < 8; ++i) {
+    for (int i = 0; i < 8; ++i) {
         if (!map_.nodeChildExists(&node, i)) continue;
         leaf = false;
         extendBox(*map_.getNodeChild(&node, i), childCorner(lowest, edge, i), edge / 2, low, high);
@@ -118,7 +118,7 @@ void GridBuilder::fill(UnknownPolicy unknown) {
 /// A plain recursion: far quicker than OctoMap's iterators.
 void GridBuilder::visit(const TexturedOcTreeNode& node, const Array3i& lowest, int edge) {
     bool leaf = true;
-    for (unsigned i = 0; i < 8; ++i) {
+    for (int i = 0; i < 8; ++i) {
         if (!map_.nodeChildExists(&node, i)) continue;
         leaf = false;
         visit(*map_.getNodeChild(&node, i), childCorner(lowest, edge, i), edge / 2);

@@ -16,9 +16,9 @@ struct FacePatch {
     static constexpr int kSide = 6;
     static constexpr int kValidIndex = kSide * kSide;  ///< of `valid`, in 16-bit words
 
-    std::array<std::uint16_t, kSide * kSide> grey{};  ///< 65535 is white
-    std::uint16_t valid = 0;                          ///< bit 4 * q + p: the face knows its grey
-    std::array<std::uint16_t, 3> unused{};            ///< 80 bytes; also lets one read past valid
+    std::array<std::uint16_t, kValidIndex> grey{};  ///< 65535 is white
+    std::uint16_t valid = 0;                        ///< bit 4 * q + p: the face knows its grey
+    std::array<std::uint16_t, 3> unused{};          ///< 80 bytes; also lets one read past valid
 };
 
 /// Cells of the map's bounding box and a border of one cell, x fastest, counted from the first

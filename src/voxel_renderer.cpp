@@ -106,8 +106,7 @@ Rays PacketTracer::start(unsigned u, unsigned v) const {
     };
     Rays rays;
     rays.direction = {component(0), component(1), component(2)};
-    rays.inverse = {1.F / rays.direction.x, 1.F / rays.direction.y,
-                    1.F / rays.direction.z};
+    rays.inverse = {1.F / rays.direction.x, 1.F / rays.direction.y, 1.F / rays.direction.z};
     rays.t = simd::splat(0.F);
     rays.tExit = simd::splat(1e30F);
     rays.axis = simd::splat(kNoFace);
@@ -120,9 +119,8 @@ Rays PacketTracer::start(unsigned u, unsigned v) const {
         const Float inside =
             simd::clamp(at, static_cast<float>(low_[a]), static_cast<float>(high_[a]) - 0.5F);
         const Int entered = simd::floor(inside);
-        return rays.axis == a
-                   ? (direction > 0.F ? simd::splat(low_[a]) : simd::splat(high_[a] - 1))
-                   : entered;
+        return rays.axis == a ? (direction > 0.F ? simd::splat(low_[a]) : simd::splat(high_[a] - 1))
+                              : entered;
     };
     rays.cell = {cell(rays.direction.x, 0), cell(rays.direction.y, 1), cell(rays.direction.z, 2)};
     return rays;
