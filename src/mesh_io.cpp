@@ -62,7 +62,7 @@ std::optional<std::string> baseTextureName(const aiMaterial& material) {
 class MeshReader {
   public:
     MeshReader(const std::string& file, const MeshOptions& options, const aiScene& input)
-        : file_(file), T_w_file_(fileToWorld(file, options)), input_(input) {}
+        : T_w_file_(fileToWorld(file, options)), file_(file), input_(input) {}
 
     Scene read() {
         addNode(*input_.mRootNode, T_w_file_);
@@ -194,13 +194,13 @@ class MeshReader {
         return image;
     }
 
-    const std::string& file_;
     Eigen::Affine3d T_w_file_;
+    const std::string& file_;
     const aiScene& input_;
     Scene scene_;
+    std::map<std::pair<unsigned, std::string>, std::uint32_t> textures_;
     std::size_t dropped_ = 0;
     std::optional<std::uint32_t> ramp_;
-    std::map<std::pair<unsigned, std::string>, std::uint32_t> textures_;
 };
 
 }  // namespace

@@ -107,7 +107,8 @@ class RayCaster {
         }
         intersect(valid.data(), scene_.get(), &context, &packet);
         for (unsigned row = 0; row < kTileHeight; ++row) {
-            std::memcpy(visible.row(y0 + row) + x0, packet.hit.primID + row * kTileWidth,
+            std::memcpy(visible.row(y0 + row) + x0,
+                        packet.hit.primID + std::size_t{row} * kTileWidth,
                         kTileWidth * sizeof(std::uint32_t));
         }
     }
@@ -119,7 +120,11 @@ class RayCaster {
 }  // namespace
 
 struct MeshRenderer::Impl {
-    explicit Impl(Scene input) : scene(std::move(input)), caster(scene.triangles), rasterizer(scene.triangles), shader(scene) {}
+    explicit Impl(Scene input)
+        : scene(std::move(input)),
+          caster(scene.triangles),
+          rasterizer(scene.triangles),
+          shader(scene) {}
 
     Scene scene;
     RayCaster caster;
@@ -139,7 +144,8 @@ void MeshRenderer::render(const Camera& camera, const Pose& T_c_w, View& view) c
     visible.resize(camera.width, camera.height);
     view.intensity.resize(camera.height, camera.width);
     view.depth.resize(camera.height, camera.width);
-    if (impl_->scene.triangles.size() * kPixelsPerTriangle <= camera.width * camera.height) {
+    if (impl_->scene.triangles.size() * kPixelsPerTriangle <=
+        std::size_t{camera.width} * camera.height) {
         impl_->rasterizer.rasterize(camera, T_c_w, visible);
     } else {
         impl_->caster.cast(camera, T_c_w, visible);

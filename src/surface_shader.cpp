@@ -271,7 +271,7 @@ unsigned endOfRun(const std::uint32_t* ids, unsigned begin, unsigned width) {
 void VisibilityImage::resize(unsigned width, unsigned height) {
     constexpr unsigned kMostLanes = 16;
     pitch = (width + 2U * kMostLanes - 1U) / kMostLanes * kMostLanes;
-    ids.resize(std::size_t{pitch} * ((height + 3U) / 4U * 4U));
+    ids.resize(pitch * ((std::size_t{height} + 3U) / 4U * 4U));
 }
 
 SurfaceShader::SurfaceShader(const Scene& scene) : scene_(&scene) {
