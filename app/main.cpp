@@ -91,6 +91,8 @@ Command mapCommand(CLI::App& app, const std::string& commandLine) {
     parser->add_option("--out", options->out, "result folder (default: out/map-<dataset>)");
     parser->add_option("--resolution", options->resolution, "edge of a cell [m]")
         ->capture_default_str();
+    parser->add_option("--camera", options->cameraFile,
+                       "camera.yaml to use instead of the dataset's");
     parser->add_option("--up", options->up, "axis of the recorded world that points up: x ... -z")
         ->capture_default_str();
     parser->add_option("--every", options->every, "use every n-th frame")->capture_default_str();

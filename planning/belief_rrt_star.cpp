@@ -13,8 +13,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFirstSearch = 100;  // vertices
 constexpr double kSearchGrowth = 2.;       // of the roadmap between searches
 
-// A covariance within this share of another counts as not better, or near-copies fill the labels.
-constexpr double kDominanceSlack = 0.02;
+constexpr double kDominanceSlack = 0.02;  // see isDominated()
+constexpr double kMinLever = 1.;          // [m]
+constexpr double kMaxLever = 100.;        // [m]
 
 }  // namespace
 
@@ -60,7 +61,8 @@ void BeliefRRTstar::search() {
         open.pop_back();
         auto& labels = labelsOf_[label->vertex->index];
         if (labels.size() >= maxLabels_) continue;
-        if (isDominated(*label->vertex, label->belief.covariance)) continue;
+        const double rest = toGoal[label->vertex->index];
+        if (isDominated(*label->vertex, label->belief.covariance, rest)) continue;
         labels.push_back(static_cast<int>(settled_.size()));
         settled_.push_back(*label);
         if (label->vertex->isGoal) return offerPath(labels.back());
@@ -109,17 +111,25 @@ void BeliefRRTstar::expand(int label, const std::vector<double>& toGoal, Open& o
 
         const Belief arrival = model_->fly(belief, edge->motion, backward);
         const double bound = arrival.cost + model_->lowerBound(rest);
-        if (bound > limit || isDominated(*next, arrival.covariance)) continue;
+        if (bound > limit || isDominated(*next, arrival.covariance, rest)) continue;
         open.push_back(std::make_unique<Label>(Label{next, label, arrival, bound}));
         std::push_heap(open.begin(), open.end(), later);
     }
 }
 
-/// Labels settled earlier cost less, so the covariance decides: Sigma' <= (1 + slack) Sigma.
-bool BeliefRRTstar::isDominated(const Vertex& vertex, const Matrix6& covariance) const {
+/// Labels settled earlier cost less, so the covariance decides: dominated is what is nowhere better
+/// by more than the slack, neither relative to itself nor to the whole. Without the second part a
+/// label lives on for a hair less roll, and near-copies crowd out the one that matters. A rotation
+/// error counts by what it will do to the position on the way to the goal.
+bool BeliefRRTstar::isDominated(const Vertex& vertex, const Matrix6& covariance,
+                                double toGoal) const {
+    const double lever = std::clamp(toGoal, kMinLever, kMaxLever);
+    Matrix6 limit = (1. + kDominanceSlack) * covariance;
+    const double whole = kDominanceSlack * weightedTrace(covariance, lever);
+    limit.diagonal().head<3>().array() += whole;
+    limit.diagonal().tail<3>().array() += whole / (lever * lever);
     for (const int label : labelsOf_[vertex.index]) {
-        const Matrix6 excess =
-            (1. + kDominanceSlack) * covariance - settled_[label].belief.covariance;
+        const Matrix6 excess = limit - settled_[label].belief.covariance;
         if ((excess.diagonal().array() < 0.).any()) continue;
         if (excess.llt().info() == Eigen::Success) return true;
     }

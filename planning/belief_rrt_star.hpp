@@ -41,7 +41,7 @@ class BeliefRRTstar : public BeliefPlanner {
     void search();
     std::vector<double> distancesToGoal() const;
     void expand(int label, const std::vector<double>& toGoal, Open& open);
-    bool isDominated(const Vertex& vertex, const Matrix6& covariance) const;
+    bool isDominated(const Vertex& vertex, const Matrix6& covariance, double toGoal) const;
     void offerPath(int label);
 
     unsigned maxLabels_;
