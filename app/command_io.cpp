@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "atomic_file.hpp"
 #include "error.hpp"
 
 namespace photonav {
@@ -17,9 +18,9 @@ void prepareFolder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw InputError(folder.string(), "", "cannot be made: " + error.message());
-    if (access(folder.c_str(), W_OK | X_OK) != 0) {
-        throw InputError(folder.string(), "", "not writable");
-    }
+    const fs::path probe = folder / ".probe";
+    writeFileAtomically(probe, "");
+    fs::remove(probe, error);
 }
 
 fs::path resultFolder(const CommandOptions& options, const std::string& command) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "atomic_file.hpp"
+#include "command_io.hpp"
 #include "error.hpp"
 #include "map_comparison.hpp"
 #include "octree_file.hpp"
@@ -58,16 +59,6 @@ void checkOptions(const MapOptions& options) {
     const auto& axes = axisNames();
     require(std::find(axes.begin(), axes.end(), options.up) != axes.end(), "--up",
             fmt::format("'{}' is not one of {}", options.up, fmt::join(axes, ", ")));
-}
-
-/// Finds out before the work whether its results can be written.
-void makeFolder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw InputError(folder.string(), "", "cannot be made: " + error.message());
-    const fs::path probe = folder / "result.json.probe";
-    writeFileAtomically(probe, "");
-    fs::remove(probe, error);
 }
 
 /// The frames to use, in the world of the map.
@@ -172,12 +163,10 @@ json meansOf(const json& compared) {
 json vectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Cells of the finest size, free and occupied, and the box of the occupied ones [m].
-json voxelsJson(const TexturedOcTree& map, ReportVoxels& voxels) {
+json voxelsJson(const TexturedOcTree& map) {
     std::size_t free = 0;
     std::size_t occupied = 0;
     Eigen::AlignedBox3d box;
-    std::vector<Eigen::Vector3f> centers;
-    std::vector<std::uint8_t> grey;
     for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
         const std::size_t cells = std::size_t(1) << (3 * (map.getTreeDepth() - leaf.getDepth()));
         if (!map.isNodeOccupied(*leaf)) {
@@ -189,12 +178,7 @@ json voxelsJson(const TexturedOcTree& map, ReportVoxels& voxels) {
         const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * leaf.getSize());
         box.extend(center - half);
         box.extend(center + half);
-        // Faces decide whether leaves merge, so an occupied leaf is nearly always a single cell.
-        centers.push_back(center.cast<float>());
-        grey.push_back(
-            static_cast<std::uint8_t>(std::lround(255.F * leaf->meanGrey().value_or(0.5F))));
     }
-    voxels = makeReportVoxels(centers, grey, map.getResolution());
     json result = {{"occupied", occupied}, {"free", free}};
     if (!box.isEmpty()) result["bounds"] = {vectorJson(box.min()), vectorJson(box.max())};
     return result;
@@ -267,7 +251,7 @@ DrawnPath flown(const Trajectory& trajectory) {
 }
 
 void writeMapReport(const MapOptions& options, const json& result, const Camera& camera,
-                    const Trajectory& trajectory, ReportVoxels voxels,
+                    const Trajectory& trajectory, const TexturedOcTree& map,
                     const std::vector<Strip>& strips) {
     ReportData report;
     report.title = "Map of " + fs::path(options.dataset).lexically_normal().filename().string();
@@ -275,7 +259,7 @@ void writeMapReport(const MapOptions& options, const json& result, const Camera&
     report.commandLine = options.commandLine;
     report.version = PHOTONAV_VERSION;
     report.result = result;
-    report.voxels = std::move(voxels);
+    report.voxels = makeReportVoxels(map);
     report.paths = {flown(trajectory)};
     report.start = trajectory.front().T_w_c.translation();
     report.goal = trajectory.back().T_w_c.translation();
@@ -285,6 +269,7 @@ void writeMapReport(const MapOptions& options, const json& result, const Camera&
         report.figures.push_back({fmt::format("Used frame {}", strip.index), strip.picture});
     }
     report.tables = {summary(result)};
+    writeFileAtomically(options.out / "report.json", toJson(report).dump());
     writeReport(options.out / "report.html", report);
 }
 
@@ -292,11 +277,11 @@ void writeMapReport(const MapOptions& options, const json& result, const Camera&
 
 MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted) {
     checkOptions(options);
-    makeFolder(options.out);
     Stopwatch watch;
     json time;
     std::size_t recorded = 0;
     const Sequence sequence = readAligned(options, recorded);
+    prepareFolder(options.out);
     time["read_s"] = watch.lap();
 
     TexturedOcTree map(options.resolution);
@@ -316,7 +301,6 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
     std::vector<Strip> strips;
     const json compared = compareFrames(options, sequence, map, interrupted, strips);
     time["compare_s"] = watch.lap();
-    ReportVoxels voxels;
     MapReport report;
     report.exitCode = interrupted ? 130 : 0;
     report.result = {{"schema", 1},
@@ -328,7 +312,7 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
                      {"resolution", options.resolution},
                      {"min_range", options.fusion.minRange},
                      {"max_range", options.fusion.maxRange},
-                     {"voxels", voxelsJson(map, voxels)},
+                     {"voxels", voxelsJson(map)},
                      {"time", time},
                      {"comparison", {{"mean", meansOf(compared)}, {"frames", compared}}}};
     report.summary = summary(report.result);
@@ -337,8 +321,7 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
     }
     writeFileAtomically(options.out / "result.json", report.result.dump(2) + "\n");
     if (used > 0) {
-        writeMapReport(options, report.result, sequence.camera, trajectory, std::move(voxels),
-                       strips);
+        writeMapReport(options, report.result, sequence.camera, trajectory, map, strips);
     }
     return report;
 }

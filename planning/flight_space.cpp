@@ -186,7 +186,9 @@ void FlightSpace::setState(ob::State* state, const Eigen::Vector3d& position, do
     if (kind_ == StateKind::positionYaw) {
         auto* s = state->as<ob::CompoundState>();
         values = s->as<ob::RealVectorStateSpace::StateType>(0)->values;
-        s->as<ob::SO2StateSpace::StateType>(1)->value = std::remainder(yaw, 2. * std::numbers::pi);
+        auto* heading = s->as<ob::SO2StateSpace::StateType>(1);
+        heading->value = yaw;
+        space_->as<ob::CompoundStateSpace>()->getSubspace(1)->enforceBounds(heading);
     } else {
         values = state->as<ob::RealVectorStateSpace::StateType>()->values;
     }

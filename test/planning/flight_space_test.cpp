@@ -53,6 +53,15 @@ TEST_P(EverySpace, SetStateIsWhatBodyPoseReads) {
     EXPECT_NEAR(yawOf(space.bodyPose(state.get())), yaw, 1e-12);
 }
 
+TEST_P(EverySpace, AHeadingOfPiIsWithinBounds) {
+    const FlightSpace space(GetParam(), box({-5, -5, 0}, {5, 5, 3}));
+    ob::ScopedState<> state(space.space());
+    for (const double yaw : {std::numbers::pi, -std::numbers::pi, 3. * std::numbers::pi}) {
+        space.setState(state.get(), {0., 0., 1.}, yaw);
+        EXPECT_TRUE(space.space()->satisfiesBounds(state.get())) << yaw;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(FlightSpace, EverySpace,
                          testing::Values(StateKind::position, StateKind::positionYaw,
                                          StateKind::se3));
