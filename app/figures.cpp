@@ -123,7 +123,7 @@ void drawRoute(const Plot& plot, const DrawnPath& path) {
 }
 
 void drawTree(const Plot& plot, const DrawnTree& tree) {
-    plot.canvas.translucent(0.55, [&] {
+    plot.canvas.translucent(0.25, [&] {
         for (const Edge& edge : tree.edges)
             plot.canvas.line(plot.at(edge[0].x(), edge[0].y()), plot.at(edge[1].x(), edge[1].y()),
                              tree.color, 0.7);

@@ -27,7 +27,7 @@ std::string progressText(const ReportProgress& progress, unsigned vertices) {
 void printSummary(const PlanOutcome& outcome, const std::optional<JudgedPath>& baseline,
                   const std::filesystem::path& folder, double seconds) {
     const auto row = [](const JudgedPath& path) {
-        fmt::print("{:<16} {:>8.2f} m {:>12.4f} {:>12.4f} {:>10.3f}\n", path.planner, path.length,
+        fmt::print("{:<16} {:>8.2f} m {:>12.3g} {:>12.3g} {:>10.4g}\n", path.planner, path.length,
                    path.meanTrace, path.goalTrace, path.cost);
     };
     fmt::print("{:<16} {:>10} {:>12} {:>12} {:>10}\n", "planner", "length", "mean trace",

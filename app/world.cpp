@@ -11,6 +11,14 @@
 #include "voxel_renderer.hpp"
 
 namespace photonav {
+namespace {
+
+/// How far clearance is looked for [m]: beyond the robot, and as far as a grid of such cells goes.
+double reach(double robotRadius, double cell) {
+    return std::min(std::max(1., 2. * robotRadius), 150. * cell);
+}
+
+}  // namespace
 
 World::World(const Config& config) {
     try {
@@ -27,8 +35,9 @@ void World::loadScene(const Config& config) {
     auto renderer = std::make_unique<MeshRenderer>(photonav::loadScene(config.sceneFile));
     const MeshRenderer* mesh = renderer.get();
     extent_ = mesh->scene().boundingBox();
-    distances_ = DistanceMap(mesh->scene(), config.clearanceResolution, config.bounds,
-                             {.maxDistance = std::max(1., 2. * config.robotRadius)});
+    distances_ =
+        DistanceMap(mesh->scene(), config.clearanceResolution, config.bounds,
+                    {.maxDistance = reach(config.robotRadius, config.clearanceResolution)});
     describe_ = [mesh](ReportData& report) { report.mesh = makeReportMesh(mesh->scene()); };
     views_ = std::move(renderer);
 }
@@ -36,9 +45,9 @@ void World::loadScene(const Config& config) {
 void World::loadMap(const Config& config) {
     const std::shared_ptr<TexturedOcTree> map = loadTexturedOcTree(config.mapFile);
     views_ = std::make_unique<VoxelRenderer>(*map, config.unknownToCamera);
-    distances_ = DistanceMap(
-        *map, config.bounds,
-        {.maxDistance = std::max(1., 2. * config.robotRadius), .unknown = config.unknownToPlanner});
+    distances_ = DistanceMap(*map, config.bounds,
+                             {.maxDistance = reach(config.robotRadius, map->getResolution()),
+                              .unknown = config.unknownToPlanner});
     map->getMetricMin(extent_.min().x(), extent_.min().y(), extent_.min().z());
     map->getMetricMax(extent_.max().x(), extent_.max().y(), extent_.max().z());
     describe_ = [map](ReportData& report) { report.voxels = makeReportVoxels(*map); };

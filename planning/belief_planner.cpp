@@ -5,7 +5,6 @@
 #include <ompl/base/objectives/PathLengthOptimizationObjective.h>
 #include <ompl/datastructures/NearestNeighborsGNATNoThreadSafety.h>
 #include <ompl/geometric/PathGeometric.h>
-#include <ompl/util/GeometricEquations.h>
 
 #include <cmath>
 #include <limits>
@@ -135,8 +134,7 @@ std::vector<Vertex*> BeliefPlanner::near(const Vertex& fresh, Vertex* nearest) c
     const double n = static_cast<double>(vertices_.size());
     const double gamma =
         growth_.rewireFactor *
-        std::pow(2. * (1. + 1. / d) * space.measure() / ompl::unitNBallMeasure(space.dimension()),
-                 1. / d);
+        std::pow(2. * (1. + 1. / d) * space.measure() / space.unitBallMeasure(), 1. / d);
     const double radius = std::min(range_, gamma * std::pow(std::log(n) / n, 1. / d));
     std::vector<Vertex*> neighbourhood;
     neighbours_->nearestR(const_cast<Vertex*>(&fresh), radius, neighbourhood);

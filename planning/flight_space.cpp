@@ -4,6 +4,7 @@
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/base/spaces/SE3StateSpace.h>
 #include <ompl/base/spaces/SO2StateSpace.h>
+#include <ompl/util/GeometricEquations.h>
 
 #include <cmath>
 #include <numbers>
@@ -211,20 +212,31 @@ ob::StateSamplerPtr FlightSpace::sampler(std::uint32_t seed) const {
     return sampler;
 }
 
-int FlightSpace::dimension() const {
-    const int positions = static_cast<int>((bounds_.sizes().array() > kFlat).count());
-    if (rotationWeight_ <= 0. || kind_ == StateKind::position) return std::max(positions, 1);
-    return positions + (kind_ == StateKind::se3 ? 3 : 1);
+int FlightSpace::positionDimensions() const {
+    return std::max(1, static_cast<int>((bounds_.sizes().array() > kFlat).count()));
+}
+
+int FlightSpace::rotationDimensions() const {
+    if (rotationWeight_ <= 0. || kind_ == StateKind::position) return 0;
+    return kind_ == StateKind::se3 ? 3 : 1;
 }
 
 double FlightSpace::measure() const {
     double volume = 1.;
     for (const double extent : bounds_.sizes()) volume *= extent > kFlat ? extent : 1.;
-    if (rotationWeight_ <= 0. || kind_ == StateKind::position) return volume;
     // OMPL measures rotations by the angle between unit quaternions: SO(3) is half of S^3, pi^2.
-    return kind_ == StateKind::se3
-               ? volume * std::pow(rotationWeight_, 3) * std::numbers::pi * std::numbers::pi
-               : volume * rotationWeight_ * 2. * std::numbers::pi;
+    constexpr double pi = std::numbers::pi;
+    const std::array<double, 4> angles{1., 2. * pi, 0., pi * pi};
+    const int m = rotationDimensions();
+    return volume * std::pow(rotationWeight_, m) * angles[m];
+}
+
+/// The volume of |p| + |r| <= 1 for k and m dimensions: V_k V_m k! m! / (k + m)!.
+double FlightSpace::unitBallMeasure() const {
+    const int k = positionDimensions();
+    const int m = rotationDimensions();
+    const double product = ompl::unitNBallMeasure(k) * (m > 0 ? ompl::unitNBallMeasure(m) : 1.);
+    return product * std::tgamma(k + 1.) * std::tgamma(m + 1.) / std::tgamma(k + m + 1.);
 }
 
 double yawOf(const Pose& T_w_b) { return std::atan2(T_w_b(1, 0), T_w_b(0, 0)); }

@@ -44,12 +44,17 @@ class FlightSpace {
     /// Uniform sampler with its own seed: what it draws depends on nothing else in the process.
     ompl::base::StateSamplerPtr sampler(std::uint32_t seed) const;
 
-    /// Number of directions that have an extent, and the volume they span in the metric: what the
-    /// connection radius of RRT* depends on.
-    int dimension() const;
+    /// What the connection radius of RRT* depends on: the number of directions that have an extent,
+    /// the volume they span in the metric, and the volume of the metric's unit ball. The ball of a
+    /// sum of two distances is smaller than the Euclidean one.
+    int dimension() const { return positionDimensions() + rotationDimensions(); }
     double measure() const;
+    double unitBallMeasure() const;
 
   private:
+    int positionDimensions() const;
+    int rotationDimensions() const;
+
     StateKind kind_;
     Eigen::AlignedBox3d bounds_;
     double rotationWeight_;

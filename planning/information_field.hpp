@@ -28,7 +28,7 @@ InformationModel photometricModel(const ViewSource& map, const Camera& camera,
 class InformationField {
   public:
     struct Options {
-        double positionPitch = 0.1;   ///< edge of a cell [m]
+        double positionPitch = 0.125; ///< edge of a cell [m]
         double rotationPitch = 0.09;  ///< per component of the rotation vector [rad]
     };
 

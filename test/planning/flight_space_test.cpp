@@ -72,6 +72,31 @@ TEST(FlightSpace, FlatBoundsPlanInOneDimensionLess) {
     EXPECT_DOUBLE_EQ(FlightSpace(StateKind::position, box({0, 0, 2}, {10, 5, 2})).measure(), 50.);
 }
 
+TEST(FlightSpace, UnitBallIsThatOfTheMetric) {
+    // Share of uniform samples within a small distance of the middle, against ball by measure.
+    const auto expectShare = [](const FlightSpace& space) {
+        const double radius = 0.3;
+        const auto sampler = space.sampler(5);
+        ob::ScopedState<> middle(space.space());
+        ob::ScopedState<> sample(space.space());
+        space.setState(middle.get(), {0., 0., 1.}, 0.);
+        int inside = 0;
+        const int samples = 400000;
+        for (int i = 0; i < samples; ++i) {
+            sampler->sampleUniform(sample.get());
+            inside += space.space()->distance(middle.get(), sample.get()) < radius ? 1 : 0;
+        }
+        const double share =
+            space.unitBallMeasure() * std::pow(radius, space.dimension()) / space.measure();
+        EXPECT_NEAR(inside / (share * samples), 1., 0.1) << inside;
+    };
+    expectShare({StateKind::position, box({-.5, -.5, .5}, {.5, .5, 1.5})});
+    expectShare({StateKind::position, box({-.5, -.5, 1}, {.5, .5, 1})});
+    expectShare({StateKind::positionYaw, box({-.5, -.5, .5}, {.5, .5, 1.5})});
+    expectShare({StateKind::positionYaw, box({-.5, -.5, 1}, {.5, .5, 1})});
+    expectShare({StateKind::se3, box({-.4, -.4, .6}, {.4, .4, 1.4}), 0.5});
+}
+
 TEST(FlightSpace, RejectsEmptyBoundsAndNegativeWeight) {
     EXPECT_THROW(FlightSpace(StateKind::position, box({1, 0, 0}, {0, 1, 1})),
                  std::invalid_argument);
