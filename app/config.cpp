@@ -38,7 +38,7 @@ std::optional<double> mountDegrees(const std::string& mount) {
 }
 
 /// Sets node[a][b] = value for the override "a.b=value".
-void applyOverride(YAML::Node root, const std::string& text) {
+void applyOverride(const YAML::Node& root, const std::string& text) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals == 0) {
         throw InputError("--set", text, "expected key.path=value");

@@ -46,7 +46,7 @@ std::vector<Edge> drawnEdges(const BeliefPlanner& planner) {
 PlanRun::PlanRun(const Config& config, const World& world)
     : config_(config),
       world_(world),
-      space_(config.space, config.bounds, config.rotationWeight),
+      space_(config.space, config.bounds, config.rotationWeight, config.start.yaw.value_or(0.)),
       si_(makeSpaceInformation(
           space_, [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
           config.robotRadius)),

@@ -84,9 +84,11 @@ Matrix6 BeliefModel::stepAdjoint(const Motion& motion, int k, bool backward) con
     if (space_.kind() == StateKind::position) {
         // The heading is fixed: the camera moves by a constant vector and does not turn.
         const Eigen::Vector3d way = space_.position(motion.to) - space_.position(motion.from);
-        const Eigen::Vector3d step_b = way * ((backward ? -1. : 1.) / motion.steps);
+        const Eigen::Vector3d step_w = way * ((backward ? -1. : 1.) / motion.steps);
+        const Eigen::Matrix3d R_w_c =
+            space_.bodyPose(motion.from).linear() * field_->mount().linear();
         Pose T_next_last = Pose::Identity();
-        T_next_last.translation() = -(field_->mount().linear().transpose() * step_b);
+        T_next_last.translation() = -(R_w_c.transpose() * step_w);
         return adjoint(T_next_last);
     }
     const double direction = backward ? -1. : 1.;

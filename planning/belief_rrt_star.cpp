@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFirstSearch = 100;  // vertices
-constexpr double kSearchGrowth = 2.;       // of the roadmap between searches
+constexpr std::size_t kSearchGrowth = 2;   // of the roadmap between searches
 
 constexpr double kDominanceSlack = 0.02;  // see isDominated()
 constexpr double kMinLever = 1.;          // [m]
@@ -37,7 +37,7 @@ void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near) {
     edgesOf_[fresh.index].front()->isFree = true;
     if (!goals_.empty() && vertices_.size() >= std::max(nextSearch_, kFirstSearch)) {
         search();
-        nextSearch_ = static_cast<std::size_t>(kSearchGrowth * vertices_.size());
+        nextSearch_ = kSearchGrowth * vertices_.size();
     }
 }
 

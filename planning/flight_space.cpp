@@ -42,6 +42,10 @@ ob::StateSpacePtr makeSpace(StateKind kind, const Eigen::AlignedBox3d& box, doub
     return space;
 }
 
+Eigen::Matrix3d headingRotation(double yaw) {
+    return Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
 /// One of OMPL's samplers with a generator of its own seed.
 template <typename Sampler>
 class Seeded : public Sampler {
@@ -122,8 +126,12 @@ class ClearanceMotionValidator : public ob::MotionValidator {
 
 }  // namespace
 
-FlightSpace::FlightSpace(StateKind kind, const Eigen::AlignedBox3d& bounds, double rotationWeight)
-    : kind_(kind), bounds_(bounds), rotationWeight_(rotationWeight) {
+FlightSpace::FlightSpace(StateKind kind, const Eigen::AlignedBox3d& bounds, double rotationWeight,
+                         double fixedHeading)
+    : kind_(kind),
+      bounds_(bounds),
+      rotationWeight_(rotationWeight),
+      fixedRotation_(headingRotation(fixedHeading)) {
     if (bounds.isEmpty()) throw std::invalid_argument("flight space: empty bounds");
     if (!(rotationWeight >= 0.)) throw std::invalid_argument("flight space: negative weight");
     space_ = makeSpace(kind, bounds, rotationWeight);
@@ -150,10 +158,11 @@ Eigen::Vector3d FlightSpace::position(const ob::State* state) const {
 Pose FlightSpace::bodyPose(const ob::State* state) const {
     Pose T_w_b = Pose::Identity();
     T_w_b.translation() = position(state);
+    T_w_b.linear() = fixedRotation_;
     if (kind_ == StateKind::positionYaw) {
         const double yaw =
             state->as<ob::CompoundState>()->as<ob::SO2StateSpace::StateType>(1)->value;
-        T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+        T_w_b.linear() = headingRotation(yaw);
     } else if (kind_ == StateKind::se3) {
         const auto& q = state->as<ob::SE3StateSpace::StateType>()->rotation();
         T_w_b.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();

@@ -15,7 +15,7 @@
 namespace photonav {
 
 enum class StateKind {
-    position,     ///< (x, y, z): heading fixed at yaw 0, as for a downward camera
+    position,     ///< (x, y, z): heading fixed, as for a downward camera
     positionYaw,  ///< (x, y, z, yaw): near hover, heading free
     se3           ///< full body pose
 };
@@ -27,8 +27,10 @@ enum class StateKind {
 class FlightSpace {
   public:
     /// @param bounds of the position [m]; a flat box (equal heights) plans at one height
+    /// @param fixedHeading yaw of the body where the state has none (StateKind::position) [rad]
     /// @throws std::invalid_argument for empty bounds or a negative weight
-    FlightSpace(StateKind kind, const Eigen::AlignedBox3d& bounds, double rotationWeight = 0.25);
+    FlightSpace(StateKind kind, const Eigen::AlignedBox3d& bounds, double rotationWeight = 0.25,
+                double fixedHeading = 0.);
 
     StateKind kind() const { return kind_; }
     const ompl::base::StateSpacePtr& space() const { return space_; }
@@ -58,6 +60,7 @@ class FlightSpace {
     StateKind kind_;
     Eigen::AlignedBox3d bounds_;
     double rotationWeight_;
+    Eigen::Matrix3d fixedRotation_;  // R_w_b where the state has none
     ompl::base::StateSpacePtr space_;
 };
 

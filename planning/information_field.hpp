@@ -5,6 +5,7 @@
 #include <array>
 #include <deque>
 #include <functional>
+#include <numbers>
 #include <unordered_map>
 
 #include "photometric.hpp"
@@ -28,8 +29,9 @@ InformationModel photometricModel(const ViewSource& map, const Camera& camera,
 class InformationField {
   public:
     struct Options {
-        double positionPitch = 0.125; ///< edge of a cell [m]
-        double rotationPitch = 0.09;  ///< per component of the rotation vector [rad]
+        double positionPitch = 0.125;  ///< edge of a cell [m]
+        double rotationPitch =
+            std::numbers::pi / 36.;  ///< per component of the rotation vector [rad]
     };
 
     struct Entry {

@@ -167,6 +167,31 @@ TEST(Belief, PerVertexIsThePapersCost) {
     EXPECT_EQ(flight.model.field().views(), 2U);  // both ends, nothing in between
 }
 
+TEST(Belief, AFixedHeadingTurnsBodyAndCamera) {
+    // Heading along world y: what the body calls x is world y, and fly() agrees with evaluate().
+    Problem problem;
+    problem.belief.initialCovariance = vector6(1., 2., 3., .1, .2, .3).asDiagonal();
+    const FlightSpace space(StateKind::position, problem.bounds, 0.25, std::numbers::pi / 2);
+    BeliefModel model(
+        space,
+        std::make_shared<InformationField>(problem.information, cameraMount(std::numbers::pi / 2),
+                                           InformationField::Options{}),
+        problem.belief);
+    ob::ScopedState<> a(space.space());
+    ob::ScopedState<> b(space.space());
+    space.setState(a.get(), {3., 1., 2.}, 0.);
+    space.setState(b.get(), {7., 4., 2.}, 0.);
+    EXPECT_NEAR(yawOf(space.bodyPose(a.get())), std::numbers::pi / 2, 1e-12);
+    Motion motion = model.motion(a.get(), b.get());
+    const Belief fast = model.fly(model.root(), motion);
+    const BeliefPoint plain = model.evaluate({a.get(), b.get()}).back();
+    EXPECT_NEAR(fast.cost, plain.cost, 1e-11 * plain.cost);
+    EXPECT_LT((fast.covariance - plain.covariance).norm(), 1e-10 * plain.covariance.norm());
+    // The camera's image x (right) is the body's -y, here world +x.
+    const Pose T_w_c = space.bodyPose(a.get()) * cameraMount(std::numbers::pi / 2);
+    EXPECT_TRUE(T_w_c.linear().col(0).isApprox(Eigen::Vector3d::UnitX(), 1e-12));
+}
+
 TEST(Belief, NoiseIsGivenInTheBodyFrame) {
     // Forward camera: the body's x is the optical axis, so x noise ends up in camera z.
     Problem problem;
