@@ -29,6 +29,7 @@ fs::path resultFolder(const CommandOptions& options, const std::string& command)
         folder = fs::path("out") / (command + "-" + fs::path(options.config).stem().string());
     }
     prepareFolder(folder);
+    for (const char* stale : {"result.json", "path.tum", "trace.png"}) fs::remove(folder / stale);
     return folder;
 }
 

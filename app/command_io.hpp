@@ -24,7 +24,8 @@ struct CommandOptions {
 /// @throws InputError otherwise
 void prepareFolder(const std::filesystem::path& folder);
 
-/// The folder of the options, or the default one, prepared.
+/// The folder of the options, or the default one, prepared: nothing of an earlier run is left that
+/// this one might not write.
 std::filesystem::path resultFolder(const CommandOptions& options, const std::string& command);
 
 /// A single line on standard error that is overwritten on a terminal, and dropped elsewhere.

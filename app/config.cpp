@@ -123,6 +123,9 @@ void readFlight(YamlMap& root, Config& config) {
     std::string space = "auto";
     root.readChoice("space", space, kSpaces);
     if (space == "auto") space = config.start.yaw || config.goal.yaw ? "xyz_yaw" : "xyz";
+    if (space == "xyz" && config.goal.yaw) {
+        root.fail("goal", "a heading at the goal needs space xyz_yaw (xyz keeps the start's)");
+    }
     config.space = space == "xyz"       ? StateKind::position
                    : space == "xyz_yaw" ? StateKind::positionYaw
                                         : StateKind::se3;
@@ -132,6 +135,13 @@ void readFlight(YamlMap& root, Config& config) {
     robot.finish();
 }
 
+void readCount(YamlMap& map, const std::string& key, unsigned& value, double least, double most) {
+    double number = value;
+    map.readNumber(key, number, least, most);
+    if (number != std::floor(number)) map.fail(key, "not a whole number");
+    value = static_cast<unsigned>(number);
+}
+
 void readCamera(YamlMap& root, Config& config) {
     YamlMap camera = root.map("camera");
     camera.read("mount", config.camera.mount);
@@ -139,17 +149,13 @@ void readCamera(YamlMap& root, Config& config) {
         camera.fail("mount", "'" + config.camera.mount +
                                  "' is not down, front45, forward or degrees below the horizon");
     }
-    double width = config.camera.width;
-    double height = config.camera.height;
-    camera.readNumber("width", width, 8., 8192.);
-    camera.readNumber("height", height, 8., 8192.);
-    config.camera.width = static_cast<unsigned>(width);
-    config.camera.height = static_cast<unsigned>(height);
+    readCount(camera, "width", config.camera.width, 8., 8192.);
+    readCount(camera, "height", config.camera.height, 8., 8192.);
     camera.readNumber("hfov", config.camera.hfov, 1., 170.);
     camera.readNumber("sigma", config.photometric.sigma, kTiny, 1.);
     camera.readNumber("information_scale", config.photometric.scale, 0., kInfinity);
-    double stride = config.photometric.stride;
-    camera.readNumber("stride", stride, 1., 64.);
+    unsigned stride = 1;
+    readCount(camera, "stride", stride, 1., 64.);
     config.photometric.stride = static_cast<int>(stride);
     camera.finish();
 }
@@ -173,13 +179,6 @@ void readNoise(YamlMap& root, Config& config) {
     noise.finish();
 }
 
-void readCount(YamlMap& map, const std::string& key, unsigned& value, double least) {
-    double number = value;
-    map.readNumber(key, number, least, 1e8);
-    if (number != std::floor(number)) map.fail(key, "not a whole number");
-    value = static_cast<unsigned>(number);
-}
-
 void readPlanner(YamlMap& root, Config& config) {
     YamlMap planner = root.map("planner");
     planner.readChoice("name", config.planner, plannerNames());
@@ -190,8 +189,8 @@ void readPlanner(YamlMap& root, Config& config) {
     planner.readChoice("cost", cost, kCosts);
     config.belief.cost = cost == "integral" ? CostRule::integral : CostRule::perVertex;
     planner.readNumber("characteristic_length", config.belief.characteristicLength, 0., kInfinity);
-    readCount(planner, "vertices", config.vertices, 2.);
-    readCount(planner, "labels", config.labels, 1.);
+    readCount(planner, "vertices", config.vertices, 2., 1e8);
+    readCount(planner, "labels", config.labels, 1., 1e6);
     planner.readNumber("range", config.growth.range, 0., kInfinity);
     planner.readNumber("goal_bias", config.growth.goalBias, 1e-4, 1.);
     planner.readNumber("rewire_factor", config.growth.rewireFactor, kTiny, kInfinity);
@@ -224,9 +223,7 @@ Config loadConfig(const std::string& file, const std::vector<std::string>& overr
     readCamera(root, config);
     readNoise(root, config);
     readPlanner(root, config);
-    double seed = config.seed;
-    root.readNumber("seed", seed, 1., 4294967295.);
-    config.seed = static_cast<std::uint32_t>(seed);
+    readCount(root, "seed", config.seed, 1., 4294967295.);
     root.finish();
     return config;
 }
@@ -245,10 +242,11 @@ std::string toYaml(const Config& c) {
         return fmt::format("[{}]", fmt::join(d.data(), d.data() + 6, ", "));
     };
     const auto policy = [](UnknownPolicy p) { return kUnknown[p == UnknownPolicy::occupied]; };
+    const auto quoted = [](const std::string& path) { return YAML::Dump(YAML::Node(path)); };
     std::string text;
     const auto line = [&](const std::string& s) { text += s + "\n"; };
     line(c.mapFile.empty()
-             ? fmt::format("scene:\n  file: {}", c.sceneFile)
+             ? fmt::format("scene:\n  file: {}", quoted(c.sceneFile))
              : fmt::format("map:\n  file: {}\n  unknown: {}\n  unknown_to_camera: {}", c.mapFile,
                            policy(c.unknownToPlanner), policy(c.unknownToCamera)));
     line(fmt::format("bounds: [{}, {}]", corner(c.bounds.min()), corner(c.bounds.max())));

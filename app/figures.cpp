@@ -7,7 +7,6 @@
 #include <functional>
 #include <limits>
 #include <numbers>
-#include <ranges>
 #include <stdexcept>
 
 #include "plot.hpp"
@@ -180,6 +179,8 @@ Axis axisAround(const Values& values, bool log, const std::string& label) {
 }
 
 /// Cells as pixels, the largest y first; NaN where nothing is known shows as white.
+constexpr Color kNothing{58, 58, 62};  // zero has no place on a logarithmic scale
+
 std::vector<Color> cellColors(const HeatMap& map, const Axis& scale) {
     const std::array<Color, 256> colors = viridis();
     std::vector<Color> pixels;
@@ -187,13 +188,21 @@ std::vector<Color> cellColors(const HeatMap& map, const Axis& scale) {
         for (Eigen::Index i = 0; i < map.values.rows(); ++i) {
             const double value = map.values(i, j);
             const double level = std::clamp(255.0 * scale.fraction(value), 0.0, 255.0);
-            pixels.push_back(std::isfinite(value) ? colors[static_cast<std::size_t>(level)]
-                                                  : kWhite);
+            const bool isNothing = map.logScale && value <= 0.0;
+            pixels.push_back(!std::isfinite(value) ? kWhite
+                             : isNothing           ? kNothing
+                                                   : colors[static_cast<std::size_t>(level)]);
         }
     return pixels;
 }
 
 constexpr Color kHatch{168, 174, 181}, kHatchGround{240, 241, 243};
+
+void fillSwatch(Canvas& canvas, const Canvas::Point& center, const Color& color) {
+    const double x = center.x() - 16.0;
+    const double y = center.y() - 9.0;
+    canvas.fill({{x, y}, {x + 32.0, y}, {x + 32.0, y + 18.0}, {x, y + 18.0}}, color);
+}
 
 void drawHatched(Canvas& canvas, const Frame& cell) {
     canvas.fill({{cell.x, cell.y},
@@ -254,7 +263,8 @@ Png drawTopView(const TopView& view) {
         for (const DrawnTree& tree : view.trees) drawTree(plot, tree);
         if (view.ellipseScale > 0.0)
             for (const DrawnPath& path : view.paths) drawEllipses(plot, path, view.ellipseScale);
-        for (const DrawnPath& path : std::views::reverse(view.paths)) drawRoute(plot, path);
+        for (auto path = view.paths.rbegin(); path != view.paths.rend(); ++path)
+            drawRoute(plot, *path);
         drawMarker(canvas, plot.at(view.start.x(), view.start.y()), kStart);
         drawMarker(canvas, plot.at(view.goal.x(), view.goal.y()), kGoal);
     }
@@ -284,11 +294,11 @@ Png drawTrace(const std::string& title, const std::vector<DrawnPath>& paths, boo
     plot.drawGrid();
     {
         const auto clipped = canvas.clip(frame);
-        for (const DrawnPath& path : std::views::reverse(paths)) {
+        for (auto path = paths.rbegin(); path != paths.rend(); ++path) {
             std::vector<Canvas::Point> curve;
-            for (const PathPoint& point : path.points)
+            for (const PathPoint& point : path->points)
                 curve.push_back(plot.at(point.distance, point.trace));
-            canvas.polyline(curve, path.color, 2.6);
+            canvas.polyline(curve, path->color, 2.6);
         }
     }
     plot.drawAxes();
@@ -314,12 +324,20 @@ Png drawHeatMap(const HeatMap& map) {
     plot.drawAxes();
     drawColorBar(canvas, {frame.right() + 30.0, frame.y, 22.0, frame.height}, scale, viridis());
     drawTitle(canvas, map.title, frame.x);
+    double left = frame.x;
+    if (map.logScale && (map.values <= 0.0).any()) {
+        const LegendEntry entry{"nothing", [](Canvas& sheet, const Canvas::Point& center) {
+                                    fillSwatch(sheet, center, kNothing);
+                                }};
+        drawLegendEntry(canvas, entry, {left, frame.bottom() + kBottom + 8.0});
+        left += 150.0;
+    }
     if (!map.values.isFinite().all()) {
         const LegendEntry entry{
             "not flyable", [](Canvas& sheet, const Canvas::Point& center) {
                 drawHatched(sheet, {center.x() - 16.0, center.y() - 9.0, 32.0, 18.0});
             }};
-        drawLegendEntry(canvas, entry, {frame.x, frame.bottom() + kBottom + 8.0});
+        drawLegendEntry(canvas, entry, {left, frame.bottom() + kBottom + 8.0});
     }
     return canvas.png();
 }

@@ -64,8 +64,9 @@ Eigen::ArrayXXd positionSigma(PlanRun& run, const Config& config, const Eigen::A
         for (int j = 0; j < sigma.cols(); ++j) {
             if (!std::isfinite(sigma(i, j))) continue;
             const Eigen::Vector3d position(
-                area.min().x() + (i + 0.5) * area.sizes().x() / sigma.rows(),
-                area.min().y() + (j + 0.5) * area.sizes().y() / sigma.cols(), height);
+                area.min().x() + (i + 0.5) * area.sizes().x() / static_cast<double>(sigma.rows()),
+                area.min().y() + (j + 0.5) * area.sizes().y() / static_cast<double>(sigma.cols()),
+                height);
             const Matrix6& gain = run.informationAt(bodyAt({position, yaw}));
             sigma(i, j) = std::sqrt(updateCovariance(prior, gain).topLeftCorner<3, 3>().trace());
         }
@@ -132,6 +133,12 @@ int runInfo(const InfoOptions& options) {
     const Config config = loadConfig(options.config, options.overrides);
     const Place place = options.at ? parsePlace(*options.at) : config.start;
     const double height = options.height.value_or(config.start.position.z());
+    if (!(height >= config.bounds.min().z() && height <= config.bounds.max().z())) {
+        throw InputError("--height", fmt::format("{}", height), "outside the bounds of the config");
+    }
+    if (!config.bounds.contains(place.position)) {
+        throw InputError("--at", *options.at, "outside the bounds of the config");
+    }
     const World world(config);
     PlanRun run(config, world);
     const auto folder = resultFolder(options, "info");

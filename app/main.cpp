@@ -51,7 +51,8 @@ Command planCommand(CLI::App& app, const std::string& commandLine) {
         app.add_subcommand("plan", "Plan a perception-aware path in a known scene or map.");
     addCommon(parser, *options);
     parser->add_option("--seed", *seed, "of everything random (overrides the config)");
-    parser->add_flag("--audit", options->audit, "replay every stored belief from the start");
+    parser->add_flag("--audit", options->audit,
+                     "print what replaying every stored belief from the start gave");
     return {parser, [options, seed] {
                 if (!seed->empty()) options->overrides.push_back("seed=" + *seed);
                 return runPlan(*options, interrupted);
@@ -69,7 +70,10 @@ Command infoCommand(CLI::App& app, const std::string& commandLine) {
     parser->add_option("--cells", options->cells, "along the longer side of the heat map")
         ->check(CLI::Range(1, 2000))
         ->capture_default_str();
-    return {parser, [options] { return runInfo(*options); }};
+    return {parser, [options] {
+                std::signal(SIGINT, SIG_DFL);  // seconds of work, nothing to keep
+                return runInfo(*options);
+            }};
 }
 
 void printSummary(const ReportTable& table, const std::filesystem::path& folder) {
@@ -147,7 +151,9 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", PHOTONAV_VERSION);
     app.require_subcommand(1);
     app.footer(
-        "Every run writes result.json, config.yaml, figures and report.html into its folder.\n"
+        "Every run writes result.json, figures and report.html into its folder; plan and info "
+        "also\n"
+        "config.yaml, complete and re-runnable.\n"
         "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by Ctrl-C.");
     std::string commandLine = "photonav";
     for (int i = 1; i < argc; ++i) commandLine += std::string(" ") + argv[i];

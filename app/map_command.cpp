@@ -306,7 +306,7 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
     report.result = {{"schema", 1},
                      {"command", "map"},
                      {"version", PHOTONAV_VERSION},
-                     {"interrupted", report.exitCode != 0},
+                     {"interrupted", report.exitCode == 130},
                      {"dataset", datasetJson(options, sequence)},
                      {"frames", framesJson(options, sequence, recorded, used)},
                      {"resolution", options.resolution},
@@ -315,6 +315,7 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
                      {"voxels", voxelsJson(map)},
                      {"time", time},
                      {"comparison", {{"mean", meansOf(compared)}, {"frames", compared}}}};
+    if (!interrupted && report.result["voxels"]["occupied"] == 0) report.exitCode = 1;
     report.summary = summary(report.result);
     for (std::size_t i = 0; i < strips.size(); ++i) {
         writeFileAtomically(options.out / fmt::format("comparison_{}.png", i), strips[i].picture);

@@ -15,8 +15,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 std::string progressText(const ReportProgress& progress, unsigned vertices) {
-    const double rest = progress.seconds / static_cast<double>(progress.vertices) *
-                        (vertices - std::min<double>(vertices, progress.vertices));
+    const double rest =
+        progress.seconds / static_cast<double>(progress.vertices) *
+        (vertices - std::min<double>(vertices, static_cast<double>(progress.vertices)));
     const std::string cost = std::isfinite(progress.cost)
                                  ? fmt::format("best cost {:.3f}", progress.cost)
                                  : "no path yet";
@@ -24,7 +25,7 @@ std::string progressText(const ReportProgress& progress, unsigned vertices) {
                        vertices, cost, progress.views, rest);
 }
 
-void printSummary(const PlanOutcome& outcome, const std::optional<JudgedPath>& baseline,
+void printSummary(const PlanOutcome& outcome, const std::optional<JudgedPath>& baseline, bool audit,
                   const std::filesystem::path& folder, double seconds) {
     const auto row = [](const JudgedPath& path) {
         fmt::print("{:<16} {:>8.2f} m {:>12.3g} {:>12.3g} {:>10.4g}\n", path.planner, path.length,
@@ -37,10 +38,10 @@ void printSummary(const PlanOutcome& outcome, const std::optional<JudgedPath>& b
     else
         fmt::print("no path found with {} vertices\n", outcome.vertices);
     if (baseline) row(*baseline);
-    if (outcome.audit) {
+    if (audit) {
         fmt::print("audit: {} beliefs replayed, cost error {:.1e}, covariance error {:.1e}\n",
-                   outcome.audit->nodes, outcome.audit->maxCostError,
-                   outcome.audit->maxCovarianceError);
+                   outcome.audit.nodes, outcome.audit.maxCostError,
+                   outcome.audit.maxCovarianceError);
     }
     fmt::print("{} vertices, {} views, {:.2f} s\n", outcome.vertices, outcome.views, seconds);
     fmt::print("report: {}\n", (folder / "report.html").string());
@@ -56,23 +57,24 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     const Config config = loadConfig(options.config, options.overrides);
     const World world(config);
     PlanRun run(config, world);
+    run.checkPlaces();
     const auto folder = resultFolder(options, "plan");
 
     PlanOutcome outcome;
     std::optional<JudgedPath> baseline;
     {
         ProgressLine line(options.quiet);
-        outcome = run.solve(config.planner, options.audit, interrupted,
-                            [&](const ReportProgress& progress) {
-                                line.show(progressText(progress, config.vertices));
-                            });
+        outcome = run.solve(config.planner, interrupted, [&](const ReportProgress& progress) {
+            line.show(progressText(progress, config.vertices));
+        });
         if (config.compareWithRrtStar && config.planner != "rrt_star" && !interrupted) {
             line.show("RRT* for comparison");
-            baseline = run.solve("rrt_star", false, interrupted, [](const auto&) {}).path;
+            baseline = run.solve("rrt_star", interrupted, [](const auto&) {}).path;
         }
     }
     const bool stopped = interrupted;
     nlohmann::json result = planResult(config, outcome, baseline, stopped);
+    result["time"]["total_s"] = seconds();
     writePlanReport(folder, config, world, run, outcome, baseline, options.commandLine, result);
     result["time"]["total_s"] = seconds();
     writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
@@ -80,7 +82,7 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     if (options.json)
         fmt::print("{}\n", result.dump(2));
     else if (!options.quiet)
-        printSummary(outcome, baseline, folder, seconds());
+        printSummary(outcome, baseline, options.audit, folder, seconds());
     if (stopped) return kInterrupted;
     return outcome.path ? kDone : kNoAnswer;
 }

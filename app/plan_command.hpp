@@ -9,7 +9,7 @@
 namespace photonav {
 
 struct PlanOptions : CommandOptions {
-    bool audit = false;  ///< replay every stored belief from the start
+    bool audit = false;  ///< print what replaying every stored belief from the start gave
 };
 
 /// Plans and writes result.json, config.yaml, path.tum, top_view.png, trace.png, information.png,

@@ -33,7 +33,7 @@ json jsonOf(const BeliefPoint& point) {
     return {{"position", {p.x(), p.y(), p.z()}},
             {"yaw", yawOf(point.T_w_b)},
             {"waypoint", point.isWaypoint},
-            {"distance", point.distance},
+            {"distance", point.length},
             {"trace", point.trace},
             {"trace_before_view", point.traceBefore},
             {"cost", point.cost},
@@ -58,7 +58,7 @@ DrawnPath drawn(const JudgedPath& path, const Pose& T_b_c, const Color& color) {
     DrawnPath result{path.planner, color, {}};
     for (const BeliefPoint& point : path.points) {
         result.points.push_back(
-            makePathPoint(belief(point, T_b_c), point.trace, point.distance, point.cost));
+            makePathPoint(belief(point, T_b_c), point.trace, point.length, point.cost));
     }
     return result;
 }
@@ -121,20 +121,9 @@ HeatMap heatMap(const Config& config, PlanRun& run) {
 void writeTrajectory(const fs::path& file, const JudgedPath& path, const Pose& T_b_c) {
     Trajectory trajectory;  // one metre per second
     for (const BeliefPoint& point : path.points) {
-        trajectory.push_back({point.distance, point.T_w_b * T_b_c});
+        trajectory.push_back({point.length, point.T_w_b * T_b_c});
     }
     writeTrajectory(file.string(), trajectory);
-}
-
-std::string verdict(const PlanOutcome& outcome, const std::optional<JudgedPath>& baseline) {
-    if (!outcome.path) return "No path was found.";
-    const JudgedPath& path = *outcome.path;
-    if (!baseline) return fmt::format("A path of {:.2f} m.", path.length);
-    return fmt::format(
-        "{:.2f} m instead of the shortest way's {:.2f} m, and the pose at the goal known to {:.1f} "
-        "cm instead of {:.1f} cm (1 sigma, root of the trace).",
-        path.length, baseline->length, 100. * std::sqrt(path.goalTrace),
-        100. * std::sqrt(baseline->goalTrace));
 }
 
 }  // namespace
@@ -166,16 +155,14 @@ json planResult(const Config& config, const PlanOutcome& outcome,
                   {"views_s", outcome.viewSeconds},
                   {"beliefs_s", outcome.beliefSeconds},
                   {"tree_s", tree}}},
-                {"audit", nullptr},
+                {"audit",
+                 {{"max_cost_error", outcome.audit.maxCostError},
+                  {"max_covariance_error", outcome.audit.maxCovarianceError},
+                  {"beliefs", outcome.audit.nodes}}},
                 {"covariance_frame",
                  "camera, left perturbation T_c_w = exp(xi) mean, order (rho, phi), upper triangle "
                  "by rows"},
                 {"path", json::array()}};
-    if (outcome.audit) {
-        result["audit"] = {{"max_cost_error", outcome.audit->maxCostError},
-                           {"max_covariance_error", outcome.audit->maxCovarianceError},
-                           {"beliefs", outcome.audit->nodes}};
-    }
     if (baseline) result["baseline"] = jsonOf(*baseline);
     if (!outcome.path) return result;
     result.update(jsonOf(*outcome.path));
@@ -190,7 +177,8 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
     const Pose T_b_c = config.camera.T_b_c();
     ReportData report;
     report.title = fs::path(config.file).stem().string();
-    report.subtitle = verdict(outcome, baseline);
+    report.subtitle = fmt::format("{}, alpha {}, {} vertices, seed {}", config.planner,
+                                  outcome.alpha, outcome.vertices, config.seed);
     report.commandLine = commandLine;
     report.version = PHOTONAV_VERSION;
     report.result = result;

@@ -25,6 +25,12 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// The answer may come from an earlier tree than the one audited.
+void includePath(Audit& audit, double stored, double replayed) {
+    const double error = std::abs(stored - replayed) / (1. + replayed);
+    if (!(error <= audit.maxCostError)) audit.maxCostError = error;
+}
+
 /// The tree's motions between positions, each once however many beliefs flew it.
 std::vector<Edge> drawnEdges(const BeliefPlanner& planner) {
     const FlightSpace& space = planner.model().space();
@@ -53,9 +59,11 @@ PlanRun::PlanRun(const Config& config, const World& world)
       field_(std::make_shared<InformationField>(
           photometricModel(world.views(), config.camera.camera(), config.photometric),
           config.camera.T_b_c(), config.field)),
-      judge_(makeModel(config.planner == "rrt_star" ? 1. : config.belief.alpha)) {
-    checkPlace("start", config.start);
-    checkPlace("goal", config.goal);
+      judge_(makeModel(config.planner == "rrt_star" ? 1. : config.belief.alpha)) {}
+
+void PlanRun::checkPlaces() const {
+    checkPlace("start", config_.start);
+    checkPlace("goal", config_.goal);
 }
 
 bool PlanRun::isFlyable(const Eigen::Vector3d& p_w) const {
@@ -69,8 +77,7 @@ void PlanRun::checkPlace(const std::string& key, const Place& place) const {
                                  world_.clearance(place.position), config_.robotRadius));
 }
 
-PlanOutcome PlanRun::solve(const std::string& name, bool audit,
-                           const std::atomic<bool>& interrupted,
+PlanOutcome PlanRun::solve(const std::string& name, const std::atomic<bool>& interrupted,
                            const std::function<void(const ReportProgress&)>& onProgress) {
     const auto begin = std::chrono::steady_clock::now();
     const auto planner = makePlanner(name);
@@ -89,7 +96,7 @@ PlanOutcome PlanRun::solve(const std::string& name, bool audit,
         }
         // A goal that cannot be reached is sampled in vain: give up in the end.
         const bool isHopeless = planner->iterations() > 200UL * config_.vertices;
-        return interrupted || isHopeless || planner->vertices() >= config_.vertices;
+        return interrupted || isHopeless;
     };
     planner->solve(ob::PlannerTerminationCondition(isDone));
     report();
@@ -104,14 +111,18 @@ PlanOutcome PlanRun::solve(const std::string& name, bool audit,
     outcome.viewSeconds = model.field().seconds();
     outcome.beliefSeconds = model.seconds();
     outcome.tree = drawnEdges(*planner);
-    if (audit) outcome.audit = auditTree(*planner);
-    if (planner->getProblemDefinition()->hasExactSolution()) outcome.path = judge(*planner);
+    outcome.audit = auditTree(*planner);
+    if (planner->getProblemDefinition()->hasExactSolution()) {
+        outcome.path = judge(*planner);
+        includePath(outcome.audit, planner->bestCost(), outcome.path->cost);
+    }
     return outcome;
 }
 
 std::shared_ptr<BeliefPlanner> PlanRun::makePlanner(const std::string& name) const {
     GrowthOptions growth = config_.growth;
     growth.seed = config_.seed;
+    growth.maxVertices = config_.vertices;
     const auto model = makeModel(name == "rrt_star" ? 1. : config_.belief.alpha);
     std::shared_ptr<BeliefPlanner> planner;
     if (name == "belief_rrt_star") {
@@ -135,7 +146,7 @@ ob::ProblemDefinitionPtr PlanRun::definition() const {
     ob::ScopedState<> state(si_);
     space_.setState(state.get(), config_.start.position, config_.start.yaw.value_or(0.));
     definition->addStartState(state);
-    const bool anyHeading = config_.space == StateKind::positionYaw && !config_.goal.yaw;
+    const bool anyHeading = config_.space != StateKind::position && !config_.goal.yaw;
     auto goals = std::make_shared<ob::GoalStates>(si_);
     for (int i = 0; i < (anyHeading ? kFreeHeadings : 1); ++i) {
         const double yaw =
@@ -158,11 +169,11 @@ JudgedPath PlanRun::judge(const BeliefPlanner& planner) {
     for (std::size_t i = 1; i < judged.points.size(); ++i) {
         const BeliefPoint& last = judged.points[i - 1];
         const BeliefPoint& next = judged.points[i];
-        judged.length += (next.T_w_b.translation() - last.T_w_b.translation()).norm();
         integral += 0.5 * (next.distance - last.distance) * (last.trace + next.traceBefore);
     }
     const BeliefPoint& goal = judged.points.back();
     judged.cost = goal.cost;
+    judged.length = goal.length;
     judged.meanTrace = goal.distance > 0. ? integral / goal.distance : goal.trace;
     judged.goalTrace = goal.trace;
     return judged;

@@ -30,25 +30,25 @@ struct PlanOutcome {
     double planSeconds = 0., viewSeconds = 0., beliefSeconds = 0.;
     std::vector<ReportProgress> progress;
     std::vector<Edge> tree;  ///< of positions, in w [m]
-    std::optional<Audit> audit;
+    Audit audit;             ///< of the tree, and of the path's cost
 };
 
 /// Start, goal and robot of a config in a world, and the planners that solve them.
 class PlanRun {
   public:
-    /// @throws InputError for a start or goal in collision
     PlanRun(const Config& config, const World& world);
+
+    /// @throws InputError for a start or goal in collision
+    void checkPlaces() const;
 
     /// Grows the planner of this name until it has the config's number of vertices.
     /// @param onProgress called now and then while planning
-    PlanOutcome solve(const std::string& planner, bool audit, const std::atomic<bool>& interrupted,
+    PlanOutcome solve(const std::string& planner, const std::atomic<bool>& interrupted,
                       const std::function<void(const ReportProgress&)>& onProgress);
 
     /// The information of a view from here, remembered; for heat maps.
     const Matrix6& informationAt(const Pose& T_w_b) { return judge_->informationAt(T_w_b); }
     bool isFlyable(const Eigen::Vector3d& p_w) const;
-
-    const FlightSpace& space() const { return space_; }
 
   private:
     void checkPlace(const std::string& key, const Place& place) const;

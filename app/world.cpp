@@ -26,6 +26,9 @@ World::World(const Config& config) {
             loadScene(config);
         else
             loadMap(config);
+    } catch (const InputError& error) {
+        throw InputError(config.file, config.mapFile.empty() ? "scene.file" : "map.file",
+                         error.what());
     } catch (const std::invalid_argument& error) {  // too large a grid for these bounds
         throw InputError(config.file, "bounds", error.what());
     }

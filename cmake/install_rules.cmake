@@ -7,7 +7,8 @@ set_target_properties(photonav_core PROPERTIES EXPORT_NAME core)
 set_target_properties(photonav_planning PROPERTIES EXPORT_NAME planning)
 install(TARGETS photonav_core photonav_planning EXPORT photonav_targets)
 install(TARGETS photonav)
-install(DIRECTORY src/ planning/ DESTINATION include/photonav FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY src/ planning/ DESTINATION include/photonav FILES_MATCHING PATTERN "*.hpp"
+    PATTERN "yaml_reader.hpp" EXCLUDE PATTERN "simd.hpp" EXCLUDE)
 install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/photonav/config)
 install(EXPORT photonav_targets NAMESPACE photonav:: DESTINATION ${_config_dir})
 configure_package_config_file(cmake/photonavConfig.cmake.in

@@ -26,11 +26,11 @@ Audit auditTree(const BeliefPlanner& planner) {
         }
         const BeliefPoint& truth = replayed.back();
         const double costError = std::abs(node.cost - truth.cost) / (1. + truth.cost);
-        audit.maxCostError = std::max(audit.maxCostError, costError);
+        if (!(costError <= audit.maxCostError)) audit.maxCostError = costError;  // NaN counts
         if (node.covariance) {
             const double error = (*node.covariance - truth.covariance).norm() /
                                  std::max(truth.covariance.norm(), 1e-300);
-            audit.maxCovarianceError = std::max(audit.maxCovarianceError, error);
+            if (!(error <= audit.maxCovarianceError)) audit.maxCovarianceError = error;
         }
         ++audit.nodes;
     }

@@ -65,18 +65,18 @@ Belief BeliefModel::fly(const Belief& belief, Motion& motion, bool backward) {
         traceAfter = trace(covariance);
     }
     if (perVertex) charge = traceAfter;
-    propagations_ += motion.steps;
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return {covariance, belief.cost + options_.alpha * motion.length +
                             (1. - options_.alpha) * options_.kappa * charge};
 }
 
 void BeliefModel::look(Motion& motion) {
-    motion.views.resize(motion.steps + 1);
+    std::vector<const InformationField::Entry*> views(motion.steps + 1);
     for (int k = 0; k <= motion.steps; ++k) {
-        motion.views[k] = &field_->at(
+        views[k] = &field_->at(
             space_.poseBetween(motion.from, motion.to, static_cast<double>(k) / motion.steps));
     }
+    motion.views = std::move(views);
 }
 
 /// Ad(T_{k+1,k}) of the camera for the k-th step flown.
@@ -137,6 +137,7 @@ void BeliefModel::evaluateMotion(const ob::State* from, const ob::State* to,
         next.covariance = 0.5 * (next.covariance + next.covariance.transpose()).eval();
         next.trace = trace(next.covariance);
         next.distance = last.distance + step;
+        next.length = last.length + (next.T_w_b.translation() - last.T_w_b.translation()).norm();
         const double charge = perVertex ? next.trace : 0.5 * step * (last.trace + next.traceBefore);
         next.cost =
             last.cost + options_.alpha * step + (1. - options_.alpha) * options_.kappa * charge;
@@ -146,8 +147,7 @@ void BeliefModel::evaluateMotion(const ob::State* from, const ob::State* to,
 }
 
 void BeliefModel::clear() {
-    field_->clear();
-    propagations_ = fallbacks_ = 0;
+    fallbacks_ = 0;
     seconds_ = 0.;
 }
 

@@ -14,7 +14,7 @@ namespace photonav {
 /// How uncertainty is charged along a motion.
 enum class CostRule {
     integral,  ///< (1 - alpha) kappa times the integral of the trace over the way flown
-    perVertex  ///< the paper's eq. (16): (1 - alpha) kappa tr(Sigma) at each vertex, one view there
+    perVertex  ///< the paper's eq. (22): (1 - alpha) kappa tr(Sigma) at each vertex, one view there
 };
 
 struct BeliefOptions {
@@ -53,6 +53,7 @@ struct Motion {
 /// One point of an evaluated path.
 struct BeliefPoint {
     Pose T_w_b = Pose::Identity();
+    double length = 0.;                     ///< way of the position so far [m]
     double distance = 0.;                   ///< way flown so far, metric of the flight space [m]
     Matrix6 covariance = Matrix6::Zero();   ///< after the update, camera frame
     double traceBefore = 0.;                ///< weighted trace before the update
@@ -82,8 +83,8 @@ class BeliefModel {
     /// Cost of a motion that no belief can undercut: alpha times its length.
     double lowerBound(double length) const { return options_.alpha * length; }
 
-    /// The belief at every step of a path, by plain composition of uncertain poses: slow, and
-    /// sharing only the definitions with fly(), so that each checks the other.
+    /// The belief at every step of a path, by plain composition of uncertain poses and Eigen's LU:
+    /// slow, with its own poses, costs and updates, so that it checks fly().
     std::vector<BeliefPoint> evaluate(const std::vector<const ompl::base::State*>& path);
 
     /// One motion of evaluate(): appends its steps to `points`, whose last one is the beginning.
@@ -97,10 +98,9 @@ class BeliefModel {
     const BeliefOptions& options() const { return options_; }
     const InformationField& field() const { return *field_; }
 
-    std::size_t propagations() const { return propagations_; }
     std::size_t fallbacks() const { return fallbacks_; }  ///< steps done in second order after all
     double seconds() const { return seconds_; }           ///< spent in fly(), views excluded
-    void clear();                                         ///< forgets views and counters
+    void clear();  ///< resets the counters; the field is its owner's
 
   private:
     void look(Motion& motion);
@@ -114,7 +114,6 @@ class BeliefModel {
     BeliefOptions options_;
     Matrix6 initialCamera_;  // options_.initialCovariance in the camera frame
     Matrix6 noiseCamera_;    // options_.motionNoise in the camera frame
-    std::size_t propagations_ = 0;
     std::size_t fallbacks_ = 0;
     double seconds_ = 0.;
 };

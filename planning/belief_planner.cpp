@@ -26,6 +26,9 @@ BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<
     declare("range", growth_.range);
     declare("goal_bias", growth_.goalBias);
     declare("rewire_factor", growth_.rewireFactor);
+    params_.declareParam<unsigned>(
+        "max_vertices", [this](unsigned v) { growth_.maxVertices = v; },
+        [this] { return growth_.maxVertices; });
     addPlannerProgressProperty("best cost REAL", [this] { return std::to_string(bestCost()); });
     addPlannerProgressProperty("vertices INTEGER", [this] { return std::to_string(vertices()); });
     addPlannerProgressProperty("iterations INTEGER",
@@ -38,7 +41,6 @@ BeliefPlanner::~BeliefPlanner() { freeMemory(); }
 
 void BeliefPlanner::setup() {
     Planner::setup();
-    range_ = growth_.range > 0. ? growth_.range : 0.2 * si_->getMaximumExtent();
     if (!neighbours_) {
         neighbours_ = std::make_shared<ompl::NearestNeighborsGNATNoThreadSafety<Vertex*>>();
         neighbours_->setDistanceFunction(
@@ -52,14 +54,16 @@ ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& pt
     if (dynamic_cast<ob::GoalSampleableRegion*>(pdef_->getGoal().get()) == nullptr) {
         return ob::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
     }
+    range_ = growth_.range > 0. ? growth_.range : 0.2 * si_->getMaximumExtent();
     if (!addStarts()) return ob::PlannerStatus::INVALID_START;
     if (!sampler_) {
         sampler_ = model_->space().sampler(growth_.seed);
         rng_.setLocalSeed(growth_.seed);
     }
 
-    ob::State* target = si_->allocState();
-    while (!ptc) {
+    ob::ScopedState<> goalOrSample(si_);
+    ob::State* target = goalOrSample.get();
+    while (!ptc && !isFull()) {
         ++iterations_;
         const bool isGoal = sample(target);
         Vertex* fresh = extend(target);
@@ -72,11 +76,10 @@ ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& pt
         if (fresh->isGoal) goals_.push_back(fresh);
         const auto neighbourhood = near(*fresh, fresh->parent);
         fresh->parent = nullptr;
-        connect(*fresh, neighbourhood);
+        connect(*fresh, neighbourhood, ptc);
         neighbours_->add(fresh);
     }
-    si_->freeState(target);
-    finish();
+    finish(ptc);
     return report();
 }
 

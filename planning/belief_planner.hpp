@@ -21,6 +21,8 @@ struct GrowthOptions {
     double goalBias = 0.05;     ///< share of samples drawn at the goal until it is reached
     double rewireFactor = 1.1;  ///< on the connection radius of Karaman and Frazzoli 2011
     std::uint32_t seed = 1;     ///< of everything random in the planner
+    unsigned maxVertices =
+        0;  ///< solve() ends with as many vertices; 0: with the termination condition
 };
 
 /// A vertex and the motion that reached it.
@@ -69,10 +71,11 @@ class BeliefPlanner : public ompl::base::Planner {
   protected:
     /// Joins a new vertex (not yet in the tree) to its neighbours, to which motions are short but
     /// unchecked; the first of them is the vertex it was steered from, checked.
-    virtual void connect(Vertex& fresh, const std::vector<Vertex*>& near) = 0;
+    virtual void connect(Vertex& fresh, const std::vector<Vertex*>& near,
+                         const ompl::base::PlannerTerminationCondition& ptc) = 0;
 
     /// Called before solve() returns, when the vertex set is final for now.
-    virtual void finish() {}
+    virtual void finish(const ompl::base::PlannerTerminationCondition&) {}
 
     bool motionIsFree(const Vertex& from, const Vertex& to) const {
         return si_->checkMotion(from.state, to.state);
@@ -92,6 +95,9 @@ class BeliefPlanner : public ompl::base::Planner {
         std::vector<ompl::base::State*> states;
     };
 
+    bool isFull() const {
+        return growth_.maxVertices > 0 && vertices_.size() >= growth_.maxVertices;
+    }
     bool addStarts();
     bool sample(ompl::base::State* state);
     Vertex* extend(const ompl::base::State* target);

@@ -2,6 +2,7 @@
 #include "belief_rrt_star.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <queue>
 
@@ -26,7 +27,8 @@ BeliefRRTstar::BeliefRRTstar(const ob::SpaceInformationPtr& si, std::shared_ptr<
         "labels", [this](unsigned v) { maxLabels_ = v; }, [this] { return maxLabels_; });
 }
 
-void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near) {
+void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near,
+                            const ob::PlannerTerminationCondition& ptc) {
     edgesOf_.resize(vertices_.size());
     for (Vertex* vertex : near) {
         Edge& edge = edges_.emplace_back(
@@ -35,15 +37,18 @@ void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near) {
         edgesOf_[fresh.index].push_back(&edge);
     }
     edgesOf_[fresh.index].front()->isFree = true;
-    if (!goals_.empty() && vertices_.size() >= std::max(nextSearch_, kFirstSearch)) {
-        search();
-        nextSearch_ = kSearchGrowth * vertices_.size();
-    }
+    const std::size_t due = std::max(kFirstSearch, kSearchGrowth * searched_);
+    if (!goals_.empty() && vertices_.size() >= due) search(ptc);
+}
+
+void BeliefRRTstar::finish(const ob::PlannerTerminationCondition& ptc) {
+    if (vertices_.size() > searched_) search(ptc);
 }
 
 /// Best-first over labels (vertex, belief). Costs only grow along a path, so labels settle at each
-/// vertex in the order of their cost, and the first one at a goal is the best path of the roadmap.
-void BeliefRRTstar::search() {
+/// vertex in the order of their cost, and the first one at a goal is the best that the labels kept
+/// can give.
+void BeliefRRTstar::search(const ob::PlannerTerminationCondition& ptc) {
     edgesOf_.resize(vertices_.size());
     settled_.clear();
     labelsOf_.assign(vertices_.size(), {});
@@ -52,10 +57,13 @@ void BeliefRRTstar::search() {
     const auto later = [](const auto& a, const auto& b) { return a->bound > b->bound; };
     Open open;
     for (Vertex* start : starts_) {
+        if (!std::isfinite(toGoal[start->index])) continue;
         const double bound = model_->lowerBound(toGoal[start->index]);
         open.push_back(std::make_unique<Label>(Label{start, -1, start->belief, bound}));
     }
+    std::make_heap(open.begin(), open.end(), later);
     while (!open.empty()) {
+        if (ptc) return;
         std::pop_heap(open.begin(), open.end(), later);
         const auto label = std::move(open.back());
         open.pop_back();
@@ -65,9 +73,13 @@ void BeliefRRTstar::search() {
         if (isDominated(*label->vertex, label->belief.covariance, rest)) continue;
         labels.push_back(static_cast<int>(settled_.size()));
         settled_.push_back(*label);
-        if (label->vertex->isGoal) return offerPath(labels.back());
+        if (label->vertex->isGoal) {
+            offerPath(labels.back());
+            break;
+        }
         expand(labels.back(), toGoal, open);
     }
+    searched_ = vertices_.size();
 }
 
 /// Shortest way to a goal over edges not known to be blocked: times alpha, what no belief can beat.
@@ -105,6 +117,7 @@ void BeliefRRTstar::expand(int label, const std::vector<double>& toGoal, Open& o
         Vertex* next = backward ? edge->from : edge->to;
         if (labelsOf_[next->index].size() >= maxLabels_) continue;
         const double rest = toGoal[next->index];
+        if (!std::isfinite(rest)) continue;
         if (belief.cost + model_->lowerBound(edge->motion.length + rest) > limit) continue;
         if (!edge->isFree) edge->isFree = motionIsFree(*edge->from, *edge->to);
         if (!*edge->isFree) continue;
@@ -152,7 +165,7 @@ void BeliefRRTstar::clear() {
     edgesOf_.clear();
     settled_.clear();
     labelsOf_.clear();
-    nextSearch_ = 0;
+    searched_ = 0;
 }
 
 std::vector<TreeNode> BeliefRRTstar::tree() const {

@@ -12,6 +12,9 @@ namespace photonav {
 /// cost and covariance (Loewner order; Bry and Roy 2011). Algorithm 1 keeps only the cheapest and
 /// can stay in the wrong plateau however many vertices it adds.
 ///
+/// The cap on the labels and a slack in the order make the answer the best of the labels kept, not
+/// of all beliefs.
+///
 /// Edges are checked for collision, and looked from, only when a label is about to fly them.
 class BeliefRRTstar : public BeliefPlanner {
   public:
@@ -36,9 +39,10 @@ class BeliefRRTstar : public BeliefPlanner {
     };
     using Open = std::vector<std::unique_ptr<Label>>;
 
-    void connect(Vertex& fresh, const std::vector<Vertex*>& near) override;
-    void finish() override { search(); }
-    void search();
+    void connect(Vertex& fresh, const std::vector<Vertex*>& near,
+                 const ompl::base::PlannerTerminationCondition& ptc) override;
+    void finish(const ompl::base::PlannerTerminationCondition& ptc) override;
+    void search(const ompl::base::PlannerTerminationCondition& ptc);
     std::vector<double> distancesToGoal() const;
     void expand(int label, const std::vector<double>& toGoal, Open& open);
     bool isDominated(const Vertex& vertex, const Matrix6& covariance, double toGoal) const;
@@ -49,7 +53,7 @@ class BeliefRRTstar : public BeliefPlanner {
     std::vector<std::vector<Edge*>> edgesOf_;  // by vertex
     std::vector<Label> settled_;               // in the order they were settled
     std::vector<std::vector<int>> labelsOf_;   // by vertex, into settled_
-    std::size_t nextSearch_ = 0;               // number of vertices at which to search again
+    std::size_t searched_ = 0;                 // number of vertices at the last complete search
 };
 
 }  // namespace photonav

@@ -30,7 +30,7 @@ ob::StateSpacePtr makeSpace(StateKind kind, const Eigen::AlignedBox3d& box, doub
     if (kind == StateKind::se3) {
         auto space = std::make_shared<ob::SE3StateSpace>();
         space->setBounds(toOmpl(box));
-        space->setSubspaceWeight(1, rotationWeight);
+        space->setSubspaceWeight(1, 2. * rotationWeight);  // OMPL's SO(3) metric is half the angle
         return space;
     }
     auto position = std::make_shared<ob::RealVectorStateSpace>(3);
@@ -65,15 +65,12 @@ class ClearanceChecker : public ob::StateValidityChecker {
           radius_(radius) {}
 
     bool isValid(const ob::State* state) const override {
-        return si_->satisfiesBounds(state) && margin(space_.position(state)) > 0.;
+        return si_->satisfiesBounds(state) && clearance(state) > radius_;
     }
 
     double clearance(const ob::State* state) const override {
         return clearance_(space_.position(state));
     }
-
-    /// How far the robot can move from p_w in any direction [m]; negative in collision.
-    double margin(const Eigen::Vector3d& p_w) const { return clearance_(p_w) - radius_; }
 
   private:
     FlightSpace space_;
@@ -85,8 +82,12 @@ class ClearanceChecker : public ob::StateValidityChecker {
 /// sphere, so the line is all there is to check.
 class ClearanceMotionValidator : public ob::MotionValidator {
   public:
-    ClearanceMotionValidator(ob::SpaceInformation* si, const FlightSpace& space)
-        : ob::MotionValidator(si), space_(space) {}
+    ClearanceMotionValidator(ob::SpaceInformation* si, const FlightSpace& space,
+                             Clearance clearance, double radius)
+        : ob::MotionValidator(si),
+          space_(space),
+          clearance_(std::move(clearance)),
+          radius_(radius) {}
 
     bool checkMotion(const ob::State* from, const ob::State* to) const override {
         const bool isFree = si_->isValid(to) && reachableFraction(from, to) >= 1.;
@@ -108,13 +109,12 @@ class ClearanceMotionValidator : public ob::MotionValidator {
 
   private:
     double reachableFraction(const ob::State* from, const ob::State* to) const {
-        const auto& checker = static_cast<const ClearanceChecker&>(*si_->getStateValidityChecker());
         const Eigen::Vector3d start = space_.position(from);
         const Eigen::Vector3d motion = space_.position(to) - start;
         const double length = motion.norm();
         double travelled = 0.;
         while (travelled < length) {
-            const double margin = checker.margin(start + motion * (travelled / length));
+            const double margin = clearance_(start + motion * (travelled / length)) - radius_;
             if (margin <= 0.) return std::max(0., travelled - kMinStep) / length;
             travelled += std::max(margin, kMinStep);
         }
@@ -122,6 +122,8 @@ class ClearanceMotionValidator : public ob::MotionValidator {
     }
 
     FlightSpace space_;
+    Clearance clearance_;
+    double radius_;
 };
 
 }  // namespace
@@ -233,9 +235,9 @@ int FlightSpace::rotationDimensions() const {
 double FlightSpace::measure() const {
     double volume = 1.;
     for (const double extent : bounds_.sizes()) volume *= extent > kFlat ? extent : 1.;
-    // OMPL measures rotations by the angle between unit quaternions: SO(3) is half of S^3, pi^2.
+    // Unit quaternions make SO(3) half of S^3, pi^2, in half angles: 8 pi^2 in angles.
     constexpr double pi = std::numbers::pi;
-    const std::array<double, 4> angles{1., 2. * pi, 0., pi * pi};
+    const std::array<double, 4> angles{1., 2. * pi, 0., 8. * pi * pi};
     const int m = rotationDimensions();
     return volume * std::pow(rotationWeight_, m) * angles[m];
 }
@@ -254,8 +256,9 @@ ob::SpaceInformationPtr makeSpaceInformation(const FlightSpace& space, Clearance
                                              double radius) {
     auto si = std::make_shared<ob::SpaceInformation>(space.space());
     si->setStateValidityChecker(
-        std::make_shared<ClearanceChecker>(si.get(), space, std::move(clearance), radius));
-    si->setMotionValidator(std::make_shared<ClearanceMotionValidator>(si.get(), space));
+        std::make_shared<ClearanceChecker>(si.get(), space, clearance, radius));
+    si->setMotionValidator(
+        std::make_shared<ClearanceMotionValidator>(si.get(), space, std::move(clearance), radius));
     si->setup();
     return si;
 }

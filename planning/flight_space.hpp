@@ -67,12 +67,13 @@ class FlightSpace {
 /// Heading of a body pose about the world's z axis [rad].
 double yawOf(const Pose& T_w_b);
 
-/// Distance from a point in the world to the nearest obstacle [m], exact or an underestimate.
+/// Distance from a point in the world to the nearest obstacle [m]; motions are as safe as it is
+/// exact.
 using Clearance = std::function<double(const Eigen::Vector3d& p_w)>;
 
 /// OMPL space information whose states are valid within the bounds and with more than `radius` of
 /// clearance, and whose motions are checked by conservative advancement: the step along the motion
-/// is never longer than the clearance allows, so no obstacle is stepped over.
+/// is what the clearance allows, and at least 5 mm.
 ompl::base::SpaceInformationPtr makeSpaceInformation(const FlightSpace& space, Clearance clearance,
                                                      double radius);
 

@@ -6,12 +6,13 @@
 namespace photonav {
 
 PerceptionRRTstar::PerceptionRRTstar(const ompl::base::SpaceInformationPtr& si,
-                                     std::shared_ptr<BeliefModel> model,
+                                     const std::shared_ptr<BeliefModel>& model,
                                      const GrowthOptions& growth)
     : BeliefPlanner(si, model, model->options().alpha == 1. ? "rrt_star" : "pa_rrt_star", growth),
       shortestPath_(model->options().alpha == 1.) {}
 
-void PerceptionRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near) {
+void PerceptionRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near,
+                                const ompl::base::PlannerTerminationCondition&) {
     std::vector<Candidate> candidates;
     candidates.reserve(near.size());
     for (Vertex* vertex : near) {

@@ -11,8 +11,8 @@ namespace photonav {
 /// alpha = 1 no belief matters: it is the standard RRT*, and no view is ever rendered.
 class PerceptionRRTstar : public BeliefPlanner {
   public:
-    PerceptionRRTstar(const ompl::base::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
-                      const GrowthOptions& growth = {});
+    PerceptionRRTstar(const ompl::base::SpaceInformationPtr& si,
+                      const std::shared_ptr<BeliefModel>& model, const GrowthOptions& growth = {});
 
     std::vector<TreeNode> tree() const override;
 
@@ -23,7 +23,8 @@ class PerceptionRRTstar : public BeliefPlanner {
         std::optional<bool> isFree;
     };
 
-    void connect(Vertex& fresh, const std::vector<Vertex*>& near) override;
+    void connect(Vertex& fresh, const std::vector<Vertex*>& near,
+                 const ompl::base::PlannerTerminationCondition& ptc) override;
     void chooseParent(Vertex& fresh, std::vector<Candidate>& candidates);
     void rewire(Vertex& fresh, std::vector<Candidate>& candidates);
     void updateSubtree(Vertex& root);

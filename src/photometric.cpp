@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <stdexcept>
 #include <vector>
 
 #include "se3.hpp"
@@ -59,7 +60,7 @@ int firstInStride(int stride) { return 1 + stride / 2; }
 
 // --- The kernel -------------------------------------------------------------------------------
 
-/// Three consecutive rows of intensity and inverse depth in whole, aligned vectors: lane 0 of
+/// Four consecutive rows of intensity and inverse depth in whole, aligned vectors: lane 0 of
 /// vector 0 is column 1, the first that can count. The padding has no surface, so it does not.
 template <int kWidth>
 class RowWindow {
@@ -70,12 +71,12 @@ class RowWindow {
         : view_(view),
           width_(view.intensity.getWidth()),
           vectors_((width_ - 2 + kWidth - 1) / kWidth),
-          intensity_(3 * (vectors_ + 2), Float{}),
-          inverseDepth_(3 * (vectors_ + 2), Float{} + kNoSurface) {}
+          intensity_(kRows * (vectors_ + 2), Float{}),
+          inverseDepth_(kRows * (vectors_ + 2), Float{} + kNoSurface) {}
 
     std::size_t vectors() const { return vectors_; }
 
-    /// Brings in row v; it can be read until row v + 3 comes.
+    /// Brings in row v; it can be read until row v + 4 comes.
     void load(unsigned v) {
         float* intensity = reinterpret_cast<float*>(&intensity_[start(v)]);
         float* inverse = reinterpret_cast<float*>(&inverseDepth_[start(v)]);
@@ -89,7 +90,11 @@ class RowWindow {
     const Float* inverseDepth(unsigned v) const { return &inverseDepth_[start(v)]; }
 
   private:
-    std::size_t start(unsigned v) const { return (v % 3) * (vectors_ + 2) + 1; }
+    /// One more than the stencil: a row is written while the one before it is read, since reading
+    /// in other units what was just written stalls.
+    static constexpr unsigned kRows = 4;
+
+    std::size_t start(unsigned v) const { return (v % kRows) * (vectors_ + 2) + 1; }
 
     const View& view_;
     std::size_t width_;
@@ -236,13 +241,19 @@ double weight(const PhotometricOptions& options) {
 
 Matrix6 photometricInformation(const View& view, const Camera& camera,
                                const PhotometricOptions& options) {
+    if (view.intensity.getWidth() != camera.width || view.intensity.getHeight() != camera.height ||
+        view.depth.getWidth() != camera.width || view.depth.getHeight() != camera.height) {
+        throw std::invalid_argument("photometric information: view and camera differ in size");
+    }
+    if (options.stride < 1) throw std::invalid_argument("photometric information: stride below 1");
     if (camera.width < 3 || camera.height < 3) return Matrix6::Zero();
     RowWindow<simd::kWidth> rows(view);
     RowKernel<simd::kWidth> kernel(camera, options, rows.vectors());
     const unsigned first = firstInStride(options.stride);
     unsigned next = 0;
     for (unsigned v = first; v + 1 < camera.height; v += options.stride) {
-        for (next = std::max(next, v - 1); next <= v + 1; ++next) rows.load(next);
+        const unsigned ahead = std::min(v + 2, camera.height - 1);
+        for (next = std::max(next, v - 1); next <= ahead; ++next) rows.load(next);
         kernel.add(rows, v);
     }
     return weight(options) * kernel.sum();

@@ -18,10 +18,10 @@ struct PhotometricOptions {
 /// Fisher information of the camera pose from one view, in the camera frame, for the left
 /// perturbation T_c_w = exp(xi^) mean:
 ///     Lambda = scale / sigma^2 * sum J^T J,   J = grad I * dpi/dp * [1 | -p^]
-/// (the paper's eqs. (13)-(14)). The gradient is the central difference of the predicted image; a
-/// border of one pixel is left out. A pixel counts when its four neighbours and itself have depth,
-/// none of them lies across a depth discontinuity, and it is not saturated. Nothing is stored per
-/// pixel; sums are single precision within a row and double across rows.
+/// (the paper's eqs. (19) and (20)). The gradient is the central difference of the predicted image;
+/// a border of one pixel is left out. A pixel counts when its four neighbours and itself have
+/// depth, none of them lies across a depth discontinuity, and it is not saturated. Nothing is
+/// stored per pixel; sums are single precision within a row and double across rows.
 Matrix6 photometricInformation(const View& view, const Camera& camera,
                                const PhotometricOptions& options = {});
 

@@ -92,7 +92,7 @@ function createCharts(onPick) {
         borderColor: paths.length ? paths[0].color : cssColor('--accent'),
         backgroundColor: cssColor('--accent'),
       }], 'vertices', 'best cost', {alongPath: false});
-    for (const [id, shown] of [['trace-box', paths.length], ['cost-box', paths.length],
+    for (const [id, shown] of [['trace-box', hasBeliefs], ['cost-box', hasBeliefs],
                                ['progress-box', progress.length]])
       document.getElementById(id).hidden = !shown;
   }

@@ -57,6 +57,9 @@ function summaryOf(path) {
 
 const paths = data.paths.filter((path) => path.points.length > 0);
 const summaries = paths.map(summaryOf);
+
+/// A recorded trajectory is a path without beliefs.
+const hasBeliefs = paths.some((path) => path.points.some((point) => point.trace > 0));
 if (summaries.length && typeof data.result.mean_trace === 'number')
   summaries[0].meanTrace = data.result.mean_trace;  // with every sub-step, not only path points
 

@@ -12,6 +12,7 @@ function make(tag, text, attributes = {}) {
 // Head --------------------------------------------------------------------------------------------
 function verdict() {
   if (!paths.length) return data.result.command === 'plan' ? 'No path was found.' : '';
+  if (!hasBeliefs) return '';
   const ours = summaries[0], other = summaries[1];
   if (!other)
     return `The path is ${say(ours.length, 'm')} long and ends with a predicted position error of ` +
@@ -38,7 +39,7 @@ function fillHead() {
 }
 
 function fillTiles() {
-  const {result} = data, ours = summaries[0] || {};
+  const {result} = data, ours = hasBeliefs ? summaries[0] : {};
   const seconds = (result.time || {}).total_s;
   const tiles = [
     ['path length', ours.length ?? result.length, 'm'],

@@ -42,9 +42,9 @@ TEST(Config, EveryShippedConfigLoads) {
 }
 
 TEST(Config, WrittenConfigReadsBackTheSame) {
-    const Config config =
-        loadConfig(kTwoTextures, {"planner.alpha=0.35", "camera.mount=front45",
-                                  "start=[0, 0, 2, 0.5]", "noise.propagation=second"});
+    const Config config = loadConfig(
+        kTwoTextures, {"planner.alpha=0.35", "camera.mount=front45", "start=[0, 0, 2, 0.5]",
+                       "space=xyz_yaw", "noise.propagation=second"});
     const fs::path file = fs::temp_directory_path() / "photonav_config_round_trip.yaml";
     std::ofstream(file) << toYaml(config);
     const Config again = loadConfig(file.string());
@@ -94,6 +94,9 @@ TEST(Config, ComplaintsNameKeyAndReason) {
     expectComplaint("bounds=[[1, 1, 1], [0, 0, 0]]", "bounds", "lower");
     expectComplaint("bounds=3", "bounds", "3");
     expectComplaint("seed=0", "seed", "outside");
+    expectComplaint("seed=1.5", "seed", "whole number");
+    expectComplaint("camera.width=188.5", "camera.width", "whole number");
+    expectComplaint("goal=[2, 9, 2, 1]", "goal", "xyz_yaw");
     expectComplaint("map.file=x.ot", "scene.file", "either");
     expectComplaint("scene.file=", "scene.file", "either");
     expectComplaint("noequals", "noequals", "key.path=value");

@@ -94,7 +94,7 @@ TEST(FlightSpace, UnitBallIsThatOfTheMetric) {
     expectShare({StateKind::position, box({-.5, -.5, 1}, {.5, .5, 1})});
     expectShare({StateKind::positionYaw, box({-.5, -.5, .5}, {.5, .5, 1.5})});
     expectShare({StateKind::positionYaw, box({-.5, -.5, 1}, {.5, .5, 1})});
-    expectShare({StateKind::se3, box({-.4, -.4, .6}, {.4, .4, 1.4}), 0.5});
+    expectShare({StateKind::se3, box({-.3, -.3, .7}, {.3, .3, 1.3}), 0.25});
 }
 
 TEST(FlightSpace, RejectsEmptyBoundsAndNegativeWeight) {
