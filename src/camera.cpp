@@ -29,9 +29,9 @@ Pose cameraMount(double belowHorizon) {
     const double c = std::cos(belowHorizon);
     const double s = std::sin(belowHorizon);
     Pose T_b_c = Pose::Identity();
-    T_b_c.linear().col(0) = -Eigen::Vector3d::UnitY();      // image right is the body's right
-    T_b_c.linear().col(1) = Eigen::Vector3d(-s, 0., -c);    // image down
-    T_b_c.linear().col(2) = Eigen::Vector3d(c, 0., -s);     // optical axis
+    T_b_c.linear().col(0) = -Eigen::Vector3d::UnitY();    // image right is the body's right
+    T_b_c.linear().col(1) = Eigen::Vector3d(-s, 0., -c);  // image down
+    T_b_c.linear().col(2) = Eigen::Vector3d(c, 0., -s);   // optical axis
     return T_b_c;
 }
 

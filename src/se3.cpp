@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <ranges>
 
 namespace photonav {
 
@@ -69,7 +68,7 @@ double inverseJacobianCoefficient(double x) {
                                         3617. / 10670622842880000.,
                                         43867. / 5109094217170944000.};
         double sum = 0.;
-        for (const double c : kSeries | std::views::reverse) sum = sum * x + c;
+        for (std::size_t k = kSeries.size(); k-- > 0;) sum = sum * x + kSeries[k];
         return sum;
     }
     const double half = 0.5 * std::sqrt(x);

@@ -149,7 +149,7 @@ void readCamera(const std::string& file, Sequence& sequence) {
 bool isTruncatedJpeg(const std::vector<unsigned char>& bytes) {
     if (bytes.size() < 2 || bytes[0] != 0xFF || bytes[1] != 0xD8) return false;
     const std::array<unsigned char, 2> end = {0xFF, 0xD9};
-    return std::search(bytes.end() - std::min<std::ptrdiff_t>(bytes.size(), 1024), bytes.end(),
+    return std::search(bytes.end() - std::min<std::ptrdiff_t>(std::ssize(bytes), 1024), bytes.end(),
                        end.begin(), end.end()) == bytes.end();
 }
 
@@ -157,7 +157,7 @@ cv::Mat readImage(const std::string& file, int flags, const Camera& camera) {
     std::ifstream in(file, std::ios::binary);
     if (!in) throw InputError(file, "", "no such file");
     const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(in), {}};
-    const cv::Mat image =
+    cv::Mat image =
         bytes.empty() || isTruncatedJpeg(bytes) ? cv::Mat() : cv::imdecode(bytes, flags);
     if (image.empty()) throw InputError(file, "", "not an image, or damaged");
     if (image.cols != int(camera.width) || image.rows != int(camera.height)) {

@@ -53,8 +53,8 @@ YAML::Node loadYaml(const std::string& file) {
     }
 }
 
-YamlMap::YamlMap(std::string file, YAML::Node node, std::string prefix)
-    : file_(std::move(file)), node_(std::move(node)), prefix_(std::move(prefix)) {
+YamlMap::YamlMap(std::string file, const YAML::Node& node, std::string prefix)
+    : file_(std::move(file)), node_(node), prefix_(std::move(prefix)) {
     if (node_.IsNull()) node_ = YAML::Node(YAML::NodeType::Map);
     if (!node_.IsMap()) throw InputError(file_, prefix_, "expected 'key: value' lines");
 }

@@ -25,7 +25,7 @@ YAML::Node loadYaml(const std::string& file);
 class YamlMap {
   public:
     /// @param prefix dotted path of this mapping inside the file, for messages
-    YamlMap(std::string file, YAML::Node node, std::string prefix = "");
+    YamlMap(std::string file, const YAML::Node& node, std::string prefix = "");
 
     bool has(const std::string& key) const { return node_[key].IsDefined(); }
 

@@ -97,8 +97,8 @@ struct Problem {
 /// Grows the planner until it has this many vertices.
 inline ob::PlannerStatus grow(BeliefPlanner& planner, std::size_t vertices) {
     planner.params().setParam("max_vertices", std::to_string(vertices));
-    return planner.solve(ob::PlannerTerminationCondition(
-        [&] { return planner.iterations() > 50 * vertices; }));
+    return planner.solve(
+        ob::PlannerTerminationCondition([&] { return planner.iterations() > 50 * vertices; }));
 }
 
 }  // namespace photonav::test
