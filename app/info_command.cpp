@@ -9,7 +9,6 @@
 #include "atomic_file.hpp"
 #include "error.hpp"
 #include "plan_report.hpp"
-#include "se3.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -52,26 +51,6 @@ Pose bodyAt(const Place& place) {
         Eigen::AngleAxisd(place.yaw.value_or(0.), Eigen::Vector3d::UnitZ()).toRotationMatrix();
     T_w_b.translation() = place.position;
     return T_w_b;
-}
-
-/// Standard deviation of the position after one view, starting from the initial covariance [m].
-Eigen::ArrayXXd positionSigma(PlanRun& run, const Config& config, const Eigen::AlignedBox2d& area,
-                              const Eigen::ArrayXXd& information, double height, double yaw) {
-    const Matrix6 toCamera = adjoint(config.camera.T_b_c().inverse());
-    const Matrix6 prior = toCamera * config.belief.initialCovariance * toCamera.transpose();
-    Eigen::ArrayXXd sigma = information;  // NaN where the robot cannot be
-    for (int i = 0; i < sigma.rows(); ++i) {
-        for (int j = 0; j < sigma.cols(); ++j) {
-            if (!std::isfinite(sigma(i, j))) continue;
-            const Eigen::Vector3d position(
-                area.min().x() + (i + 0.5) * area.sizes().x() / static_cast<double>(sigma.rows()),
-                area.min().y() + (j + 0.5) * area.sizes().y() / static_cast<double>(sigma.cols()),
-                height);
-            const Matrix6& gain = run.informationAt(bodyAt({position, yaw}));
-            sigma(i, j) = std::sqrt(updateCovariance(prior, gain).topLeftCorner<3, 3>().trace());
-        }
-    }
-    return sigma;
 }
 
 json resultOf(const Place& place, const Matrix6& Lambda, double height,
@@ -123,6 +102,21 @@ std::vector<NamedFigure> viewFigures(const View& view, const Config& config) {
     return figures;
 }
 
+std::vector<NamedFigure> heatMaps(const Eigen::AlignedBox2d& area, double height,
+                                  const Eigen::ArrayXXd& information,
+                                  const Eigen::ArrayXXd& sigma) {
+    const auto heatMap = [&](const char* title, const char* label, const Eigen::ArrayXXd& values) {
+        return drawHeatMap(
+            {fmt::format("{} at {:.2f} m", title, height), label, area, values, true});
+    };
+    return {{"information.png",
+             {"Trace of the Fisher information of one view.",
+              heatMap("What a view is worth", "trace of the Fisher information", information)}},
+            {"uncertainty.png",
+             {"Standard deviation of the position after one view.",
+              heatMap("What a view leaves unknown", "1 sigma of the position [m]", sigma)}}};
+}
+
 }  // namespace
 
 int runInfo(const InfoOptions& options) {
@@ -150,26 +144,19 @@ int runInfo(const InfoOptions& options) {
         ProgressLine line(options.quiet);
         line.show("looking around");
         const double yaw = place.yaw.value_or(0.);
-        information = informationGrid(run, area, height, yaw, options.cells);
-        sigma = positionSigma(run, config, area, information, height, yaw);
+        const Matrix6 prior = run.root().covariance;
+        information = viewGrid(run, area, height, yaw, options.cells,
+                               [](const Matrix6& gain) { return gain.trace(); });
+        sigma = viewGrid(run, area, height, yaw, options.cells, [&](const Matrix6& gain) {
+            return std::sqrt(updateCovariance(prior, gain).topLeftCorner<3, 3>().trace());
+        });
     }
     View view;
     world.views().render(config.camera.camera(), (bodyAt(place) * config.camera.T_b_c()).inverse(),
                          view);
 
-    const auto heatMap = [&](const char* title, const char* label, const Eigen::ArrayXXd& values) {
-        return drawHeatMap(
-            {fmt::format("{} at {:.2f} m", title, height), label, area, values, true});
-    };
-    auto figures = viewFigures(view, config);
-    figures.insert(
-        figures.begin(),
-        {{"information.png",
-          {"Trace of the Fisher information of one view.",
-           heatMap("What a view is worth", "trace of the Fisher information", information)}},
-         {"uncertainty.png",
-          {"Standard deviation of the position after one view.",
-           heatMap("What a view leaves unknown", "1 sigma of the position [m]", sigma)}}});
+    auto figures = heatMaps(area, height, information, sigma);
+    for (NamedFigure& figure : viewFigures(view, config)) figures.push_back(std::move(figure));
 
     const Matrix6 Lambda = photometricInformation(view, config.camera.camera(), config.photometric);
     json result = resultOf(place, Lambda, height, area, information);

@@ -113,7 +113,8 @@ HeatMap heatMap(const Config& config, PlanRun& run) {
     map.title = fmt::format("What a view is worth at {:.2f} m", height);
     map.label = "trace of the Fisher information";
     map.area = areaOf(config);
-    map.values = informationGrid(run, map.area, height, yaw, kHeatMapCells);
+    map.values = viewGrid(run, map.area, height, yaw, kHeatMapCells,
+                          [](const Matrix6& information) { return information.trace(); });
     map.logScale = true;
     return map;
 }
@@ -220,8 +221,8 @@ void writeResultFolder(const fs::path& folder, ReportData& report,
     writeReport(folder / "report.html", report);
 }
 
-Eigen::ArrayXXd informationGrid(PlanRun& run, const Eigen::AlignedBox2d& area, double height,
-                                double yaw, int cells) {
+Eigen::ArrayXXd viewGrid(PlanRun& run, const Eigen::AlignedBox2d& area, double height, double yaw,
+                         int cells, const std::function<double(const Matrix6&)>& value) {
     const double step = area.sizes().maxCoeff() / cells;
     const int nx = std::max(1, static_cast<int>(std::lround(area.sizes().x() / step)));
     const int ny = std::max(1, static_cast<int>(std::lround(area.sizes().y() / step)));
@@ -234,7 +235,7 @@ Eigen::ArrayXXd informationGrid(PlanRun& run, const Eigen::AlignedBox2d& area, d
             T_w_b.translation() << area.min().x() + (i + 0.5) * area.sizes().x() / nx,
                 area.min().y() + (j + 0.5) * area.sizes().y() / ny, height;
             if (run.isFlyable(T_w_b.translation())) {
-                values(i, j) = run.informationAt(T_w_b).trace();
+                values(i, j) = value(run.informationAt(T_w_b));
             }
         }
     }

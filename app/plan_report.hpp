@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "plan_run.hpp"
@@ -32,9 +33,10 @@ struct NamedFigure {
 void writeResultFolder(const std::filesystem::path& folder, ReportData& report,
                        const std::vector<NamedFigure>& figures);
 
-/// tr(Lambda) of the view from every cell of a horizontal grid; NaN where the robot cannot be.
+/// A value of the view from every cell of a horizontal grid; NaN where the robot cannot be.
 /// @param cells about how many along the longer side
-Eigen::ArrayXXd informationGrid(PlanRun& run, const Eigen::AlignedBox2d& area, double height,
-                                double yaw, int cells);
+/// @param value of the view's Fisher information (camera frame)
+Eigen::ArrayXXd viewGrid(PlanRun& run, const Eigen::AlignedBox2d& area, double height, double yaw,
+                         int cells, const std::function<double(const Matrix6&)>& value);
 
 }  // namespace photonav

@@ -48,6 +48,8 @@ class PlanRun {
 
     /// The information of a view from here, remembered; for heat maps.
     const Matrix6& informationAt(const Pose& T_w_b) { return judge_->informationAt(T_w_b); }
+    /// The belief at the start, camera frame.
+    Belief root() const { return judge_->root(); }
     bool isFlyable(const Eigen::Vector3d& p_w) const;
 
   private:
