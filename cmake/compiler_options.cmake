@@ -31,7 +31,7 @@ function(photonav_compiler_options target)
         -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-psabi
         -fno-math-errno -fno-trapping-math -fpch-preprocess
         $<$<BOOL:${PHOTONAV_WERROR}>:-Werror>
-        $<$<BOOL:${PHOTONAV_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize-recover=undefined;-fno-omit-frame-pointer;-O1>)
+        $<$<BOOL:${PHOTONAV_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize-recover=undefined;-fno-omit-frame-pointer;-UNDEBUG;-O1;-g1>)
     if(PHOTONAV_SANITIZE)
         target_link_options(${target} PUBLIC -fsanitize=address,undefined)
     endif()

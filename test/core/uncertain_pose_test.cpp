@@ -13,10 +13,8 @@ namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr int kSamples = 4000;
-constexpr int kMany = 100000;
 #else
 constexpr int kSamples = 100000;
-constexpr int kMany = 1000000;
 #endif
 
 /// The 6x6 matrix of the Lie bracket: (ad(x) y)^ = x^ y^ - y^ x^.
@@ -195,17 +193,20 @@ TEST(MonteCarlo, BothSidesGiveTheSameCovarianceUpToTheStart) {
     }
 }
 
+/// Noise so large that what second order leaves out stands out from sampling: over seeds, the ratio
+/// is 0.13 to 0.27 with 20000 samples and 0.06 to 0.21 with five times as many.
 TEST(MonteCarlo, CompoundOfTwoFullCovariances) {
+    constexpr int kPairs = 50000;
     std::srand(2);
     std::mt19937_64 random(2);
     std::normal_distribution<double> normal;
-    const UncertainPose T_c_b{randomPose(), randomCovariance(0.2, 0.12)};
-    const UncertainPose T_b_a{randomPose(), randomCovariance(0.3, 0.12)};
+    const UncertainPose T_c_b{randomPose(), randomCovariance(0.2, 0.3)};
+    const UncertainPose T_b_a{randomPose(), randomCovariance(0.3, 0.3)};
     const Matrix6 root1 = T_c_b.covariance.llt().matrixL();
     const Matrix6 root2 = T_b_a.covariance.llt().matrixL();
     const Pose meanInverse = (T_c_b.mean * T_b_a.mean).inverse();
     Matrix6 truth = Matrix6::Zero();
-    for (int s = 0; s < kMany; ++s) {
+    for (int s = 0; s < kPairs; ++s) {
         const auto draw = [&](const Matrix6& root) {
             return Vector6(root * Vector6::NullaryExpr([&]() { return normal(random); }));
         };
@@ -213,7 +214,7 @@ TEST(MonteCarlo, CompoundOfTwoFullCovariances) {
         const Vector6 xi = logSE3(T * meanInverse);
         truth += xi * xi.transpose();
     }
-    truth /= kMany;
+    truth /= kPairs;
     const Matrix6 second = compound(T_c_b, T_b_a, PropagationOrder::second).covariance;
     const Matrix6 fourth = compound(T_c_b, T_b_a, PropagationOrder::fourth).covariance;
     EXPECT_LT((fourth - truth).norm(), 0.5 * (second - truth).norm());
