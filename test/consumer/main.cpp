@@ -1,5 +1,6 @@
 #include <iostream>
-#include <uncertain_pose.hpp>
+#include <photonav/belief_planner.hpp>
+#include <photonav/uncertain_pose.hpp>
 
 int main() {
     photonav::UncertainPose belief;
