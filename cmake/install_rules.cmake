@@ -1,14 +1,17 @@
-# `cmake --install` and find_package(photonav): targets photonav::core and photonav::planning.
+# `cmake --install` and find_package(photonav): targets photonav::core,
+# photonav::planning and photonav::tracking.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/photonav)
 set_target_properties(photonav_core PROPERTIES EXPORT_NAME core)
 set_target_properties(photonav_planning PROPERTIES EXPORT_NAME planning)
-install(TARGETS photonav_core photonav_planning EXPORT photonav_targets)
+set_target_properties(photonav_tracking PROPERTIES EXPORT_NAME tracking)
+install(TARGETS photonav_core photonav_planning photonav_tracking EXPORT photonav_targets)
 install(TARGETS photonav)
-install(DIRECTORY src/ planning/ DESTINATION include/photonav FILES_MATCHING PATTERN "*.hpp"
-    PATTERN "yaml_reader.hpp" EXCLUDE PATTERN "simd.hpp" EXCLUDE)
+install(DIRECTORY src/ planning/ tracking/ DESTINATION include/photonav FILES_MATCHING PATTERN "*.hpp"
+    PATTERN "yaml_reader.hpp" EXCLUDE PATTERN "simd.hpp" EXCLUDE
+    PATTERN "product_sums.hpp" EXCLUDE)
 install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/photonav/config)
 install(EXPORT photonav_targets NAMESPACE photonav:: DESTINATION ${_config_dir})
 configure_package_config_file(cmake/photonavConfig.cmake.in

@@ -1,6 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 
-# Who may include whom: src nothing of ours outside itself, planning only src, app everything.
+# Who may include whom: src nothing of ours outside itself, planning and tracking only src, app
+# everything.
 # Third-party libraries with heavy headers stay where they are wrapped.
 function(forbid folder pattern reason)
     file(GLOB sources ${SOURCE_DIR}/${folder}/*.cpp ${SOURCE_DIR}/${folder}/*.hpp)
@@ -15,7 +16,8 @@ function(forbid folder pattern reason)
 endfunction()
 
 function(only_in pattern)  # remaining arguments: files that may
-    file(GLOB sources ${SOURCE_DIR}/src/*.?pp ${SOURCE_DIR}/planning/*.?pp ${SOURCE_DIR}/app/*.?pp)
+    file(GLOB sources ${SOURCE_DIR}/src/*.?pp ${SOURCE_DIR}/planning/*.?pp ${SOURCE_DIR}/tracking/*.?pp
+        ${SOURCE_DIR}/app/*.?pp)
     foreach(source IN LISTS sources)
         file(STRINGS ${source} lines REGEX "^#include.*${pattern}")
         cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${SOURCE_DIR} OUTPUT_VARIABLE name)
@@ -26,11 +28,15 @@ function(only_in pattern)  # remaining arguments: files that may
 endfunction()
 
 file(GLOB planning_headers RELATIVE ${SOURCE_DIR}/planning ${SOURCE_DIR}/planning/*.hpp)
+file(GLOB tracking_headers RELATIVE ${SOURCE_DIR}/tracking ${SOURCE_DIR}/tracking/*.hpp)
 file(GLOB app_headers RELATIVE ${SOURCE_DIR}/app ${SOURCE_DIR}/app/*.hpp)
 list(JOIN planning_headers "|" planning_pattern)
+list(JOIN tracking_headers "|" tracking_pattern)
 list(JOIN app_headers "|" app_pattern)
-forbid(src "\"(${planning_pattern}|${app_pattern})\"" "src knows nothing of planning and app")
-forbid(planning "\"(${app_pattern})\"" "planning knows nothing of app")
+forbid(src "\"(${planning_pattern}|${tracking_pattern}|${app_pattern})\"" "src knows only itself")
+forbid(planning "\"(${tracking_pattern}|${app_pattern})\"" "planning knows only src and itself")
+forbid(tracking "\"(${planning_pattern}|${app_pattern})\"" "tracking knows only src and itself")
+forbid(tracking "<(ompl|yaml-cpp|nlohmann|CLI)/" "tracking plans nothing and reads no configs")
 forbid(src "<ompl/" "OMPL belongs to planning")
 forbid(planning "<(opencv2|yaml-cpp|nlohmann|CLI)/" "planning reads and writes no files")
 only_in("<embree" src/mesh_renderer.cpp)

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dense_aligner.hpp"
+
+#include <gtest/gtest.h>
+
+#include "rooms.hpp"
+
+namespace photonav {
+namespace {
+
+using testing::cameraAt;
+using testing::kDown;
+using testing::kOblique;
+
+const Camera& camera() {
+    static const Camera quarter = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
+    return quarter;
+}
+
+const MeshRenderer& room() {
+    static const MeshRenderer renderer(testing::texturedRoom());
+    return renderer;
+}
+
+const Pose kPose = cameraAt({1.6, 3., 1.6}, kOblique, 0.1);
+
+ImageF observe(const ViewSource& model, const Pose& T_c_w, double sigma = 0.,
+               std::uint64_t seed = 1, const Camera& c = camera()) {
+    View view;
+    model.render(c, T_c_w, view);
+    std::mt19937_64 random(seed);
+    return sigma > 0. ? testing::noisy(view.intensity, sigma, random) : view.intensity;
+}
+
+Vector6 error(const Alignment& a, const Pose& truth) { return logSE3(truth * a.T_c_w.inverse()); }
+
+TEST(DenseAligner, FindsTheExactPoseWithoutNoise) {
+    DenseAligner aligner(room(), camera());
+    std::mt19937_64 random(1);
+    for (int i = 0; i < 5; ++i) {
+        const Pose start = expSE3(testing::randomTwist(0.06, 0.04, random)) * kPose;
+        const Alignment a = aligner.align(observe(room(), kPose), start);
+        EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
+        EXPECT_LT(error(a, kPose).norm(), 1e-4);
+        EXPECT_LT(a.residual.rms, 1e-3);
+        EXPECT_GT(a.overlap, 0.8);
+        EXPECT_TRUE(a.openDirections.empty());
+        EXPECT_LE(a.iterations, 60);
+    }
+}
+
+TEST(DenseAligner, CovarianceIsThePlannersInverse) {
+    DenseAligner aligner(room(), camera());
+    const Alignment a = aligner.align(observe(room(), kPose), kPose);
+    View view;
+    room().render(camera(), a.T_c_w, view);
+    const Matrix6 planned = photometricInformation(view, camera(), {});
+    EXPECT_LT((a.information - planned).norm(), 1e-5 * planned.norm());
+    // Eigenvalues below one of the scaled information are raised to one: not so here.
+    EXPECT_LT((a.covariance * planned - Matrix6::Identity()).norm(), 1e-4);
+}
+
+TEST(DenseAligner, PriorDecidesWhereTheImageIsSilent) {
+    const MeshRenderer white(testing::floorOf(uniformTexture(0.9)));
+    const Pose truth = cameraAt({0., 0., 2.}, kDown);
+    DenseAligner aligner(white, camera());
+    UncertainPose prior{truth, 1e-4 * Matrix6::Identity()};
+    const Alignment a = aligner.align(observe(white, truth, 0.02), prior);
+    EXPECT_EQ(a.verdict, Verdict::degenerate);
+    EXPECT_EQ(a.openDirections.size(), 6U);
+    EXPECT_LT((a.covariance - prior.covariance).norm(), 1e-12);
+    EXPECT_LT(error(a, truth).norm(), 1e-9);
+}
+
+TEST(DenseAligner, NamesTheDirectionsThatStripesLeaveOpen) {
+    const MeshRenderer bars(testing::floorOf(stripes({.width = 0.3})));
+    const Pose truth = cameraAt({0., 0., 2.}, kDown);  // image x along world -y, y along -x
+    DenseAligner aligner(bars, camera());
+    const Pose start = expSE3(0.01 * Vector6::Unit(1)) * truth;
+    const Alignment a = aligner.align(observe(bars, truth, 0.01), start);
+    EXPECT_EQ(a.verdict, Verdict::degenerate) << describe(a);
+    EXPECT_EQ(a.openDirections, std::vector<std::string>{"x"}) << describe(a);
+    EXPECT_LT(std::abs(error(a, truth)[1]), 0.005);
+    EXPECT_GT(std::abs(a.directions(0, 0)), 0.7);
+    EXPECT_GT(a.covariance(0, 0), 0.5);
+    EXPECT_EQ(describe(a), "degenerate along x");
+}
+
+TEST(DenseAligner, OpenDirectionsStayWhereTheyWere) {
+    const MeshRenderer white(testing::floorOf(uniformTexture(0.9)));
+    const Pose truth = cameraAt({0., 0., 2.}, kDown);
+    DenseAligner aligner(white, camera());
+    const Alignment a = aligner.align(observe(white, truth, 0.02), truth);
+    EXPECT_LT(error(a, truth).norm(), 1e-12);
+}
+
+/// The posterior is the minimum of image and prior: compared with the two on their own, which are
+/// nearly linear at this distance.
+TEST(DenseAligner, WeighsImageAgainstPrior) {
+    AlignmentOptions options;
+    options.photometric.sigma = 5.;  // as good as the prior
+    options.trust.openSigma = 10.;
+    options.fineStep = 1e-4;
+    DenseAligner aligner(room(), camera(), options);
+    std::mt19937_64 random(5);
+    const Vector6 offset = testing::randomTwist(0.01, 0.005, random);
+    UncertainPose prior;
+    prior.mean = expSE3(offset) * kPose;
+    Vector6 sigmas;
+    sigmas << 0.01, 0.02, 0.03, 0.005, 0.01, 0.02;
+    prior.covariance = sigmas.cwiseAbs2().asDiagonal();
+    const Alignment a = aligner.align(observe(room(), kPose), prior);
+    const Matrix6 planned = a.information;
+    const Matrix6 posterior = (planned + prior.covariance.inverse()).inverse();
+    EXPECT_LT((a.covariance - posterior).norm(), 0.02 * posterior.norm());
+    const Vector6 expected = posterior * (planned * -offset);  // from the prior's mean
+    EXPECT_LT((logSE3(a.T_c_w * prior.mean.inverse()) - expected).norm(), 0.05 * offset.norm());
+}
+
+TEST(DenseAligner, NoPriorVarianceNoMotion) {
+    DenseAligner aligner(room(), camera());
+    std::mt19937_64 random(5);
+    UncertainPose prior{expSE3(testing::randomTwist(0.01, 0., random)) * kPose, {}};
+    prior.covariance.setZero();
+    prior.covariance(0, 0) = 1e-3;
+    const Alignment a = aligner.align(observe(room(), kPose), prior);
+    const Vector6 moved = logSE3(a.T_c_w * prior.mean.inverse());
+    EXPECT_GT(std::abs(moved[0]), 1e-4);
+    EXPECT_LT(moved.tail<5>().norm(), 1e-12);
+}
+
+TEST(DenseAligner, EstimatesExposure) {
+    ImageF image = observe(room(), kPose, 0.01);
+    for (unsigned i = 0; i < image.getSize(); ++i) image.bitmap[i] = 0.7F * image.bitmap[i] + 0.1F;
+    AlignmentOptions options;
+    options.exposure = true;
+    DenseAligner aligner(room(), camera(), options);
+    std::mt19937_64 random(2);
+    const Pose start = expSE3(testing::randomTwist(0.04, 0.02, random)) * kPose;
+    const Alignment a = aligner.align(image, start);
+    EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
+    EXPECT_NEAR(a.exposure.gain, 0.7, 0.005);
+    EXPECT_NEAR(a.exposure.offset, 0.1, 0.005);
+    EXPECT_LT(error(a, kPose).norm(), 3e-3);
+    // Unknown exposure can only cost information.
+    DenseAligner fixed(room(), camera());
+    const Alignment known = fixed.align(observe(room(), kPose, 0.01), kPose);
+    EXPECT_LT(a.information.trace(), known.information.trace());
+}
+
+TEST(DenseAligner, RobustWeightsSurviveAnOccluder) {
+    ImageF image = observe(room(), kPose, 0.01);
+    for (unsigned v = 30; v < 80; ++v) {
+        for (unsigned u = 60; u < 130; ++u) image[v][u] = u % 8 < 4 ? 0.95F : 0.05F;
+    }
+    const auto errorWith = [&](RobustWeight robust) {
+        AlignmentOptions options;
+        options.robust = robust;
+        DenseAligner aligner(room(), camera(), options);
+        const Vector6 offset = 0.02 * Vector6::Unit(0);
+        return error(aligner.align(image, expSE3(offset) * kPose), kPose).norm();
+    };
+    EXPECT_GT(errorWith(RobustWeight::none), 4e-3);
+    EXPECT_LT(errorWith(RobustWeight::huber), 4e-3);
+    EXPECT_LT(errorWith(RobustWeight::tukey), 1.5e-3);
+}
+
+TEST(DenseAligner, SaysWhenItIsLost) {
+    DenseAligner aligner(room(), camera());
+    const ImageF image = observe(room(), kPose, 0.02);
+    // Looking away from everything.
+    const MeshRenderer patch(testing::floorOf(valueNoise()));
+    DenseAligner overFloor(patch, camera());
+    const Alignment sky = overFloor.align(image, cameraAt({0., 0., 1.}, -kOblique));
+    EXPECT_EQ(sky.verdict, Verdict::lostOverlap);
+    EXPECT_EQ(describe(sky), "lost: overlap 0.00 below 0.20");
+    // A picture of another place, and a black one.
+    const ImageF elsewhere = observe(room(), cameraAt({4.5, 1., 1.2}, 0.2, 2.5), 0.02);
+    EXPECT_TRUE(isLost(aligner.align(elsewhere, kPose).verdict));
+    const ImageF black(camera().height, camera().width, 0.F);
+    EXPECT_TRUE(isLost(aligner.align(black, kPose).verdict));
+    // A prior that excludes the truth.
+    const UncertainPose confident{expSE3(0.05 * Vector6::Unit(0)) * kPose,
+                                  1e-6 * Matrix6::Identity()};
+    EXPECT_EQ(aligner.align(image, confident).verdict, Verdict::lostImplausible);
+}
+
+TEST(DenseAligner, FloorBoundsTheCovarianceFromBelow) {
+    AlignmentOptions options;
+    options.trust.floorTranslation = 0.01;
+    options.trust.floorRotation = 0.005;
+    DenseAligner aligner(room(), camera(), options);
+    const Alignment a = aligner.align(observe(room(), kPose), kPose);
+    Vector6 sigmas;
+    sigmas << 0.01, 0.01, 0.01, 0.005, 0.005, 0.005;
+    const Matrix6 floor = sigmas.cwiseAbs2().asDiagonal();
+    EXPECT_LT((a.covariance - floor).norm(), 1e-9);
+    const Matrix6 large = 2. * floor;
+    EXPECT_LT((withFloor(large, 0.01, 0.005) - large).norm(), 1e-12);
+}
+
+TEST(DenseAligner, RefusesImagesOfAnotherSize) {
+    DenseAligner aligner(room(), camera());
+    EXPECT_THROW(aligner.align(ImageF(10, 10), kPose), std::invalid_argument);
+}
+
+// --- Honesty
+// --------------------------------------------------------------------------------------
+
+/// NEES per degree of freedom over simulated alignments with independent noise. The chi-square
+/// bounds of 60 x 6 degrees of freedom at three sigma are 1 +- 0.22; bench/honesty runs hundreds.
+TEST(DenseAligner, CovarianceIsHonestOnTexture) {
+    const Camera small = makeCamera(94, 60, 1.2);
+    DenseAligner aligner(room(), small);
+    std::mt19937_64 random(7);
+    double sum = 0.;
+    const int n = 60;
+    for (int i = 0; i < n; ++i) {
+        const Pose truth = cameraAt({1.5 + 0.01 * i, 2. + 0.03 * i, 1.5}, kOblique, 0.05 * i);
+        const ImageF image = observe(room(), truth, 0.02, 100 + i, small);
+        const Pose start = expSE3(testing::randomTwist(0.02, 0.01, random)) * truth;
+        const Alignment a = aligner.align(image, start);
+        ASSERT_EQ(a.verdict, Verdict::converged) << describe(a);
+        const Vector6 xi = error(a, truth);
+        sum += xi.dot(a.covariance.ldlt().solve(xi)) / 6.;
+    }
+    const double sigma = std::sqrt(2. / (6. * n));
+    std::cout << "NEES per dof " << sum / n << ", chi-square 95 % [" << 1. - 1.96 * sigma << ", "
+              << 1. + 1.96 * sigma << "]\n";
+    EXPECT_NEAR(sum / n, 1., 3. * sigma);
+}
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pose_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include "rooms.hpp"
+
+namespace photonav {
+namespace {
+
+using testing::cameraAt;
+using testing::kOblique;
+
+const Camera& camera() {
+    static const Camera small = makeCamera(94, 60, 1.2);
+    return small;
+}
+
+Vector6 draw(const Matrix6& covariance, std::mt19937_64& random) {
+    std::normal_distribution<double> normal;
+    Vector6 z;
+    for (double& component : z) component = normal(random);
+    return covariance.llt().matrixL() * z;
+}
+
+/// Motion forward of 10 cm with a turn, and its noise.
+UncertainPose motion() {
+    Vector6 xi;
+    xi << 0.02, 0., -0.1, 0., 0.03, 0.;
+    Vector6 sigmas;
+    sigmas << 0.01, 0.01, 0.01, 0.005, 0.005, 0.005;
+    return {expSE3(xi), sigmas.cwiseAbs2().asDiagonal()};
+}
+
+TEST(PoseFilter, PropagatesAsThePlannerDoes) {
+    UncertainPose start{cameraAt({2., 3., 1.5}, kOblique), 1e-3 * Matrix6::Identity()};
+    PoseFilter filter(start);
+    filter.propagate(motion());
+    const UncertainPose planned = compound(motion(), start);
+    EXPECT_EQ(filter.belief().mean.matrix(), planned.mean.matrix());
+    EXPECT_EQ(filter.belief().covariance, planned.covariance);
+}
+
+TEST(PoseFilter, LostImagesChangeNothing) {
+    const MeshRenderer room(testing::texturedRoom());
+    DenseAligner aligner(room, camera());
+    PoseFilter filter({cameraAt({2., 3., 1.5}, kOblique), 1e-4 * Matrix6::Identity()});
+    const UncertainPose before = filter.belief();
+    const ImageF black(camera().height, camera().width, 0.F);
+    EXPECT_TRUE(isLost(filter.update(aligner, black).verdict));
+    EXPECT_EQ(filter.belief().mean.matrix(), before.mean.matrix());
+    EXPECT_EQ(filter.belief().covariance, before.covariance);
+}
+
+/// Flights of five steps: the final NEES per degree of freedom must be one. On a floor of faint
+/// texture odometry and images count about equally, so an error in either would show.
+TEST(PoseFilter, IsHonestAlongFlights) {
+    const MeshRenderer floor(
+        testing::floorOf(valueNoise({.amplitudes = {0.004, 0.003, 0.002}, .seed = 4})));
+    AlignmentOptions options;
+    options.trust.openSigma = 0.5;
+    DenseAligner aligner(floor, camera(), options);
+    std::mt19937_64 random(11);
+    const Matrix6 startCovariance = motion().covariance;
+    double sum = 0., odometry = 0., final = 0.;
+    const int flights = 60;
+    for (int flight = 0; flight < flights; ++flight) {
+        Pose truth = cameraAt({0.1 * flight - 3., 1., 1.5}, 1.1, 0.2 * flight);
+        PoseFilter filter({expSE3(draw(startCovariance, random)) * truth, startCovariance});
+        for (int step = 0; step < 5; ++step) {
+            truth = expSE3(draw(motion().covariance, random)) * motion().mean * truth;
+            filter.propagate(motion());
+            odometry += filter.belief().covariance.trace();
+            View view;
+            floor.render(camera(), truth, view);
+            const Alignment a =
+                filter.update(aligner, testing::noisy(view.intensity, 0.02, random));
+            ASSERT_FALSE(isLost(a.verdict)) << describe(a);
+            final += filter.belief().covariance.trace();
+        }
+        const Vector6 xi = logSE3(truth * filter.belief().mean.inverse());
+        sum += xi.dot(filter.belief().covariance.ldlt().solve(xi)) / 6.;
+    }
+    const double sigma = std::sqrt(2. / (6. * flights));
+    std::cout << "NEES per dof " << sum / flights << ", chi-square 95 % [" << 1. - 1.96 * sigma
+              << ", " << 1. + 1.96 * sigma << "], images keep " << final / odometry
+              << " of the trace\n";
+    EXPECT_NEAR(sum / flights, 1., 3. * sigma);
+    EXPECT_LT(final, 0.9 * odometry);
+    EXPECT_GT(final, 0.1 * odometry);
+}
+
+}  // namespace
+}  // namespace photonav

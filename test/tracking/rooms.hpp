@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scenes to get lost in, and poses in them.
+#pragma once
+
+#include <numbers>
+#include <random>
+
+#include "mesh_renderer.hpp"
+#include "se3.hpp"
+
+namespace photonav::testing {
+
+/// A room of 6 x 6 x 3 m with textured floor and walls and a few boxes.
+inline Scene texturedRoom() {
+    Scene scene;
+    const auto floor = addTexture(scene, valueNoise({.size = {6., 6.}, .seed = 1}));
+    const auto walls = addTexture(scene, valueNoise({.size = {6., 3.}, .seed = 2}));
+    const auto crates = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 3}));
+    addBox(scene, {0., 0., 0.}, {6., 6., 3.}, walls);
+    addPlane(scene, {0., 0., 0.01}, {6., 0., 0.}, {0., 6., 0.}, floor);
+    addBox(scene, {3.8, 2.4, 0.}, {4.3, 2.9, 0.6}, crates);
+    addBox(scene, {3.2, 3.6, 0.}, {3.6, 4.2, 0.4}, crates);
+    return scene;
+}
+
+/// A large floor of one texture.
+inline Scene floorOf(Texture texture) {
+    Scene scene;
+    const auto index = addTexture(scene, std::move(texture));
+    addPlane(scene, {-10., -10., 0.}, {20., 0., 0.}, {0., 20., 0.}, index);
+    return scene;
+}
+
+/// A camera at (x, y, z) with its optical axis `belowHorizon`, looking along `yaw`.
+inline Pose cameraAt(const Eigen::Vector3d& position_w, double belowHorizon, double yaw = 0.) {
+    Pose T_w_b = Pose::Identity();
+    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    T_w_b.translation() = position_w;
+    return (T_w_b * cameraMount(belowHorizon)).inverse();
+}
+
+inline constexpr double kDown = std::numbers::pi / 2.;
+inline constexpr double kOblique = std::numbers::pi / 4.;
+
+inline ImageF noisy(const ImageF& image, double sigma, std::mt19937_64& random) {
+    std::normal_distribution<float> noise(0.F, static_cast<float>(sigma));
+    ImageF result = image;
+    for (unsigned i = 0; i < result.getSize(); ++i) result.bitmap[i] += noise(random);
+    return result;
+}
+
+/// A twist of the given lengths in a random direction.
+inline Vector6 randomTwist(double metres, double radians, std::mt19937_64& random) {
+    std::normal_distribution<double> normal;
+    const auto direction = [&] {
+        Eigen::Vector3d d;
+        for (double& component : d) component = normal(random);
+        return Eigen::Vector3d(d.normalized());
+    };
+    Vector6 xi;
+    xi.head<3>() = metres * direction();
+    xi.tail<3>() = radians * direction();
+    return xi;
+}
+
+}  // namespace photonav::testing
