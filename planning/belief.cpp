@@ -43,6 +43,7 @@ Motion BeliefModel::motion(const ob::State* from, const ob::State* to) const {
 
 Belief BeliefModel::fly(const Belief& belief, Motion& motion, bool backward) {
     if (motion.views.empty()) look(motion);
+    if (field_->hasPenalties()) return flyPenalised(belief, motion, backward);
     const auto start = std::chrono::steady_clock::now();
     const bool perVertex = options_.cost == CostRule::perVertex;
     const double step = motion.length / motion.steps;
@@ -68,6 +69,32 @@ Belief BeliefModel::fly(const Belief& belief, Motion& motion, bool backward) {
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return {covariance, belief.cost + options_.alpha * motion.length +
                             (1. - options_.alpha) * options_.kappa * charge};
+}
+
+/// The penalty of the views in place of the trace: a motion costs the same for every belief.
+Belief BeliefModel::flyPenalised(const Belief& belief, const Motion& motion, bool backward) const {
+    double charge = 0.;
+    if (options_.cost == CostRule::perVertex) {
+        charge = penaltyAt(motion, backward ? 0 : motion.steps);
+    } else {
+        for (int k = 0; k <= motion.steps; ++k) {
+            const bool isEnd = k == 0 || k == motion.steps;
+            charge += (isEnd ? 0.5 : 1.) * motion.length / motion.steps * penaltyAt(motion, k);
+        }
+    }
+    return {belief.covariance, belief.cost + options_.alpha * motion.length +
+                                   (1. - options_.alpha) * options_.kappa * charge};
+}
+
+/// Of flying past the k-th view of a motion, in either direction.
+double BeliefModel::penaltyAt(const Motion& motion, int k) const {
+    if (motion.length == 0.) return motion.views[k]->penalty.base;  // no way, no parallax
+    const Eigen::Vector3d t_w =
+        (space_.position(motion.to) - space_.position(motion.from)) / motion.length;
+    const Pose T_w_c =
+        space_.poseBetween(motion.from, motion.to, static_cast<double>(k) / motion.steps) *
+        field_->mount();
+    return motion.views[k]->penalty.along(T_w_c.linear().transpose() * t_w);
 }
 
 void BeliefModel::look(Motion& motion) {
@@ -123,6 +150,10 @@ void BeliefModel::evaluateMotion(const ob::State* from, const ob::State* to,
     const bool perVertex = options_.cost == CostRule::perVertex;
     for (int k = 1; k <= way.steps; ++k) {
         const BeliefPoint last = points.back();
+        if (field_->hasPenalties()) {
+            points.push_back(penalisedPoint(last, way, k));
+            continue;
+        }
         BeliefPoint next;
         next.T_w_b = space_.poseBetween(way.from, way.to, static_cast<double>(k) / way.steps);
         const UncertainPose T_last_w{T_c_b * last.T_w_b.inverse(), last.covariance};
@@ -144,6 +175,26 @@ void BeliefModel::evaluateMotion(const ob::State* from, const ob::State* to,
         next.isWaypoint = k == way.steps;
         points.push_back(next);
     }
+}
+
+/// The k-th point of a motion, flown from `last`: the belief stays, the penalty is charged.
+BeliefPoint BeliefModel::penalisedPoint(const BeliefPoint& last, const Motion& motion, int k) {
+    BeliefPoint next = last;
+    next.T_w_b = space_.poseBetween(motion.from, motion.to, static_cast<double>(k) / motion.steps);
+    const double step = motion.length / motion.steps;
+    const Eigen::Vector3d way_w = next.T_w_b.translation() - last.T_w_b.translation();
+    const auto penalty = [&](const Pose& T_w_b) {
+        const Eigen::Vector3d t_w = step > 0. ? way_w / step : way_w;
+        return field_->at(T_w_b).penalty.along((T_w_b * field_->mount()).inverse().linear() * t_w);
+    };
+    const double charge = options_.cost == CostRule::perVertex
+                              ? penalty(next.T_w_b)
+                              : 0.5 * step * (penalty(last.T_w_b) + penalty(next.T_w_b));
+    next.distance += step;
+    next.length += way_w.norm();
+    next.cost += options_.alpha * step + (1. - options_.alpha) * options_.kappa * charge;
+    next.isWaypoint = k == motion.steps;
+    return next;
 }
 
 void BeliefModel::clear() {

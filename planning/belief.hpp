@@ -63,6 +63,9 @@ struct BeliefPoint {
     bool isWaypoint = false;                ///< a state of the path, not a step in between
 };
 
+/// Beliefs along motions and what they cost. Where the field has penalties instead of information,
+/// those are charged in place of the trace, and beliefs keep the covariance of the start: nothing
+/// that this model is asked depends on it.
 class BeliefModel {
   public:
     /// @throws std::invalid_argument as BeliefOptions::check()
@@ -104,6 +107,9 @@ class BeliefModel {
 
   private:
     void look(Motion& motion);
+    Belief flyPenalised(const Belief& belief, const Motion& motion, bool backward) const;
+    double penaltyAt(const Motion& motion, int k) const;
+    BeliefPoint penalisedPoint(const BeliefPoint& last, const Motion& motion, int k);
     Matrix6 stepAdjoint(const Motion& motion, int k, bool backward) const;
     double trace(const Matrix6& covariance) const {
         return weightedTrace(covariance, options_.characteristicLength);

@@ -17,23 +17,62 @@ InformationModel photometricModel(const ViewSource& map, const Camera& camera,
     };
 }
 
+InformationModel featureReprojectionModel(const ViewSource& map, const Camera& camera,
+                                          const FeatureOptions& options) {
+    auto view = std::make_shared<View>();
+    return [&map, camera, options, view](const Pose& T_c_w) {
+        map.render(camera, T_c_w, *view);
+        return reprojectionInformation(visibleFeatures(*view, options), camera, options);
+    };
+}
+
+PenaltyModel featureCountModel(const ViewSource& map, const Camera& camera,
+                               const FeatureOptions& options) {
+    auto view = std::make_shared<View>();
+    return [&map, camera, options, view](const Pose& T_c_w) -> ViewPenalty {
+        map.render(camera, T_c_w, *view);
+        return {.base = featurePenalty(visibleFeatures(*view, options).size(), options)};
+    };
+}
+
+PenaltyModel mapUncertaintyModel(const ViewSource& map, const Camera& camera,
+                                 const PhotometricOptions& photometric,
+                                 const MapUncertaintyOptions& options) {
+    auto view = std::make_shared<View>();
+    return [&map, camera, photometric, options, view](const Pose& T_c_w) -> ViewPenalty {
+        map.render(camera, T_c_w, *view);
+        return {.base = 1., .relief = mapCertainty(*view, camera, photometric, options)};
+    };
+}
+
 InformationField::InformationField(InformationModel model, const Pose& T_b_c,
                                    const Options& options)
-    : model_(std::move(model)), T_b_c_(T_b_c), options_(options) {
+    : information_(std::move(model)), T_b_c_(T_b_c), options_(options) {
     if (!(options.positionPitch > 0. && options.rotationPitch > 0.)) {
         throw std::invalid_argument("information field: the pitch must be positive");
     }
 }
 
+InformationField::InformationField(PenaltyModel model, const Pose& T_b_c, const Options& options)
+    : InformationField(InformationModel{}, T_b_c, options) {
+    penalty_ = std::move(model);
+}
+
 const InformationField::Entry& InformationField::at(const Pose& T_w_b) {
+    static const Entry kNothing{Matrix6::Zero(), true, {}};
+    if (!information_ && !penalty_) return kNothing;
     ++queries_;
     const Cell cell = cellOf(T_w_b);
     if (const auto known = index_.find(cell); known != index_.end()) return entries_[known->second];
     const auto start = std::chrono::steady_clock::now();
-    const Matrix6 information = model_((centreOf(cell) * T_b_c_).inverse());
+    const Pose T_c_w = (centreOf(cell) * T_b_c_).inverse();
+    Entry entry = kNothing;
+    if (information_) entry.information = information_(T_c_w);
+    if (penalty_) entry.penalty = penalty_(T_c_w);
+    entry.isZero = entry.information.isZero(0.);
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     index_.emplace(cell, static_cast<std::uint32_t>(entries_.size()));
-    return entries_.emplace_back(Entry{information, information.isZero(0.)});
+    return entries_.emplace_back(entry);
 }
 
 void InformationField::clear() {

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <unordered_map>
 
+#include "feature_information.hpp"
+#include "map_uncertainty.hpp"
 #include "photometric.hpp"
 #include "view.hpp"
 
@@ -22,7 +24,32 @@ using InformationModel = std::function<Matrix6(const Pose& T_c_w)>;
 InformationModel photometricModel(const ViewSource& map, const Camera& camera,
                                   const PhotometricOptions& options);
 
-/// Information over body poses, one view per cell of a pose grid.
+/// Information of the visible corners' reprojection errors (Achtelik et al. 2014).
+InformationModel featureReprojectionModel(const ViewSource& map, const Camera& camera,
+                                          const FeatureOptions& options);
+
+/// What flying past a view costs per metre, for planners that ask something else of a view than
+/// what it tells about the pose: base - t^T relief t for a motion along t (camera frame).
+struct ViewPenalty {
+    double base = 0.;
+    Eigen::Matrix3d relief = Eigen::Matrix3d::Zero();
+
+    /// @param t_c way of the camera by way flown: a unit vector, shorter where the camera also
+    /// turns
+    double along(const Eigen::Vector3d& t_c) const { return base - t_c.dot(relief * t_c); }
+};
+using PenaltyModel = std::function<ViewPenalty(const Pose& T_c_w)>;
+
+/// The fewer corners, the more (Sadat et al. 2014); see featurePenalty().
+PenaltyModel featureCountModel(const ViewSource& map, const Camera& camera,
+                               const FeatureOptions& options);
+
+/// The depth variance that flying past a view leaves (Forster et al. 2014); see mapCertainty().
+PenaltyModel mapUncertaintyModel(const ViewSource& map, const Camera& camera,
+                                 const PhotometricOptions& photometric,
+                                 const MapUncertaintyOptions& options);
+
+/// Information, or penalties, over body poses: one view per cell of a pose grid.
 ///
 /// The view is taken at the *centre* of the cell, so that the value depends on the pose alone and
 /// not on who asked first: a path costs the same whenever it is evaluated.
@@ -37,14 +64,22 @@ class InformationField {
     struct Entry {
         Matrix6 information;  ///< camera frame, left perturbation
         bool isZero;          ///< nothing to see: the update can be skipped
+        ViewPenalty penalty;  ///< where the field has penalties instead of information
     };
 
+    /// @param model empty: nothing is ever looked at, and no view tells anything
     /// @param T_b_c camera mount
     /// @throws std::invalid_argument unless both pitches are positive
     InformationField(InformationModel model, const Pose& T_b_c, const Options& options);
 
-    /// The information of the view from the cell of T_w_b. The reference stays valid until clear().
+    /// A field of penalties, whose views tell nothing about the pose.
+    InformationField(PenaltyModel model, const Pose& T_b_c, const Options& options);
+
+    /// What the view from the cell of T_w_b is worth. The reference stays valid until clear().
     const Entry& at(const Pose& T_w_b);
+
+    /// Whether motions are to be charged by penalty and not by covariance.
+    bool hasPenalties() const { return static_cast<bool>(penalty_); }
 
     const Pose& mount() const { return T_b_c_; }
     std::size_t views() const { return entries_.size(); }
@@ -61,7 +96,8 @@ class InformationField {
     Cell cellOf(const Pose& T_w_b) const;
     Pose centreOf(const Cell& cell) const;
 
-    InformationModel model_;
+    InformationModel information_;
+    PenaltyModel penalty_;
     Pose T_b_c_;
     Options options_;
     std::unordered_map<Cell, std::uint32_t, CellHash> index_;

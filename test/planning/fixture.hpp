@@ -11,6 +11,7 @@
 #include "audit.hpp"
 #include "belief_rrt_star.hpp"
 #include "perception_rrt_star.hpp"
+#include "rrbt.hpp"
 
 namespace photonav::test {
 
@@ -77,16 +78,24 @@ struct Problem {
         return definition;
     }
 
-    /// "rrt_star", "pa_rrt_star" or "belief_rrt_star", set up on this problem.
+    /// "rrt_star", "pa_rrt_star", "rrbt" or "belief_rrt_star", set up on this problem.
     std::shared_ptr<BeliefPlanner> planner(const std::string& name, unsigned labels = 5) const {
         Problem problem = *this;
         if (name == "rrt_star") problem.belief.alpha = 1.;
+        return planner(name, labels, problem.model());
+    }
+
+    /// The same with a model of its own.
+    std::shared_ptr<BeliefPlanner> planner(const std::string& name, unsigned labels,
+                                           const std::shared_ptr<BeliefModel>& model) const {
         const auto si = spaceInformation();
         std::shared_ptr<BeliefPlanner> planner;
         if (name == "belief_rrt_star") {
-            planner = std::make_shared<BeliefRRTstar>(si, problem.model(), labels, growth);
+            planner = std::make_shared<BeliefRRTstar>(si, model, labels, growth);
+        } else if (name == "rrbt") {
+            planner = std::make_shared<RRBT>(si, model, growth);
         } else {
-            planner = std::make_shared<PerceptionRRTstar>(si, problem.model(), growth);
+            planner = std::make_shared<PerceptionRRTstar>(si, model, growth);
         }
         planner->setProblemDefinition(definition(si));
         planner->setup();

@@ -32,7 +32,7 @@ void expectHonest(const BeliefPlanner& planner) {
 
 class EveryPlanner : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Planners, EveryPlanner,
-                         testing::Values("rrt_star", "pa_rrt_star", "belief_rrt_star"),
+                         testing::Values("rrt_star", "pa_rrt_star", "rrbt", "belief_rrt_star"),
                          [](const auto& test) { return test.param; });
 
 TEST_P(EveryPlanner, FindsAValidPathFromStartToGoal) {
