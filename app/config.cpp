@@ -45,7 +45,8 @@ void applyOverride(const YAML::Node& root, const std::string& text) {
     }
     const std::string path = text.substr(0, equals);
     std::string value = text.substr(equals + 1);
-    if (path.ends_with(".file") && !value.empty()) value = fs::absolute(value).string();
+    const bool isFile = path.ends_with(".file") || path == "sweep.reference";
+    if (isFile && !value.empty()) value = fs::absolute(value).string();
     YAML::Node node = root;
     for (std::size_t begin = 0; begin <= path.size();) {
         const std::size_t end = std::min(path.find('.', begin), path.size());
@@ -223,6 +224,8 @@ Config loadConfig(const std::string& file, const std::vector<std::string>& overr
     readCamera(root, config);
     readNoise(root, config);
     readPlanner(root, config);
+    config.sweep = readSweep(root, plannerNames());
+    config.sweep.reference = resolve(config.sweep.reference, file);
     readCount(root, "seed", config.seed, 1., 4294967295.);
     root.finish();
     return config;
@@ -274,7 +277,7 @@ std::string toYaml(const Config& c) {
                     c.growth.range, c.growth.goalBias, c.growth.rewireFactor, c.rotationWeight,
                     c.field.positionPitch, c.field.rotationPitch, c.compareWithRrtStar));
     line(fmt::format("seed: {}", c.seed));
-    return text;
+    return text + toYaml(c.sweep);
 }
 
 }  // namespace photonav

@@ -10,6 +10,7 @@
 #include "belief_planner.hpp"
 #include "camera.hpp"
 #include "photometric.hpp"
+#include "sweep_config.hpp"
 #include "textured_octree.hpp"
 
 namespace photonav {
@@ -56,6 +57,7 @@ struct Config {
     GrowthOptions growth;
     double rotationWeight = 0.25;  ///< metres that a radian of rotation counts
     bool compareWithRrtStar = true;
+    SweepConfig sweep;
 
     std::uint32_t seed = 1;
 };

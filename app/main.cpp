@@ -14,6 +14,7 @@
 #include "map_command.hpp"
 #include "plan_command.hpp"
 #include "report.hpp"
+#include "sweep_command.hpp"
 
 namespace {
 
@@ -33,8 +34,9 @@ void onInterrupt(int) {
     if (interrupted.exchange(true)) std::_Exit(kInterrupted);
 }
 
-void addCommon(CLI::App* command, CommandOptions& options) {
-    command->add_option("config", options.config, "YAML file of the planning problem")->required();
+void addCommon(CLI::App* command, CommandOptions& options, bool needsConfig = true) {
+    command->add_option("config", options.config, "YAML file of the planning problem")
+        ->required(needsConfig);
     command->add_option("--set", options.overrides, "override a value of the config")
         ->type_name("KEY.PATH=VALUE")
         ->allow_extra_args(false);
@@ -132,6 +134,26 @@ Command mapCommand(CLI::App& app, const std::string& commandLine) {
             }};
 }
 
+Command sweepCommand(CLI::App& app, const std::string& commandLine) {
+    auto options = std::make_shared<SweepOptions>();
+    options->commandLine = commandLine;
+    CLI::App* parser = app.add_subcommand(
+        "sweep", "Compare planners over alpha and seeds: the table of the paper.");
+    addCommon(parser, *options, false);
+    parser->add_option("--alpha", options->alphas, "first:last:step or a,b,c")->type_name("ALPHAS");
+    parser->add_option("--planners", options->planners, "a,b,c")->type_name("NAMES");
+    parser->add_option("--runs", options->runs, "seeds per planner and alpha");
+    parser->add_option("--seed", options->seed, "the first seed (overrides the config)");
+    parser->add_option("--jobs", options->jobs, "threads")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    parser->add_option("--shard", options->shard, "do only part k of n")->type_name("K/N");
+    parser->add_option("--merge", options->merge, "one table from the folders of all n shards")
+        ->type_name("DIR...");
+    parser->add_flag("--resume", options->resume, "go on with what the result folder holds");
+    return {parser, [options] { return runSweep(*options, interrupted); }};
+}
+
 Command reportCommand(CLI::App& app) {
     auto folder = std::make_shared<std::filesystem::path>();
     CLI::App* parser = app.add_subcommand("report", "Rebuild report.html of a result folder.");
@@ -159,7 +181,8 @@ int run(int argc, char** argv) {
     for (int i = 1; i < argc; ++i) commandLine += std::string(" ") + argv[i];
 
     const std::array commands{planCommand(app, commandLine), infoCommand(app, commandLine),
-                              mapCommand(app, commandLine), reportCommand(app)};
+                              mapCommand(app, commandLine), sweepCommand(app, commandLine),
+                              reportCommand(app)};
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -1,6 +1,23 @@
 // Curves along the path and of the search.
 'use strict';
 
+function chartAxis(title, log) {
+  return {
+    type: log ? 'logarithmic' : 'linear',
+    title: {display: true, text: title, color: cssColor('--quiet')},
+    grid: {color: cssColor('--rule')},
+    ticks: {
+      color: cssColor('--quiet'),
+      maxRotation: 0,
+      callback: (value) => {
+        if (!log) return String(Number(value.toPrecision(6))).replace('-', '−');
+        const exponent = Math.log10(value);
+        return Math.abs(exponent - Math.round(exponent)) < 1e-6 ? `10${superscript(Math.round(exponent))}` : '';
+      },
+    },
+  };
+}
+
 /// @param onPick called with the index of the waypoint nearest to a click
 function createCharts(onPick) {
   const charts = [];
@@ -27,23 +44,6 @@ function createCharts(onPick) {
     },
   };
 
-  function axis(title, log) {
-    return {
-      type: log ? 'logarithmic' : 'linear',
-      title: {display: true, text: title, color: cssColor('--quiet')},
-      grid: {color: cssColor('--rule')},
-      ticks: {
-        color: cssColor('--quiet'),
-        maxRotation: 0,
-        callback: (value) => {
-          if (!log) return String(Number(value.toPrecision(6))).replace('-', '−');
-          const exponent = Math.log10(value);
-          return Math.abs(exponent - Math.round(exponent)) < 1e-6 ? `10${superscript(Math.round(exponent))}` : '';
-        },
-      },
-    };
-  }
-
   function draw(id, curves, xTitle, yTitle, {log = false, alongPath = true} = {}) {
     const names = curves.length > 1;
     charts.push(new Chart(document.getElementById(id), {
@@ -54,7 +54,7 @@ function createCharts(onPick) {
         animation: false, responsive: true, maintainAspectRatio: false, parsing: false, normalized: true,
         interaction: {mode: 'nearest', axis: 'x', intersect: false},
         elements: {point: {radius: 0, hitRadius: 8}, line: {borderWidth: 2.2}},
-        scales: {x: axis(xTitle, false), y: {...axis(yTitle, log), beginAtZero: alongPath && !log}},
+        scales: {x: chartAxis(xTitle, false), y: {...chartAxis(yTitle, log), beginAtZero: alongPath && !log}},
         plugins: {
           legend: {display: names, align: 'start',
                    labels: {boxWidth: 14, boxHeight: 2, color: cssColor('--ink')}},

@@ -63,8 +63,9 @@ const hasBeliefs = paths.some((path) => path.points.some((point) => point.trace 
 if (summaries.length && typeof data.result.mean_trace === 'number')
   summaries[0].meanTrace = data.result.mean_trace;  // with every sub-step, not only path points
 
-/// The points that can be selected: those with a predicted view, or all if there are none.
-const waypoints = !paths.length ? [] : data.views.length
+/// The points that can be selected: those with a predicted view, or all if there are none. The paths
+/// of a sweep are only drawn.
+const waypoints = !paths.length || data.result.command === 'sweep' ? [] : data.views.length
     ? data.views.map((view) => ({point: paths[0].points[view.point], index: view.point, view}))
     : paths[0].points.map((point, index) => ({point, index, view: null}));
 

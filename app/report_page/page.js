@@ -11,6 +11,7 @@ function make(tag, text, attributes = {}) {
 
 // Head --------------------------------------------------------------------------------------------
 function verdict() {
+  if (sweep) return sweepVerdict();
   if (!paths.length) return data.result.command === 'plan' ? 'No path was found.' : '';
   if (!hasBeliefs) return '';
   const ours = summaries[0], other = summaries[1];
@@ -41,7 +42,7 @@ function fillHead() {
 function fillTiles() {
   const {result} = data, ours = hasBeliefs ? summaries[0] : {};
   const seconds = (result.time || {}).total_s;
-  const tiles = [
+  const tiles = sweep ? sweepTiles() : [
     ['path length', ours.length ?? result.length, 'm'],
     ['goal position, 1σ', 100 * ours.goalSigma, 'cm'],
     ['goal trace', ours.goalTrace ?? result.goal_trace, 'm²'],
@@ -136,7 +137,7 @@ function addTable(title, pairs) {
 }
 
 function addComparison() {
-  if (paths.length < 2) return;
+  if (paths.length < 2 || !hasBeliefs) return;
   const box = make('div', undefined, {className: 'wide'}), table = make('table');
   const head = make('tr'), body = make('tbody');
   head.append(...['Path', 'Length', 'Cost', 'Mean trace', 'Trace at the goal', '1σ at the goal'].map((t) => make('th', t)));
@@ -203,7 +204,7 @@ function addLayerSwitches() {
 
 function setUpExaggeration() {
   const factors = [1, 2, 5, 10, 20, 50, 100], slider = element('exaggeration');
-  element('exaggeration-box').hidden = !paths.length;
+  element('exaggeration-box').hidden = !hasBeliefs;
   slider.max = factors.length - 1;
   const apply = () => {
     const factor = factors[slider.value];
@@ -244,7 +245,7 @@ function setUpView() {
   element('perspective').addEventListener('click', view3d.views.perspective);
   element('top').addEventListener('click', view3d.views.top);
   element('scene-caption').textContent =
-      (paths.length ? 'Paths with the 3σ ellipsoids of the predicted position' : 'The map') +
+      (hasBeliefs ? 'Paths with the 3σ ellipsoids of the predicted position' : paths.length ? 'Paths' : 'The map') +
       `, grid of ${say(view3d.gridStep, 'm')}. Drag to turn, right button or two fingers to move, ` +
       'wheel to zoom after a click.' +
       (waypoints.length ? ' Click a white waypoint, or use ← and →, to see through the camera there.' : '');
@@ -271,6 +272,7 @@ function setUpWaypoints() {
 
 fillHead();
 fillTiles();
+fillSweep();
 fillRest();
 element('panel').hidden = !waypoints.length;
 const view3d = createView3d(element('scene'), select);
@@ -282,5 +284,6 @@ setUpView();
 setUpWaypoints();
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
   charts.drawAll(element('trace-log').checked);
+  if (sweepCharts.length) drawSweepCharts();
   if (view3d) view3d.drawGround();
 });

@@ -374,9 +374,11 @@ function createView3d(canvas, onPick) {
   addTrees();
   paths.forEach(addPath);
   if (paths.length) {
-    addEllipsoids();
-    addFrusta();
-    addWaypoints();
+    if (hasBeliefs) addEllipsoids();
+    if (waypoints.length) {
+      addFrusta();
+      addWaypoints();
+    }
     addMarker('start', data.start, '#15803d');
     addMarker('goal', data.goal, '#a21caf');
   }

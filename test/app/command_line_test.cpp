@@ -2,38 +2,18 @@
 // The executable, as a user runs it.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "executable.hpp"
 
 namespace photonav {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-struct Execution {
-    int exitCode;
-    std::string output;  // standard output and standard error
-};
-
-Execution photonav(const std::string& arguments) {
-    const std::string command = std::string(PHOTONAV_BINARY) + " " + arguments + " 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");  // NOLINT(cert-env33-c)
-    Execution run{-1, ""};
-    std::array<char, 4096> buffer{};
-    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) run.output += buffer.data();
-    const int status = pclose(pipe);
-    run.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return run;
-}
-
-std::string config(const std::string& name) {
-    return std::string(PHOTONAV_SOURCE_DIR) + "/config/" + name + ".yaml";
-}
 
 class CommandLine : public testing::Test {
   protected:

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <chrono>
+
+#include "atomic_file.hpp"
+#include "error.hpp"
+#include "plan_run.hpp"
+#include "sweep_report.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// The config with the command line's wishes. Lists are what `--set` would take.
+Config loadSweepConfig(const SweepOptions& options, const std::string& file) {
+    std::vector<std::string> overrides = options.overrides;
+    if (options.alphas) {
+        overrides.push_back(
+            fmt::format("sweep.alphas=[{}]", fmt::join(parseAlphas(*options.alphas), ", ")));
+    }
+    if (options.planners) overrides.push_back("sweep.planners=[" + *options.planners + "]");
+    if (options.runs) overrides.push_back(fmt::format("sweep.runs={}", *options.runs));
+    if (options.seed) overrides.push_back("seed=" + *options.seed);
+    return loadConfig(file, overrides);
+}
+
+std::string nameOf(const std::string& file) { return fs::path(file).stem().string(); }
+
+/// Remaining time from what each planner's runs took so far.
+class RemainingTime {
+  public:
+    explicit RemainingTime(const std::vector<SweepItem>& open) {
+        for (const SweepItem& item : open) ++open_[item.planner];
+    }
+
+    void count(const SweepRun& run, double wallSeconds) {
+        --open_[run.item.planner];
+        auto& [seconds, runs] = taken_[run.item.planner];
+        seconds += run.seconds;
+        runs += 1.;
+        planned_ += run.seconds;
+        wall_ = wallSeconds;
+    }
+
+    /// Planning time that is left, times what the clock showed per second of planning.
+    double seconds() const {
+        double rest = 0.;
+        for (const auto& [planner, runs] : open_) {
+            const auto known = taken_.find(planner);
+            const auto& [seconds, count] = known != taken_.end() ? known->second : all();
+            rest += runs * seconds / std::max(count, 1.);
+        }
+        return planned_ > 0. ? rest * wall_ / planned_ : 0.;
+    }
+
+  private:
+    std::pair<double, double> all() const {
+        std::pair<double, double> sum{0., 0.};
+        for (const auto& entry : taken_) {
+            sum.first += entry.second.first;
+            sum.second += entry.second.second;
+        }
+        return sum;
+    }
+
+    std::map<std::string, double> open_;                      // runs
+    std::map<std::string, std::pair<double, double>> taken_;  // seconds, runs
+    double planned_ = 0., wall_ = 0.;
+};
+
+std::string durationText(double seconds) {
+    const auto total = std::lround(seconds);
+    if (total < 120) return fmt::format("{} s", total);
+    if (total < 7200) return fmt::format("{} min", (total + 30) / 60);
+    return fmt::format("{:.1f} h", static_cast<double>(total) / 3600.);
+}
+
+void sortRuns(std::vector<SweepRun>& runs, const std::vector<SweepItem>& items) {
+    std::map<SweepItem, std::size_t> order;
+    for (const SweepItem& item : items) order.emplace(item, order.size());
+    std::sort(runs.begin(), runs.end(), [&](const SweepRun& a, const SweepRun& b) {
+        return order.at(a.item) < order.at(b.item);
+    });
+}
+
+/// The last step of every sweep: sort, report, tell.
+int conclude(const SweepOptions& options, const Config& config, const World& world,
+             const fs::path& folder, SweepOutcome outcome, const ReferenceCosts& reference,
+             Clock::time_point begin) {
+    sortRuns(outcome.runs, sweepItems(config));
+    outcome.commandLine = options.commandLine;
+    outcome.seconds = secondsSince(begin);
+    const nlohmann::json result = sweepResult(config, outcome, reference);
+    writeSweepReport(folder, config, world, outcome, reference, result);
+    if (options.json) {
+        fmt::print("{}\n", result.dump(2));
+    } else if (!options.quiet) {
+        fmt::print("{}\n", sweepTable(summarize(config.sweep, outcome.runs, reference)));
+        for (const SweepRun& run : outcome.runs) {
+            if (!run.isSolved()) {
+                fmt::print("{} alpha {} seed {}: {}\n", run.item.planner, run.item.alpha,
+                           run.item.seed, run.status);
+            }
+        }
+        fmt::print("{} of {} runs, {}\nreport: {}\n", outcome.runs.size(), outcome.asked,
+                   durationText(outcome.seconds), (folder / "report.html").string());
+    }
+    if (outcome.interrupted) return kInterrupted;
+    return result["status"] == "done" ? kDone : kNoAnswer;
+}
+
+ReferenceCosts referenceOf(const Config& config) {
+    if (config.sweep.reference.empty()) return {};
+    try {
+        return ReferenceCosts(config.sweep.reference);
+    } catch (const InputError& error) {
+        throw InputError(config.file, "sweep.reference", error.what());
+    }
+}
+
+/// The folder's runs so far, or a new file where there are none.
+SweepJournal openJournal(const SweepOptions& options, const fs::path& folder,
+                         const SweepHeader& header) {
+    if (!options.resume || !fs::exists(folder / SweepJournal::kFileName)) {
+        return SweepJournal::create(folder, header);
+    }
+    SweepJournal journal = SweepJournal::read(folder);
+    const std::string file = journal.file().string();
+    const std::string changed = difference(header.identity, journal.header().identity);
+    if (!changed.empty()) {
+        throw InputError("--resume", file, "the sweep was begun with another config: " + changed);
+    }
+    if (!(journal.header().shard == header.shard)) {
+        throw InputError("--resume", file,
+                         fmt::format("holds shard {}, not {}", toString(journal.header().shard),
+                                     toString(header.shard)));
+    }
+    return journal;
+}
+
+fs::path sweepFolder(const SweepOptions& options, const std::string& name,
+                     const SweepShard& shard) {
+    fs::path folder = options.out;
+    if (folder.empty()) {
+        folder = fs::path("out") / ("sweep-" + name);
+        if (shard.count > 1) folder += fmt::format("-{}of{}", shard.index, shard.count);
+    }
+    prepareFolder(folder);
+    return folder;
+}
+
+/// What a report of an earlier sweep leaves behind; the runs are the journal's.
+void removeOldResults(const fs::path& folder) {
+    for (const char* stale : {"result.json", "runs.csv", "summary.csv", "report.html"}) {
+        fs::remove(folder / stale);
+    }
+}
+
+int runAll(const SweepOptions& options, const std::atomic<bool>& interrupted) {
+    const auto begin = Clock::now();
+    const Config config = loadSweepConfig(options, options.config);
+    const ReferenceCosts reference = referenceOf(config);
+    const SweepShard shard = options.shard ? parseShard(*options.shard) : SweepShard{};
+    const World world(config);
+    PlanRun(config, world).checkPlaces();
+    const std::string name = nameOf(options.config);
+    const fs::path folder = sweepFolder(options, name, shard);
+    const auto items = itemsOf(shard, sweepItems(config));
+    SweepJournal journal =
+        openJournal(options, folder, {name, toYaml(config), sweepIdentity(config), shard});
+    removeOldResults(folder);
+
+    const auto open = journal.missing(items);
+    {
+        ProgressLine line(options.quiet);
+        RemainingTime rest(open);
+        const auto sweepBegin = Clock::now();
+        line.show(fmt::format("{} of {} runs", items.size() - open.size(), items.size()));
+        runItems(config, world, open, options.jobs, interrupted, [&](const SweepRun& run) {
+            journal.append(run);
+            rest.count(run, secondsSince(sweepBegin));
+            line.show(fmt::format("{} of {} runs, {} alpha {} seed {} done, about {} left",
+                                  journal.runs().size(), items.size(), run.item.planner,
+                                  run.item.alpha, run.item.seed, durationText(rest.seconds())));
+        });
+    }
+    const bool stopped = interrupted && journal.runs().size() < items.size();
+    return conclude(options, config, world, folder,
+                    {name, "", shard, journal.runs(), items.size(), stopped, 0.}, reference, begin);
+}
+
+/// Shards that make one sweep.
+/// @throws InputError naming the folder that does not fit
+std::vector<SweepJournal> readShards(const std::vector<std::string>& folders) {
+    std::vector<SweepJournal> shards;
+    std::map<unsigned, std::string> folderOf;
+    for (const std::string& folder : folders) {
+        SweepJournal& journal = shards.emplace_back(SweepJournal::read(folder));
+        const SweepHeader& first = shards.front().header();
+        const SweepHeader& header = journal.header();
+        const std::string changed = difference(header.identity, first.identity);
+        if (!changed.empty()) {
+            throw InputError("--merge", folder, changed + ", as in " + folders.front());
+        }
+        if (header.shard.count != first.shard.count) {
+            throw InputError("--merge", folder,
+                             fmt::format("is shard {}, {} is shard {}", toString(header.shard),
+                                         folders.front(), toString(first.shard)));
+        }
+        const auto [known, isNew] = folderOf.emplace(header.shard.index, folder);
+        if (!isNew) {
+            throw InputError(
+                "--merge", folder,
+                fmt::format("is shard {}, as is {}", toString(header.shard), known->second));
+        }
+    }
+    const unsigned count = shards.front().header().shard.count;
+    for (unsigned k = 1; k <= count; ++k) {
+        if (folderOf.contains(k)) continue;
+        throw InputError("--merge", fmt::format("shard {}/{}", k, count), "missing");
+    }
+    return shards;
+}
+
+/// The config of the shards: the one given, which must be theirs, or the one they keep.
+Config configOfShards(const SweepOptions& options, const SweepHeader& header,
+                      const fs::path& folder) {
+    std::string file = options.config;
+    if (file.empty()) {
+        file = (folder / "config.yaml").string();
+        writeFileAtomically(file, header.config);
+    }
+    const Config config = loadSweepConfig(options, file);
+    const std::string changed = difference(header.identity, sweepIdentity(config));
+    if (changed.empty()) return config;
+    throw InputError("--merge", options.merge.front(), changed + ", as in " + file);
+}
+
+/// All runs of the shards as one sweep's.
+SweepJournal gather(const SweepOptions& options, const std::vector<SweepJournal>& shards,
+                    const std::vector<SweepItem>& items, const fs::path& folder) {
+    for (std::size_t i = 0; i < shards.size(); ++i) {
+        const auto open = shards[i].missing(itemsOf(shards[i].header().shard, items));
+        if (open.empty()) continue;
+        throw InputError("--merge", options.merge[i],
+                         fmt::format("{} runs are missing; finish it with --resume", open.size()));
+    }
+    SweepHeader header = shards.front().header();
+    header.shard = {};
+    SweepJournal whole = SweepJournal::create(folder, header);
+    for (const SweepJournal& shard : shards) {
+        for (const SweepRun& run : shard.runs()) whole.append(run);
+    }
+    return whole;
+}
+
+int mergeShards(const SweepOptions& options) {
+    const auto begin = Clock::now();
+    const auto shards = readShards(options.merge);
+    const std::string name = shards.front().header().name;
+    const fs::path folder = sweepFolder(options, name, {});
+    for (const std::string& shard : options.merge) {
+        if (fs::equivalent(shard, folder)) {
+            throw InputError("--merge", shard, "the result needs another folder (--out)");
+        }
+    }
+    const Config config = configOfShards(options, shards.front().header(), folder);
+    const ReferenceCosts reference = referenceOf(config);
+    const World world(config);
+    const auto items = sweepItems(config);
+    removeOldResults(folder);
+    const SweepJournal whole = gather(options, shards, items, folder);
+    return conclude(options, config, world, folder,
+                    {name, "", {}, whole.runs(), items.size(), false, 0.}, reference, begin);
+}
+
+}  // namespace
+
+int runSweep(const SweepOptions& options, const std::atomic<bool>& interrupted) {
+    if (!options.merge.empty()) {
+        if (options.shard || options.resume) {
+            throw InputError("--merge", "", "goes without --shard and --resume");
+        }
+        return mergeShards(options);
+    }
+    if (options.config.empty()) {
+        throw InputError("sweep", "", "give a CONFIG, or --merge with the folders of its shards");
+    }
+    return runAll(options, interrupted);
+}
+
+}  // namespace photonav

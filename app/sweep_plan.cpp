@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+namespace photonav {
+namespace {
+
+/// FNV-1a of a file's bytes: tells whether it was changed, not by whom.
+std::string digest(const std::string& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw InputError(file, "", "cannot be read");
+    std::uint64_t hash = 0xCBF29CE484222325ULL;
+    for (auto byte = std::istreambuf_iterator<char>(stream);
+         byte != std::istreambuf_iterator<char>(); ++byte) {
+        hash = (hash ^ static_cast<unsigned char>(*byte)) * 0x100000001B3ULL;
+    }
+    return fmt::format("{:016x}", hash);
+}
+
+void flatten(const YAML::Node& node, const std::string& prefix, SweepIdentity& values) {
+    for (const auto& entry : node) {
+        const auto key = prefix + entry.first.as<std::string>();
+        if (entry.second.IsMap())
+            flatten(entry.second, key + ".", values);
+        else
+            values[key] = YAML::Dump(entry.second);
+    }
+}
+
+/// Keys that the sweep sets itself, run by run, or that change no run.
+const std::set<std::string> kIrrelevant{
+    "planner.name", "planner.alpha",          "planner.compare_with_rrt_star",
+    "sweep.paper",  "sweep.paper_trace_unit", "sweep.reference"};
+
+}  // namespace
+
+std::vector<SweepItem> sweepItems(const Config& config) {
+    std::vector<SweepItem> items;
+    for (const std::string& planner : config.sweep.planners) {
+        for (const double alpha : config.sweep.alphas) {
+            for (unsigned run = 0; run < config.sweep.runs; ++run) {
+                items.push_back({planner, alpha, config.seed + run});
+            }
+        }
+    }
+    return items;
+}
+
+SweepShard parseShard(const std::string& text) {
+    SweepShard shard;
+    const char* end = text.data() + text.size();
+    const auto index = std::from_chars(text.data(), end, shard.index);
+    if (index.ec == std::errc() && index.ptr != end && *index.ptr == '/') {
+        const auto count = std::from_chars(index.ptr + 1, end, shard.count);
+        const bool isNumber = count.ec == std::errc() && count.ptr == end;
+        if (isNumber && shard.index >= 1 && shard.index <= shard.count) return shard;
+    }
+    throw InputError("--shard", "",
+                     "'" + text + "' is not k/n with k from 1 to n, for example 2/4");
+}
+
+std::string toString(const SweepShard& shard) {
+    return fmt::format("{}/{}", shard.index, shard.count);
+}
+
+std::vector<SweepItem> itemsOf(const SweepShard& shard, const std::vector<SweepItem>& items) {
+    std::vector<SweepItem> chosen;
+    for (std::size_t i = shard.index - 1; i < items.size(); i += shard.count) {
+        chosen.push_back(items[i]);
+    }
+    return chosen;
+}
+
+SweepIdentity sweepIdentity(const Config& config) {
+    SweepIdentity identity;
+    flatten(YAML::Load(toYaml(config)), "", identity);
+    std::erase_if(identity, [](const auto& entry) { return kIrrelevant.contains(entry.first); });
+    for (const auto& [key, file] :
+         {std::pair{"scene.file", config.sceneFile}, std::pair{"map.file", config.mapFile}}) {
+        if (file.empty()) continue;
+        identity[key] = std::filesystem::path(file).filename().string();
+        identity[std::string(key) + " (content)"] = digest(file);
+    }
+    identity["version"] = PHOTONAV_VERSION;
+    return identity;
+}
+
+std::string difference(const SweepIdentity& found, const SweepIdentity& expected) {
+    std::set<std::string> keys;
+    for (const auto* identity : {&found, &expected}) {
+        for (const auto& entry : *identity) keys.insert(entry.first);
+    }
+    const auto value = [](const SweepIdentity& identity, const std::string& key) {
+        const auto it = identity.find(key);
+        return it == identity.end() ? std::string("nothing") : it->second;
+    };
+    for (const std::string& key : keys) {
+        const std::string a = value(found, key);
+        const std::string b = value(expected, key);
+        if (a != b) return fmt::format("{}: {} instead of {}", key, a, b);
+    }
+    return "";
+}
+
+}  // namespace photonav

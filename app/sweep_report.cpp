@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "atomic_file.hpp"
+#include "command_io.hpp"
+#include "plan_report.hpp"
+#include "sweep_figures.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+constexpr double kPicturePixel = 0.025;     // of the background of paths.png [m]
+constexpr double kMaxPicturePixels = 800.;  // along its longer side
+constexpr double kPercent = 100.;
+
+const std::vector<std::string> kRunKeys{"planner", "alpha",      "seed",       "cost",
+                                        "length",  "mean_trace", "goal_trace", "vertices",
+                                        "views",   "seconds",    "excess",     "status"};
+
+std::vector<std::string> summaryKeys(const ReferenceCosts& reference) {
+    std::vector<std::string> keys{"planner", "alpha", "runs", "solved"};
+    for (const SweepColumn& column : sweepColumns(reference)) {
+        keys.push_back(column.name + "_mean");
+        keys.push_back(column.name + "_std");
+    }
+    for (const char* key : {"paper_length", "paper_mean_trace", "paper_goal_trace"}) {
+        keys.emplace_back(key);
+    }
+    return keys;
+}
+
+std::string statusOf(const SweepOutcome& outcome) {
+    if (outcome.interrupted) return "interrupted";
+    const bool anySolved = std::any_of(outcome.runs.begin(), outcome.runs.end(),
+                                       [](const SweepRun& run) { return run.isSolved(); });
+    return anySolved ? "done" : "no path";
+}
+
+TopView pathsView(const Config& config, const World& world, const std::vector<DrawnPath>& paths) {
+    TopView view;
+    view.title = fmt::format("{}: the cheapest path per alpha", config.sweep.planners.front());
+    view.area = {config.bounds.min().head<2>(), config.bounds.max().head<2>()};
+    view.area.min().array() -= config.robotRadius;
+    view.area.max().array() += config.robotRadius;
+    const double pixel = std::max(kPicturePixel, view.area.sizes().maxCoeff() / kMaxPicturePixels);
+    view.background = world.pictureFromAbove(view.area, config.bounds.max().z(), pixel);
+    view.paths = paths;
+    view.start = config.start.position;
+    view.goal = config.goal.position;
+    view.ellipseScale = 0.;
+    return view;
+}
+
+/// "12.34 +- 0.05" with a fixed number of decimals, the deviation only where there is one.
+std::string cellText(const Statistic& value, double scale, int decimals) {
+    if (!std::isfinite(value.mean)) return "-";
+    const std::string mean = fmt::format("{:.{}f}", scale * value.mean, decimals);
+    if (!std::isfinite(value.deviation)) return mean;
+    return fmt::format("{} ± {:.{}f}", mean, scale * value.deviation, decimals);
+}
+
+/// Pads by characters, not bytes: ± takes two of these.
+std::string padded(const std::string& text, std::size_t width) {
+    const auto characters = static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+    return std::string(width > characters ? width - characters : 0, ' ') + text;
+}
+
+std::string tableRow(const SweepCell& cell) {
+    const auto column = [&](const char* name, double scale, int decimals, std::size_t width) {
+        return padded(cellText(cell.columns.at(name), scale, decimals), width);
+    };
+    const auto paper = [&](double PaperRow::*value, double scale, std::size_t width) {
+        return padded(cell.paper ? fmt::format("{:.2f}", scale * ((*cell.paper).*value)) : "",
+                      width);
+    };
+    const double traces = 100.;
+    return fmt::format("{:>6}{}{}{}{}{}{}{}{}{}{}{}{}\n", cell.alpha, column("cost", 1., 3, 17),
+                       column("length", 1., 2, 15), paper(&PaperRow::length, 1., 7),
+                       column("mean_trace", traces, 2, 16), paper(&PaperRow::meanTrace, traces, 7),
+                       column("goal_trace", traces, 2, 16), paper(&PaperRow::goalTrace, traces, 7),
+                       column("excess", kPercent, 2, 15), column("vertices", 1., 0, 12),
+                       column("views", 1., 0, 13), column("seconds", 1., 2, 14),
+                       padded(fmt::format("{}/{}", cell.solved, cell.runs), 8));
+}
+
+}  // namespace
+
+json sweepResult(const Config& config, const SweepOutcome& outcome,
+                 const ReferenceCosts& reference) {
+    json result{{"schema", 1},
+                {"command", "sweep"},
+                {"version", PHOTONAV_VERSION},
+                {"status", statusOf(outcome)},
+                {"config", outcome.name},
+                {"planners", config.sweep.planners},
+                {"alphas", config.sweep.alphas},
+                {"first_seed", config.seed},
+                {"runs_per_cell", config.sweep.runs},
+                {"shard", toString(outcome.shard)},
+                {"runs_done", outcome.runs.size()},
+                {"runs_asked", outcome.asked},
+                {"time", {{"total_s", outcome.seconds}}},
+                {"runs", json::array()},
+                {"summary", json::array()}};
+    for (const SweepRun& run : outcome.runs) {
+        json row = toJson(run);
+        row["excess"] = finiteOrNull(reference.excess(run));
+        result["runs"].push_back(row);
+    }
+    for (const SweepCell& cell : summarize(config.sweep, outcome.runs, reference)) {
+        result["summary"].push_back(toJson(cell));
+    }
+    return result;
+}
+
+void writeSweepReport(const fs::path& folder, const Config& config, const World& world,
+                      const SweepOutcome& outcome, const ReferenceCosts& reference,
+                      const json& result) {
+    const auto cells = summarize(config.sweep, outcome.runs, reference);
+    ReportData report;
+    report.title = outcome.name;
+    report.subtitle =
+        fmt::format("{} runs of {} vertices: {} planners, {} values of alpha, {} seeds",
+                    outcome.runs.size(), config.vertices, config.sweep.planners.size(),
+                    config.sweep.alphas.size(), config.sweep.runs);
+    report.commandLine = outcome.commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.config = toYaml(config);
+    report.start = config.start.position;
+    report.goal = config.goal.position;
+    world.describe(report);
+    report.paths = pathsByAlpha(config.sweep.planners.front(), outcome.runs);
+
+    writeFileAtomically(folder / "runs.csv", toCsv(result["runs"], kRunKeys));
+    writeFileAtomically(folder / "summary.csv", toCsv(result["summary"], summaryKeys(reference)));
+    writeFileAtomically(folder / "sweep.png", drawSweepCurves(outcome.name, cells));
+    writeFileAtomically(folder / "pareto.png", drawSweepFront(outcome.name, cells, outcome.runs));
+    writeResultFolder(folder, report,
+                      {{"paths.png",
+                        {"The cheapest path of " + config.sweep.planners.front() +
+                             " for every alpha, from above.",
+                         drawTopView(pathsView(config, world, report.paths))}}});
+    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+}
+
+std::string sweepTable(const std::vector<SweepCell>& cells) {
+    std::string text;
+    std::string planner;
+    for (const SweepCell& cell : cells) {
+        if (cell.planner != planner) {
+            planner = cell.planner;
+            text += fmt::format(
+                "\n{}  (traces in 0.01 m^2 + rad^2)\n"
+                "{:>6}{:>17}{:>15}{:>7}{:>16}{:>7}{:>16}{:>7}{:>15}{:>12}{:>13}{:>14}{:>8}\n",
+                planner, "alpha", "J", "length [m]", "paper", "mean trace", "paper", "goal trace",
+                "paper", "excess [%]", "vertices", "views", "seconds", "solved");
+        }
+        text += tableRow(cell);
+    }
+    return text;
+}
+
+}  // namespace photonav

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "command_io.hpp"
+#include "error.hpp"
+#include "plan_run.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr int kSchema = 1;
+
+SweepRun runFrom(const json& line) {
+    const auto number = [&](const char* key) {
+        return line.at(key).is_null() ? kNone : line.at(key).get<double>();
+    };
+    SweepRun run{{line.at("planner"), line.at("alpha"), line.at("seed")},
+                 number("cost"),
+                 number("length"),
+                 number("mean_trace"),
+                 number("goal_trace"),
+                 line.at("vertices"),
+                 line.at("views"),
+                 line.at("seconds"),
+                 line.at("status"),
+                 {}};
+    for (const json& p : line.at("path")) run.path.emplace_back(p.at(0), p.at(1), p.at(2));
+    return run;
+}
+
+SweepHeader headerFrom(const json& line) {
+    if (line.at("photonav_sweep") != kSchema) throw InputError("", "", "of another version");
+    return {line.at("name"),
+            line.at("config"),
+            line.at("identity"),
+            {line.at("shard").at(0), line.at("shard").at(1)}};
+}
+
+std::string reasonFor(const PlanOutcome& outcome, const Config& config) {
+    if (outcome.vertices >= config.vertices) {
+        return fmt::format("no path: the goal was not reached by {} vertices", outcome.vertices);
+    }
+    return fmt::format("no path: {} vertices after {} samples, then given up", outcome.vertices,
+                       outcome.iterations);
+}
+
+}  // namespace
+
+std::optional<SweepRun> runItem(const Config& config, const World& world, const SweepItem& item,
+                                const std::atomic<bool>& interrupted) {
+    Config own = config;
+    own.belief.alpha = item.alpha;
+    own.seed = item.seed;
+    own.planner = "belief_rrt_star";  // whose cost is the one with this alpha
+    PlanRun plan(own, world);
+    const PlanOutcome outcome = plan.solve(item.planner, interrupted, [](const auto&) {});
+    if (interrupted) return std::nullopt;
+    SweepRun run{item,
+                 kNone,
+                 kNone,
+                 kNone,
+                 kNone,
+                 outcome.vertices,
+                 outcome.views,
+                 outcome.planSeconds,
+                 outcome.path ? "done" : reasonFor(outcome, own),
+                 {}};
+    if (!outcome.path) return run;
+    run.cost = outcome.path->cost;
+    run.length = outcome.path->length;
+    run.meanTrace = outcome.path->meanTrace;
+    run.goalTrace = outcome.path->goalTrace;
+    for (const BeliefPoint& point : outcome.path->points) {
+        if (point.isWaypoint) run.path.push_back(point.T_w_b.translation());
+    }
+    return run;
+}
+
+void runItems(const Config& config, const World& world, const std::vector<SweepItem>& items,
+              unsigned jobs, const std::atomic<bool>& interrupted,
+              const std::function<void(const SweepRun&)>& onRun) {
+    std::atomic<std::size_t> next{0};
+    std::mutex mutex;  // of onRun and failure
+    std::exception_ptr failure;
+    const auto work = [&] {
+        try {
+            for (std::size_t i = next++; i < items.size() && !interrupted; i = next++) {
+                const auto run = runItem(config, world, items[i], interrupted);
+                const std::lock_guard lock(mutex);
+                if (run && !failure) onRun(*run);
+            }
+        } catch (...) {
+            const std::lock_guard lock(mutex);
+            if (!failure) failure = std::current_exception();
+            next = items.size();
+        }
+    };
+    {
+        std::vector<std::jthread> workers;
+        for (std::size_t k = 1; k < std::min<std::size_t>(jobs, items.size()); ++k) {
+            workers.emplace_back(work);
+        }
+        work();
+    }
+    if (failure) std::rethrow_exception(failure);
+}
+
+json toJson(const SweepRun& run) {
+    return {{"planner", run.item.planner},
+            {"alpha", run.item.alpha},
+            {"seed", run.item.seed},
+            {"cost", finiteOrNull(run.cost)},
+            {"length", finiteOrNull(run.length)},
+            {"mean_trace", finiteOrNull(run.meanTrace)},
+            {"goal_trace", finiteOrNull(run.goalTrace)},
+            {"vertices", run.vertices},
+            {"views", run.views},
+            {"seconds", run.seconds},
+            {"status", run.status}};
+}
+
+SweepJournal SweepJournal::create(const fs::path& folder, const SweepHeader& header) {
+    SweepJournal journal(folder / kFileName);
+    fs::remove(journal.file_);
+    journal.header_ = header;
+    journal.write({{"photonav_sweep", kSchema},
+                   {"name", header.name},
+                   {"config", header.config},
+                   {"identity", header.identity},
+                   {"shard", {header.shard.index, header.shard.count}}});
+    return journal;
+}
+
+SweepJournal SweepJournal::read(const fs::path& folder) {
+    SweepJournal journal(folder / kFileName);
+    std::ifstream stream(journal.file_);
+    if (!stream) throw InputError(journal.file_.string(), "", "no such file; is this a sweep?");
+    int number = 0;
+    for (std::string text; std::getline(stream, text) && !stream.eof();) {
+        ++number;
+        try {
+            const json line = json::parse(text);
+            if (number == 1)
+                journal.header_ = headerFrom(line);
+            else
+                journal.runs_.push_back(runFrom(line));
+        } catch (const std::exception&) {
+            throw InputError(journal.file_.string(), fmt::format("line {}", number),
+                             "not a run of this version of photonav sweep");
+        }
+        journal.size_ += text.size() + 1;
+    }
+    if (number == 0) throw InputError(journal.file_.string(), "", "empty");
+    return journal;
+}
+
+void SweepJournal::write(const json& line) {
+    if (!stream_.is_open()) {
+        std::error_code ignored;  // a new file
+        fs::resize_file(file_, size_, ignored);
+        stream_.open(file_, std::ios::app);
+    }
+    stream_ << line.dump() + "\n" << std::flush;
+    if (!stream_) throw InputError(file_.string(), "", "cannot be written");
+}
+
+void SweepJournal::append(const SweepRun& run) {
+    json line = toJson(run);
+    line["path"] = json::array();
+    for (const Eigen::Vector3d& p : run.path) line["path"].push_back({p.x(), p.y(), p.z()});
+    write(line);
+    runs_.push_back(run);
+}
+
+std::vector<SweepItem> SweepJournal::missing(const std::vector<SweepItem>& items) const {
+    std::set<SweepItem> done;
+    for (const SweepRun& run : runs_) done.insert(run.item);
+    std::vector<SweepItem> open = items;
+    std::erase_if(open, [&](const SweepItem& item) { return done.contains(item); });
+    return open;
+}
+
+}  // namespace photonav
