@@ -2,6 +2,8 @@
 // The executable, run as a user runs it.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstdio>
 #include <string>
@@ -15,7 +17,7 @@ struct Execution {
 
 /// Runs a shell command.
 inline Execution execute(const std::string& shellCommand) {
-    FILE* pipe = popen((shellCommand + " 2>&1").c_str(), "r");  // NOLINT(cert-env33-c)
+    FILE* pipe = popen(fmt::format("{} 2>&1", shellCommand).c_str(), "r");  // NOLINT(cert-env33-c)
     Execution run{-1, ""};
     std::array<char, 4096> buffer{};
     while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) run.output += buffer.data();
@@ -25,12 +27,12 @@ inline Execution execute(const std::string& shellCommand) {
 }
 
 inline Execution photonav(const std::string& arguments) {
-    return execute(std::string(PHOTONAV_BINARY) + " " + arguments);
+    return execute(fmt::format("{} {}", PHOTONAV_BINARY, arguments));
 }
 
 /// File of an example config.
 inline std::string config(const std::string& name) {
-    return std::string(PHOTONAV_SOURCE_DIR) + "/config/" + name + ".yaml";
+    return fmt::format("{}/config/{}.yaml", PHOTONAV_SOURCE_DIR, name);
 }
 
 }  // namespace photonav

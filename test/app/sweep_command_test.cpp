@@ -163,7 +163,7 @@ TEST_F(SweepCommand, ShardsMergeToTheWhole) {
 
 TEST_F(SweepCommand, ShardsThatDoNotMatchAreRefused) {
     const std::string quick =
-        " --set planner.vertices=60 --alpha 0.5 --runs 3 --planners rrt_star ";
+        " --set planner.vertices=150 --alpha 0.5 --runs 3 --planners rrt_star ";
     ASSERT_EQ(sweep("1of2", "--shard 1/2", quick).exitCode, 0);
     ASSERT_EQ(sweep("2of2", "--shard 2/2", quick).exitCode, 0);
     ASSERT_EQ(sweep("2of3", "--shard 2/3", quick).exitCode, 0);
@@ -201,7 +201,7 @@ TEST_F(SweepCommand, AKilledSweepResumesWhereItWas) {
 
 TEST_F(SweepCommand, AResumedSweepMustBeTheSame) {
     const std::string quick =
-        " --set planner.vertices=60 --alpha 0.5 --runs 2 --planners rrt_star --resume ";
+        " --set planner.vertices=150 --alpha 0.5 --runs 2 --planners rrt_star --resume ";
     ASSERT_EQ(sweep("out", "", quick).exitCode, 0);
     expectBadInput(sweep("out", "--set camera.sigma=0.03", quick),
                    "camera.sigma: 0.03 instead of 0.02");
@@ -212,7 +212,7 @@ TEST_F(SweepCommand, AResumedSweepMustBeTheSame) {
 
 TEST_F(SweepCommand, CtrlCKeepsTheRunsDone) {
     const Execution run = execute(fmt::format(
-        "timeout --preserve-status -s INT 3 {} sweep {} --set planner.vertices=60 --alpha 0.5"
+        "timeout --preserve-status -s INT 3 {} sweep {} --set planner.vertices=150 --alpha 0.5"
         " --runs 1000000 --planners rrt_star --out {}",
         PHOTONAV_BINARY, config("two_textures"), at("out")));
     EXPECT_EQ(run.exitCode, 130) << run.output;
