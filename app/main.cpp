@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "benchmark_command.hpp"
 #include "command_io.hpp"
 #include "error.hpp"
 #include "info_command.hpp"
@@ -154,6 +155,24 @@ Command sweepCommand(CLI::App& app, const std::string& commandLine) {
     return {parser, [options] { return runSweep(*options, interrupted); }};
 }
 
+Command benchmarkCommand(CLI::App& app, const std::string& commandLine) {
+    auto options = std::make_shared<BenchmarkOptions>();
+    options->commandLine = commandLine;
+    CLI::App* parser =
+        app.add_subcommand("benchmark", "Run planners in OMPL's benchmark, for its tools to read.");
+    addCommon(parser, *options);
+    parser->add_option("--planners", options->planners, "a,b,c")->type_name("NAMES");
+    parser->add_option("--runs", options->runs, "seeds per planner");
+    parser->add_option("--seed", options->seed, "the first seed (overrides the config)");
+    parser->add_option("--interval", options->interval, "between samples of the progress [s]")
+        ->check(CLI::Range(1e-3, 1e3))
+        ->capture_default_str();
+    parser->add_option("--time-limit", options->timeLimit, "of a run that gets nowhere [s]")
+        ->check(CLI::Range(1e-3, 1e6))
+        ->capture_default_str();
+    return {parser, [options] { return runBenchmark(*options, interrupted); }};
+}
+
 Command reportCommand(CLI::App& app) {
     auto folder = std::make_shared<std::filesystem::path>();
     CLI::App* parser = app.add_subcommand("report", "Rebuild report.html of a result folder.");
@@ -180,9 +199,9 @@ int run(int argc, char** argv) {
     std::string commandLine = "photonav";
     for (int i = 1; i < argc; ++i) commandLine += std::string(" ") + argv[i];
 
-    const std::array commands{planCommand(app, commandLine), infoCommand(app, commandLine),
-                              mapCommand(app, commandLine), sweepCommand(app, commandLine),
-                              reportCommand(app)};
+    const std::array commands{planCommand(app, commandLine),      infoCommand(app, commandLine),
+                              mapCommand(app, commandLine),       sweepCommand(app, commandLine),
+                              benchmarkCommand(app, commandLine), reportCommand(app)};
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -52,12 +52,21 @@ class PlanRun {
     Belief root() const { return judge_->root(); }
     bool isFlyable(const Eigen::Vector3d& p_w) const;
 
+    // For those who run planners themselves.
+
+    const ompl::base::SpaceInformationPtr& spaceInformation() const { return si_; }
+    /// Start and goal.
+    ompl::base::ProblemDefinitionPtr definition() const;
+    /// A planner that is set up for it.
+    std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name) const;
+    /// The solution of a planner that has one.
+    JudgedPath judge(const BeliefPlanner& planner);
+    /// Makes the next views new ones; planners that are not cleared must not be used again.
+    void forgetViews() { field_->clear(); }
+
   private:
     void checkPlace(const std::string& key, const Place& place) const;
-    ompl::base::ProblemDefinitionPtr definition() const;
-    std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name) const;
     std::shared_ptr<BeliefModel> makeModel(double alpha) const;
-    JudgedPath judge(const BeliefPlanner& planner);
 
     const Config& config_;
     const World& world_;

@@ -22,13 +22,20 @@ struct Planner {
     Color color;
 };
 
-std::vector<Planner> plannersOf(const std::vector<SweepCell>& cells) {
+std::vector<Planner> coloured(const std::vector<std::string>& names) {
     std::vector<Planner> planners;
-    for (const SweepCell& cell : cells) {
-        if (!planners.empty() && planners.back().name == cell.planner) continue;
-        planners.push_back({cell.planner, kColors[planners.size() % kColors.size()]});
+    for (const std::string& name : names) {
+        planners.push_back({name, kColors[planners.size() % kColors.size()]});
     }
     return planners;
+}
+
+std::vector<Planner> plannersOf(const std::vector<SweepCell>& cells) {
+    std::vector<std::string> names;
+    for (const SweepCell& cell : cells) {
+        if (names.empty() || names.back() != cell.planner) names.push_back(cell.planner);
+    }
+    return coloured(names);
 }
 
 Axis axisOver(const std::vector<double>& values, bool log, const std::string& label) {
@@ -198,6 +205,44 @@ Png drawSweepFront(const std::string& title, const std::vector<SweepCell>& cells
         for (const SweepCell& cell : cells) {
             if (cell.planner == planner->name && cell.solved > 0)
                 canvas.disc(at(cell), 6.0, planner->color);
+        }
+    }
+    plot.drawAxes();
+    return canvas.png();
+}
+
+Png drawCostOverTime(const std::string& title, const std::vector<std::string>& planners,
+                     const std::vector<BenchmarkCurve>& curves) {
+    std::vector<double> times;
+    std::vector<double> costs;
+    for (const BenchmarkCurve& curve : curves) {
+        for (std::size_t i = 0; i < curve.cost.size(); ++i) {
+            if (!std::isfinite(curve.cost[i])) continue;
+            times.push_back(curve.seconds[i]);
+            costs.push_back(curve.cost[i]);
+        }
+    }
+    const Frame frame{kLeft, kTop, kWidth, 480.0};
+    Canvas canvas(frame.right() + 36.0, frame.bottom() + kBelow);
+    drawHead(canvas, title, coloured(planners), false);
+    const Plot plot{canvas, frame, axisOver(times, true, "time [s]"),
+                    axisOver(costs, false, "cost of the best path")};
+    plot.drawGrid();
+    {
+        const auto clipped = canvas.clip(frame);
+        for (const Planner& planner : coloured(planners)) {
+            for (const BenchmarkCurve& curve : curves) {
+                if (curve.planner != planner.name) continue;
+                std::vector<Canvas::Point> steps;
+                for (std::size_t i = 0; i < curve.cost.size(); ++i) {
+                    if (!std::isfinite(curve.cost[i])) continue;
+                    const Canvas::Point next = plot.at(curve.seconds[i], curve.cost[i]);
+                    if (!steps.empty()) steps.emplace_back(next.x(), steps.back().y());
+                    steps.push_back(next);
+                }
+                canvas.polyline(steps, planner.color, 1.8);
+                if (!steps.empty()) canvas.disc(steps.back(), 4.0, planner.color);
+            }
         }
     }
     plot.drawAxes();

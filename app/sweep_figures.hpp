@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of a sweep.
+// Pictures of many runs.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "figures.hpp"
+#include "planner_benchmark.hpp"
 #include "sweep_summary.hpp"
 
 namespace photonav {
@@ -18,6 +19,10 @@ Png drawSweepCurves(const std::string& title, const std::vector<SweepCell>& cell
 /// those that nothing of the same planner beats in both are joined, the planner's Pareto front.
 Png drawSweepFront(const std::string& title, const std::vector<SweepCell>& cells,
                    const std::vector<SweepRun>& runs);
+
+/// Best cost over time (logarithmic), a line per run, coloured by planner.
+Png drawCostOverTime(const std::string& title, const std::vector<std::string>& planners,
+                     const std::vector<BenchmarkCurve>& curves);
 
 /// The cheapest path of a planner for every alpha, coloured from dark (0) to bright (1).
 std::vector<DrawnPath> pathsByAlpha(const std::string& planner, const std::vector<SweepRun>& runs);

@@ -19,22 +19,23 @@ BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<
     : ob::Planner(si, name), model_(std::move(model)), growth_(growth), best_{kInfinity, {}} {
     specs_.optimizingPaths = true;
     specs_.canReportIntermediateSolutions = false;
-    const auto declare = [this](const std::string& key, double& value) {
-        params_.declareParam<double>(
-            key, [&value](double v) { value = v; }, [&value] { return value; });
+    const auto declare = [this](const std::string& key, auto& value) {
+        using T = std::decay_t<decltype(value)>;
+        params_.declareParam<T>(
+            key, [&value](T v) { value = v; }, [&value] { return value; });
     };
     declare("range", growth_.range);
     declare("goal_bias", growth_.goalBias);
     declare("rewire_factor", growth_.rewireFactor);
-    params_.declareParam<unsigned>(
-        "max_vertices", [this](unsigned v) { growth_.maxVertices = v; },
-        [this] { return growth_.maxVertices; });
-    addPlannerProgressProperty("best cost REAL", [this] { return std::to_string(bestCost()); });
-    addPlannerProgressProperty("vertices INTEGER", [this] { return std::to_string(vertices()); });
-    addPlannerProgressProperty("iterations INTEGER",
-                               [this] { return std::to_string(iterations()); });
-    addPlannerProgressProperty("views INTEGER",
-                               [this] { return std::to_string(model_->field().views()); });
+    declare("max_vertices", growth_.maxVertices);
+    declare("seed", growth_.seed);
+    const auto show = [this](const std::string& property, const auto& value) {
+        addPlannerProgressProperty(property, [&value] { return std::to_string(value.load()); });
+    };
+    show("best cost REAL", progress_.cost);
+    show("vertices INTEGER", progress_.vertices);
+    show("iterations INTEGER", progress_.iterations);
+    show("views INTEGER", progress_.views);
 }
 
 BeliefPlanner::~BeliefPlanner() { freeMemory(); }
@@ -78,9 +79,18 @@ ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& pt
         fresh->parent = nullptr;
         connect(*fresh, neighbourhood, ptc);
         neighbours_->add(fresh);
+        publishProgress();
     }
     finish(ptc);
+    publishProgress();
     return report();
+}
+
+void BeliefPlanner::publishProgress() {
+    progress_.cost = bestCost();
+    progress_.vertices = vertices();
+    progress_.iterations = iterations();
+    progress_.views = model_->field().views();
 }
 
 bool BeliefPlanner::addStarts() {
@@ -190,6 +200,7 @@ void BeliefPlanner::clear() {
     iterations_ = 0;
     goalSamples_ = 0;
     model_->clear();
+    publishProgress();
 }
 
 void BeliefPlanner::freeMemory() {

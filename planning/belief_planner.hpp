@@ -6,7 +6,9 @@
 #include <ompl/datastructures/NearestNeighbors.h>
 #include <ompl/util/RandomNumbers.h>
 
+#include <atomic>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -98,6 +100,12 @@ class BeliefPlanner : public ompl::base::Planner {
     bool isFull() const {
         return growth_.maxVertices > 0 && vertices_.size() >= growth_.maxVertices;
     }
+    /// What benchmarks sample from another thread while solve() runs.
+    struct Progress {
+        std::atomic<double> cost{std::numeric_limits<double>::infinity()};
+        std::atomic<std::size_t> vertices{0}, iterations{0}, views{0};
+    };
+    void publishProgress();
     bool addStarts();
     bool sample(ompl::base::State* state);
     Vertex* extend(const ompl::base::State* target);
@@ -114,6 +122,7 @@ class BeliefPlanner : public ompl::base::Planner {
     Solution best_;
     std::size_t iterations_ = 0;
     unsigned goalSamples_ = 0;
+    Progress progress_;
 };
 
 }  // namespace photonav
