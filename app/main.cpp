@@ -15,6 +15,7 @@
 #include "map_command.hpp"
 #include "plan_command.hpp"
 #include "report.hpp"
+#include "scan_command.hpp"
 #include "sweep_command.hpp"
 
 namespace {
@@ -85,16 +86,39 @@ void printSummary(const ReportTable& table, const std::filesystem::path& folder)
                (folder / "report.html").string());
 }
 
+/// `map` of a laser scan; options that belong to images are errors.
+MapReport mapScan(const CLI::App& parser, const MapOptions& options,
+                  const std::optional<Eigen::Vector3d>& scanner) {
+    for (const char* name :
+         {"--camera", "--up", "--every", "--min-range", "--depth-scale", "--tolerance"}) {
+        if (parser.count(name) > 0) throw InputError(name, "", "is for images, not point clouds");
+    }
+    ScanMapOptions scan;
+    scan.scans = options.dataset;
+    scan.out = options.out;
+    scan.resolution = options.resolution;
+    if (parser.count("--max-range") > 0) scan.maxRange = options.fusion.maxRange;
+    scan.scanner = scanner;
+    scan.commandLine = options.commandLine;
+    scan.progress = options.progress;
+    return runScanMap(scan, interrupted);
+}
+
 Command mapCommand(CLI::App& app, const std::string& commandLine) {
     struct Options : MapOptions {
         bool quiet = false;
         bool json = false;
+        std::vector<double> scanner;
     };
     auto options = std::make_shared<Options>();
     options->commandLine = commandLine;
-    CLI::App* parser =
-        app.add_subcommand("map", "Turn a recorded RGB-D sequence into a textured OctoMap.");
-    parser->add_option("dataset", options->dataset, "folder in the TUM RGB-D layout")->required();
+    CLI::App* parser = app.add_subcommand(
+        "map", "Turn a recorded RGB-D sequence or laser scans into a textured OctoMap.");
+    parser
+        ->add_option("dataset", options->dataset,
+                     "folder in the TUM RGB-D layout; or a coloured point cloud (.ply), or a "
+                     "folder with one per station of the scanner")
+        ->required();
     parser->add_option("--out", options->out, "result folder (default: out/map-<dataset>)");
     parser->add_option("--resolution", options->resolution, "edge of a cell [m]")
         ->capture_default_str();
@@ -105,15 +129,22 @@ Command mapCommand(CLI::App& app, const std::string& commandLine) {
     parser->add_option("--every", options->every, "use every n-th frame")->capture_default_str();
     parser->add_option("--min-range", options->fusion.minRange, "nearest depth trusted [m]")
         ->capture_default_str();
-    parser->add_option("--max-range", options->fusion.maxRange, "farthest surface entered [m]")
+    parser
+        ->add_option("--max-range", options->fusion.maxRange,
+                     "farthest surface entered [m] (point clouds: 40)")
         ->capture_default_str();
+    parser
+        ->add_option("--scanner", options->scanner,
+                     "x,y,z of the scanner, for a point cloud that does not say it")
+        ->delimiter(',')
+        ->expected(3);
     parser->add_option("--depth-scale", options->depthScale,
                        "depth image value of one metre (default: the dataset's)");
     parser->add_option("--tolerance", options->tolerance, "largest difference of timestamps [s]")
         ->capture_default_str();
     parser->add_flag("--quiet", options->quiet, "no progress, no summary");
     parser->add_flag("--json", options->json, "result.json on standard output");
-    return {parser, [options] {
+    return {parser, [options, parser] {
                 if (options->out.empty()) {
                     const auto name = (std::filesystem::path(options->dataset) / "")
                                           .lexically_normal()
@@ -123,9 +154,16 @@ Command mapCommand(CLI::App& app, const std::string& commandLine) {
                 }
                 ProgressLine line(options->quiet);
                 options->progress = [&line](std::size_t done, std::size_t total) {
-                    line.show(fmt::format("{} of {} frames fused", done, total));
+                    line.show(fmt::format("{} of {} fused", done, total));
                 };
-                const MapReport report = runMap(*options, interrupted);
+                std::optional<Eigen::Vector3d> scanner;
+                if (!options->scanner.empty()) scanner.emplace(options->scanner.data());
+                if (scanner && !isScan(options->dataset)) {
+                    throw InputError("--scanner", "", "is for point clouds, not images");
+                }
+                const MapReport report = isScan(options->dataset)
+                                             ? mapScan(*parser, *options, scanner)
+                                             : runMap(*options, interrupted);
                 line.clear();
                 if (options->json)
                     fmt::print("{}\n", report.result.dump(2));

@@ -163,27 +163,6 @@ json meansOf(const json& compared) {
 json vectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Cells of the finest size, free and occupied, and the box of the occupied ones [m].
-json voxelsJson(const TexturedOcTree& map) {
-    std::size_t free = 0;
-    std::size_t occupied = 0;
-    Eigen::AlignedBox3d box;
-    for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
-        const std::size_t cells = std::size_t(1) << (3 * (map.getTreeDepth() - leaf.getDepth()));
-        if (!map.isNodeOccupied(*leaf)) {
-            free += cells;
-            continue;
-        }
-        occupied += cells;
-        const Eigen::Vector3d center(leaf.getX(), leaf.getY(), leaf.getZ());
-        const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * leaf.getSize());
-        box.extend(center - half);
-        box.extend(center + half);
-    }
-    json result = {{"occupied", occupied}, {"free", free}};
-    if (!box.isEmpty()) result["bounds"] = {vectorJson(box.min()), vectorJson(box.max())};
-    return result;
-}
-
 json datasetJson(const MapOptions& options, const Sequence& sequence) {
     const Camera& camera = sequence.camera;
     const Eigen::Matrix3d R = worldUpRotation(options.up);
@@ -274,6 +253,27 @@ void writeMapReport(const MapOptions& options, const json& result, const Camera&
 }
 
 }  // namespace
+
+json voxelsJson(const TexturedOcTree& map) {
+    std::size_t free = 0;
+    std::size_t occupied = 0;
+    Eigen::AlignedBox3d box;
+    for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+        const std::size_t cells = std::size_t(1) << (3 * (map.getTreeDepth() - leaf.getDepth()));
+        if (!map.isNodeOccupied(*leaf)) {
+            free += cells;
+            continue;
+        }
+        occupied += cells;
+        const Eigen::Vector3d center(leaf.getX(), leaf.getY(), leaf.getZ());
+        const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * leaf.getSize());
+        box.extend(center - half);
+        box.extend(center + half);
+    }
+    json result = {{"occupied", occupied}, {"free", free}};
+    if (!box.isEmpty()) result["bounds"] = {vectorJson(box.min()), vectorJson(box.max())};
+    return result;
+}
 
 MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted) {
     checkOptions(options);

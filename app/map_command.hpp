@@ -37,6 +37,9 @@ struct MapReport {
     int exitCode = 0;       ///< 130 when interrupted
 };
 
+/// How many cells are free and occupied, and the box of the occupied ones.
+nlohmann::json voxelsJson(const TexturedOcTree& map);
+
 /// Maps a dataset and writes into options.out: map.ot (TexturedOcTree), map_color.ot (ColorOcTree,
 /// for octovis), map.bt, trajectory.tum (camera to world, of the frames used, in the map's world),
 /// result.json, comparison_N.png (observed, predicted and difference of up to four frames) and

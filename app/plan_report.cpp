@@ -7,6 +7,7 @@
 
 #include "atomic_file.hpp"
 #include "command_io.hpp"
+#include "perspective.hpp"
 #include "trajectory.hpp"
 
 namespace photonav {
@@ -119,6 +120,14 @@ HeatMap heatMap(const Config& config, PlanRun& run) {
     return map;
 }
 
+/// Where the robot may be, down to the floor.
+Perspective perspective(const Config& config, const World& world, const PlanOutcome& outcome,
+                        const std::vector<DrawnPath>& paths) {
+    Eigen::AlignedBox3d box = config.bounds;
+    box.min().z() = std::min(box.min().z(), world.extent().min().z());
+    return {fmt::format("{}, alpha {}", config.planner, outcome.alpha), box, paths};
+}
+
 void writeTrajectory(const fs::path& file, const JudgedPath& path, const Pose& T_b_c) {
     Trajectory trajectory;  // one metre per second
     for (const BeliefPoint& point : path.points) {
@@ -201,6 +210,12 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
           drawTopView(topView(config, world, outcome, report.paths))}},
         {"information.png",
          {"What one view is worth, over the area.", drawHeatMap(heatMap(config, run))}}};
+    if (config.bounds.sizes().z() > 0.) {
+        figures.push_back(
+            {"perspective.png",
+             {"In perspective, with the shadows of the paths: thin where something hides them.",
+              drawPerspective(world.views(), perspective(config, world, outcome, report.paths))}});
+    }
     if (!report.paths.empty()) {
         figures.push_back({"trace.png",
                            {"Trace of the pose covariance along the way.",

@@ -20,6 +20,9 @@ class World {
     const ViewSource& views() const { return *views_; }
     double clearance(const Eigen::Vector3d& p_w) const { return distances_.clearance(p_w); }
 
+    /// Box of everything that can be seen [m].
+    const Eigen::AlignedBox3d& extent() const { return extent_; }
+
     /// Puts what there is to see into the report's 3-D view.
     void describe(ReportData& report) const { describe_(report); }
 
@@ -32,7 +35,7 @@ class World {
 
     std::unique_ptr<ViewSource> views_;
     DistanceMap distances_;
-    Eigen::AlignedBox3d extent_;  // of everything that can be seen [m]
+    Eigen::AlignedBox3d extent_;
     std::function<void(ReportData&)> describe_;
 };
 

@@ -57,7 +57,8 @@ class Scan {
     /// Crosses the cells from the eye up to, not including, the one that holds `end`.
     void castRay(const Vector3d& eye, const Vector3d& end);
 
-    void apply(TexturedOcTree& map, const Vector3d& eye) const;
+    /// @param eye without one, surfaces are seen from all sides
+    void apply(TexturedOcTree& map, const std::optional<Vector3d>& eye) const;
 
   private:
     bool isHit(const Array3i& cell) const {
@@ -78,7 +79,7 @@ class Scan {
     std::uint64_t crossedInBrick(const Array3i& corner) const;
     std::uint64_t hitInBrick(std::int32_t index) const;
     void observeFaces(TexturedOcTreeNode& node, const Array3i& cell, const CellPixels& seen,
-                      const Vector3d& eye) const;
+                      const std::optional<Vector3d>& eye) const;
 
     Array3i first_, bricks_;
     std::array<std::ptrdiff_t, 3> stride_;
@@ -114,17 +115,19 @@ void Scan::castRay(const Vector3d& eye, const Vector3d& end) {
 }
 
 void Scan::observeFaces(TexturedOcTreeNode& node, const Array3i& cell, const CellPixels& seen,
-                        const Vector3d& eye) const {
+                        const std::optional<Vector3d>& eye) const {
     const auto grey = static_cast<float>(seen.greySum / seen.count);
-    const Vector3d d = (cell.cast<double>() + 0.5).matrix() - eye;
+    Vector3d d = Vector3d::Ones();
+    if (eye) d = (cell.cast<double>() + 0.5).matrix() - *eye;
     const double pixelsPerLength = seen.count / d.norm();
-    for (int a = 0; a < 3; ++a) {
-        const int side = eye[a] > cell[a] + 1 ? 1 : eye[a] < cell[a] ? -1 : 0;
+    for (int face = 0; face < 6; ++face) {
+        const int a = face / 2;
+        const int side = face % 2 == 0 ? -1 : 1;
+        const bool looksAway = eye && !(side > 0 ? (*eye)[a] > cell[a] + 1 : (*eye)[a] < cell[a]);
         Array3i front = cell;
         front[a] += side;
-        if (side == 0 || isHit(front)) continue;
-        node.faces[2 * a + (side > 0)].observe(
-            grey, static_cast<float>(std::abs(d[a]) * pixelsPerLength));
+        if (looksAway || isHit(front)) continue;
+        node.faces[face].observe(grey, static_cast<float>(std::abs(d[a]) * pixelsPerLength));
     }
 }
 
@@ -150,7 +153,7 @@ std::uint64_t Scan::hitInBrick(std::int32_t index) const {
     return bits;
 }
 
-void Scan::apply(TexturedOcTree& map, const Vector3d& eye) const {
+void Scan::apply(TexturedOcTree& map, const std::optional<Vector3d>& eye) const {
     std::size_t brick = 0;
     Array3i corner;
     const auto texture = [&](TexturedOcTreeNode& node, unsigned bit) {
@@ -223,6 +226,14 @@ double farthest(const ImageF& depth, double maxRange) {
     return std::min(range, maxRange);
 }
 
+void checkFits(const Eigen::AlignedBox3d& cells) {
+    if (Scan::cellsNeeded(cells) < kMaxCells && cells.min().minCoeff() > 8 - kKeyOfZero &&
+        cells.max().maxCoeff() < kKeyOfZero - 8) {
+        return;
+    }
+    throw std::invalid_argument("fuse: the space in view is too large for the map's cells");
+}
+
 }  // namespace
 
 void fuse(TexturedOcTree& map, const View& observed, const Camera& camera, const Pose& T_c_w,
@@ -230,10 +241,7 @@ void fuse(TexturedOcTree& map, const View& observed, const Camera& camera, const
     checkInput(observed, camera, T_c_w);
     const CellFrame frame(camera, T_c_w, map.getResolution());
     const Eigen::AlignedBox3d box = frame.frustum(farthest(observed.depth, options.maxRange));
-    if (!(Scan::cellsNeeded(box) < kMaxCells) ||
-        !(box.min().minCoeff() > 8 - kKeyOfZero && box.max().maxCoeff() < kKeyOfZero - 8)) {
-        throw std::invalid_argument("fuse: the space in view is too large for the map's cells");
-    }
+    checkFits(box);
     Scan scan(box);
     for (unsigned v = 0; v < camera.height; ++v) {
         for (unsigned u = 0; u < camera.width; ++u) {
@@ -248,6 +256,36 @@ void fuse(TexturedOcTree& map, const View& observed, const Camera& camera, const
         }
     }
     scan.apply(map, frame.eye);
+}
+
+void fuseScan(TexturedOcTree& map, const ScanPoints& points, const std::optional<Vector3d>& scanner,
+              double maxRange) {
+    const double toCells = 1. / map.getResolution();
+    const auto visitEnds = [&](const auto& visit) {
+        points([&](const ScanPoint& point) {
+            Vector3d ray = Vector3d::Zero();
+            if (scanner) ray = point.p_w - *scanner;
+            const double range = ray.norm();
+            if (range <= maxRange)
+                visit(Vector3d(toCells * point.p_w), point.grey, true);
+            else
+                visit(Vector3d(toCells * (*scanner + ray * (maxRange / range))), 0.F, false);
+        });
+    };
+    std::optional<Vector3d> eye;
+    if (scanner) eye = toCells * *scanner;
+    Eigen::AlignedBox3d box;
+    if (eye) box.extend(*eye);
+    visitEnds([&](const Vector3d& end, float, bool) { box.extend(end); });
+    checkFits(box);
+
+    Scan scan(box);
+    visitEnds([&](const Vector3d& end, float grey, bool isSurface) {
+        const Array3i cell = end.array().floor().cast<int>();
+        const bool first = isSurface ? scan.addPixel(cell, grey) : scan.cross(cell);
+        if (first && eye) scan.castRay(*eye, end);
+    });
+    scan.apply(map, eye);
 }
 
 }  // namespace photonav

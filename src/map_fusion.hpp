@@ -2,6 +2,9 @@
 // An image with depth becomes part of the map.
 #pragma once
 
+#include <functional>
+
+#include "point_cloud.hpp"
 #include "textured_octree.hpp"
 
 namespace photonav {
@@ -29,5 +32,17 @@ struct FusionOptions {
 ///         finite, or the space in view is too large for the map (see maxRange)
 void fuse(TexturedOcTree& map, const View& observed, const Camera& camera, const Pose& T_c_w,
           const FusionOptions& options = {});
+
+/// Calls the function it is given for every point of a scan; it is asked to do so twice.
+using ScanPoints = std::function<void(const std::function<void(const ScanPoint&)>&)>;
+
+/// Fuses what a laser scanner saw from one place, by the same ray policy. Memory is that of the
+/// cells in the points' bounding box, however many points there are.
+/// @param scanner where it stood, world frame [m]. Without it nothing becomes free, and all faces
+///        of a cell that no other cell covers take its points' mean.
+/// @param maxRange farther points are not entered; the space up to them is free [m]
+/// @throws std::invalid_argument when the box of the points is too large for the map's cells
+void fuseScan(TexturedOcTree& map, const ScanPoints& points,
+              const std::optional<Eigen::Vector3d>& scanner, double maxRange);
 
 }  // namespace photonav

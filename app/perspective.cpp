@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "perspective.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "plot.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr unsigned kWidth = 960, kHeight = 660;
+constexpr double kTop = 58.0;           // margin with the title [px]
+constexpr double kHeightOfEye = 0.8;    // above the box, over its longer side
+constexpr double kSurfaceMargin = 0.1;  // a path this far behind a surface is hidden [m]
+
+/// Depth of the first surface along a direction, 0 when there is none.
+double depthAlong(const ViewSource& world, const Eigen::Vector3d& eye, bool up) {
+    Pose T_w_c = Pose::Identity();
+    if (!up) T_w_c.linear() = Eigen::Vector3d(1., -1., -1.).asDiagonal();
+    T_w_c.translation() = eye;
+    View view;
+    world.render(makeCamera(3, 3, 0.01), T_w_c.inverse(), view);
+    return view.depth[1][1];
+}
+
+/// Above the corner of least x and y, as high as the ceiling allows.
+Eigen::Vector3d eyeAbove(const ViewSource& world, const Eigen::AlignedBox3d& box) {
+    Eigen::Vector3d eye(box.min().x(), box.min().y(), box.max().z());
+    const double wanted = kHeightOfEye * box.sizes().head<2>().maxCoeff();
+    const double ceiling = depthAlong(world, eye, true);
+    eye.z() += ceiling > 0. ? std::min(wanted, 0.9 * ceiling) : wanted;
+    return eye;
+}
+
+Pose lookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target) {
+    const Eigen::Vector3d z = (target - eye).normalized();
+    const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
+    Pose T_w_c = Pose::Identity();
+    T_w_c.linear() << x, z.cross(x), z;
+    T_w_c.translation() = eye;
+    return T_w_c.inverse();
+}
+
+/// A camera at T_c_w that just sees the whole box.
+Camera cameraAround(const Eigen::AlignedBox3d& box, const Pose& T_c_w) {
+    double reach = 0.;  // half the image width at depth 1
+    for (int i = 0; i < 8; ++i) {
+        const Eigen::Vector3d p =
+            T_c_w * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+        if (p.z() < 0.1) continue;  // right below the eye
+        reach = std::max(
+            {reach, std::abs(p.x() / p.z()), std::abs(p.y() / p.z()) * kWidth / double{kHeight}});
+    }
+    return makeCamera(kWidth, kHeight, 2. * std::atan(std::clamp(1.03 * reach, 0.1, 2.)));
+}
+
+/// Draws world points into the rendered picture.
+class Sketch {
+  public:
+    Sketch(Canvas& canvas, const ViewSource& world, const View& view, const Camera& camera,
+           const Pose& T_c_w)
+        : canvas_(canvas), world_(world), view_(view), camera_(camera), T_c_w_(T_c_w) {}
+
+    void route(const DrawnPath& path) const {
+        for (std::size_t i = 1; i < path.points.size(); ++i) {
+            const Eigen::Vector3d& a = path.points[i - 1].position;
+            const Eigen::Vector3d& b = path.points[i].position;
+            line(below(a), below(b), {70, 70, 70}, 1.4);
+        }
+        for (std::size_t i = 1; i < path.points.size(); ++i) {
+            const Eigen::Vector3d& a = path.points[i - 1].position;
+            const Eigen::Vector3d& b = path.points[i].position;
+            line(a, b, path.color, isVisible(0.5 * (a + b)) ? 4.0 : 1.6);
+        }
+    }
+
+    void stem(const Eigen::Vector3d& p, const Color& color) const {
+        line(p, below(p), {70, 70, 70}, 1.4);
+        canvas_.disc(at(p), 8.0, {255, 255, 255});
+        canvas_.disc(at(p), 6.0, color);
+    }
+
+  private:
+    Canvas::Point at(const Eigen::Vector3d& p_w) const {
+        const Eigen::Vector3d p = T_c_w_ * p_w;
+        return {camera_.cx() + camera_.fx() * p.x() / p.z(),
+                kTop + camera_.cy() + camera_.fy() * p.y() / p.z()};
+    }
+
+    bool isVisible(const Eigen::Vector3d& p_w) const {
+        const Eigen::Vector3d p = T_c_w_ * p_w;
+        const auto u = static_cast<long>(std::lround(camera_.cx() + camera_.fx() * p.x() / p.z()));
+        const auto v = static_cast<long>(std::lround(camera_.cy() + camera_.fy() * p.y() / p.z()));
+        if (u < 0 || v < 0 || u >= long{kWidth} || v >= long{kHeight}) return true;
+        const float depth = view_.depth[static_cast<unsigned>(v)][static_cast<unsigned>(u)];
+        return depth <= 0.F || p.z() < depth + kSurfaceMargin;
+    }
+
+    Eigen::Vector3d below(const Eigen::Vector3d& p_w) const {
+        return p_w - depthAlong(world_, p_w, false) * Eigen::Vector3d::UnitZ();
+    }
+
+    void line(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Color& color,
+              double width) const {
+        if ((T_c_w_ * a).z() > 0.1 && (T_c_w_ * b).z() > 0.1)
+            canvas_.line(at(a), at(b), color, width);
+    }
+
+    Canvas& canvas_;
+    const ViewSource& world_;
+    const View& view_;
+    const Camera& camera_;
+    const Pose& T_c_w_;
+};
+
+void drawPicture(Canvas& canvas, const View& view) {
+    std::vector<Color> pixels;
+    pixels.reserve(view.intensity.getSize());
+    for (unsigned i = 0; i < view.intensity.getSize(); ++i) {
+        const float grey = std::clamp(view.intensity.bitmap[i], 0.F, 1.F);
+        const auto level = static_cast<std::uint8_t>(std::lround(70.F + 170.F * grey));
+        pixels.push_back(view.depth.bitmap[i] > 0.F ? Color{level, level, level}
+                                                    : Color{255, 255, 255});
+    }
+    canvas.picture(pixels, kWidth, {0., kTop, kWidth, kHeight}, true);
+}
+
+}  // namespace
+
+Png drawPerspective(const ViewSource& world, const Perspective& perspective) {
+    const Eigen::AlignedBox3d& box = perspective.box;
+    Eigen::Vector3d target = box.center();
+    target.z() = box.min().z();
+    const Pose T_c_w = lookAt(eyeAbove(world, box), target);
+    const Camera camera = cameraAround(box, T_c_w);
+    View view;
+    world.render(camera, T_c_w, view);
+
+    Canvas canvas(kWidth, kTop + kHeight);
+    drawPicture(canvas, view);
+    const Sketch sketch(canvas, world, view, camera, T_c_w);
+    for (auto path = perspective.paths.rbegin(); path != perspective.paths.rend(); ++path) {
+        sketch.route(*path);
+        if (path->points.empty()) continue;
+        sketch.stem(path->points.front().position, path->color);
+        sketch.stem(path->points.back().position, path->color);
+    }
+    canvas.text(perspective.title, {24., 36.}, Align::left, kInk, 21.0);
+    return canvas.png();
+}
+
+}  // namespace photonav

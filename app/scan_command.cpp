@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scan_command.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "atomic_file.hpp"
+#include "command_io.hpp"
+#include "error.hpp"
+#include "octree_file.hpp"
+#include "perspective.hpp"
+#include "point_cloud.hpp"
+#include "voxel_renderer.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// A scanner's echo is a surface, and a ray that grazes its cell on the way elsewhere says little.
+constexpr double kHit = 0.9, kMiss = 0.4;
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::set<fs::path> plyFiles(const fs::path& path) {
+    if (!fs::is_directory(path)) return {path};
+    std::set<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(path)) {
+        if (entry.path().extension() == ".ply") files.insert(entry.path());
+    }
+    return files;
+}
+
+void checkOptions(const ScanMapOptions& options, std::size_t files) {
+    const auto positive = [](double value, const char* option) {
+        if (std::isfinite(value) && value > 0.) return;
+        throw InputError(option, "", fmt::format("{} is not a positive number", value));
+    };
+    positive(options.resolution, "--resolution");
+    positive(options.maxRange, "--max-range");
+    if (options.scanner && files > 1) {
+        throw InputError("--scanner", "",
+                         fmt::format("one place for {} files; map them one by one, or let the "
+                                     "files say it (element camera, as PCL writes it)",
+                                     files));
+    }
+}
+
+/// Fuses one file, streaming. @returns what result.json says of it
+json fuseStation(const PointCloudFile& cloud, const fs::path& file, const ScanMapOptions& options,
+                 TexturedOcTree& map) {
+    const auto scanner = options.scanner ? options.scanner : cloud.scanner();
+    std::uint64_t visits = 0;
+    const auto begin = std::chrono::steady_clock::now();
+    const auto points = [&](const std::function<void(const ScanPoint&)>& visit) {
+        visits = 0;
+        cloud.read([&](const ScanPoint& point) {
+            ++visits;
+            visit(point);
+        });
+        if (visits == 0) throw InputError(file.string(), "", "no point is finite");
+    };
+    try {
+        fuseScan(map, points, scanner, options.maxRange);
+    } catch (const std::invalid_argument&) {
+        throw InputError(file.string(), "",
+                         fmt::format("the points reach too far for cells of {} m: see "
+                                     "--resolution and --max-range",
+                                     options.resolution));
+    }
+    json station{{"file", file.filename().string()},
+                 {"points", cloud.size()},
+                 {"used", visits},
+                 {"seconds", secondsSince(begin)},
+                 {"scanner", nullptr}};
+    if (scanner) station["scanner"] = {scanner->x(), scanner->y(), scanner->z()};
+    return station;
+}
+
+Eigen::AlignedBox3d boxOf(const TexturedOcTree& map) {
+    Eigen::AlignedBox3d box;
+    map.getMetricMin(box.min().x(), box.min().y(), box.min().z());
+    map.getMetricMax(box.max().x(), box.max().y(), box.max().z());
+    return box;
+}
+
+ReportTable summaryOf(const json& result) {
+    std::uint64_t points = 0;
+    for (const json& station : result["stations"]) points += station["used"].get<std::uint64_t>();
+    return {"Map",
+            {{"stations", std::to_string(result["stations"].size())},
+             {"points", std::to_string(points)},
+             {"cell", fmt::format("{} m", result["resolution"].get<double>())},
+             {"occupied cells", result["voxels"]["occupied"].dump()},
+             {"free cells", result["voxels"]["free"].dump()},
+             {"fusion", fmt::format("{:.1f} s", result["time"]["fuse_s"].get<double>())},
+             {"peak memory", fmt::format("{} MB", result["peak_memory_mb"].get<long>())}}};
+}
+
+void writeScanReport(const ScanMapOptions& options, const json& result, const ReportTable& summary,
+                     const TexturedOcTree& map) {
+    const VoxelRenderer renderer(map, UnknownPolicy::free);
+    ReportData report;
+    report.title = "Map of " + fs::path(options.scans).lexically_normal().filename().string();
+    report.subtitle = "A textured OctoMap from laser scans.";
+    report.commandLine = options.commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.voxels = makeReportVoxels(map);
+    report.figures = {{"The map as a camera would see it.",
+                       drawPerspective(renderer, {report.title, boxOf(map), {}})}};
+    report.tables = {summary};
+    writeFileAtomically(options.out / "overview.png", report.figures.front().image);
+    writeFileAtomically(options.out / "report.json", toJson(report).dump());
+    writeReport(options.out / "report.html", report);
+}
+
+long peakMegabytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss / 1024;
+}
+
+}  // namespace
+
+bool isScan(const std::string& path) {
+    if (fs::is_directory(path))
+        return !fs::exists(fs::path(path) / "rgb.txt") && !plyFiles(path).empty();
+    return fs::path(path).extension() == ".ply";
+}
+
+MapReport runScanMap(const ScanMapOptions& options, const std::atomic<bool>& interrupted) {
+    const std::set<fs::path> files = plyFiles(options.scans);
+    checkOptions(options, files.size());
+    std::vector<std::pair<fs::path, PointCloudFile>> clouds;  // all headers, before any work
+    for (const fs::path& file : files) clouds.emplace_back(file, file.string());
+    prepareFolder(options.out);
+
+    const auto begin = std::chrono::steady_clock::now();
+    TexturedOcTree map(options.resolution);
+    map.setProbHit(kHit);
+    map.setProbMiss(kMiss);
+    json stations = json::array();
+    for (const auto& [file, cloud] : clouds) {
+        if (interrupted) break;
+        stations.push_back(fuseStation(cloud, file, options, map));
+        if (options.progress) options.progress(stations.size(), clouds.size());
+    }
+    MapReport report;
+    report.exitCode = interrupted ? kInterrupted : kDone;
+    report.result = {{"schema", 1},
+                     {"command", "map"},
+                     {"version", PHOTONAV_VERSION},
+                     {"interrupted", report.exitCode == kInterrupted},
+                     {"scans", options.scans},
+                     {"stations", stations},
+                     {"resolution", options.resolution},
+                     {"max_range", options.maxRange},
+                     {"voxels", voxelsJson(map)},
+                     {"time", {{"fuse_s", secondsSince(begin)}}},
+                     {"peak_memory_mb", peakMegabytes()}};
+    report.summary = summaryOf(report.result);
+    saveTexturedOcTree(map, (options.out / "map.ot").string());
+    saveColorOcTree(map, (options.out / "map_color.ot").string());
+    saveBinaryOcTree(map, (options.out / "map.bt").string());
+    if (!stations.empty()) writeScanReport(options, report.result, report.summary, map);
+    writeFileAtomically(options.out / "result.json", report.result.dump(2) + "\n");
+    return report;
+}
+
+}  // namespace photonav
