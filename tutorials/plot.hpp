@@ -40,9 +40,12 @@ class Plot {
         cv::cvtColor(bytes, image_(inside), cv::COLOR_GRAY2BGR);
     }
 
-    void dots(const Points& points, const cv::Scalar& rgb, double opacity) {
+    /// @param radius [pixels]
+    void dots(const Points& points, const cv::Scalar& rgb, double opacity, int radius = 2) {
         cv::Mat layer = image_.clone();
-        for (const auto& p : points) cv::circle(layer, pixel(p), 2 * kFine, bgr(rgb), -1);
+        for (const auto& p : points) {
+            cv::circle(layer, pixel(p), radius * kFine, bgr(rgb), -1, cv::LINE_AA);
+        }
         cv::addWeighted(layer, opacity, image_, 1. - opacity, 0., image_);
     }
 
