@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "error.hpp"
+#include "mesh_check.hpp"
 
 namespace photonav {
 namespace {
@@ -209,6 +210,7 @@ Scene loadMesh(const std::string& file, const MeshOptions& options) {
     if (!std::filesystem::exists(file)) throw InputError(file, "", "no such file");
     if (!std::filesystem::is_regular_file(file)) throw InputError(file, "", "not a file");
     if (std::filesystem::file_size(file) == 0) throw InputError(file, "", "the file is empty");
+    checkMeshFile(file);
     Assimp::Importer importer;
     const aiScene* input = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType);
     if (input == nullptr || input->mRootNode == nullptr) {

@@ -97,6 +97,12 @@ class NodeReader {
         return value;
     }
 
+    void checkEnd() const {
+        if (stream_.peek() != std::istream::traits_type::eof()) {
+            fail("damaged: goes on after its last node");
+        }
+    }
+
     [[noreturn]] void fail(const std::string& reason) const {
         throw InputError(file_, "", reason + " (after " + std::to_string(map_.size()) + " nodes)");
     }
@@ -203,7 +209,10 @@ std::unique_ptr<TexturedOcTree> loadTexturedOcTree(const std::string& file) {
                          "a map of class \"" + header.id + "\"" + (header.binary ? " (.bt)" : "") +
                              "; TexturedOcTree, ColorOcTree and OcTree can be read");
     }
-    if (header.nodes == 0) return map;
+    if (header.nodes == 0) {
+        reader.checkEnd();
+        return map;
+    }
     if (header.binary) {
         reader.readBinaryNodes(map->obtainRoot(), 0);
     } else if (header.id == "OcTree") {
@@ -216,6 +225,7 @@ std::unique_ptr<TexturedOcTree> loadTexturedOcTree(const std::string& file) {
     if (map->size() != header.nodes) {
         reader.fail("damaged: its header promises " + std::to_string(header.nodes) + " nodes");
     }
+    reader.checkEnd();
     clearInnerFaces(*map, map->obtainRoot());
     return map;
 }

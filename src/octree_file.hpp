@@ -14,7 +14,8 @@ namespace photonav {
 /// with weight 1) and .ot or .bt of class OcTree (occupancy only: no face was ever observed, so one
 /// can plan around obstacles, but views carry no information).
 /// @throws InputError when the file is missing, is none of these, is cut short or damaged (its node
-///         count is compared with its header), or holds values that are not finite
+///         count is compared with its header, nothing may follow), or holds values that are not
+///         finite
 std::unique_ptr<TexturedOcTree> loadTexturedOcTree(const std::string& file);
 
 // Writing replaces the file only when all of it has been written.

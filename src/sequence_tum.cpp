@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 
+#include "image_bytes.hpp"
 #include "text_table.hpp"
 #include "trajectory.hpp"
 #include "yaml_reader.hpp"
@@ -113,16 +112,19 @@ std::vector<Pair> readPairs(const fs::path& folder, double tolerance, Sequence& 
     return pairs;
 }
 
-vpCameraParameters readIntrinsics(YamlMap& yaml) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const auto required = [&](const std::string& key, double least) {
+/// Fields of view up to 179 degrees, principal points up to ten images outside: beyond, a number
+/// has gone wrong.
+vpCameraParameters readIntrinsics(YamlMap& yaml, const Camera& camera) {
+    const auto required = [&](const std::string& key, double least, double most) {
         if (!yaml.has(key)) yaml.fail(key, "missing");
         double value = 0.;
-        yaml.readNumber(key, value, least, kInfinity);
+        yaml.readNumber(key, value, least, most);
         return value;
     };
-    return {required("fx", 1e-3), required("fy", 1e-3), required("cx", -kInfinity),
-            required("cy", -kInfinity)};
+    const double width = camera.width;
+    const double height = camera.height;
+    return {required("fx", 0.005 * width, 1e9), required("fy", 0.005 * height, 1e9),
+            required("cx", -10. * width, 10. * width), required("cy", -10. * height, 10. * height)};
 }
 
 void readCamera(const std::string& file, Sequence& sequence) {
@@ -134,31 +136,20 @@ void readCamera(const std::string& file, Sequence& sequence) {
     };
     readPixels("width", sequence.camera.width);
     readPixels("height", sequence.camera.height);
-    sequence.camera.intrinsics = readIntrinsics(yaml);
+    sequence.camera.intrinsics = readIntrinsics(yaml, sequence.camera);
     yaml.readNumber("depth_scale", sequence.depthScale, 1e-6,
                     std::numeric_limits<double>::infinity());
     if (yaml.has("depth_camera")) {
         YamlMap depthCamera = yaml.map("depth_camera");
-        sequence.depthIntrinsics = readIntrinsics(depthCamera);
+        sequence.depthIntrinsics = readIntrinsics(depthCamera, sequence.camera);
         depthCamera.finish();
     }
     yaml.finish();
 }
 
-/// Libraries pad a truncated JPEG with grey and call it a success, so its end is checked here.
-bool isTruncatedJpeg(const std::vector<unsigned char>& bytes) {
-    if (bytes.size() < 2 || bytes[0] != 0xFF || bytes[1] != 0xD8) return false;
-    const std::array<unsigned char, 2> end = {0xFF, 0xD9};
-    return std::search(bytes.end() - std::min<std::ptrdiff_t>(std::ssize(bytes), 1024), bytes.end(),
-                       end.begin(), end.end()) == bytes.end();
-}
-
 cv::Mat readImage(const std::string& file, int flags, const Camera& camera) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError(file, "", "no such file");
-    const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(in), {}};
-    cv::Mat image =
-        bytes.empty() || isTruncatedJpeg(bytes) ? cv::Mat() : cv::imdecode(bytes, flags);
+    const auto bytes = soundImage(readBytes(file));
+    cv::Mat image = bytes.empty() ? cv::Mat() : cv::imdecode(bytes, flags);
     if (image.empty()) throw InputError(file, "", "not an image, or damaged");
     if (image.cols != int(camera.width) || image.rows != int(camera.height)) {
         throw InputError(file, "",

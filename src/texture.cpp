@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "error.hpp"
+#include "image_bytes.hpp"
 
 namespace photonav {
 namespace {
@@ -254,17 +255,14 @@ double greyOfLinear(const std::array<double, 3>& rgb) {
 }
 
 ImageF readGrey(const std::string& file, const std::array<double, 3>& factor) {
-    const cv::Mat image = cv::imread(file, cv::IMREAD_UNCHANGED);
-    if (image.empty()) throw InputError(file, "", "cannot read the image");
-    return greyOf(image, factor);
+    return decodeGrey(readBytes(file), file, factor);
 }
 
 ImageF decodeGrey(std::span<const std::uint8_t> encoded, const std::string& name,
                   const std::array<double, 3>& factor) {
-    const cv::Mat bytes(1, static_cast<int>(encoded.size()), CV_8U,
-                        const_cast<std::uint8_t*>(encoded.data()));
-    const cv::Mat image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-    if (image.empty()) throw InputError(name, "", "cannot decode the image");
+    const auto bytes = soundImage(encoded);
+    const cv::Mat image = bytes.empty() ? cv::Mat() : cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+    if (image.empty()) throw InputError(name, "", "not an image, or damaged");
     return greyOf(image, factor);
 }
 

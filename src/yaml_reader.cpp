@@ -57,6 +57,12 @@ YamlMap::YamlMap(std::string file, const YAML::Node& node, std::string prefix)
     : file_(std::move(file)), node_(node), prefix_(std::move(prefix)) {
     if (node_.IsNull()) node_ = YAML::Node(YAML::NodeType::Map);
     if (!node_.IsMap()) throw InputError(file_, prefix_, "expected 'key: value' lines");
+    std::set<std::string> keys;
+    for (const auto& entry : node_) {
+        if (!entry.first.IsScalar()) throw InputError(file_, prefix_, "a key is not a word");
+        const auto& key = entry.first.Scalar();
+        if (!keys.insert(key).second) fail(key, "is there twice");
+    }
 }
 
 void YamlMap::readNumbers(const std::string& key, std::vector<double>& value, std::size_t least,

@@ -25,6 +25,7 @@ YAML::Node loadYaml(const std::string& file);
 class YamlMap {
   public:
     /// @param prefix dotted path of this mapping inside the file, for messages
+    /// @throws InputError when the node is no mapping, and for a key that is there twice
     YamlMap(std::string file, const YAML::Node& node, std::string prefix = "");
 
     bool has(const std::string& key) const { return node_[key].IsDefined(); }

@@ -103,10 +103,16 @@ TEST(Config, ComplaintsNameKeyAndReason) {
 }
 
 TEST(Config, ComplaintsAboutTheFileItself) {
+    const char* kRest =
+        "scene: {file: a.yaml}\nbounds: [[0,0,0],[1,1,1]]\nstart: [0,0,0]\ngoal: [1,1,1]\n";
     EXPECT_NE(complaint({}, "nowhere.yaml").find("nowhere.yaml: no such file"), std::string::npos);
     const fs::path file = fs::temp_directory_path() / "photonav_config_broken.yaml";
     std::ofstream(file) << "planner: [unclosed\n";
     EXPECT_NE(complaint({}, file.string()).find("line"), std::string::npos);
+    std::ofstream(file) << "seed: 1\nrobot: {radius: 1, radius: 2}\n" << kRest;
+    EXPECT_NE(complaint({}, file.string()).find("robot.radius: is there twice"), std::string::npos);
+    std::ofstream(file) << "seed: 1\nseed: 2\n" << kRest;
+    EXPECT_NE(complaint({}, file.string()).find("seed: is there twice"), std::string::npos);
     std::ofstream(file) << "just a word\n";
     EXPECT_NE(complaint({}, file.string()).find("key: value"), std::string::npos);
     fs::remove(file);

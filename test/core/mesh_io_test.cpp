@@ -170,6 +170,26 @@ TEST(MeshIo, ComplaintsNameFileAndReason) {
               textured + ": texture: no such image '" + folder.file("gone.png") + "'");
 }
 
+/// assimp would reserve what the header says, and leave the colour of a missing library white.
+TEST(MeshIo, HeadersAndLibrariesAreNotTrusted) {
+    const TemporaryFolder folder;
+    const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+    const std::string faces = "property list uchar int vertex_indices\nend_header\n";
+    for (const std::string format : {"ascii", "binary_little_endian"}) {
+        const std::string head = "ply\nformat " + format + " 1.0\nelement vertex ";
+        const auto vertices =
+            folder.write("vertices.ply", head + "1000000000\n" + xyz + "element face 1\n" + faces);
+        EXPECT_NE(complaint(vertices).find("element vertex: 1000000000"), std::string::npos);
+        const auto many =
+            folder.write("faces.ply", head + "3\n" + xyz + "element face 1000000000\n" + faces +
+                                          "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+        EXPECT_NE(complaint(many).find("element face: 1000000000"), std::string::npos);
+    }
+    const auto obj =
+        folder.write("box.obj", "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(complaint(obj), obj + ": mtllib: no such file 'gone.mtl'");
+}
+
 TEST(MeshIo, SomeDegenerateTrianglesAreDropped) {
     const TemporaryFolder folder;
     const auto file =

@@ -157,6 +157,8 @@ TEST_F(TumSequence, RejectsBadCameraFiles) {
     rejected("width: 80\nheight: 60\nfx: 60\nfy: 60\nfz: 60\n" + centre, {"fz", "camera.yaml"});
     rejected("width: 80\nheight: 60\nfx: 60\nfy: 60\ndepth_scale: 0\n" + centre,
              {"camera.yaml", "depth_scale"});
+    rejected("width: 80\nheight: 60\nfx: 1e-2\nfy: 60\n" + centre, {"camera.yaml", "fx"});
+    rejected("width: 80\nheight: 60\nfx: 60\nfy: 60\ncx: 1e9\ncy: 30\n", {"camera.yaml", "cx"});
     rejected(
         "width: 80\nheight: 60\nfx: 60\nfy: 60\ndepth_camera: {fx: 1, fy: 1, cx: 0}\n" + centre,
         {"camera.yaml", "depth_camera.cy", "missing"});

@@ -121,7 +121,7 @@ TEST_F(MapFile, ExportsAndReadsBinaryOccupancy) {
     }
 }
 
-TEST_F(MapFile, CutShortAnywhereIsAnError) {
+TEST_F(MapFile, CutShortAnywhereOrTooLongIsAnError) {
     const TexturedOcTree map = carpetMap();
     for (const std::string name : {"map.ot", "grey.ot", "map.bt"}) {
         if (name == "map.ot") saveTexturedOcTree(map, file(name));
@@ -136,6 +136,8 @@ TEST_F(MapFile, CutShortAnywhereIsAnError) {
         }
         std::ofstream(file("cut"), std::ios::binary) << all.substr(0, all.size() - 1);
         EXPECT_NE(complaint("cut").find("cut short"), std::string::npos) << complaint("cut");
+        std::ofstream(file("long"), std::ios::binary) << all << '\n';
+        EXPECT_NE(complaint("long").find("after its last node"), std::string::npos);
     }
 }
 
