@@ -29,7 +29,9 @@ fs::path resultFolder(const CommandOptions& options, const std::string& command)
         folder = fs::path("out") / (command + "-" + fs::path(options.config).stem().string());
     }
     prepareFolder(folder);
-    for (const char* stale : {"result.json", "path.tum", "trace.png"}) fs::remove(folder / stale);
+    for (const char* stale :
+         {"result.json", "path.tum", "trace.png", "information.png", "recorded_frames.png"})
+        fs::remove(folder / stale);
     return folder;
 }
 

@@ -289,7 +289,7 @@ Png drawTrace(const std::string& title, const std::vector<DrawnPath>& paths, boo
         }
     if (!logScale) traces.push_back(0.0);
     const Plot plot{canvas, frame, axisAround(distances, false, "distance along the path [m]"),
-                    axisAround(traces, logScale, "trace of the pose covariance [m^2]")};
+                    axisAround(traces, logScale, "trace of the pose covariance [m^2 + L^2 rad^2]")};
 
     plot.drawGrid();
     {

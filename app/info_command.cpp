@@ -125,7 +125,8 @@ int runInfo(const InfoOptions& options) {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     };
     const Config config = loadConfig(options.config, options.overrides);
-    const Place place = options.at ? parsePlace(*options.at) : config.start;
+    Place place = options.at ? parsePlace(*options.at) : config.start;
+    if (!place.yaw) place.yaw = config.start.yaw;  // the only heading there is in space xyz
     const double height = options.height.value_or(config.start.position.z());
     if (!(height >= config.bounds.min().z() && height <= config.bounds.max().z())) {
         throw InputError("--height", fmt::format("{}", height), "outside the bounds of the config");

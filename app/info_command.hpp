@@ -11,7 +11,8 @@ namespace photonav {
 struct InfoOptions : CommandOptions {
     std::optional<double> height;   ///< of the heat map [m]; default: the start's
     int cells = 100;                ///< along the longer side of the area
-    std::optional<std::string> at;  ///< x,y,z[,yaw] of the single view; default: the start
+    std::optional<std::string> at;  ///< x,y,z[,yaw] of the single view; default: the start,
+                                    ///< and without yaw the start's heading
 };
 
 /// Heat maps of the information of a view and of the position uncertainty it leaves, and one view

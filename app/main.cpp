@@ -13,6 +13,7 @@
 #include "error.hpp"
 #include "info_command.hpp"
 #include "map_command.hpp"
+#include "map_config.hpp"
 #include "plan_command.hpp"
 #include "report.hpp"
 #include "scan_command.hpp"
@@ -36,13 +37,18 @@ void onInterrupt(int) {
     if (interrupted.exchange(true)) std::_Exit(kInterrupted);
 }
 
+const CLI::Validator kNotEmpty(
+    [](const std::string& text) { return std::string(text.empty() ? "must not be empty" : ""); },
+    "");
+
 void addCommon(CLI::App* command, CommandOptions& options, bool needsConfig = true) {
     command->add_option("config", options.config, "YAML file of the planning problem")
         ->required(needsConfig);
     command->add_option("--set", options.overrides, "override a value of the config")
         ->type_name("KEY.PATH=VALUE")
         ->allow_extra_args(false);
-    command->add_option("--out", options.out, "result folder (default: out/<command>-<config>)");
+    command->add_option("--out", options.out, "result folder (default: out/<command>-<config>)")
+        ->check(kNotEmpty);
     command->add_flag("--quiet", options.quiet, "no progress, no summary");
     command->add_flag("--json", options.json, "result.json on standard output");
 }
@@ -104,6 +110,19 @@ MapReport mapScan(const CLI::App& parser, const MapOptions& options,
     return runScanMap(scan, interrupted);
 }
 
+/// Takes everything from the config of an earlier map.
+void useMapConfig(const CLI::App& parser, MapOptions& options) {
+    const std::string file = options.dataset;
+    for (const CLI::Option* option : parser.get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() > 0 && name.starts_with("--") && name != "--out" && name != "--quiet" &&
+            name != "--json") {
+            throw InputError(name, "", "not together with a config; edit " + file);
+        }
+    }
+    readMapConfig(file, options);
+}
+
 Command mapCommand(CLI::App& app, const std::string& commandLine) {
     struct Options : MapOptions {
         bool quiet = false;
@@ -117,14 +136,18 @@ Command mapCommand(CLI::App& app, const std::string& commandLine) {
     parser
         ->add_option("dataset", options->dataset,
                      "folder in the TUM RGB-D layout; or a coloured point cloud (.ply), or a "
-                     "folder with one per station of the scanner")
+                     "folder with one per station of the scanner; or the config.yaml of an earlier "
+                     "map of images")
         ->required();
-    parser->add_option("--out", options->out, "result folder (default: out/map-<dataset>)");
+    parser->add_option("--out", options->out, "result folder (default: out/map-<dataset>)")
+        ->check(kNotEmpty);
     parser->add_option("--resolution", options->resolution, "edge of a cell [m]")
         ->capture_default_str();
     parser->add_option("--camera", options->cameraFile,
                        "camera.yaml to use instead of the dataset's");
-    parser->add_option("--up", options->up, "axis of the recorded world that points up: x ... -z")
+    parser
+        ->add_option("--up", options->up,
+                     "what points up in the recorded world: x ... -z, a direction x,y,z, or floor")
         ->capture_default_str();
     parser->add_option("--every", options->every, "use every n-th frame")->capture_default_str();
     parser->add_option("--min-range", options->fusion.minRange, "nearest depth trusted [m]")
@@ -145,6 +168,9 @@ Command mapCommand(CLI::App& app, const std::string& commandLine) {
     parser->add_flag("--quiet", options->quiet, "no progress, no summary");
     parser->add_flag("--json", options->json, "result.json on standard output");
     return {parser, [options, parser] {
+                if (std::filesystem::path(options->dataset).extension() == ".yaml") {
+                    useMapConfig(*parser, *options);
+                }
                 if (options->out.empty()) {
                     const auto name = (std::filesystem::path(options->dataset) / "")
                                           .lexically_normal()
@@ -230,9 +256,8 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", PHOTONAV_VERSION);
     app.require_subcommand(1);
     app.footer(
-        "Every run writes result.json, figures and report.html into its folder; plan and info "
-        "also\n"
-        "config.yaml, complete and re-runnable.\n"
+        "Every run writes result.json, figures, report.html and config.yaml (complete,\n"
+        "re-runnable) into its folder.\n"
         "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by Ctrl-C.");
     std::string commandLine = "photonav";
     for (int i = 1; i < argc; ++i) commandLine += std::string(" ") + argv[i];

@@ -12,6 +12,7 @@
 #include "command_io.hpp"
 #include "error.hpp"
 #include "map_comparison.hpp"
+#include "map_config.hpp"
 #include "octree_file.hpp"
 #include "report.hpp"
 #include "sequence_tum.hpp"
@@ -56,28 +57,20 @@ void checkOptions(const MapOptions& options) {
             fmt::format("not above the least range, {} m", options.fusion.minRange));
     if (options.depthScale) positive(*options.depthScale, "--depth-scale");
     require(options.every >= 1, "--every", "must be at least 1");
-    const auto& axes = axisNames();
-    require(std::find(axes.begin(), axes.end(), options.up) != axes.end(), "--up",
-            fmt::format("'{}' is not one of {}", options.up, fmt::join(axes, ", ")));
 }
 
-/// The frames to use, in the world of the map.
-Sequence readAligned(const MapOptions& options, std::size_t& recorded) {
-    TumOptions tum;
-    tum.tolerance = options.tolerance;
-    tum.depthScale = options.depthScale;
-    tum.cameraFile = options.cameraFile;
-    Sequence sequence = readTumSequence(options.dataset, tum);
-    recorded = sequence.frames.size() + sequence.skipped.size();
-    Pose T_recorded_w = Pose::Identity();
-    T_recorded_w.linear() = worldUpRotation(options.up).transpose();
-    std::vector<Sequence::Entry> used;
-    for (std::size_t i = 0; i < sequence.frames.size(); i += std::size_t(options.every)) {
-        used.push_back(sequence.frames[i]);
-        used.back().T_c_w = used.back().T_c_w * T_recorded_w;
-    }
-    sequence.frames = std::move(used);
-    return sequence;
+/// Cells are numbered by 16 bits an axis: far from the origin there are none. Nearer than kNear it
+/// is the cells that are too small.
+void checkPosition(const MapOptions& options, const RecordedFrame& frame) {
+    const double farthest = frame.T_c_w.inverse().translation().cwiseAbs().maxCoeff();
+    const double reach = 32768. * options.resolution;
+    constexpr double kNear = 100.;
+    if (farthest <= std::max(reach, kNear)) return;
+    throw InputError(
+        (fs::path(options.dataset) / "groundtruth.txt").string(),
+        fmt::format("{:.6f} s", frame.timestamp),
+        fmt::format("the camera is {:.6g} m from the origin, a map with cells of {} m ends at {} m",
+                    farthest, options.resolution, reach));
 }
 
 struct FusedFrames {
@@ -93,6 +86,7 @@ FusedFrames fuseFrames(const MapOptions& options, const Sequence& sequence,
     while (fused.count < sequence.frames.size() && !interrupted) {
         const RecordedFrame frame = loadFrame(sequence, fused.count);
         fused.loadSeconds += watch.lap();
+        checkPosition(options, frame);
         try {
             fuse(map, frame.view, sequence.camera, frame.T_c_w, options.fusion);
         } catch (const std::invalid_argument& error) {  // sizes are checked: cells are too small
@@ -142,8 +136,9 @@ json compareFrames(const MapOptions& options, const Sequence& sequence, const Te
         const std::size_t every = std::max<std::size_t>(1, count / kStrips);
         if (k % every == every / 2 && strips.size() < kStrips) {
             strips.push_back(
-                {k * step, comparisonPng(frame.view, predicted,
-                                         fmt::format("observed at {:.3f} s", frame.timestamp))});
+                {k * step, panelsPng({comparisonPanels(
+                               frame.view, predicted,
+                               fmt::format("observed at {:.3f} s", frame.timestamp))})});
         }
     }
     return compared;
@@ -162,10 +157,10 @@ json meansOf(const json& compared) {
 
 json vectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Cells of the finest size, free and occupied, and the box of the occupied ones [m].
-json datasetJson(const MapOptions& options, const Sequence& sequence) {
+json datasetJson(const MapOptions& options, const Recording& recording) {
+    const Sequence& sequence = recording.sequence;
     const Camera& camera = sequence.camera;
-    const Eigen::Matrix3d R = worldUpRotation(options.up);
+    const Eigen::Matrix3d R = worldUpRotation(recording.up);
     return {{"folder", fs::absolute(options.dataset).lexically_normal().string()},
             {"camera",
              {{"width", camera.width},
@@ -178,17 +173,21 @@ json datasetJson(const MapOptions& options, const Sequence& sequence) {
               {"depth_registered_here", sequence.depthIntrinsics.has_value()}}},
             {"depth_scale", sequence.depthScale},
             {"up", options.up},
+            {"up_direction", vectorJson(recording.up)},
+            {"tilt_degrees", tiltDegrees(recording.up)},
             {"map_from_recorded_rotation",
              {vectorJson(R.row(0)), vectorJson(R.row(1)), vectorJson(R.row(2))}}};
 }
 
-json framesJson(const MapOptions& options, const Sequence& sequence, std::size_t recorded,
-                std::size_t used) {
+json framesJson(const MapOptions& options, const Recording& recording, std::size_t used) {
     json skipped = json::array();
-    for (const auto& [file, reason] : sequence.skipped) {
+    for (const auto& [file, reason] : recording.sequence.skipped) {
         skipped.push_back({{"file", file}, {"reason", reason}});
     }
-    return {{"recorded", recorded}, {"used", used}, {"every", options.every}, {"skipped", skipped}};
+    return {{"recorded", recording.recorded},
+            {"used", used},
+            {"every", options.every},
+            {"skipped", skipped}};
 }
 
 ReportTable summary(const json& result) {
@@ -202,6 +201,9 @@ ReportTable summary(const json& result) {
         "Map",
         {{"frames used", fmt::format("{} of {}", frames["used"].get<std::size_t>(),
                                      frames["recorded"].get<std::size_t>())},
+         {"up in the recorded world",
+          fmt::format("{}, {:.1f} degrees from an axis", result["dataset"]["up"].get<std::string>(),
+                      result["dataset"]["tilt_degrees"].get<double>())},
          {"cell", fmt::format("{} m", result["resolution"].get<double>())},
          {"occupied cells", result["voxels"]["occupied"].dump()},
          {"free cells", result["voxels"]["free"].dump()},
@@ -229,15 +231,17 @@ DrawnPath flown(const Trajectory& trajectory) {
     return path;
 }
 
-void writeMapReport(const MapOptions& options, const json& result, const Camera& camera,
+void writeMapReport(const MapOptions& options, const json& result, const Recording& recording,
                     const Trajectory& trajectory, const TexturedOcTree& map,
                     const std::vector<Strip>& strips) {
+    const Camera& camera = recording.sequence.camera;
     ReportData report;
     report.title = "Map of " + fs::path(options.dataset).lexically_normal().filename().string();
     report.subtitle = "A textured OctoMap, and what it predicts where the camera was.";
     report.commandLine = options.commandLine;
     report.version = PHOTONAV_VERSION;
     report.result = result;
+    report.config = toYaml(options, recording);
     report.voxels = makeReportVoxels(map);
     report.paths = {flown(trajectory)};
     report.start = trajectory.front().T_w_c.translation();
@@ -279,13 +283,20 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
     checkOptions(options);
     Stopwatch watch;
     json time;
-    std::size_t recorded = 0;
-    const Sequence sequence = readAligned(options, recorded);
+    const Recording recording = readRecording(options);
+    const Sequence& sequence = recording.sequence;
     prepareFolder(options.out);
     time["read_s"] = watch.lap();
 
     TexturedOcTree map(options.resolution);
-    const FusedFrames fused = fuseFrames(options, sequence, interrupted, map);
+    FusedFrames fused;
+    try {
+        fused = fuseFrames(options, sequence, interrupted, map);
+    } catch (const InputError&) {
+        std::error_code ignored;
+        fs::remove(options.out, ignored);  // only when there is nothing in it
+        throw;
+    }
     const std::size_t used = fused.count;
     time["load_images_s"] = fused.loadSeconds;
     time["fuse_s"] = fused.fuseSeconds;
@@ -307,8 +318,8 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
                      {"command", "map"},
                      {"version", PHOTONAV_VERSION},
                      {"interrupted", report.exitCode == 130},
-                     {"dataset", datasetJson(options, sequence)},
-                     {"frames", framesJson(options, sequence, recorded, used)},
+                     {"dataset", datasetJson(options, recording)},
+                     {"frames", framesJson(options, recording, used)},
                      {"resolution", options.resolution},
                      {"min_range", options.fusion.minRange},
                      {"max_range", options.fusion.maxRange},
@@ -320,10 +331,9 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
     for (std::size_t i = 0; i < strips.size(); ++i) {
         writeFileAtomically(options.out / fmt::format("comparison_{}.png", i), strips[i].picture);
     }
+    writeFileAtomically(options.out / "config.yaml", toYaml(options, recording));
     writeFileAtomically(options.out / "result.json", report.result.dump(2) + "\n");
-    if (used > 0) {
-        writeMapReport(options, report.result, sequence.camera, trajectory, map, strips);
-    }
+    if (used > 0) writeMapReport(options, report.result, recording, trajectory, map, strips);
     return report;
 }
 

@@ -10,19 +10,14 @@
 #include <string>
 
 #include "map_fusion.hpp"
+#include "recording.hpp"
 #include "report.hpp"
 
 namespace photonav {
 
-struct MapOptions {
-    std::string dataset;               ///< folder in the TUM RGB-D layout
-    std::filesystem::path out;         ///< folder for the results; made when missing
-    double resolution = 0.05;          ///< edge of a cell [m]
-    std::string up = "z";              ///< axis of the recorded world that points up
-    int every = 1;                     ///< use every n-th frame
-    double tolerance = 0.02;           ///< of timestamps, see TumOptions [s]
-    std::string cameraFile;            ///< instead of the dataset's camera.yaml
-    std::optional<double> depthScale;  ///< depth image value of one metre, instead of the dataset's
+struct MapOptions : RecordingOptions {
+    std::filesystem::path out;  ///< folder for the results; made when missing
+    double resolution = 0.05;   ///< edge of a cell [m]
     FusionOptions fusion;
     int compareEvery = 10;    ///< predict every n-th used frame from the finished map; 0: none
     std::string commandLine;  ///< for the report
@@ -42,11 +37,12 @@ nlohmann::json voxelsJson(const TexturedOcTree& map);
 
 /// Maps a dataset and writes into options.out: map.ot (TexturedOcTree), map_color.ot (ColorOcTree,
 /// for octovis), map.bt, trajectory.tum (camera to world, of the frames used, in the map's world),
-/// result.json, comparison_N.png (observed, predicted and difference of up to four frames) and
-/// report.html. The world of the map has z up: `up` states how the recorded world was turned.
+/// config.yaml (with it `plan` finds the frames again), result.json, comparison_N.png (observed,
+/// predicted and difference of up to four frames) and report.html. The world of the map has z up:
+/// `up` states how the recorded world was turned.
 /// @param interrupted checked between frames; what is there then is written, without comparison
 /// @throws InputError for a dataset that cannot be used, an option out of range ("--every") and a
-///         folder that cannot be written, the last before any work is done
+///         folder that cannot be written, the last before any work is done; no new folder is left
 MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

@@ -67,41 +67,69 @@ ViewDifference compareViews(const View& observed, const View& predicted) {
     return difference;
 }
 
-Png comparisonPng(const View& observed, const View& predicted, const std::string& caption) {
+Panel predictedPanel(const View& predicted, const std::string& caption) {
+    Panel panel{caption, std::vector<Color>(predicted.intensity.getSize(), kNothing),
+                static_cast<int>(predicted.intensity.getWidth())};
+    for (unsigned i = 0; i < predicted.intensity.getSize(); ++i) {
+        if (predicted.depth.bitmap[i] > 0.F) panel.pixels[i] = grey(predicted.intensity.bitmap[i]);
+    }
+    return panel;
+}
+
+std::vector<Panel> comparisonPanels(const View& observed, const View& predicted,
+                                    const std::string& caption) {
     const ViewDifference difference = compareViews(observed, predicted);
     const int columns = static_cast<int>(observed.intensity.getWidth());
     const unsigned size = observed.intensity.getSize();
-    std::vector<Color> left(size);
-    std::vector<Color> middle(size, kNothing);
-    std::vector<Color> right(size, kNothing);
+    Panel left{caption, std::vector<Color>(size), columns};
+    Panel right{fmt::format("difference (mean {:.3f}; yellow >= {})", difference.meanIntensity,
+                            kFullDifference),
+                std::vector<Color>(size, kNothing), columns};
     const auto scale = viridis();
     for (unsigned i = 0; i < size; ++i) {
         const float seen = observed.intensity.bitmap[i];
-        left[i] = grey(seen);
+        left.pixels[i] = grey(seen);
         if (!(predicted.depth.bitmap[i] > 0.F)) continue;
-        const float expected = predicted.intensity.bitmap[i];
-        middle[i] = grey(expected);
-        const double share = std::min(std::abs(expected - seen) / kFullDifference, 1.);
-        right[i] = scale[static_cast<std::size_t>(255. * share)];
+        const double error = std::abs(predicted.intensity.bitmap[i] - seen);
+        right.pixels[i] =
+            scale[static_cast<std::size_t>(255. * std::min(error / kFullDifference, 1.))];
     }
-    constexpr double kWidth = 480.;
+    return {left,
+            predictedPanel(predicted, fmt::format("predicted there ({:.0f} % of pixels)",
+                                                  100. * difference.predicted)),
+            right};
+}
+
+Png panelsPng(const std::vector<std::vector<Panel>>& rows, double width) {
     constexpr double kGap = 10.;
     constexpr double kHeader = 30.;
-    const double height = kWidth * observed.intensity.getHeight() / columns;
-    Canvas canvas(3. * kWidth + 4. * kGap, height + kHeader + kGap);
-    const auto place = [&](int slot, const std::string& text, const std::vector<Color>& pixels) {
-        const double x = kGap + slot * (kWidth + kGap);
-        canvas.text(text, {x, kHeader - 9.}, Align::left, kText);
-        canvas.picture(pixels, columns, {x, kHeader, kWidth, height}, false);
+    const auto heightOf = [&](const std::vector<Panel>& row) {
+        double height = 0.;
+        for (const Panel& panel : row) {
+            const double lines = static_cast<double>(panel.pixels.size()) / panel.columns;
+            height = std::max(height, width * lines / panel.columns);
+        }
+        return height;
     };
-    place(0, caption, left);
-    place(1,
-          fmt::format("predicted from the map ({:.0f} % of pixels)", 100. * difference.predicted),
-          middle);
-    place(2,
-          fmt::format("difference (mean {:.3f}; yellow >= {})", difference.meanIntensity,
-                      kFullDifference),
-          right);
+    std::size_t columns = 0;
+    double height = kGap;
+    for (const auto& row : rows) {
+        columns = std::max(columns, row.size());
+        height += heightOf(row) + kHeader;
+    }
+    Canvas canvas(static_cast<double>(columns) * (width + kGap) + kGap, height);
+    double top = 0.;
+    for (const auto& row : rows) {
+        double x = kGap;
+        for (const Panel& panel : row) {
+            const double lines = static_cast<double>(panel.pixels.size()) / panel.columns;
+            canvas.text(panel.caption, {x, top + kHeader - 9.}, Align::left, kText);
+            canvas.picture(panel.pixels, panel.columns,
+                           {x, top + kHeader, width, width * lines / panel.columns}, false);
+            x += width + kGap;
+        }
+        top += heightOf(row) + kHeader;
+    }
     return canvas.png();
 }
 

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "pictures.hpp"
+#include "canvas.hpp"
 #include "view.hpp"
 
 namespace photonav {
@@ -23,9 +24,23 @@ struct ViewDifference {
 /// @throws std::invalid_argument unless both views have the same size
 ViewDifference compareViews(const View& observed, const View& predicted);
 
-/// Observed, predicted and absolute difference side by side, each with its caption. Where nothing
-/// is predicted, the picture is blue.
+/// A picture on a sheet, with what it is.
+struct Panel {
+    std::string caption;
+    std::vector<Color> pixels;  ///< row by row
+    int columns = 0;
+};
+
+/// A predicted view; where nothing is predicted, the picture is blue.
+Panel predictedPanel(const View& predicted, const std::string& caption);
+
+/// Observed, predicted and absolute difference.
 /// @param caption what this view is, for the first picture
-Png comparisonPng(const View& observed, const View& predicted, const std::string& caption);
+std::vector<Panel> comparisonPanels(const View& observed, const View& predicted,
+                                    const std::string& caption);
+
+/// All panels of equal width, in rows.
+/// @param width of one panel [pixels]
+Png panelsPng(const std::vector<std::vector<Panel>>& rows, double width = 480.);
 
 }  // namespace photonav

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "atomic_file.hpp"
+#include "error.hpp"
 #include "plan_report.hpp"
 #include "plan_run.hpp"
 
@@ -47,6 +48,18 @@ void printSummary(const PlanOutcome& outcome, const std::optional<JudgedPath>& b
     fmt::print("report: {}\n", (folder / "report.html").string());
 }
 
+/// What was really seen near the path; a recording that has gone is worth a warning, not the plan.
+std::optional<RecordedComparison> lookAtRecording(const Config& config, const World& world,
+                                                  const PlanOutcome& outcome) {
+    if (!outcome.path || !world.hasTexture()) return {};
+    try {
+        return compareWithRecording(config, world, *outcome.path);
+    } catch (const InputError& error) {
+        fmt::print(stderr, "photonav: warning: recorded frames not compared: {}\n", error.what());
+        return {};
+    }
+}
+
 }  // namespace
 
 int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
@@ -59,6 +72,12 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     PlanRun run(config, world);
     run.checkPlaces();
     const auto folder = resultFolder(options, "plan");
+    if (!world.hasTexture()) {
+        fmt::print(stderr,
+                   "photonav: warning: {}: no cell of the map has a grey value; planning without "
+                   "views\n",
+                   config.mapFile);
+    }
 
     PlanOutcome outcome;
     std::optional<JudgedPath> baseline;
@@ -74,8 +93,11 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     }
     const bool stopped = interrupted;
     nlohmann::json result = planResult(config, outcome, baseline, stopped);
+    const auto recorded = lookAtRecording(config, world, outcome);
+    if (recorded) result["recorded_frames"] = toJson(*recorded);
     result["time"]["total_s"] = seconds();
-    writePlanReport(folder, config, world, run, outcome, baseline, options.commandLine, result);
+    writePlanReport(folder, config, world, run, outcome, baseline, recorded, options.commandLine,
+                    result);
     result["time"]["total_s"] = seconds();
     writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
 

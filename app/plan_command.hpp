@@ -12,8 +12,8 @@ struct PlanOptions : CommandOptions {
     bool audit = false;  ///< print what replaying every stored belief from the start gave
 };
 
-/// Plans and writes result.json, config.yaml, path.tum, top_view.png, trace.png, information.png,
-/// report.json and report.html.
+/// Plans and writes result.json and what writePlanReport() says. In a map without grey values it
+/// warns and plans without views.
 /// @param interrupted when set, planning ends with what it has (exit code 130)
 /// @return the exit code
 /// @throws InputError for bad input, before anything is written

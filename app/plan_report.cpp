@@ -151,6 +151,7 @@ json planResult(const Config& config, const PlanOutcome& outcome,
                 {"planner", config.planner},
                 {"space", spaceName(config.space)},
                 {"alpha", outcome.alpha},
+                {"characteristic_length", config.belief.characteristicLength},
                 {"cost", nullptr},
                 {"length", nullptr},
                 {"mean_trace", nullptr},
@@ -182,6 +183,7 @@ json planResult(const Config& config, const PlanOutcome& outcome,
 
 void writePlanReport(const fs::path& folder, const Config& config, const World& world, PlanRun& run,
                      const PlanOutcome& outcome, const std::optional<JudgedPath>& baseline,
+                     const std::optional<RecordedComparison>& recorded,
                      const std::string& commandLine, const json& result) {
     const Camera camera = config.camera.camera();
     const Pose T_b_c = config.camera.T_b_c();
@@ -201,16 +203,21 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
     report.goal = config.goal.position;
     report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),
                           2. * std::atan(0.5 * camera.height / camera.fy())};
-    if (outcome.path) report.views = waypointViews(*outcome.path, config, world);
+    if (outcome.path && world.hasTexture()) {
+        report.views = waypointViews(*outcome.path, config, world);
+    }
     report.progress = outcome.progress;
 
     std::vector<NamedFigure> figures{
         {"top_view.png",
          {"From above: search tree, paths and 3 sigma ellipses of the position.",
-          drawTopView(topView(config, world, outcome, report.paths))}},
-        {"information.png",
-         {"What one view is worth, over the area.", drawHeatMap(heatMap(config, run))}}};
-    if (config.bounds.sizes().z() > 0.) {
+          drawTopView(topView(config, world, outcome, report.paths))}}};
+    if (!report.paths.empty() && world.hasTexture()) {
+        figures.push_back(
+            {"information.png",
+             {"What one view is worth, over the area.", drawHeatMap(heatMap(config, run))}});
+    }
+    if (config.bounds.sizes().z() > 0. && world.hasTexture()) {
         figures.push_back(
             {"perspective.png",
              {"In perspective, with the shadows of the paths: thin where something hides them.",
@@ -220,6 +227,15 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
         figures.push_back({"trace.png",
                            {"Trace of the pose covariance along the way.",
                             drawTrace("Uncertainty along the way", report.paths, true)}});
+    }
+    if (recorded) {
+        figures.push_back(
+            {"recorded_frames.png",
+             {fmt::format("Views along the path and the recorded frames nearest to them; what the "
+                          "map predicts at the frames' own poses differs from them by {:.3f} in "
+                          "the mean.",
+                          meanDifference(*recorded)),
+              recorded->picture}});
     }
     if (outcome.path) writeTrajectory(folder / "path.tum", *outcome.path, T_b_c);
     writeResultFolder(folder, report, figures);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "plan_run.hpp"
+#include "recorded_frames.hpp"
 
 namespace photonav {
 
@@ -15,12 +16,14 @@ namespace photonav {
 nlohmann::json planResult(const Config& config, const PlanOutcome& outcome,
                           const std::optional<JudgedPath>& baseline, bool interrupted);
 
-/// Writes config.yaml, path.tum, top_view.png, trace.png, information.png, report.json,
-/// report.html.
+/// Writes config.yaml, top_view.png, report.json and report.html; with a path also path.tum,
+/// trace.png, information.png (unless the world has no texture), and recorded_frames.png where
+/// there is a recording to compare with.
 void writePlanReport(const std::filesystem::path& folder, const Config& config, const World& world,
                      PlanRun& run, const PlanOutcome& outcome,
-                     const std::optional<JudgedPath>& baseline, const std::string& commandLine,
-                     const nlohmann::json& result);
+                     const std::optional<JudgedPath>& baseline,
+                     const std::optional<RecordedComparison>& recorded,
+                     const std::string& commandLine, const nlohmann::json& result);
 
 /// A figure and the file it goes to.
 struct NamedFigure {

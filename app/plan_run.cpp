@@ -57,7 +57,9 @@ PlanRun::PlanRun(const Config& config, const World& world)
           space_, [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
           config.robotRadius)),
       field_(std::make_shared<InformationField>(
-          photometricModel(world.views(), config.camera.camera(), config.photometric),
+          world.hasTexture()
+              ? photometricModel(world.views(), config.camera.camera(), config.photometric)
+              : InformationModel([](const Pose&) -> Matrix6 { return Matrix6::Zero(); }),
           config.camera.T_b_c(), config.field)),
       judge_(makeModel(config.planner == "rrt_star" ? 1. : config.belief.alpha)) {}
 
@@ -104,7 +106,7 @@ PlanOutcome PlanRun::solve(const std::string& name, const std::atomic<bool>& int
     outcome.alpha = model.options().alpha;
     outcome.vertices = planner->vertices();
     outcome.iterations = planner->iterations();
-    outcome.views = model.field().views();
+    outcome.views = world_.hasTexture() ? model.field().views() : 0;
     outcome.cacheHits = model.field().cacheHits();
     outcome.fallbacks = model.fallbacks();
     outcome.planSeconds = secondsSince(begin);

@@ -47,6 +47,10 @@ void World::loadScene(const Config& config) {
 
 void World::loadMap(const Config& config) {
     const std::shared_ptr<TexturedOcTree> map = loadTexturedOcTree(config.mapFile);
+    hasTexture_ = false;
+    for (auto cell = map->begin_leafs(); cell != map->end_leafs() && !hasTexture_; ++cell) {
+        hasTexture_ = cell->meanGrey().has_value();
+    }
     views_ = std::make_unique<VoxelRenderer>(*map, config.unknownToCamera);
     distances_ = DistanceMap(*map, config.bounds,
                              {.maxDistance = reach(config.robotRadius, map->getResolution()),

@@ -18,6 +18,8 @@ class World {
     explicit World(const Config& config);
 
     const ViewSource& views() const { return *views_; }
+    /// Whether anything here can tell a camera where it is: false for a map of occupancy only.
+    bool hasTexture() const { return hasTexture_; }
     double clearance(const Eigen::Vector3d& p_w) const { return distances_.clearance(p_w); }
 
     /// Box of everything that can be seen [m].
@@ -34,6 +36,7 @@ class World {
     void loadMap(const Config& config);
 
     std::unique_ptr<ViewSource> views_;
+    bool hasTexture_ = true;
     DistanceMap distances_;
     Eigen::AlignedBox3d extent_;
     std::function<void(ReportData&)> describe_;

@@ -15,6 +15,8 @@
 namespace photonav {
 namespace {
 
+constexpr double kFarthest = 1e8;  // [m]; more than twice around the earth
+
 StampedPose parsePose(const TextRow& row) {
     std::array<double, 8> v{};
     for (std::size_t i = 0; i < v.size(); ++i) v[i] = row.number(i);
@@ -23,10 +25,14 @@ StampedPose parsePose(const TextRow& row) {
     if (std::abs(q.norm() - 1.) > 0.1) {
         row.fail(fmt::format("quaternion of norm {:.3g}, expected 1", q.norm()));
     }
+    const Eigen::Vector3d position(v[1], v[2], v[3]);
+    if (position.norm() > kFarthest) {
+        row.fail(fmt::format("position {:.3g} m from the origin", position.norm()));
+    }
     StampedPose pose;
     pose.timestamp = v[0];
     pose.T_w_c.linear() = q.normalized().toRotationMatrix();
-    pose.T_w_c.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
+    pose.T_w_c.translation() = position;
     return pose;
 }
 
@@ -115,6 +121,14 @@ Eigen::Matrix3d worldUpRotation(std::string_view upAxis) {
             fmt::format("up axis '{}' is not one of {}", upAxis, fmt::join(axisNames(), ", ")));
     }
     return R;
+}
+
+Eigen::Matrix3d worldUpRotation(const Eigen::Vector3d& up) {
+    Eigen::Index axis = 0;
+    up.cwiseAbs().maxCoeff(&axis);
+    const auto& names = axisNames();
+    const Eigen::Matrix3d R = worldUpRotation(names[axis + (up[axis] < 0. ? 3 : 0)]);
+    return Eigen::Quaterniond::FromTwoVectors(R * up, Eigen::Vector3d::UnitZ()) * R;
 }
 
 }  // namespace photonav

@@ -21,7 +21,8 @@ using Trajectory = std::vector<StampedPose>;  ///< timestamps never decrease
 /// Reads lines `t tx ty tz qx qy qz qw` (camera to world); blank lines and those starting with '#'
 /// are skipped, quaternions are normalised.
 /// @throws InputError naming the line for a wrong number of fields, a value that is not a finite
-///         number, a quaternion whose norm is not within 0.1 of 1, or a decreasing timestamp;
+///         number, a position beyond 1e8 m, a quaternion whose norm is not within 0.1 of 1, or a
+///         decreasing timestamp;
 ///         also for a missing file and one without poses
 Trajectory readTrajectory(const std::string& file);
 
@@ -42,5 +43,10 @@ const std::vector<std::string>& axisNames();
 /// y-down worlds become x forward, y left as seen by a camera of theirs that looks along -z or z.
 /// @throws std::invalid_argument for a name that is not among axisNames()
 Eigen::Matrix3d worldUpRotation(std::string_view upAxis);
+
+/// The same for any direction: the rotation of the nearest axis, then the smallest one that is
+/// left.
+/// @param up unit vector in the recorded world
+Eigen::Matrix3d worldUpRotation(const Eigen::Vector3d& up);
 
 }  // namespace photonav

@@ -53,9 +53,11 @@ struct FloorDataset {
     double floorHeight = 0.02;  ///< [m], not where cells of round sizes meet
     double cameraHeight = 1.5;  ///< above the floor [m]
     int frames = 6;             ///< one every 0.1 s and 0.1 m along x
+    Eigen::AngleAxisd tilt{0., Eigen::Vector3d::UnitX()};  ///< of the world that is written
+    double pitch = std::numbers::pi / 2.;  ///< of the camera below the horizon [rad]
 
     Pose T_w_c(int i) const {
-        Pose pose = cameraMount(std::numbers::pi / 2.);
+        Pose pose = cameraMount(pitch);
         pose.translation() = Eigen::Vector3d(0.1 * i, 0., floorHeight + cameraHeight);
         return pose;
     }
@@ -70,7 +72,7 @@ struct FloorDataset {
             const double time = 100. + 0.1 * i;
             rgb += fmt::format("{:.6f} rgb/{}.png\n", time, i);
             depth += fmt::format("{:.6f} depth/{}.png\n", time + 0.005, i);
-            const Pose pose = T_w_c(i);
+            const Pose pose = tilt * T_w_c(i);
             const Eigen::Quaterniond q(pose.linear());
             poses += fmt::format("{:.6f} {} {} {} {} {} {} {}\n", time, pose.translation().x(),
                                  pose.translation().y(), pose.translation().z(), q.x(), q.y(),
@@ -87,13 +89,15 @@ struct FloorDataset {
 
     void writeImages(const fs::path& folder, int i) const {
         cv::Mat grey(int(height), int(width), CV_8UC1);
-        const cv::Mat depth(int(height), int(width), CV_16UC1, cv::Scalar(5000. * cameraHeight));
+        cv::Mat depth(int(height), int(width), CV_16UC1);
         const Pose pose = T_w_c(i);
         for (int v = 0; v < grey.rows; ++v) {
             for (int u = 0; u < grey.cols; ++u) {
-                const Eigen::Vector3d p_w =
-                    pose * (cameraHeight * Eigen::Vector3d((u - 0.5 * (width - 1)) / focal,
-                                                           (v - 0.5 * (height - 1)) / focal, 1.));
+                const Eigen::Vector3d ray((u - 0.5 * (width - 1)) / focal,
+                                          (v - 0.5 * (height - 1)) / focal, 1.);
+                const double z = cameraHeight / -(pose.linear() * ray).z();
+                const Eigen::Vector3d p_w = pose * (z * ray);
+                depth.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(std::lround(5000. * z));
                 grey.at<std::uint8_t>(v, u) =
                     static_cast<std::uint8_t>(std::lround(255. * floorTexture(p_w.x(), p_w.y())));
             }

@@ -81,7 +81,7 @@ function createCharts(onPick) {
   function drawAll(log) {
     charts.splice(0).forEach((chart) => chart.destroy());
     if (paths.length) {
-      draw('trace-chart', curvesOf('trace', log), 'distance [m]', 'trace [m²]', {log});
+      draw('trace-chart', curvesOf('trace', log), 'distance [m]', 'trace [m² + L² rad²]', {log});
       draw('cost-chart', curvesOf('cost', false), 'distance [m]', 'cost');
     }
     const progress = data.progress.filter((step) => typeof step.cost === 'number')

@@ -158,12 +158,15 @@ function addComparison() {
 }
 
 function fillRest() {
+  element('characteristic-length').textContent = data.result.characteristic_length ?? 1;
   addComparison();
   addTable('All numbers', flattened(data.result));
   for (const table of data.tables) addTable(table.title, table.rows);
   for (const figure of data.figures) {
     const box = make('figure');
-    box.append(make('img', undefined, {src: figure.image, alt: figure.caption}), make('figcaption', figure.caption));
+    const image = make('img', undefined, {src: figure.image, alt: figure.caption});
+    image.addEventListener('load', () => box.classList.toggle('wide', image.naturalWidth > 1400));
+    box.append(image, make('figcaption', figure.caption));
     element('figures').append(box);
   }
   element('config').textContent = data.config;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "executable.hpp"
+#include "tum_dataset.hpp"
 
 namespace photonav {
 namespace {
@@ -102,6 +103,70 @@ TEST_F(CommandLine, NoPathIsExitCodeOneWithResults) {
     EXPECT_EQ(result()["status"], "no path");
     EXPECT_TRUE(result()["path"].empty());
     EXPECT_TRUE(fs::exists(folder_ / "report.html"));
+    EXPECT_FALSE(fs::exists(folder_ / "information.png"));  // nothing to look for
+}
+
+/// A map of a small recording, and a config for planning in it.
+class RecordedMap : public CommandLine {
+  protected:
+    void SetUp() override {
+        CommandLine::SetUp();
+        test::FloorDataset().write(folder_ / "data");
+        ASSERT_EQ(photonav("map " + path("data") + " --out " + path("map")).exitCode, 0);
+        std::ofstream(folder_ / "plan.yaml")
+            << "map: {file: map/map.ot, unknown: free}\nbounds: [[0, -0.2, 1.4], [0.5, 0.2, 1.6]]\n"
+               "start: [0, 0, 1.52]\ngoal: [0.5, 0.1, 1.52]\nrobot: {radius: 0.1}\n"
+               "planner: {vertices: 150, view_pitch: 0.1, ds: 0.1}\n";
+    }
+    std::string path(const char* name) const { return (folder_ / name).string(); }
+    Execution planned(const std::string& arguments) {
+        Execution run =
+            photonav("plan " + path("plan.yaml") + " --out " + path("result") + arguments);
+        result_ = json::parse(std::ifstream(folder_ / "result" / "result.json"));
+        return run;
+    }
+    bool has(const char* name) const { return fs::exists(folder_ / "result" / name); }
+    json result_;
+};
+
+TEST_F(RecordedMap, PlansAreShownBesideTheNearestRecordedFrames) {
+    ASSERT_EQ(planned("").exitCode, 0);
+    const json frames = result_["recorded_frames"];
+    ASSERT_GE(frames.size(), 2U);
+    EXPECT_NEAR(frames.front()["stamp"].get<double>(), 100., 1e-6);
+    EXPECT_NEAR(frames.front()["distance_m"].get<double>(), 0., 1e-6);
+    EXPECT_NEAR(frames.back()["stamp"].get<double>(), 100.5, 1e-6);
+    EXPECT_NEAR(frames.back()["distance_m"].get<double>(), 0.1, 1e-6);
+    for (const json& frame : frames) {
+        EXPECT_NEAR(frame["angle_deg"].get<double>(), 0., 1e-3);
+        EXPECT_LT(frame["mean_abs_difference"].get<double>(), 0.03);
+    }
+    EXPECT_TRUE(has("recorded_frames.png"));
+    fs::remove_all(folder_ / "data");
+    const Execution without = planned("");
+    EXPECT_EQ(without.exitCode, 0);
+    EXPECT_NE(without.output.find("warning: recorded frames not compared"), std::string::npos);
+    EXPECT_FALSE(result_.contains("recorded_frames"));
+    EXPECT_FALSE(has("recorded_frames.png"));
+}
+
+TEST_F(RecordedMap, WithoutGreyValuesItPlansWithoutViews) {
+    const Execution run = planned(" --set map.file=" + path("map/map.bt"));
+    EXPECT_EQ(run.exitCode, 0);
+    EXPECT_NE(run.output.find("map.bt: no cell of the map has a grey value"), std::string::npos);
+    EXPECT_EQ(result_["views"], 0);
+    EXPECT_FALSE(result_["path"].empty());
+    EXPECT_FALSE(has("information.png"));
+    EXPECT_TRUE(json::parse(std::ifstream(folder_ / "result" / "report.json"))["views"].empty());
+}
+
+TEST_F(CommandLine, InfoLooksAlongTheHeadingOfTheConfig) {
+    const std::string command = "info " + config("two_textures") + " --cells 2 --out " +
+                                folder_.string() + " --set start=[0,0,2,1.2] --at 5.5,4,2";
+    ASSERT_EQ(photonav(command + " --set space=xyz").exitCode, 0);
+    EXPECT_EQ(result()["view"]["yaw"], 1.2);
+    ASSERT_EQ(photonav(command + ",0.3").exitCode, 0);
+    EXPECT_EQ(result()["view"]["yaw"], 0.3);
 }
 
 TEST_F(CommandLine, InfoDrawsHeatMapsAndContributions) {
@@ -139,6 +204,9 @@ TEST_F(CommandLine, BadInputIsOneLineAndExitCodeTwo) {
     expectBadInput(plan("--set camera.hfov=0"), "camera.hfov");
     expectBadInput(plan("", "no_such_config"), "no such file");
     expectBadInput(plan("--no-such-flag"), "no-such-flag");
+    expectBadInput(photonav("plan " + config("two_textures") + " --out \"\""), "--out");
+    expectBadInput(photonav("map nowhere --out \"\""), "--out");
+    expectBadInput(photonav("map " + config("room") + " --every 2"), "--every: not together");
     expectBadInput(photonav("plan"), "config");
     expectBadInput(photonav("fly-away"), "subcommand");
     expectBadInput(photonav("report " + folder_.string()), "report.json");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map_command.hpp"
+#include "map_config.hpp"
 
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
@@ -26,7 +26,7 @@ class MapCommand : public testing::Test {
     /// Expects an InputError, and (but for a folder that cannot be written) nothing in the results.
     void expectRejected(const std::vector<std::string>& parts) const {
         expectInputError([&] { runMap(options, running); }, parts);
-        EXPECT_FALSE(test::fs::exists(options.out / "result.json"));
+        EXPECT_FALSE(test::fs::exists(options.out));
     }
 
     test::TemporaryFolder folder;
@@ -87,6 +87,41 @@ TEST_F(MapCommand, TurnsTheRecordedWorldUpright) {
     EXPECT_EQ(report.result["dataset"]["up"], "-y");
 }
 
+TEST_F(MapCommand, LevelsATiltedWorldByItsFloor) {
+    dataset.pitch = 0.8;
+    dataset.tilt = Eigen::AngleAxisd(0.35, Eigen::Vector3d(1., 2., 0.).normalized());
+    dataset.write(data);
+    options.up = "floor";
+    const MapReport report = runMap(options, running);
+    const auto& bounds = report.result["voxels"]["bounds"];
+    EXPECT_LE(bounds[1][2].get<double>() - bounds[0][2].get<double>(), 0.1 + 1e-9);
+    EXPECT_NEAR(report.result["dataset"]["tilt_degrees"].get<double>(), 20.05, 0.1);
+    EXPECT_LT(report.result["comparison"]["mean"]["mean_abs_intensity"].get<double>(), 0.03);
+    const Eigen::Vector3d up = dataset.tilt * Eigen::Vector3d::UnitZ();
+    options.up = fmt::format("{},{},{}", up.x(), up.y(), up.z());
+    EXPECT_NEAR(runMap(options, running).result["dataset"]["tilt_degrees"].get<double>(), 20.05,
+                0.01);
+}
+
+TEST_F(MapCommand, ItsConfigMakesTheSameMapAgain) {
+    options.up = "-y";
+    options.every = 2;
+    options.resolution = 0.1;
+    const MapReport first = runMap(options, running);
+    const auto config = (options.out / "config.yaml").string();
+    EXPECT_TRUE(isMapConfig(config));
+    MapOptions again;
+    again.compareEvery = 2;
+    again.out = folder.path() / "again";
+    readMapConfig(config, again);
+    const MapReport second = runMap(again, running);
+    for (const char* key : {"dataset", "frames", "voxels", "comparison", "resolution"}) {
+        EXPECT_EQ(first.result[key], second.result[key]) << key;
+    }
+    writeText(config, "dataset: here\nupp: z\n");
+    expectInputError([&] { readMapConfig(config, again); }, {"config.yaml", "upp", "'up'"});
+}
+
 TEST_F(MapCommand, UsesEveryNthFrameAndListsTheSkipped) {
     options.every = 3;
     std::ofstream(data / "rgb.txt", std::ios::app) << "900 rgb/0.png\n";
@@ -126,6 +161,8 @@ TEST_F(MapCommand, RejectsOptionsOutOfRange) {
     rejected([&] { options.resolution = std::nan(""); }, {"--resolution"});
     rejected([&] { options.every = 0; }, {"--every", "at least 1"});
     rejected([&] { options.up = "w"; }, {"--up", "'w'", "-y"});
+    rejected([&] { options.up = "0,0,0"; }, {"--up", "'0,0,0'"});
+    rejected([&] { options.up = "0,1"; }, {"--up", "'0,1'"});
     rejected([&] { options.fusion.maxRange = -1.; }, {"--max-range"});
     rejected([&] { options.fusion.maxRange = 0.1; }, {"--max-range", "least range"});
     rejected([&] { options.depthScale = 0.; }, {"--depth-scale"});
@@ -154,6 +191,12 @@ TEST_F(MapCommand, RejectsDamagedDatasets) {
     test::fs::remove(data / "camera.yaml");
     writeText(data / "groundtruth.txt", "100 0 0 nan 0 0 0 1\n");
     expectRejected({"groundtruth.txt", "line 1", "not a finite number"});
+}
+
+/// It is not the cells that are too small.
+TEST_F(MapCommand, NamesThePoseThatIsTooFarAway) {
+    writeText(data / "groundtruth.txt", "100 0 5e6 1.5 1 0 0 0\n");
+    expectRejected({"groundtruth.txt", "100.000000 s", "5e+06 m from the origin", "1638.4 m"});
 }
 
 }  // namespace

@@ -73,6 +73,7 @@ TEST(Trajectory, RejectsDamagedFilesByLine) {
     const std::string good = "# comment\n\n1 0 0 0 0 0 0 1\n";
     expectRejected(good + "2 0 nan 0 0 0 0 1\n", "line 4", "not a finite number");
     expectRejected(good + "2 0 inf 0 0 0 0 1\n", "line 4", "not a finite number");
+    expectRejected(good + "2 0 1e30 0 0 0 0 1\n", "line 4", "1e+30 m from the origin");
     expectRejected(good + "2 0 x 0 0 0 0 1\n", "line 4", "'x' is not a number");
     expectRejected(good + "2 0 1,5 0 0 0 0 1\n", "line 4", "'1,5' is not a number");
     expectRejected(good + "2 0 0 0 0 0 0 0\n", "line 4", "zero norm");
@@ -97,6 +98,21 @@ TEST(Trajectory, EveryAxisCanBeTurnedUp) {
     EXPECT_TRUE((worldUpRotation("-y") * Vector3d::UnitZ()).isApprox(Vector3d::UnitX()));
     EXPECT_TRUE((worldUpRotation("y") * -Vector3d::UnitZ()).isApprox(Vector3d::UnitX()));
     EXPECT_THROW(worldUpRotation("up"), std::invalid_argument);
+}
+
+TEST(Trajectory, AnyDirectionCanBeTurnedUp) {
+    for (const std::string& name : axisNames()) {
+        const Eigen::Matrix3d R = worldUpRotation(name);
+        EXPECT_TRUE(worldUpRotation(Vector3d(R.transpose() * Vector3d::UnitZ())).isApprox(R))
+            << name;
+    }
+    const Vector3d up = Vector3d(0.1, -0.9, -0.35).normalized();
+    const Eigen::Matrix3d R = worldUpRotation(up);
+    EXPECT_TRUE(R.isUnitary());
+    EXPECT_TRUE((R * up).isApprox(Vector3d::UnitZ()));
+    // no more turned against the axis' own rotation than need be
+    const Eigen::AngleAxisd rest(R * worldUpRotation("-y").transpose());
+    EXPECT_NEAR(rest.angle(), std::acos(-up.y()), 1e-12);
 }
 
 }  // namespace

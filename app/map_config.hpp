@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The config.yaml that `photonav map` leaves beside its map.
+#pragma once
+
+#include <string>
+
+#include "map_command.hpp"
+
+namespace photonav {
+
+/// Everything a map depends on, as YAML that readMapConfig() reads back: up as it was found, paths
+/// absolute.
+std::string toYaml(const MapOptions& options, const Recording& recording);
+
+/// Whether this is such a file (and not the config of a plan): it has a key `dataset`.
+/// @throws InputError if it is no YAML
+bool isMapConfig(const std::string& file);
+
+/// Overwrites what the file says; paths in it are relative to the file.
+/// @throws InputError naming file, key and reason
+void readMapConfig(const std::string& file, MapOptions& options);
+
+}  // namespace photonav

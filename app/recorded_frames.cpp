@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recorded_frames.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <numbers>
+
+#include "map_config.hpp"
+#include "sequence_tum.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kWaypoints = 6;
+constexpr double kDegree = std::numbers::pi / 180.;
+
+std::optional<Sequence> recordingOf(const std::string& mapFile) {
+    if (mapFile.empty()) return {};
+    const fs::path file = fs::path(mapFile).parent_path() / "config.yaml";
+    if (!fs::exists(file) || !isMapConfig(file.string())) return {};
+    MapOptions options;
+    readMapConfig(file.string(), options);
+    return readRecording(options).sequence;
+}
+
+/// Waypoints of the path, first and last included.
+std::vector<std::size_t> chosenPoints(const JudgedPath& path) {
+    std::vector<std::size_t> waypoints;
+    for (std::size_t i = 0; i < path.points.size(); ++i) {
+        if (path.points[i].isWaypoint) waypoints.push_back(i);
+    }
+    if (waypoints.size() <= kWaypoints) return waypoints;
+    std::vector<std::size_t> chosen;
+    for (std::size_t k = 0; k < kWaypoints; ++k) {
+        chosen.push_back(waypoints[k * (waypoints.size() - 1) / (kWaypoints - 1)]);
+    }
+    return chosen;
+}
+
+/// Mean depth of a view [m]; 1 where nothing is in view.
+double typicalDepth(const View& view) {
+    double sum = 0.;
+    unsigned count = 0;
+    for (unsigned i = 0; i < view.depth.getSize(); ++i) {
+        if (!(view.depth.bitmap[i] > 0.F)) continue;
+        sum += view.depth.bitmap[i];
+        ++count;
+    }
+    return count > 0 ? sum / count : 1.;
+}
+
+std::size_t nearestFrame(const Sequence& sequence, const Pose& T_c_w, double depth,
+                         NearestFrame& nearest) {
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t index = 0;
+    for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
+        const Pose motion = T_c_w * sequence.frames[i].T_c_w.inverse();
+        const double distance = motion.translation().norm();
+        const double angle = Eigen::AngleAxisd(motion.linear()).angle();
+        if (distance / depth + angle >= least) continue;
+        least = distance / depth + angle;
+        index = i;
+        nearest.distance = distance;
+        nearest.angle = angle;
+    }
+    nearest.timestamp = sequence.frames[index].timestamp;
+    return index;
+}
+
+}  // namespace
+
+std::optional<RecordedComparison> compareWithRecording(const Config& config, const World& world,
+                                                       const JudgedPath& path) {
+    const auto sequence = recordingOf(config.mapFile);
+    if (!sequence) return {};
+    RecordedComparison comparison;
+    std::vector<std::vector<Panel>> rows;
+    View there;
+    View predicted;
+    for (const std::size_t point : chosenPoints(path)) {
+        const BeliefPoint& waypoint = path.points[point];
+        const Pose T_c_w = (waypoint.T_w_b * config.camera.T_b_c()).inverse();
+        world.views().render(sequence->camera, T_c_w, there);
+        NearestFrame nearest;
+        nearest.point = point;
+        const std::size_t index = nearestFrame(*sequence, T_c_w, typicalDepth(there), nearest);
+        const RecordedFrame frame = loadFrame(*sequence, index);
+        world.views().render(sequence->camera, frame.T_c_w, predicted);
+        nearest.difference = compareViews(frame.view, predicted);
+        comparison.frames.push_back(nearest);
+        rows.push_back({predictedPanel(
+            there, fmt::format("predicted on the path at {:.2f} m", waypoint.length))});
+        const auto panels =
+            comparisonPanels(frame.view, predicted,
+                             fmt::format("recorded {:.0f} cm and {:.0f} degrees away",
+                                         100. * nearest.distance, nearest.angle / kDegree));
+        rows.back().insert(rows.back().end(), panels.begin(), panels.end());
+    }
+    comparison.picture = panelsPng(rows, 400.);
+    return comparison;
+}
+
+nlohmann::json toJson(const RecordedComparison& comparison) {
+    nlohmann::json frames = nlohmann::json::array();
+    for (const NearestFrame& frame : comparison.frames) {
+        frames.push_back({{"waypoint", frame.point},
+                          {"stamp", frame.timestamp},
+                          {"distance_m", frame.distance},
+                          {"angle_deg", frame.angle / kDegree},
+                          {"predicted", frame.difference.predicted},
+                          {"mean_abs_difference", frame.difference.meanIntensity}});
+    }
+    return frames;
+}
+
+double meanDifference(const RecordedComparison& comparison) {
+    double sum = 0.;
+    for (const NearestFrame& frame : comparison.frames) sum += frame.difference.meanIntensity;
+    return sum / static_cast<double>(std::max<std::size_t>(1, comparison.frames.size()));
+}
+
+}  // namespace photonav

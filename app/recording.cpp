@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "error.hpp"
+#include "floor_plane.hpp"
+#include "sequence_tum.hpp"
+#include "trajectory.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr std::size_t kFloorFrames = 30;
+constexpr unsigned kFloorColumns = 32;
+
+/// An axis name or "x,y,z"; nothing for anything else.
+std::optional<Eigen::Vector3d> parseUp(const std::string& text) {
+    const auto& axes = axisNames();
+    if (std::find(axes.begin(), axes.end(), text) != axes.end()) {
+        return worldUpRotation(text).transpose() * Eigen::Vector3d::UnitZ();
+    }
+    std::istringstream stream(text);
+    Eigen::Vector3d up;
+    char comma = ',';
+    stream >> up.x() >> comma;
+    if (comma == ',') stream >> up.y() >> comma;
+    if (comma == ',') stream >> up.z();
+    if (!stream || !(stream >> std::ws).eof() || !(up.norm() > 1e-9)) return {};
+    return up.normalized();
+}
+
+/// What the depth images show below the camera, from frames spread over the recording.
+struct Seen {
+    std::vector<Eigen::Vector3d> points;  ///< in the recorded world
+    std::vector<double> depths;           ///< of the same
+};
+
+Seen pointsBelow(const Sequence& sequence, const Eigen::Vector3d& roughUp) {
+    const Camera& camera = sequence.camera;
+    const unsigned stride = std::max(1U, camera.width / kFloorColumns);
+    const std::size_t step = 1 + (sequence.frames.size() - 1) / kFloorFrames;
+    Seen seen;
+    for (std::size_t i = 0; i < sequence.frames.size(); i += step) {
+        const RecordedFrame frame = loadFrame(sequence, i);
+        const Pose T_w_c = frame.T_c_w.inverse();
+        for (unsigned v = stride / 2; v < camera.height; v += stride) {
+            for (unsigned u = stride / 2; u < camera.width; u += stride) {
+                const double z = frame.view.depth[v][u];
+                if (!(z > 0.)) continue;
+                const Eigen::Vector3d p = z * Eigen::Vector3d((u - camera.cx()) / camera.fx(),
+                                                              (v - camera.cy()) / camera.fy(), 1.);
+                if ((T_w_c.linear() * p).dot(roughUp) > 0.) continue;
+                seen.points.push_back(T_w_c * p);
+                seen.depths.push_back(z);
+            }
+        }
+    }
+    return seen;
+}
+
+Eigen::Vector3d upByFloor(const Sequence& sequence) {
+    Eigen::Vector3d roughUp = Eigen::Vector3d::Zero();  // the upper edge of the images
+    for (const auto& frame : sequence.frames) {
+        roughUp -= frame.T_c_w.linear().row(1).transpose();
+    }
+    Seen seen = pointsBelow(sequence, roughUp.normalized());
+    std::optional<Eigen::Vector3d> up;
+    if (!seen.points.empty() && roughUp.norm() > 1e-9) {
+        const auto middle = seen.depths.begin() + std::ssize(seen.depths) / 2;
+        std::nth_element(seen.depths.begin(), middle, seen.depths.end());
+        FloorOptions options;
+        options.tolerance = 0.01 * *middle;
+        up = floorNormal(seen.points, roughUp.normalized(), options);
+    }
+    if (!up) throw InputError("--up", "floor", "no floor to be seen below the cameras");
+    return *up;
+}
+
+}  // namespace
+
+Recording readRecording(const RecordingOptions& options) {
+    const auto given = parseUp(options.up);
+    if (!given && options.up != "floor") {
+        throw InputError("--up", "",
+                         fmt::format("'{}' is not one of {}, nor x,y,z, nor floor", options.up,
+                                     fmt::join(axisNames(), ", ")));
+    }
+    TumOptions tum;
+    tum.tolerance = options.tolerance;
+    tum.depthScale = options.depthScale;
+    tum.cameraFile = options.cameraFile;
+    Recording recording;
+    recording.sequence = readTumSequence(options.dataset, tum);
+    auto& frames = recording.sequence.frames;
+    recording.recorded = frames.size() + recording.sequence.skipped.size();
+    recording.up = given ? *given : upByFloor(recording.sequence);
+    Pose T_recorded_w = Pose::Identity();
+    T_recorded_w.linear() = worldUpRotation(recording.up).transpose();
+    std::vector<Sequence::Entry> used;
+    for (std::size_t i = 0; i < frames.size(); i += std::size_t(options.every)) {
+        used.push_back(frames[i]);
+        used.back().T_c_w = used.back().T_c_w * T_recorded_w;
+    }
+    frames = std::move(used);
+    return recording;
+}
+
+std::string upText(const Eigen::Vector3d& up) {
+    for (const std::string& name : axisNames()) {
+        if (up == *parseUp(name)) return name;
+    }
+    return fmt::format("{:.17g},{:.17g},{:.17g}", up.x(), up.y(), up.z());
+}
+
+double tiltDegrees(const Eigen::Vector3d& up) {
+    return std::acos(std::min(1., up.cwiseAbs().maxCoeff())) * 180. / std::numbers::pi;
+}
+
+}  // namespace photonav

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A recorded sequence in the world of the map that was made of it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "sequence.hpp"
+
+namespace photonav {
+
+/// What is mapped, and what a plan in that map is compared with.
+struct RecordingOptions {
+    std::string dataset;      ///< folder in the TUM RGB-D layout
+    std::string up = "z";     ///< what points up in the recorded world: an axis (x ... -z), a
+                              ///< direction "x,y,z", or "floor": found in the depth images
+    int every = 1;            ///< use every n-th frame
+    double tolerance = 0.02;  ///< of timestamps, see TumOptions [s]
+    std::string cameraFile;   ///< instead of the dataset's camera.yaml
+    std::optional<double> depthScale;  ///< depth image value of one metre, instead of the dataset's
+};
+
+struct Recording {
+    Sequence sequence;         ///< the frames to use, in the world of the map (z up)
+    std::size_t recorded = 0;  ///< frames of the dataset
+    Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< in the recorded world
+};
+
+/// Reads the tables of a dataset (and, for "floor", some images) and turns its world upright. The
+/// floor is sought within 50 degrees of the upper edge of the images: a camera that looks straight
+/// down needs an axis or a direction.
+/// @throws InputError for a dataset that cannot be used and for `up` ("--up")
+Recording readRecording(const RecordingOptions& options);
+
+/// The other direction: "-y" for an axis, otherwise "x,y,z" to 17 digits.
+std::string upText(const Eigen::Vector3d& up);
+
+/// Degrees between a direction and the nearest axis.
+double tiltDegrees(const Eigen::Vector3d& up);
+
+}  // namespace photonav
