@@ -58,7 +58,7 @@ ObstacleCells makeCells(const Eigen::AlignedBox3d& bounds, double resolution, do
     }
     ObstacleCells cells;
     cells.resolution = resolution;
-    cells.reach = static_cast<int>(std::ceil(maxDistance / resolution + 0.5));
+    cells.reach = static_cast<int>(std::ceil(maxDistance / resolution + 0.87));  // half a diagonal
     cells.offset = offset;
     const auto cellBelow = [&](const Eigen::Vector3d& p) -> Eigen::Array3i {
         return (p.array() / resolution - offset).floor().cast<int>();
@@ -115,6 +115,27 @@ void lowerEnvelope(const std::uint16_t* in, std::ptrdiff_t stride, int reach, st
 
 int roundedUp(int n) { return (n + kBlock - 1) / kBlock * kBlock; }
 
+/// A lower bound of the distance from a cell's centre to all obstacle cells, by the squared
+/// distance to the nearest obstacle's centre, all in cells. That square does not say where the cell
+/// lies: the least is taken over the cells at this or any larger distance between centres.
+std::vector<float> leastDistances(int reach) {
+    const int most = reach + 2;  // beyond, every cell is farther than what is asked for
+    std::vector<float> least(std::size_t(most) * most + 1, static_cast<float>(reach + 1));
+    const auto gap = [](int k) { return std::max(k - 0.5, 0.); };
+    for (int x = 1; x <= most; ++x) {
+        for (int y = 0; y <= x && x * x + y * y <= most * most; ++y) {
+            for (int z = 0; z <= y && x * x + y * y + z * z <= most * most; ++z) {
+                float& known = least[x * x + y * y + z * z];
+                known = std::min(known, static_cast<float>(std::hypot(gap(x), gap(y), gap(z))));
+            }
+        }
+    }
+    for (std::size_t i = least.size() - 1; i > 1; --i)
+        least[i - 1] = std::min(least[i - 1], least[i]);
+    least[0] = -0.5F;
+    return least;
+}
+
 /// Squared distances of one x-z plane: reads column distances, writes clearances.
 class PlaneTransform {
   public:
@@ -125,10 +146,9 @@ class PlaneTransform {
           squares_(std::size_t(pitch_) * cells.outer().z(), cap()),
           row_(pitch_, cap()),
           clearance_(cap() + 1) {
+        const std::vector<float> least = leastDistances(reach_);
         for (std::size_t i = 0; i < clearance_.size(); ++i) {
-            const double centres = std::sqrt(double(i)) * cells.resolution;
-            clearance_[i] =
-                static_cast<float>(std::min(centres - 0.5 * cells.resolution, maxDistance));
+            clearance_[i] = static_cast<float>(std::min(least[i] * cells.resolution, maxDistance));
         }
     }
 

@@ -107,7 +107,7 @@ TEST(DistanceMap, TriangleWithoutAreaIsStillAnObstacle) {
     EXPECT_EQ(map.clearance(Vector3d(-0.9, 1.9, 0.)), 0.5);
 }
 
-TEST(DistanceMap, FloorIsExactToHalfACell) {
+TEST(DistanceMap, FloorIsNeverTooFarAndHardlyTooNear) {
     Scene scene;
     scene.triangles = {triangle({-5., -5., 0.}, {5., -5., 0.}, {5., 5., 0.}),
                        triangle({-5., -5., 0.}, {5., 5., 0.}, {-5., 5., 0.})};
@@ -115,8 +115,9 @@ TEST(DistanceMap, FloorIsExactToHalfACell) {
     const DistanceMap map(scene, 0.05, bounds, {.maxDistance = 1.});
     for (double z = 0.; z < 3.; z += 0.013) {
         const double expected = std::min(z - 0.025, 1.);
-        EXPECT_NEAR(map.clearance(Vector3d(0.31, -2.77, z)), expected,
-                    1e-5 + (z > 0.97 && z < 1.1 ? 0.02 : 0.));
+        const double clearance = map.clearance(Vector3d(0.31, -2.77, z));
+        EXPECT_LE(clearance, expected + 1e-5);
+        EXPECT_GE(clearance, expected - 0.37 * 0.05 - (z > 0.97 && z < 1.1 ? 0.02 : 0.));
     }
     EXPECT_LT(map.clearance(Vector3d(0.3, 0.3, 0.)), 0.);
 }
@@ -126,8 +127,8 @@ TEST(DistanceMap, ObstaclesOutsideTheBoundsCount) {
     wall.triangles = {triangle({1.5, -9., -9.}, {1.5, 9., -9.}, {1.5, 0., 9.})};
     const AlignedBox3d bounds(Vector3d::Zero(), Vector3d::Ones());
     const DistanceMap map(wall, 0.1, bounds, {.maxDistance = 1.});
-    EXPECT_NEAR(map.clearance(Vector3d(1., 0.5, 0.5)), 0.45, 1e-5);
-    EXPECT_NEAR(map.clearance(Vector3d(1.4, 0.5, 0.5)), 0.35, 1e-5);  // the last cell's value
+    EXPECT_NEAR(map.clearance(Vector3d(1., 0.5, 0.5)), 0.43, 0.02);
+    EXPECT_NEAR(map.clearance(Vector3d(1.4, 0.5, 0.5)), 0.33, 0.02);  // the last cell's value
     EXPECT_EQ(map.clearance(Vector3d(-100., 0.5, 0.5)), 1.);
     const DistanceMap far(wall, 0.1, bounds, {.maxDistance = 0.3});
     EXPECT_FLOAT_EQ(far.clearance(Vector3d(1., 0.5, 0.5)), 0.3);
@@ -165,6 +166,7 @@ TEST(DistanceMap, MatchesDynamicEdtAtCellCentres) {
         DynamicEDTOctomap reference(2.F, &room.plain, octomap::point3d(-3, -3, -3),
                                     octomap::point3d(3, 3, 3), unknown == UnknownPolicy::occupied);
         reference.update();
+        const double kCorner = 0.366 * RandomRoom::kResolution;
         int below = 0;
         for (double x = -1.45; x < 1.5; x += 0.1) {
             for (double y = -1.45; y < 1.5; y += 0.1) {
@@ -173,14 +175,50 @@ TEST(DistanceMap, MatchesDynamicEdtAtCellCentres) {
                                              static_cast<float>(z));
                     const double expected =
                         std::min<double>(reference.getDistance(p) - half, map.maxDistance());
-                    ASSERT_NEAR(map.clearance(Vector3d(x, y, z)), expected, 1e-5)
-                        << x << ' ' << y << ' ' << z;
+                    // a face or a corner may point here
+                    const double clearance = map.clearance(Vector3d(x, y, z));
+                    ASSERT_LE(clearance, expected + 1e-5) << x << ' ' << y << ' ' << z;
+                    ASSERT_GE(clearance, expected - kCorner - 1e-5) << x << ' ' << y << ' ' << z;
                     below += expected < map.maxDistance() ? 1 : 0;
                 }
             }
         }
         EXPECT_GT(below, 1000);
     }
+}
+
+/// Against the cubes themselves: at centres never too large, elsewhere hardly.
+TEST(DistanceMap, NeverPromisesMoreRoomThanThereIs) {
+    std::mt19937 random(8);
+    std::uniform_int_distribution<int> cell(-12, 12);
+    const AlignedBox3d bounds(Vector3d::Constant(-1.3), Vector3d::Constant(1.3));
+    double mostAtCentres = -1.;
+    double most = -1.;
+    for (int round = 0; round < 20; ++round) {
+        TexturedOcTree map(0.1);
+        std::vector<AlignedBox3d> cubes;
+        for (int i = 0; i < 1 + 2 * round; ++i) {
+            const Eigen::Array3d corner(cell(random), cell(random), cell(random));
+            cubes.emplace_back(Vector3d(0.1 * corner), Vector3d(0.1 * (corner + 1.)));
+            const Vector3d centre = cubes.back().center();
+            map.updateNode(centre.x(), centre.y(), centre.z(), true);
+        }
+        const DistanceMap distance(map, bounds,
+                                   {.maxDistance = 1., .unknown = UnknownPolicy::free});
+        for (int i = 0; i < 2000; ++i) {
+            Vector3d p = randomInside(bounds, random);
+            const bool atCentre = i % 2 == 0;
+            if (atCentre) p = 0.1 * ((p.array() * 10.).floor() + 0.5).matrix();
+            double truth = 1.;
+            for (const auto& cube : cubes) truth = std::min(truth, cube.exteriorDistance(p));
+            const double excess = (distance.clearance(p) - truth) / 0.1;
+            EXPECT_GE(excess, -0.67) << p.transpose();
+            (atCentre ? mostAtCentres : most) = std::max(atCentre ? mostAtCentres : most, excess);
+        }
+    }
+    EXPECT_LT(mostAtCentres, 1e-4);
+    EXPECT_GT(mostAtCentres, -1e-4);
+    EXPECT_LT(most, 0.2);
 }
 
 TEST(DistanceMap, MergedCellsCountInFull) {
@@ -192,8 +230,8 @@ TEST(DistanceMap, MergedCellsCountInFull) {
     ASSERT_LT(map.getNumLeafNodes(), 512U);
     const AlignedBox3d bounds(Vector3d(-1., 0., 0.), Vector3d(2., 0.8, 0.8));
     const DistanceMap distance(map, bounds, {.unknown = UnknownPolicy::free});
-    EXPECT_NEAR(distance.clearance(Vector3d(-0.45, 0.45, 0.75)), 0.45, 1e-5);
-    EXPECT_NEAR(distance.clearance(Vector3d(1.25, 0.45, 0.05)), 0.45, 1e-5);
+    EXPECT_NEAR(distance.clearance(Vector3d(-0.45, 0.45, 0.75)), 0.43, 0.02);
+    EXPECT_NEAR(distance.clearance(Vector3d(1.25, 0.45, 0.05)), 0.43, 0.02);
     EXPECT_LT(distance.clearance(Vector3d(0.4, 0.4, 0.4)), 0.);
 }
 
