@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "map_fusion.hpp"
 #include "mesh_renderer.hpp"
 #include "photometric.hpp"
+#include "picture.hpp"
 #include "voxel_renderer.hpp"
 
 using namespace photonav;
@@ -70,15 +70,6 @@ void compare(const char* name, const View& voxels, const View& mesh, const Camer
                 difference(voxels, mesh), 100. * information);
 }
 //! [compare]
-
-cv::Mat picture(const ImageF& image, double scale = 1.) {
-    const cv::Mat grey(image.getHeight(), image.getWidth(), CV_32F, image.bitmap);
-    cv::Mat bytes, large;
-    grey.convertTo(bytes, CV_8U, 255. * scale);
-    cv::resize(bytes, large, {}, 2., 2., cv::INTER_NEAREST);
-    cv::copyMakeBorder(large, large, 4, 4, 4, 4, cv::BORDER_CONSTANT, {255});
-    return large;
-}
 
 }  // namespace
 

@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "luminance_feature.hpp"
 #include "mesh_renderer.hpp"
 #include "photometric.hpp"
+#include "picture.hpp"
 #include "uncertain_pose.hpp"
 #include "visp_bridge.hpp"
 
@@ -88,15 +88,7 @@ void report(const char* name, const View& view, const Camera& camera) {
 
 /// The view, and which of its pixels tell motion along image x, image y and the optical axis.
 cv::Mat pictures(const View& view, const Camera& camera) {
-    const auto picture = [](const ImageF& image, double scale) {
-        const cv::Mat grey(image.getHeight(), image.getWidth(), CV_32F, image.bitmap);
-        cv::Mat bytes, large;
-        grey.convertTo(bytes, CV_8U, 255. * scale);
-        cv::resize(bytes, large, {}, 2., 2., cv::INTER_NEAREST);
-        cv::copyMakeBorder(large, large, 4, 4, 4, 4, cv::BORDER_CONSTANT, {255});
-        return large;
-    };
-    std::vector<cv::Mat> row = {picture(view.intensity, 1.)};
+    std::vector<cv::Mat> row = {picture(view.intensity)};
     //! [contribution]
     for (int axis = 0; axis < 3; ++axis) {
         const ImageF contribution = contributionImage(view, camera, Vector6::Unit(axis));

@@ -58,6 +58,14 @@ inline View floorView(const Camera& camera, const Pose& T_c_w, const FloorTextur
     return view;
 }
 
+/// The point that pixel (u, v) shows, in w.
+inline Eigen::Vector3d pointOf(const View& view, const Camera& camera, const Pose& T_c_w,
+                               unsigned u, unsigned v) {
+    return T_c_w.inverse() *
+           (view.depth[v][u] *
+            Eigen::Vector3d((u - camera.cx()) / camera.fx(), (v - camera.cy()) / camera.fy(), 1.));
+}
+
 inline void addNoise(ImageF& image, double sigma, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<float> noise(0.F, static_cast<float>(sigma));

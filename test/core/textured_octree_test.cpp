@@ -27,6 +27,19 @@ const TexturedOcTreeNode* at(const TexturedOcTree& map, double x, double y, doub
     return map.search(x, y, z);
 }
 
+struct Look {
+    Camera camera;
+    Pose T_c_w;
+    View view;
+};
+
+/// Straight down on the carpet, which lies in the cells from z = 0 to 0.05.
+Look overCarpet(double x, double height) {
+    const Camera camera = makeCamera(160, 120, 1.2);
+    const Pose T_c_w = lookDown(x, 0.01, height, kDown);
+    return {camera, T_c_w, floorView(camera, T_c_w, testing::carpet, 0.02)};
+}
+
 /// A few views of a carpet from above.
 TexturedOcTree carpetMap(double resolution = 0.05) {
     TexturedOcTree map(resolution);
@@ -234,10 +247,9 @@ TEST(TexturedOcTree, BrickUpdateEqualsSingleUpdates) {
 }
 
 TEST(Fuse, TellsFreeOccupiedAndUnknownApart) {
-    const Camera camera = makeCamera(160, 120, 1.2);
-    const Pose T_c_w = lookDown(0.01, 0.01, 1.52, kDown);
+    const auto [camera, T_c_w, view] = overCarpet(0.01, 1.52);
     TexturedOcTree map(0.05);
-    fuse(map, floorView(camera, T_c_w, testing::carpet, 0.02), camera, T_c_w);
+    fuse(map, view, camera, T_c_w);
     for (double z = 0.075; z < 1.5; z += 0.05) {
         const auto* free = at(map, 0.01, 0.01, z);
         ASSERT_NE(free, nullptr) << z;
@@ -252,9 +264,7 @@ TEST(Fuse, TellsFreeOccupiedAndUnknownApart) {
 }
 
 TEST(Fuse, CarvesUpToTheRangeAndLearnsNothingFromMissingDepth) {
-    const Camera camera = makeCamera(160, 120, 1.2);
-    const Pose T_c_w = lookDown(0.01, 0.01, 3.02, kDown);
-    View view = floorView(camera, T_c_w, testing::carpet, 0.02);
+    auto [camera, T_c_w, view] = overCarpet(0.01, 3.02);
     TexturedOcTree map(0.05);
     fuse(map, view, camera, T_c_w, {.maxRange = 2.});
     EXPECT_FALSE(map.isNodeOccupied(at(map, 0.01, 0.01, 1.1)));
@@ -285,15 +295,11 @@ TEST(Fuse, FacesTowardTheCameraTakeTheMeanGrey) {
     for (unsigned f = 0; f < 5; ++f) EXPECT_FALSE(cell->faces[f].observed()) << f;
 
     // A cell on its own shows its side as well, with the smaller weight of a slanted look.
-    View view = floorView(camera, lookDown(0.31, 0.01, 1.52, kDown), testing::carpet, 0.02);
+    auto [sameCamera, T_c_w, view] = overCarpet(0.31, 1.52);
     TexturedOcTree lone(0.05);
-    const Pose T_c_w = lookDown(0.31, 0.01, 1.52, kDown);
     for (unsigned v = 0; v < camera.height; ++v) {
         for (unsigned u = 0; u < camera.width; ++u) {
-            const Eigen::Vector3d p =
-                T_c_w.inverse() *
-                (view.depth[v][u] * Eigen::Vector3d((u - camera.cx()) / camera.fx(),
-                                                    (v - camera.cy()) / camera.fy(), 1.));
+            const Eigen::Vector3d p = testing::pointOf(view, camera, T_c_w, u, v);
             if (p.x() < 0. || p.x() >= 0.05 || p.y() < 0. || p.y() >= 0.05) view.depth[v][u] = 0.F;
         }
     }
@@ -324,16 +330,15 @@ TEST(Fuse, ConstantFloorsStayConstantToTheBit) {
 }
 
 TEST(Fuse, DropsPixelsAtDepthEdges) {
-    const Camera camera = makeCamera(160, 120, 1.2);
-    const Pose T_c_w = lookDown(0.01, 0.01, 1.52, kDown);
-    View view = floorView(camera, T_c_w, testing::carpet, 0.02);
-    for (unsigned v = 0; v < camera.height; ++v) {
+    const Look look = overCarpet(0.01, 1.52);
+    View view = look.view;
+    for (unsigned v = 0; v < look.camera.height; ++v) {
         for (unsigned u = 0; u < 80; ++u) view.depth[v][u] = 1.F;
         view.depth[v][80] = 1.17F;  // smeared between the box at 1 m and the floor
     }
     const auto smeared = [&](double depthJump) {
         TexturedOcTree map(0.05);
-        fuse(map, view, camera, T_c_w, {.depthJump = depthJump});
+        fuse(map, view, look.camera, look.T_c_w, {.depthJump = depthJump});
         int count = 0;
         for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
             const bool between = leaf.getZ() > 0.1 && leaf.getZ() < 0.45;

@@ -185,10 +185,7 @@ TEST(VoxelRenderer, InterpolatesBetweenFaceCentres) {
         View expected = view;
         for (unsigned v = 0; v < camera.height; ++v) {
             for (unsigned u = 0; u < camera.width; ++u) {
-                const Eigen::Vector3d p =
-                    T_c_w.inverse() *
-                    (view.depth[v][u] * Eigen::Vector3d((u - camera.cx()) / camera.fx(),
-                                                        (v - camera.cy()) / camera.fy(), 1.));
+                const Eigen::Vector3d p = testing::pointOf(view, camera, T_c_w, u, v);
                 const double x = p.x() / kCell - 0.5, y = p.y() / kCell - 0.5;
                 const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
                 EXPECT_NEAR(p.z(), kCell, 1e-5);
