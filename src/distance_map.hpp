@@ -37,9 +37,9 @@ class DistanceMap {
     /// Distance from p_w to the nearest obstacle cell [m], capped at maxDistance; inside an
     /// obstacle negative, down to minus half a cell. At the centres of cells it is never too large
     /// and at most 0.37 cell too small (it is known how far the nearest obstacle's centre is, not
-    /// whether its face, edge or corner points here). Between them it is interpolated, which across
-    /// edges and corners of obstacles may be up to 0.2 cell too large. Outside the bounds: the
-    /// value at the nearest cell. Thread-safe.
+    /// whether its face, edge or corner points here). Between them it is interpolated, which next
+    /// to edges and corners may be too large, by at most half a cell (at the corner of a lone
+    /// cell). Outside the bounds: the value at the nearest cell. Thread-safe.
     double clearance(const Eigen::Vector3d& p_w) const {
         if (grid_.empty()) return maxDistance_;
         const Eigen::Vector3d q = ((p_w - firstCentre_) * inverseResolution_)

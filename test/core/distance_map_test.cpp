@@ -187,7 +187,7 @@ TEST(DistanceMap, MatchesDynamicEdtAtCellCentres) {
     }
 }
 
-/// Against the cubes themselves: at centres never too large, elsewhere hardly.
+/// Against the cubes themselves: at centres never too large, elsewhere by less than half a cell.
 TEST(DistanceMap, NeverPromisesMoreRoomThanThereIs) {
     std::mt19937 random(8);
     std::uniform_int_distribution<int> cell(-12, 12);
@@ -218,7 +218,7 @@ TEST(DistanceMap, NeverPromisesMoreRoomThanThereIs) {
     }
     EXPECT_LT(mostAtCentres, 1e-4);
     EXPECT_GT(mostAtCentres, -1e-4);
-    EXPECT_LT(most, 0.2);
+    EXPECT_LT(most, 0.5);
 }
 
 TEST(DistanceMap, MergedCellsCountInFull) {
