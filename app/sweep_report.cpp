@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kPicturePixel = 0.025;     // of the background of paths.png [m]
 constexpr double kMaxPicturePixels = 800.;  // along its longer side
-constexpr double kPercent = 100.;
+constexpr const char* kNothing = "-";       // in the table
 
 const std::vector<std::string> kRunKeys{"planner", "alpha",      "seed",       "cost",
                                         "length",  "mean_trace", "goal_trace", "vertices",
@@ -60,7 +60,7 @@ TopView pathsView(const Config& config, const World& world, const std::vector<Dr
 
 /// "12.34 +- 0.05" with a fixed number of decimals, the deviation only where there is one.
 std::string cellText(const Statistic& value, double scale, int decimals) {
-    if (!std::isfinite(value.mean)) return "-";
+    if (!std::isfinite(value.mean)) return kNothing;
     const std::string mean = fmt::format("{:.{}f}", scale * value.mean, decimals);
     if (!std::isfinite(value.deviation)) return mean;
     return fmt::format("{} ± {:.{}f}", mean, scale * value.deviation, decimals);
@@ -73,22 +73,52 @@ std::string padded(const std::string& text, std::size_t width) {
     return std::string(width > characters ? width - characters : 0, ' ') + text;
 }
 
-std::string tableRow(const SweepCell& cell) {
-    const auto column = [&](const char* name, double scale, int decimals, std::size_t width) {
-        return padded(cellText(cell.columns.at(name), scale, decimals), width);
-    };
-    const auto paper = [&](double PaperRow::*value, double scale, std::size_t width) {
-        return padded(cell.paper ? fmt::format("{:.2f}", scale * ((*cell.paper).*value)) : "",
-                      width);
-    };
-    const double traces = 100.;
-    return fmt::format("{:>6}{}{}{}{}{}{}{}{}{}{}{}{}\n", cell.alpha, column("cost", 1., 3, 17),
-                       column("length", 1., 2, 15), paper(&PaperRow::length, 1., 7),
-                       column("mean_trace", traces, 2, 16), paper(&PaperRow::meanTrace, traces, 7),
-                       column("goal_trace", traces, 2, 16), paper(&PaperRow::goalTrace, traces, 7),
-                       column("excess", kPercent, 2, 15), column("vertices", 1., 0, 12),
-                       column("views", 1., 0, 13), column("seconds", 1., 2, 14),
-                       padded(fmt::format("{}/{}", cell.solved, cell.runs), 8));
+constexpr double kTraceUnit = 0.01;  // of traces in the table, as the paper prints them
+
+/// A column of the table: its heading and what a cell says.
+struct TextColumn {
+    std::string heading;
+    std::size_t width;
+    std::function<std::string(const SweepCell&)> text;
+};
+
+TextColumn ownColumn(const std::string& heading, std::size_t width, const std::string& name,
+                     double scale, int decimals) {
+    return {heading, width, [=](const SweepCell& cell) {
+                return cellText(cell.columns.at(name), scale, decimals);
+            }};
+}
+
+TextColumn paperColumn(double PaperRow::*value, double scale) {
+    return {"paper", 7, [=](const SweepCell& cell) {
+                return cell.paper ? fmt::format("{:.2f}", scale * ((*cell.paper).*value)) : "";
+            }};
+}
+
+/// The columns that have anything to say.
+std::vector<TextColumn> textColumns(const std::vector<SweepCell>& cells) {
+    std::vector<TextColumn> columns{
+        {"alpha", 6, [](const SweepCell& cell) { return fmt::format("{}", cell.alpha); }},
+        ownColumn("J", 17, "cost", 1., 3),
+        ownColumn("length [m]", 15, "length", 1., 2),
+        paperColumn(&PaperRow::length, 1.),
+        ownColumn("mean trace", 16, "mean_trace", 1. / kTraceUnit, 2),
+        paperColumn(&PaperRow::meanTrace, 1. / kTraceUnit),
+        ownColumn("goal trace", 16, "goal_trace", 1. / kTraceUnit, 2),
+        paperColumn(&PaperRow::goalTrace, 1. / kTraceUnit),
+        ownColumn("excess [%]", 15, "excess", 100., 2),
+        ownColumn("vertices", 12, "vertices", 1., 0),
+        ownColumn("views", 13, "views", 1., 0),
+        ownColumn("seconds", 14, "seconds", 1., 2),
+        {"solved", 8,
+         [](const SweepCell& cell) { return fmt::format("{}/{}", cell.solved, cell.runs); }}};
+    std::erase_if(columns, [&](const TextColumn& column) {
+        return std::all_of(cells.begin(), cells.end(), [&](const SweepCell& cell) {
+            const std::string text = column.text(cell);
+            return text.empty() || text == kNothing;
+        });
+    });
+    return columns;
 }
 
 }  // namespace
@@ -153,18 +183,18 @@ void writeSweepReport(const fs::path& folder, const Config& config, const World&
 }
 
 std::string sweepTable(const std::vector<SweepCell>& cells) {
+    const auto columns = textColumns(cells);
     std::string text;
     std::string planner;
     for (const SweepCell& cell : cells) {
         if (cell.planner != planner) {
             planner = cell.planner;
-            text += fmt::format(
-                "\n{}  (traces in 0.01 m^2 + rad^2)\n"
-                "{:>6}{:>17}{:>15}{:>7}{:>16}{:>7}{:>16}{:>7}{:>15}{:>12}{:>13}{:>14}{:>8}\n",
-                planner, "alpha", "J", "length [m]", "paper", "mean trace", "paper", "goal trace",
-                "paper", "excess [%]", "vertices", "views", "seconds", "solved");
+            text += "\n" + planner + "  (traces in 0.01 m^2 + rad^2)\n";
+            for (const TextColumn& column : columns) text += padded(column.heading, column.width);
+            text += '\n';
         }
-        text += tableRow(cell);
+        for (const TextColumn& column : columns) text += padded(column.text(cell), column.width);
+        text += '\n';
     }
     return text;
 }

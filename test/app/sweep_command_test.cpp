@@ -211,16 +211,38 @@ TEST_F(SweepCommand, AResumedSweepMustBeTheSame) {
 }
 
 TEST_F(SweepCommand, CtrlCKeepsTheRunsDone) {
+    // Interrupted as soon as the header and two runs are there.
     const Execution run = execute(fmt::format(
-        "timeout --preserve-status -s INT 3 {} sweep {} --set planner.vertices=150 --alpha 0.5"
-        " --runs 1000000 --planners rrt_star --out {}",
-        PHOTONAV_BINARY, config("two_textures"), at("out")));
+        "{{ {} sweep {} --set planner.vertices=150 --alpha 0.5 --runs 1000000 --planners rrt_star"
+        " --out {} --quiet & until [ $(cat {}/runs.jsonl 2>/dev/null | wc -l) -gt 2 ]; do"
+        " sleep 0.05; done; kill -INT $!; wait $!; }}",
+        PHOTONAV_BINARY, config("two_textures"), at("out"), at("out")));
     EXPECT_EQ(run.exitCode, 130) << run.output;
     const json r = result("out");
     EXPECT_EQ(r["status"], "interrupted");
     EXPECT_EQ(r["runs"].size(), r["runs_done"]);
-    EXPECT_GT(r["runs"].size(), 0U);
+    EXPECT_GE(r["runs"].size(), 2U);
     EXPECT_LT(r["runs"].size(), 1000000U);
+}
+
+TEST_F(SweepCommand, ItsPageShowsCurvesAndTables) {
+    constexpr const char* kChromium = "/usr/bin/chromium";
+    if (!fs::exists(kChromium)) GTEST_SKIP() << kChromium << " is not installed";
+    ASSERT_EQ(sweep("out",
+                    "--set \"sweep.paper=[{alpha: 0.6, length: 9, mean_trace: 4.25,"
+                    " goal_trace: 1}]\"")
+                  .exitCode,
+              0);
+    const Execution page = execute(fmt::format(
+        "{} --headless --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader"
+        " --no-first-run --virtual-time-budget=8000 --user-data-dir={} --dump-dom file://{}",
+        kChromium, at("profile"), at("out/report.html")));
+    EXPECT_NE(page.output.find("<section class=\"charts\" id=\"sweep-charts\">"),
+              std::string::npos);  // not hidden
+    EXPECT_NE(page.output.find("</span>pa_rrt_star</h2>"), std::string::npos);
+    EXPECT_NE(page.output.find("<td class=\"quiet\">4.25</td>"), std::string::npos);  // the paper's
+    EXPECT_NE(page.output.find("<td>2 of 2</td>"), std::string::npos);
+    EXPECT_EQ(page.output.find("data-errors"), std::string::npos);
 }
 
 TEST_F(SweepCommand, AnUnreachableGoalIsSaidByEveryPlanner) {
