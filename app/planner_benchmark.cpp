@@ -88,6 +88,7 @@ class Session {
         planner.params().setParam("seed", std::to_string(next.seed));
         setup_.setGoal(plan_.definition()->getGoal());
         plan_.forgetViews();
+        planner.clear();  // once more: its progress counts the views
     }
 
     void record(ob::Planner& planner, ompl::tools::Benchmark::RunProperties& properties) {

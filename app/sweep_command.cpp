@@ -106,12 +106,11 @@ int conclude(const SweepOptions& options, const Config& config, const World& wor
         fmt::print("{}\n", result.dump(2));
     } else if (!options.quiet) {
         fmt::print("{}\n", sweepTable(summarize(config.sweep, outcome.runs, reference)));
+        std::map<std::string, int> failures;
         for (const SweepRun& run : outcome.runs) {
-            if (!run.isSolved()) {
-                fmt::print("{} alpha {} seed {}: {}\n", run.item.planner, run.item.alpha,
-                           run.item.seed, run.status);
-            }
+            if (!run.isSolved()) ++failures[run.item.planner + ": " + run.status];
         }
+        for (const auto& [reason, runs] : failures) fmt::print("{} ({} runs)\n", reason, runs);
         fmt::print("{} of {} runs, {}\nreport: {}\n", outcome.runs.size(), outcome.asked,
                    durationText(outcome.seconds), (folder / "report.html").string());
     }

@@ -222,15 +222,20 @@ Png drawCostOverTime(const std::string& title, const std::vector<std::string>& p
             costs.push_back(curve.cost[i]);
         }
     }
+    std::vector<Planner> drawn = coloured(planners);
+    std::erase_if(drawn, [&](const Planner& planner) {
+        return std::none_of(curves.begin(), curves.end(),
+                            [&](const auto& curve) { return curve.planner == planner.name; });
+    });
     const Frame frame{kLeft, kTop, kWidth, 480.0};
     Canvas canvas(frame.right() + 36.0, frame.bottom() + kBelow);
-    drawHead(canvas, title, coloured(planners), false);
+    drawHead(canvas, title, drawn, false);
     const Plot plot{canvas, frame, axisOver(times, true, "time [s]"),
                     axisOver(costs, false, "cost of the best path")};
     plot.drawGrid();
     {
         const auto clipped = canvas.clip(frame);
-        for (const Planner& planner : coloured(planners)) {
+        for (const Planner& planner : drawn) {
             for (const BenchmarkCurve& curve : curves) {
                 if (curve.planner != planner.name) continue;
                 std::vector<Canvas::Point> steps;

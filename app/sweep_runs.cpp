@@ -133,7 +133,7 @@ json toJson(const SweepRun& run) {
 
 SweepJournal SweepJournal::create(const fs::path& folder, const SweepHeader& header) {
     SweepJournal journal(folder / kFileName);
-    fs::remove(journal.file_);
+    if (fs::exists(journal.file_)) fs::rename(journal.file_, journal.file_.string() + "~");
     journal.header_ = header;
     journal.write({{"photonav_sweep", kSchema},
                    {"name", header.name},

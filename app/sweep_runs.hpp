@@ -54,7 +54,7 @@ class SweepJournal {
   public:
     static constexpr const char* kFileName = "runs.jsonl";
 
-    /// Begins a new file.
+    /// Begins a new file; an earlier one is kept as runs.jsonl~.
     /// @throws InputError if it cannot be written
     static SweepJournal create(const std::filesystem::path& folder, const SweepHeader& header);
 
