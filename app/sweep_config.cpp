@@ -41,6 +41,7 @@ std::vector<double> range(double first, double last, double step) {
     const double count = std::floor((last - first) / step + 1e-9) + 1.;
     if (count > double{kMaxAlphas}) throw InputError("--alpha", "", "too many values");
     std::vector<double> values;
+    values.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < static_cast<int>(count); ++i) {
         values.push_back(std::round((first + i * step) * 1e9) / 1e9);  // 0.15, not 0.15000000000002
     }

@@ -157,6 +157,7 @@ std::string toCsv(const json& rows, const std::vector<std::string>& keys) {
     std::string text = fmt::format("{}\n", fmt::join(keys, ","));
     for (const json& row : rows) {
         std::vector<std::string> fields;
+        fields.reserve(keys.size());
         for (const std::string& key : keys) fields.push_back(csvField(row.at(key)));
         text += fmt::format("{}\n", fmt::join(fields, ","));
     }
