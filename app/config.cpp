@@ -180,9 +180,19 @@ void readNoise(YamlMap& root, Config& config) {
     noise.finish();
 }
 
+void readFeatures(YamlMap& root, Config& config) {
+    YamlMap features = root.map("features");
+    features.readNumber("threshold", config.viewModel.features.threshold, 1. / 255., 1.);
+    features.readNumber("pixel_sigma", config.viewModel.features.pixelSigma, kTiny, kInfinity);
+    features.readNumber("reference_count", config.viewModel.features.referenceCount, kTiny,
+                        kInfinity);
+    features.finish();
+}
+
 void readPlanner(YamlMap& root, Config& config) {
     YamlMap planner = root.map("planner");
     planner.readChoice("name", config.planner, plannerNames());
+    planner.readChoice("information", config.viewModel.name, viewModelNames());
     planner.readNumber("alpha", config.belief.alpha, 0., 1.);
     planner.readNumber("kappa", config.belief.kappa, 0., kInfinity);
     planner.readNumber("ds", config.belief.ds, 1e-3, kInfinity);
@@ -196,6 +206,8 @@ void readPlanner(YamlMap& root, Config& config) {
     planner.readNumber("goal_bias", config.growth.goalBias, 1e-4, 1.);
     planner.readNumber("rewire_factor", config.growth.rewireFactor, kTiny, kInfinity);
     planner.readNumber("rotation_weight", config.rotationWeight, 0., kInfinity);
+    planner.readNumber("penalty_kappa", config.viewModel.kappa, 0., kInfinity);
+    planner.readNumber("map_prior_sigma", config.viewModel.mapPriorSigma, 0., kInfinity);
     planner.readNumber("view_pitch", config.field.positionPitch, kTiny, kInfinity);
     planner.readNumber("view_rotation_pitch", config.field.rotationPitch, kTiny, 3.2);
     planner.read("compare_with_rrt_star", config.compareWithRrtStar);
@@ -209,7 +221,14 @@ Camera CameraConfig::camera() const { return makeCamera(width, height, hfov * kD
 Pose CameraConfig::T_b_c() const { return cameraMount(mountDegrees(mount).value() * kDegree); }
 
 const std::vector<std::string>& plannerNames() {
-    static const std::vector<std::string> names{"belief_rrt_star", "pa_rrt_star", "rrt_star"};
+    static const std::vector<std::string> names{"belief_rrt_star", "pa_rrt_star", "rrbt",
+                                                "rrt_star"};
+    return names;
+}
+
+const std::vector<std::string>& viewModelNames() {
+    static const std::vector<std::string> names{"photometric", "feature_reprojection", "none",
+                                                "feature_count", "map_uncertainty"};
     return names;
 }
 
@@ -223,6 +242,7 @@ Config loadConfig(const std::string& file, const std::vector<std::string>& overr
     readFlight(root, config);
     readCamera(root, config);
     readNoise(root, config);
+    readFeatures(root, config);
     readPlanner(root, config);
     config.sweep = readSweep(root, plannerNames());
     config.sweep.reference = resolve(config.sweep.reference, file);
@@ -265,17 +285,23 @@ std::string toYaml(const Config& c) {
     line(fmt::format("noise:\n  initial: {}\n  motion: {}\n  propagation: {}",
                      variances(c.belief.initialCovariance), variances(c.belief.motionNoise),
                      kOrders[c.belief.order == PropagationOrder::second]));
-    line(
-        fmt::format("planner:\n  name: {}\n  alpha: {}\n  kappa: {}\n  ds: {}\n  cost: {}\n"
-                    "  characteristic_length: {}\n  vertices: {}\n  labels: {}",
-                    c.planner, c.belief.alpha, c.belief.kappa, c.belief.ds,
-                    kCosts[c.belief.cost == CostRule::perVertex], c.belief.characteristicLength,
-                    c.vertices, c.labels));
+    line(fmt::format("features:\n  threshold: {}\n  pixel_sigma: {}\n  reference_count: {}",
+                     c.viewModel.features.threshold, c.viewModel.features.pixelSigma,
+                     c.viewModel.features.referenceCount));
+    line(fmt::format(
+        "planner:\n  name: {}\n  information: {}\n  alpha: {}\n  kappa: {}\n  ds: {}\n  cost: {}\n"
+        "  characteristic_length: {}\n  vertices: {}\n  labels: {}",
+        c.planner, c.viewModel.name, c.belief.alpha, c.belief.kappa, c.belief.ds,
+        kCosts[c.belief.cost == CostRule::perVertex], c.belief.characteristicLength, c.vertices,
+        c.labels));
     line(
         fmt::format("  range: {}\n  goal_bias: {}\n  rewire_factor: {}\n  rotation_weight: {}\n"
-                    "  view_pitch: {}\n  view_rotation_pitch: {}\n  compare_with_rrt_star: {}",
+                    "  penalty_kappa: {}\n  map_prior_sigma: {}\n  view_pitch: {}\n  "
+                    "view_rotation_pitch: {}\n  "
+                    "compare_with_rrt_star: {}",
                     c.growth.range, c.growth.goalBias, c.growth.rewireFactor, c.rotationWeight,
-                    c.field.positionPitch, c.field.rotationPitch, c.compareWithRrtStar));
+                    c.viewModel.kappa, c.viewModel.mapPriorSigma, c.field.positionPitch,
+                    c.field.rotationPitch, c.compareWithRrtStar));
     line(fmt::format("seed: {}", c.seed));
     return text + toYaml(c.sweep);
 }

@@ -31,6 +31,15 @@ struct CameraConfig {
     Pose T_b_c() const;
 };
 
+/// What a view is worth to the planner. Paths are judged by the photometric information whatever
+/// the planner goes by.
+struct ViewModelConfig {
+    std::string name = "photometric";  ///< one of viewModelNames()
+    FeatureOptions features;
+    double mapPriorSigma = 1.;  ///< MapUncertaintyOptions::priorSigma
+    double kappa = 2.5;         ///< metres of detour that 1 m of flight at a penalty of 1 is worth
+};
+
 struct Config {
     std::string file;  ///< where this was read from
 
@@ -52,6 +61,7 @@ struct Config {
     InformationField::Options field;
 
     std::string planner = "belief_rrt_star";
+    ViewModelConfig viewModel;
     unsigned vertices = 2500;
     unsigned labels = 5;
     GrowthOptions growth;
@@ -64,6 +74,10 @@ struct Config {
 
 /// Names that `planner.name` accepts.
 const std::vector<std::string>& plannerNames();
+
+/// Names that `planner.information` accepts: information about the pose (photometric,
+/// feature_reprojection, none), or a penalty in its place (feature_count, map_uncertainty).
+const std::vector<std::string>& viewModelNames();
 
 /// Reads a config and applies overrides "key.path=value" on top. Paths in the file are relative to
 /// the file, paths in overrides to the working directory.

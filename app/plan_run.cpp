@@ -13,6 +13,7 @@
 #include "belief_rrt_star.hpp"
 #include "error.hpp"
 #include "perception_rrt_star.hpp"
+#include "rrbt.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
@@ -47,6 +48,12 @@ std::vector<Edge> drawnEdges(const BeliefPlanner& planner) {
     return edges;
 }
 
+std::vector<const ob::State*> solution(const BeliefPlanner& planner) {
+    const auto path = planner.getProblemDefinition()->getSolutionPath();
+    const auto& states = path->as<ompl::geometric::PathGeometric>()->getStates();
+    return {states.begin(), states.end()};
+}
+
 }  // namespace
 
 PlanRun::PlanRun(const Config& config, const World& world)
@@ -56,12 +63,10 @@ PlanRun::PlanRun(const Config& config, const World& world)
       si_(makeSpaceInformation(
           space_, [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
           config.robotRadius)),
-      field_(std::make_shared<InformationField>(
-          world.hasTexture()
-              ? photometricModel(world.views(), config.camera.camera(), config.photometric)
-              : InformationModel([](const Pose&) -> Matrix6 { return Matrix6::Zero(); }),
-          config.camera.T_b_c(), config.field)),
-      judge_(makeModel(config.planner == "rrt_star" ? 1. : config.belief.alpha)) {}
+      field_(makeField("photometric")),
+      plannersField_(config.viewModel.name == "photometric" ? field_
+                                                            : makeField(config.viewModel.name)),
+      judge_(makeModel(field_, config.planner == "rrt_star" ? 1. : config.belief.alpha)) {}
 
 void PlanRun::checkPlaces() const {
     checkPlace("start", config_.start);
@@ -106,7 +111,7 @@ PlanOutcome PlanRun::solve(const std::string& name, const std::atomic<bool>& int
     outcome.alpha = model.options().alpha;
     outcome.vertices = planner->vertices();
     outcome.iterations = planner->iterations();
-    outcome.views = world_.hasTexture() ? model.field().views() : 0;
+    outcome.views = model.field().views();
     outcome.cacheHits = model.field().cacheHits();
     outcome.fallbacks = model.fallbacks();
     outcome.planSeconds = secondsSince(begin);
@@ -116,7 +121,9 @@ PlanOutcome PlanRun::solve(const std::string& name, const std::atomic<bool>& int
     outcome.audit = auditTree(*planner);
     if (planner->getProblemDefinition()->hasExactSolution()) {
         outcome.path = judge(*planner);
-        includePath(outcome.audit, planner->bestCost(), outcome.path->cost);
+        outcome.plannerCost = planner->bestCost();
+        const double replayed = planner->model().evaluate(solution(*planner)).back().cost;
+        includePath(outcome.audit, outcome.plannerCost, replayed);
     }
     return outcome;
 }
@@ -125,10 +132,12 @@ std::shared_ptr<BeliefPlanner> PlanRun::makePlanner(const std::string& name) con
     GrowthOptions growth = config_.growth;
     growth.seed = config_.seed;
     growth.maxVertices = config_.vertices;
-    const auto model = makeModel(name == "rrt_star" ? 1. : config_.belief.alpha);
+    const auto model = makeModel(plannersField_, name == "rrt_star" ? 1. : config_.belief.alpha);
     std::shared_ptr<BeliefPlanner> planner;
     if (name == "belief_rrt_star") {
         planner = std::make_shared<BeliefRRTstar>(si_, model, config_.labels, growth);
+    } else if (name == "rrbt") {
+        planner = std::make_shared<RRBT>(si_, model, growth);
     } else {
         planner = std::make_shared<PerceptionRRTstar>(si_, model, growth);
     }
@@ -137,10 +146,34 @@ std::shared_ptr<BeliefPlanner> PlanRun::makePlanner(const std::string& name) con
     return planner;
 }
 
-std::shared_ptr<BeliefModel> PlanRun::makeModel(double alpha) const {
+std::shared_ptr<InformationField> PlanRun::makeField(const std::string& viewModel) const {
+    const Camera camera = config_.camera.camera();
+    const auto field = [&](auto model) {
+        return std::make_shared<InformationField>(std::move(model), config_.camera.T_b_c(),
+                                                  config_.field);
+    };
+    if (viewModel == "none" || !world_.hasTexture()) return field(InformationModel{});
+    const FeatureOptions& features = config_.viewModel.features;
+    if (viewModel == "feature_reprojection") {
+        return field(featureReprojectionModel(world_.views(), camera, features));
+    }
+    if (viewModel == "feature_count") {
+        return field(featureCountModel(world_.views(), camera, features));
+    }
+    if (viewModel == "map_uncertainty") {
+        return field(mapUncertaintyModel(
+            world_.views(), camera, config_.photometric,
+            {.priorSigma = config_.viewModel.mapPriorSigma, .baseline = config_.belief.ds}));
+    }
+    return field(photometricModel(world_.views(), camera, config_.photometric));
+}
+
+std::shared_ptr<BeliefModel> PlanRun::makeModel(std::shared_ptr<InformationField> field,
+                                                double alpha) const {
     BeliefOptions options = config_.belief;
     options.alpha = alpha;
-    return std::make_shared<BeliefModel>(space_, field_, options);
+    if (field->hasPenalties()) options.kappa = config_.viewModel.kappa;
+    return std::make_shared<BeliefModel>(space_, std::move(field), options);
 }
 
 ob::ProblemDefinitionPtr PlanRun::definition() const {
@@ -161,12 +194,7 @@ ob::ProblemDefinitionPtr PlanRun::definition() const {
 }
 
 JudgedPath PlanRun::judge(const BeliefPlanner& planner) {
-    const auto path = planner.getProblemDefinition()->getSolutionPath();
-    std::vector<const ob::State*> states;
-    for (const ob::State* state : path->as<ompl::geometric::PathGeometric>()->getStates()) {
-        states.push_back(state);
-    }
-    JudgedPath judged{.planner = planner.getName(), .points = judge_->evaluate(states)};
+    JudgedPath judged{.planner = planner.getName(), .points = judge_->evaluate(solution(planner))};
     double integral = 0.;
     for (std::size_t i = 1; i < judged.points.size(); ++i) {
         const BeliefPoint& last = judged.points[i - 1];

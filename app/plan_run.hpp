@@ -25,6 +25,7 @@ struct JudgedPath {
 /// What planning took and gave.
 struct PlanOutcome {
     std::optional<JudgedPath> path;  ///< none: the goal was not reached
+    double plannerCost = 0.;         ///< of the path, as the planner itself sees it
     double alpha = 0.;
     std::size_t vertices = 0, iterations = 0, views = 0, cacheHits = 0, fallbacks = 0;
     double planSeconds = 0., viewSeconds = 0., beliefSeconds = 0.;
@@ -62,17 +63,23 @@ class PlanRun {
     /// The solution of a planner that has one.
     JudgedPath judge(const BeliefPlanner& planner);
     /// Makes the next views new ones; planners that are not cleared must not be used again.
-    void forgetViews() { field_->clear(); }
+    void forgetViews() {
+        field_->clear();
+        plannersField_->clear();
+    }
 
   private:
     void checkPlace(const std::string& key, const Place& place) const;
-    std::shared_ptr<BeliefModel> makeModel(double alpha) const;
+    std::shared_ptr<InformationField> makeField(const std::string& viewModel) const;
+    std::shared_ptr<BeliefModel> makeModel(std::shared_ptr<InformationField> field,
+                                           double alpha) const;
 
     const Config& config_;
     const World& world_;
     FlightSpace space_;
     ompl::base::SpaceInformationPtr si_;
-    std::shared_ptr<InformationField> field_;
+    std::shared_ptr<InformationField> field_;          // photometric: what judges
+    std::shared_ptr<InformationField> plannersField_;  // what the planner goes by
     std::shared_ptr<BeliefModel> judge_;
 };
 

@@ -29,14 +29,16 @@ InformationModel featureReprojectionModel(const ViewSource& map, const Camera& c
                                           const FeatureOptions& options);
 
 /// What flying past a view costs per metre, for planners that ask something else of a view than
-/// what it tells about the pose: base - t^T relief t for a motion along t (camera frame).
+/// what it tells about the pose.
 struct ViewPenalty {
-    double base = 0.;
-    Eigen::Matrix3d relief = Eigen::Matrix3d::Zero();
+    double base = 0.;       ///< whatever the direction of the motion
+    MapCertainty relief{};  ///< less what the motion measures of the map
 
     /// @param t_c way of the camera by way flown: a unit vector, shorter where the camera also
     /// turns
-    double along(const Eigen::Vector3d& t_c) const { return base - t_c.dot(relief * t_c); }
+    double along(const Eigen::Vector3d& t_c) const {
+        return base - (1. - relief.varianceLeft(t_c));
+    }
 };
 using PenaltyModel = std::function<ViewPenalty(const Pose& T_c_w)>;
 

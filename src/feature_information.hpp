@@ -9,10 +9,10 @@
 namespace photonav {
 
 struct FeatureOptions {
-    double threshold = 0.04;     ///< contrast of a corner against the circle around it, grey values
+    double threshold = 0.02;     ///< contrast of a corner against the circle around it, grey values
                                  ///< in [0, 1]
     double pixelSigma = 1.;      ///< standard deviation of a tracked corner, each axis [px]
-    double referenceCount = 50;  ///< corners that halve the penalty of a view (see below)
+    double referenceCount = 10;  ///< corners that halve the penalty of a view (see below)
 };
 
 /// A corner of a view: pixel and depth of its surface in the camera frame [m].

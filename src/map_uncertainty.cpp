@@ -3,21 +3,27 @@
 
 namespace photonav {
 
-Eigen::Matrix3d mapCertainty(const View& view, const Camera& camera,
-                             const PhotometricOptions& photometric,
-                             const MapUncertaintyOptions& options) {
+MapCertainty mapCertainty(const View& view, const Camera& camera,
+                          const PhotometricOptions& photometric,
+                          const MapUncertaintyOptions& options) {
     const double ratio = options.priorSigma * options.baseline / photometric.sigma;
-    const double gain = 0.5 * ratio * ratio;
-    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    const double unit = 0.5 * ratio * ratio;
     PhotometricOptions everyPixel = photometric;
     everyPixel.stride = 1;
-    for (unsigned v = 0; v < camera.height; ++v) {
-        for (unsigned u = 0; u < camera.width; ++u) {
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    unsigned pixels = 0;
+    unsigned counted = 0;
+    for (unsigned v = 0; v < camera.height; v += options.stride) {
+        for (unsigned u = 0; u < camera.width; u += options.stride) {
+            ++pixels;
             const Eigen::Vector3d j = pixelJacobian(view, camera, u, v, everyPixel).head<3>();
-            sum += gain / (1. + gain * j.squaredNorm()) * j * j.transpose();
+            if (unit * j.squaredNorm() < 1.) continue;
+            sum += unit * j * j.transpose();
+            ++counted;
         }
     }
-    return sum / (static_cast<double>(camera.width) * camera.height);
+    if (counted == 0) return {};
+    return {.share = static_cast<double>(counted) / pixels, .gain = sum / counted};
 }
 
 }  // namespace photonav

@@ -11,27 +11,36 @@ struct MapUncertaintyOptions {
     double priorSigma =
         0.3;                 ///< standard deviation of log depth before the look: 30 % of the depth
     double baseline = 0.25;  ///< way between the two images that a depth is measured from [m]
+    int stride = 2;          ///< looks at every stride-th row and column
 };
 
-/// What fraction of the map's variance in sight a short motion takes away, for any direction of it:
-/// flying along the unit vector t (camera frame) leaves 1 - t^T M t.
-///
-/// Per pixel, with j = grad I^T dpi/dp (1x3) the response of its grey value to translation, the
-/// log depth is measured from two images `baseline` apart with information q = (baseline j t)^2 /
-/// (2 sigma^2), so that 1 / (1 + priorSigma^2 q) of its variance is left: parallax times the
-/// gradient along the epipolar line, over the noise of two images. The sum over pixels is kept as
-/// one matrix by interpolating each of them in cos^2 of the angle between t and j:
-///     M = 1/n sum g / (1 + g) u u^T,   g = priorSigma^2 baseline^2 |j|^2 / (2 sigma^2),
-///     u = j / |j|,
-/// exact along and across the gradient, and too pessimistic in between. n counts all pixels of the
-/// image: what has no texture, no surface, or lies across a depth discontinuity stays uncertain.
+/// How well a short motion measures the depths in sight.
+struct MapCertainty {
+    double share = 0.;  ///< of the pixels that a motion can measure at all: those whose variance it
+                        ///< would at least halve if it went along their gradient
+    Eigen::Matrix3d gain = Eigen::Matrix3d::Zero();  ///< mean over these pixels (see below)
+
+    /// Variance of log depth left over the image by a motion along the unit vector t (camera
+    /// frame), relative to the prior: 1 where nothing is measured.
+    double varianceLeft(const Eigen::Vector3d& t_c) const {
+        return 1. - share + share / (1. + t_c.dot(gain * t_c));
+    }
+};
+
+/// Per pixel, with j = grad I^T dpi/dp (1x3) the response of its grey value to translation, log
+/// depth is measured from two images `baseline` apart with information (baseline j t)^2 /
+/// (2 sigma^2), so that 1 / (1 + t^T G t) of the prior's variance is left,
+///     G = priorSigma^2 baseline^2 / (2 sigma^2) * j^T j:
+/// parallax times the gradient along the epipolar line, over the noise of two images. Pixels with
+/// tr G >= 1 count, by their mean G; all others (no texture, no surface, a depth discontinuity)
+/// stay as uncertain as they were.
 ///
 /// This is the objective of Forster, Pizzoli and Scaramuzza, Appearance-based active, monocular,
 /// dense reconstruction for micro aerial vehicles (RSS 2014): the expected variance of the depth
 /// given texture and motion. They carry a depth filter per pixel along a trajectory; here every
 /// view is judged on its own, against the same prior, so that it can be a cost per metre.
-Eigen::Matrix3d mapCertainty(const View& view, const Camera& camera,
-                             const PhotometricOptions& photometric = {},
-                             const MapUncertaintyOptions& options = {});
+MapCertainty mapCertainty(const View& view, const Camera& camera,
+                          const PhotometricOptions& photometric = {},
+                          const MapUncertaintyOptions& options = {});
 
 }  // namespace photonav

@@ -48,8 +48,8 @@ TEST(Features, IsolatedDotsAreOneCornerEach) {
 TEST(Features, NeedContrastAndASurface) {
     const Camera camera = oddCamera();
     EXPECT_TRUE(visibleFeatures(dots(camera, {})).empty());
-    EXPECT_TRUE(visibleFeatures(dots(camera, {{94, 60}}, 0.03F)).empty());
-    EXPECT_EQ(visibleFeatures(dots(camera, {{94, 60}}, 0.03F), {.threshold = 0.01}).size(), 1U);
+    EXPECT_TRUE(visibleFeatures(dots(camera, {{94, 60}}, 0.015F)).empty());
+    EXPECT_EQ(visibleFeatures(dots(camera, {{94, 60}}, 0.015F), {.threshold = 0.005}).size(), 1U);
     View sky = dots(camera, {{94, 60}});
     sky.depth = 0.F;
     EXPECT_TRUE(visibleFeatures(sky).empty());

@@ -19,47 +19,51 @@ View fromAbove(const AnalyticPlane& floor) {
     return floor.view(someCamera(), lookFrom({0.3, -0.2, 2.}, std::numbers::pi / 2.));
 }
 
-double varianceLeft(const Eigen::Matrix3d& certainty, const Vector3d& t) {
-    return 1. - t.dot(certainty * t);
-}
-
 TEST(MapUncertainty, BlankWallStaysAsUncertainAsItWas) {
     View wall;
     wall.intensity.resize(64, 96, 0.5F);
     wall.depth.resize(64, 96, 2.F);
-    EXPECT_TRUE(mapCertainty(wall, someCamera()).isZero(0.));
+    EXPECT_EQ(mapCertainty(wall, someCamera()).varianceLeft(Vector3d::UnitX()), 1.);
 }
 
 TEST(MapUncertainty, StripesAreMeasuredByFlyingAcrossThemOnly) {
     AnalyticPlane floor;
     floor.stripes = true;
-    const Eigen::Matrix3d certainty = mapCertainty(fromAbove(floor), someCamera());
-    EXPECT_LT(varianceLeft(certainty, Vector3d::UnitY()), 0.2);         // across: world x
-    EXPECT_NEAR(varianceLeft(certainty, Vector3d::UnitX()), 1., 1e-4);  // along
+    const MapCertainty certainty = mapCertainty(fromAbove(floor), someCamera());
+    EXPECT_LT(certainty.varianceLeft(Vector3d::UnitY()), 0.2);         // across: world x
+    EXPECT_NEAR(certainty.varianceLeft(Vector3d::UnitX()), 1., 1e-4);  // along
 }
 
-TEST(MapUncertainty, LittleParallaxIsWorthTheTranslationPartOfThePhotometricInformation) {
-    // g << 1: M = priorSigma^2 baseline^2 / (2 n) * the block of Lambda that is about translation.
-    const MapUncertaintyOptions options{.priorSigma = 1e-3, .baseline = 1e-2};
+TEST(MapUncertainty, GainIsTheTranslationPartOfThePhotometricInformation) {
+    // Where every pixel counts: priorSigma^2 baseline^2 / (2 n) * the block of Lambda.
+    const MapUncertaintyOptions options{.priorSigma = 1e4, .baseline = 0.1, .stride = 1};
     const View view = fromAbove(AnalyticPlane{});
-    const Eigen::Matrix3d certainty = mapCertainty(view, someCamera(), {}, options);
-    const Eigen::Matrix3d block = photometricInformation(view, someCamera()).topLeftCorner<3, 3>();
-    const Eigen::Matrix3d expected = 1e-6 * 1e-4 / (2. * 96. * 64.) * block;
-    EXPECT_LT((certainty - expected).norm(), 1e-3 * expected.norm());
+    const MapCertainty certainty = mapCertainty(view, someCamera(), {}, options);
+    const double pixels = 94. * 62.;  // without the border
+    const Eigen::Matrix3d expected =
+        1e8 * 1e-2 / (2. * pixels) *
+        photometricInformation(view, someCamera()).topLeftCorner<3, 3>();
+    EXPECT_NEAR(certainty.share, pixels / (96. * 64.), 1e-3);
+    EXPECT_LT((certainty.gain - expected).norm(), 1e-3 * expected.norm());
 }
 
-TEST(MapUncertainty, MuchParallaxMeasuresEveryPixelThatCanMove) {
-    // g >> 1: every pixel with a gradient is known along it. tr M is their share of the image.
-    const Eigen::Matrix3d certainty =
-        mapCertainty(fromAbove(AnalyticPlane{}), someCamera(), {}, {.priorSigma = 1e4});
-    EXPECT_NEAR(certainty.trace(), 94. * 62. / (96. * 64.), 1e-3);
+TEST(MapUncertainty, WhatIsNotTexturedStaysUncertain) {
+    const Camera camera = someCamera();
+    View view = fromAbove(AnalyticPlane{});
+    const double whole = mapCertainty(view, camera).varianceLeft(Vector3d::UnitX());
+    for (unsigned v = 0; v < 64; ++v) {
+        for (unsigned u = 0; u < 48; ++u) view.intensity[v][u] = 0.5F;
+    }
+    const double half = mapCertainty(view, camera).varianceLeft(Vector3d::UnitX());
+    EXPECT_LT(whole, 0.3);
+    EXPECT_NEAR(half, 0.5 * whole + 0.5, 0.03);
 }
 
 TEST(MapUncertainty, LessIsLeftOfALongerBaseline) {
     const View view = fromAbove(AnalyticPlane{});
     const auto left = [&](double baseline) {
-        return varianceLeft(mapCertainty(view, someCamera(), {}, {.baseline = baseline}),
-                            Vector3d::UnitX());
+        return mapCertainty(view, someCamera(), {}, {.baseline = baseline})
+            .varianceLeft(Vector3d::UnitX());
     };
     EXPECT_LT(left(0.5), left(0.25));
     EXPECT_LT(left(0.25), left(0.1));

@@ -45,7 +45,7 @@ TEST_P(EveryKindOfPenalty, FlownEqualsReplayed) {
     std::tie(problem.kind, problem.belief.cost) = GetParam();
     const auto model = penalised(problem, [](const Pose& T_c_w) -> ViewPenalty {
         const Vector3d p = T_c_w.inverse().translation();
-        return {1. + p.x(), Vector3d(0.1 * p.y(), 0.3, 0.2).asDiagonal()};
+        return {1. + p.x(), {0.7, Vector3d(0.1 * p.y(), 3., 2.).asDiagonal()}};
     });
     const auto sampler = problem.space().sampler(4);
     ob::ScopedState<> a(problem.space().space());
@@ -74,11 +74,12 @@ TEST(Penalty, LessForMotionsThatSeeParallax) {
     problem.belief.alpha = 0.;
     problem.belief.kappa = 1.;
     const auto model = penalised(problem, [](const Pose&) -> ViewPenalty {
-        return {1., Vector3d(0.75, 0., 0.).asDiagonal()};
+        return {1., {0.8, Vector3d(3., 0., 0.).asDiagonal()}};
     });
-    EXPECT_NEAR(costOf(*model, {1, 1, 2}, {1, 5, 2}), 4. * 0.25, 1e-12);  // along image right
-    EXPECT_NEAR(costOf(*model, {1, 1, 2}, {5, 1, 2}), 4., 1e-12);         // along image up
-    EXPECT_NEAR(costOf(*model, {1, 1, 2}, {4, 5, 2}), 5. * (1. - 0.75 * 0.64), 1e-12);
+    EXPECT_NEAR(costOf(*model, {1, 1, 2}, {1, 5, 2}), 4. * (1. - 0.8 * 0.75),
+                1e-12);                                            // image right
+    EXPECT_NEAR(costOf(*model, {1, 1, 2}, {5, 1, 2}), 4., 1e-12);  // image up
+    EXPECT_NEAR(costOf(*model, {1, 1, 2}, {4, 5, 2}), 5. * (1. - 0.8 * 1.92 / 2.92), 1e-12);
 }
 
 TEST(Penalty, TurningOnTheSpotSeesNoParallax) {
@@ -87,7 +88,7 @@ TEST(Penalty, TurningOnTheSpotSeesNoParallax) {
     problem.belief.alpha = 0.;
     problem.belief.kappa = 1.;
     const auto model = penalised(problem, [](const Pose&) -> ViewPenalty {
-        return {1., 0.75 * Eigen::Matrix3d::Identity()};
+        return {1., {1., 9. * Eigen::Matrix3d::Identity()}};
     });
     ob::ScopedState<> a(problem.space().space());
     ob::ScopedState<> b(problem.space().space());
