@@ -10,6 +10,7 @@
 
 #include "benchmark_command.hpp"
 #include "command_io.hpp"
+#include "compare_command.hpp"
 #include "error.hpp"
 #include "info_command.hpp"
 #include "map_command.hpp"
@@ -67,6 +68,22 @@ Command planCommand(CLI::App& app, const std::string& commandLine) {
                 if (!seed->empty()) options->overrides.push_back("seed=" + *seed);
                 return runPlan(*options, interrupted);
             }};
+}
+
+Command compareCommand(CLI::App& app) {
+    auto options = std::make_shared<CompareOptions>();
+    CLI::App* parser = app.add_subcommand(
+        "compare", "Every planner, information model and objective on the same problems.");
+    parser->add_option("configs", options->configs, "YAML files of planning problems")->required();
+    parser->add_option("--set", options->overrides, "override a value of the configs")
+        ->type_name("KEY.PATH=VALUE")
+        ->allow_extra_args(false);
+    parser->add_option("--runs", options->runs, "seeds per method")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    parser->add_option("--out", options->out, "result folder")->capture_default_str();
+    parser->add_flag("--quiet", options->quiet, "no progress, no tables");
+    return {parser, [options] { return runCompare(*options, interrupted); }};
 }
 
 Command infoCommand(CLI::App& app, const std::string& commandLine) {
@@ -262,9 +279,13 @@ int run(int argc, char** argv) {
     std::string commandLine = "photonav";
     for (int i = 1; i < argc; ++i) commandLine += std::string(" ") + argv[i];
 
-    const std::array commands{planCommand(app, commandLine),      infoCommand(app, commandLine),
-                              mapCommand(app, commandLine),       sweepCommand(app, commandLine),
-                              benchmarkCommand(app, commandLine), reportCommand(app)};
+    const std::array commands{planCommand(app, commandLine),
+                              infoCommand(app, commandLine),
+                              mapCommand(app, commandLine),
+                              sweepCommand(app, commandLine),
+                              compareCommand(app),
+                              benchmarkCommand(app, commandLine),
+                              reportCommand(app)};
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

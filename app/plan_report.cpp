@@ -55,15 +55,6 @@ UncertainPose belief(const BeliefPoint& point, const Pose& T_b_c) {
     return {(point.T_w_b * T_b_c).inverse(), point.covariance};
 }
 
-DrawnPath drawn(const JudgedPath& path, const Pose& T_b_c, const Color& color) {
-    DrawnPath result{path.planner, color, {}};
-    for (const BeliefPoint& point : path.points) {
-        result.points.push_back(
-            makePathPoint(belief(point, T_b_c), point.trace, point.length, point.cost));
-    }
-    return result;
-}
-
 /// What the camera would see at the waypoints, and which pixels help.
 std::vector<ReportView> waypointViews(const JudgedPath& path, const Config& config,
                                       const World& world) {
@@ -95,15 +86,9 @@ Eigen::AlignedBox2d areaOf(const Config& config) {
 
 TopView topView(const Config& config, const World& world, const PlanOutcome& outcome,
                 const std::vector<DrawnPath>& paths) {
-    TopView view;
+    TopView view = viewFromAbove(config, world, paths);
     view.title = fmt::format("{}, alpha {}", config.planner, outcome.alpha);
-    view.area = areaOf(config);
-    const double pixel = std::max(kPicturePixel, view.area.sizes().maxCoeff() / kMaxPicturePixels);
-    view.background = world.pictureFromAbove(view.area, config.bounds.max().z(), pixel);
     view.trees = {{"search tree", kTreeColor, outcome.tree}};
-    view.paths = paths;
-    view.start = config.start.position;
-    view.goal = config.goal.position;
     return view;
 }
 
@@ -138,6 +123,27 @@ void writeTrajectory(const fs::path& file, const JudgedPath& path, const Pose& T
 
 }  // namespace
 
+DrawnPath drawnPath(const JudgedPath& path, const Pose& T_b_c, const Color& color) {
+    DrawnPath result{path.planner, color, {}};
+    for (const BeliefPoint& point : path.points) {
+        result.points.push_back(
+            makePathPoint(belief(point, T_b_c), point.trace, point.length, point.cost));
+    }
+    return result;
+}
+
+TopView viewFromAbove(const Config& config, const World& world,
+                      const std::vector<DrawnPath>& paths) {
+    TopView view;
+    view.area = areaOf(config);
+    const double pixel = std::max(kPicturePixel, view.area.sizes().maxCoeff() / kMaxPicturePixels);
+    view.background = world.pictureFromAbove(view.area, config.bounds.max().z(), pixel);
+    view.paths = paths;
+    view.start = config.start.position;
+    view.goal = config.goal.position;
+    return view;
+}
+
 json planResult(const Config& config, const PlanOutcome& outcome,
                 const std::optional<JudgedPath>& baseline, bool interrupted) {
     const double tree = outcome.planSeconds - outcome.viewSeconds - outcome.beliefSeconds;
@@ -149,10 +155,12 @@ json planResult(const Config& config, const PlanOutcome& outcome,
                                           : "no path"},
                 {"seed", config.seed},
                 {"planner", config.planner},
+                {"information", config.viewModel.name},
                 {"space", spaceName(config.space)},
                 {"alpha", outcome.alpha},
                 {"characteristic_length", config.belief.characteristicLength},
                 {"cost", nullptr},
+                {"planner_cost", nullptr},
                 {"length", nullptr},
                 {"mean_trace", nullptr},
                 {"goal_trace", nullptr},
@@ -177,6 +185,7 @@ json planResult(const Config& config, const PlanOutcome& outcome,
     if (baseline) result["baseline"] = jsonOf(*baseline);
     if (!outcome.path) return result;
     result.update(jsonOf(*outcome.path));
+    result["planner_cost"] = outcome.plannerCost;
     for (const BeliefPoint& point : outcome.path->points) result["path"].push_back(jsonOf(point));
     return result;
 }
@@ -197,8 +206,8 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
     report.config = toYaml(config);
     world.describe(report);
     report.trees = {{"search tree", kTreeColor, outcome.tree}};
-    if (outcome.path) report.paths.push_back(drawn(*outcome.path, T_b_c, kPathColor));
-    if (baseline) report.paths.push_back(drawn(*baseline, T_b_c, kBaselineColor));
+    if (outcome.path) report.paths.push_back(drawnPath(*outcome.path, T_b_c, kPathColor));
+    if (baseline) report.paths.push_back(drawnPath(*baseline, T_b_c, kBaselineColor));
     report.start = config.start.position;
     report.goal = config.goal.position;
     report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),

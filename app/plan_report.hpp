@@ -25,6 +25,13 @@ void writePlanReport(const std::filesystem::path& folder, const Config& config, 
                      const std::optional<RecordedComparison>& recorded,
                      const std::string& commandLine, const nlohmann::json& result);
 
+/// A path to be drawn, with its beliefs.
+DrawnPath drawnPath(const JudgedPath& path, const Pose& T_b_c, const Color& color);
+
+/// Start, goal and paths over what lies below the bounds.
+TopView viewFromAbove(const Config& config, const World& world,
+                      const std::vector<DrawnPath>& paths);
+
 /// A figure and the file it goes to.
 struct NamedFigure {
     std::string name;

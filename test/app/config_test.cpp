@@ -42,14 +42,19 @@ TEST(Config, EveryShippedConfigLoads) {
 }
 
 TEST(Config, WrittenConfigReadsBackTheSame) {
-    const Config config = loadConfig(
-        kTwoTextures, {"planner.alpha=0.35", "camera.mount=front45", "start=[0, 0, 2, 0.5]",
-                       "space=xyz_yaw", "noise.propagation=second"});
+    const Config config =
+        loadConfig(kTwoTextures, {"planner.alpha=0.35", "camera.mount=front45",
+                                  "start=[0, 0, 2, 0.5]", "space=xyz_yaw",
+                                  "noise.propagation=second", "planner.information=feature_count",
+                                  "features.threshold=0.05", "planner.penalty_kappa=7"});
     const fs::path file = fs::temp_directory_path() / "photonav_config_round_trip.yaml";
     std::ofstream(file) << toYaml(config);
     const Config again = loadConfig(file.string());
     EXPECT_EQ(toYaml(again), toYaml(config));
     EXPECT_EQ(again.belief.alpha, 0.35);
+    EXPECT_EQ(again.viewModel.name, "feature_count");
+    EXPECT_EQ(again.viewModel.features.threshold, 0.05);
+    EXPECT_EQ(again.viewModel.kappa, 7.);
     EXPECT_EQ(again.space, StateKind::positionYaw);
     EXPECT_EQ(again.belief.order, PropagationOrder::second);
     EXPECT_TRUE(again.camera.T_b_c().isApprox(config.camera.T_b_c()));
@@ -80,7 +85,11 @@ TEST(Config, ComplaintsNameKeyAndReason) {
     expectComplaint("planner.alpha=1.5", "planner.alpha", "outside [0, 1]");
     expectComplaint("planner.alpha=.nan", "planner.alpha", "outside [0, 1]");
     expectComplaint("planner.alpha=much", "planner.alpha", "'much'");
-    expectComplaint("planner.name=rrt", "planner.name", "belief_rrt_star, pa_rrt_star, rrt_star");
+    expectComplaint("planner.name=rrt", "planner.name", "pa_rrt_star, rrbt, rrt_star");
+    expectComplaint("planner.information=sift", "planner.information", "feature_count");
+    expectComplaint("features.threshold=2", "features.threshold", "outside");
+    expectComplaint("features.treshold=0.1", "features.treshold", "did you mean 'threshold'");
+    expectComplaint("planner.penalty_kappa=-1", "planner.penalty_kappa", "below");
     expectComplaint("planner.vertices=2.5", "planner.vertices", "whole number");
     expectComplaint("planner.ds=0", "planner.ds", "below");
     expectComplaint("noise.initial=[-1, 0, 0, 0, 0, 0]", "noise.initial", "negative variance");

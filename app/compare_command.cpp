@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "compare_command.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+
+#include "atomic_file.hpp"
+#include "plan_report.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+constexpr unsigned kRrbtVertices = 400;
+
+using Values = std::vector<double>;
+
+std::string meanAndDeviation(const Values& values, int decimals) {
+    if (values.empty()) return "-";
+    const auto n = static_cast<double>(values.size());
+    double mean = 0.;
+    for (const double v : values) mean += v / n;
+    double variance = 0.;
+    for (const double v : values) variance += (v - mean) * (v - mean) / std::max(1., n - 1.);
+    return fmt::format("{:.{}f} ± {:.{}f}", mean, decimals, std::sqrt(variance), decimals);
+}
+
+std::string tableRow(const std::string& method, const std::vector<const CompareRun*>& runs) {
+    const auto ofPath = [&](double JudgedPath::*value) {
+        Values values;
+        for (const CompareRun* run : runs) {
+            if (run->outcome.path) values.push_back((*run->outcome.path).*value);
+        }
+        return values;
+    };
+    const auto ofRun = [&](const std::function<double(const PlanOutcome&)>& value) {
+        Values values;
+        for (const CompareRun* run : runs) values.push_back(value(run->outcome));
+        return values;
+    };
+    Values traces = ofPath(&JudgedPath::meanTrace);
+    Values goalTraces = ofPath(&JudgedPath::goalTrace);
+    for (Values* values : {&traces, &goalTraces}) {
+        for (double& v : *values) v *= 100.;
+    }
+    return fmt::format(
+        "| {} | {} | {} | {} | {} | {} | {} | {} |\n", method,
+        meanAndDeviation(ofPath(&JudgedPath::cost), 3),
+        meanAndDeviation(ofPath(&JudgedPath::length), 2), meanAndDeviation(traces, 2),
+        meanAndDeviation(goalTraces, 2),
+        meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.vertices); }), 0),
+        meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.views); }), 0),
+        meanAndDeviation(ofRun([](const auto& o) { return o.planSeconds; }), 1));
+}
+
+json jsonOf(const CompareRun& run) {
+    const PlanOutcome& o = run.outcome;
+    json result{{"method", run.method},     {"seed", run.seed},
+                {"vertices", o.vertices},   {"views", o.views},
+                {"seconds", o.planSeconds}, {"status", o.path ? "done" : "no path"}};
+    if (!o.path) return result;
+    result.update({{"cost", o.path->cost},
+                   {"planner_cost", o.plannerCost},
+                   {"length", o.path->length},
+                   {"mean_trace", o.path->meanTrace},
+                   {"goal_trace", o.path->goalTrace}});
+    return result;
+}
+
+/// The first path of every method from above.
+Png picture(const Config& config, const World& world, const std::vector<CompareRun>& runs) {
+    std::vector<DrawnPath> paths;
+    for (const CompareMethod& method : compareMethods()) {
+        const auto run = std::find_if(runs.begin(), runs.end(), [&](const CompareRun& r) {
+            return r.method == method.label() && r.outcome.path;
+        });
+        if (run == runs.end()) continue;
+        paths.push_back(drawnPath(*run->outcome.path, config.camera.T_b_c(), method.color));
+        paths.back().name = method.label();
+    }
+    TopView view = viewFromAbove(config, world, paths);
+    view.title =
+        fmt::format("{}, alpha {}", fs::path(config.file).stem().string(), config.belief.alpha);
+    view.ellipseScale = 0.;
+    return drawTopView(view);
+}
+
+std::vector<CompareRun> runMethods(const Config& config, const World& world,
+                                   const CompareOptions& options, ProgressLine& line,
+                                   const std::atomic<bool>& interrupted) {
+    std::vector<CompareRun> runs;
+    const auto name = fs::path(config.file).stem().string();
+    for (const CompareMethod& method : compareMethods()) {
+        for (std::uint32_t seed = 1; seed <= options.runs; ++seed) {
+            line.show(
+                fmt::format("{}: {}, seed {} of {}", name, method.label(), seed, options.runs));
+            CompareRun run = runMethod(config, world, method, seed, interrupted);
+            if (interrupted) return runs;
+            runs.push_back(std::move(run));
+        }
+    }
+    return runs;
+}
+
+}  // namespace
+
+std::string CompareMethod::label() const {
+    if (planner == "rrt_star") return planner;
+    return planner + ", " + information;
+}
+
+const std::vector<CompareMethod>& compareMethods() {
+    static const std::vector<CompareMethod> methods{
+        {"belief_rrt_star", "photometric", {222, 79, 12}},
+        {"pa_rrt_star", "photometric", {230, 159, 0}},
+        {"rrbt", "photometric", {0, 158, 115}, kRrbtVertices},
+        {"belief_rrt_star", "feature_reprojection", {86, 180, 233}},
+        {"belief_rrt_star", "feature_count", {204, 121, 167}},
+        {"belief_rrt_star", "map_uncertainty", {110, 60, 160}},
+        {"belief_rrt_star", "none", {90, 90, 90}},
+        {"rrt_star", "none", {28, 108, 214}}};
+    return methods;
+}
+
+CompareRun runMethod(const Config& config, const World& world, const CompareMethod& method,
+                     std::uint32_t seed, const std::atomic<bool>& interrupted) {
+    Config own = config;
+    own.seed = seed;
+    own.planner = "belief_rrt_star";  // whose cost has the config's alpha: all are judged by it
+    own.viewModel.name = method.information;
+    if (method.maxVertices > 0) own.vertices = std::min(own.vertices, method.maxVertices);
+    PlanRun run(own, world);
+    return {method.label(), seed, run.solve(method.planner, interrupted, [](const auto&) {})};
+}
+
+std::string compareTable(const std::vector<CompareRun>& runs) {
+    std::string table =
+        "| planner, information | cost J | length [m] | mean trace x100 | goal trace x100 | "
+        "vertices "
+        "| views | seconds |\n|---|---|---|---|---|---|---|---|\n";
+    for (const CompareMethod& method : compareMethods()) {
+        std::vector<const CompareRun*> own;
+        for (const CompareRun& run : runs) {
+            if (run.method == method.label()) own.push_back(&run);
+        }
+        if (!own.empty()) table += tableRow(method.label(), own);
+    }
+    return table;
+}
+
+int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupted) {
+    std::vector<Config> configs;
+    for (const std::string& file : options.configs) {
+        configs.push_back(loadConfig(file, options.overrides));
+    }
+    prepareFolder(options.out);
+    json result{{"schema", 1},
+                {"command", "compare"},
+                {"version", PHOTONAV_VERSION},
+                {"scenarios", json::array()}};
+    bool anyPath = false;
+    for (const Config& config : configs) {
+        const World world(config);
+        PlanRun(config, world).checkPlaces();
+        ProgressLine line(options.quiet);
+        const auto runs = runMethods(config, world, options, line, interrupted);
+        line.clear();
+        if (interrupted) return kInterrupted;
+        const std::string name = fs::path(config.file).stem().string();
+        const std::string table = compareTable(runs);
+        writeFileAtomically(options.out / (name + ".md"), table);
+        writeFileAtomically(options.out / (name + ".png"), picture(config, world, runs));
+        if (!options.quiet) fmt::print("{}\n{}\n", name, table);
+        json scenario{{"config", name}, {"alpha", config.belief.alpha}, {"runs", json::array()}};
+        for (const CompareRun& run : runs) {
+            anyPath = anyPath || run.outcome.path;
+            scenario["runs"].push_back(jsonOf(run));
+        }
+        result["scenarios"].push_back(scenario);
+    }
+    writeFileAtomically(options.out / "result.json", result.dump(2) + "\n");
+    return anyPath ? kDone : kNoAnswer;
+}
+
+}  // namespace photonav

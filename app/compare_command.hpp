@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `photonav compare`: every planner, information model and objective on the same problems.
+#pragma once
+
+#include <atomic>
+#include <vector>
+
+#include "command_io.hpp"
+#include "plan_run.hpp"
+
+namespace photonav {
+
+struct CompareOptions {
+    std::vector<std::string> configs;    ///< YAML files
+    std::vector<std::string> overrides;  ///< key.path=value, for all of them
+    std::filesystem::path out = "out/compare";
+    unsigned runs = 3;  ///< seeds 1, 2, ...
+    bool quiet = false;
+};
+
+/// A planner and what it goes by.
+struct CompareMethod {
+    std::string planner;      ///< planner.name
+    std::string information;  ///< planner.information
+    Color color;              ///< in pictures
+    /// RRBT keeps all beliefs: its time grows with the cube of the vertices.
+    unsigned maxVertices = 0;  ///< 0: as many as the config says
+
+    std::string label() const;
+};
+
+/// All that can be chosen by name, one by one.
+const std::vector<CompareMethod>& compareMethods();
+
+/// One run of a method.
+struct CompareRun {
+    std::string method;
+    std::uint32_t seed = 0;
+    PlanOutcome outcome;
+};
+
+/// Runs a method on a problem. The path is judged by the photometric beliefs and the config's
+/// alpha.
+CompareRun runMethod(const Config& config, const World& world, const CompareMethod& method,
+                     std::uint32_t seed, const std::atomic<bool>& interrupted);
+
+/// Rows of a Markdown table: mean +- standard deviation over the seeds, methods in their order.
+std::string compareTable(const std::vector<CompareRun>& runs);
+
+/// Writes, for every config, <name>.md (table) and <name>.png (the first seed's paths from above)
+/// and, when all is done, result.json with all runs.
+/// @return the exit code; 1 when no run found a path
+int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupted);
+
+}  // namespace photonav
