@@ -3,24 +3,10 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
-#include "alignment.hpp"
+#include "coarse_to_fine.hpp"
 
 namespace photonav {
-
-struct AlignmentOptions {
-    /// Noise and pixel rules, as the planner's; `scale` is the calibrated factor on Lambda and
-    /// `stride` must be 1.
-    PhotometricOptions photometric;
-    TrustOptions trust;
-    RobustWeight robust = RobustWeight::none;
-    bool exposure = false;    ///< estimate gain and offset of the observed image as well
-    int levels = 4;           ///< of the pyramid, each half the size; fewer when images are small
-    int maxIterations = 25;   ///< views rendered per level
-    double coarseStep = 0.1;  ///< a level but the finest is done below this step [its pixels]
-    double fineStep = 0.1;    ///< the finest is done below this step [standard deviations]
-};
 
 /// Aligns images to a model that is rendered anew at every iterate and compared pixel by pixel with
 /// the observed image; the gradient is that of the synthetic image. (Warping the noisy image
@@ -54,8 +40,8 @@ class DenseAligner {
     const Camera& camera() const;
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    class RenderedModel;
+    std::unique_ptr<RenderedModel> model_;
 };
 
 }  // namespace photonav

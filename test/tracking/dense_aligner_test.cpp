@@ -199,6 +199,15 @@ TEST(DenseAligner, FloorBoundsTheCovarianceFromBelow) {
     EXPECT_LT((withFloor(large, 0.01, 0.005) - large).norm(), 1e-12);
 }
 
+TEST(DenseAligner, ResidualStatisticsAreThoseOfTheNoise) {
+    DenseAligner aligner(room(), camera());
+    const Alignment a = aligner.align(observe(room(), kPose, 0.03), kPose);
+    EXPECT_NEAR(a.residual.rms, 0.03, 0.001);
+    EXPECT_NEAR(a.residual.robustSigma, 0.03, 0.001);
+    EXPECT_NEAR(a.residual.mean, 0., 0.001);
+    EXPECT_LT(a.residual.unexplained, 0.2);
+}
+
 TEST(DenseAligner, RefusesImagesOfAnotherSize) {
     DenseAligner aligner(room(), camera());
     EXPECT_THROW(aligner.align(ImageF(10, 10), kPose), std::invalid_argument);

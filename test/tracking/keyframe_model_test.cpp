@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keyframe_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include "rooms.hpp"
+
+namespace photonav {
+namespace {
+
+using testing::cameraAt;
+
+const Camera& camera() {
+    static const Camera half = makeCamera(320, 240, 1.1);
+    return half;
+}
+
+View roomView(const Pose& T_c_w, double sigma = 0., std::uint64_t seed = 1) {
+    static const MeshRenderer renderer(testing::texturedRoom());
+    View view;
+    renderer.render(camera(), T_c_w, view);
+    std::mt19937_64 random(seed);
+    if (sigma > 0.) view.intensity = testing::noisy(view.intensity, sigma, random);
+    return view;
+}
+
+const Pose kPose = cameraAt({1.6, 3., 1.6}, 0.6, 0.1);
+
+Vector6 error(const Alignment& a, const Pose& truth) { return logSE3(truth * a.T_c_w.inverse()); }
+
+TEST(KeyframeModel, FindsTheMotion) {
+    std::mt19937_64 random(1);
+    for (const int finest : {0, 1}) {
+        KeyframeOptions options;
+        options.finest = finest;
+        KeyframeModel keyframe(roomView(kPose), camera(), kPose, options);
+        for (int i = 0; i < 5; ++i) {
+            const Pose truth = expSE3(testing::randomTwist(0.1, 0.06, random)) * kPose;
+            const Alignment a = keyframe.align(roomView(truth).intensity, kPose);
+            EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
+            EXPECT_LT(error(a, truth).head<3>().norm(), 2e-3);
+            EXPECT_LT(error(a, truth).tail<3>().norm(), 1e-3);
+            EXPECT_GT(a.overlap, 0.6);
+        }
+    }
+}
+
+TEST(KeyframeModel, EstimatesExposure) {
+    KeyframeOptions options;
+    options.alignment.exposure = true;
+    KeyframeModel keyframe(roomView(kPose), camera(), kPose, options);
+    const Pose truth = expSE3(0.05 * Vector6::Unit(1)) * kPose;
+    ImageF image = roomView(truth).intensity;
+    for (unsigned i = 0; i < image.getSize(); ++i) image.bitmap[i] = 1.2F * image.bitmap[i] - 0.1F;
+    const Alignment a = keyframe.align(image, kPose);
+    EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
+    EXPECT_NEAR(a.exposure.gain, 1.2, 0.02);
+    EXPECT_NEAR(a.exposure.offset, -0.1, 0.01);
+    EXPECT_LT(error(a, truth).norm(), 2e-3);
+}
+
+/// Information in the camera frame, whatever the motion: that of the planner at the keyframe,
+/// carried over by the adjoint.
+TEST(KeyframeModel, InformationIsCarriedToTheCamera) {
+    KeyframeOptions options;
+    options.finest = 0;
+    options.minGradient = 0.;
+    options.alignment.robust = RobustWeight::none;
+    const View view = roomView(kPose);
+    KeyframeModel keyframe(view, camera(), kPose, options);
+    const Alignment a = keyframe.align(view.intensity, kPose);
+    const Matrix6 planned = photometricInformation(view, camera(), options.alignment.photometric);
+    // A border of a pixel and a few points on its edge are looked up outside the image.
+    EXPECT_LT((a.information - planned).norm(), 0.01 * planned.norm());
+
+    Vector6 turn = 0.3 * Vector6::Unit(5);
+    turn[0] = 0.02;
+    const Pose moved = expSE3(turn) * kPose;
+    const Alignment b = keyframe.align(roomView(moved).intensity, moved);
+    const Matrix6 Ad = adjoint(kPose * b.T_c_w.inverse());
+    const Matrix6 carried = Ad.transpose() * planned * Ad;
+    EXPECT_LT((b.information - carried).norm(), 0.5 * (b.information - planned).norm());
+}
+
+TEST(KeyframeModel, SaysWhenItIsLost) {
+    KeyframeModel keyframe(roomView(kPose), camera(), kPose);
+    EXPECT_TRUE(
+        isLost(keyframe.align(ImageF(camera().height, camera().width, 0.F), kPose).verdict));
+    const View elsewhere = roomView(cameraAt({4.5, 1., 1.2}, 0.2, 2.5), 0.01);
+    EXPECT_TRUE(isLost(keyframe.align(elsewhere.intensity, kPose).verdict));
+    View blind = roomView(kPose);
+    blind.depth = ImageF(camera().height, camera().width, 0.F);
+    KeyframeModel noDepth(blind, camera(), kPose);
+    EXPECT_EQ(noDepth.align(blind.intensity, kPose).verdict, Verdict::lostOverlap);
+}
+
+TEST(KeyframeModel, RefusesImagesOfAnotherSize) {
+    KeyframeModel keyframe(roomView(kPose), camera(), kPose);
+    EXPECT_THROW(keyframe.align(ImageF(10, 10), kPose), std::invalid_argument);
+    EXPECT_THROW(KeyframeModel(View{}, camera()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace photonav

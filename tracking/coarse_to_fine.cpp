@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "coarse_to_fine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "se3.hpp"
+
+namespace photonav {
+
+namespace {
+
+constexpr double kLeastDamping = 1e-3;
+constexpr double kMostDamping = 1e4;
+
+/// A pose on trial, and what the image says there.
+struct Iterate {
+    Pose T_c_w = Pose::Identity();
+    Exposure exposure;
+    NormalEquations equations;
+    Vector6 fromPrior = Vector6::Zero();  ///< log(T_c_w T_prior^-1)
+    double priorTerm = 0.;                ///< squared distance from the prior
+};
+
+class Search {
+  public:
+    Search(Comparison& comparison, const AlignmentOptions& options, const UncertainPose* prior)
+        : comparison_(comparison), options_(options), prior_(prior) {}
+
+    Alignment run(const Pose& T_start);
+
+  private:
+    bool descend();
+    bool improve(double& damping);
+    Iterate evaluate(const Pose& T_c_w, const Exposure& exposure);
+    void adaptLoss(double below);
+    double cost(const Iterate& at, double pixels) const;
+    Vector6 step(const PoseEquations& equations, double damping) const;
+    bool isSmall(const Vector6& xi, const Matrix6& information) const;
+    Matrix6 transportedPrior() const;
+    double scale() const { return std::ldexp(1., static_cast<int>(level_)); }
+
+    Comparison& comparison_;
+    const AlignmentOptions& options_;
+    const UncertainPose* prior_;
+    std::size_t level_ = 0;
+    Loss loss_;
+    Iterate at_;
+    int iterations_ = 0;
+    bool done_ = false;  ///< with this level: the last step was small
+};
+
+Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
+    Iterate at{T_c_w, exposure, comparison_.compare(level_, T_c_w, exposure, loss_)};
+    ++iterations_;
+    if (prior_) {
+        at.fromPrior = logSE3(T_c_w * prior_->mean.inverse());
+        at.priorTerm = squaredDistance(at.fromPrior, prior_->covariance);
+    }
+    return at;
+}
+
+/// -2 log likelihood, as if `pixels` had been seen: iterates see different numbers of them.
+double Search::cost(const Iterate& at, double pixels) const {
+    if (at.equations.count < 1.) return std::numeric_limits<double>::infinity();
+    const PhotometricOptions& p = options_.photometric;
+    return p.scale / (p.sigma * p.sigma) * at.equations.loss * pixels / at.equations.count +
+           at.priorTerm;
+}
+
+/// The prior's covariance at the iterate: with T = exp(e^) T_prior, a perturbation of the prior on
+/// the left reaches T through the left Jacobian of e.
+Matrix6 Search::transportedPrior() const {
+    const Matrix6 J = leftJacobian(at_.fromPrior);
+    return J * prior_->covariance * J.transpose();
+}
+
+Vector6 Search::step(const PoseEquations& equations, double damping) const {
+    const double inverseDepth = at_.equations.meanInverseDepth;
+    const Spectrum s = spectrum(equations.information, inverseDepth > 0. ? 1. / inverseDepth : 1.);
+    if (prior_) return mapStep(s, equations, at_.fromPrior, transportedPrior(), damping);
+    // A level of a quarter of the pixels has about a quarter of the information.
+    const double sigma = options_.trust.openSigma * scale();
+    return imageStep(s, equations.right, 1. / (sigma * sigma), damping);
+}
+
+bool Search::isSmall(const Vector6& xi, const Matrix6& information) const {
+    if (level_ == 0) {
+        return xi.dot(information * xi) < 6. * options_.fineStep * options_.fineStep;
+    }
+    const double radians =
+        xi.head<3>().norm() * at_.equations.meanInverseDepth + xi.tail<3>().norm();
+    return comparison_.camera(level_).fx() * radians < options_.coarseStep;
+}
+
+/// Takes over the scale of the residuals just seen, not below the noise, when it has fallen below
+/// `below` times the one in use.
+void Search::adaptLoss(double below) {
+    if (options_.robust == RobustWeight::none) return;
+    const double seen = std::max(options_.photometric.sigma, comparison_.robustSigma());
+    if (seen >= below * loss_.sigma) return;
+    loss_ = {options_.robust, seen};
+    at_ = evaluate(at_.T_c_w, at_.exposure);
+}
+
+/// One step that lowers the cost, raising the damping until it does; false when there is none.
+bool Search::improve(double& damping) {
+    const PoseEquations equations =
+        poseEquations(at_.equations, options_.photometric, options_.exposure);
+    for (;;) {
+        const Vector6 xi = step(equations, damping);
+        const Eigen::Vector2d change = equations.exposureRight - equations.exposureOfPose * xi;
+        const Exposure exposure{at_.exposure.gain + change[0], at_.exposure.offset + change[1]};
+        const Iterate next = evaluate(expSE3(xi) * at_.T_c_w, exposure);
+        const double pixels = at_.equations.count;
+        const bool better = cost(next, pixels) <= cost(at_, pixels);
+        done_ = isSmall(xi, equations.information);
+        if (better) {
+            at_ = next;
+            damping = damping > kLeastDamping ? 0.1 * damping : 0.;
+        }
+        if (better || done_) return true;
+        damping = std::max(kLeastDamping, 10. * damping);
+        if (damping > kMostDamping) return false;
+    }
+}
+
+/// One level; false when no minimum was found.
+bool Search::descend() {
+    loss_ = {RobustWeight::none, std::numeric_limits<double>::max()};
+    at_ = evaluate(at_.T_c_w, at_.exposure);
+    adaptLoss(1.);
+    const int last = iterations_ + options_.maxIterations;
+    double damping = 0.;
+    done_ = false;
+    while (at_.equations.count > 0. && iterations_ < last) {
+        if (!improve(damping)) return false;
+        if (done_) return true;
+        adaptLoss(0.7);
+    }
+    return false;
+}
+
+Alignment Search::run(const Pose& T_start) {
+    at_.T_c_w = T_start;
+    bool converged = false;
+    for (level_ = comparison_.levels(); level_-- > 0;) {
+        converged = descend();
+        if (level_ == 0) break;
+    }
+    Alignment result;
+    result.T_c_w = at_.T_c_w;
+    result.exposure = at_.exposure;
+    result.iterations = iterations_;
+    result.verdict = converged ? Verdict::converged : Verdict::lostDivergence;
+    std::optional<Matrix6> prior;
+    if (prior_) {
+        prior = transportedPrior();
+        if (at_.priorTerm > options_.trust.maxSurprise) result.verdict = Verdict::lostImplausible;
+    }
+    conclude(result, at_.equations, comparison_.pixels(), options_.photometric, options_.exposure,
+             prior, options_.trust);
+    result.residual.robustSigma = comparison_.robustSigma();
+    return result;
+}
+
+}  // namespace
+
+Alignment alignCoarseToFine(Comparison& comparison, const AlignmentOptions& options,
+                            const Pose& T_start, const UncertainPose* prior) {
+    return Search(comparison, options, prior).run(T_start);
+}
+
+}  // namespace photonav
