@@ -21,6 +21,7 @@
 #include "mesh_renderer.hpp"
 #include "se3.hpp"
 #include "sequence_tum.hpp"
+#include "tracking_scenes.hpp"
 #include "voxel_renderer.hpp"
 
 using namespace photonav;
@@ -104,6 +105,7 @@ struct Method {
     std::string name;
     KeyframeOptions options;
     Score score;
+    double nees = 0.;  ///< sum, per degree of freedom
 };
 
 std::vector<Method> keyframeMethods() {
@@ -144,6 +146,8 @@ void compareOnPairs(const std::string& folder, std::size_t step) {
             });
             method.score.failed += isLost(a.verdict) ? 1 : 0;
             method.score.add(a.T_c_w, truth, ms);
+            const Vector6 xi = logSE3(truth * a.T_c_w.inverse());
+            method.nees += xi.dot(a.covariance.ldlt().solve(xi)) / 6.;
         }
         first = second;
     }
@@ -153,38 +157,18 @@ void compareOnPairs(const std::string& folder, std::size_t step) {
     opencv.print("OpenCV RgbdOdometry");
     for (const Method& method : methods) {
         method.score.print(method.name);
-        fmt::print("  {:<28} {:.1f}x faster than RgbdOdometry\n", "",
-                   quantile(opencv.time, 0.5) / quantile(method.score.time, 0.5));
+        fmt::print("  {:<28} {:.1f}x faster than RgbdOdometry, NEES {:.2f}\n", "",
+                   quantile(opencv.time, 0.5) / quantile(method.score.time, 0.5),
+                   method.nees / double(still.time.size()));
     }
 }
 
 // --- Images in a map ----------------------------------------------------------------------------
 
-/// A hall of 8 x 8 x 3 m with boxes.
-Scene hall() {
-    Scene scene;
-    const auto floor = addTexture(scene, valueNoise({.size = {8., 8.}, .seed = 1}));
-    const auto walls = addTexture(scene, valueNoise({.size = {4., 3.}, .seed = 2}));
-    const auto crates = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 3}));
-    addBox(scene, {0., 0., 0.}, {8., 8., 3.}, walls);
-    addPlane(scene, {0., 0., 0.01}, {8., 0., 0.}, {0., 8., 0.}, floor);
-    for (int i = 0; i < 12; ++i) {
-        const Eigen::Vector3d corner(1. + 0.5 * i, 1. + 1.7 * (i * 5 % 4), 0.);
-        addBox(scene, corner, corner + Eigen::Vector3d(0.4, 0.4, 0.5), crates);
-    }
-    return scene;
-}
-
-/// A circle of 2 m radius at 1.7 m above the floor, camera ahead and down.
 std::vector<Pose> circle(double belowHorizon, int count) {
     std::vector<Pose> poses;
     for (int i = 0; i < count; ++i) {
-        const double angle = 2. * std::numbers::pi * i / count;
-        Pose T_w_b = Pose::Identity();
-        T_w_b.translation() =
-            Eigen::Vector3d(4. + 2. * std::cos(angle), 4. + 2. * std::sin(angle), 1.7);
-        T_w_b.linear() = Eigen::AngleAxisd(angle + 2., Eigen::Vector3d::UnitZ()).toRotationMatrix();
-        poses.push_back((T_w_b * cameraMount(belowHorizon)).inverse());
+        poses.push_back(onCircle(2. * std::numbers::pi * i / count, belowHorizon));
     }
     return poses;
 }
@@ -206,7 +190,7 @@ TexturedOcTree mapOf(const MeshRenderer& mesh) {
 /// per axis, the prior's).
 void track(const std::string& name, const MeshRenderer& world, const ViewSource& model,
            double belowHorizon) {
-    const Camera camera = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
+    const Camera camera = trackingCamera();
     DenseAligner aligner(model, camera);
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal;
@@ -236,7 +220,7 @@ void track(const std::string& name, const MeshRenderer& world, const ViewSource&
 }
 
 void trackInMaps() {
-    const MeshRenderer mesh(hall());
+    const MeshRenderer mesh(furnishedHall());
     const TexturedOcTree map = mapOf(mesh);
     const VoxelRenderer voxels(map, UnknownPolicy::occupied);
     fmt::print("188x120 images in a map, starts 2 cm and 1 degree off: median and p90 of 100\n");

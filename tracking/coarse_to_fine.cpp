@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kLeastDamping = 1e-3;
 constexpr double kMostDamping = 1e4;
+/// Which pixels count changes from pose to pose, and with it the cost by more than small steps do.
+constexpr double kCostNoise = 1e-3;
 
 /// A pose on trial, and what the image says there.
 struct Iterate {
@@ -37,7 +39,7 @@ class Search {
     void adaptLoss(double below);
     double cost(const Iterate& at, double pixels) const;
     Vector6 step(const PoseEquations& equations, double damping) const;
-    bool isSmall(const Vector6& xi, const Matrix6& information) const;
+    bool isSmall(const Vector6& xi, const Matrix6& information, double patience) const;
     Matrix6 transportedPrior() const;
     double scale() const { return std::ldexp(1., static_cast<int>(level_)); }
 
@@ -48,7 +50,8 @@ class Search {
     Loss loss_;
     Iterate at_;
     int iterations_ = 0;
-    bool done_ = false;  ///< with this level: the last step was small
+    int levelBegan_ = 0;  ///< value of iterations_ then
+    bool done_ = false;   ///< with this level: the last step was small
 };
 
 Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
@@ -85,9 +88,14 @@ Vector6 Search::step(const PoseEquations& equations, double damping) const {
     return imageStep(s, equations.right, 1. / (sigma * sigma), damping);
 }
 
-bool Search::isSmall(const Vector6& xi, const Matrix6& information) const {
+/// @param patience factor on the step: where visibility jumps, steps need not become smaller
+bool Search::isSmall(const Vector6& xi, const Matrix6& information, double patience) const {
     if (level_ == 0) {
-        return xi.dot(information * xi) < 6. * options_.fineStep * options_.fineStep;
+        const NormalEquations& e = at_.equations;
+        const double sigma = options_.photometric.sigma;
+        const double noise = std::max(1., e.sumSquares / (e.count * sigma * sigma));
+        const double step = patience * options_.fineStep;
+        return xi.dot(information * xi) < 6. * step * step * noise;
     }
     const double radians =
         xi.head<3>().norm() * at_.equations.meanInverseDepth + xi.tail<3>().norm();
@@ -114,8 +122,8 @@ bool Search::improve(double& damping) {
         const Exposure exposure{at_.exposure.gain + change[0], at_.exposure.offset + change[1]};
         const Iterate next = evaluate(expSE3(xi) * at_.T_c_w, exposure);
         const double pixels = at_.equations.count;
-        const bool better = cost(next, pixels) <= cost(at_, pixels);
-        done_ = isSmall(xi, equations.information);
+        const bool better = cost(next, pixels) <= (1. + kCostNoise) * cost(at_, pixels);
+        done_ = isSmall(xi, equations.information, 1. + 0.2 * (iterations_ - levelBegan_));
         if (better) {
             at_ = next;
             damping = damping > kLeastDamping ? 0.1 * damping : 0.;
@@ -131,6 +139,7 @@ bool Search::descend() {
     loss_ = {RobustWeight::none, std::numeric_limits<double>::max()};
     at_ = evaluate(at_.T_c_w, at_.exposure);
     adaptLoss(1.);
+    levelBegan_ = iterations_;
     const int last = iterations_ + options_.maxIterations;
     double damping = 0.;
     done_ = false;

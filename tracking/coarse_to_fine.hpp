@@ -15,8 +15,10 @@ struct AlignmentOptions {
     bool exposure = false;    ///< estimate gain and offset of the observed image as well
     int levels = 4;           ///< of the pyramid, each half the size; fewer when images are small
     int maxIterations = 25;   ///< views rendered per level
-    double coarseStep = 0.1;  ///< a level but the finest is done below this step [its pixels]
-    double fineStep = 0.1;    ///< the finest is done below this step [standard deviations]
+    double coarseStep = 0.3;  ///< a level but the finest is done below this step [its pixels]
+    /// The finest is done below this step [standard deviations, given the residuals seen]. Where
+    /// surfaces end, visibility jumps from pixel to pixel and keeps steps at about 0.3.
+    double fineStep = 0.3;
 };
 
 /// An image and a model of what it shows, at several sizes: level 0 is the finest.

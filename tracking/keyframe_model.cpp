@@ -27,6 +27,9 @@ NormalEquations onTheLeft(NormalEquations e, const Pose& T) {
 }  // namespace
 
 KeyframeOptions::KeyframeOptions() {
+    alignment.photometric.scale = 0.7;
+    alignment.trust.floorTranslation = 0.006;
+    alignment.trust.floorRotation = 0.0035;
     alignment.levels = 3;
     alignment.coarseStep = 0.3;
     alignment.fineStep = 1.;

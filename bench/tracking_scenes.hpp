@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scenes and poses that the benchmarks of tracking share.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "camera.hpp"
+#include "scene.hpp"
+
+namespace photonav {
+
+inline Camera trackingCamera() { return makeCamera(188, 120, 70. * std::numbers::pi / 180.); }
+
+/// A hall of 8 x 8 x 3 m with textured floor and walls and twelve boxes.
+inline Scene furnishedHall() {
+    Scene scene;
+    const auto floor = addTexture(scene, valueNoise({.size = {8., 8.}, .seed = 1}));
+    const auto walls = addTexture(scene, valueNoise({.size = {4., 3.}, .seed = 2}));
+    const auto crates = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 3}));
+    addBox(scene, {0., 0., 0.}, {8., 8., 3.}, walls);
+    addPlane(scene, {0., 0., 0.01}, {8., 0., 0.}, {0., 8., 0.}, floor);
+    for (int i = 0; i < 12; ++i) {
+        const Eigen::Vector3d corner(1. + 0.5 * i, 1. + 1.7 * (i * 5 % 4), 0.);
+        addBox(scene, corner, corner + Eigen::Vector3d(0.4, 0.4, 0.5), crates);
+    }
+    return scene;
+}
+
+/// Nothing but a textured floor.
+inline Scene texturedFloor() {
+    Scene scene;
+    const auto floor = addTexture(scene, valueNoise({.size = {8., 8.}, .seed = 1}));
+    addPlane(scene, {-12., -12., 0.}, {32., 0., 0.}, {0., 32., 0.}, floor);
+    return scene;
+}
+
+/// On a circle of 2 m radius about the hall's centre, 1.7 m high, looking ahead and inward.
+inline Pose onCircle(double angle, double belowHorizon) {
+    Pose T_w_b = Pose::Identity();
+    T_w_b.translation() =
+        Eigen::Vector3d(4. + 2. * std::cos(angle), 4. + 2. * std::sin(angle), 1.7);
+    T_w_b.linear() = Eigen::AngleAxisd(angle + 2., Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    return (T_w_b * cameraMount(belowHorizon)).inverse();
+}
+
+}  // namespace photonav

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "calibration.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+namespace photonav {
+
+namespace {
+
+/// Mean of -2 log likelihood per degree of freedom, without the constant.
+double misfit(std::span<const AlignmentError> errors, double scale, double translation,
+              double rotation) {
+    double sum = 0.;
+    for (const AlignmentError& e : errors) {
+        const Matrix6 covariance =
+            withFloor((scale * e.information).inverse(), translation, rotation);
+        const Eigen::LLT<Matrix6> factor(covariance);
+        if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+        const Matrix6 L = factor.matrixL();
+        sum += factor.matrixL().solve(e.xi).squaredNorm() + 2. * L.diagonal().array().log().sum();
+    }
+    return sum / (6. * static_cast<double>(errors.size()));
+}
+
+/// Coordinate descent over logarithms, each step halved until a percent or so.
+void descend(std::span<const AlignmentError> errors, std::array<double, 3>& parameters, int first,
+             int end) {
+    double best = misfit(errors, parameters[0], parameters[1], parameters[2]);
+    for (double factor = 4.; factor > 1.01; factor = std::sqrt(factor)) {
+        for (bool improved = true; improved;) {
+            improved = false;
+            for (int i = first; i < end; ++i) {
+                for (const double by : {factor, 1. / factor}) {
+                    std::array<double, 3> trial = parameters;
+                    trial[i] *= by;
+                    const double m = misfit(errors, trial[0], trial[1], trial[2]);
+                    if (m >= best - 1e-9) continue;
+                    best = m;
+                    parameters = trial;
+                    improved = true;
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+
+double neesPerDof(std::span<const AlignmentError> errors, double scale, double floorTranslation,
+                  double floorRotation) {
+    double sum = 0.;
+    for (const AlignmentError& e : errors) {
+        const Matrix6 covariance =
+            withFloor((scale * e.information).inverse(), floorTranslation, floorRotation);
+        sum += e.xi.dot(covariance.ldlt().solve(e.xi)) / 6.;
+    }
+    return sum / static_cast<double>(errors.size());
+}
+
+Calibration calibrate(std::span<const AlignmentError> errors) {
+    if (errors.size() < 20) throw std::invalid_argument("calibrate: fewer than 20 alignments");
+    Calibration result;
+    result.neesBefore = neesPerDof(errors);
+    // Without a floor the most likely factor is the one that makes the NEES one.
+    result.scale = 1. / result.neesBefore;
+    std::array<double, 3> withFloors = {1., 0., 0.};
+    for (const AlignmentError& e : errors) {
+        withFloors[1] += e.xi.head<3>().squaredNorm();
+        withFloors[2] += e.xi.tail<3>().squaredNorm();
+    }
+    const double n = 3. * static_cast<double>(errors.size());
+    withFloors[1] = std::sqrt(withFloors[1] / n);
+    withFloors[2] = std::sqrt(withFloors[2] / n);
+    descend(errors, withFloors, 0, 3);
+    constexpr double kWorthwhile = 0.05;  // misfit per degree of freedom
+    if (misfit(errors, withFloors[0], withFloors[1], withFloors[2]) <
+        misfit(errors, result.scale, 0., 0.) - kWorthwhile) {
+        result.scale = withFloors[0];
+        result.floorTranslation = withFloors[1];
+        result.floorRotation = withFloors[2];
+    }
+    result.neesAfter =
+        neesPerDof(errors, result.scale, result.floorTranslation, result.floorRotation);
+    return result;
+}
+
+AlignmentOptions realCameraOptions(double resolution) {
+    AlignmentOptions options;
+    options.exposure = true;
+    options.photometric.scale = 0.4;
+    // Flights in maps of 5 and 2.5 cm, the scene about 2.5 m away.
+    const double floor = 0.015 * std::pow(resolution / 0.05, 1.3);
+    options.trust.floorTranslation = floor;
+    options.trust.floorRotation = 0.5 * floor;
+    return options;
+}
+
+}  // namespace photonav

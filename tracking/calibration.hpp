@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Making predicted covariances true: what factor on Lambda and what floor recorded errors ask for.
+#pragma once
+
+#include <span>
+
+#include "alignment.hpp"
+#include "coarse_to_fine.hpp"
+
+namespace photonav {
+
+/// One alignment whose truth is known.
+struct AlignmentError {
+    Vector6 xi = Vector6::Zero();           ///< log(T_true T_estimated^-1), camera frame
+    Matrix6 information = Matrix6::Zero();  ///< Lambda with scale 1, full rank
+};
+
+/// NEES per degree of freedom, mean over the samples: 1 is honest, above is optimistic.
+/// @param scale factor on every information matrix
+double neesPerDof(std::span<const AlignmentError> errors, double scale = 1.,
+                  double floorTranslation = 0., double floorRotation = 0.);
+
+struct Calibration {
+    double scale = 1.;             ///< for PhotometricOptions::scale
+    double floorTranslation = 0.;  ///< for TrustOptions [m]; 0 when the errors ask for none
+    double floorRotation = 0.;     ///< [rad]
+    double neesBefore = 0.;        ///< per degree of freedom, with scale 1 and no floor
+    double neesAfter = 0.;
+};
+
+/// The factor and the floor under which the errors are most likely (Gaussian). When a factor alone
+/// is nearly as likely, there is no floor.
+/// @throws std::invalid_argument below 20 samples
+Calibration calibrate(std::span<const AlignmentError> errors);
+
+/// Options for images of a real camera, from the calibration in docs/tracking.md: exposure is
+/// estimated, Lambda weighs less, and the floor is that of a map.
+/// @param resolution of the map [m]; 0: a mesh as exact as the images
+AlignmentOptions realCameraOptions(double resolution);
+
+}  // namespace photonav
