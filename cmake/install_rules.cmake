@@ -11,7 +11,7 @@ install(TARGETS photonav_core photonav_planning photonav_tracking EXPORT photona
 install(TARGETS photonav)
 install(DIRECTORY src/ planning/ tracking/ DESTINATION include/photonav FILES_MATCHING PATTERN "*.hpp"
     PATTERN "yaml_reader.hpp" EXCLUDE PATTERN "simd.hpp" EXCLUDE
-    PATTERN "product_sums.hpp" EXCLUDE)
+    PATTERN "product_sums.hpp" EXCLUDE PATTERN "keyframe_points.hpp" EXCLUDE)
 install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/photonav/config)
 install(EXPORT photonav_targets NAMESPACE photonav:: DESTINATION ${_config_dir})
 configure_package_config_file(cmake/photonavConfig.cmake.in

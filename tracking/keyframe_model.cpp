@@ -28,8 +28,8 @@ NormalEquations onTheLeft(NormalEquations e, const Pose& T) {
 
 KeyframeOptions::KeyframeOptions() {
     alignment.photometric.scale = 0.7;
-    alignment.trust.floorTranslation = 0.006;
-    alignment.trust.floorRotation = 0.0035;
+    alignment.trust.floorTranslation = 0.0075;
+    alignment.trust.floorRotation = 0.0044;
     alignment.levels = 3;
     alignment.coarseStep = 0.3;
     alignment.fineStep = 1.;
