@@ -91,7 +91,7 @@ Calibration calibrate(std::span<const AlignmentError> errors) {
 AlignmentOptions realCameraOptions(double resolution) {
     AlignmentOptions options;
     options.exposure = true;
-    options.photometric.scale = 0.4;
+    options.photometric.scale = 0.55;
     // Flights in maps of 5 and 2.5 cm, the scene about 2.5 m away.
     const double floor = 0.015 * std::pow(resolution / 0.05, 1.3);
     options.trust.floorTranslation = floor;

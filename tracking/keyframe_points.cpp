@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "product_sums.hpp"
 #include "simd.hpp"
@@ -39,25 +40,31 @@ Float bilinear(const ImageF& image, const Float& u, const Float& v) {
     return left + du * (right - left);
 }
 
+/// Elements first, first + 2, ... of two vectors one after the other.
+template <int... kLane>
+Float everySecond(const Float& a, const Float& b, int first,
+                  std::integer_sequence<int, kLane...> /*lanes*/) {
+    return first == 0 ? __builtin_shufflevector(a, b, (2 * kLane)...)
+                      : __builtin_shufflevector(a, b, (2 * kLane + 1)...);
+}
+
 /// out[u] = merge of a[2u], a[2u + 1], b[2u], b[2u + 1].
 template <class Merge>
 void halveRows(const float* a, const float* b, float* out, unsigned width, const Merge& merge) {
-    Int even, odd;
-    for (int i = 0; i < kWidth; ++i) {
-        even[i] = 2 * i;
-        odd[i] = 2 * i + 1;
-    }
+    const auto columns = [](const float* row, int first) {
+        return everySecond(at(row), at(row + kWidth), first,
+                           std::make_integer_sequence<int, kWidth>());
+    };
     unsigned u = 0;
     for (; u + kWidth <= width; u += kWidth) {
-        const Float a0 = at(a + 2 * u), a1 = at(a + 2 * u + kWidth);
-        const Float b0 = at(b + 2 * u), b1 = at(b + 2 * u + kWidth);
-        simd::store(out + u,
-                    merge(__builtin_shuffle(a0, a1, even), __builtin_shuffle(a0, a1, odd),
-                          __builtin_shuffle(b0, b1, even), __builtin_shuffle(b0, b1, odd)));
+        const std::size_t from = 2 * std::size_t(u);
+        simd::store(out + u, merge(columns(a + from, 0), columns(a + from, 1), columns(b + from, 0),
+                                   columns(b + from, 1)));
     }
     for (; u < width; ++u) {
-        out[u] = merge(simd::splat(a[2 * u]), simd::splat(a[2 * u + 1]), simd::splat(b[2 * u]),
-                       simd::splat(b[2 * u + 1]))[0];
+        const std::size_t from = 2 * std::size_t(u);
+        out[u] = merge(simd::splat(a[from]), simd::splat(a[from + 1]), simd::splat(b[from]),
+                       simd::splat(b[from + 1]))[0];
     }
 }
 
