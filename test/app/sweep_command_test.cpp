@@ -274,7 +274,7 @@ TEST_F(SweepCommand, AnUnreachableGoalIsSaidByEveryPlanner) {
 
 TEST_F(SweepCommand, BadInputIsOneLineAndExitCodeTwo) {
     expectBadInput(sweep("out", "--planners rrt_star,rrt_sta", " "),
-                   "'rrt_sta' is not one of belief_rrt_star, pa_rrt_star, rrt_star");
+                   "'rrt_sta' is not one of belief_rrt_star, pa_rrt_star, rrbt, rrt_star");
     expectBadInput(sweep("out", "--alpha 0:1", " "), "--alpha: expected first:last:step");
     expectBadInput(sweep("out", "--alpha 0.5,1.5", " "), "1.5 is outside [0, 1]");
     expectBadInput(sweep("out", "--shard 3/2", " "), "--shard: '3/2' is not k/n");
