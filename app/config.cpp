@@ -201,7 +201,9 @@ void readPlanner(YamlMap& root, Config& config) {
     config.belief.cost = cost == "integral" ? CostRule::integral : CostRule::perVertex;
     planner.readNumber("characteristic_length", config.belief.characteristicLength, 0., kInfinity);
     readCount(planner, "vertices", config.vertices, 2., 1e8);
-    readCount(planner, "labels", config.labels, 1., 1e6);
+    readCount(planner, "labels", config.search.labels, 1., 1e6);
+    planner.read("informed", config.search.informed);
+    readCount(planner, "shortcut", config.search.shortcut, 0., 1e9);
     planner.readNumber("range", config.growth.range, 0., kInfinity);
     planner.readNumber("goal_bias", config.growth.goalBias, 1e-4, 1.);
     planner.readNumber("rewire_factor", config.growth.rewireFactor, kTiny, kInfinity);
@@ -290,10 +292,11 @@ std::string toYaml(const Config& c) {
                      c.viewModel.features.referenceCount));
     line(fmt::format(
         "planner:\n  name: {}\n  information: {}\n  alpha: {}\n  kappa: {}\n  ds: {}\n  cost: {}\n"
-        "  characteristic_length: {}\n  vertices: {}\n  labels: {}",
+        "  characteristic_length: {}\n  vertices: {}\n  labels: {}\n  informed: {}\n"
+        "  shortcut: {}",
         c.planner, c.viewModel.name, c.belief.alpha, c.belief.kappa, c.belief.ds,
         kCosts[c.belief.cost == CostRule::perVertex], c.belief.characteristicLength, c.vertices,
-        c.labels));
+        c.search.labels, c.search.informed, c.search.shortcut));
     line(
         fmt::format("  range: {}\n  goal_bias: {}\n  rewire_factor: {}\n  rotation_weight: {}\n"
                     "  penalty_kappa: {}\n  map_prior_sigma: {}\n  view_pitch: {}\n  "

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "belief.hpp"
-#include "belief_planner.hpp"
+#include "belief_rrt_star.hpp"
 #include "camera.hpp"
 #include "photometric.hpp"
 #include "sweep_config.hpp"
@@ -63,7 +63,7 @@ struct Config {
     std::string planner = "belief_rrt_star";
     ViewModelConfig viewModel;
     unsigned vertices = 2500;
-    unsigned labels = 5;
+    SearchOptions search;  ///< of belief_rrt_star
     GrowthOptions growth;
     double rotationWeight = 0.25;  ///< metres that a radian of rotation counts
     bool compareWithRrtStar = true;

@@ -142,6 +142,22 @@ void drawBackground(Canvas& canvas, const ImageF& background, const Frame& frame
     canvas.picture(pixels, static_cast<int>(background.getWidth()), frame, true);
 }
 
+void drawMap(const Plot& plot, const TopView& view) {
+    plot.drawGrid();
+    drawBackground(plot.canvas, view.background, plot.frame);
+    {
+        const auto clipped = plot.canvas.clip(plot.frame);
+        for (const DrawnTree& tree : view.trees) drawTree(plot, tree);
+        if (view.ellipseScale > 0.0)
+            for (const DrawnPath& path : view.paths) drawEllipses(plot, path, view.ellipseScale);
+        for (auto path = view.paths.rbegin(); path != view.paths.rend(); ++path)
+            drawRoute(plot, *path);
+        drawMarker(plot.canvas, plot.at(view.start.x(), view.start.y()), kStart);
+        drawMarker(plot.canvas, plot.at(view.goal.x(), view.goal.y()), kGoal);
+    }
+    plot.drawAxes();
+}
+
 std::vector<LegendEntry> legendOf(const TopView& view) {
     std::vector<LegendEntry> entries;
     for (const DrawnPath& path : view.paths)
@@ -254,27 +270,37 @@ Png drawTopView(const TopView& view) {
     Canvas canvas(frame.right() + kLegendGap + legendWidth(legend) + 24.0,
                   std::max(frame.bottom() + kBottom,
                            kTop + 60.0 + 32.0 * static_cast<double>(legend.size())));
-    const Plot plot = mapPlot(canvas, frame, view.area);
-
-    plot.drawGrid();
-    drawBackground(canvas, view.background, frame);
-    {
-        const auto clipped = canvas.clip(frame);
-        for (const DrawnTree& tree : view.trees) drawTree(plot, tree);
-        if (view.ellipseScale > 0.0)
-            for (const DrawnPath& path : view.paths) drawEllipses(plot, path, view.ellipseScale);
-        for (auto path = view.paths.rbegin(); path != view.paths.rend(); ++path)
-            drawRoute(plot, *path);
-        drawMarker(canvas, plot.at(view.start.x(), view.start.y()), kStart);
-        drawMarker(canvas, plot.at(view.goal.x(), view.goal.y()), kGoal);
-    }
-    plot.drawAxes();
+    drawMap(mapPlot(canvas, frame, view.area), view);
     drawTitle(canvas, view.title, frame.x);
     Canvas::Point corner(frame.right() + kLegendGap, frame.y + 12.0);
     for (const LegendEntry& entry : legend) {
         drawLegendEntry(canvas, entry, corner);
         corner.y() += 32.0;
     }
+    return canvas.png();
+}
+
+Png drawMaps(const std::vector<std::vector<TopView>>& rows) {
+    if (rows.empty() || rows[0].empty()) throw std::invalid_argument("figure: no maps");
+    requireArea(rows[0][0].area);
+    const Frame first = mapFrame(rows[0][0].area, 420.0);
+    const double width = first.right() + 24.0;
+    const double height = first.bottom() + kBottom;
+    std::size_t columns = 0;
+    for (const auto& row : rows) columns = std::max(columns, row.size());
+    Canvas canvas(width * static_cast<double>(columns), height * static_cast<double>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        for (std::size_t j = 0; j < rows[i].size(); ++j) {
+            TopView view = rows[i][j];
+            requireArea(view.area);
+            view.ellipseScale = 0.0;
+            const Canvas::Point corner(width * static_cast<double>(j),
+                                       height * static_cast<double>(i));
+            const Frame frame{corner.x() + first.x, corner.y() + first.y, first.width,
+                              first.height};
+            drawMap(mapPlot(canvas, frame, view.area), view);
+            canvas.text(view.title, {frame.x, corner.y() + 34.0}, Align::left, kInk);
+        }
     return canvas.png();
 }
 

@@ -63,6 +63,10 @@ struct TopView {
 /// @throws std::invalid_argument if the area is empty
 Png drawTopView(const TopView& view);
 
+/// Maps without ellipses and legends, in rows.
+/// @throws std::invalid_argument if there is none, or an area is empty
+Png drawMaps(const std::vector<std::vector<TopView>>& rows);
+
 /// Trace of the pose covariance over the distance along each path.
 /// @param logScale decades instead of a linear axis from 0
 Png drawTrace(const std::string& title, const std::vector<DrawnPath>& paths, bool logScale);

@@ -16,6 +16,7 @@
 #include "map_command.hpp"
 #include "map_config.hpp"
 #include "plan_command.hpp"
+#include "reference_command.hpp"
 #include "report.hpp"
 #include "scan_command.hpp"
 #include "sweep_command.hpp"
@@ -64,6 +65,8 @@ Command planCommand(CLI::App& app, const std::string& commandLine) {
     parser->add_option("--seed", *seed, "of everything random (overrides the config)");
     parser->add_flag("--audit", options->audit,
                      "print what replaying every stored belief from the start gave");
+    parser->add_flag("--evolution", options->evolution,
+                     "show how the trees of RRT* and of the planner grow (figure and animation)");
     return {parser, [options, seed] {
                 if (!seed->empty()) options->overrides.push_back("seed=" + *seed);
                 return runPlan(*options, interrupted);
@@ -254,6 +257,29 @@ Command benchmarkCommand(CLI::App& app, const std::string& commandLine) {
     return {parser, [options] { return runBenchmark(*options, interrupted); }};
 }
 
+Command referenceCommand(CLI::App& app) {
+    auto options = std::make_shared<ReferenceOptions>();
+    CLI::App* parser = app.add_subcommand(
+        "reference", "Find the best paths that can be found: hours, for others to be measured by.");
+    parser->add_option("config", options->config, "YAML file of the planning problem")->required();
+    parser->add_option("--set", options->overrides, "override a value of the config")
+        ->type_name("KEY.PATH=VALUE")
+        ->allow_extra_args(false);
+    parser->add_option("--alpha", options->alphas, "first:last:step or a,b,c")->type_name("ALPHAS");
+    parser->add_option("--planners", options->planners, "a,b,c")->type_name("NAMES");
+    parser->add_option("--runs", options->runs, "seeds per planner and alpha")
+        ->capture_default_str();
+    parser->add_option("--vertices", options->vertices, "of each run")->capture_default_str();
+    parser->add_option("--labels", options->labels, "per vertex")->capture_default_str();
+    parser->add_option("--moves", options->moves, "tried by the descent from each path")
+        ->capture_default_str();
+    parser->add_option("--file", options->file,
+                       "the table (default: reference/<config>.csv beside the config)");
+    parser->add_flag("--from-scratch", options->fromScratch, "forget the paths known so far");
+    parser->add_flag("--quiet", options->quiet, "no progress, no summary");
+    return {parser, [options] { return runReference(*options, interrupted); }};
+}
+
 Command reportCommand(CLI::App& app) {
     auto folder = std::make_shared<std::filesystem::path>();
     CLI::App* parser = app.add_subcommand("report", "Rebuild report.html of a result folder.");
@@ -285,6 +311,7 @@ int run(int argc, char** argv) {
                               sweepCommand(app, commandLine),
                               compareCommand(app),
                               benchmarkCommand(app, commandLine),
+                              referenceCommand(app),
                               reportCommand(app)};
     try {
         app.parse(argc, argv);

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <set>
 
 #include "atomic_file.hpp"
 #include "error.hpp"
 #include "plan_report.hpp"
 #include "plan_run.hpp"
+#include "tree_evolution.hpp"
 
 namespace photonav {
 namespace {
@@ -60,6 +62,23 @@ std::optional<RecordedComparison> lookAtRecording(const Config& config, const Wo
     }
 }
 
+/// At every 1, 2 and 5 times a power of ten, up to the number of vertices.
+std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, const PlanRun& run,
+                                    std::size_t vertices, const std::atomic<bool>& interrupted) {
+    std::vector<std::size_t> stages;
+    for (std::size_t ten = 10; ten < vertices; ten *= 10) {
+        for (const std::size_t k : {1, 2, 5}) {
+            if (k * ten < vertices) stages.push_back(k * ten);
+        }
+    }
+    stages.push_back(vertices);
+    std::vector<TreeEvolution> evolutions;
+    for (const std::string& planner : planners) {
+        evolutions.push_back(growInStages(run, planner, stages, interrupted));
+    }
+    return evolutions;
+}
+
 }  // namespace
 
 int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
@@ -91,13 +110,16 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
             baseline = run.solve("rrt_star", interrupted, [](const auto&) {}).path;
         }
     }
+    std::vector<TreeEvolution> evolutions;
+    if (options.evolution)
+        evolutions = growthOf({"rrt_star", config.planner}, run, config.vertices, interrupted);
     const bool stopped = interrupted;
     nlohmann::json result = planResult(config, outcome, baseline, stopped);
     const auto recorded = lookAtRecording(config, world, outcome);
     if (recorded) result["recorded_frames"] = toJson(*recorded);
     result["time"]["total_s"] = seconds();
-    writePlanReport(folder, config, world, run, outcome, baseline, recorded, options.commandLine,
-                    result);
+    writePlanReport(folder, config, world, run, outcome, baseline, recorded, evolutions,
+                    options.commandLine, result);
     result["time"]["total_s"] = seconds();
     writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
 

@@ -9,7 +9,8 @@
 namespace photonav {
 
 struct PlanOptions : CommandOptions {
-    bool audit = false;  ///< print what replaying every stored belief from the start gave
+    bool audit = false;      ///< print what replaying every stored belief from the start gave
+    bool evolution = false;  ///< show how the trees of RRT* and of the planner grow
 };
 
 /// Plans and writes result.json and what writePlanReport() says. In a map without grey values it

@@ -193,7 +193,8 @@ json planResult(const Config& config, const PlanOutcome& outcome,
 void writePlanReport(const fs::path& folder, const Config& config, const World& world, PlanRun& run,
                      const PlanOutcome& outcome, const std::optional<JudgedPath>& baseline,
                      const std::optional<RecordedComparison>& recorded,
-                     const std::string& commandLine, const json& result) {
+                     const std::vector<TreeEvolution>& evolutions, const std::string& commandLine,
+                     const json& result) {
     const Camera camera = config.camera.camera();
     const Pose T_b_c = config.camera.T_b_c();
     ReportData report;
@@ -245,6 +246,16 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
                           "the mean.",
                           meanDifference(*recorded)),
               recorded->picture}});
+    }
+    if (!evolutions.empty()) {
+        const TopView map = topView(config, world, outcome, {});
+        figures.push_back({"tree_evolution.png",
+                           {"The trees as they grow, and the best path so far.",
+                            drawTreeEvolution(map, evolutions, {10, 500, config.vertices})}});
+        for (const TreeStage& stage : evolutions.front().stages) {
+            report.frames.push_back({fmt::format("{} vertices", stage.vertices),
+                                     drawTreeEvolution(map, evolutions, {stage.vertices})});
+        }
     }
     if (outcome.path) writeTrajectory(folder / "path.tum", *outcome.path, T_b_c);
     writeResultFolder(folder, report, figures);

@@ -8,6 +8,7 @@
 
 #include "plan_run.hpp"
 #include "recorded_frames.hpp"
+#include "tree_evolution.hpp"
 
 namespace photonav {
 
@@ -18,12 +19,14 @@ nlohmann::json planResult(const Config& config, const PlanOutcome& outcome,
 
 /// Writes config.yaml, top_view.png, report.json and report.html; with a path also path.tum,
 /// trace.png, information.png (unless the world has no texture), and recorded_frames.png where
-/// there is a recording to compare with.
+/// there is a recording to compare with; tree_evolution.png and an animation in the page if there
+/// are evolutions.
 void writePlanReport(const std::filesystem::path& folder, const Config& config, const World& world,
                      PlanRun& run, const PlanOutcome& outcome,
                      const std::optional<JudgedPath>& baseline,
                      const std::optional<RecordedComparison>& recorded,
-                     const std::string& commandLine, const nlohmann::json& result);
+                     const std::vector<TreeEvolution>& evolutions, const std::string& commandLine,
+                     const nlohmann::json& result);
 
 /// A path to be drawn, with its beliefs.
 DrawnPath drawnPath(const JudgedPath& path, const Pose& T_b_c, const Color& color);

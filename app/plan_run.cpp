@@ -8,12 +8,12 @@
 
 #include <chrono>
 #include <numbers>
-#include <set>
 
 #include "belief_rrt_star.hpp"
 #include "error.hpp"
 #include "perception_rrt_star.hpp"
 #include "rrbt.hpp"
+#include "tree_evolution.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
@@ -32,23 +32,7 @@ void includePath(Audit& audit, double stored, double replayed) {
     if (!(error <= audit.maxCostError)) audit.maxCostError = error;
 }
 
-/// The tree's motions between positions, each once however many beliefs flew it.
-std::vector<Edge> drawnEdges(const BeliefPlanner& planner) {
-    const FlightSpace& space = planner.model().space();
-    const auto nodes = planner.tree();
-    std::set<std::pair<const ob::State*, const ob::State*>> drawn;
-    std::vector<Edge> edges;
-    for (const TreeNode& node : nodes) {
-        if (node.parent < 0) continue;
-        const ob::State* parent = nodes[node.parent].state;
-        if (!drawn.emplace(std::minmax(parent, node.state)).second) continue;
-        edges.push_back(
-            {space.position(parent).cast<float>(), space.position(node.state).cast<float>()});
-    }
-    return edges;
-}
-
-std::vector<const ob::State*> solution(const BeliefPlanner& planner) {
+std::vector<const ob::State*> solutionOf(const BeliefPlanner& planner) {
     const auto path = planner.getProblemDefinition()->getSolutionPath();
     const auto& states = path->as<ompl::geometric::PathGeometric>()->getStates();
     return {states.begin(), states.end()};
@@ -122,7 +106,7 @@ PlanOutcome PlanRun::solve(const std::string& name, const std::atomic<bool>& int
     if (planner->getProblemDefinition()->hasExactSolution()) {
         outcome.path = judge(*planner);
         outcome.plannerCost = planner->bestCost();
-        const double replayed = planner->model().evaluate(solution(*planner)).back().cost;
+        const double replayed = planner->model().evaluate(solutionOf(*planner)).back().cost;
         includePath(outcome.audit, outcome.plannerCost, replayed);
     }
     return outcome;
@@ -135,7 +119,7 @@ std::shared_ptr<BeliefPlanner> PlanRun::makePlanner(const std::string& name) con
     const auto model = makeModel(plannersField_, name == "rrt_star" ? 1. : config_.belief.alpha);
     std::shared_ptr<BeliefPlanner> planner;
     if (name == "belief_rrt_star") {
-        planner = std::make_shared<BeliefRRTstar>(si_, model, config_.labels, growth);
+        planner = std::make_shared<BeliefRRTstar>(si_, model, config_.search, growth);
     } else if (name == "rrbt") {
         planner = std::make_shared<RRBT>(si_, model, growth);
     } else {
@@ -193,8 +177,28 @@ ob::ProblemDefinitionPtr PlanRun::definition() const {
     return definition;
 }
 
+std::optional<JudgedPath> PlanRun::descend(const std::vector<Pose>& waypoints,
+                                           const DescentOptions& options,
+                                           const std::atomic<bool>& interrupted) {
+    ompl::geometric::PathGeometric path(si_);
+    ob::ScopedState<> state(si_);
+    for (const Pose& T_w_b : waypoints) {
+        space_.setState(state.get(), T_w_b.translation(), yawOf(T_w_b));
+        path.append(state.get());
+    }
+    if (waypoints.empty() || !path.check()) return std::nullopt;
+    PathDescent descent(si_, judge_, options);
+    descent.begin({path.getStates().begin(), path.getStates().end()});
+    descent.descend(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+    return judge("descent", descent.path());
+}
+
 JudgedPath PlanRun::judge(const BeliefPlanner& planner) {
-    JudgedPath judged{.planner = planner.getName(), .points = judge_->evaluate(solution(planner))};
+    return judge(planner.getName(), solutionOf(planner));
+}
+
+JudgedPath PlanRun::judge(const std::string& planner, const std::vector<const ob::State*>& path) {
+    JudgedPath judged{.planner = planner, .points = judge_->evaluate(path)};
     double integral = 0.;
     for (std::size_t i = 1; i < judged.points.size(); ++i) {
         const BeliefPoint& last = judged.points[i - 1];

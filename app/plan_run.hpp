@@ -47,6 +47,12 @@ class PlanRun {
     PlanOutcome solve(const std::string& planner, const std::atomic<bool>& interrupted,
                       const std::function<void(const ReportProgress&)>& onProgress);
 
+    /// The best path that descent from these waypoints (of the body) finds.
+    /// @return nothing if the way along them is not free
+    std::optional<JudgedPath> descend(const std::vector<Pose>& waypoints,
+                                      const DescentOptions& options,
+                                      const std::atomic<bool>& interrupted);
+
     /// The information of a view from here, remembered; for heat maps.
     const Matrix6& informationAt(const Pose& T_w_b) { return judge_->informationAt(T_w_b); }
     /// The belief at the start, camera frame.
@@ -73,6 +79,7 @@ class PlanRun {
     std::shared_ptr<InformationField> makeField(const std::string& viewModel) const;
     std::shared_ptr<BeliefModel> makeModel(std::shared_ptr<InformationField> field,
                                            double alpha) const;
+    JudgedPath judge(const std::string& planner, const std::vector<const ompl::base::State*>& path);
 
     const Config& config_;
     const World& world_;

@@ -76,6 +76,7 @@ struct ReportData {
     std::vector<ReportView> views;
     std::vector<ReportProgress> progress;
     std::vector<ReportFigure> figures;
+    std::vector<ReportFigure> frames;  ///< one after the other, as an animation
     std::vector<ReportTable> tables;
 };
 

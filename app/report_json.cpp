@@ -215,9 +215,13 @@ void readSearch(const Node& root, ReportData& data) {
 }
 
 void readFiguresAndTables(const Node& root, ReportData& data) {
-    root["figures"].forEach([&](const Node& node) {
-        data.figures.push_back({node["caption"].as<std::string>(), node["image"].png()});
-    });
+    const auto readFigures = [&](const char* list, std::vector<ReportFigure>& figures) {
+        root[list].forEach([&](const Node& node) {
+            figures.push_back({node["caption"].as<std::string>(), node["image"].png()});
+        });
+    };
+    readFigures("figures", data.figures);
+    readFigures("frames", data.frames);
     root["tables"].forEach([&](const Node& node) {
         data.tables.push_back(
             {node["title"].as<std::string>(),
@@ -241,7 +245,7 @@ json toJson(const ReportData& data) {
     root["voxels"] = {{"centers", packed(data.voxels.centers)},
                       {"grey", packed(data.voxels.grey)},
                       {"size", data.voxels.size}};
-    for (const char* list : {"trees", "paths", "views", "progress", "figures", "tables"})
+    for (const char* list : {"trees", "paths", "views", "progress", "figures", "frames", "tables"})
         root[list] = json::array();
     for (const DrawnTree& tree : data.trees) root["trees"].push_back(treeToJson(tree));
     for (const DrawnPath& path : data.paths) root["paths"].push_back(pathToJson(path));
@@ -254,8 +258,12 @@ json toJson(const ReportData& data) {
                                     {"seconds", step.seconds},
                                     {"cost", step.cost},
                                     {"views", step.views}});
-    for (const ReportFigure& figure : data.figures)
-        root["figures"].push_back({{"caption", figure.caption}, {"image", dataUri(figure.image)}});
+    const auto writeFigures = [&](const char* list, const std::vector<ReportFigure>& figures) {
+        for (const ReportFigure& figure : figures)
+            root[list].push_back({{"caption", figure.caption}, {"image", dataUri(figure.image)}});
+    };
+    writeFigures("figures", data.figures);
+    writeFigures("frames", data.frames);
     for (const ReportTable& table : data.tables)
         root["tables"].push_back({{"title", table.title}, {"rows", table.rows}});
     return root;

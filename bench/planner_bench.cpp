@@ -56,7 +56,7 @@ struct Bench {
         growth.seed = seed;
         growth.maxVertices = kVertices;
         if (name == "belief_rrt_star") {
-            return std::make_unique<BeliefRRTstar>(si, model, 5, growth);
+            return std::make_unique<BeliefRRTstar>(si, model, SearchOptions{}, growth);
         }
         return std::make_unique<PerceptionRRTstar>(si, model, growth);
     }

@@ -2,21 +2,27 @@
 #include "belief_planner.hpp"
 
 #include <ompl/base/goals/GoalSampleableRegion.h>
-#include <ompl/base/objectives/PathLengthOptimizationObjective.h>
 #include <ompl/datastructures/NearestNeighborsGNATNoThreadSafety.h>
 #include <ompl/geometric/PathGeometric.h>
 
 #include <cmath>
 #include <limits>
 
+#include "path_cost_objective.hpp"
+
 namespace photonav {
 namespace ob = ompl::base;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kExploration = 0.2;  // share of the samples taken wherever they fall
 
 BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
                              const std::string& name, const GrowthOptions& growth)
-    : ob::Planner(si, name), model_(std::move(model)), growth_(growth), best_{kInfinity, {}} {
+    : ob::Planner(si, name),
+      model_(std::move(model)),
+      growth_(growth),
+      best_{kInfinity, {}},
+      objective_(std::make_shared<PathCostObjective>(si, model_)) {
     specs_.optimizingPaths = true;
     specs_.canReportIntermediateSolutions = false;
     const auto declare = [this](const std::string& key, auto& value) {
@@ -126,6 +132,7 @@ Vertex* BeliefPlanner::extend(const ob::State* target) {
     Vertex* nearest = neighbours_->nearest(&probe);
     const double distance = si_->distance(nearest->state, target);
     if (distance == 0.) return nullptr;
+    if (!isPromising(*nearest) && rng_.uniform01() >= kExploration) return nullptr;
 
     Vertex& fresh = addVertex(target);
     if (distance > range_) {
@@ -180,10 +187,7 @@ ob::PlannerStatus BeliefPlanner::report() {
     for (const ob::State* state : best_.states) path->append(state);
     ob::PlannerSolution solution(path);
     solution.setPlannerName(getName());
-    auto objective = pdef_->hasOptimizationObjective()
-                         ? pdef_->getOptimizationObjective()
-                         : std::make_shared<ob::PathLengthOptimizationObjective>(si_);
-    solution.setOptimized(objective, ob::Cost(best_.cost), false);
+    solution.setOptimized(objective_, ob::Cost(best_.cost), false);
     pdef_->addSolutionPath(solution);
     return ob::PlannerStatus::EXACT_SOLUTION;
 }
@@ -216,8 +220,9 @@ void BeliefPlanner::getPlannerData(ob::PlannerData& data) const {
         if (node.parent < 0) {
             data.addStartVertex(ob::PlannerDataVertex(node.state));
         } else {
-            data.addEdge(ob::PlannerDataVertex(nodes[node.parent].state),
-                         ob::PlannerDataVertex(node.state));
+            const ob::State* parent = nodes[node.parent].state;
+            data.addEdge(ob::PlannerDataVertex(parent), ob::PlannerDataVertex(node.state), {},
+                         ob::Cost(si_->distance(parent, node.state)));
         }
     }
     for (const Vertex* goal : goals_) data.markGoalState(goal->state);

@@ -2,6 +2,7 @@
 // What all our planners share: growing a set of vertices by sampling, and OMPL's planner contract.
 #pragma once
 
+#include <ompl/base/OptimizationObjective.h>
 #include <ompl/base/Planner.h>
 #include <ompl/datastructures/NearestNeighbors.h>
 #include <ompl/util/RandomNumbers.h>
@@ -76,6 +77,10 @@ class BeliefPlanner : public ompl::base::Planner {
     virtual void connect(Vertex& fresh, const std::vector<Vertex*>& near,
                          const ompl::base::PlannerTerminationCondition& ptc) = 0;
 
+    /// Whether a sample whose nearest vertex is this one is worth a try. Asked for most samples;
+    /// the rest are taken wherever they fall, so that what is unknown is found in the end.
+    virtual bool isPromising(const Vertex&) { return true; }
+
     /// Called before solve() returns, when the vertex set is final for now.
     virtual void finish(const ompl::base::PlannerTerminationCondition&) {}
 
@@ -123,6 +128,7 @@ class BeliefPlanner : public ompl::base::Planner {
     std::size_t iterations_ = 0;
     unsigned goalSamples_ = 0;
     Progress progress_;
+    ompl::base::OptimizationObjectivePtr objective_;
 };
 
 }  // namespace photonav

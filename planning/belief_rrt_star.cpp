@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <queue>
 
 namespace photonav {
 namespace ob = ompl::base;
@@ -21,151 +20,162 @@ constexpr double kMaxLever = 100.;        // [m]
 }  // namespace
 
 BeliefRRTstar::BeliefRRTstar(const ob::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
-                             unsigned labels, const GrowthOptions& growth)
-    : BeliefPlanner(si, std::move(model), "belief_rrt_star", growth), maxLabels_(labels) {
-    params_.declareParam<unsigned>(
-        "labels", [this](unsigned v) { maxLabels_ = v; }, [this] { return maxLabels_; });
+                             const SearchOptions& search, const GrowthOptions& growth)
+    : BeliefPlanner(si, std::move(model), "belief_rrt_star", growth), options_(search) {
+    const auto declare = [this](const std::string& key, auto& value) {
+        using T = std::decay_t<decltype(value)>;
+        params_.declareParam<T>(
+            key, [&value](T v) { value = v; }, [&value] { return value; });
+    };
+    declare("labels", options_.labels);
+    declare("informed", options_.informed);
+    declare("shortcut", options_.shortcut);
+    addPlannerProgressProperty("shortcuts tried INTEGER",
+                               [this] { return std::to_string(shortcutsTried_); });
+    addPlannerProgressProperty("shortcuts taken INTEGER",
+                               [this] { return std::to_string(shortcutsTaken_); });
 }
 
 void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near,
                             const ob::PlannerTerminationCondition& ptc) {
-    edgesOf_.resize(vertices_.size());
     for (Vertex* vertex : near) {
-        Edge& edge = edges_.emplace_back(
-            Edge{vertex, &fresh, model_->motion(vertex->state, fresh.state), std::nullopt});
-        edgesOf_[vertex->index].push_back(&edge);
-        edgesOf_[fresh.index].push_back(&edge);
+        roadmap_.add(vertex, &fresh, model_->motion(vertex->state, fresh.state));
     }
-    edgesOf_[fresh.index].front()->isFree = true;
+    roadmap_.of(&fresh).front()->isFree = true;
     const std::size_t due = std::max(kFirstSearch, kSearchGrowth * searched_);
-    if (!goals_.empty() && vertices_.size() >= due) search(ptc);
+    if (goals_.empty() || vertices_.size() < due) return;
+    search(ptc);
+    promising_.assign(vertices_.size(), false);
+    for (const Label& label : settled_) promising_[label.vertex->index] = true;
+}
+
+/// Beside a vertex that the last search found on a path which might still have been the best, or
+/// beside a younger one.
+bool BeliefRRTstar::isPromising(const Vertex& nearest) {
+    return !options_.informed || nearest.index >= promising_.size() || promising_[nearest.index];
 }
 
 void BeliefRRTstar::finish(const ob::PlannerTerminationCondition& ptc) {
     if (vertices_.size() > searched_) search(ptc);
+    if (options_.shortcut > 0 && !path_.empty()) shortenBest(ptc);
 }
 
-/// Best-first over labels (vertex, belief). Costs only grow along a path, so labels settle at each
-/// vertex in the order of their cost, and the first one at a goal is the best that the labels kept
-/// can give.
+/// Best-first over labels (vertex, belief). No label costs more than its bound says, so the first
+/// one that settles at a goal is the best that the labels kept can give.
 void BeliefRRTstar::search(const ob::PlannerTerminationCondition& ptc) {
-    edgesOf_.resize(vertices_.size());
+    roadmap_.resize(vertices_.size());
     settled_.clear();
     labelsOf_.assign(vertices_.size(), {});
+    toGo_.update(roadmap_, vertices_, goals_, *model_);
 
-    const auto toGoal = distancesToGoal();
-    const auto later = [](const auto& a, const auto& b) { return a->bound > b->bound; };
     Open open;
     for (Vertex* start : starts_) {
-        if (!std::isfinite(toGoal[start->index])) continue;
-        const double bound = model_->lowerBound(toGoal[start->index]);
-        open.push_back(std::make_unique<Label>(Label{start, -1, start->belief, bound}));
+        push(open, {0., -1, nullptr, start, std::make_unique<Belief>(start->belief)});
     }
-    std::make_heap(open.begin(), open.end(), later);
     while (!open.empty()) {
         if (ptc) return;
-        std::pop_heap(open.begin(), open.end(), later);
-        const auto label = std::move(open.back());
+        std::pop_heap(open.begin(), open.end());
+        Candidate candidate = std::move(open.back());
         open.pop_back();
-        auto& labels = labelsOf_[label->vertex->index];
-        if (labels.size() >= maxLabels_) continue;
-        const double rest = toGoal[label->vertex->index];
-        if (isDominated(*label->vertex, label->belief.covariance, rest)) continue;
-        labels.push_back(static_cast<int>(settled_.size()));
-        settled_.push_back(*label);
-        if (label->vertex->isGoal) {
-            offerPath(labels.back());
+        if (isFull(*candidate.vertex)) continue;
+        if (candidate.belief == nullptr) {
+            if (fly(candidate)) push(open, std::move(candidate));
+            continue;
+        }
+        if (isDominated(*candidate.vertex, *candidate.belief)) continue;
+        const int label = static_cast<int>(settled_.size());
+        labelsOf_[candidate.vertex->index].push_back(label);
+        settled_.push_back({candidate.vertex, candidate.parent, *candidate.belief});
+        if (candidate.vertex->isGoal) {
+            keepPath(label);
             break;
         }
-        expand(labels.back(), toGoal, open);
+        expand(label, open);
     }
     searched_ = vertices_.size();
 }
 
-/// Shortest way to a goal over edges not known to be blocked: times alpha, what no belief can beat.
-std::vector<double> BeliefRRTstar::distancesToGoal() const {
-    if (goals_.empty()) return std::vector<double>(vertices_.size(), 0.);
-    std::vector<double> distance(vertices_.size(), kInfinity);
-    using Entry = std::pair<double, const Vertex*>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-    for (const Vertex* goal : goals_) {
-        distance[goal->index] = 0.;
-        open.emplace(0., goal);
-    }
-    while (!open.empty()) {
-        const auto [way, vertex] = open.top();
-        open.pop();
-        if (way > distance[vertex->index]) continue;
-        for (const Edge* edge : edgesOf_[vertex->index]) {
-            if (!edge->isFree.value_or(true)) continue;
-            const Vertex* next = edge->from == vertex ? edge->to : edge->from;
-            if (way + edge->motion.length >= distance[next->index]) continue;
-            distance[next->index] = way + edge->motion.length;
-            open.emplace(distance[next->index], next);
-        }
-    }
-    return distance;
+void BeliefRRTstar::push(Open& open, Candidate candidate) const {
+    if (!(candidate.bound <= limit())) return;
+    open.push_back(std::move(candidate));
+    std::push_heap(open.begin(), open.end());
 }
 
-void BeliefRRTstar::expand(int label, const std::vector<double>& toGoal, Open& open) {
-    const auto later = [](const auto& a, const auto& b) { return a->bound > b->bound; };
-    const Vertex* vertex = settled_[label].vertex;
-    const Belief& belief = settled_[label].belief;
-    const double limit = bestCost() * (1. + 1e-12);  // finds the best path known so far again
-    for (Edge* edge : edgesOf_[vertex->index]) {
-        const bool backward = edge->to == vertex;
-        Vertex* next = backward ? edge->from : edge->to;
-        if (labelsOf_[next->index].size() >= maxLabels_) continue;
-        const double rest = toGoal[next->index];
-        if (!std::isfinite(rest)) continue;
-        if (belief.cost + model_->lowerBound(edge->motion.length + rest) > limit) continue;
-        if (!edge->isFree) edge->isFree = motionIsFree(*edge->from, *edge->to);
-        if (!*edge->isFree) continue;
-
-        const Belief arrival = model_->fly(belief, edge->motion, backward);
-        const double bound = arrival.cost + model_->lowerBound(rest);
-        if (bound > limit || isDominated(*next, arrival.covariance, rest)) continue;
-        open.push_back(std::make_unique<Label>(Label{next, label, arrival, bound}));
-        std::push_heap(open.begin(), open.end(), later);
+void BeliefRRTstar::expand(int label, Open& open) const {
+    const auto& [vertex, parent, belief] = settled_[label];
+    const auto variances = toGo_.variances(*vertex, belief.covariance);
+    for (Roadmap::Edge* edge : roadmap_.of(vertex)) {
+        Vertex* next = edge->otherEnd(vertex);
+        if (isFull(*next) || !edge->isFree.value_or(true)) continue;
+        push(open, {belief.cost + toGo_.over(*edge, *vertex, variances), label, edge, next});
     }
 }
 
-/// Labels settled earlier cost less, so the covariance decides: dominated is what is nowhere better
-/// by more than the slack, neither relative to itself nor to the whole. Without the second part a
-/// label lives on for a hair less roll, and near-copies crowd out the one that matters. A rotation
-/// error counts by what it will do to the position on the way to the goal.
-bool BeliefRRTstar::isDominated(const Vertex& vertex, const Matrix6& covariance,
-                                double toGoal) const {
-    const double lever = std::clamp(toGoal, kMinLever, kMaxLever);
-    Matrix6 limit = (1. + kDominanceSlack) * covariance;
-    const double whole = kDominanceSlack * weightedTrace(covariance, lever);
+/// @return whether the edge is free, and the label neither dominated nor too costly
+bool BeliefRRTstar::fly(Candidate& candidate) {
+    Roadmap::Edge& edge = *candidate.edge;
+    if (!edge.isFree) edge.isFree = motionIsFree(*edge.from, *edge.to);
+    if (!*edge.isFree) return false;
+    const Vertex& vertex = *candidate.vertex;
+    const Belief arrival =
+        model_->fly(settled_[candidate.parent].belief, edge.motion, candidate.vertex == edge.from);
+    if (isDominated(vertex, arrival)) return false;
+    candidate.bound =
+        arrival.cost + toGo_.from(vertex, toGo_.variances(vertex, arrival.covariance));
+    candidate.belief = std::make_unique<Belief>(arrival);
+    return candidate.bound <= limit();
+}
+
+/// Dominated is what costs no less than a label settled before and is nowhere better by more than
+/// the slack, neither relative to itself nor to the whole. Without the second part a label lives on
+/// for a hair less roll, and near-copies crowd out the one that matters. A rotation error counts by
+/// what it will do to the position on the way to the goal.
+bool BeliefRRTstar::isDominated(const Vertex& vertex, const Belief& belief) const {
+    const double lever = std::clamp(toGo_.distance(vertex), kMinLever, kMaxLever);
+    Matrix6 limit = (1. + kDominanceSlack) * belief.covariance;
+    const double whole = kDominanceSlack * weightedTrace(belief.covariance, lever);
     limit.diagonal().head<3>().array() += whole;
     limit.diagonal().tail<3>().array() += whole / (lever * lever);
     for (const int label : labelsOf_[vertex.index]) {
-        const Matrix6 excess = limit - settled_[label].belief.covariance;
+        const Belief& known = settled_[label].belief;
+        if (known.cost > belief.cost) continue;
+        const Matrix6 excess = limit - known.covariance;
         if ((excess.diagonal().array() < 0.).any()) continue;
         if (excess.llt().info() == Eigen::Success) return true;
     }
     return false;
 }
 
-void BeliefRRTstar::offerPath(int label) {
-    const double cost = settled_[label].belief.cost;
-    std::vector<const ob::State*> path;
+void BeliefRRTstar::keepPath(int label) {
+    pathCost_ = settled_[label].belief.cost;
+    path_.clear();
     for (; label >= 0; label = settled_[label].parent) {
-        path.push_back(settled_[label].vertex->state);
+        path_.push_back(settled_[label].vertex->state);
     }
-    std::reverse(path.begin(), path.end());
-    offer(cost, path);
+    std::reverse(path_.begin(), path_.end());
+    offer(pathCost_, path_);
+}
+
+void BeliefRRTstar::shortenBest(const ob::PlannerTerminationCondition& ptc) {
+    PathDescent descent(si_, model_, {.moves = options_.shortcut});
+    descent.begin(path_);
+    descent.descend(ptc);
+    shortcutsTried_ += descent.tried();
+    shortcutsTaken_ += descent.accepted();
+    offer(descent.cost(), descent.path());
 }
 
 void BeliefRRTstar::clear() {
     BeliefPlanner::clear();
-    edges_.clear();
-    edgesOf_.clear();
+    roadmap_.clear();
+    toGo_ = {};
     settled_.clear();
     labelsOf_.clear();
+    promising_.clear();
+    path_.clear();
+    pathCost_ = kInfinity;
     searched_ = 0;
+    shortcutsTried_ = shortcutsTaken_ = 0;
 }
 
 std::vector<TreeNode> BeliefRRTstar::tree() const {

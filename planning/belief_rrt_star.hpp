@@ -2,9 +2,19 @@
 // Belief search over a sampled roadmap: the default planner.
 #pragma once
 
-#include "belief_planner.hpp"
+#include <atomic>
+
+#include "cost_to_go.hpp"
+#include "path_descent.hpp"
+#include "roadmap.hpp"
 
 namespace photonav {
+
+struct SearchOptions {
+    unsigned labels = 5;       ///< kept per vertex, at most
+    bool informed = true;      ///< samples only where a better path may pass, most of the time
+    unsigned shortcut = 3000;  ///< changes tried on the best path in the end; 0: none
+};
 
 /// Grows the roadmap that RRT* would (same samples, same connection radius), keeps all its edges,
 /// and searches beliefs over it with several labels per vertex: a costlier way to a vertex that
@@ -19,41 +29,62 @@ namespace photonav {
 class BeliefRRTstar : public BeliefPlanner {
   public:
     BeliefRRTstar(const ompl::base::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
-                  unsigned labels = 5, const GrowthOptions& growth = {});
+                  const SearchOptions& search = {}, const GrowthOptions& growth = {});
 
     void clear() override;
     std::vector<TreeNode> tree() const override;
 
+    unsigned shortcutsTried() const { return shortcutsTried_; }
+    unsigned shortcutsTaken() const { return shortcutsTaken_; }
+
   private:
-    struct Edge {
-        Vertex* from;
-        Vertex* to;
-        Motion motion;
-        std::optional<bool> isFree;
-    };
     struct Label {
         Vertex* vertex;
         int parent;  // index into settled_; -1 at a start
         Belief belief;
-        double bound;  // least cost of a path to the goal through here
     };
-    using Open = std::vector<std::unique_ptr<Label>>;
+    /// A label to come: its edge is checked, looked from and flown only when it is next.
+    struct Candidate {
+        double bound;  // least cost of a path to the goal through here
+        int parent;
+        Roadmap::Edge* edge;                  // from the parent; none at a start
+        Vertex* vertex;                       // where it leads
+        std::unique_ptr<Belief> belief = {};  // there, once flown
+
+        bool operator<(const Candidate& other) const { return bound > other.bound; }
+    };
+    using Open = std::vector<Candidate>;  // a heap, the least bound in front
+
+    /// What a path over the roadmap may cost at most: the best one so far is found again.
+    double limit() const { return pathCost_ * (1. + 1e-12); }
 
     void connect(Vertex& fresh, const std::vector<Vertex*>& near,
                  const ompl::base::PlannerTerminationCondition& ptc) override;
+    bool isPromising(const Vertex& nearest) override;
     void finish(const ompl::base::PlannerTerminationCondition& ptc) override;
-    void search(const ompl::base::PlannerTerminationCondition& ptc);
-    std::vector<double> distancesToGoal() const;
-    void expand(int label, const std::vector<double>& toGoal, Open& open);
-    bool isDominated(const Vertex& vertex, const Matrix6& covariance, double toGoal) const;
-    void offerPath(int label);
 
-    unsigned maxLabels_;
-    std::deque<Edge> edges_;
-    std::vector<std::vector<Edge*>> edgesOf_;  // by vertex
-    std::vector<Label> settled_;               // in the order they were settled
-    std::vector<std::vector<int>> labelsOf_;   // by vertex, into settled_
-    std::size_t searched_ = 0;                 // number of vertices at the last complete search
+    void search(const ompl::base::PlannerTerminationCondition& ptc);
+    void push(Open& open, Candidate candidate) const;
+    void expand(int label, Open& open) const;
+    bool fly(Candidate& candidate);
+    bool isFull(const Vertex& vertex) const {
+        return labelsOf_[vertex.index].size() >= options_.labels;
+    }
+    bool isDominated(const Vertex& vertex, const Belief& belief) const;
+    void keepPath(int label);
+    void shortenBest(const ompl::base::PlannerTerminationCondition& ptc);
+
+    SearchOptions options_;
+    Roadmap roadmap_;
+    CostToGo toGo_;
+    std::vector<Label> settled_;                  // in the order they were settled
+    std::vector<std::vector<int>> labelsOf_;      // by vertex, into settled_
+    std::size_t searched_ = 0;                    // number of vertices at the last complete search
+    std::vector<bool> promising_;                 // by vertex, from the last search while growing
+    std::vector<const ompl::base::State*> path_;  // the best over the roadmap
+    double pathCost_ = std::numeric_limits<double>::infinity();
+    std::atomic<unsigned> shortcutsTried_ = 0;  // progress properties are read from other threads
+    std::atomic<unsigned> shortcutsTaken_ = 0;
 };
 
 }  // namespace photonav

@@ -32,7 +32,7 @@ inline std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name, const
     const auto model = std::make_shared<BeliefModel>(problem.space, field, beliefs);
     std::shared_ptr<BeliefPlanner> planner;
     if (name == "belief_rrt_star") {
-        planner = std::make_shared<BeliefRRTstar>(si, model, labels);
+        planner = std::make_shared<BeliefRRTstar>(si, model, SearchOptions{.labels = labels});
     } else {
         planner = std::make_shared<PerceptionRRTstar>(si, model);
     }

@@ -157,6 +157,34 @@ function addComparison() {
   element('tables').append(box);
 }
 
+/// Pictures one after the other: by hand with the slider, or played.
+function setUpFrames() {
+  const {frames} = data, slider = element('frame-slider'), play = element('play');
+  element('frames').hidden = !frames.length;
+  if (!frames.length) return;
+  const show = (index) => {
+    slider.value = index;
+    element('frame').src = frames[index].image;
+    element('frame-caption').textContent = frames[index].caption;
+  };
+  let timer = 0;
+  const stop = () => {
+    clearInterval(timer);
+    timer = 0;
+    play.textContent = 'Play';
+  };
+  slider.max = frames.length - 1;
+  slider.addEventListener('input', () => { stop(); show(Number(slider.value)); });
+  play.addEventListener('click', () => {
+    if (timer) return stop();
+    let index = 0;
+    play.textContent = 'Stop';
+    show(index);
+    timer = setInterval(() => (++index < frames.length ? show(index) : stop()), 700);
+  });
+  show(frames.length - 1);
+}
+
 function fillRest() {
   element('characteristic-length').textContent = data.result.characteristic_length ?? 1;
   addComparison();
@@ -169,6 +197,7 @@ function fillRest() {
     box.append(image, make('figcaption', figure.caption));
     element('figures').append(box);
   }
+  setUpFrames();
   element('config').textContent = data.config;
   element('config-box').hidden = !data.config;
   element('command').textContent = data.command_line;

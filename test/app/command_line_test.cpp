@@ -70,6 +70,18 @@ TEST_F(CommandLine, PlanWritesEverythingItPromises) {
     EXPECT_NEAR(r["path"].back()["trace"].get<double>(), r["goal_trace"].get<double>(), 1e-12);
 }
 
+TEST_F(CommandLine, EvolutionIsAFigureAndAnAnimation) {
+    const Execution run = plan(std::string("--evolution") + kQuick);
+    ASSERT_EQ(run.exitCode, 0) << run.output;
+    EXPECT_TRUE(fs::exists(folder_ / "tree_evolution.png"));
+    std::ifstream stream(folder_ / "report.json");
+    const json report = json::parse(stream);
+    ASSERT_EQ(report["frames"].size(), 6U);  // 10, 20, 50, 100, 200 and 300 vertices
+    EXPECT_EQ(report["frames"][0]["caption"], "10 vertices");
+    EXPECT_EQ(report["frames"][5]["caption"], "300 vertices");
+    EXPECT_NE(report["frames"][0]["image"], report["frames"][5]["image"]);
+}
+
 TEST_F(CommandLine, TheDetourBuysCertainty) {
     ASSERT_EQ(plan(kQuick).exitCode, 0);
     const json r = result();

@@ -70,6 +70,8 @@ TEST(Figures, PathIsDrawnWhereItIs) {
 
 TEST(Figures, EmptyAreaIsRefused) {
     EXPECT_THROW(drawTopView({}), std::invalid_argument);
+    EXPECT_THROW(drawMaps({}), std::invalid_argument);
+    EXPECT_THROW(drawMaps({{TopView{}}}), std::invalid_argument);
     EXPECT_THROW(drawHeatMap({}), std::invalid_argument);
 }
 

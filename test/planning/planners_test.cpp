@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <ompl/base/PlannerData.h>
+#include <ompl/base/goals/GoalStates.h>
 #include <ompl/geometric/PathGeometric.h>
 #include <ompl/geometric/planners/rrt/RRTstar.h>
+
+#include <sstream>
+#include <stdexcept>
 
 #include "fixture.hpp"
 
@@ -88,19 +92,80 @@ TEST_P(EveryPlanner, CostNeverRisesAndIsTheCostOfThePath) {
         EXPECT_NEAR(solution(*planner).length(), last, 1e-9 * last);
 }
 
-TEST_P(EveryPlanner, IsDeterministicForASeedAndResumesWhereItWas) {
+TEST_P(EveryPlanner, IsDeterministicForASeed) {
+    Problem problem;
+    const auto once = problem.planner(GetParam());
+    const auto twice = problem.planner(GetParam());
+    grow(*once, 300);
+    grow(*twice, 300);
+    EXPECT_EQ(once->iterations(), twice->iterations());
+    EXPECT_DOUBLE_EQ(once->bestCost(), twice->bestCost());
+    const auto other = problem.planner(GetParam());
+    EXPECT_TRUE(other->params().setParam("seed", "99"));
+    grow(*other, 300);
+    EXPECT_NE(once->bestCost(), other->bestCost());
+}
+
+TEST_P(EveryPlanner, ResumesWhereItWas) {
     Problem problem;
     const auto once = problem.planner(GetParam());
     const auto twice = problem.planner(GetParam());
     grow(*once, 300);
     grow(*twice, 120);
+    const double before = twice->bestCost();
     grow(*twice, 300);
-    EXPECT_EQ(once->iterations(), twice->iterations());
-    EXPECT_DOUBLE_EQ(once->bestCost(), twice->bestCost());
-    problem.growth.seed = 99;
-    const auto other = problem.planner(GetParam());
-    grow(*other, 300);
-    EXPECT_NE(once->bestCost(), other->bestCost());
+    EXPECT_EQ(once->vertices(), twice->vertices());
+    EXPECT_LE(twice->bestCost(), before);
+    // What belief_rrt_star found before it paused steers what it samples next.
+    if (GetParam() != "belief_rrt_star") {
+        EXPECT_DOUBLE_EQ(once->bestCost(), twice->bestCost());
+    }
+}
+
+TEST_P(EveryPlanner, IsUsableAfterAnExceptionInAView) {
+    if (GetParam() == "rrt_star") GTEST_SKIP() << "never looks";
+    int viewsLeft = 150;
+    Problem failing;
+    failing.information = [&viewsLeft](const Pose& T_c_w) {
+        if (viewsLeft-- == 0) throw std::runtime_error("no picture");
+        return stripesThenTexture(T_c_w);
+    };
+    const auto planner = failing.planner(GetParam());
+    EXPECT_THROW(grow(*planner, 300), std::runtime_error);
+    planner->tree();
+    planner->clear();
+    planner->getProblemDefinition()->clearSolutionPaths();
+    grow(*planner, 300);
+    const auto fresh = Problem{}.planner(GetParam());
+    grow(*fresh, 300);
+    EXPECT_DOUBLE_EQ(planner->bestCost(), fresh->bestCost());
+    expectHonest(*planner);
+}
+
+TEST_P(EveryPlanner, TakesTheBestOfSeveralStartsAndGoals) {
+    Problem problem;
+    problem.information = [](const Pose&) { return Matrix6::Zero().eval(); };
+    const auto planner = problem.planner(GetParam());
+    const auto si = planner->getSpaceInformation();
+    auto definition = std::make_shared<ob::ProblemDefinition>(si);
+    auto goals = std::make_shared<ob::GoalStates>(si);
+    ob::ScopedState<> state(si);
+    const auto at = [&](double x, double y) {
+        problem.space().setState(state.get(), {x, y, 2.}, 0.);
+        return state;
+    };
+    definition->addStartState(at(1., 1.));
+    definition->addStartState(at(7., 3.));
+    goals->addState(at(1., 9.));
+    goals->addState(at(7., 7.));
+    definition->setGoal(goals);
+    planner->clear();
+    planner->setProblemDefinition(definition);
+    grow(*planner, 500);
+    const auto& states = solution(*planner).getStates();
+    EXPECT_TRUE(problem.space().position(states.front()).isApprox(Vector3d(7., 3., 2.)));
+    EXPECT_TRUE(problem.space().position(states.back()).isApprox(Vector3d(7., 7., 2.)));
+    EXPECT_LT(solution(*planner).length(), 4.3);
 }
 
 TEST_P(EveryPlanner, ClearForgetsEverything) {
@@ -120,12 +185,52 @@ TEST_P(EveryPlanner, PlannerDataIsATreeThatReachesTheGoal) {
     Problem problem;
     const auto planner = problem.planner(GetParam());
     grow(*planner, 200);
-    ob::PlannerData data(planner->getSpaceInformation());
+    const auto si = planner->getSpaceInformation();
+    ob::PlannerData data(si);
     planner->getPlannerData(data);
-    EXPECT_EQ(data.numStartVertices(), 1U);
-    EXPECT_EQ(data.numGoalVertices(), 1U);
+    ASSERT_EQ(data.numStartVertices(), 1U);
+    ASSERT_EQ(data.numGoalVertices(), 1U);
+    EXPECT_TRUE(
+        problem.space().position(data.getStartVertex(0).getState()).isApprox(problem.start));
+    EXPECT_TRUE(problem.space().position(data.getGoalVertex(0).getState()).isApprox(problem.goal));
     EXPECT_GT(data.numVertices(), 20U);
     EXPECT_GE(data.numEdges() + 1, data.numVertices());
+    for (unsigned i = 0; i < data.numVertices(); ++i) {
+        std::vector<unsigned> next;
+        data.getEdges(i, next);
+        for (const unsigned j : next) {
+            ob::Cost weight;
+            ASSERT_TRUE(data.getEdgeWeight(i, j, &weight));
+            EXPECT_NEAR(weight.value(),
+                        si->distance(data.getVertex(i).getState(), data.getVertex(j).getState()),
+                        1e-12);
+        }
+    }
+    std::ostringstream text;
+    data.printGraphML(text);
+    const auto count = [&](const std::string& word) {
+        unsigned n = 0;
+        for (auto at = text.str().find(word); at != std::string::npos;
+             at = text.str().find(word, at + 1)) {
+            ++n;
+        }
+        return n;
+    };
+    EXPECT_EQ(count("<node id"), data.numVertices());
+    EXPECT_EQ(count("<edge id"), data.numEdges());
+}
+
+TEST_P(EveryPlanner, SolutionsCompareByOurCost) {
+    const auto planner = Problem{}.planner(GetParam());
+    grow(*planner, 150);
+    grow(*planner, 600);
+    const auto solutions = planner->getProblemDefinition()->getSolutions();
+    ASSERT_EQ(solutions.size(), 2U);
+    EXPECT_DOUBLE_EQ(solutions[0].cost_.value(), planner->bestCost());
+    EXPECT_LE(solutions[0].cost_.value(), solutions[1].cost_.value());
+    EXPECT_NE(solutions[0].opt_->getDescription().find("length"), std::string::npos);
+    // What OMPL can add up over the path is a lower bound.
+    EXPECT_LE(solutions[0].path_->cost(solutions[0].opt_).value(), planner->bestCost() + 1e-9);
 }
 
 TEST_P(EveryPlanner, ReportsProgressAndParameters) {

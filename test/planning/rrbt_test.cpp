@@ -74,6 +74,8 @@ TEST(RRBT, IsAsGoodAsTheLabelSearchOnTheSameVertices) {
         problem.growth.seed = seed;
         const auto planner = rrbt(problem, 1e-4);
         const auto labels = problem.planner("belief_rrt_star", 20);
+        labels->params().setParam("informed", "0");
+        labels->params().setParam("shortcut", "0");
         grow(*planner, 250);
         grow(*labels, 250);
         EXPECT_NEAR(planner->bestCost() / labels->bestCost(), 1., 0.01);
