@@ -112,35 +112,40 @@ void printSummary(const ReportTable& table, const std::filesystem::path& folder)
                (folder / "report.html").string());
 }
 
-/// `map` of a laser scan; options that belong to images are errors.
-MapReport mapScan(const CLI::App& parser, const MapOptions& options,
-                  const std::optional<Eigen::Vector3d>& scanner) {
+/// The options of `map` for a laser scan; those that belong to images are errors.
+ScanMapOptions scanOptions(const CLI::App& parser, const MapOptions& options,
+                           const std::vector<double>& scanner) {
     for (const char* name :
          {"--camera", "--up", "--every", "--min-range", "--depth-scale", "--tolerance"}) {
         if (parser.count(name) > 0) throw InputError(name, "", "is for images, not point clouds");
     }
     ScanMapOptions scan;
+    scan.commandLine = options.commandLine;
+    if (!isScan(options.dataset)) {  // the config of an earlier map
+        readScanConfig(options.dataset, scan);
+        return scan;
+    }
     scan.scans = options.dataset;
-    scan.out = options.out;
     scan.resolution = options.resolution;
     if (parser.count("--max-range") > 0) scan.maxRange = options.fusion.maxRange;
-    scan.scanner = scanner;
-    scan.commandLine = options.commandLine;
-    scan.progress = options.progress;
-    return runScanMap(scan, interrupted);
+    if (!scanner.empty()) scan.scanner.emplace(scanner.data());
+    return scan;
 }
 
-/// Takes everything from the config of an earlier map.
-void useMapConfig(const CLI::App& parser, MapOptions& options) {
-    const std::string file = options.dataset;
+/// Last part of a path, without a closing slash.
+std::string nameOf(const std::string& path) {
+    return (std::filesystem::path(path) / "").lexically_normal().parent_path().filename().string();
+}
+
+/// The config of an earlier map says everything.
+void refuseOptionsBeside(const std::string& config, const CLI::App& parser) {
     for (const CLI::Option* option : parser.get_options()) {
         const std::string name = option->get_name();
         if (option->count() > 0 && name.starts_with("--") && name != "--out" && name != "--quiet" &&
             name != "--json") {
-            throw InputError(name, "", "not together with a config; edit " + file);
+            throw InputError(name, "", "not together with a config; edit " + config);
         }
     }
-    readMapConfig(file, options);
 }
 
 Command mapCommand(CLI::App& app, const std::string& commandLine) {
@@ -157,7 +162,7 @@ Command mapCommand(CLI::App& app, const std::string& commandLine) {
         ->add_option("dataset", options->dataset,
                      "folder in the TUM RGB-D layout; or a coloured point cloud (.ply), or a "
                      "folder with one per station of the scanner; or the config.yaml of an earlier "
-                     "map of images")
+                     "map")
         ->required();
     parser->add_option("--out", options->out, "result folder (default: out/map-<dataset>)")
         ->check(kNotEmpty);
@@ -188,28 +193,28 @@ Command mapCommand(CLI::App& app, const std::string& commandLine) {
     parser->add_flag("--quiet", options->quiet, "no progress, no summary");
     parser->add_flag("--json", options->json, "result.json on standard output");
     return {parser, [options, parser] {
-                if (std::filesystem::path(options->dataset).extension() == ".yaml") {
-                    useMapConfig(*parser, *options);
+                const std::string dataset = options->dataset;
+                const bool isConfig = std::filesystem::path(dataset).extension() == ".yaml";
+                if (isConfig) refuseOptionsBeside(dataset, *parser);
+                const bool isOfScans = isConfig ? isScanConfig(dataset) : isScan(dataset);
+                ScanMapOptions scan;
+                if (isOfScans) {
+                    scan = scanOptions(*parser, *options, options->scanner);
+                } else if (!options->scanner.empty()) {
+                    throw InputError("--scanner", "", "is for point clouds, not images");
+                } else if (isConfig) {
+                    readMapConfig(dataset, *options);
                 }
                 if (options->out.empty()) {
-                    const auto name = (std::filesystem::path(options->dataset) / "")
-                                          .lexically_normal()
-                                          .parent_path()
-                                          .filename();
-                    options->out = std::filesystem::path("out") / ("map-" + name.string());
+                    options->out = "out/map-" + nameOf(isOfScans ? scan.scans : options->dataset);
                 }
+                scan.out = options->out;
                 ProgressLine line(options->quiet);
-                options->progress = [&line](std::size_t done, std::size_t total) {
+                scan.progress = options->progress = [&line](std::size_t done, std::size_t total) {
                     line.show(fmt::format("{} of {} fused", done, total));
                 };
-                std::optional<Eigen::Vector3d> scanner;
-                if (!options->scanner.empty()) scanner.emplace(options->scanner.data());
-                if (scanner && !isScan(options->dataset)) {
-                    throw InputError("--scanner", "", "is for point clouds, not images");
-                }
-                const MapReport report = isScan(options->dataset)
-                                             ? mapScan(*parser, *options, scanner)
-                                             : runMap(*options, interrupted);
+                const MapReport report =
+                    isOfScans ? runScanMap(scan, interrupted) : runMap(*options, interrupted);
                 line.clear();
                 if (options->json)
                     fmt::print("{}\n", report.result.dump(2));
@@ -305,14 +310,10 @@ int run(int argc, char** argv) {
     std::string commandLine = "photonav";
     for (int i = 1; i < argc; ++i) commandLine += std::string(" ") + argv[i];
 
-    const std::array commands{planCommand(app, commandLine),
-                              infoCommand(app, commandLine),
-                              mapCommand(app, commandLine),
-                              sweepCommand(app, commandLine),
-                              compareCommand(app),
-                              benchmarkCommand(app, commandLine),
-                              referenceCommand(app),
-                              reportCommand(app)};
+    const std::array commands{planCommand(app, commandLine), infoCommand(app, commandLine),
+                              mapCommand(app, commandLine),  sweepCommand(app, commandLine),
+                              compareCommand(app),           benchmarkCommand(app, commandLine),
+                              referenceCommand(app),         reportCommand(app)};
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

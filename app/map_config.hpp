@@ -5,6 +5,7 @@
 #include <string>
 
 #include "map_command.hpp"
+#include "scan_command.hpp"
 
 namespace photonav {
 
@@ -12,12 +13,20 @@ namespace photonav {
 /// absolute.
 std::string toYaml(const MapOptions& options, const Recording& recording);
 
-/// Whether this is such a file (and not the config of a plan): it has a key `dataset`.
+/// The same of a map of laser scans.
+std::string toYaml(const ScanMapOptions& options);
+
+/// Whether this is the config of a recording's map: it has a key `dataset`.
 /// @throws InputError if it is no YAML
 bool isMapConfig(const std::string& file);
+
+/// Whether this is the config of a map of laser scans: it has a key `scans`.
+/// @throws InputError if it is no YAML
+bool isScanConfig(const std::string& file);
 
 /// Overwrites what the file says; paths in it are relative to the file.
 /// @throws InputError naming file, key and reason
 void readMapConfig(const std::string& file, MapOptions& options);
+void readScanConfig(const std::string& file, ScanMapOptions& options);
 
 }  // namespace photonav

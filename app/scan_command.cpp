@@ -11,6 +11,7 @@
 #include "atomic_file.hpp"
 #include "command_io.hpp"
 #include "error.hpp"
+#include "map_config.hpp"
 #include "octree_file.hpp"
 #include "perspective.hpp"
 #include "point_cloud.hpp"
@@ -113,6 +114,7 @@ void writeScanReport(const ScanMapOptions& options, const json& result, const Re
     report.commandLine = options.commandLine;
     report.version = PHOTONAV_VERSION;
     report.result = result;
+    report.config = toYaml(options);
     report.voxels = makeReportVoxels(map);
     report.figures = {{"The map as a camera would see it.",
                        drawPerspective(renderer, {report.title, boxOf(map), {}})}};
@@ -170,6 +172,7 @@ MapReport runScanMap(const ScanMapOptions& options, const std::atomic<bool>& int
     saveTexturedOcTree(map, (options.out / "map.ot").string());
     saveColorOcTree(map, (options.out / "map_color.ot").string());
     saveBinaryOcTree(map, (options.out / "map.bt").string());
+    writeFileAtomically(options.out / "config.yaml", toYaml(options));
     if (!stations.empty()) writeScanReport(options, report.result, report.summary, map);
     writeFileAtomically(options.out / "result.json", report.result.dump(2) + "\n");
     return report;

@@ -21,8 +21,8 @@ struct ScanMapOptions {
 /// Whether this is a PLY file or a folder with some (and not a recorded sequence).
 bool isScan(const std::string& path);
 
-/// Maps the scans and writes into options.out: map.ot, map_color.ot, map.bt, result.json,
-/// overview.png and report.html. Memory does not depend on the number of points.
+/// Maps the scans and writes into options.out: map.ot, map_color.ot, map.bt, config.yaml,
+/// result.json, overview.png and report.html. Memory does not depend on the number of points.
 /// @param interrupted checked between stations; what is there then is written
 /// @throws InputError for a file that is no coloured point cloud, a cloud too large for the cells,
 ///         and a folder that cannot be written

@@ -22,19 +22,23 @@ struct Problem {
 };
 
 //! [planner]
+/// A planner that stops with so many vertices.
 /// @param labels beliefs kept per vertex by belief_rrt_star
 inline std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name, const Problem& problem,
                                                   const std::shared_ptr<InformationField>& field,
-                                                  BeliefOptions beliefs, unsigned labels = 5) {
+                                                  BeliefOptions beliefs, unsigned vertices,
+                                                  unsigned labels = 5) {
     const auto anywhere = [](const Eigen::Vector3d&) { return 1.; };  // clearance: no obstacles
     const auto si = makeSpaceInformation(problem.space, anywhere, 0.3);
     if (name == "rrt_star") beliefs.alpha = 1.;  // only length counts
     const auto model = std::make_shared<BeliefModel>(problem.space, field, beliefs);
+    const GrowthOptions growth{.maxVertices = vertices};
     std::shared_ptr<BeliefPlanner> planner;
     if (name == "belief_rrt_star") {
-        planner = std::make_shared<BeliefRRTstar>(si, model, SearchOptions{.labels = labels});
+        planner =
+            std::make_shared<BeliefRRTstar>(si, model, SearchOptions{.labels = labels}, growth);
     } else {
-        planner = std::make_shared<PerceptionRRTstar>(si, model);
+        planner = std::make_shared<PerceptionRRTstar>(si, model, growth);
     }
     ompl::base::ScopedState<> start(si);
     ompl::base::ScopedState<> goal(si);
@@ -50,10 +54,8 @@ inline std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name, const
 
 //! [plan]
 /// Plans, and lets one judge say what the path is worth, whoever found it.
-inline std::vector<BeliefPoint> plan(BeliefPlanner& planner, std::size_t vertices,
-                                     BeliefModel& judge) {
-    planner.solve(
-        ompl::base::PlannerTerminationCondition([&] { return planner.vertices() >= vertices; }));
+inline std::vector<BeliefPoint> plan(BeliefPlanner& planner, BeliefModel& judge) {
+    planner.solve(ompl::base::plannerNonTerminatingCondition());
     const auto path = planner.getProblemDefinition()->getSolutionPath();
     std::vector<const ompl::base::State*> states;
     for (const ompl::base::State* state : path->as<ompl::geometric::PathGeometric>()->getStates()) {

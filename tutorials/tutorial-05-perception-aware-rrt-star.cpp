@@ -12,7 +12,7 @@ using namespace planning_problem;
 
 namespace {
 
-constexpr std::size_t kVertices = 600;
+constexpr unsigned kVertices = 600;
 constexpr double kAlpha = 0.1;       // 1: the shortest way, 0: the most certain one
 constexpr double kViewPitch = 0.25;  // one view stands for its surroundings [m]
 
@@ -57,8 +57,8 @@ int main(int argc, char** argv) {
                                                {"belief_rrt_star", {20, 60, 200}, 2}};
     for (const auto& [name, colour, width] : contenders) {
         const auto planner = makePlanner(name, problem, two_textures::views(floor, kViewPitch),
-                                         two_textures::beliefs(kAlpha));
-        const std::vector<BeliefPoint> path = plan(*planner, kVertices, judge);
+                                         two_textures::beliefs(kAlpha), kVertices);
+        const std::vector<BeliefPoint> path = plan(*planner, judge);
         std::printf("%-16s %9.2f  %10.2f  %10.2f  %16.3f  %6zu\n", name.c_str(),
                     path.back().distance, 100. * meanTrace(path), 100. * path.back().trace,
                     path.back().cost, planner->model().field().views());

@@ -12,7 +12,7 @@ using namespace planning_problem;
 
 namespace {
 
-constexpr std::size_t kVertices = 800;
+constexpr unsigned kVertices = 800;
 constexpr double kViewPitch = 0.25;  // one view stands for its surroundings [m]
 
 /// Orange for certainty, blue for haste.
@@ -38,9 +38,9 @@ int main(int argc, char** argv) {
         const double alpha = 0.05 + 0.1 * i;
         const std::size_t viewsBefore = field->views();
         const BeliefOptions beliefs = two_textures::beliefs(alpha);
-        const auto planner = makePlanner("belief_rrt_star", problem, field, beliefs);
+        const auto planner = makePlanner("belief_rrt_star", problem, field, beliefs, kVertices);
         BeliefModel judge(problem.space, field, beliefs);
-        const std::vector<BeliefPoint> path = plan(*planner, kVertices, judge);
+        const std::vector<BeliefPoint> path = plan(*planner, judge);
         answers.emplace_back(path.back().distance, 100. * meanTrace(path));
         std::printf("%5.2f %10.2f  %10.2f  %10.2f  %19zu\n", alpha, answers.back().x(),
                     answers.back().y(), 100. * path.back().trace, field->views() - viewsBefore);

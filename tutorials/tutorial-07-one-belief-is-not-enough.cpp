@@ -15,7 +15,7 @@ using namespace planning_problem;
 
 namespace {
 
-constexpr std::size_t kVertices = 900;
+constexpr unsigned kVertices = 900;
 constexpr double kAlpha = 0.25;
 constexpr double kHeading = std::numbers::pi / 2.;  // the image's long side along world x
 
@@ -70,8 +70,8 @@ int main(int argc, char** argv) {
         {"search, 1 label", "belief_rrt_star", 1, {38, 140, 122}, 3},
         {"search, 5 labels", "belief_rrt_star", 5, {222, 79, 12}, 3}};
     for (const auto& [name, kind, labels, colour, width] : contenders) {
-        const auto planner = makePlanner(kind, problem, field, beliefs, labels);
-        const std::vector<BeliefPoint> path = plan(*planner, kVertices, judge);
+        const auto planner = makePlanner(kind, problem, field, beliefs, kVertices, labels);
+        const std::vector<BeliefPoint> path = plan(*planner, judge);
         std::printf("%-20s %11.2f  %10.2f  %10.2f  %16.3f\n", name, path.back().distance,
                     100. * meanTrace(path), 100. * path.back().trace, path.back().cost);
         plot.curve(route(path), colour, width);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scan_command.hpp"
 
+#include "map_config.hpp"
 #include "octree_file.hpp"
 #include "tum_dataset.hpp"
 
@@ -84,6 +85,23 @@ TEST_F(ScanCommand, WhereTheScannerStoodCanBeSaid) {
     writeText(scans / "2.ply", floorScan(false));
     options.scans = scans.string();
     expectInputError([&] { runScanMap(options, running); }, {"--scanner", "2 files"});
+}
+
+TEST_F(ScanCommand, ItsConfigMakesTheMapAgain) {
+    writeText(scans / "1.ply", floorScan(false));
+    options.resolution = 0.1;
+    options.scanner = Eigen::Vector3d(0.5, 0.5, 1.5);
+    const auto voxels = runScanMap(options, running).result["voxels"];
+    const std::string config = (options.out / "config.yaml").string();
+    ASSERT_TRUE(isScanConfig(config));
+    EXPECT_FALSE(isMapConfig(config));
+    ScanMapOptions again;
+    readScanConfig(config, again);
+    again.out = folder.path() / "again";
+    EXPECT_EQ(runScanMap(again, running).result["voxels"], voxels);
+    writeText(folder.path() / "typo.yaml", "scans: scans\nresolutoin: 0.1\n");
+    expectInputError([&] { readScanConfig((folder.path() / "typo.yaml").string(), again); },
+                     {"typo.yaml", "resolutoin"});
 }
 
 TEST_F(ScanCommand, ABadStationStopsItBeforeAnyWork) {
