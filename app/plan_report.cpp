@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kMaxViews = 60;       // pictures in the report
 constexpr double kPicturePixel = 0.025;     // of the top view's background [m]
 constexpr double kMaxPicturePixels = 800.;  // along its longer side
-constexpr int kHeatMapCells = 40;
+constexpr int kHeatMapCells = 28;
 
 const char* spaceName(StateKind kind) {
     return kind == StateKind::position ? "xyz" : kind == StateKind::positionYaw ? "xyz_yaw" : "se3";

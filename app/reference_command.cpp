@@ -87,6 +87,13 @@ class Search {
     const std::atomic<bool>& interrupted_;
 };
 
+std::string budgetOf(const ReferenceOptions& options, const Config& config) {
+    return fmt::format(
+        "alpha {}: {}, seeds {} to {}, {} vertices, {} labels, {} changes per descent",
+        fmt::join(config.sweep.alphas, " "), fmt::join(config.sweep.planners, " "), config.seed,
+        config.seed + options.runs - 1, config.vertices, config.search.labels, options.moves);
+}
+
 void print(const ReferenceTable& table) {
     fmt::print("{:>6} {:>10} {:>9} {:>11} {:>11}  {}\n", "alpha", "cost", "length", "mean trace",
                "goal trace", "from");
@@ -128,6 +135,10 @@ int runReference(const ReferenceOptions& options, const std::atomic<bool>& inter
         isComplete = isComplete && table.at(alpha) != nullptr;
     }
     line.clear();
+    if (!interrupted && options.runs > 0) {
+        table.addNote(budgetOf(options, config));
+        table.write();
+    }
     if (!options.quiet) print(table);
     if (interrupted) return kInterrupted;
     return isComplete ? kDone : kNoAnswer;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -22,14 +23,21 @@ constexpr const char* kPathColumns = "alpha,x,y,z,yaw";
 
 long keyOf(double alpha) { return std::lround(alpha * 1e6); }
 
-/// Calls `row` with the fields of every line but the first, which must be `header`.
+/// Calls `row` with the fields of every line after `header`.
+/// @return the lines before it, which begin with #
 template <typename Row>
-void readCsv(const fs::path& file, const std::string& header, std::size_t columns, Row row) {
+std::vector<std::string> readCsv(const fs::path& file, const std::string& header,
+                                 std::size_t columns, Row row) {
     std::ifstream stream(file);
+    std::vector<std::string> notes;
     std::string line;
-    std::getline(stream, line);
-    if (!stream || line != header) throw InputError(file.string(), "line 1", "expected " + header);
-    for (int number = 2; std::getline(stream, line); ++number) {
+    while (std::getline(stream, line) && line.starts_with('#')) notes.push_back(line);
+    int number = static_cast<int>(notes.size()) + 1;
+    if (line != header) {
+        throw InputError(file.string(), fmt::format("line {}", number), "expected " + header);
+    }
+    while (std::getline(stream, line)) {
+        ++number;
         std::vector<std::string> fields;
         std::istringstream text(line);
         for (std::string field; std::getline(text, field, ',');) fields.push_back(field);
@@ -41,6 +49,7 @@ void readCsv(const fs::path& file, const std::string& header, std::size_t column
                              "expected numbers for " + header);
         }
     }
+    return notes;
 }
 
 }  // namespace
@@ -53,8 +62,9 @@ fs::path ReferenceTable::pathsFile() const {
 
 void ReferenceTable::read() {
     rows_.clear();
+    notes_.clear();
     if (!fs::exists(file_)) return;
-    readCsv(file_, kColumns, 9, [&](const std::vector<std::string>& f) {
+    notes_ = readCsv(file_, kColumns, 9, [&](const std::vector<std::string>& f) {
         const double alpha = std::stod(f[0]);
         rows_[keyOf(alpha)] = {.alpha = alpha,
                                .cost = std::stod(f[1]),
@@ -77,7 +87,9 @@ void ReferenceTable::read() {
 }
 
 void ReferenceTable::write() const {
-    std::string table = std::string(kColumns) + "\n";
+    std::string table;
+    for (const std::string& note : notes_) table += note + "\n";
+    table += std::string(kColumns) + "\n";
     std::string paths = std::string(kPathColumns) + "\n";
     for (const auto& [key, r] : rows_) {
         table += fmt::format("{:.6g},{:.9g},{:.6g},{:.6g},{:.6g},{},{},{},{}\n", r.alpha, r.cost,
@@ -92,6 +104,11 @@ void ReferenceTable::write() const {
     fs::create_directories(fs::absolute(file_).parent_path());
     writeFileAtomically(pathsFile(), paths);
     writeFileAtomically(file_, table);
+}
+
+void ReferenceTable::addNote(const std::string& text) {
+    const std::string note = "# " + text;
+    if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
 }
 
 bool ReferenceTable::offer(const ReferencePath& path) {

@@ -21,8 +21,9 @@ struct ReferencePath {
     std::vector<Pose> waypoints = {};  ///< body poses T_w_b, start and goal included
 };
 
-/// FILE.csv holds the numbers, a row per alpha in rising order; FILE_paths.csv beside it the
-/// waypoints (alpha, x, y, z, yaw), so that the costs can be checked. Roll and pitch are not kept.
+/// FILE.csv holds the numbers, after lines that begin with # and say what search was done, a row
+/// per alpha in rising order; FILE_paths.csv beside it the waypoints (alpha, x, y, z, yaw), so that
+/// the costs can be checked. Roll and pitch are not kept.
 class ReferenceTable {
   public:
     /// Reads what is there; empty if nothing is.
@@ -31,6 +32,9 @@ class ReferenceTable {
 
     void read();
     void write() const;
+
+    /// What search was done, a line of the file; said once however often it was done.
+    void addNote(const std::string& text);
 
     /// Keeps a path if none with its alpha is known, or only a costlier one.
     bool offer(const ReferencePath& path);
@@ -42,6 +46,7 @@ class ReferenceTable {
     std::filesystem::path pathsFile() const;
 
     std::filesystem::path file_;
+    std::vector<std::string> notes_;
     std::map<long, ReferencePath> rows_;  // by alpha in millionths
 };
 

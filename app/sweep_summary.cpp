@@ -65,16 +65,21 @@ ReferenceCosts::ReferenceCosts(const std::string& file) {
     std::ifstream stream(file);
     if (!stream) throw InputError(file, "", "cannot be read");
     std::string line;
-    std::getline(stream, line);
+    int number = 1;
+    while (std::getline(stream, line) && line.starts_with('#')) ++number;
     const auto names = fieldsOf(line);
     const auto column = [&](const char* name) {
         const auto it = std::find(names.begin(), names.end(), name);
-        if (it == names.end()) throw InputError(file, "line 1", fmt::format("no column {}", name));
+        if (it == names.end()) {
+            throw InputError(file, fmt::format("line {}", number),
+                             fmt::format("no column {}", name));
+        }
         return static_cast<std::size_t>(it - names.begin());
     };
     const std::size_t alpha = column("alpha");
     const std::size_t cost = column("cost");
-    for (int number = 2; std::getline(stream, line); ++number) {
+    while (std::getline(stream, line)) {
+        ++number;
         if (line.empty()) continue;
         const auto fields = fieldsOf(line);
         const double value = numberIn(fields, cost, file, number);

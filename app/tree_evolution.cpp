@@ -5,11 +5,19 @@
 #include <ompl/geometric/PathGeometric.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 namespace photonav {
 namespace ob = ompl::base;
+namespace {
+
+double lengthOf(const std::vector<Eigen::Vector3d>& path) {
+    double length = 0.;
+    for (std::size_t i = 1; i < path.size(); ++i) length += (path[i] - path[i - 1]).norm();
+    return length;
+}
+
+}  // namespace
 
 TreeEvolution growInStages(const PlanRun& run, const std::string& name,
                            const std::vector<std::size_t>& vertices,
@@ -23,7 +31,6 @@ TreeEvolution growInStages(const PlanRun& run, const std::string& name,
             [&] { return interrupted || planner->iterations() > 200 * stop; }));
         TreeStage& stage = evolution.stages.emplace_back();
         stage.vertices = planner->vertices();
-        stage.cost = planner->bestCost();
         stage.tree = drawnEdges(*planner);
         const auto path = planner->getProblemDefinition()->getSolutionPath();
         if (path == nullptr) continue;
@@ -60,12 +67,12 @@ Png drawTreeEvolution(const TopView& map, const std::vector<TreeEvolution>& evol
             }
             TopView& view = row.emplace_back(map);
             view.title = fmt::format("{}, {} vertices", evolution.planner, stage.vertices);
+            if (!stage.path.empty()) view.title += fmt::format(", {:.2f} m", lengthOf(stage.path));
             view.trees = {{evolution.planner, kTreeColor, stage.tree}};
             view.paths = {{evolution.planner, kPathColor, {}}};
             for (const Eigen::Vector3d& p : stage.path) {
                 view.paths[0].points.push_back({.position = p});
             }
-            if (std::isfinite(stage.cost)) view.title += fmt::format(", cost {:.4g}", stage.cost);
         }
     }
     return drawMaps(rows);

@@ -12,7 +12,6 @@ namespace photonav {
 /// A planner's tree, and the best path so far, when it had as many vertices.
 struct TreeStage {
     std::size_t vertices = 0;
-    double cost = 0.;  ///< of the best path, in the planner's own unit; infinite: none yet
     std::vector<Edge> tree;
     std::vector<Eigen::Vector3d> path;  ///< positions in w; empty: none yet
 };

@@ -56,13 +56,30 @@ void CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices
     if (charge_ == 0.) return;
 
     for (std::size_t i = sees_.size(); i < vertices.size(); ++i) {
-        const Pose T_w_b = model.space().bodyPose(vertices[i].state);
-        const Matrix6& information = model.informationAt(T_w_b);
-        const Eigen::Matrix3d R_w_c = T_w_b.linear() * model.field().mount().linear();
-        auto& sees = sees_.emplace_back();
-        for (int k = 0; k < kAxes; ++k) sees[k] = told(information, R_w_c, k) > kBlind;
+        const Vertex* known = lookedFromNear(roadmap, vertices[i]);
+        sees_.push_back(known == nullptr ? look(vertices[i]) : sees_[known->index]);
+        isLookedFrom_.push_back(known == nullptr);
     }
     for (int k = 0; k < kAxes; ++k) findViews(roadmap, vertices, k);
+}
+
+/// An older vertex no farther than views are apart anyway.
+const Vertex* CostToGo::lookedFromNear(const Roadmap& roadmap, const Vertex& vertex) const {
+    for (const Roadmap::Edge* edge : roadmap.of(&vertex)) {
+        const Vertex* other = edge->otherEnd(&vertex);
+        const bool isNear = edge->motion.length <= model_->options().ds;
+        if (isNear && other->index < vertex.index && isLookedFrom_[other->index]) return other;
+    }
+    return nullptr;
+}
+
+CostToGo::Sees CostToGo::look(const Vertex& vertex) {
+    const Pose T_w_b = model_->space().bodyPose(vertex.state);
+    const Matrix6& information = model_->informationAt(T_w_b);
+    const Eigen::Matrix3d R_w_c = T_w_b.linear() * model_->field().mount().linear();
+    Sees sees{};
+    for (int k = 0; k < kAxes; ++k) sees[k] = told(information, R_w_c, k) > kBlind;
+    return sees;
 }
 
 void CostToGo::findViews(const Roadmap& roadmap, const std::deque<Vertex>& vertices, int axis) {

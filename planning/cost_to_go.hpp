@@ -22,7 +22,8 @@ namespace photonav {
 /// Fourth-order terms and what counts as nothing are covered by 1 % of the charge.
 class CostToGo {
   public:
-    /// Looks from every vertex (once), and from nowhere else.
+    /// Looks from vertices, once, and from nowhere else: from all that lie no nearer to one looked
+    /// from before than views are apart.
     void update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                 const std::vector<Vertex*>& goals, BeliefModel& model);
 
@@ -42,16 +43,21 @@ class CostToGo {
     double distance(const Vertex& vertex) const { return toGoal_[vertex.index]; }
 
   private:
+    using Sees = std::array<bool, kAxes>;  // something of an axis
+
+    const Vertex* lookedFromNear(const Roadmap& roadmap, const Vertex& vertex) const;
+    Sees look(const Vertex& vertex);
     void findViews(const Roadmap& roadmap, const std::deque<Vertex>& vertices, int axis);
     bool tells(const Roadmap::Edge& edge, int axis) const {
         return sees_[edge.from->index][axis] || sees_[edge.to->index][axis];
     }
 
-    const BeliefModel* model_ = nullptr;
+    BeliefModel* model_ = nullptr;
     double alpha_ = 1.;
-    double charge_ = 0.;                              // per metre and m^2
-    std::vector<double> toGoal_;                      // by vertex
-    std::vector<std::array<bool, kAxes>> sees_;       // by vertex: something of the axis
+    double charge_ = 0.;              // per metre and m^2
+    std::vector<double> toGoal_;      // by vertex
+    std::vector<Sees> sees_;          // by vertex
+    std::vector<bool> isLookedFrom_;  // by vertex; else it sees what another one does
     std::array<std::vector<double>, kAxes> toView_;   // by vertex: way to where it can be seen
     std::array<std::vector<double>, kAxes> viaView_;  // by vertex: way to the goal by there
 };

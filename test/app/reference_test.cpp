@@ -10,6 +10,7 @@
 #include "executable.hpp"
 #include "plan_run.hpp"
 #include "reference_table.hpp"
+#include "sweep_summary.hpp"
 
 namespace photonav {
 namespace {
@@ -98,7 +99,14 @@ TEST_F(ReferenceFiles, ComeBackAsTheyWereWrittenAndOnlyGetBetter) {
     EXPECT_TRUE(table.offer(path));
     path.cost = 3.6;
     EXPECT_FALSE(table.offer(path));
+    table.addNote("all that was tried");
     table.write();
+    table.read();
+    table.write();
+    EXPECT_EQ(ReferenceCosts(file_.string()).at(0.15), 3.5);
+    std::string note;
+    std::getline(std::ifstream(file_), note);
+    EXPECT_EQ(note, "# all that was tried");
     ReferenceTable again(file_);
     again.read();
     ASSERT_NE(again.at(0.15), nullptr);
@@ -109,13 +117,14 @@ TEST_F(ReferenceFiles, ComeBackAsTheyWereWrittenAndOnlyGetBetter) {
 }
 
 TEST_F(ReferenceFiles, NameTheLineThatIsWrong) {
-    std::ofstream(file_) << "alpha,cost,length,mean_trace,goal_trace,planner,vertices,labels,seed\n"
+    std::ofstream(file_) << "# a note\n"
+                            "alpha,cost,length,mean_trace,goal_trace,planner,vertices,labels,seed\n"
                             "0.1,cheap,1,1,1,rrt_star,1,1,1\n";
     try {
         ReferenceTable(file_).read();
         FAIL();
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("line 2"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("line 3"), std::string::npos) << error.what();
     }
 }
 
