@@ -70,7 +70,9 @@ void BeliefRRTstar::search(const ob::PlannerTerminationCondition& ptc) {
 
     Open open;
     for (Vertex* start : starts_) {
-        push(open, {0., -1, nullptr, start, std::make_unique<Belief>(start->belief)});
+        Candidate root{0., -1, nullptr, start};
+        root.belief = std::make_unique<Belief>(start->belief);
+        push(open, std::move(root));
     }
     while (!open.empty()) {
         if (ptc) return;
