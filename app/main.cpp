@@ -12,6 +12,7 @@
 #include "command_io.hpp"
 #include "compare_command.hpp"
 #include "error.hpp"
+#include "fly_command.hpp"
 #include "info_command.hpp"
 #include "map_command.hpp"
 #include "map_config.hpp"
@@ -285,6 +286,54 @@ Command referenceCommand(CLI::App& app) {
     return {parser, [options] { return runReference(*options, interrupted); }};
 }
 
+Command flyCommand(CLI::App& app, const std::string& commandLine) {
+    auto options = std::make_shared<FlyOptions>();
+    auto seed = std::make_shared<std::string>();
+    options->commandLine = commandLine;
+    CLI::App* parser =
+        app.add_subcommand("fly", "Fly a plan in closed loop, many times, beside RRT*'s.");
+    addCommon(parser, *options);
+    const auto number = [parser](const char* name, double& value, const char* what, double least,
+                                 double most) {
+        parser->add_option(name, value, what)
+            ->check(CLI::Range(least, most))
+            ->capture_default_str();
+    };
+    parser->get_option("config")->description("YAML file, or result folder of photonav plan");
+    parser->add_option("--flights", options->flights, "per planner")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    parser->add_option("--jobs", options->jobs, "threads")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    parser->add_option("--seed", *seed, "of everything random (overrides the config)");
+    number("--speed", options->speed, "at most [m/s]", 0.01, 100.);
+    number("--rate", options->rate, "of the camera [Hz] (0: a view every planner.ds)", 0., 1000.);
+    number("--latency", options->latency, "of images [s]", 0., 10.);
+    number("--drop", options->drop, "share of the images that never arrive", 0., 1.);
+    number("--black", options->black, "share of the images that are black", 0., 1.);
+    parser->add_option("--blackout", options->blackout, "a time of black images [s]")
+        ->type_name("START,LENGTH");
+    parser
+        ->add_option("--camera", options->camera,
+                     "noise of the images: as the config assumes, or as real cameras have")
+        ->check(CLI::IsMember({"assumed", "real"}))
+        ->capture_default_str();
+    number("--odometry", options->odometry, "true variance of the odometry by the assumed one", 0.,
+           1e6);
+    number("--body-radius", options->bodyRadius,
+           "of collisions [m] (0: half of robot.radius, the rest is margin)", 0., 1e3);
+    parser->add_flag("--photometric-goal,!--no-photometric-goal", options->photometricGoal,
+                     "servo on the goal's image at the end (the default)");
+    parser
+        ->add_option("--record", options->record, "write the first flight as a TUM RGB-D recording")
+        ->type_name("DIR");
+    return {parser, [options, seed] {
+                if (!seed->empty()) options->overrides.push_back("seed=" + *seed);
+                return runFly(*options, interrupted);
+            }};
+}
+
 Command reportCommand(CLI::App& app) {
     auto folder = std::make_shared<std::filesystem::path>();
     CLI::App* parser = app.add_subcommand("report", "Rebuild report.html of a result folder.");
@@ -310,10 +359,15 @@ int run(int argc, char** argv) {
     std::string commandLine = "photonav";
     for (int i = 1; i < argc; ++i) commandLine += std::string(" ") + argv[i];
 
-    const std::array commands{planCommand(app, commandLine), infoCommand(app, commandLine),
-                              mapCommand(app, commandLine),  sweepCommand(app, commandLine),
-                              compareCommand(app),           benchmarkCommand(app, commandLine),
-                              referenceCommand(app),         reportCommand(app)};
+    const std::array commands{planCommand(app, commandLine),
+                              infoCommand(app, commandLine),
+                              flyCommand(app, commandLine),
+                              mapCommand(app, commandLine),
+                              sweepCommand(app, commandLine),
+                              compareCommand(app),
+                              benchmarkCommand(app, commandLine),
+                              referenceCommand(app),
+                              reportCommand(app)};
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -197,6 +197,17 @@ JudgedPath PlanRun::judge(const BeliefPlanner& planner) {
     return judge(planner.getName(), solutionOf(planner));
 }
 
+JudgedPath PlanRun::judge(const std::string& planner, const std::vector<Place>& waypoints) {
+    std::vector<ob::ScopedState<>> states;
+    std::vector<const ob::State*> pointers;
+    for (const Place& place : waypoints) {
+        states.emplace_back(si_);
+        space_.setState(states.back().get(), place.position, place.yaw.value_or(0.));
+    }
+    for (const auto& state : states) pointers.push_back(state.get());
+    return judge(planner, pointers);
+}
+
 JudgedPath PlanRun::judge(const std::string& planner, const std::vector<const ob::State*>& path) {
     JudgedPath judged{.planner = planner, .points = judge_->evaluate(path)};
     double integral = 0.;

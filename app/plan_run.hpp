@@ -53,6 +53,9 @@ class PlanRun {
                                       const DescentOptions& options,
                                       const std::atomic<bool>& interrupted);
 
+    /// A path given by its waypoints, judged like one that was found.
+    JudgedPath judge(const std::string& planner, const std::vector<Place>& waypoints);
+
     /// The information of a view from here, remembered; for heat maps.
     const Matrix6& informationAt(const Pose& T_w_b) { return judge_->informationAt(T_w_b); }
     /// The belief at the start, camera frame.

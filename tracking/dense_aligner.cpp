@@ -82,8 +82,13 @@ Alignment DenseAligner::align(const ImageF& observed, const Pose& T_start) {
 }
 
 Alignment DenseAligner::align(const ImageF& observed, const UncertainPose& prior) {
+    return align(observed, prior, prior.mean);
+}
+
+Alignment DenseAligner::align(const ImageF& observed, const UncertainPose& prior,
+                              const Pose& T_start) {
     model_->observe(observed);
-    return alignCoarseToFine(*model_, options(), prior.mean, &prior);
+    return alignCoarseToFine(*model_, options(), T_start, &prior);
 }
 
 }  // namespace photonav

@@ -36,6 +36,9 @@ class DenseAligner {
     /// Jacobian of the correction.
     Alignment align(const ImageF& observed, const UncertainPose& prior);
 
+    /// The same, beginning elsewhere.
+    Alignment align(const ImageF& observed, const UncertainPose& prior, const Pose& T_start);
+
     const AlignmentOptions& options() const;
     const Camera& camera() const;
 

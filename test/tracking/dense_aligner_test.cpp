@@ -185,6 +185,15 @@ TEST(DenseAligner, SaysWhenItIsLost) {
     EXPECT_EQ(aligner.align(image, confident).verdict, Verdict::lostImplausible);
 }
 
+TEST(DenseAligner, IsLostInTheDarkOverWhite) {
+    const MeshRenderer white(testing::floorOf(uniformTexture(0.9)));
+    const Pose truth = cameraAt({0., 0., 2.}, kDown);
+    DenseAligner aligner(white, camera());
+    const ImageF black(aligner.camera().height, aligner.camera().width, 0.F);
+    EXPECT_EQ(aligner.align(black, {truth, 1e-2 * Matrix6::Identity()}).verdict,
+              Verdict::lostResidual);
+}
+
 TEST(DenseAligner, FloorBoundsTheCovarianceFromBelow) {
     AlignmentOptions options;
     options.trust.floorTranslation = 0.01;

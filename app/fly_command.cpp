@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fly_command.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+
+#include "atomic_file.hpp"
+#include "camera_noise.hpp"
+#include "error.hpp"
+#include "flight_recorder.hpp"
+#include "fly_plan.hpp"
+#include "fly_report.hpp"
+
+namespace photonav {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void readBlackout(const std::string& text, SimulatedCameraOptions& camera) {
+    if (text.empty()) return;
+    char rest = 0;
+    const int read = std::sscanf(text.c_str(), "%lf,%lf%c", &camera.blackoutStart,
+                                 &camera.blackoutLength, &rest);
+    if (read != 2 || !(camera.blackoutStart >= 0.) || !(camera.blackoutLength >= 0.)) {
+        throw InputError("--blackout", text, "expected start,length in seconds");
+    }
+}
+
+FlightOptions flightOptions(const FlyOptions& options, const Config& config) {
+    FlightOptions flight;
+    flight.mav.odometryNoise = config.belief.motionNoise;
+    flight.mav.rotationWeight = config.rotationWeight;
+    flight.mav.odometryFactor = options.odometry;
+    flight.camera.period = options.rate > 0. ? 1. / options.rate : config.belief.ds / options.speed;
+    flight.camera.latency = options.latency;
+    flight.camera.dropRate = options.drop;
+    flight.camera.blackRate = options.black;
+    readBlackout(options.blackout, flight.camera);
+    flight.servo.maxSpeed = options.speed;
+    flight.alignment.photometric = config.photometric;
+    flight.alignment.photometric.stride = 1;
+    flight.lost.blindTime = std::max(flight.lost.blindTime, 4. * flight.camera.period);
+    flight.photometricGoal = options.photometricGoal;
+    flight.bodyRadius = options.bodyRadius > 0. ? options.bodyRadius : 0.5 * config.robotRadius;
+    flight.arrivalTolerance = std::max(config.robotRadius, 0.1);
+    flight.seed = config.seed;
+    return flight;
+}
+
+ImageNoise realNoise() {
+    return [](ImageF& image, std::mt19937_64& random) {
+        image = takePicture(image, CameraNoiseOptions{}, random);
+    };
+}
+
+/// The config's planner first, then RRT* if it is to be compared with.
+std::vector<FlightSet> planAll(const PlanSource& source, const Config& config, PlanRun& run,
+                               ProgressLine& line, const std::atomic<bool>& interrupted) {
+    std::vector<FlightSet> sets;
+    const auto add = [&](JudgedPath path) {
+        std::vector<PlannedView> plan = plannedViews(path);
+        sets.push_back({std::move(path), std::move(plan), {}});
+    };
+    const auto solve = [&](const std::string& name) {
+        line.show("planning: " + name);
+        auto outcome = run.solve(name, interrupted, [&](const ReportProgress& progress) {
+            line.show(fmt::format("planning: {}, {} of {} vertices", name, progress.vertices,
+                                  config.vertices));
+        });
+        if (outcome.path) add(std::move(*outcome.path));
+    };
+    if (!source.resultFile.empty()) {
+        add(readPlannedPath(source.resultFile, run));
+    } else {
+        solve(config.planner);
+    }
+    const bool isCompared = config.compareWithRrtStar && config.planner != "rrt_star";
+    if (!sets.empty() && isCompared && !interrupted) solve("rrt_star");
+    return sets;
+}
+
+void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const FlightOptions& flight,
+            const FlyOptions& options, ProgressLine& line, const std::atomic<bool>& interrupted) {
+    std::optional<FlightRecorder> recorder;
+    if (!options.record.empty()) recorder.emplace(options.record, world.camera);
+    OnExposure record;
+    if (recorder) {
+        record = [&](double time, const Pose& T_c_w, const ImageF& image, const ImageF& depth) {
+            recorder->add(time, T_c_w, image, depth);
+        };
+    }
+    const auto begin = Clock::now();
+    std::size_t flown = 0;
+    std::size_t arrived = 0;
+    for (FlightSet& set : sets) {
+        const auto onFlight = [&](const FlightResult& result) {
+            ++flown;
+            arrived += result.end == FlightEnd::arrived;
+            const double each = std::chrono::duration<double>(Clock::now() - begin).count() /
+                                static_cast<double>(flown);
+            const double all = static_cast<double>(options.flights * sets.size());
+            line.show(fmt::format("{}: {} of {:.0f} flights, {} arrived, about {:.0f} s left",
+                                  set.path.planner, flown, all, arrived,
+                                  each * (all - static_cast<double>(flown))));
+        };
+        set.flights = flyMany(set.plan, world, flight, options.flights, options.jobs, interrupted,
+                              onFlight, &set == &sets.front() ? record : OnExposure{});
+    }
+    if (recorder) recorder->finish();
+}
+
+void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::path& folder) {
+    if (sets.empty()) fmt::print("no path found\n");
+    if (!sets.empty()) {
+        fmt::print("{:<16} {:>9} {:>10} {:>11} {:>10} {:>10} {:>6} {:>7} {:>11}\n", "planner",
+                   "arrived", "collisions", "error (rms)", "predicted", "believed", "NEES", "lost",
+                   "goal error");
+    }
+    for (const FlightSet& set : sets) {
+        const FlightSummary s = summarise(set);
+        fmt::print(
+            "{:<16} {:>9} {:>10} {:>9.3f} m {:>8.3f} m {:>8.3f} m {:>6.2f} {:>5.1f} s "
+            "{:>9.3f} m\n",
+            set.path.planner, fmt::format("{} of {}", s.arrived, s.flights), s.collisions,
+            s.positionRmse, s.predictedSigma, s.believedSigma, s.nees, s.lostTime, s.goalError);
+    }
+    fmt::print("report: {}\n", (folder / "report.html").string());
+}
+
+std::filesystem::path folderFor(const FlyOptions& options, const PlanSource& source) {
+    CommandOptions named = options;
+    if (!source.resultFile.empty()) {  // named as the plan, not as "config"
+        named.config =
+            std::filesystem::absolute(source.resultFile).parent_path().filename().string() + ".";
+    }
+    const auto folder = resultFolder(named, "fly");
+    for (const char* stale : {"trajectory.tum", "trajectory.cov", "trajectory.ov",
+                              "groundtruth.tum", "errors.png", "nees.png"}) {
+        std::filesystem::remove(folder / stale);
+    }
+    return folder;
+}
+
+bool anyArrived(const std::vector<FlightSet>& sets) {
+    for (const FlightSet& set : sets) {
+        if (summarise(set).arrived > 0) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
+    const auto begin = Clock::now();
+    const PlanSource source = findPlan(options.config);
+    const Config config = loadConfig(source.configFile, options.overrides);
+    const FlightOptions flight = flightOptions(options, config);
+    const World world(config);
+    PlanRun run(config, world);
+    run.checkPlaces();
+    const auto folder = folderFor(options, source);
+
+    std::vector<FlightSet> sets;
+    {
+        ProgressLine line(options.quiet);
+        sets = planAll(source, config, run, line, interrupted);
+        const FlightWorld flightWorld{
+            .truth = &world.views(),
+            .map = &world.views(),
+            .clearance = [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
+            .camera = config.camera.camera(),
+            .T_b_c = config.camera.T_b_c(),
+            .noise = options.camera == "real" ? realNoise() : assumedNoise(config.photometric)};
+        flyAll(sets, flightWorld, flight, options, line, interrupted);
+    }
+    const bool stopped = interrupted;
+    nlohmann::json result = flyResult(config, sets, flight, stopped);
+    result["time"]["total_s"] = std::chrono::duration<double>(Clock::now() - begin).count();
+    writeFlyReport(folder, config, world, sets, options.commandLine, result);
+    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+
+    if (options.json)
+        fmt::print("{}\n", result.dump(2));
+    else if (!options.quiet)
+        printSummary(sets, folder);
+    if (stopped) return kInterrupted;
+    return anyArrived(sets) ? kDone : kNoAnswer;
+}
+
+}  // namespace photonav

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fly_report.hpp"
+
+#include <fmt/format.h>
+
+#include "belief_trajectory.hpp"
+#include "command_io.hpp"
+#include "fly_figures.hpp"
+#include "plan_report.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+json jsonOf(const FlightResult& flight) {
+    return {{"end", nameOf(flight.end)},
+            {"duration_s", flight.duration},
+            {"way_m", flight.way},
+            {"goal_error_m", flight.goalError},
+            {"least_clearance_m", finiteOrNull(flight.leastClearance)},
+            {"images", flight.images},
+            {"bad_images", flight.badImages},
+            {"times_lost", flight.timesLost},
+            {"lost_s", flight.lost},
+            {"photometric_goal", flight.photometric}};
+}
+
+json jsonOf(const FlightSet& set) {
+    const FlightSummary s = summarise(set);
+    json result{{"planner", set.path.planner},
+                {"length_m", set.path.length},
+                {"flights", s.flights},
+                {"arrived", s.arrived},
+                {"astray", s.astray},
+                {"collisions", s.collisions},
+                {"given_up", s.lost},
+                {"out_of_time", s.outOfTime},
+                {"position_rmse_m", s.positionRmse},
+                {"predicted_sigma_m", s.predictedSigma},
+                {"believed_sigma_m", s.believedSigma},
+                {"nees_per_dof", s.nees},
+                {"nees_at_goal_per_dof", s.neesAtGoal},
+                {"nees_at_goal_bounds", {s.neesLow, s.neesHigh}},
+                {"lost_s", s.lostTime},
+                {"duration_s", s.duration},
+                {"goal_error_m", s.goalError},
+                {"photometric_goal",
+                 {{"flights", s.photometric},
+                  {"error_before_m", s.photometricBefore},
+                  {"error_after_m", s.photometricAfter}}},
+                {"each", json::array()}};
+    for (const FlightResult& flight : set.flights) result["each"].push_back(jsonOf(flight));
+    return result;
+}
+
+ReportTable tableOf(const FlightSet& set) {
+    const FlightSummary s = summarise(set);
+    const auto metres = [](double value) { return fmt::format("{:.3f} m", value); };
+    ReportTable table{"Flights of " + set.path.planner, {}};
+    table.rows = {{"arrived", fmt::format("{} of {}", s.arrived, s.flights)},
+                  {"believed to be there, but elsewhere", fmt::format("{}", s.astray)},
+                  {"collisions", fmt::format("{}", s.collisions)},
+                  {"gave up lost / out of time", fmt::format("{} / {}", s.lost, s.outOfTime)},
+                  {"position error, root mean square", metres(s.positionRmse)},
+                  {"predicted by the plan", metres(s.predictedSigma)},
+                  {"believed in flight", metres(s.believedSigma)},
+                  {"NEES per degree of freedom (1: honest)", fmt::format("{:.2f}", s.nees)},
+                  {"the same at the goal (95 % of honest cases)",
+                   fmt::format("{:.2f} ({:.2f} to {:.2f})", s.neesAtGoal, s.neesLow, s.neesHigh)},
+                  {"true distance to the goal at the end, median", metres(s.goalError)},
+                  {"time without tracking, all flights", fmt::format("{:.1f} s", s.lostTime)},
+                  {"duration, mean", fmt::format("{:.1f} s", s.duration)}};
+    if (s.photometric > 0) {
+        table.rows.emplace_back("last centimetres on the goal's image",
+                                fmt::format("{} flights, {:.3f} to {:.3f} m", s.photometric,
+                                            s.photometricBefore, s.photometricAfter));
+    }
+    return table;
+}
+
+void writeFirstFlight(const fs::path& folder, const FlightResult& flight) {
+    std::vector<StampedBelief> beliefs;
+    Trajectory truth;
+    for (const FlightSample& sample : flight.samples) {
+        beliefs.push_back({sample.time, sample.belief});
+        truth.push_back({sample.time, sample.T_c_w.inverse()});
+    }
+    const auto file = [&](const char* name) { return (folder / name).string(); };
+    writeTrajectory(file("trajectory.tum"), meansOf(beliefs));
+    writeTrajectory(file("groundtruth.tum"), truth);
+    writeCovariances(file("trajectory.cov"), beliefs);
+    writeOpenVinsTrajectory(file("trajectory.ov"), beliefs);
+}
+
+Png topView(const Config& config, const World& world, const std::vector<FlightSet>& sets,
+            const std::vector<DrawnPath>& paths) {
+    TopView view = viewFromAbove(config, world, paths);
+    view.title = "Where the flights truly went";
+    for (std::size_t k = 0; k < sets.size(); ++k) {
+        if (!sets[k].flights.empty()) view.trees.push_back(drawnFlights(sets[k], colorOf(k)));
+    }
+    return drawTopView(view);
+}
+
+std::vector<NamedFigure> figuresOf(const Config& config, const World& world,
+                                   const std::vector<FlightSet>& sets,
+                                   const std::vector<DrawnPath>& paths) {
+    std::vector<NamedFigure> figures;
+    if (!sets.empty()) {
+        figures.push_back({"errors.png",
+                           {"Error of the believed position along the way, against what the plan "
+                            "predicted.",
+                            drawErrorBands(sets)}});
+    }
+    figures.push_back({"top_view.png",
+                       {"From above: plans with predicted 3 sigma ellipses, and the true flights.",
+                        topView(config, world, sets, paths)}});
+    if (!sets.empty()) {
+        figures.push_back(
+            {"nees.png",
+             {"Whether the belief was honest: mean NEES along the way.", drawNees(sets)}});
+    }
+    return figures;
+}
+
+}  // namespace
+
+json flyResult(const Config& config, const std::vector<FlightSet>& sets,
+               const FlightOptions& options, bool interrupted) {
+    json result{{"schema", 1},
+                {"command", "fly"},
+                {"version", PHOTONAV_VERSION},
+                {"status", interrupted    ? "interrupted"
+                           : sets.empty() ? "no path"
+                                          : "done"},
+                {"seed", config.seed},
+                {"flight",
+                 {{"camera_period_s", options.camera.period},
+                  {"camera_latency_s", options.camera.latency},
+                  {"camera_drop_rate", options.camera.dropRate},
+                  {"camera_black_rate", options.camera.blackRate},
+                  {"blackout_s", {options.camera.blackoutStart, options.camera.blackoutLength}},
+                  {"max_speed_mps", options.servo.maxSpeed},
+                  {"odometry_factor", options.mav.odometryFactor},
+                  {"body_radius_m", options.bodyRadius},
+                  {"arrival_tolerance_m", options.arrivalTolerance}}},
+                {"planners", json::array()}};
+    for (const FlightSet& set : sets) result["planners"].push_back(jsonOf(set));
+    return result;
+}
+
+void writeFlyReport(const fs::path& folder, const Config& config, const World& world,
+                    const std::vector<FlightSet>& sets, const std::string& commandLine,
+                    const json& result) {
+    const Camera camera = config.camera.camera();
+    ReportData report;
+    report.title = fs::path(config.file).stem().string() + ", flown";
+    report.commandLine = commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.config = toYaml(config);
+    world.describe(report);
+    for (std::size_t k = 0; k < sets.size(); ++k) {
+        report.paths.push_back(drawnPath(sets[k].path, config.camera.T_b_c(), colorOf(k)));
+        report.trees.push_back(drawnFlights(sets[k], colorOf(k)));
+        report.tables.push_back(tableOf(sets[k]));
+        report.subtitle +=
+            fmt::format("{}{}: {} of {} flights arrived", k == 0 ? "" : "; ", sets[k].path.planner,
+                        summarise(sets[k]).arrived, sets[k].flights.size());
+    }
+    report.start = config.start.position;
+    report.goal = config.goal.position;
+    report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),
+                          2. * std::atan(0.5 * camera.height / camera.fy())};
+    if (!sets.empty() && !sets[0].flights.empty()) writeFirstFlight(folder, sets[0].flights[0]);
+    writeResultFolder(folder, report, figuresOf(config, world, sets, report.paths));
+}
+
+}  // namespace photonav

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fly_runs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "se3.hpp"
+
+namespace photonav {
+namespace {
+
+double positionSigma(const Matrix6& covariance) {
+    return std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+}
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0.;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+void countEnds(const FlightSet& set, FlightSummary& s) {
+    s.flights = set.flights.size();
+    std::vector<double> errors, before, after;
+    for (const FlightResult& flight : set.flights) {
+        s.arrived += flight.end == FlightEnd::arrived;
+        s.astray += flight.end == FlightEnd::astray;
+        s.collisions += flight.end == FlightEnd::collided;
+        s.lost += flight.end == FlightEnd::lost;
+        s.outOfTime += flight.end == FlightEnd::outOfTime;
+        s.lostTime += flight.lost;
+        s.duration += flight.duration / static_cast<double>(s.flights);
+        errors.push_back(flight.goalError);
+        if (!flight.photometric) continue;
+        before.push_back(flight.goalErrorBefore);
+        after.push_back(flight.goalError);
+    }
+    s.goalError = median(errors);
+    s.photometric = before.size();
+    s.photometricBefore = median(before);
+    s.photometricAfter = median(after);
+}
+
+}  // namespace
+
+std::vector<PlannedView> plannedViews(const JudgedPath& path) {
+    std::vector<PlannedView> plan;
+    for (const BeliefPoint& point : path.points) {
+        plan.push_back({point.T_w_b, point.covariance, point.length, point.isWaypoint});
+    }
+    return plan;
+}
+
+double predictedSigma(const std::vector<PlannedView>& plan, double distance) {
+    const auto next =
+        std::upper_bound(plan.begin(), plan.end(), distance,
+                         [](double d, const PlannedView& view) { return d < view.distance; });
+    if (next == plan.begin()) return positionSigma(plan.front().covariance);
+    if (next == plan.end()) return positionSigma(plan.back().covariance);
+    const auto last = next - 1;
+    const double t = (distance - last->distance) / (next->distance - last->distance);
+    return (1. - t) * positionSigma(last->covariance) + t * positionSigma(next->covariance);
+}
+
+PositionError positionError(const FlightSample& sample, const std::vector<PlannedView>& plan) {
+    const Eigen::Vector3d believed = sample.belief.mean.inverse().translation();
+    return {.distance = sample.distance,
+            .error = (believed - sample.T_c_w.inverse().translation()).norm(),
+            .believed = positionSigma(sample.belief.covariance),
+            .predicted = predictedSigma(plan, sample.distance)};
+}
+
+double neesPerDof(const FlightSample& sample) {
+    const Vector6 xi = logSE3(sample.T_c_w * sample.belief.mean.inverse());
+    return xi.dot(sample.belief.covariance.ldlt().solve(xi)) / 6.;
+}
+
+double chiSquareQuantile(double degrees, double z) {
+    const double a = 2. / (9. * degrees);
+    return degrees * std::pow(1. - a + z * std::sqrt(a), 3);
+}
+
+FlightSummary summarise(const FlightSet& set) {
+    FlightSummary s;
+    if (set.flights.empty()) return s;
+    countEnds(set, s);
+    double n = 0.;
+    for (const FlightResult& flight : set.flights) {
+        for (const FlightSample& sample : flight.samples) {
+            const PositionError e = positionError(sample, set.plan);
+            s.positionRmse += e.error * e.error;
+            s.predictedSigma += e.predicted * e.predicted;
+            s.believedSigma += e.believed * e.believed;
+            s.nees += neesPerDof(sample);
+            ++n;
+        }
+        s.neesAtGoal += neesPerDof(flight.samples.back()) / static_cast<double>(s.flights);
+    }
+    s.positionRmse = std::sqrt(s.positionRmse / n);
+    s.predictedSigma = std::sqrt(s.predictedSigma / n);
+    s.believedSigma = std::sqrt(s.believedSigma / n);
+    s.nees /= n;
+    const double degrees = 6. * static_cast<double>(s.flights);
+    s.neesLow = chiSquareQuantile(degrees, -1.96) / degrees;
+    s.neesHigh = chiSquareQuantile(degrees, 1.96) / degrees;
+    return s;
+}
+
+std::vector<FlightResult> flyMany(const std::vector<PlannedView>& plan, const FlightWorld& world,
+                                  const FlightOptions& options, unsigned count, unsigned jobs,
+                                  const std::atomic<bool>& interrupted,
+                                  const std::function<void(const FlightResult&)>& onFlight,
+                                  const OnExposure& onExposure) {
+    std::vector<FlightResult> flights(count);
+    std::atomic<unsigned> next{0};
+    std::mutex mutex;  // of onFlight and failure
+    std::exception_ptr failure;
+    const auto work = [&] {
+        try {
+            for (unsigned i = next++; i < count && !interrupted; i = next++) {
+                FlightOptions own = options;
+                own.seed = (options.seed << 32) + i;
+                flights[i] = fly(
+                    plan, world, own, [&] { return interrupted.load(); },
+                    i == 0 ? onExposure : OnExposure{});
+                const std::lock_guard lock(mutex);
+                if (flights[i].end != FlightEnd::stopped) onFlight(flights[i]);
+            }
+        } catch (...) {
+            const std::lock_guard lock(mutex);
+            if (!failure) failure = std::current_exception();
+            next = count;
+        }
+    };
+    {
+        std::vector<std::jthread> workers;
+        for (unsigned k = 1; k < std::min(jobs, count); ++k) workers.emplace_back(work);
+        work();
+    }
+    if (failure) std::rethrow_exception(failure);
+    std::erase_if(flights, [](const FlightResult& f) { return f.end == FlightEnd::stopped; });
+    return flights;
+}
+
+}  // namespace photonav

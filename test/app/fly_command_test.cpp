@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `photonav fly`, run as a user runs it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "executable.hpp"
+#include "fly_runs.hpp"
+#include "sequence_tum.hpp"
+#include "trajectory.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// A small image, coarse views and few vertices: a flight takes a fraction of a second.
+const std::string kQuick =
+    " --set planner.vertices=150 --set planner.view_pitch=0.5 --set camera.width=94"
+    " --set camera.height=60 --set goal=[2,3,2] ";
+
+class FlyCommand : public testing::Test {
+  protected:
+    FlyCommand() {
+        folder_ = fs::temp_directory_path() /
+                  (std::string("photonav_fly_command_") +
+                   testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    ~FlyCommand() override { fs::remove_all(folder_); }
+
+    std::string at(const std::string& name) const { return (folder_ / name).string(); }
+
+    Execution fly(const std::string& name, const std::string& arguments) const {
+        return photonav(fmt::format("fly {} {} {} --out {}", config("two_textures"), kQuick,
+                                    arguments, at(name)));
+    }
+
+    json result(const std::string& name) const {
+        return json::parse(std::ifstream(folder_ / name / "result.json"));
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(FlyCommand, FliesBothPlannersAndWritesWhatOthersRead) {
+    const Execution run = fly("a", "--flights 2 --record " + at("recorded"));
+    ASSERT_TRUE(run.exitCode == 0 || run.exitCode == 1) << run.output;
+    const json a = result("a");
+    EXPECT_EQ(a["command"], "fly");
+    ASSERT_EQ(a["planners"].size(), 2U);
+    std::size_t arrived = 0;
+    for (const json& planner : a["planners"]) {
+        EXPECT_EQ(planner["flights"], 2);
+        EXPECT_EQ(planner["each"].size(), 2U);
+        arrived += planner["arrived"].get<std::size_t>();
+        for (const char* key :
+             {"collisions", "position_rmse_m", "predicted_sigma_m", "nees_per_dof", "lost_s"}) {
+            EXPECT_TRUE(planner[key].is_number()) << key;
+        }
+    }
+    EXPECT_EQ(run.exitCode, arrived > 0 ? 0 : 1);
+    for (const char* name : {"report.html", "errors.png", "nees.png", "top_view.png", "config.yaml",
+                             "trajectory.cov", "trajectory.ov"}) {
+        EXPECT_TRUE(fs::exists(folder_ / "a" / name)) << name;
+    }
+    const Trajectory truth = readTrajectory(at("a/groundtruth.tum"));
+    EXPECT_EQ(readTrajectory(at("a/trajectory.tum")).size(), truth.size());
+    const Sequence recorded = readTumSequence(at("recorded"));
+    ASSERT_EQ(recorded.frames.size(), truth.size());
+    const RecordedFrame frame = loadFrame(recorded, 3);
+    EXPECT_TRUE(frame.T_c_w.inverse().isApprox(truth[3].T_w_c, 1e-6));
+    EXPECT_NEAR(frame.view.depth[30][47], truth[3].T_w_c.translation().z(), 0.01);
+}
+
+TEST_F(FlyCommand, IsDeterministicWhateverTheThreads) {
+    ASSERT_NE(fly("a", "--flights 3 --seed 4").exitCode, 2);
+    ASSERT_NE(fly("b", "--flights 3 --seed 4 --jobs 3").exitCode, 2);
+    EXPECT_EQ(result("a")["planners"], result("b")["planners"]);
+}
+
+TEST_F(FlyCommand, FliesThePlanOfAResultFolder) {
+    const Execution planned =
+        photonav(fmt::format("plan {} {} --out {}", config("two_textures"), kQuick, at("plan")));
+    ASSERT_EQ(planned.exitCode, 0) << planned.output;
+    for (const std::string what : {"plan", "plan/result.json", "plan/path.tum"}) {
+        const Execution run =
+            photonav(fmt::format("fly {} --flights 1 --out {} "
+                                 "--set planner.compare_with_rrt_star=false",
+                                 at(what), at("flown")));
+        EXPECT_NE(run.exitCode, 2) << run.output;
+        const json flown = result("flown")["planners"];
+        ASSERT_EQ(flown.size(), 1U);
+        EXPECT_NEAR(flown[0]["length_m"], result("plan")["length"], 1e-6);
+    }
+}
+
+TEST_F(FlyCommand, ExitsWithOneWhenNoFlightArrives) {
+    const Execution run = fly("dark", "--flights 1 --black 1");
+    EXPECT_EQ(run.exitCode, 1) << run.output;
+    EXPECT_EQ(result("dark")["planners"][0]["each"][0]["end"], "lost");
+    EXPECT_GT(result("dark")["planners"][0]["lost_s"].get<double>(), 5.);
+}
+
+TEST_F(FlyCommand, RejectsBadInput) {
+    const auto expect = [](const Execution& run, const std::string& reason) {
+        EXPECT_EQ(run.exitCode, 2) << run.output;
+        EXPECT_NE(run.output.find(reason), std::string::npos) << run.output;
+        EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+    };
+    expect(fly("x", "--blackout 3"), "expected start,length");
+    expect(fly("x", "--flights 0"), "--flights");
+    expect(photonav("fly " + at("")), "not a result of photonav plan");
+    fs::create_directories(folder_ / "no");
+    fs::copy(config("two_textures"), folder_ / "no" / "config.yaml");
+    std::ofstream(folder_ / "no" / "result.json") << R"({"command": "map"})";
+    expect(photonav(fmt::format("fly {} --set scene.file={}/config/scenes/two_textures.yaml "
+                                "--out {}",
+                                at("no"), PHOTONAV_SOURCE_DIR, at("x"))),
+           "not a result of photonav plan");
+    EXPECT_FALSE(fs::exists(folder_ / "x" / "result.json"));
+}
+
+/// Believed positions known to be off by 3 sigma in one direction, of which one in six counts.
+TEST(FlySummary, ComparesErrorsWithWhatWasPredicted) {
+    FlightSet set;
+    PlannedView from, to;
+    from.covariance = 0.01 * Matrix6::Identity();
+    to.covariance = 0.04 * Matrix6::Identity();
+    to.distance = 2.;
+    set.plan = {from, to};
+    FlightResult flight;
+    flight.end = FlightEnd::arrived;
+    FlightSample sample;
+    sample.distance = 1.;
+    sample.belief.covariance = 0.01 * Matrix6::Identity();
+    sample.T_c_w.translation().x() = 0.3;
+    flight.samples = {sample, sample};
+    set.flights = {flight};
+    const FlightSummary s = summarise(set);
+    EXPECT_EQ(s.arrived, 1U);
+    EXPECT_NEAR(s.positionRmse, 0.3, 1e-12);
+    EXPECT_NEAR(s.believedSigma, std::sqrt(0.03), 1e-12);
+    EXPECT_NEAR(s.predictedSigma, 0.5 * (std::sqrt(0.03) + std::sqrt(0.12)), 1e-12);
+    EXPECT_NEAR(s.nees, 9. / 6., 1e-12);
+    EXPECT_NEAR(chiSquareQuantile(600., 1.96), 669.8, 0.5);  // tables: 669.77
+}
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight.hpp"
+
+#include <gtest/gtest.h>
+
+#include "photometric_servo.hpp"
+#include "rooms.hpp"
+
+namespace photonav {
+namespace {
+
+using testing::kDown;
+
+/// A floor of texture, a body above it, and a plan of 2 m along x with a turn at its end.
+class Flight : public ::testing::Test {
+  protected:
+    Flight() {
+        world.truth = world.map = &floor;
+        world.clearance = [](const Eigen::Vector3d&) { return 1.; };
+        world.camera = makeCamera(94, 60, 1.2);
+        world.T_b_c = cameraMount(kDown);
+        world.noise = assumedNoise(options.alignment.photometric);
+        Vector6 initial;
+        initial << 1e-2, 1e-2, 1e-3, 1e-5, 1e-5, 1e-4;
+        Vector6 motion;
+        motion << 1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-4;
+        options.mav.odometryNoise = motion.asDiagonal();
+        const Matrix6 toCamera = adjoint(world.T_b_c.inverse());
+        for (int i = 0; i <= 10; ++i) {
+            PlannedView view;
+            view.T_w_b.translation() << 0.2 * i, 0., 2.;
+            view.T_w_b.linear() =
+                Eigen::AngleAxisd(0.05 * i, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+            view.covariance = toCamera * Matrix6(initial.asDiagonal()) * toCamera.transpose();
+            view.distance = 0.2 * i;
+            view.isWaypoint = i == 0 || i == 5 || i == 10;
+            plan.push_back(view);
+        }
+    }
+
+    MeshRenderer floor{testing::floorOf(valueNoise({.size = {20., 20.}, .seed = 3}))};
+    FlightWorld world;
+    FlightOptions options;
+    std::vector<PlannedView> plan;
+};
+
+TEST_F(Flight, ArrivesByItsImagesAlone) {
+    for (options.seed = 1; options.seed <= 3; ++options.seed) {
+        const FlightResult flight = fly(plan, world, options);
+        EXPECT_EQ(nameOf(flight.end), "arrived");
+        EXPECT_LT(flight.goalError, 0.02);
+        EXPECT_TRUE(flight.photometric);
+        EXPECT_EQ(flight.lost, 0.);
+        const FlightSample& last = flight.samples.back();
+        const Eigen::Vector3d error_w =
+            last.belief.mean.inverse().translation() - last.T_c_w.inverse().translation();
+        EXPECT_LT(error_w.norm(), 0.02);
+    }
+}
+
+TEST_F(Flight, IsTheSameForTheSameSeed) {
+    options.camera.dropRate = 0.2;
+    const FlightResult a = fly(plan, world, options);
+    const FlightResult b = fly(plan, world, options);
+    ASSERT_EQ(a.samples.size(), b.samples.size());
+    EXPECT_EQ(a.samples.back().T_c_w.matrix(), b.samples.back().T_c_w.matrix());
+    EXPECT_EQ(a.samples.back().belief.covariance, b.samples.back().belief.covariance);
+    options.seed = 2;
+    EXPECT_NE(fly(plan, world, options).samples[0].T_c_w.matrix(), a.samples[0].T_c_w.matrix());
+}
+
+TEST_F(Flight, KeepsTrackOfLateAndDroppedImages) {
+    options.camera.latency = 0.3;  // more than a period
+    options.camera.dropRate = 0.3;
+    const FlightResult flight = fly(plan, world, options);
+    EXPECT_EQ(nameOf(flight.end), "arrived");
+    EXPECT_LT(flight.images, static_cast<int>(flight.samples.size()));
+    double worst = 0.;
+    for (std::size_t i = 8; i < flight.samples.size(); ++i) {
+        const FlightSample& s = flight.samples[i];
+        worst = std::max(
+            worst,
+            (s.belief.mean.inverse().translation() - s.T_c_w.inverse().translation()).norm());
+    }
+    EXPECT_LT(worst, 0.08);  // 5 cm of odometry noise per root metre
+}
+
+TEST_F(Flight, StopsAndHoversThroughABlackoutAndGoesOn) {
+    options.camera.blackoutStart = 1.5;
+    options.camera.blackoutLength = 4.;
+    const FlightResult flight = fly(plan, world, options);
+    EXPECT_EQ(nameOf(flight.end), "arrived");
+    EXPECT_EQ(flight.timesLost, 1);
+    EXPECT_NEAR(flight.lost, 3.5, 0.6);
+}
+
+TEST_F(Flight, GivesUpInTheDark) {
+    options.camera.blackoutStart = 1.5;
+    options.camera.blackoutLength = 1e3;
+    options.lost.giveUpTime = 5.;
+    const FlightResult flight = fly(plan, world, options);
+    EXPECT_EQ(nameOf(flight.end), "lost");
+    EXPECT_LT(flight.duration, 10.);
+    EXPECT_LT(flight.way, 1.5) << "it must not go on blindly";
+}
+
+TEST_F(Flight, IsFoundAgainWhereTheEstimateIsWrong) {
+    // The true start is far outside of what is believed.
+    for (PlannedView& view : plan) view.covariance = 1e-6 * Matrix6::Identity();
+    const Vector6 shift = (Vector6() << 0.25, 0.2, 0., 0., 0., 0.1).finished();
+    MeshRenderer& truth = floor;
+    struct Shifted : ViewSource {
+        const ViewSource& world;
+        Pose T;
+        Shifted(const ViewSource& w, const Pose& t) : world(w), T(t) {}
+        void render(const Camera& camera, const Pose& T_c_w, View& view) const override {
+            world.render(camera, T * T_c_w, view);
+        }
+    } shifted{truth, expSE3(shift)};
+    world.truth = &shifted;
+    options.photometricGoal = false;
+    const FlightResult flight = fly(plan, world, options);
+    EXPECT_GE(flight.timesLost, 1);
+    EXPECT_NE(nameOf(flight.end), "lost");
+    const FlightSample& last = flight.samples.back();
+    const Pose T_seen = expSE3(shift) * last.T_c_w;
+    EXPECT_LT((last.belief.mean.inverse().translation() - T_seen.inverse().translation()).norm(),
+              0.05);
+}
+
+TEST_F(Flight, EndsInACollision) {
+    world.clearance = [](const Eigen::Vector3d& p_w) { return 1.2 - p_w.x(); };
+    const FlightResult flight = fly(plan, world, options);
+    EXPECT_EQ(nameOf(flight.end), "collided");
+    EXPECT_LT(flight.leastClearance, options.bodyRadius);
+}
+
+TEST_F(Flight, BelievesToHaveArrivedOverWhite) {
+    MeshRenderer white{testing::floorOf(uniformTexture(0.9F))};
+    world.truth = world.map = &white;
+    options.mav.odometryFactor = 100.;
+    const FlightResult flight = fly(plan, world, options);
+    EXPECT_EQ(nameOf(flight.end), "astray");
+    EXPECT_FALSE(flight.photometric);
+}
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "photometric_servo.hpp"
+#include "rooms.hpp"
+#include "simulated_camera.hpp"
+#include "waypoint_servo.hpp"
+
+namespace photonav {
+namespace {
+
+using testing::cameraAt;
+using testing::kDown;
+using testing::kOblique;
+
+Pose moved(const Pose& T_w_b, const BodyVelocity& velocity, double dt) {
+    Vector6 motion = Vector6::Zero();
+    motion.head<3>() = dt * velocity.linear;
+    motion[5] = dt * velocity.yawRate;
+    return T_w_b * expSE3(motion);
+}
+
+TEST(Limited, KeepsDirectionSpeedAndAcceleration) {
+    const ServoOptions options{.maxSpeed = 1., .maxYawRate = 0.5, .maxAcceleration = 2.};
+    const BodyVelocity fast{{3., 4., 0.}, 0.1};
+    const BodyVelocity now = limited(fast, {{0.6, 0.8, 0.}, 0.02}, options, 0.1);
+    EXPECT_TRUE(now.linear.isApprox(Eigen::Vector3d(0.6, 0.8, 0.)));
+    EXPECT_NEAR(now.yawRate, 0.02, 1e-12);
+    const BodyVelocity begun = limited(fast, {}, options, 0.1);
+    EXPECT_NEAR(begun.linear.norm(), 0.2, 1e-12);
+    const BodyVelocity turning = limited({{1., 0., 0.}, 5.}, {{0.1, 0., 0.}, 0.5}, options, 0.1);
+    EXPECT_NEAR(turning.yawRate, 0.5, 1e-12);
+    EXPECT_NEAR(turning.linear.x(), 0.1, 1e-12);  // a tenth of the speed, as of the turn
+}
+
+class ServoWithMount : public ::testing::TestWithParam<double> {};
+
+TEST_P(ServoWithMount, ReachesAPlannedViewFromAnywhere) {
+    const Pose T_b_c = cameraMount(GetParam());
+    WaypointServo servo(T_b_c, {});
+    Pose T_w_goal = Pose::Identity();
+    T_w_goal.translation() << 1., -2., 1.5;
+    T_w_goal.linear() = Eigen::AngleAxisd(2., Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    Pose T_w_b = Pose::Identity();
+    for (int i = 0; i < 200; ++i) {
+        const BodyVelocity velocity =
+            servo.toward((T_w_b * T_b_c).inverse(), (T_w_goal * T_b_c).inverse());
+        T_w_b = moved(T_w_b, velocity, 0.05);
+        EXPECT_NEAR(T_w_b(2, 2), 1., 1e-9) << "it stays level";
+    }
+    EXPECT_TRUE(T_w_b.isApprox(T_w_goal, 1e-3));
+}
+
+TEST_P(ServoWithMount, ReachesTheGoalsImage) {
+    const MeshRenderer room(testing::texturedRoom());
+    const Camera camera = makeCamera(188, 120, 1.2);
+    const Pose T_b_c = cameraMount(GetParam());
+    Pose T_w_goal = Pose::Identity();
+    T_w_goal.translation() << 2., 3., 1.5;
+    PhotometricServo servo(room, camera, T_b_c, (T_w_goal * T_b_c).inverse(), {});
+    EXPECT_TRUE(servo.isInformative());
+    Pose T_w_b = T_w_goal;
+    T_w_b.translation() += Eigen::Vector3d(0.03, -0.03, 0.02);
+    T_w_b.linear() = Eigen::AngleAxisd(0.03, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    View view;
+    for (int i = 0; i < 30; ++i) {
+        room.render(camera, (T_w_b * T_b_c).inverse(), view);
+        const auto step = servo.toward(view.intensity);
+        EXPECT_TRUE(step.isTrusted);
+        T_w_b = moved(T_w_b, step.velocity, 0.25);
+    }
+    EXPECT_LT((T_w_b.translation() - T_w_goal.translation()).norm(), 2e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Mounts, ServoWithMount, ::testing::Values(kDown, kOblique));
+
+TEST(PhotometricServo, DoesNotTrustAnotherPlacesImageNorAWhiteFloor) {
+    const MeshRenderer floor(testing::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    const Camera camera = makeCamera(94, 60, 1.2);
+    const Pose T_goal_w = cameraAt({0., 0., 2.}, kDown);
+    PhotometricServo servo(floor, camera, cameraMount(kDown), T_goal_w, {});
+    View elsewhere;
+    floor.render(camera, cameraAt({3., 1., 2.}, kDown), elsewhere);
+    EXPECT_FALSE(servo.toward(elsewhere.intensity).isTrusted);
+    const MeshRenderer white(testing::floorOf(uniformTexture(0.9F)));
+    EXPECT_FALSE(PhotometricServo(white, camera, cameraMount(kDown), T_goal_w, {}).isInformative());
+}
+
+TEST(SimulatedMav, FollowsCommandsWithALag) {
+    SimulatedMav mav(Pose::Identity(), {.lag = 0.5}, 1);
+    const BodyVelocity command{{1., 0., 0.}, 0.};
+    for (int i = 0; i < 25; ++i) mav.step(command, 0.02);
+    EXPECT_NEAR(mav.velocity().linear.x(), 1. - std::exp(-1.), 1e-9);
+    EXPECT_NEAR(mav.T_w_b().translation().x(), 0.5 - 0.5 * (1. - std::exp(-1.)), 1e-9);
+}
+
+TEST(SimulatedMav, ItsOdometryIsAsUncertainAsItSays) {
+    Vector6 variances;
+    variances << 1e-3, 2e-3, 1e-3, 1e-5, 1e-5, 1e-4;
+    const MavOptions options{.lag = 0., .odometryNoise = variances.asDiagonal()};
+    double sum = 0.;
+    constexpr int kFlights = 300;
+    for (int seed = 1; seed <= kFlights; ++seed) {
+        SimulatedMav mav(Pose::Identity(), options, static_cast<std::uint64_t>(seed));
+        UncertainPose T_now_start;
+        for (int i = 0; i < 20; ++i) {
+            T_now_start = compound(mav.step({{0.5, 0.2, 0.}, 0.4}, 0.1), T_now_start);
+        }
+        const Vector6 xi = logSE3(mav.T_w_b().inverse() * T_now_start.mean.inverse());
+        sum += xi.dot(T_now_start.covariance.ldlt().solve(xi)) / 6.;
+    }
+    EXPECT_NEAR(sum / kFlights, 1., 0.1);
+}
+
+TEST(SimulatedCamera, DeliversLateDropsAndGoesBlack) {
+    const MeshRenderer floor(testing::floorOf(valueNoise({.seed = 3})));
+    const Pose T_c_w = cameraAt({0., 0., 2.}, kDown);
+    const SimulatedCameraOptions options{.period = 0.1,
+                                         .latency = 0.25,
+                                         .dropRate = 0.25,
+                                         .blackoutStart = 50.,
+                                         .blackoutLength = 10.};
+    SimulatedCamera camera(floor, makeCamera(8, 8, 1.), {}, options, 1);
+    int taken = 0, received = 0, black = 0;
+    for (int i = 0; i <= 10000; ++i) {
+        const double time = 0.01 * i;
+        taken += camera.expose(time, T_c_w);
+        while (const auto image = camera.receive(time)) {
+            ++received;
+            black += image->image[4][4] == 0.F;
+            EXPECT_GE(time - image->time, 0.25 - 1e-6);
+            EXPECT_LT(time - image->time, 0.27);
+        }
+    }
+    EXPECT_EQ(taken, 1001);
+    EXPECT_NEAR(received, 748, 40);
+    EXPECT_NEAR(black, 75, 13);
+}
+
+/// What the planner assumes of an image: its variance, and that Lambda with the scale is right.
+TEST(AssumedNoise, HasTheVarianceAndTheInformationAssumed) {
+    const PhotometricOptions options{.sigma = 0.02, .scale = 0.08};
+    const ImageNoise noise = assumedNoise(options);
+    std::mt19937_64 random(1);
+    double square = 0., blocks = 0.;
+    int pixels = 0, count = 0;
+    for (int i = 0; i < 40; ++i) {
+        ImageF image(64, 64, 0.F);
+        noise(image, random);
+        for (unsigned v = 0; v < 64; v += 16) {
+            for (unsigned u = 0; u < 64; u += 16) {
+                double sum = 0.;
+                for (unsigned k = 0; k < 256; ++k) {
+                    const double x = image[v + k / 16][u + k % 16];
+                    sum += x;
+                    square += x * x;
+                    ++pixels;
+                }
+                blocks += sum * sum / 256.;
+                ++count;
+            }
+        }
+    }
+    EXPECT_NEAR(std::sqrt(square / pixels), 0.02, 0.001);
+    // Sums over areas vary as if there were 0.08 times as many pixels (less at the areas' edges).
+    const double ratio = blocks / count / (0.02 * 0.02);
+    EXPECT_GT(ratio, 0.7 / 0.08);
+    EXPECT_LT(ratio, 1.05 / 0.08);
+}
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "route.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace photonav {
+
+bool Route::isReached(const UncertainPose& belief) const {
+    const double sigma = std::sqrt(belief.covariance.topLeftCorner<3, 3>().trace());
+    const double tolerance = std::clamp(options_.toleranceSigmas * sigma, options_.leastTolerance,
+                                        options_.mostTolerance);
+    const Pose T_w_b = belief.mean.inverse() * T_b_c_.inverse();
+    const double distance = (T_w_b.translation() - wanted().T_w_b.translation()).norm();
+    // Of the headings: tilt cannot be commanded.
+    const Eigen::Vector3d ahead = T_w_b.linear().col(0);
+    const Eigen::Vector3d planned = wanted().T_w_b.linear().col(0);
+    const double turn = std::atan2(ahead.x() * planned.y() - ahead.y() * planned.x(),
+                                   ahead.x() * planned.x() + ahead.y() * planned.y());
+    return distance < tolerance && std::abs(turn) < options_.yawTolerance;
+}
+
+const PlannedView& Route::advance(const UncertainPose& belief) {
+    const Eigen::Vector3d p_w = belief.mean.inverse().translation();
+    for (;;) {
+        if (wanted().isWaypoint || wanted_ + 1 == plan_.size()) {
+            if (!isReached(belief)) break;
+            passed_ = wanted_;
+            if (wanted_ + 1 == plan_.size()) {
+                atGoal_ = true;
+                break;
+            }
+        } else if ((p_w - wanted().T_w_b.translation()).norm() > options_.lookahead) {
+            break;
+        }
+        ++wanted_;
+    }
+    return wanted();
+}
+
+double Route::progress(const Eigen::Vector3d& p_w) const {
+    double least = std::numeric_limits<double>::infinity();
+    double distance = wanted().distance;  // at the goal there is no way left
+    for (std::size_t i = passed_; i < wanted_; ++i) {
+        const Eigen::Vector3d from = plan_[i].T_w_b.translation();
+        const Eigen::Vector3d way = plan_[i + 1].T_w_b.translation() - from;
+        const double square = std::max(way.squaredNorm(), 1e-12);
+        const double t = std::clamp((p_w - from).dot(way) / square, 0., 1.);
+        const double away = (p_w - from - t * way).norm();
+        if (away >= least) continue;
+        least = away;
+        distance = plan_[i].distance + t * (plan_[i + 1].distance - plan_[i].distance);
+    }
+    return distance;
+}
+
+}  // namespace photonav

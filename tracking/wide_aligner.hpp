@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Alignment where the prior is wider than what one start can find.
+#pragma once
+
+#include "dense_aligner.hpp"
+
+namespace photonav {
+
+/// The pose most likely given an image and a prior. Where the prior leaves the image's content more
+/// than a few pixels of play, texture looks alike in several places: small views from all over the
+/// prior are compared with the image, and an alignment begins at the most alike of them. The best
+/// is the answer, if it explains the image down to the noise and nothing else explains it almost as
+/// well. Otherwise the result is the prior, and the verdict `degenerate` along all axes (the image
+/// does not say which place it is) or lost (it is none of them).
+class WideAligner {
+  public:
+    /// @param model must outlive the aligner
+    /// @throws std::invalid_argument as DenseAligner does
+    WideAligner(const ViewSource& model, const Camera& camera, const AlignmentOptions& options)
+        : model_(model), aligner_(model, camera, options) {}
+
+    /// @param observed of the camera's size @throws std::invalid_argument otherwise
+    Alignment align(const ImageF& observed, const UncertainPose& prior);
+
+  private:
+    std::vector<Pose> likelyStarts(const ImageF& observed, const UncertainPose& prior,
+                                   double depth) const;
+    double costOf(const Alignment& alignment, const UncertainPose& prior) const;
+    bool fits(const Alignment& alignment) const;
+    const Alignment* rivalOf(const Alignment& best, const std::vector<Alignment>& found,
+                             const UncertainPose& prior) const;
+
+    const ViewSource& model_;
+    DenseAligner aligner_;
+};
+
+}  // namespace photonav

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where was this image taken? Render the model where the camera is thought to be, compare pixel by
+// pixel, take a Gauss-Newton step, render again: watch it converge, in a window when there is a
+// screen, as PNG in any case.
+#include <visp3/core/vpImageConvert.h>
+#include <visp3/gui/vpDisplayX.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+#include <random>
+
+#include "dense_aligner.hpp"
+#include "mesh_renderer.hpp"
+#include "picture.hpp"
+#include "scene.hpp"
+#include "se3.hpp"
+
+using namespace photonav;
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.;
+
+/// A crate on a carpet.
+Scene crateOnCarpet() {
+    Scene scene;
+    const auto carpet = addTexture(scene, valueNoise({.size = {14., 12.}, .seed = 1}));
+    const auto boards = addTexture(scene, checker({.cell = 0.28, .softEdge = 0.06}));
+    addPlane(scene, {-4., 6., 0.}, {14., 0., 0.}, {0., -12., 0.}, carpet);
+    addBox(scene, {0.61, -0.43, 0.}, {1.44, 0.42, 0.7}, boards);
+    return scene;
+}
+
+ImageF noisy(ImageF image, double sigma) {
+    std::mt19937_64 random(1);
+    std::normal_distribution<float> noise(0.F, static_cast<float>(sigma));
+    for (unsigned i = 0; i < image.getSize(); ++i) image.bitmap[i] += noise(random);
+    return image;
+}
+
+/// Grey where prediction and image agree.
+ImageF residual(const ImageF& observed, const ImageF& predicted) {
+    ImageF difference = observed;
+    for (unsigned i = 0; i < difference.getSize(); ++i) {
+        difference.bitmap[i] = 0.5F + observed.bitmap[i] - predicted.bitmap[i];
+    }
+    return difference;
+}
+
+//! [window]
+/// A window of ViSP for a picture that changes, if there is a screen to show it on.
+class Window {
+  public:
+    void show(const cv::Mat& picture) {
+        if (std::getenv("DISPLAY") == nullptr) return;
+        vpImageConvert::convert(picture, image_);
+        if (!display_) display_ = std::make_unique<vpDisplayX>(image_, 40, 40, "alignment");
+        vpDisplay::display(image_);
+        vpDisplay::flush(image_);
+        vpTime::wait(500.);  // [ms]
+    }
+
+  private:
+    vpImage<unsigned char> image_;
+    std::unique_ptr<vpDisplayX> display_;
+};
+//! [window]
+
+struct Error {
+    double metres, degrees;
+};
+
+Error errorOf(const Pose& T_c_w, const Pose& T_true_w) {
+    const Vector6 xi = logSE3(T_c_w * T_true_w.inverse());
+    return {xi.head<3>().norm(), xi.tail<3>().norm() / kDegree};
+}
+
+}  // namespace
+
+int main() {
+    const MeshRenderer model(crateOnCarpet());
+    const Camera camera = makeCamera(188, 120, 70. * kDegree);
+    const PhotometricOptions photometric{.sigma = 0.02};
+    Pose T_w_b = Pose::Identity();
+    T_w_b.translation().z() = 1.6;
+    const Pose T_true_w = (T_w_b * cameraMount(45. * kDegree)).inverse();
+    View view;
+    model.render(camera, T_true_w, view);
+    const ImageF observed = noisy(view.intensity, photometric.sigma);
+
+    std::puts("Gauss-Newton at full size, from 4 cm and 1.2 degrees away");
+    std::puts("step   residual   error [mm]  [deg]");
+    Vector6 offset;
+    offset << 0.03, -0.02, 0.02, 0.01, 0.015, -0.01;
+    Window window;
+    cv::Mat sheet;
+    //! [gauss newton]
+    Pose T_c_w = expSE3(offset) * T_true_w;
+    ViewComparison compare(camera, photometric);
+    for (int step = 0; step <= 6; ++step) {
+        model.render(camera, T_c_w, view);  // anew: where we now think we are
+        const NormalEquations e = compare(view, observed, Exposure{}, Loss{});
+        const auto [metres, degrees] = errorOf(T_c_w, T_true_w);
+        std::printf("%4d %10.4f %12.2f %6.3f\n", step, std::sqrt(e.sumSquares / e.count),
+                    1000. * metres, degrees);
+        cv::Mat row;
+        cv::hconcat(std::vector{picture(observed), picture(view.intensity),
+                                picture(residual(observed, view.intensity))},
+                    row);
+        window.show(row);
+        if (step == 0 || step == 1 || step == 2) sheet.push_back(row);
+        const PoseEquations p = poseEquations(e, photometric, false);
+        T_c_w = expSE3(p.information.ldlt().solve(p.right)) * T_c_w;
+    }
+    //! [gauss newton]
+    cv::imwrite("alignment.png", sheet);
+
+    std::puts("coarse to fine, from ever farther away");
+    std::puts("start [cm]  [deg]   verdict      views  error [mm]  believed [mm]");
+    //! [aligner]
+    AlignmentOptions options;
+    options.photometric = photometric;
+    DenseAligner aligner(model, camera, options);
+    for (const double factor : {1., 2., 3., 4., 6., 20.}) {
+        const Pose T_start = expSE3(factor * offset) * T_true_w;
+        const Alignment a = aligner.align(observed, T_start);
+        const Error before = errorOf(T_start, T_true_w);
+        std::printf("%10.0f %6.1f   %-11s %6d %11.2f %14.2f\n", 100. * before.metres,
+                    before.degrees, isLost(a.verdict) ? "lost" : describe(a).c_str(), a.iterations,
+                    1000. * errorOf(a.T_c_w, T_true_w).metres,
+                    1000. * std::sqrt(a.covariance.topLeftCorner<3, 3>().trace()));
+    }
+    //! [aligner]
+
+    //! [prior]
+    // Stripes along the way say nothing about the way: without a prior that direction stays.
+    Scene stripes;
+    addPlane(stripes, {-4., -4., 0.}, {8., 0., 0.}, {0., 8., 0.},
+             addTexture(stripes, photonav::stripes({.width = 0.4, .softEdge = 0.05})));
+    const MeshRenderer floor(stripes);
+    const Pose T_down_w = (T_w_b * cameraMount(90. * kDegree)).inverse();
+    floor.render(camera, T_down_w, view);
+    DenseAligner onStripes(floor, camera, options);
+    const Alignment a = onStripes.align(noisy(view.intensity, photometric.sigma),
+                                        {expSE3(offset) * T_down_w, 1e-2 * Matrix6::Identity()});
+    //! [prior]
+    std::printf("over stripes: %s; standard deviation along x %.4f m, along y %.4f m\n",
+                describe(a).c_str(), std::sqrt(a.covariance(0, 0)), std::sqrt(a.covariance(1, 1)));
+    std::puts("wrote alignment.png");
+}
