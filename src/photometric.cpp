@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "se3.hpp"
@@ -16,225 +16,254 @@ namespace photonav {
 
 namespace {
 
-template <int kWidth>
-struct Simd {
-    // typedef: g++ drops the attribute from an alias when the size depends on a parameter.
-    typedef float Float __attribute__((vector_size(kWidth * sizeof(float))));
-    typedef double Double __attribute__((vector_size(kWidth * sizeof(double))));
-
-    static Float loadUnaligned(const float* p) {
-        Float f;
-        std::memcpy(&f, p, sizeof(f));
-        return f;
-    }
-};
+using simd::Float;
+using simd::Int;
 
 // --- Which pixels count: written once, for a float and for a vector of them -------------------
 
-/// Stands for the inverse depth of nothing: fails every test below, yet is finite, so that zero
+/// Stands for the inverse depth of nothing: fails the test below, yet is finite, so that zero
 /// times it is zero.
 constexpr float kNoSurface = -1e30F;
 
-float inverseDepthOf(float depth) { return depth > 0.F ? 1.F / depth : kNoSurface; }
-
-/// Inverse depth is linear along any line on a plane, however oblique: its second difference shows
-/// edges. False when one of the three is no surface.
 template <typename T>
-T curvature(T before, T centre, T after) {
-    const T c = before + after - 2.F * centre;
-    return c > -c ? c : -c;
+T inverseDepthOf(T depth) {
+    const T inverse = 1.F / depth;
+    return depth > 0.F ? inverse : T{} + kNoSurface;
 }
 
+float magnitude(float a) { return std::abs(a); }
+Float magnitude(const Float& a) {
+    return reinterpret_cast<Float>(reinterpret_cast<Int>(a) & 0x7fffffff);
+}
+
+/// Inverse depth is linear along any line on a plane, however oblique: its second difference shows
+/// edges. Taken from the centre, so that neighbours can stay in memory.
+template <typename T>
+T curvature(T before, T centre, T after) {
+    return magnitude((centre - before) + (centre - after));
+}
+
+/// False where one of the five has no surface.
 template <typename T>
 auto isSmooth(T horizontal, T vertical, T limit) {
     return (horizontal > vertical ? horizontal : vertical) <= limit;
 }
 
+/// @param contrast half the range of grey values that are not saturated
 template <typename T>
-auto isExposed(T intensity, float saturation) {
-    return (intensity > saturation) & (intensity < 1.F - saturation);
+auto isExposed(T intensity, T contrast) {
+    return magnitude(intensity - 0.5F) < contrast;
+}
+
+float contrastOf(const PhotometricOptions& options) {
+    return static_cast<float>(0.5 - options.saturation);
 }
 
 /// First row and column in use: the border of one pixel and half a stride.
 int firstInStride(int stride) { return 1 + stride / 2; }
 
+/// Harmonic mean over the diagonal of the image (what is near says most); 0 if nothing is seen.
+float typicalDepth(const View& view) {
+    constexpr unsigned kSamples = 16;
+    float inverse = 0.F;
+    unsigned surfaces = 0;
+    for (unsigned k = 0; k < kSamples; ++k) {
+        const float depth =
+            view.depth[k * view.depth.getHeight() / kSamples][k * view.depth.getWidth() / kSamples];
+        if (!(depth > 0.F)) continue;
+        inverse += 1.F / depth;
+        ++surfaces;
+    }
+    return inverse > 0.F ? static_cast<float>(surfaces) / inverse : 0.F;
+}
+
 // --- The kernel -------------------------------------------------------------------------------
 
-/// Four consecutive rows of intensity and inverse depth in whole, aligned vectors: lane 0 of
-/// vector 0 is column 1, the first that can count. The padding has no surface, so it does not.
-template <int kWidth>
-class RowWindow {
+/// The rows J of one image row after the other, and the sum of their products. Works in vectors of
+/// columns; the last vector ends with the last column that can count and passes over those that the
+/// one before it has had. Needs images wider than a vector.
+///
+/// Rotations are about a point among those seen, not about the camera: those look much like
+/// translations, and single precision would lose the difference.
+class Kernel {
   public:
-    using Float = typename Simd<kWidth>::Float;
+    static constexpr std::size_t kMinWidth = simd::kWidth + 2;
 
-    explicit RowWindow(const View& view)
+    Kernel(const View& view, const Camera& camera, const PhotometricOptions& options)
         : view_(view),
-          width_(view.intensity.getWidth()),
-          vectors_((width_ - 2 + kWidth - 1) / kWidth),
-          intensity_(kRows * (vectors_ + 2), Float{}),
-          inverseDepth_(kRows * (vectors_ + 2), Float{} + kNoSurface) {}
-
-    std::size_t vectors() const { return vectors_; }
-
-    /// Brings in row v; it can be read until row v + 4 comes.
-    void load(unsigned v) {
-        float* intensity = reinterpret_cast<float*>(&intensity_[start(v)]);
-        float* inverse = reinterpret_cast<float*>(&inverseDepth_[start(v)]);
-        const float* depth = view_.depth[v];
-        std::copy_n(view_.intensity[v], width_, intensity - 1);
-        inverse[-1] = inverseDepthOf(depth[0]);
-        for (std::size_t u = 1; u < width_; ++u) inverse[u - 1] = inverseDepthOf(depth[u]);
-    }
-
-    const Float* intensity(unsigned v) const { return &intensity_[start(v)]; }
-    const Float* inverseDepth(unsigned v) const { return &inverseDepth_[start(v)]; }
-
-  private:
-    /// One more than the stencil: a row is written while the one before it is read, since reading
-    /// in other units what was just written stalls.
-    static constexpr unsigned kRows = 4;
-
-    std::size_t start(unsigned v) const { return (v % kRows) * (vectors_ + 2) + 1; }
-
-    const View& view_;
-    std::size_t width_;
-    std::size_t vectors_;
-    std::vector<Float> intensity_, inverseDepth_;
-};
-
-/// J of one image row after the other, and the sum of its products.
-template <int kWidth>
-class RowKernel {
-  public:
-    using Float = typename Simd<kWidth>::Float;
-    using Double = typename Simd<kWidth>::Double;
-
-    RowKernel(const Camera& camera, const PhotometricOptions& options, std::size_t vectors)
-        : camera_(camera),
-          options_(options),
-          x_(vectors),
-          inStride_(vectors, Float{}),
-          jacobian_(vectors) {
-        float* x = reinterpret_cast<float*>(x_.data());
-        float* inStride = reinterpret_cast<float*>(inStride_.data());
-        for (unsigned u = 1; u <= vectors * kWidth; ++u) {
-            x[u - 1] = static_cast<float>((u - camera.cx()) / camera.fx());
+          camera_(camera),
+          jump_(static_cast<float>(options.depthJump)),
+          width_(camera.width),
+          vectors_((width_ - 2 + simd::kWidth - 1) / simd::kWidth),
+          pivot_(typicalDepth(view)),
+          x_(width_),
+          contrast_(vectors_, Float{}),
+          jacobian_(vectors_) {
+        for (auto& row : inverseDepth_) row.resize(width_);
+        for (std::size_t u = 0; u < width_; ++u) {
+            x_[u] = static_cast<float>((static_cast<double>(u) - camera.cx()) / camera.fx());
         }
-        for (unsigned u = firstInStride(options.stride); u + 1 < camera.width;
-             u += options.stride) {
-            inStride[u - 1] = 1.F;
+        float* contrast = reinterpret_cast<float*>(contrast_.data());
+        const std::size_t lanes = vectors_ * simd::kWidth;
+        const std::size_t tail = lanes - simd::kWidth;  // first lane of the last vector
+        for (std::size_t u = firstInStride(options.stride); u + 1 < width_; u += options.stride) {
+            contrast[u <= tail ? u - 1 : u + lanes - (width_ - 1)] = contrastOf(options);
         }
     }
 
-    void add(const RowWindow<kWidth>& rows, unsigned v) {
-        fill(rows, v);
-        if (options_.stride > 1) applyStride();
-        // Two passes, because 21 sums and their factors do not fit in 16 registers.
-        addProducts<0, 2>();
-        addProducts<2, 6>();
+    /// Adds row v; rows come in ascending order.
+    void add(unsigned v) {
+        for (next_ = std::max(next_, v - 1); next_ <= v + 1; ++next_) {
+            for (std::size_t i = 0; i <= vectors_; ++i) invert(next_, i);
+        }
+        fill(v);
+        // The divisions of the row after next go along with the first pass: they take long, and
+        // little else meanwhile.
+        const unsigned ahead = std::min(next_++, camera_.height - 1);
+        addProducts<0>([this, ahead](std::size_t i) { invert(ahead, i); });
+        invert(ahead, vectors_);
+        [this]<std::size_t... kPass>(std::index_sequence<kPass...>) {
+            (addProducts<1 + kPass>([](std::size_t) {}), ...);
+        }
+        (std::make_index_sequence<kProducts.size() / kPerPass - 1>());
         if (++rowsInLanes_ == kRowsInLanes) flush();
     }
 
     /// sum J^T J over all rows added
     Matrix6 sum() {
         flush();
-        Vector6 unit;  // what fill() leaves out: half the focal length and two signs
-        unit << 1., 1., -1., -1., 1., 1.;
-        unit *= 0.5 * camera_.fx();
         Matrix6 sum;
-        for (int i = 0; i < 6; ++i) {
-            for (int j = i; j < 6; ++j) {
-                std::array<double, kWidth> lane;
-                std::memcpy(lane.data(), &wideLanes_[i][j], sizeof(lane));
-                sum(i, j) = unit[i] * unit[j] * std::accumulate(lane.begin(), lane.end(), 0.);
-                sum(j, i) = sum(i, j);
-            }
+        for (std::size_t k = 0; k < kProducts.size(); ++k) {
+            const double* lanes = wideLanes_.data() + k * simd::kWidth;
+            sum(kProducts[k].i, kProducts[k].j) = std::accumulate(lanes, lanes + simd::kWidth, 0.);
         }
-        return sum;
+        sum(1, 4) = sum(0, 3) + sum(2, 5);  // J = (a, p x a), so that a . (p x a) = 0
+        sum = Matrix6(sum.selfadjointView<Eigen::Upper>());
+        Pose toPivot = Pose::Identity();
+        toPivot.translation().z() = -static_cast<double>(pivot_);
+        Vector6 unit;  // what fill() leaves out
+        unit << camera_.fx(), camera_.fy(), -camera_.fx(), -camera_.fy(), camera_.fx(),
+            camera_.fy();
+        const Matrix6 motion = 0.5 * unit.asDiagonal() * adjoint(toPivot);
+        sum = Matrix6(motion.transpose() * sum * motion);
+        return sum.selfadjointView<Eigen::Upper>();
     }
 
   private:
     using Row = std::array<Float, 6>;
 
     /// Rows summed in single precision, each lane on its own, before they go to double precision.
-    static constexpr int kRowsInLanes = 4;
+    static constexpr int kRowsInLanes = 16;
 
-    void fill(const RowWindow<kWidth>& rows, unsigned v) {
-        const auto lanesBefore = [](const Float* p) {
-            return Simd<kWidth>::loadUnaligned(reinterpret_cast<const float*>(p) - 1);
-        };
-        const auto lanesAfter = [](const Float* p) {
-            return Simd<kWidth>::loadUnaligned(reinterpret_cast<const float*>(p) + 1);
-        };
-        const float y = static_cast<float>((v - camera_.cy()) / camera_.fy());
-        const float aspect = static_cast<float>(camera_.fy() / camera_.fx());
-        const float jump = static_cast<float>(options_.depthJump);
-        const float saturation = static_cast<float>(options_.saturation);
-        const Float* I = rows.intensity(v);
-        const Float* above = rows.intensity(v - 1);
-        const Float* below = rows.intensity(v + 1);
-        const Float* W = rows.inverseDepth(v);
-        const Float* aboveW = rows.inverseDepth(v - 1);
-        const Float* belowW = rows.inverseDepth(v + 1);
-        for (std::size_t i = 0; i < jacobian_.size(); ++i) {
-            const Float w = W[i];
-            const auto counts =
-                isSmooth<Float>(curvature<Float>(lanesBefore(W + i), w, lanesAfter(W + i)),
-                                curvature<Float>(aboveW[i], w, belowW[i]), jump * w) &
-                isExposed(I[i], saturation);
-            const Float gx = counts ? lanesAfter(I + i) - lanesBefore(I + i) : Float{};
-            const Float gy = counts ? aspect * (below[i] - above[i]) : Float{};
-            const Float x = x_[i];
-            const Float s = x * gx + y * gy;
-            jacobian_[i] = {gx * w, gy * w, s * w, y * s + gy, x * s + gx, x * gy - y * gx};
+    /// The products that are summed: 20, since the 21st follows.
+    struct Product {
+        int i, j;
+    };
+    static constexpr std::array<Product, 20> kProducts = {
+        {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}, {1, 1}, {1, 2}, {1, 3}, {1, 5},
+         {2, 2}, {2, 3}, {2, 4}, {2, 5}, {3, 3}, {3, 4}, {3, 5}, {4, 4}, {4, 5}, {5, 5}}};
+    /// Several passes, because 20 sums and their factors do not fit in 16 registers; without
+    /// three-operand instructions fewer do.
+    static constexpr std::size_t kPerPass = simd::kWidth > 4 ? 10 : 5;
+
+    float* inverseDepth(unsigned v) { return inverseDepth_[v % inverseDepth_.size()].data(); }
+
+    /// Inverse depth of the i-th vector of row v; the one after the last ends with the row.
+    void invert(unsigned v, std::size_t i) {
+        const std::size_t u = std::min(i * simd::kWidth, width_ - simd::kWidth);
+        simd::store(inverseDepth(v) + u, inverseDepthOf(simd::load<Float>(view_.depth[v] + u)));
+    }
+
+    void fill(unsigned v) {
+        // x and y with the ratio of the focal lengths where gradients would need it
+        const double row = v - camera_.cy();
+        const float yOfGradient = static_cast<float>(row / camera_.fx());
+        const float y = static_cast<float>(row * camera_.fx() / (camera_.fy() * camera_.fy()));
+        const float jump = jump_;
+        const float pivot = pivot_;
+        const float* I = view_.intensity[v];
+        const float* aboveI = view_.intensity[v - 1];
+        const float* belowI = view_.intensity[v + 1];
+        const float* W = inverseDepth(v);
+        const float* aboveW = inverseDepth(v - 1);
+        const float* belowW = inverseDepth(v + 1);
+        const float* xs = x_.data();
+        const std::size_t last = width_ - 1 - simd::kWidth;
+        for (std::size_t i = 0; i < vectors_; ++i) {
+            const std::size_t u = std::min(1 + i * simd::kWidth, last);
+            const auto at = [u](const float* p) { return simd::load<Float>(p + u); };
+            const Float w = at(W);
+            const Int counts =
+                isSmooth<Float>(curvature<Float>(at(W - 1), w, at(W + 1)),
+                                curvature<Float>(at(aboveW), w, at(belowW)), jump * w) &
+                isExposed<Float>(at(I), contrast_[i]);
+            const auto masked = [&counts](const Float& value) {
+                return reinterpret_cast<Float>(reinterpret_cast<Int>(value) & counts);
+            };
+            const Float gx = masked(at(I + 1) - at(I - 1));
+            const Float gy = masked(at(belowI) - at(aboveI));
+            const Float x = at(xs);
+            const Float s = x * gx + yOfGradient * gy;
+            const Float a = gx * w;
+            const Float b = gy * w;
+            jacobian_[i] = {
+                a, b, s * w, (y * s + gy) - pivot * b, (x * s + gx) - pivot * a, x * gy - y * gx};
         }
     }
 
-    void applyStride() {
-        for (std::size_t i = 0; i < jacobian_.size(); ++i) {
-            for (Float& column : jacobian_[i]) column *= inStride_[i];
+    /// Adds the products of one pass to the lanes; `alongside` is called for every vector.
+    template <std::size_t kPass, typename Alongside>
+    void addProducts(const Alongside& alongside) {
+        constexpr const Product* kProduct = kProducts.data() + kPass * kPerPass;
+        std::array<Float, kPerPass> sums = {};
+        for (std::size_t i = 0; i < vectors_; ++i) {
+            alongside(i);
+            const Row& J = jacobian_[i];
+#pragma GCC unroll 10
+            for (std::size_t k = 0; k < kPerPass; ++k)
+                sums[k] += J[kProduct[k].i] * J[kProduct[k].j];
         }
-    }
-
-    /// Adds the products of columns i in [kFirst, kEnd) with columns j >= i to the lanes.
-    template <int kFirst, int kEnd>
-    void addProducts() {
-        std::array<Row, 6> sums = {};
-        for (const Row& J : jacobian_) {
-#pragma GCC unroll 6
-            for (int i = kFirst; i < kEnd; ++i) {
-#pragma GCC unroll 6
-                for (int j = i; j < 6; ++j) sums[i][j] += J[i] * J[j];
-            }
-        }
-#pragma GCC unroll 6
-        for (int i = kFirst; i < kEnd; ++i) {
-#pragma GCC unroll 6
-            for (int j = i; j < 6; ++j) lanes_[i][j] += sums[i][j];
-        }
+        for (std::size_t k = 0; k < kPerPass; ++k) lanes_[kPass * kPerPass + k] += sums[k];
     }
 
     void flush() {
-        for (int i = 0; i < 6; ++i) {
-            for (int j = i; j < 6; ++j) {
-                wideLanes_[i][j] += __builtin_convertvector(lanes_[i][j], Double);
-            }
+        const float* lanes = reinterpret_cast<const float*>(lanes_.data());
+        for (std::size_t k = 0; k < wideLanes_.size(); ++k) {
+            wideLanes_[k] += static_cast<double>(lanes[k]);
         }
         lanes_ = {};
         rowsInLanes_ = 0;
     }
 
+    const View& view_;
     const Camera& camera_;
-    const PhotometricOptions& options_;
-    std::vector<Float> x_, inStride_;
-    std::vector<Row> jacobian_;  ///< of the current row
+    float jump_;
+    std::size_t width_, vectors_;
+    float pivot_;  ///< depth of the point that rotations are about, on the optical axis
+    std::vector<float> x_;
+    std::vector<Float> contrast_;                     ///< zero where a lane is not in use
+    std::array<std::vector<float>, 4> inverseDepth_;  ///< the stencil and the row to come
+    unsigned next_ = 0;                               ///< row whose inverse depth comes next
+    std::vector<Row> jacobian_;                       ///< of the current row
     int rowsInLanes_ = 0;
-    std::array<std::array<Double, 6>, 6> wideLanes_ = {};
-    std::array<Row, 6> lanes_ = {};
+    std::array<Float, kProducts.size()> lanes_ = {};
+    std::array<double, kProducts.size()* simd::kWidth> wideLanes_ = {};
 };
 
 double weight(const PhotometricOptions& options) {
     return options.scale * options.stride * options.stride / (options.sigma * options.sigma);
+}
+
+/// For images narrower than a vector.
+Matrix6 sumOverPixels(const View& view, const Camera& camera, const PhotometricOptions& options) {
+    Matrix6 sum = Matrix6::Zero();
+    for (unsigned v = 0; v < camera.height; ++v) {
+        for (unsigned u = 0; u < camera.width; ++u) {
+            const Vector6 J = pixelJacobian(view, camera, u, v, options);
+            sum += J * J.transpose();
+        }
+    }
+    return sum;
 }
 
 }  // namespace
@@ -247,14 +276,12 @@ Matrix6 photometricInformation(const View& view, const Camera& camera,
     }
     if (options.stride < 1) throw std::invalid_argument("photometric information: stride below 1");
     if (camera.width < 3 || camera.height < 3) return Matrix6::Zero();
-    RowWindow<simd::kWidth> rows(view);
-    RowKernel<simd::kWidth> kernel(camera, options, rows.vectors());
-    const unsigned first = firstInStride(options.stride);
-    unsigned next = 0;
-    for (unsigned v = first; v + 1 < camera.height; v += options.stride) {
-        const unsigned ahead = std::min(v + 2, camera.height - 1);
-        for (next = std::max(next, v - 1); next <= ahead; ++next) rows.load(next);
-        kernel.add(rows, v);
+    if (camera.width < Kernel::kMinWidth) {
+        return weight(options) * sumOverPixels(view, camera, options);
+    }
+    Kernel kernel(view, camera, options);
+    for (unsigned v = firstInStride(options.stride); v + 1 < camera.height; v += options.stride) {
+        kernel.add(v);
     }
     return weight(options) * kernel.sum();
 }
@@ -274,7 +301,7 @@ Vector6 pixelJacobian(const View& view, const Camera& camera, unsigned u, unsign
     const float w = W(v, u);
     if (!isSmooth(curvature(W(v, u - 1), w, W(v, u + 1)), curvature(W(v - 1, u), w, W(v + 1, u)),
                   static_cast<float>(options.depthJump) * w) ||
-        !isExposed(I[v][u], static_cast<float>(options.saturation))) {
+        !isExposed(I[v][u], contrastOf(options))) {
         return Vector6::Zero();
     }
 

@@ -197,6 +197,21 @@ TEST(Information, KernelAgreesWithTheSumOverPixels) {
     }
 }
 
+/// Sideways motion and rotation look nearly alike from high above: rounding must not matter, nor
+/// the horizon.
+TEST(Information, KernelKeepsTheCovarianceFromAnyHeightAndTilt) {
+    const Camera camera = defaultCamera();
+    for (int k = 0; k < 24; ++k) {
+        const Pose T_c_w =
+            lookFrom({0.1 * k, 0.05 * k, 0.6 + 0.1 * k}, kPi / 2. - 0.06 * k, 0.3 * k);
+        const View view = AnalyticPlane{}.view(camera, T_c_w);
+        EXPECT_NEAR(traceOfInverse(photometricInformation(view, camera)) /
+                        traceOfInverse(informationByPixels(view, camera)),
+                    1., 5e-7)
+            << k;
+    }
+}
+
 TEST(Information, KernelAgreesAtAnySizeStrideAndAspect) {
     for (unsigned width : {3U, 4U, 5U, 9U, 10U, 11U, 17U, 18U, 19U, 34U, 35U, 66U, 67U, 131U}) {
         for (unsigned height : {3U, 4U, 7U, 30U}) {
