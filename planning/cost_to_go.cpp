@@ -50,7 +50,8 @@ void CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices
     alpha_ = options.alpha;
     const bool byCovariance = options.cost == CostRule::integral && !model.field().hasPenalties();
     charge_ = byCovariance ? kTrust * (1. - alpha_) * options.kappa : 0.;
-    toGoal_.assign(vertices.size(), goals.empty() ? 0. : kInfinity);
+    toGoal_.assign(vertices.size(), kInfinity);
+    if (goals.empty()) toGoal_.assign(vertices.size(), 0.);
     for (const Vertex* goal : goals) toGoal_[goal->index] = 0.;
     spread(roadmap, vertices, toGoal_);
     if (charge_ == 0.) return;
