@@ -48,12 +48,14 @@ void PathDescent::begin(const std::vector<const ob::State*>& path) {
     }
 }
 
-/// Rounds from coarse shifts to fine ones, again and again while that helps: a far shift that
-/// failed once may help from where the fine ones led.
+/// Rounds from coarse shifts to fine ones, again and again: a far shift that failed once may help
+/// in another direction, or from where the fine ones led. Only a path too short to be changed ends
+/// that before the moves are used up.
 void PathDescent::descend(const ob::PlannerTerminationCondition& ptc) {
     ptc_ = &ptc;
     removeVertices();
-    for (double begun = 0.; !isOver() && tried_ > begun;) {
+    unsigned begun = 0;
+    do {
         begun = tried_;
         for (double step = options_.firstStep; step >= options_.lastStep && !isOver();
              step *= kRefinement) {
@@ -63,7 +65,7 @@ void PathDescent::descend(const ob::PlannerTerminationCondition& ptc) {
             cutCorners();
             removeVertices();
         }
-    }
+    } while (!isOver() && tried_ > begun);
     ptc_ = nullptr;
 }
 

@@ -20,8 +20,8 @@ struct DescentOptions {
     std::uint32_t seed = 1;  ///< of the directions that vertices are shifted in
 };
 
-/// Lowers the cost of a path in its neighbourhood until no change that it knows helps: a vertex
-/// left out, a vertex shifted, a leg bent at a new vertex, a corner cut. The cost is the planners'
+/// Lowers the cost of a path in its neighbourhood by random changes: a vertex left out, a vertex
+/// shifted, a leg bent at a new vertex or shifted, a corner cut. The cost is the planners'
 /// own, integral and views included; it is no smooth function of the path, so nothing is
 /// differentiated. Only what comes after a change is flown again. The path stays free of collision
 /// and keeps its ends. Deterministic for a seed.
@@ -33,7 +33,7 @@ class PathDescent {
     /// Starts from a path (at least one state) whose motions are free. The states are copied.
     void begin(const std::vector<const ompl::base::State*>& path);
 
-    /// Descends until nothing helps, the moves are used up, or the condition holds.
+    /// Descends until the moves are used up or the condition holds.
     void descend(const ompl::base::PlannerTerminationCondition& ptc);
 
     double cost() const { return nodes_.back().belief.cost; }

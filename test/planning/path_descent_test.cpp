@@ -62,6 +62,19 @@ TEST(PathDescent, StraightensWhatOnlyLengthCounts) {
     EXPECT_NEAR(result.descent.cost(), 8., 1e-9);
 }
 
+TEST(PathDescent, BendsAStraightPathTowardWhatCanBeSeen) {
+    const Problem problem;
+    const Descended result(problem, {problem.start, problem.goal});
+    EXPECT_GT(result.descent.path().size(), 2U);
+    EXPECT_LT(result.descent.cost(), 0.98 * result.before);
+}
+
+TEST(PathDescent, EndsWhereNothingCanBeTried) {
+    const Problem problem;
+    EXPECT_EQ(Descended(problem, {{3, 1, 2}}).descent.tried(), 0U);
+    EXPECT_EQ(Descended(problem, {{3, 1, 2}, {3, 1.2, 2}}).descent.tried(), 0U);
+}
+
 TEST(PathDescent, PullsTheStringAroundAnObstacle) {
     Problem problem;  // a cylinder of 2 m, and 0.2 m of robot: tangents and an arc
     problem.belief.alpha = 1.;
