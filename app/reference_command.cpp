@@ -116,6 +116,7 @@ int runReference(const ReferenceOptions& options, const std::atomic<bool>& inter
                                                : fs::path(options.file);
     ReferenceTable table(file);
     if (!options.fromScratch) table.read();
+    prepareFolder(fs::absolute(file).parent_path());
 
     ProgressLine line(options.quiet);
     bool isComplete = true;
@@ -123,7 +124,10 @@ int runReference(const ReferenceOptions& options, const std::atomic<bool>& inter
         Config own = config;
         own.belief.alpha = alpha;
         Search search(options, own, world, table, interrupted);
-        if (!options.fromScratch) search.refresh();
+        if (!options.fromScratch) {
+            search.refresh();
+            table.write();
+        }
         for (std::uint32_t run = 0; run < options.runs && !interrupted; ++run) {
             for (const std::string& planner : config.sweep.planners) {
                 line.show(fmt::format("alpha {}: {}, run {} of {}", alpha, planner, run + 1,

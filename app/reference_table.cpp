@@ -29,6 +29,7 @@ template <typename Row>
 std::vector<std::string> readCsv(const fs::path& file, const std::string& header,
                                  std::size_t columns, Row row) {
     std::ifstream stream(file);
+    if (!stream) throw InputError(file.string(), "", "cannot be read");
     std::vector<std::string> notes;
     std::string line;
     while (std::getline(stream, line) && line.starts_with('#')) notes.push_back(line);
@@ -101,7 +102,6 @@ void ReferenceTable::write() const {
                 fmt::format("{:.6g},{},{},{},{}\n", r.alpha, p.x(), p.y(), p.z(), yawOf(T_w_b));
         }
     }
-    fs::create_directories(fs::absolute(file_).parent_path());
     writeFileAtomically(pathsFile(), paths);
     writeFileAtomically(file_, table);
 }
