@@ -114,6 +114,7 @@ Eigen::AlignedBox3d readBounds(YamlMap& root) {
         root.fail("bounds", "not a finite number");
     }
     if (box.isEmpty()) root.fail("bounds", "the first corner must be the lower one");
+    if (box.sizes().isZero(0.)) root.fail("bounds", "a point leaves nothing to plan");
     return box;
 }
 
