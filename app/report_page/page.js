@@ -80,15 +80,18 @@ function showWaypoint(index) {
     element(`${kind}-box`).hidden = !uri;
     if (uri) element(kind).src = uri;
   }
-  const sigma = [0, 4, 8].map((i) => say(100 * Math.sqrt(Math.max(0, point.position_covariance[i]))));
-  rows(element('waypoint-numbers'), [
+  const place = [
     ['Distance', say(point.distance, 'm')],
     ['Position x, y, z', `${point.position.map((x) => x.toFixed(2)).join(', ')}\u00a0m`.replace(/-/g, '−')],
+  ];
+  const sigma = [0, 4, 8].map((i) => say(100 * Math.sqrt(Math.max(0, point.position_covariance[i]))));
+  const belief = [
     ['1σ in x, y, z', `${sigma.join(', ')}\u00a0cm`],
     ['1σ, worst direction', say(100 * worstSigma(point.position_covariance), 'cm')],
     ['Trace', say(point.trace, 'm²')],
     ['Cost so far', say(point.cost)],
-  ]);
+  ];
+  rows(element('waypoint-numbers'), hasBeliefs ? [...place, ...belief] : place);
   document.documentElement.dataset.waypoint = index;
 }
 
