@@ -21,6 +21,7 @@ namespace {
 
 constexpr int kFreeHeadings = 8;               // goals offered where the goal has no yaw
 constexpr std::size_t kProgressInterval = 50;  // vertices
+constexpr std::size_t kMostSamples = 200;      // per vertex asked for: most are in vain, give up
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -85,9 +86,7 @@ PlanOutcome PlanRun::solve(const std::string& name, const std::atomic<bool>& int
             report();
             next = planner->vertices() + kProgressInterval;
         }
-        // A goal that cannot be reached is sampled in vain: give up in the end.
-        const bool isHopeless = planner->iterations() > 200UL * config_.vertices;
-        return interrupted || isHopeless;
+        return interrupted.load();
     };
     planner->solve(ob::PlannerTerminationCondition(isDone));
     report();
@@ -116,6 +115,7 @@ std::shared_ptr<BeliefPlanner> PlanRun::makePlanner(const std::string& name) con
     GrowthOptions growth = config_.growth;
     growth.seed = config_.seed;
     growth.maxVertices = config_.vertices;
+    growth.maxIterations = kMostSamples * config_.vertices;
     const auto model = makeModel(plannersField_, name == "rrt_star" ? 1. : config_.belief.alpha);
     std::shared_ptr<BeliefPlanner> planner;
     if (name == "belief_rrt_star") {

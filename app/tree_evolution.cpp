@@ -27,8 +27,7 @@ TreeEvolution growInStages(const PlanRun& run, const std::string& name,
     TreeEvolution evolution{planner->getName(), {}};
     for (const std::size_t stop : vertices) {
         planner->params().setParam("max_vertices", std::to_string(stop));
-        planner->solve(ob::PlannerTerminationCondition(
-            [&] { return interrupted || planner->iterations() > 200 * stop; }));
+        planner->solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
         TreeStage& stage = evolution.stages.emplace_back();
         stage.vertices = planner->vertices();
         stage.tree = drawnEdges(*planner);

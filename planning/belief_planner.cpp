@@ -34,6 +34,7 @@ BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<
     declare("goal_bias", growth_.goalBias);
     declare("rewire_factor", growth_.rewireFactor);
     declare("max_vertices", growth_.maxVertices);
+    declare("max_iterations", growth_.maxIterations);
     declare("seed", growth_.seed);
     const auto show = [this](const std::string& property, const auto& value) {
         addPlannerProgressProperty(property, [&value] { return std::to_string(value.load()); });
@@ -70,7 +71,7 @@ ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& pt
 
     ob::ScopedState<> goalOrSample(si_);
     ob::State* target = goalOrSample.get();
-    while (!ptc && !isFull()) {
+    while (!ptc && !isGrown()) {
         ++iterations_;
         const bool isGoal = sample(target);
         Vertex* fresh = extend(target);

@@ -24,8 +24,10 @@ struct GrowthOptions {
     double goalBias = 0.05;     ///< share of samples drawn at the goal until it is reached
     double rewireFactor = 1.1;  ///< on the connection radius of Karaman and Frazzoli 2011
     std::uint32_t seed = 1;     ///< of everything random in the planner
-    unsigned maxVertices =
-        0;  ///< solve() ends with as many vertices; 0: with the termination condition
+    /// solve() stops growing with as many vertices, or after as many samples, and finishes what it
+    /// has; 0: with the termination condition.
+    unsigned maxVertices = 0;
+    std::size_t maxIterations = 0;
 };
 
 /// A vertex and the motion that reached it.
@@ -102,8 +104,9 @@ class BeliefPlanner : public ompl::base::Planner {
         std::vector<ompl::base::State*> states;
     };
 
-    bool isFull() const {
-        return growth_.maxVertices > 0 && vertices_.size() >= growth_.maxVertices;
+    bool isGrown() const {
+        return (growth_.maxVertices > 0 && vertices_.size() >= growth_.maxVertices) ||
+               (growth_.maxIterations > 0 && iterations_ >= growth_.maxIterations);
     }
     /// What benchmarks sample from another thread while solve() runs.
     struct Progress {

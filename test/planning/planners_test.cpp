@@ -322,6 +322,17 @@ TEST(BeliefRRTstar, BeatsOneBeliefPerVertex) {
     EXPECT_LT(labels, literal);
 }
 
+TEST(BeliefRRTstar, SearchesWhatItHasWhenItsSamplesRunOut) {
+    Problem problem;
+    problem.growth.goalBias = 0.5;
+    problem.growth.maxIterations = 60;
+    const auto planner = problem.planner("belief_rrt_star");
+    planner->solve(ob::plannerNonTerminatingCondition());
+    EXPECT_EQ(planner->iterations(), 60U);
+    EXPECT_NEAR(replayedCost(*planner), planner->bestCost(), 1e-9);
+    EXPECT_LT(planner->bestCost(), 50.);
+}
+
 TEST(BeliefRRTstar, MoreLabelsAreNeverWorseHere) {
     std::vector<double> costs;
     for (const unsigned labels : {1U, 2U, 5U, 20U}) {
