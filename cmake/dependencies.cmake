@@ -3,7 +3,7 @@
 
 find_package(Eigen3 3.4 REQUIRED)
 find_package(VISP 3.5 REQUIRED visp_core visp_visual_features visp_vs)
-find_package(OpenCV 4 REQUIRED core features2d imgproc imgcodecs)
+find_package(OpenCV 4 REQUIRED core calib3d features2d imgproc imgcodecs)
 find_package(octomap 1.9 REQUIRED)
 find_package(embree 3.13 REQUIRED)
 find_package(assimp 5 REQUIRED)
@@ -32,5 +32,5 @@ file(CONFIGURE OUTPUT ${_visp_cxx20}/visp3/core/vpArray2D.h CONTENT "${_visp_arr
 _photonav_wrap(photonav_visp "${_visp_cxx20};${VISP_INCLUDE_DIRS}" "${VISP_LIBRARIES}")
 _photonav_wrap(photonav_octomap "${OCTOMAP_INCLUDE_DIRS}" "${OCTOMAP_LIBRARIES}")
 _photonav_wrap(photonav_ompl "${OMPL_INCLUDE_DIRS}" "${OMPL_LIBRARIES}")
-_photonav_wrap(photonav_opencv "${OpenCV_INCLUDE_DIRS}" "opencv_core;opencv_features2d;opencv_imgproc;opencv_imgcodecs")
+_photonav_wrap(photonav_opencv "${OpenCV_INCLUDE_DIRS}" "opencv_core;opencv_calib3d;opencv_features2d;opencv_imgproc;opencv_imgcodecs")
 _photonav_wrap(photonav_embree "${EMBREE_INCLUDE_DIRS}" "embree")

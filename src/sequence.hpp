@@ -22,6 +22,7 @@ struct Sequence {
     struct Entry {
         double timestamp = 0.;  ///< of the colour image [s]
         Pose T_c_w = Pose::Identity();
+        bool hasPose = true;  ///< false only where the reader was told to keep such frames
         std::string colourFile;
         std::string depthFile;
     };

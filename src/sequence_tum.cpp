@@ -7,9 +7,8 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
 
-#include "image_bytes.hpp"
+#include "image_file.hpp"
 #include "text_table.hpp"
 #include "trajectory.hpp"
 #include "yaml_reader.hpp"
@@ -29,29 +28,53 @@ struct Pair {
     StampedFile depth;
 };
 
-std::vector<StampedFile> readFileList(const fs::path& folder, const std::string& name) {
-    std::vector<StampedFile> list;
-    for (const TextRow& row : readTable((folder / name).string(), 2)) {
-        list.push_back({row.number(0), (folder / row.text(1)).string()});
-        const std::size_t n = list.size();
-        if (n > 1 && list[n - 1].timestamp < list[n - 2].timestamp) {
-            row.fail("timestamp is smaller than the one before");
+/// Says what is wrong with a timestamp, or skips the image it belongs to.
+class TimeOrder {
+  public:
+    explicit TimeOrder(Sequence* forgiven) : forgiven_(forgiven) {}
+
+    /// @throws InputError for a decreasing timestamp, unless it is to be forgiven
+    bool accepts(const TextRow& row, double timestamp, const std::string& file) {
+        const bool repeats = timestamp == last_;
+        if (timestamp > last_ || (repeats && !forgiven_)) {
+            last_ = timestamp;
+            return true;
         }
+        const std::string reason = repeats ? "timestamp repeats the one before"
+                                           : "timestamp is smaller than the one before";
+        if (!forgiven_) row.fail(reason);
+        forgiven_->skipped.push_back({file, reason});
+        return false;
+    }
+
+  private:
+    Sequence* forgiven_;
+    double last_ = -std::numeric_limits<double>::infinity();
+};
+
+std::vector<StampedFile> readFileList(const fs::path& folder, const std::string& name,
+                                      Sequence* forgiven) {
+    std::vector<StampedFile> list;
+    TimeOrder order(forgiven);
+    for (const TextRow& row : readTable((folder / name).string(), 2)) {
+        StampedFile image{row.number(0), (folder / row.text(1)).string()};
+        if (order.accepts(row, image.timestamp, image.file)) list.push_back(std::move(image));
     }
     if (list.empty()) throw InputError((folder / name).string(), "", "no images");
     return list;
 }
 
-std::vector<Pair> readAssociation(const fs::path& folder, const std::string& name) {
+std::vector<Pair> readAssociation(const fs::path& folder, const std::string& name,
+                                  Sequence* forgiven) {
     std::vector<Pair> pairs;
+    TimeOrder order(forgiven);
     for (const TextRow& row : readTable((folder / name).string(), 4)) {
         Pair pair{{row.number(0), (folder / row.text(1)).string()},
                   {row.number(2), (folder / row.text(3)).string()}};
         if (row.text(1).starts_with("depth")) std::swap(pair.colour, pair.depth);
-        if (!pairs.empty() && pair.colour.timestamp < pairs.back().colour.timestamp) {
-            row.fail("timestamp is smaller than the one before");
+        if (order.accepts(row, pair.colour.timestamp, pair.colour.file)) {
+            pairs.push_back(std::move(pair));
         }
-        pairs.push_back(std::move(pair));
     }
     if (pairs.empty()) throw InputError((folder / name).string(), "", "no images");
     return pairs;
@@ -89,12 +112,14 @@ std::vector<int> associate(const std::vector<StampedFile>& colour,
     return partner;
 }
 
-std::vector<Pair> readPairs(const fs::path& folder, double tolerance, Sequence& sequence) {
+std::vector<Pair> readPairs(const fs::path& folder, const TumOptions& options, Sequence& sequence) {
+    Sequence* forgiven = options.forgiving ? &sequence : nullptr;
+    const double tolerance = options.tolerance;
     for (const char* name : {"assoc.txt", "associations.txt"}) {
-        if (fs::exists(folder / name)) return readAssociation(folder, name);
+        if (fs::exists(folder / name)) return readAssociation(folder, name, forgiven);
     }
-    const auto colour = readFileList(folder, "rgb.txt");
-    const auto depth = readFileList(folder, "depth.txt");
+    const auto colour = readFileList(folder, "rgb.txt", forgiven);
+    const auto depth = readFileList(folder, "depth.txt", forgiven);
     const auto partner = associate(colour, depth, tolerance);
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < colour.size(); ++i) {
@@ -147,18 +172,6 @@ void readCamera(const std::string& file, Sequence& sequence) {
     yaml.finish();
 }
 
-cv::Mat readImage(const std::string& file, int flags, const Camera& camera) {
-    const auto bytes = soundImage(readBytes(file));
-    cv::Mat image = bytes.empty() ? cv::Mat() : cv::imdecode(bytes, flags);
-    if (image.empty()) throw InputError(file, "", "not an image, or damaged");
-    if (image.cols != int(camera.width) || image.rows != int(camera.height)) {
-        throw InputError(file, "",
-                         fmt::format("{}x{} pixels, but the camera has {}x{}", image.cols,
-                                     image.rows, camera.width, camera.height));
-    }
-    return image;
-}
-
 /// For every colour column (or row) the depth column of the same ray, or -1 outside the image.
 std::vector<int> depthPixels(unsigned count, double focal, double centre, double depthFocal,
                              double depthCentre) {
@@ -168,6 +181,35 @@ std::vector<int> depthPixels(unsigned count, double focal, double centre, double
         pixels[i] = j >= 0. && j < count ? static_cast<int>(j) : -1;
     }
     return pixels;
+}
+
+void addPoses(const std::string& groundtruth, const std::vector<Pair>& pairs,
+              const TumOptions& options, Sequence& sequence) {
+    Trajectory trajectory;
+    if (!options.forgiving || fs::exists(groundtruth)) trajectory = readTrajectory(groundtruth);
+    bool anyPose = false;
+    for (const auto& [colour, depth] : pairs) {
+        const auto T_w_c =
+            poseAt(trajectory, colour.timestamp, options.tolerance, options.maxPoseGap);
+        anyPose = anyPose || T_w_c;
+        if (T_w_c || options.forgiving) {
+            sequence.frames.push_back({colour.timestamp,
+                                       T_w_c ? T_w_c->inverse() : Pose::Identity(),
+                                       T_w_c.has_value(), colour.file, depth.file});
+        } else {
+            sequence.skipped.push_back(
+                {colour.file, fmt::format("no pose within {} s", options.tolerance)});
+        }
+    }
+    if (!anyPose && !trajectory.empty()) {
+        throw InputError(
+            groundtruth, "",
+            fmt::format("no pose within {} s of any image: poses from {:.3f} to {:.3f} s, images "
+                        "from {:.3f} to {:.3f} s",
+                        options.tolerance, trajectory.front().timestamp,
+                        trajectory.back().timestamp, pairs.front().colour.timestamp,
+                        pairs.back().colour.timestamp));
+    }
 }
 
 }  // namespace
@@ -184,36 +226,16 @@ Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
         sequence.cameraAssumed = true;
     }
     if (options.depthScale) sequence.depthScale = *options.depthScale;
-    const auto pairs = readPairs(folder, options.tolerance, sequence);
-    const std::string groundtruth = (fs::path(folder) / "groundtruth.txt").string();
-    const Trajectory trajectory = readTrajectory(groundtruth);
-    for (const auto& [colour, depth] : pairs) {
-        const auto T_w_c =
-            poseAt(trajectory, colour.timestamp, options.tolerance, options.maxPoseGap);
-        if (T_w_c) {
-            sequence.frames.push_back(
-                {colour.timestamp, T_w_c->inverse(), colour.file, depth.file});
-        } else {
-            sequence.skipped.push_back(
-                {colour.file, fmt::format("no pose within {} s", options.tolerance)});
-        }
-    }
-    if (sequence.frames.empty()) {
-        throw InputError(groundtruth, "",
-                         fmt::format("no pose within {} s of any image", options.tolerance));
-    }
+    const auto pairs = readPairs(folder, options, sequence);
+    addPoses((fs::path(folder) / "groundtruth.txt").string(), pairs, options, sequence);
     return sequence;
 }
 
 RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
     const Sequence::Entry& entry = sequence.frames.at(index);
     const Camera& camera = sequence.camera;
-    const cv::Mat grey =
-        readImage(entry.colourFile, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION, camera);
-    const cv::Mat depth = readImage(entry.depthFile, cv::IMREAD_UNCHANGED, camera);
-    if (depth.type() != CV_16UC1) {
-        throw InputError(entry.depthFile, "", "expected one channel of 16 bits");
-    }
+    const vpImage<unsigned char> grey = readGrey8(entry.colourFile, camera);
+    const vpImage<std::uint16_t> depth = readDepth16(entry.depthFile, camera);
     RecordedFrame frame{entry.T_c_w, {}, entry.timestamp};
     frame.view.intensity.resize(camera.height, camera.width);
     frame.view.depth.resize(camera.height, camera.width, 0.F);
@@ -225,12 +247,12 @@ RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
     const auto depthRows =
         depthPixels(camera.height, k.get_py(), k.get_v0(), d.get_py(), d.get_v0());
     for (unsigned v = 0; v < camera.height; ++v) {
-        const auto* g = grey.ptr<std::uint8_t>(static_cast<int>(v));
+        const unsigned char* g = grey[v];
         for (unsigned u = 0; u < camera.width; ++u) {
             frame.view.intensity[v][u] = static_cast<float>(g[u]) / 255.F;
         }
         if (depthRows[v] < 0) continue;
-        const auto* z = depth.ptr<std::uint16_t>(depthRows[v]);
+        const std::uint16_t* z = depth[depthRows[v]];
         for (unsigned u = 0; u < camera.width; ++u) {
             if (depthColumns[u] >= 0) frame.view.depth[v][u] = metres * z[depthColumns[u]];
         }

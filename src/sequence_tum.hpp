@@ -14,6 +14,9 @@ struct TumOptions {
     double maxPoseGap = 0.1;  ///< interpolate between poses at most this far apart [s]
     std::optional<double> depthScale = {};  ///< overrides what the dataset says
     std::string cameraFile = {};            ///< instead of the dataset's camera.yaml
+    /// For trackers: frames without pose are kept, groundtruth.txt need not be there, and images
+    /// whose timestamps repeat or go back are skipped.
+    bool forgiving = false;
 };
 
 /// Reads the tables of a dataset, no images:
@@ -26,8 +29,8 @@ struct TumOptions {
 ///   and for depth images that are not registered to the colour images `depth_camera` with its own
 ///   fx, fy, cx, cy. Without it the benchmark's Kinect is assumed: 640x480, 525, 525, 319.5, 239.5.
 /// Images without partner or pose are listed as skipped.
-/// @throws InputError naming file, line or key, and reason; also when no frame is left. Timestamps
-///         may repeat but never decrease.
+/// @throws InputError naming file, line or key, and reason; also when no frame is left, or no pose
+///         belongs to any frame. Timestamps may repeat but never decrease.
 Sequence readTumSequence(const std::string& folder, const TumOptions& options = {});
 
 /// Loads the images of frame `index`: 8-bit colour by OpenCV's grey conversion to [0, 1], 16-bit

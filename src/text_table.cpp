@@ -28,23 +28,53 @@ void TextRow::fail(const std::string& reason) const {
     throw InputError(file_, fmt::format("line {}", line_), reason);
 }
 
-std::vector<TextRow> readTable(const std::string& file, std::size_t columns) {
+namespace {
+
+std::vector<std::string> splitAtBlanks(const std::string& text) {
+    std::istringstream words(text);
+    std::vector<std::string> fields;
+    for (std::string word; words >> word;) fields.push_back(word);
+    return fields;
+}
+
+std::vector<std::string> splitAtCommas(const std::string& text) {
+    std::vector<std::string> fields;
+    std::istringstream in(text);
+    for (std::string field; std::getline(in, field, ',');) {
+        const auto words = splitAtBlanks(field);
+        fields.push_back(fmt::format("{}", fmt::join(words, " ")));
+    }
+    if (fields.size() == 1 && fields[0].empty()) fields.clear();
+    return fields;
+}
+
+template <class Split>
+std::vector<TextRow> readRows(const std::string& file, const Split& split, std::size_t least,
+                              std::size_t most) {
     std::ifstream in(file);
     if (!in) throw InputError(file, "", "no such file");
     std::vector<TextRow> rows;
     std::string text;
     for (int line = 1; std::getline(in, text); ++line) {
-        std::istringstream words(text);
-        std::vector<std::string> fields;
-        for (std::string word; words >> word;) fields.push_back(word);
+        std::vector<std::string> fields = split(text);
         if (fields.empty() || fields[0].starts_with('#')) continue;
         const std::size_t found = fields.size();
         rows.emplace_back(file, line, std::move(fields));
-        if (found != columns) {
-            rows.back().fail(fmt::format("expected {} fields, found {}", columns, found));
+        if (found < least || found > most) {
+            rows.back().fail(fmt::format("expected {} fields, found {}", least, found));
         }
     }
     return rows;
+}
+
+}  // namespace
+
+std::vector<TextRow> readTable(const std::string& file, std::size_t columns) {
+    return readRows(file, splitAtBlanks, columns, columns);
+}
+
+std::vector<TextRow> readCsv(const std::string& file, std::size_t leastColumns) {
+    return readRows(file, splitAtCommas, leastColumns, std::string::npos);
 }
 
 }  // namespace photonav

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Strict reading of text tables with blanks between the fields, as TUM's and evo's files are.
+// Strict reading of text tables with blanks between the fields, as TUM's and evo's files are, or
+// commas, as EuRoC's.
 #pragma once
 
 #include <string>
@@ -30,5 +31,9 @@ class TextRow {
 /// All rows of a file but blank lines and those that start with '#'.
 /// @throws InputError for a missing file and for a row that does not have `columns` fields
 std::vector<TextRow> readTable(const std::string& file, std::size_t columns);
+
+/// The same for fields with commas between them, as EuRoC's files have; blanks around a field do
+/// not count, and a row may have more fields than `leastColumns`.
+std::vector<TextRow> readCsv(const std::string& file, std::size_t leastColumns);
 
 }  // namespace photonav

@@ -208,5 +208,27 @@ TEST_F(TumSequence, ReadsARealRecording) {
     EXPECT_GT(valid / (640. * 480.), 0.5);
 }
 
+TEST_F(TumSequence, ForgivingItKeepsFramesWithoutPose) {
+    std::ofstream(path / "rgb.txt") << "100.0 rgb/0.png\n100.2 rgb/2.png\n100.1 rgb/1.png\n"
+                                       "100.2 rgb/2.png\n100.3 rgb/3.png\n";
+    writeText(path / "groundtruth.txt", "100.0 0 0 1 0 0 0 1\n");
+    const Sequence sequence = read({.forgiving = true});
+    ASSERT_EQ(sequence.frames.size(), 3U);
+    EXPECT_TRUE(sequence.frames[0].hasPose);
+    EXPECT_FALSE(sequence.frames[1].hasPose);
+    ASSERT_EQ(sequence.skipped.size(), 2U);
+    EXPECT_EQ(sequence.skipped[0].reason, "timestamp is smaller than the one before");
+    EXPECT_EQ(sequence.skipped[1].reason, "timestamp repeats the one before");
+    test::fs::remove(path / "groundtruth.txt");
+    EXPECT_EQ(read({.forgiving = true}).frames.size(), 3U);
+    expectInputError([&] { read(); }, {"rgb.txt", "line 3", "smaller than the one before"});
+}
+
+TEST_F(TumSequence, ForgivingItRejectsPosesOfAnotherTime) {
+    writeText(path / "groundtruth.txt", "5 0 0 1 0 0 0 1\n6.5 0 0 1 0 0 0 1\n");
+    expectInputError([&] { read({.forgiving = true}); },
+                     {"groundtruth.txt", "from 5.000 to 6.500 s", "from 100.000 to 100.500 s"});
+}
+
 }  // namespace
 }  // namespace photonav

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Recorded images, of the size that their camera says.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "camera.hpp"
+
+namespace photonav {
+
+/// Colour becomes grey as OpenCV weighs it; orientation tags are ignored.
+/// @throws InputError for a file that is missing, damaged or of another size than the camera's
+vpImage<unsigned char> readGrey8(const std::string& file, const Camera& camera);
+
+/// @throws InputError as readGrey8(), and unless the image has one channel of 16 bits
+vpImage<std::uint16_t> readDepth16(const std::string& file, const Camera& camera);
+
+}  // namespace photonav
