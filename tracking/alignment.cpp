@@ -58,6 +58,8 @@ Matrix6 covarianceWithoutPrior(const Spectrum& s) {
     return V * variance.asDiagonal() * V.transpose();
 }
 
+bool isAtLimit(double gain, double most) { return gain > 0.999 * most || gain * most < 1.001; }
+
 }  // namespace
 
 std::string describe(const Alignment& a, const TrustOptions& options) {
@@ -73,6 +75,9 @@ std::string describe(const Alignment& a, const TrustOptions& options) {
                                100. * a.residual.unexplained, a.residual.rms);
         case Verdict::lostImplausible:
             return "lost: the best pose is not one that the prior allows";
+        case Verdict::lostExposure:
+            return fmt::format("lost: brightness would have to change by a factor of {:.2f}",
+                               a.exposure.gain);
         case Verdict::lostDivergence:
             break;
     }
@@ -146,6 +151,8 @@ void conclude(Alignment& a, const NormalEquations& equations, std::size_t pixels
         a.verdict = Verdict::lostOverlap;
     } else if (a.residual.rms > noise && a.residual.unexplained > options.maxUnexplained) {
         a.verdict = Verdict::lostResidual;
+    } else if (exposureEstimated && isAtLimit(a.exposure.gain, options.maxGain)) {
+        a.verdict = Verdict::lostExposure;
     } else if (!isLost(a.verdict)) {
         a.verdict = open > 0 ? Verdict::degenerate : Verdict::converged;
     }

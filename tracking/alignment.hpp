@@ -18,6 +18,7 @@ enum class Verdict {
     lostResidual,     ///< the model does not explain the image
     lostDivergence,   ///< no minimum found
     lostImplausible,  ///< a minimum that the prior rules out
+    lostExposure,     ///< only another brightness than a camera may have explains the image
 };
 
 inline bool isLost(Verdict verdict) {
@@ -37,6 +38,9 @@ struct TrustOptions {
     double openSigma = 0.02;
     /// Largest squared Mahalanobis distance of the pose from its prior (6 degrees of freedom).
     double maxSurprise = 60.;
+    /// Gains, where they are estimated, stay between its inverse and it. (Any image fits any other
+    /// when nearly nothing is multiplied by very much.)
+    double maxGain = 3.;
     /// Least standard deviations of the result, for what repeats from image to image and no number
     /// of pixels averages out, as errors of the map do.
     double floorTranslation = 0.;  ///< [m]

@@ -119,7 +119,9 @@ bool Search::improve(double& damping) {
     for (;;) {
         const Vector6 xi = step(equations, damping);
         const Eigen::Vector2d change = equations.exposureRight - equations.exposureOfPose * xi;
-        const Exposure exposure{at_.exposure.gain + change[0], at_.exposure.offset + change[1]};
+        const double most = options_.trust.maxGain;
+        const Exposure exposure{std::clamp(at_.exposure.gain + change[0], 1. / most, most),
+                                at_.exposure.offset + change[1]};
         const Iterate next = evaluate(expSE3(xi) * at_.T_c_w, exposure);
         const double pixels = at_.equations.count;
         const bool better = cost(next, pixels) <= (1. + kCostNoise) * cost(at_, pixels);

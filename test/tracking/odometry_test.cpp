@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "odometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include "localizer.hpp"
+#include "rooms.hpp"
+
+namespace photonav {
+namespace {
+
+using testing::cameraAt;
+
+const Camera& camera() {
+    static const Camera small = makeCamera(160, 120, 1.1);
+    return small;
+}
+
+const MeshRenderer& room() {
+    static const MeshRenderer renderer(testing::texturedRoom());
+    return renderer;
+}
+
+View viewFrom(const Pose& T_c_w) {
+    View view;
+    room().render(camera(), T_c_w, view);
+    return view;
+}
+
+/// Forward through the room with a slow turn, 4 cm and 1.4 degrees an image.
+Pose flight(int i) { return cameraAt({1. + 0.04 * i, 2.6 + 0.01 * i, 1.6}, 0.6, -0.2 + 0.025 * i); }
+
+constexpr double kInterval = 0.1;
+
+const UncertainPose& start() {
+    static const UncertainPose pose{flight(0), Matrix6::Zero()};
+    return pose;
+}
+
+View black() {
+    View view = viewFrom(flight(0));
+    view.intensity = 0.F;
+    return view;
+}
+
+double distance(const Pose& a, const Pose& b) {
+    return (a.inverse().translation() - b.inverse().translation()).norm();
+}
+
+TEST(Odometry, FollowsAFlightThroughSeveralKeyframes) {
+    Odometry odometry(camera(), start());
+    int keyframes = 0;
+    double last = 0.;
+    for (int i = 0; i < 30; ++i) {
+        const TrackedFrame frame = odometry.track(viewFrom(flight(i)), 5. + kInterval * i);
+        EXPECT_FALSE(frame.lost) << i << ": " << describe(frame.alignment);
+        EXPECT_LT(distance(frame.T_c_w.mean, flight(i)), 0.02) << i;
+        const double trace = frame.T_c_w.covariance.trace();
+        if (frame.isKeyframe) {
+            EXPECT_GE(trace, last);  // what keyframes add is never taken back
+            last = trace;
+            ++keyframes;
+        }
+        EXPECT_TRUE(isCovariance(frame.T_c_w.covariance));
+    }
+    EXPECT_GE(keyframes, 3);
+    EXPECT_LE(keyframes, 20);
+}
+
+/// Rounding must not add up: poses are products of poses.
+TEST(Odometry, RotationsStayRotationsOverManyKeyframes) {
+    OdometryOptions options;
+    options.maxTurn = 0.;  // every image becomes a keyframe
+    Odometry odometry(camera(), start(), options);
+    for (int i = 0; i < 40; ++i) {
+        const int there = i % 4 < 2 ? i % 4 : 4 - i % 4;
+        odometry.track(viewFrom(flight(there)), kInterval * i);
+    }
+    const Eigen::Matrix3d R = odometry.belief().mean.linear();
+    EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+    EXPECT_LT(distance(odometry.belief().mean, flight(1)), 0.05);
+}
+
+TEST(Odometry, BlackImagesAreLostAndThenItGoesOn) {
+    Odometry odometry(camera(), start());
+    for (int i = 0; i < 5; ++i) odometry.track(viewFrom(flight(i)), kInterval * i);
+    const double before = odometry.belief().covariance.trace();
+    const Pose certain = odometry.belief().mean;
+    for (int i = 5; i < 8; ++i) {
+        const TrackedFrame frame = odometry.track(black(), kInterval * i);
+        EXPECT_TRUE(frame.lost);
+        EXPECT_TRUE(frame.T_c_w.mean.isApprox(certain));
+    }
+    EXPECT_GT(odometry.belief().covariance.trace(), before + 1e-3);
+    const TrackedFrame frame = odometry.track(viewFrom(flight(8)), kInterval * 8);
+    EXPECT_FALSE(frame.lost) << describe(frame.alignment);
+    EXPECT_LT(distance(frame.T_c_w.mean, flight(8)), 0.02);
+    EXPECT_LT(odometry.belief().covariance.trace(), before + 1e-3);
+}
+
+TEST(Odometry, ComesBackToAnOldKeyframe) {
+    Odometry odometry(camera(), start());
+    for (int i = 0; i < 30; ++i) odometry.track(viewFrom(flight(i)), kInterval * i);
+    const View wall = viewFrom(cameraAt({3., 3., 1.5}, 0., 2.5));
+    EXPECT_TRUE(odometry.track(wall, 3.).lost);
+    const TrackedFrame frame = odometry.track(viewFrom(flight(12)), 3.1);
+    EXPECT_FALSE(frame.lost) << describe(frame.alignment);
+    EXPECT_LT(distance(frame.T_c_w.mean, flight(12)), 0.03);
+}
+
+TEST(Odometry, BlackFromTheBeginningIsLostUntilSomethingIsSeen) {
+    Odometry odometry(camera(), start());
+    EXPECT_TRUE(odometry.track(black(), 0.).lost);
+    EXPECT_TRUE(odometry.track(black(), 0.1).lost);
+    const TrackedFrame frame = odometry.track(viewFrom(flight(0)), 0.2);
+    EXPECT_FALSE(frame.lost);
+    EXPECT_TRUE(frame.isKeyframe);
+    EXPECT_TRUE(frame.T_c_w.mean.isApprox(flight(0)));
+}
+
+UncertainPose roughStart(int i) {
+    Vector6 xi;
+    xi << 0.02, -0.02, 0.02, 0.01, -0.01, 0.01;
+    return {expSE3(xi) * flight(i), 0.03 * 0.03 * Matrix6::Identity()};
+}
+
+TEST(Localizer, FollowsAFlightInAMap) {
+    Localizer localizer(room(), camera(), roughStart(0));
+    std::mt19937_64 random(2);
+    double sum = 0.;
+    for (int i = 0; i < 30; ++i) {
+        const ImageF image = testing::noisy(viewFrom(flight(i)).intensity, 0.02, random);
+        const TrackedFrame frame = localizer.track(image, kInterval * i);
+        EXPECT_FALSE(frame.lost) << i << ": " << describe(frame.alignment);
+        EXPECT_LT(distance(frame.T_c_w.mean, flight(i)), 5e-3) << i;
+        const Vector6 xi = logSE3(flight(i) * frame.T_c_w.mean.inverse());
+        sum += squaredDistance(xi, frame.T_c_w.covariance) / 6.;
+    }
+    EXPECT_GT(sum / 30., 0.5);
+    EXPECT_LT(sum / 30., 1.6);
+}
+
+TEST(Localizer, LostInTheDarkItWaitsWhereItWasAndTakesUpAgain) {
+    Localizer localizer(room(), camera(), roughStart(0));
+    for (int i = 0; i < 5; ++i) localizer.track(viewFrom(flight(i)).intensity, kInterval * i);
+    const Pose certain = localizer.belief().mean;
+    for (int i = 5; i < 9; ++i) {
+        EXPECT_TRUE(localizer.track(black().intensity, kInterval * i).lost);
+        EXPECT_TRUE(localizer.belief().mean.isApprox(certain));
+    }
+    EXPECT_GT(localizer.belief().covariance.trace(), 1e-2);
+    const TrackedFrame frame = localizer.track(viewFrom(flight(8)).intensity, 0.9);
+    EXPECT_FALSE(frame.lost) << describe(frame.alignment);
+    EXPECT_LT(distance(frame.T_c_w.mean, flight(8)), 5e-3);
+}
+
+TEST(Localizer, ALostBeliefStopsGrowing) {
+    Localizer localizer(room(), camera(), roughStart(0));
+    for (int i = 0; i < 12; ++i) localizer.track(black().intensity, 10. * i);
+    EXPECT_LT(localizer.belief().covariance.trace(), 3. * 1. + 3. * 0.25 + 1e-9);
+    EXPECT_TRUE(isCovariance(localizer.belief().covariance));
+}
+
+TEST(Localizer, AnotherRoomIsNotThisOne) {
+    const MeshRenderer floor(testing::floorOf(valueNoise({.size = {20., 20.}, .seed = 9})));
+    Localizer localizer(floor, camera(), roughStart(0));
+    for (int i = 0; i < 8; ++i) {
+        const TrackedFrame frame = localizer.track(viewFrom(flight(i)).intensity, kInterval * i);
+        EXPECT_TRUE(frame.lost) << i;
+    }
+}
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a camera probably is at the next image, from how it moved before.
+#pragma once
+
+#include <algorithm>
+
+#include "alignment.hpp"
+#include "se3.hpp"
+
+namespace photonav {
+
+/// What became of one image.
+struct TrackedFrame {
+    UncertainPose T_c_w;  ///< after the image; only predicted when lost
+    Alignment alignment;
+    bool lost = false;
+    bool isKeyframe = false;  ///< it became the model of the images after it
+};
+
+struct MotionNoise {
+    double speed = 0.5;  ///< standard deviation of a velocity's change between images [m/s]
+    double turn = 1.;    ///< of an angular velocity's [rad/s]
+};
+
+/// Constant velocity in the camera frame; none after a loss.
+class MotionModel {
+  public:
+    explicit MotionModel(const MotionNoise& noise) : noise_(noise) {}
+
+    /// The motion T_next_now within `seconds`, covariance in the next camera frame.
+    UncertainPose predict(double seconds) const {
+        const double dt = std::max(0., seconds);
+        UncertainPose motion{expSE3(dt * velocity_), Matrix6::Zero()};
+        motion.covariance.diagonal() << Eigen::Vector3d::Constant(square(noise_.speed * dt)),
+            Eigen::Vector3d::Constant(square(noise_.turn * dt));
+        return motion;
+    }
+
+    void observe(const Pose& T_next_now, double seconds) {
+        if (seconds > 0.) velocity_ = logSE3(T_next_now) / seconds;
+    }
+
+    void forget() { velocity_.setZero(); }
+
+  private:
+    static double square(double x) { return x * x; }
+
+    MotionNoise noise_;
+    Vector6 velocity_ = Vector6::Zero();
+};
+
+/// Whether an alignment says nothing at all: it may not be used, and is as good as lost.
+inline bool knowsNothing(const Alignment& alignment) {
+    return isLost(alignment.verdict) || alignment.openDirections.size() == 6;
+}
+
+}  // namespace photonav
