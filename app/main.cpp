@@ -18,6 +18,7 @@
 #include "map_config.hpp"
 #include "plan_command.hpp"
 #include "reference_command.hpp"
+#include "replay_command.hpp"
 #include "report.hpp"
 #include "scan_command.hpp"
 #include "sweep_command.hpp"
@@ -116,8 +117,8 @@ void printSummary(const ReportTable& table, const std::filesystem::path& folder)
 /// The options of `map` for a laser scan; those that belong to images are errors.
 ScanMapOptions scanOptions(const CLI::App& parser, const MapOptions& options,
                            const std::vector<double>& scanner) {
-    for (const char* name :
-         {"--camera", "--up", "--every", "--min-range", "--depth-scale", "--tolerance"}) {
+    for (const char* name : {"--camera", "--up", "--every", "--frames", "--min-range",
+                             "--depth-scale", "--tolerance"}) {
         if (parser.count(name) > 0) throw InputError(name, "", "is for images, not point clouds");
     }
     ScanMapOptions scan;
@@ -176,6 +177,8 @@ Command mapCommand(CLI::App& app, const std::string& commandLine) {
                      "what points up in the recorded world: x ... -z, a direction x,y,z, or floor")
         ->capture_default_str();
     parser->add_option("--every", options->every, "use every n-th frame")->capture_default_str();
+    parser->add_option("--frames", options->frames, "only the frames from a on and before b")
+        ->type_name("A:B");
     parser->add_option("--min-range", options->fusion.minRange, "nearest depth trusted [m]")
         ->capture_default_str();
     parser
@@ -221,6 +224,85 @@ Command mapCommand(CLI::App& app, const std::string& commandLine) {
                     fmt::print("{}\n", report.result.dump(2));
                 else if (!options->quiet)
                     printSummary(report.summary, options->out);
+                return report.exitCode;
+            }};
+}
+
+void addReplayOptions(CLI::App& parser, ReplayOptions& options) {
+    parser.add_option("dataset", options.dataset, "folder in the TUM RGB-D or the EuRoC layout")
+        ->required();
+    parser.add_option("--map", options.mapFile,
+                      "localise in this textured octree (.ot), mesh or scene file");
+    parser.add_flag("--odometry", options.odometry, "from image to image instead, without a map");
+    parser.add_option("--start", options.start, "x,y,z,qx,qy,qz,qw of the first frame's camera")
+        ->type_name("POSE");
+    parser.add_option("--start-sigma", options.startSigma, "its standard deviation [m] and [rad]")
+        ->capture_default_str();
+    parser.add_option("--every", options.every, "use every n-th frame")->capture_default_str();
+    parser.add_option("--frames", options.frames, "only the frames from a on and before b")
+        ->type_name("A:B");
+    parser.add_option("--camera", options.cameraFile,
+                      "camera.yaml to use instead of the dataset's");
+    parser.add_option("--depth-scale", options.depthScale,
+                      "depth image value of one metre (default: the dataset's)");
+    parser
+        .add_option("--up", options.up,
+                    "what points up in the recorded world: x ... -z, a direction x,y,z, or floor")
+        ->capture_default_str();
+    parser.add_option("--tolerance", options.tolerance, "largest difference of timestamps [s]")
+        ->capture_default_str();
+    parser.add_option("--stereo", options.stereo, "bm or sgbm: block matching, semi-global")
+        ->capture_default_str();
+    parser.add_option("--sigma", options.sigma, "image noise, grey values in [0, 1]")
+        ->capture_default_str();
+    parser.add_option("--scale", options.scale,
+                      "factor on the information (default: the tracker's)");
+    parser
+        .add_option("--floor", options.floorTranslation,
+                    "least standard deviation of a position in a map [m]")
+        ->capture_default_str();
+    parser.add_option("--floor-rotation", options.floorRotation, "the same of a rotation [rad]")
+        ->capture_default_str();
+    parser
+        .add_option("--max-width", options.maxWidth,
+                    "images are halved until they are as wide, with --map")
+        ->capture_default_str();
+    parser.add_flag("!--no-exposure", options.exposure, "images do not change in brightness");
+}
+
+Command replayCommand(CLI::App& app, const std::string& commandLine) {
+    struct Options : ReplayOptions {
+        bool quiet = false;
+        bool json = false;
+    };
+    auto options = std::make_shared<Options>();
+    options->commandLine = commandLine;
+    CLI::App* parser = app.add_subcommand(
+        "replay", "Track a recorded flight, in a map or by odometry, and say how well.");
+    addReplayOptions(*parser, *options);
+    parser->add_option("--out", options->out, "result folder (default: out/replay-<dataset>)")
+        ->check(kNotEmpty);
+    parser->add_flag("--quiet", options->quiet, "no progress, no summary");
+    parser->add_flag("--json", options->json, "result.json on standard output");
+    return {parser, [options] {
+                if (options->out.empty()) {
+                    options->out =
+                        std::filesystem::path("out") / ("replay-" + nameOf(options->dataset));
+                }
+                ProgressLine line(options->quiet);
+                options->progress = [&line](std::size_t done, std::size_t total) {
+                    line.show(fmt::format("{} of {} frames", done, total));
+                };
+                const ReplayReport report = runReplay(*options, interrupted);
+                line.clear();
+                if (options->json) {
+                    fmt::print("{}\n", report.result.dump(2));
+                } else if (!options->quiet) {
+                    for (const auto& [label, value] : report.summary.rows) {
+                        fmt::print("{:<42}{}\n", label, value);
+                    }
+                    fmt::print("report: {}\n", (options->out / "report.html").string());
+                }
                 return report.exitCode;
             }};
 }
@@ -367,6 +449,7 @@ int run(int argc, char** argv) {
                               compareCommand(app),
                               benchmarkCommand(app, commandLine),
                               referenceCommand(app),
+                              replayCommand(app, commandLine),
                               reportCommand(app)};
     try {
         app.parse(argc, argv);

@@ -187,6 +187,7 @@ json framesJson(const MapOptions& options, const Recording& recording, std::size
     return {{"recorded", recording.recorded},
             {"used", used},
             {"every", options.every},
+            {"range", options.frames},
             {"skipped", skipped}};
 }
 

@@ -38,6 +38,9 @@ std::string toYaml(const MapOptions& options, const Recording& recording) {
     text += fmt::format("up: {}\n", YAML::Dump(YAML::Node(upText(recording.up))));
     text += fmt::format("every: {}\ntolerance: {}\ndepth_scale: {}\n", options.every,
                         options.tolerance, recording.sequence.depthScale);
+    if (!options.frames.empty()) {
+        text += fmt::format("frames: {}\n", YAML::Dump(YAML::Node(options.frames)));
+    }
     return text + fmt::format("resolution: {}\nmin_range: {}\nmax_range: {}\n", options.resolution,
                               options.fusion.minRange, options.fusion.maxRange);
 }
@@ -66,6 +69,7 @@ void readMapConfig(const std::string& file, MapOptions& options) {
     yaml.read("up", options.up);
     yaml.read("every", options.every);
     if (options.every < 1) yaml.fail("every", "must be at least 1");
+    yaml.read("frames", options.frames);
     yaml.readNumber("tolerance", options.tolerance, 1e-9, kInfinity);
     if (yaml.has("depth_scale")) {
         double scale = 0.;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -19,20 +20,11 @@ namespace {
 constexpr std::size_t kFloorFrames = 30;
 constexpr unsigned kFloorColumns = 32;
 
-/// An axis name or "x,y,z"; nothing for anything else.
-std::optional<Eigen::Vector3d> parseUp(const std::string& text) {
-    const auto& axes = axisNames();
-    if (std::find(axes.begin(), axes.end(), text) != axes.end()) {
-        return worldUpRotation(text).transpose() * Eigen::Vector3d::UnitZ();
-    }
-    std::istringstream stream(text);
-    Eigen::Vector3d up;
-    char comma = ',';
-    stream >> up.x() >> comma;
-    if (comma == ',') stream >> up.y() >> comma;
-    if (comma == ',') stream >> up.z();
-    if (!stream || !(stream >> std::ws).eof() || !(up.norm() > 1e-9)) return {};
-    return up.normalized();
+std::optional<std::size_t> parseIndex(const std::string& text) {
+    std::size_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return {};
+    return value;
 }
 
 /// What the depth images show below the camera, from frames spread over the recording.
@@ -84,6 +76,37 @@ Eigen::Vector3d upByFloor(const Sequence& sequence) {
 
 }  // namespace
 
+std::optional<Eigen::Vector3d> parseUp(const std::string& text) {
+    const auto& axes = axisNames();
+    if (std::find(axes.begin(), axes.end(), text) != axes.end()) {
+        return worldUpRotation(text).transpose() * Eigen::Vector3d::UnitZ();
+    }
+    std::istringstream stream(text);
+    Eigen::Vector3d up;
+    char comma = ',';
+    stream >> up.x() >> comma;
+    if (comma == ',') stream >> up.y() >> comma;
+    if (comma == ',') stream >> up.z();
+    if (!stream || !(stream >> std::ws).eof() || !(up.norm() > 1e-9)) return {};
+    return up.normalized();
+}
+
+std::pair<std::size_t, std::size_t> parseFrames(const std::string& text, std::size_t count) {
+    if (text.empty()) return {0, count};
+    const auto colon = text.find(':');
+    const std::string before = text.substr(0, colon);
+    const std::string after = colon == std::string::npos ? "" : text.substr(colon + 1);
+    const auto first = before.empty() ? 0 : parseIndex(before);
+    const auto end = after.empty() ? count : parseIndex(after);
+    if (colon == std::string::npos || !first || !end) {
+        throw InputError("--frames", "", fmt::format("'{}' is not a range first:end", text));
+    }
+    if (*first >= std::min(*end, count)) {
+        throw InputError("--frames", "", fmt::format("'{}' leaves none of {} frames", text, count));
+    }
+    return {*first, std::min(*end, count)};
+}
+
 Recording readRecording(const RecordingOptions& options) {
     const auto given = parseUp(options.up);
     if (!given && options.up != "floor") {
@@ -95,6 +118,7 @@ Recording readRecording(const RecordingOptions& options) {
     tum.tolerance = options.tolerance;
     tum.depthScale = options.depthScale;
     tum.cameraFile = options.cameraFile;
+    tum.forgiving = options.forgiving;
     Recording recording;
     recording.sequence = readTumSequence(options.dataset, tum);
     auto& frames = recording.sequence.frames;
@@ -103,7 +127,8 @@ Recording readRecording(const RecordingOptions& options) {
     Pose T_recorded_w = Pose::Identity();
     T_recorded_w.linear() = worldUpRotation(recording.up).transpose();
     std::vector<Sequence::Entry> used;
-    for (std::size_t i = 0; i < frames.size(); i += std::size_t(options.every)) {
+    const auto [first, end] = parseFrames(options.frames, frames.size());
+    for (std::size_t i = first; i < end; i += std::size_t(options.every)) {
         used.push_back(frames[i]);
         used.back().T_c_w = used.back().T_c_w * T_recorded_w;
     }

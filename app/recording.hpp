@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "sequence.hpp"
 
@@ -16,6 +17,9 @@ struct RecordingOptions {
     std::string up = "z";     ///< what points up in the recorded world: an axis (x ... -z), a
                               ///< direction "x,y,z", or "floor": found in the depth images
     int every = 1;            ///< use every n-th frame
+    std::string frames;       ///< "a:b": only the frames from a on and before b; either may be
+                              ///< missing
+    bool forgiving = false;   ///< see TumOptions
     double tolerance = 0.02;  ///< of timestamps, see TumOptions [s]
     std::string cameraFile;   ///< instead of the dataset's camera.yaml
     std::optional<double> depthScale;  ///< depth image value of one metre, instead of the dataset's
@@ -33,8 +37,15 @@ struct Recording {
 /// @throws InputError for a dataset that cannot be used and for `up` ("--up")
 Recording readRecording(const RecordingOptions& options);
 
+/// An axis name or "x,y,z"; nothing for anything else.
+std::optional<Eigen::Vector3d> parseUp(const std::string& text);
+
 /// The other direction: "-y" for an axis, otherwise "x,y,z" to 17 digits.
 std::string upText(const Eigen::Vector3d& up);
+
+/// Half-open range of indices from text "a:b", "a:", ":b" or "", cut to [0, count).
+/// @throws InputError ("--frames") for anything else and for a range without frames
+std::pair<std::size_t, std::size_t> parseFrames(const std::string& text, std::size_t count);
 
 /// Degrees between a direction and the nearest axis.
 double tiltDegrees(const Eigen::Vector3d& up);

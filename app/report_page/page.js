@@ -12,6 +12,7 @@ function make(tag, text, attributes = {}) {
 // Head --------------------------------------------------------------------------------------------
 function verdict() {
   if (sweep) return sweepVerdict();
+  if (data.result.verdict) return `${data.result.verdict[0].toUpperCase()}${data.result.verdict.slice(1)}.`;
   if (!paths.length) return data.result.command === 'plan' ? 'No path was found.' : '';
   if (!hasBeliefs) return '';
   const ours = summaries[0], other = summaries[1];
@@ -39,10 +40,21 @@ function fillHead() {
   element('verdict').hidden = !verdict();
 }
 
+function replayTiles({ate_rmse_m: ate, rpe, nees_per_dof: nees, tracked, frames, lost, fps}) {
+  const second = rpe.second || rpe.frame || {}, over = rpe.second ? 'a second' : 'a frame';
+  return [
+    ['frames tracked', tracked, `of ${frames}`], ['frames lost', lost, ''],
+    ['absolute error, rms', ate === null ? null : 1000 * ate, 'mm'],
+    [`error over ${over}, rms`, 1000 * second.translation_m, 'mm'],
+    [`the same, turned`, second.rotation_deg, '°'],
+    ['NEES per degree of freedom', nees, ''], ['frames per second', fps, ''],
+  ];
+}
+
 function fillTiles() {
   const {result} = data, ours = hasBeliefs ? summaries[0] : {};
   const seconds = (result.time || {}).total_s;
-  const tiles = sweep ? sweepTiles() : [
+  const tiles = sweep ? sweepTiles() : result.command === 'replay' ? replayTiles(result) : [
     ['path length', ours.length ?? result.length, 'm'],
     ['goal position, 1σ', 100 * ours.goalSigma, 'cm'],
     ['goal trace', ours.goalTrace ?? result.goal_trace, 'm²'],
@@ -140,7 +152,7 @@ function addTable(title, pairs) {
 }
 
 function addComparison() {
-  if (paths.length < 2 || !hasBeliefs) return;
+  if (paths.length < 2 || !hasBeliefs || data.result.command === 'replay') return;
   const box = make('div', undefined, {className: 'wide'}), table = make('table');
   const head = make('tr'), body = make('tbody');
   head.append(...['Path', 'Length', 'Cost', 'Mean trace', 'Trace at the goal', '1σ at the goal'].map((t) => make('th', t)));

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay_command.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <sstream>
+
+#include "atomic_file.hpp"
+#include "calibration.hpp"
+#include "command_io.hpp"
+#include "error.hpp"
+#include "mesh_renderer.hpp"
+#include "octree_file.hpp"
+#include "replay_report.hpp"
+#include "replay_run.hpp"
+#include "scene.hpp"
+#include "voxel_renderer.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr double kLeastDepth = 0.05, kMostDepth = 100.;  // of a median, plausible [m]
+
+void checkOptions(const ReplayOptions& options) {
+    const auto require = [](bool good, const char* option, const char* reason) {
+        if (!good) throw InputError(option, "", reason);
+    };
+    const auto isPositive = [](double x) { return std::isfinite(x) && x > 0.; };
+    require(options.odometry || !options.mapFile.empty(), "--map",
+            "needed, or --odometry: nothing to find the camera in");
+    require(!options.odometry || options.mapFile.empty(), "--odometry", "not together with --map");
+    require(isPositive(options.sigma), "--sigma", "must be above 0");
+    require(isPositive(options.startSigma), "--start-sigma", "must be above 0");
+    require(!options.scale || isPositive(*options.scale), "--scale", "must be above 0");
+    require(options.floorTranslation.value_or(0.) >= 0., "--floor", "must not be negative");
+    require(options.floorRotation.value_or(0.) >= 0., "--floor-rotation", "must not be negative");
+    require(options.maxWidth >= 24, "--max-width", "must be at least 24");
+}
+
+Pose parsePose(const std::string& text) {
+    std::istringstream in(text);
+    Eigen::Matrix<double, 7, 1> v;
+    for (int i = 0; i < 7; ++i) {
+        char comma = ',';
+        if (i > 0) in >> comma;
+        in >> v[i];
+        if (!in || comma != ',') {
+            throw InputError("--start", "", fmt::format("'{}' is not x,y,z,qx,qy,qz,qw", text));
+        }
+    }
+    const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
+    if (!(in >> std::ws).eof() || !v.allFinite() || std::abs(q.norm() - 1.) > 0.1) {
+        throw InputError("--start", "",
+                         fmt::format("'{}' is not x,y,z,qx,qy,qz,qw with a unit quaternion", text));
+    }
+    Pose T_w_c = Pose::Identity();
+    T_w_c.linear() = q.normalized().toRotationMatrix();
+    T_w_c.translation() = v.head<3>();
+    return T_w_c;
+}
+
+UncertainPose startOf(const ReplayOptions& options, const ReplaySource& source) {
+    UncertainPose start;
+    if (!options.odometry) {
+        start.covariance = options.startSigma * options.startSigma * Matrix6::Identity();
+    }
+    if (!options.start.empty()) {
+        start.mean = parsePose(options.start).inverse();
+    } else if (source.frames[0].T_c_w) {
+        start.mean = *source.frames[0].T_c_w;
+    } else if (!options.odometry) {
+        throw InputError(
+            "--start", "",
+            source.hasGroundtruth()
+                ? "needed: the first frame has no true pose (or begin later with --frames)"
+                : "needed: the recording has no ground truth to begin from");
+    }
+    return start;
+}
+
+/// A scale wrong by 1000 is found here, before it looks like bad tracking.
+std::optional<double> checkDepths(const ReplayOptions& options, const ReplaySource& source) {
+    const std::optional<double> depth = medianDepth(source);
+    if (!depth) return {};
+    const std::string key = options.depthScale ? "--depth-scale" : "depth_scale";
+    if (*depth > 0. && (*depth < kLeastDepth || *depth > kMostDepth)) {
+        throw InputError(
+            options.dataset, key,
+            fmt::format("implausible depths: their median is {:.3g} m; the scale seems "
+                        "{} by a factor of about {:.0e}",
+                        *depth, *depth > 1. ? "too small" : "too large",
+                        std::max(*depth / 2., 2. / *depth)));
+    }
+    if (*depth == 0. && options.odometry) {
+        throw InputError(options.dataset, "", "no depth in any of the images looked at");
+    }
+    return depth;
+}
+
+/// What images are compared with.
+struct ReplayMap {
+    std::shared_ptr<TexturedOcTree> octree;
+    std::unique_ptr<ViewSource> views;
+    std::function<void(ReportData&)> describe = [](ReportData&) {};
+};
+
+ReplayMap loadMap(const std::string& file) {
+    ReplayMap map;
+    if (file.empty()) return map;
+    const std::string extension = fs::path(file).extension().string();
+    if (extension == ".ot" || extension == ".bt") {
+        map.octree = loadTexturedOcTree(file);
+        map.views = std::make_unique<VoxelRenderer>(*map.octree, UnknownPolicy::free);
+        map.describe = [octree = map.octree](ReportData& report) {
+            report.voxels = makeReportVoxels(*octree);
+        };
+        return map;
+    }
+    auto renderer = std::make_unique<MeshRenderer>(loadScene(file));
+    map.describe = [mesh = renderer.get()](ReportData& report) {
+        report.mesh = makeReportMesh(mesh->scene());
+    };
+    map.views = std::move(renderer);
+    return map;
+}
+
+ReplayTracker makeTracker(const ReplayOptions& options, const ReplaySource& source,
+                          const ReplayMap& map) {
+    const UncertainPose start = startOf(options, source);
+    const auto set = [&](AlignmentOptions& alignment) {
+        alignment.photometric.sigma = options.sigma;
+        alignment.exposure = options.exposure;
+        alignment.robust = RobustWeight::huber;
+        if (options.scale) alignment.photometric.scale = *options.scale;
+        if (options.floorTranslation) alignment.trust.floorTranslation = *options.floorTranslation;
+        if (options.floorRotation) alignment.trust.floorRotation = *options.floorRotation;
+    };
+    if (options.odometry) {
+        OdometryOptions odometry;
+        set(odometry.keyframe.alignment);
+        return odometryTracker(source.camera, start, odometry);
+    }
+    LocalizerOptions localizer;
+    localizer.alignment = realCameraOptions(map.octree ? map.octree->getResolution() : 0.);
+    set(localizer.alignment);
+    return mapTracker(*map.views, source.camera, start, localizer,
+                      static_cast<unsigned>(options.maxWidth));
+}
+
+json orNull(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
+
+json optionsJson(const ReplayOptions& o) {
+    return {{"mode", o.odometry ? "odometry" : "map"},
+            {"map", o.mapFile},
+            {"every", o.every},
+            {"frames", o.frames},
+            {"up", o.up},
+            {"tolerance_s", o.tolerance},
+            {"camera", o.cameraFile},
+            {"depth_scale", orNull(o.depthScale)},
+            {"stereo", o.stereo},
+            {"start", o.start},
+            {"start_sigma", o.startSigma},
+            {"sigma", o.sigma},
+            {"scale", orNull(o.scale)},
+            {"floor", {orNull(o.floorTranslation), orNull(o.floorRotation)}},
+            {"max_width", o.maxWidth},
+            {"exposure", o.exposure}};
+}
+
+json datasetJson(const ReplayOptions& options, const ReplaySource& source,
+                 const std::optional<double>& depth) {
+    const Camera& c = source.camera;
+    return {{"folder", fs::absolute(options.dataset).lexically_normal().string()},
+            {"layout", source.layout},
+            {"note", source.note},
+            {"median_depth_m", orNull(depth)},
+            {"camera",
+             {{"width", c.width},
+              {"height", c.height},
+              {"fx", c.fx()},
+              {"fy", c.fy()},
+              {"cx", c.cx()},
+              {"cy", c.cy()}}}};
+}
+
+}  // namespace
+
+ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& interrupted) {
+    checkOptions(options);
+    const auto begin = std::chrono::steady_clock::now();
+    const ReplaySource source = openReplaySource(options);
+    if (options.odometry && source.frames.size() < 2) {
+        throw InputError(options.dataset, "", "a single frame: odometry needs two or more");
+    }
+    const ReplayMap map = loadMap(options.mapFile);
+    const ReplayTracker tracker = makeTracker(options, source, map);
+    const std::optional<double> depth = checkDepths(options, source);
+    prepareFolder(options.out);
+    for (const char* stale : {"result.json", "strips.png", "top_view.png", "groundtruth.tum"}) {
+        fs::remove(options.out / stale);
+    }
+
+    const ReplayRun run = replay(source, tracker, interrupted, [&](std::size_t done) {
+        if (options.progress) options.progress(done, source.frames.size());
+    });
+    const ReplayErrors errors = judge(run, options.odometry);
+
+    ReplayReport report;
+    report.exitCode = run.interrupted ? kInterrupted : isLostForGood(run) ? kNoAnswer : kDone;
+    json& result = report.result;
+    result = replayResult(source, run, errors, options.odometry);
+    result["schema"] = 1;
+    result["command"] = "replay";
+    result["version"] = PHOTONAV_VERSION;
+    result["interrupted"] = run.interrupted;
+    result["options"] = optionsJson(options);
+    result["dataset"] = datasetJson(options, source, depth);
+    const std::chrono::duration<double> total = std::chrono::steady_clock::now() - begin;
+    result["time"] = {{"total_s", total.count()},
+                      {"load_images_s", run.loadSeconds},
+                      {"track_s", run.trackSeconds}};
+    report.summary = replaySummary(result);
+    writeReplayTables(options.out, run, errors);
+    writeReplayReport(options, result, source, run, errors, map.describe);
+    writeFileAtomically(options.out / "result.json", result.dump(2) + "\n");
+    return report;
+}
+
+}  // namespace photonav

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "atomic_file.hpp"
+#include "figures.hpp"
+#include "replay_figures.hpp"
+
+namespace photonav {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+/// "0.0123 m", or words when there is no number.
+std::string number(const json& value, double factor, const char* format,
+                   const char* none = "not known") {
+    if (!value.is_number()) return none;
+    return fmt::format(fmt::runtime(format), factor * value.get<double>());
+}
+
+std::string relative(const json& rpe) {
+    if (!rpe.is_object()) return "recording too short";
+    return fmt::format("{:.2f} mm, {:.3f} deg (rms of {})",
+                       1e3 * rpe["translation_m"].get<double>(), rpe["rotation_deg"].get<double>(),
+                       rpe["pairs"].get<std::size_t>());
+}
+
+DrawnPath estimatedPath(const ReplayRun& run) {
+    DrawnPath path{"estimate", kPathColor, {}};
+    double distance = 0.;
+    for (const StampedBelief& belief : beliefsOf(run)) {
+        PathPoint point =
+            makePathPoint(belief.T_c_w, weightedTrace(belief.T_c_w.covariance), 0., 0.);
+        if (!path.points.empty()) {
+            distance += (point.position - path.points.back().position).norm();
+        }
+        point.distance = distance;
+        path.points.push_back(point);
+    }
+    return path;
+}
+
+DrawnPath truePath(const ReplayRun& run) {
+    DrawnPath path{"ground truth", kBaselineColor, {}};
+    double distance = 0.;
+    for (const ReplayedFrame& frame : run.frames) {
+        if (!frame.truth_c_w) continue;
+        PathPoint point = makePathPoint({*frame.truth_c_w, Matrix6::Zero()}, 0., 0., 0.);
+        if (!path.points.empty()) {
+            distance += (point.position - path.points.back().position).norm();
+        }
+        point.distance = distance;
+        path.points.push_back(point);
+    }
+    return path;
+}
+
+/// The paths with a margin, not narrower than a third of its length.
+Eigen::AlignedBox2d areaOf(const std::vector<DrawnPath>& paths) {
+    Eigen::AlignedBox2d area;
+    for (const DrawnPath& path : paths) {
+        for (const PathPoint& point : path.points) area.extend(point.position.head<2>());
+    }
+    const double side = std::max(area.sizes().maxCoeff(), 0.02);
+    const Eigen::Vector2d half =
+        (0.5 * area.sizes()).cwiseMax(side / 6.) + Eigen::Vector2d::Constant(0.08 * side);
+    return {Eigen::Vector2d(area.center() - half), Eigen::Vector2d(area.center() + half)};
+}
+
+/// A power of ten that makes the ellipses a few hundredths of the figure.
+double ellipseScale(const DrawnPath& path, double side) {
+    double variance = 0.;
+    for (const PathPoint& point : path.points) {
+        variance = std::max(variance, point.positionCovariance.trace());
+    }
+    if (!(variance > 0.)) return 0.;
+    const double wanted = 0.03 * side / (3. * std::sqrt(variance));
+    return std::max(1., std::pow(10., std::floor(std::log10(wanted))));
+}
+
+Png topView(const std::vector<DrawnPath>& paths, const std::string& title) {
+    TopView view;
+    view.title = title;
+    view.paths = paths;
+    view.area = areaOf(paths);
+    view.start = paths[0].points.front().position;
+    view.goal = paths[0].points.back().position;
+    view.ellipseScale = ellipseScale(paths[0], view.area.sizes().maxCoeff());
+    return drawTopView(view);
+}
+
+}  // namespace
+
+ReportTable replaySummary(const json& result) {
+    const auto& rpe = result["rpe"];
+    const std::string aligned = result["ate_alignment"] == "none" ? "not aligned" : "SE(3) aligned";
+    ReportTable table{"Replay", {}};
+    table.rows = {
+        {"verdict", result["verdict"].get<std::string>()},
+        {"frames tracked, lost, unreadable",
+         fmt::format("{}, {}, {}", result["tracked"].dump(), result["lost"].dump(),
+                     result["unreadable"].dump())},
+        {"skipped, gaps in time",
+         fmt::format("{}, {}", result["skipped"].size(), result["gaps"].size())},
+        {fmt::format("absolute error ({}), rms", aligned),
+         number(result["ate_rmse_m"], 1e3, "{:.2f} mm")},
+        {"the same, largest", number(result["ate_max_m"], 1e3, "{:.2f} mm")},
+        {"absolute error of orientation, rms",
+         number(result["ate_rotation_rmse_deg"], 1., "{:.3f} deg")},
+        {"relative error over a frame", relative(rpe["frame"])},
+        {"relative error over a second", relative(rpe["second"])},
+        {"relative error over a metre", relative(rpe["metre"])},
+        {"NEES per degree of freedom (honest: 1)", number(result["nees_per_dof"], 1., "{:.3g}")},
+        {"tracking", number(result["fps"], 1., "{:.0f} frames/s", "nothing tracked")},
+    };
+    return table;
+}
+
+void writeReplayReport(const ReplayOptions& options, const json& result, const ReplaySource& source,
+                       const ReplayRun& run, const ReplayErrors& errors,
+                       const std::function<void(ReportData&)>& describeMap) {
+    const std::string name =
+        (fs::path(options.dataset) / "").lexically_normal().parent_path().filename().string();
+    ReportData report;
+    report.title = "Replay of " + name;
+    report.subtitle = options.odometry
+                          ? "Odometry from image to image: every error adds to the ones before."
+                          : "Localisation of every image in " +
+                                fs::path(options.mapFile).filename().string() + ".";
+    report.commandLine = options.commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.tables = {replaySummary(result)};
+    report.fieldOfView = {2. * std::atan(0.5 * source.camera.width / source.camera.fx()),
+                          2. * std::atan(0.5 * source.camera.height / source.camera.fy())};
+    describeMap(report);
+    const auto add = [&](const char* file, const std::string& caption, Png picture) {
+        writeFileAtomically(options.out / file, picture);
+        report.figures.push_back({caption, std::move(picture)});
+    };
+    report.paths.push_back(estimatedPath(run));
+    if (DrawnPath truth = truePath(run); !truth.points.empty()) report.paths.push_back(truth);
+    if (report.paths[0].points.empty()) report.paths.erase(report.paths.begin());
+    if (!report.paths.empty()) {
+        report.start = report.paths[0].points.front().position;
+        report.goal = report.paths[0].points.back().position;
+        add("top_view.png",
+            options.odometry && errors.judged.size() > 1
+                ? "From above: the estimate begins at the first true pose and is not aligned."
+                : "From above.",
+            topView(report.paths, name));
+    }
+    if (!run.frames.empty()) {
+        add("errors.png",
+            "Error and predicted standard deviation (root of the trace) over time; below, the "
+            "squared error in units of its covariance, 1 on average when the prediction is honest.",
+            drawReplayErrors("Error against prediction", run, errors));
+    }
+    if (!run.strips.empty()) {
+        add("strips.png",
+            options.odometry
+                ? "Observed; the keyframe as seen from there; their difference (yellow: 0.25)."
+                : "Observed; predicted from the map; their difference (yellow: 0.25).",
+            drawStrips(run.strips));
+    }
+    writeFileAtomically(options.out / "report.json", toJson(report).dump());
+    writeReport(options.out / "report.html", report);
+}
+
+}  // namespace photonav

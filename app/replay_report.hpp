@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page of a replay.
+#pragma once
+
+#include "replay_command.hpp"
+#include "replay_result.hpp"
+
+namespace photonav {
+
+/// The numbers that matter, in words.
+ReportTable replaySummary(const nlohmann::json& result);
+
+/// Writes errors.png, strips.png, top_view.png, report.json and report.html.
+/// @param describeMap puts the map into the report's 3-D view
+void writeReplayReport(const ReplayOptions& options, const nlohmann::json& result,
+                       const ReplaySource& source, const ReplayRun& run, const ReplayErrors& errors,
+                       const std::function<void(ReportData&)>& describeMap);
+
+}  // namespace photonav

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "error.hpp"
+#include "image_pyramid.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr std::size_t kStrips = 5;
+constexpr std::size_t kFirstFrames = 10;  // at least one of them must be readable
+constexpr std::size_t kPatience = 10;
+
+class Stopwatch {
+  public:
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// The grey value between four pixels; nothing outside.
+std::optional<float> sample(const ImageF& image, double u, double v) {
+    if (!(u >= 0. && v >= 0. && u < image.getWidth() - 1. && v < image.getHeight() - 1.)) return {};
+    const auto x = static_cast<unsigned>(u);
+    const auto y = static_cast<unsigned>(v);
+    const auto a = static_cast<float>(u - x);
+    const auto b = static_cast<float>(v - y);
+    return (1.F - b) * ((1.F - a) * image[y][x] + a * image[y][x + 1]) +
+           b * ((1.F - a) * image[y + 1][x] + a * image[y + 1][x + 1]);
+}
+
+/// A keyframe as it looks from another place, by the depth seen from there.
+View seenFrom(const View& keyframe, const Camera& camera, const Pose& T_k_c,
+              const ImageF& depth_c) {
+    View result;
+    result.intensity.resize(camera.height, camera.width, 0.F);
+    result.depth.resize(camera.height, camera.width, 0.F);
+    for (unsigned v = 0; v < camera.height; ++v) {
+        for (unsigned u = 0; u < camera.width; ++u) {
+            const double z = depth_c[v][u];
+            if (!(z > 0.)) continue;
+            const Eigen::Vector3d p_k =
+                T_k_c * (z * Eigen::Vector3d((u - camera.cx()) / camera.fx(),
+                                             (v - camera.cy()) / camera.fy(), 1.));
+            if (!(p_k.z() > 0.)) continue;
+            const auto grey =
+                sample(keyframe.intensity, camera.fx() * p_k.x() / p_k.z() + camera.cx(),
+                       camera.fy() * p_k.y() / p_k.z() + camera.cy());
+            if (!grey) continue;
+            result.intensity[v][u] = *grey;
+            result.depth[v][u] = static_cast<float>(z);
+        }
+    }
+    return result;
+}
+
+View halvedView(const View& view) {
+    View half;
+    half.intensity = halvedAsRendered(view.intensity);
+    half.depth.resize(half.intensity.getHeight(), half.intensity.getWidth());
+    for (unsigned v = 0; v < half.depth.getHeight(); ++v) {
+        for (unsigned u = 0; u < half.depth.getWidth(); ++u) {
+            half.depth[v][u] = view.depth[2 * v][2 * u];
+        }
+    }
+    return half;
+}
+
+bool isStripFrame(std::size_t i, std::size_t count) {
+    if (count <= kStrips) return true;
+    for (std::size_t k = 0; k < kStrips; ++k) {
+        if (i == (2 * k + 1) * count / (2 * kStrips)) return true;
+    }
+    return false;
+}
+
+/// Loads a frame or says why it cannot be.
+std::optional<View> tryToLoad(const ReplaySource& source, ReplayedFrame& frame) {
+    try {
+        return source.load(frame.index);
+    } catch (const InputError& error) {
+        frame.words = error.what();
+        return {};
+    }
+}
+
+/// When nothing can be read from the beginning, it is not the images that are wrong.
+void checkReadable(const std::vector<ReplayedFrame>& frames, const ReplaySource& source) {
+    if (frames.size() != std::min(kFirstFrames, source.frames.size())) return;
+    const bool anyRead = std::any_of(frames.begin(), frames.end(), [](const auto& f) {
+        return f.status != FrameStatus::unreadable;
+    });
+    if (!anyRead) source.load(0);  // throws
+}
+
+void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, ReplayRun& run) {
+    Stopwatch watch;
+    for (int h = 0; h < tracker.halvings; ++h) view = halvedView(view);
+    frame.tracked = tracker.track(view, frame.timestamp);
+    frame.seconds = watch.lap();
+    run.trackSeconds += frame.seconds;
+    frame.status = frame.tracked.lost ? FrameStatus::lost : FrameStatus::tracked;
+    const Alignment& alignment = frame.tracked.alignment;
+    frame.words = frame.tracked.lost && !isLost(alignment.verdict)
+                      ? fmt::format("lost: nothing certain to be seen ({})", describe(alignment))
+                      : describe(alignment);
+}
+
+}  // namespace
+
+ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
+                              const OdometryOptions& options) {
+    struct Keyframe {
+        View view;
+        Pose T_k_w;
+    };
+    const auto odometry = std::make_shared<Odometry>(camera, start, options);
+    const auto keyframe = std::make_shared<Keyframe>();  // of the images before
+    const auto latest = std::make_shared<Keyframe>();
+    ReplayTracker tracker;
+    tracker.camera = camera;
+    tracker.track = [=](const View& view, double timestamp) {
+        const TrackedFrame frame = odometry->track(view, timestamp);
+        if (latest->view.intensity.getSize() > 0) *keyframe = std::exchange(*latest, {});
+        if (frame.isKeyframe) *latest = {view, frame.T_c_w.mean};
+        return frame;
+    };
+    tracker.predict = [=](const View& observed, const TrackedFrame& frame) {
+        const Keyframe& model = keyframe->view.intensity.getSize() > 0 ? *keyframe : *latest;
+        if (model.view.intensity.getSize() == 0) {  // nothing was seen yet
+            View nothing = observed;
+            nothing.depth = 0.F;
+            return nothing;
+        }
+        return seenFrom(model.view, camera, model.T_k_w * frame.T_c_w.mean.inverse(),
+                        observed.depth);
+    };
+    return tracker;
+}
+
+ReplayTracker mapTracker(const ViewSource& map, const Camera& camera, const UncertainPose& start,
+                         const LocalizerOptions& options, unsigned maxWidth) {
+    ReplayTracker tracker;
+    tracker.camera = camera;
+    while (tracker.camera.width > maxWidth) {
+        tracker.camera = halved(tracker.camera);
+        ++tracker.halvings;
+    }
+    const auto localizer = std::make_shared<Localizer>(map, tracker.camera, start, options);
+    tracker.patience = kPatience;
+    tracker.track = [=](const View& view, double timestamp) {
+        return localizer->track(view.intensity, timestamp);
+    };
+    tracker.predict = [&map, small = tracker.camera](const View&, const TrackedFrame& frame) {
+        View view;
+        map.render(small, frame.T_c_w.mean, view);
+        return view;
+    };
+    return tracker;
+}
+
+ReplayRun replay(const ReplaySource& source, const ReplayTracker& tracker,
+                 const std::atomic<bool>& interrupted,
+                 const std::function<void(std::size_t)>& progress) {
+    ReplayRun run;
+    Stopwatch watch;
+    std::size_t tracked = 0;
+    std::size_t lost = 0;
+    for (std::size_t i = 0; i < source.frames.size(); ++i) {
+        if (interrupted) {
+            run.interrupted = true;
+            break;
+        }
+        ReplayedFrame frame;
+        frame.index = i;
+        frame.timestamp = source.frames[i].timestamp;
+        frame.truth_c_w = source.frames[i].T_c_w;
+        watch.lap();
+        std::optional<View> view = tryToLoad(source, frame);
+        run.loadSeconds += watch.lap();
+        if (view) {
+            track(tracker, *view, frame, run);
+            const bool isFirstLoss = frame.tracked.lost && lost == 0;
+            if (isFirstLoss || isStripFrame(i, source.frames.size())) {
+                run.strips.push_back({fmt::format("frame {}: {}", i, frame.words), *view,
+                                      tracker.predict(*view, frame.tracked)});
+            }
+            ++(frame.tracked.lost ? lost : tracked);
+        }
+        run.frames.push_back(std::move(frame));
+        checkReadable(run.frames, source);
+        if (progress) progress(run.frames.size());
+        if (tracked == 0 && lost > 0 && lost == tracker.patience) {
+            run.stopped = fmt::format("none of the first {} images could be found", lost);
+            break;
+        }
+    }
+    return run;
+}
+
+std::optional<double> medianDepth(const ReplaySource& source) {
+    constexpr std::size_t kLooks = 5;
+    std::vector<float> depths;
+    bool anyRead = false;
+    const std::size_t step = std::max<std::size_t>(1, source.frames.size() / kLooks);
+    for (std::size_t i = 0; i < source.frames.size(); i += step) {
+        ReplayedFrame frame;
+        frame.index = i;
+        const auto view = tryToLoad(source, frame);
+        if (!view) continue;
+        anyRead = true;
+        for (unsigned k = 0; k < view->depth.getSize(); k += 7) {
+            if (view->depth.bitmap[k] > 0.F) depths.push_back(view->depth.bitmap[k]);
+        }
+    }
+    if (!anyRead) return {};
+    if (depths.empty()) return 0.;
+    const auto middle = depths.begin() + std::ssize(depths) / 2;
+    std::nth_element(depths.begin(), middle, depths.end());
+    return *middle;
+}
+
+}  // namespace photonav

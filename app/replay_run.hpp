@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A recorded flight through a tracker, image by image.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "localizer.hpp"
+#include "odometry.hpp"
+#include "replay_source.hpp"
+
+namespace photonav {
+
+enum class FrameStatus {
+    tracked,
+    lost,
+    unreadable,  ///< an image is missing or damaged
+};
+
+struct ReplayedFrame {
+    std::size_t index = 0;  ///< among the frames used
+    double timestamp = 0.;  ///< [s]
+    FrameStatus status = FrameStatus::unreadable;
+    TrackedFrame tracked;  ///< nothing in it when unreadable
+    std::optional<Pose> truth_c_w;
+    double seconds = 0.;  ///< of tracking, pyramids included
+    std::string words;    ///< the alignment's verdict, or why the frame is unreadable
+};
+
+/// What was seen and what was predicted where the tracker believes to be.
+struct ReplayStrip {
+    std::string caption;
+    View observed, predicted;
+};
+
+struct ReplayRun {
+    std::vector<ReplayedFrame> frames;
+    std::vector<ReplayStrip> strips;
+    std::string stopped;  ///< why it ended before the last frame; empty: it did not
+    bool interrupted = false;
+    double loadSeconds = 0.;   ///< images, and depth from stereo
+    double trackSeconds = 0.;  ///< everything else
+};
+
+/// A tracker as a replay sees it.
+struct ReplayTracker {
+    std::function<TrackedFrame(const View& view, double timestamp)> track;
+    /// The view of a frame as the model predicts it at the believed pose; depth 0: nothing there.
+    std::function<View(const View& observed, const TrackedFrame& frame)> predict;
+    Camera camera;             ///< of the views to be given to it
+    int halvings = 0;          ///< of the recorded views
+    std::size_t patience = 0;  ///< images lost from the first one on before giving up; 0: all
+};
+
+/// Odometry from `start`.
+ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
+                              const OdometryOptions& options);
+
+/// Localisation in a map, with images halved until they are at most `maxWidth` wide.
+/// @param map must outlive the tracker
+ReplayTracker mapTracker(const ViewSource& map, const Camera& camera, const UncertainPose& start,
+                         const LocalizerOptions& options, unsigned maxWidth);
+
+/// Frames whose images cannot be used are passed over.
+/// @param progress called after every frame with the number done
+/// @throws InputError when none of the first ten frames can be loaded, with the reason of the first
+ReplayRun replay(const ReplaySource& source, const ReplayTracker& tracker,
+                 const std::atomic<bool>& interrupted,
+                 const std::function<void(std::size_t)>& progress);
+
+/// The median of all depths in a few images spread over the recording [m]; 0 when there are none,
+/// nothing when none of these images can be used.
+std::optional<double> medianDepth(const ReplaySource& source);
+
+}  // namespace photonav

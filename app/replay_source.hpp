@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Recorded flights of any layout as one sequence of views.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recording.hpp"
+
+namespace photonav {
+
+/// Which recording, in the TUM RGB-D or the EuRoC layout, and how to read it.
+struct ReplaySourceOptions : RecordingOptions {
+    std::string stereo = "bm";  ///< "bm" or "sgbm": block matching, semi-global (EuRoC)
+};
+
+struct ReplaySource {
+    struct Frame {
+        double timestamp = 0.;      ///< [s], increasing
+        std::optional<Pose> T_c_w;  ///< true pose of the views' camera, world with z up
+        std::string file;           ///< of the (left) image
+    };
+
+    std::string layout;  ///< "TUM RGB-D", "EuRoC"
+    std::string note;    ///< what a reader of the poses must know
+    Camera camera;       ///< of the views
+    std::vector<Frame> frames;
+    std::size_t recorded = 0;  ///< frames of the dataset
+    std::vector<Sequence::Skipped> skipped;
+
+    /// The view of a frame: rectified, with depth. @throws InputError for images that cannot be
+    /// used
+    std::function<View(std::size_t frame)> load;
+
+    bool hasGroundtruth() const;
+};
+
+/// Reads the tables of a dataset.
+/// @throws InputError for what cannot be used: dataset, options ("--every"), a range without frames
+ReplaySource openReplaySource(const ReplaySourceOptions& options);
+
+}  // namespace photonav

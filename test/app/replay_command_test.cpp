@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay_command.hpp"
+
+#include <numbers>
+
+#include "euroc_dataset.hpp"
+#include "executable.hpp"
+#include "map_command.hpp"
+#include "mesh_renderer.hpp"
+#include "trajectory.hpp"
+
+namespace photonav {
+namespace {
+
+using nlohmann::json;
+using test::expectInputError;
+using test::writeText;
+
+/// A floor and boxes on it, as YAML that --map reads.
+constexpr const char* kScene = R"(textures:
+  - {name: floor, type: noise, size: [6, 6], seed: 4}
+  - {name: crate, type: noise, size: [1, 1], seed: 5}
+planes:
+  - {corner: [-3, -3, 0.01], u: [6, 0, 0], v: [0, 6, 0], texture: floor}
+boxes:
+  - {min: [0.5, -0.4, 0], max: [0.8, 0, 0.3], texture: crate}
+)";
+
+/// A flight over textured ground as a TUM RGB-D folder: pictures of a scene of this test's own.
+struct Flight {
+    int frames = 12;
+    double speed = 0.03;  ///< metres a frame
+
+    Camera camera = makeCamera(160, 120, 1.1);
+
+    static const MeshRenderer& world() {
+        static const MeshRenderer renderer = [] {
+            Scene scene;
+            const auto floor = addTexture(scene, valueNoise({.size = {6., 6.}, .seed = 4}));
+            const auto crate = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 5}));
+            addPlane(scene, {-3., -3., 0.01}, {6., 0., 0.}, {0., 6., 0.}, floor);
+            addBox(scene, {0.5, -0.4, 0.}, {0.8, 0., 0.3}, crate);
+            return MeshRenderer(std::move(scene));
+        }();
+        return renderer;
+    }
+
+    Pose T_w_c(int i) const {
+        Pose T_w_b = Pose::Identity();
+        T_w_b.translation() = Eigen::Vector3d(-0.5 + speed * i, 0.005 * i, 1.4);
+        T_w_b.rotate(Eigen::AngleAxisd(0.01 * i, Eigen::Vector3d::UnitZ()));
+        return T_w_b * cameraMount(0.9);
+    }
+
+    static double time(int i) { return 50. + 0.1 * i; }
+
+    void write(const test::fs::path& folder) const {
+        test::fs::create_directories(folder / "rgb");
+        test::fs::create_directories(folder / "depth");
+        std::string rgb, depth, poses;
+        for (int i = 0; i < frames; ++i) {
+            rgb += fmt::format("{:.6f} rgb/{}.png\n", time(i), i);
+            depth += fmt::format("{:.6f} depth/{}.png\n", time(i), i);
+            const Pose pose = T_w_c(i);
+            const Eigen::Quaterniond q(pose.linear());
+            poses += fmt::format("{:.6f} {} {} {} {} {} {} {}\n", time(i), pose.translation().x(),
+                                 pose.translation().y(), pose.translation().z(), q.x(), q.y(),
+                                 q.z(), q.w());
+            View view;
+            world().render(camera, pose.inverse(), view);
+            writeImages(folder, i, view);
+        }
+        writeText(folder / "rgb.txt", rgb);
+        writeText(folder / "depth.txt", depth);
+        writeText(folder / "groundtruth.txt", poses);
+        writeText(folder / "camera.yaml",
+                  fmt::format("width: 160\nheight: 120\nfx: {0}\nfy: {0}\ncx: 79.5\ncy: 59.5\n",
+                              camera.fx()));
+    }
+
+    static void writeImages(const test::fs::path& folder, int i, const View& view) {
+        const int rows = int(view.depth.getHeight());
+        const int columns = int(view.depth.getWidth());
+        cv::Mat grey, depth;
+        cv::Mat(rows, columns, CV_32FC1, view.intensity.bitmap).convertTo(grey, CV_8U, 255.);
+        cv::Mat(rows, columns, CV_32FC1, view.depth.bitmap).convertTo(depth, CV_16U, 5000.);
+        cv::imwrite((folder / fmt::format("rgb/{}.png", i)).string(), grey);
+        cv::imwrite((folder / fmt::format("depth/{}.png", i)).string(), depth);
+    }
+};
+
+class ReplayCommand : public testing::Test {
+  protected:
+    ReplayCommand() {
+        flight.write(data);
+        writeText(folder.path() / "room.yaml", kScene);
+        options.dataset = data.string();
+        options.out = folder.path() / "out";
+        options.odometry = true;
+    }
+
+    void useMap() {
+        options.odometry = false;
+        options.mapFile = (folder.path() / "room.yaml").string();
+    }
+
+    ReplayReport run() { return runReplay(options, running); }
+    void expectRejected(const std::vector<std::string>& parts) {
+        expectInputError([&] { run(); }, parts);
+        EXPECT_FALSE(test::fs::exists(options.out / "result.json"));
+    }
+    void blacken(int i) const {
+        cv::imwrite((data / fmt::format("rgb/{}.png", i)).string(),
+                    cv::Mat(120, 160, CV_8UC1, cv::Scalar(0)));
+    }
+    std::vector<std::vector<double>> numbers(const char* name) const {
+        std::vector<std::vector<double>> rows;
+        std::ifstream in(options.out / name);
+        for (std::string line; std::getline(in, line);) {
+            if (line.starts_with('#')) continue;
+            std::istringstream words(line);
+            rows.emplace_back(std::istream_iterator<double>(words),
+                              std::istream_iterator<double>());
+        }
+        return rows;
+    }
+
+    Flight flight;
+    test::TemporaryFolder folder;
+    test::fs::path data = folder.path() / "flight";
+    ReplayOptions options;
+    std::atomic<bool> running{false};
+};
+
+TEST_F(ReplayCommand, OdometryFollowsTheFlight) {
+    std::size_t calls = 0;
+    options.progress = [&](std::size_t done, std::size_t total) {
+        EXPECT_EQ(done, ++calls);
+        EXPECT_EQ(total, 12U);
+    };
+    const ReplayReport report = run();
+    EXPECT_EQ(report.exitCode, 0);
+    EXPECT_EQ(calls, 12U);
+    const json& result = report.result;
+    EXPECT_EQ(result["frames"], 12);
+    EXPECT_EQ(result["tracked"], 12);
+    EXPECT_EQ(result["lost"], 0);
+    EXPECT_TRUE(result["lost_intervals"].empty());
+    EXPECT_LT(result["ate_rmse_m"].get<double>(), 3e-3);
+    EXPECT_GE(result["ate_max_m"].get<double>(), result["ate_rmse_m"].get<double>());
+    EXPECT_EQ(result["ate_alignment"], "SE(3), by the positions");
+    EXPECT_EQ(result["rpe"]["frame"]["pairs"], 11);
+    EXPECT_LT(result["rpe"]["frame"]["translation_m"].get<double>(), 2e-3);
+    EXPECT_LT(result["rpe"]["second"]["rotation_deg"].get<double>(), 0.2);
+    EXPECT_TRUE(result["rpe"]["metre"].is_null());  // 0.33 m flown
+    EXPECT_TRUE(result["nees_per_dof"].is_number());
+    EXPECT_GT(result["fps"].get<double>(), 0.);
+}
+
+TEST_F(ReplayCommand, WritesWhatOtherProgramsRead) {
+    const ReplayReport report = run();
+    for (const char* name : {"report.html", "errors.png", "strips.png", "top_view.png"}) {
+        EXPECT_TRUE(test::fs::exists(options.out / name)) << name;
+    }
+    std::ifstream in(options.out / "result.json");
+    EXPECT_EQ(json::parse(in), report.result);
+    const Trajectory estimate = readTrajectory((options.out / "trajectory.tum").string());
+    const Trajectory truth = readTrajectory((options.out / "groundtruth.tum").string());
+    ASSERT_EQ(estimate.size(), 12U);
+    ASSERT_EQ(truth.size(), 12U);
+    EXPECT_TRUE(truth[5].T_w_c.isApprox(flight.T_w_c(5), 1e-5));
+    EXPECT_TRUE(estimate[5].T_w_c.isApprox(flight.T_w_c(5), 5e-3));
+    const auto covariances = numbers("trajectory.cov");
+    const auto openVins = numbers("trajectory.ov");
+    ASSERT_EQ(covariances.size(), 12U);
+    ASSERT_EQ(openVins.size(), 12U);
+    for (std::size_t i = 0; i < 12; ++i) {
+        EXPECT_EQ(covariances[i].size(), 22U);
+        ASSERT_EQ(openVins[i].size(), 20U);
+        EXPECT_NEAR(openVins[i][0], covariances[i][0], 1e-9);
+        EXPECT_NEAR(openVins[i][8], covariances[i][16], 1e-9);  // s44
+    }
+    std::ifstream csv(options.out / "frames.csv");
+    int rows = 0;
+    for (std::string line; std::getline(csv, line); ++rows) {
+        EXPECT_EQ(std::count(line.begin(), line.end(), ','), 16) << line;
+    }
+    EXPECT_EQ(rows, 13);
+}
+
+TEST_F(ReplayCommand, LocalisesInAScene) {
+    useMap();
+    const ReplayReport report = run();
+    EXPECT_EQ(report.exitCode, 0);
+    EXPECT_EQ(report.result["tracked"], 12);
+    EXPECT_EQ(report.result["ate_alignment"], "none");
+    EXPECT_LT(report.result["ate_rmse_m"].get<double>(), 2e-3);
+}
+
+TEST_F(ReplayCommand, LocalisesInTheMapOfItsOwnFirstHalf) {
+    MapOptions map;
+    map.dataset = data.string();
+    map.out = folder.path() / "map";
+    map.resolution = 0.025;
+    map.frames = ":6";
+    runMap(map, running);
+    options.odometry = false;
+    options.mapFile = (map.out / "map.ot").string();
+    options.frames = "4:10";
+    const ReplayReport report = run();
+    EXPECT_EQ(report.exitCode, 0);
+    EXPECT_EQ(report.result["frames"], 6);
+    EXPECT_EQ(report.result["tracked"], 6);
+    EXPECT_LT(report.result["ate_rmse_m"].get<double>(), 0.02);
+}
+
+TEST_F(ReplayCommand, TheStartCanBeGiven) {
+    useMap();
+    test::fs::remove(data / "groundtruth.txt");
+    expectRejected({"--start", "no ground truth"});
+    const Pose T_w_c = flight.T_w_c(0);
+    const Eigen::Quaterniond q(T_w_c.linear());
+    const auto& p = T_w_c.translation();
+    options.start = fmt::format("{},{},{},{},{},{},{}", p.x() + 0.03, p.y(), p.z() - 0.02, q.x(),
+                                q.y(), q.z(), q.w());
+    const ReplayReport report = run();
+    EXPECT_EQ(report.exitCode, 0);
+    EXPECT_TRUE(report.result["ate_rmse_m"].is_null());
+    EXPECT_TRUE(report.result["nees_per_dof"].is_null());
+    EXPECT_FALSE(test::fs::exists(options.out / "groundtruth.tum"));
+    const Trajectory estimate = readTrajectory((options.out / "trajectory.tum").string());
+    EXPECT_TRUE(estimate[8].T_w_c.isApprox(flight.T_w_c(8), 5e-3));
+}
+
+TEST_F(ReplayCommand, InTheMapOfAnotherRoomItIsLostAtOnce) {
+    useMap();
+    std::string other = kScene;
+    other.replace(other.find("seed: 4"), 7, "seed: 9");
+    writeText(folder.path() / "room.yaml", other);
+    const ReplayReport report = run();
+    EXPECT_EQ(report.exitCode, 1);
+    EXPECT_EQ(report.result["tracked"], 0);
+    EXPECT_EQ(report.result["lost"], 10);
+    const auto verdict = report.result["verdict"].get<std::string>();
+    EXPECT_TRUE(verdict.starts_with("lost at once")) << verdict;
+    EXPECT_TRUE(test::fs::exists(options.out / "report.html"));
+}
+
+TEST_F(ReplayCommand, DamagedMissingAndBlackImagesAreSurvived) {
+    test::fs::resize_file(data / "rgb/3.png", 100);
+    test::fs::remove(data / "depth/5.png");
+    blacken(7);
+    blacken(8);
+    for (const bool inMap : {false, true}) {
+        if (inMap) useMap();
+        const ReplayReport report = run();
+        EXPECT_EQ(report.exitCode, 0);
+        EXPECT_EQ(report.result["tracked"], 8);
+        EXPECT_EQ(report.result["unreadable"], 2);
+        EXPECT_EQ(report.result["lost"], 2);
+        ASSERT_EQ(report.result["lost_intervals"].size(), 1U);
+        EXPECT_NEAR(report.result["lost_intervals"][0][0].get<double>(), Flight::time(7), 1e-9);
+        EXPECT_NEAR(report.result["lost_intervals"][0][1].get<double>(), Flight::time(8), 1e-9);
+        EXPECT_EQ(report.result["skipped"].size(), 2U);
+        EXPECT_LT(report.result["ate_rmse_m"].get<double>(), 5e-3);
+    }
+}
+
+TEST_F(ReplayCommand, TimestampsThatRepeatOrGoBackAreReported) {
+    writeText(data / "rgb.txt",
+              "50.0 rgb/0.png\n50.1 rgb/1.png\n50.1 rgb/1.png\n50.0 rgb/0.png\n50.2 rgb/2.png\n"
+              "50.3 rgb/3.png\n50.4 rgb/4.png\n50.9 rgb/9.png\n");
+    const ReplayReport report = run();
+    EXPECT_EQ(report.exitCode, 0);
+    EXPECT_EQ(report.result["frames"], 6);
+    EXPECT_EQ(report.result["skipped"].size(), 2U);
+    ASSERT_EQ(report.result["gaps"].size(), 1U);
+    EXPECT_NEAR(report.result["gaps"][0][1].get<double>(), 50.9, 1e-9);
+}
+
+TEST_F(ReplayCommand, ABlackRecordingIsLost) {
+    for (int i = 0; i < flight.frames; ++i) blacken(i);
+    ReplayReport report = run();
+    EXPECT_EQ(report.exitCode, 1);
+    EXPECT_EQ(report.result["lost"], 12);
+    EXPECT_TRUE(report.result["verdict"].get<std::string>().starts_with("lost at once"));
+    useMap();
+    report = run();
+    EXPECT_EQ(report.exitCode, 1);
+    EXPECT_EQ(report.result["tracked"], 0);
+}
+
+TEST_F(ReplayCommand, EndingLostIsNoAnswer) {
+    for (int i = 9; i < flight.frames; ++i) blacken(i);
+    const ReplayReport report = run();
+    EXPECT_EQ(report.exitCode, 1);
+    EXPECT_EQ(report.result["tracked"], 9);
+    EXPECT_NE(report.result["verdict"].get<std::string>().find("for good from 50.900 s"),
+              std::string::npos);
+}
+
+TEST_F(ReplayCommand, InterruptedItKeepsWhatItHas) {
+    options.progress = [&](std::size_t done, std::size_t) { running = done == 4; };
+    const ReplayReport report = run();
+    EXPECT_EQ(report.exitCode, 130);
+    EXPECT_TRUE(report.result["interrupted"].get<bool>());
+    EXPECT_EQ(report.result["frames"], 4);
+    EXPECT_EQ(readTrajectory((options.out / "trajectory.tum").string()).size(), 4U);
+    EXPECT_TRUE(test::fs::exists(options.out / "report.html"));
+}
+
+TEST_F(ReplayCommand, RejectsWhatItCannotReplay) {
+    const auto rejected = [&](auto change, const std::vector<std::string>& parts) {
+        const ReplayOptions good = options;
+        change();
+        expectRejected(parts);
+        options = good;
+    };
+    rejected([&] { options.odometry = false; }, {"--map", "--odometry"});
+    rejected([&] { options.mapFile = "x.ot"; }, {"--odometry", "not together"});
+    rejected([&] { options.depthScale = 5.; }, {"--depth-scale", "implausible", "too small"});
+    rejected([&] { options.depthScale = 5e6; }, {"--depth-scale", "implausible", "too large"});
+    rejected([&] { options.every = 0; }, {"--every"});
+    rejected([&] { options.up = "q"; }, {"--up", "'q'"});
+    rejected([&] { options.stereo = "xy"; }, {"--stereo", "'xy'"});
+    rejected([&] { options.frames = "3"; }, {"--frames", "'3'"});
+    rejected([&] { options.frames = "20:"; }, {"--frames", "none of 12"});
+    rejected([&] { options.frames = "3:4"; }, {"single frame"});
+    rejected([&] { options.start = "1,2,3"; }, {"--start", "x,y,z,qx"});
+    rejected([&] { options.start = "1,2,3,0,0,0,0"; }, {"--start", "unit quaternion"});
+    rejected([&] { options.dataset = "/nowhere"; }, {"/nowhere", "no such folder"});
+    rejected([&] { options.cameraFile = "/no.yaml"; }, {"/no.yaml", "no such file"});
+    rejected([&] { useMap(), options.mapFile = "/no.ot"; }, {"/no.ot"});
+    rejected(
+        [&] {
+            writeText(folder.path() / "large.yaml",
+                      "width: 640\nheight: 480\nfx: 500\nfy: 500\ncx: 320\ncy: 240\n");
+            options.cameraFile = (folder.path() / "large.yaml").string();
+        },
+        {"160x120", "640x480"});
+    writeText(data / "groundtruth.txt", "5 0 0 1 0 0 0 1\n");
+    expectRejected({"groundtruth.txt", "poses from 5.000", "images from 50.000 to 51.100"});
+}
+
+TEST_F(ReplayCommand, StereoRecordings) {
+    test::WallDataset wall{.width = 320, .height = 240, .frames = 6};
+    wall.write(folder.path() / "wall");
+    options.dataset = (folder.path() / "wall").string();
+    const ReplayReport report = run();
+    EXPECT_EQ(report.exitCode, 0);
+    EXPECT_EQ(report.result["tracked"], 6);
+    EXPECT_EQ(report.result["dataset"]["layout"], "EuRoC");
+    EXPECT_EQ(report.result["dataset"]["camera"]["width"], 160);
+    EXPECT_LT(report.result["ate_rmse_m"].get<double>(), 5e-3);
+    const Trajectory truth = readTrajectory((options.out / "groundtruth.tum").string());
+    const Pose expected = wall.T_w_b(2) * wall.camera(0).T_b_c;
+    EXPECT_LT((truth[2].T_w_c.translation() - expected.translation()).norm(), 1e-5);
+    options.depthScale = 1000.;
+    expectInputError([&] { run(); }, {"--depth-scale", "EuRoC"});
+    options.depthScale.reset();
+    test::fs::remove_all(folder.path() / "wall/mav0/cam1");
+    expectInputError([&] { run(); }, {"cam1", "no such folder"});
+}
+
+TEST_F(ReplayCommand, FromTheCommandLine) {
+    const Execution good = photonav(
+        fmt::format("replay {} --odometry --out {} --json", data.string(), options.out.string()));
+    EXPECT_EQ(good.exitCode, 0) << good.output;
+    EXPECT_EQ(json::parse(good.output)["tracked"], 12);
+    const Execution bad = photonav(fmt::format("replay {} --odometry --depth-scale 5 --out {}",
+                                               data.string(), options.out.string()));
+    EXPECT_EQ(bad.exitCode, 2);
+    EXPECT_TRUE(bad.output.starts_with("photonav: ")) << bad.output;
+    EXPECT_EQ(std::count(bad.output.begin(), bad.output.end(), '\n'), 1) << bad.output;
+}
+
+}  // namespace
+}  // namespace photonav
