@@ -83,6 +83,18 @@ double difference(const ImageF& observed, const View& predicted) {
     return count > 0. ? sum / count : 1.;
 }
 
+double variance(const ImageF& image) {
+    double sum = 0.;
+    double squares = 0.;
+    for (unsigned i = 0; i < image.getSize(); ++i) {
+        const double value = image.bitmap[i];
+        sum += value;
+        squares += value * value;
+    }
+    const double n = image.getSize();
+    return squares / n - sum * sum / (n * n);
+}
+
 Camera quartered(const Camera& camera) { return halved(halved(camera)); }
 
 Alignment undecided(Alignment a, const UncertainPose& prior, Verdict verdict) {
@@ -101,8 +113,6 @@ std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const Uncert
     const ImageF small = halvedAsRendered(halvedAsRendered(observed));
     const Camera camera = quartered(aligner_.camera());
     const Play play = playOf(prior.covariance, aligner_.camera(), depth);
-    const PhotometricOptions& p = aligner_.options().photometric;
-    const double weight = p.scale * observed.getSize() / (p.sigma * p.sigma);
     const std::vector<Eigen::Vector3d> places = placesWithin(play.sigmas);
     std::vector<Pose> poses;
     std::vector<double> costs;
@@ -112,7 +122,7 @@ std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const Uncert
         offset.head<3>() = play.axes * place;
         poses.push_back(expSE3(offset) * prior.mean);
         model_.render(camera, poses.back(), view);
-        costs.push_back(weight * difference(small, view) +
+        costs.push_back(weight() * difference(small, view) +
                         place.cwiseQuotient(play.sigmas.cwiseMax(1e-3)).squaredNorm());
     }
     std::vector<std::size_t> order(places.size());
@@ -132,12 +142,16 @@ std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const Uncert
     return starts;
 }
 
-/// -2 log likelihood of image and prior.
-double WideAligner::costOf(const Alignment& a, const UncertainPose& prior) const {
+/// That makes mean square residuals -2 log likelihoods.
+double WideAligner::weight() const {
     const PhotometricOptions& p = aligner_.options().photometric;
     const Camera& camera = aligner_.camera();
-    const double pixels = static_cast<double>(camera.width) * camera.height;
-    return p.scale * pixels * a.residual.rms * a.residual.rms / (p.sigma * p.sigma) +
+    return p.scale * camera.width * camera.height / (p.sigma * p.sigma);
+}
+
+/// -2 log likelihood of image and prior.
+double WideAligner::costOf(const Alignment& a, const UncertainPose& prior) const {
+    return weight() * a.residual.rms * a.residual.rms +
            squaredDistance(logSE3(a.T_c_w * prior.mean.inverse()), prior.covariance);
 }
 
@@ -185,7 +199,12 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
             return costOf(a, prior) < costOf(b, prior);
         });
     if (!fits(best)) return undecided(best, prior, Verdict::lostResidual);
-    if (rivalOf(best, found, prior)) return undecided(best, prior, Verdict::degenerate);
+    // Where the view expected shows something and the image nothing, no place is found: all places
+    // that would show nothing are as likely, and the information of the view expected is not there.
+    const double explained = variance(observed) - best.residual.rms * best.residual.rms;
+    if (weight() * explained < kAmbiguous || rivalOf(best, found, prior)) {
+        return undecided(best, prior, Verdict::degenerate);
+    }
     return best;
 }
 

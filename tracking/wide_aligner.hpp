@@ -25,6 +25,7 @@ class WideAligner {
   private:
     std::vector<Pose> likelyStarts(const ImageF& observed, const UncertainPose& prior,
                                    double depth) const;
+    double weight() const;
     double costOf(const Alignment& alignment, const UncertainPose& prior) const;
     bool fits(const Alignment& alignment) const;
     const Alignment* rivalOf(const Alignment& best, const std::vector<Alignment>& found,
