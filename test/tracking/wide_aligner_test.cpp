@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "wide_aligner.hpp"
+
+#include <gtest/gtest.h>
+
+#include "rooms.hpp"
+
+namespace photonav {
+namespace {
+
+using testing::cameraAt;
+using testing::kDown;
+
+class WideAlignerTest : public ::testing::Test {
+  protected:
+    ImageF seen(const ViewSource& world, const Pose& T_c_w) {
+        View view;
+        world.render(camera, T_c_w, view);
+        return testing::noisy(view.intensity, 0.02, random);
+    }
+    static UncertainPose prior(const Pose& T_c_w, double sigma) {
+        UncertainPose belief{T_c_w, 1e-5 * Matrix6::Identity()};
+        belief.covariance.topLeftCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
+        return belief;
+    }
+    static void expectUndecided(const Alignment& a, const UncertainPose& prior) {
+        EXPECT_EQ(a.verdict, Verdict::degenerate);
+        EXPECT_EQ(a.covariance, prior.covariance);
+        EXPECT_EQ(a.T_c_w.matrix(), prior.mean.matrix());
+    }
+
+    Camera camera = makeCamera(94, 60, 1.2);
+    AlignmentOptions options = [] {
+        AlignmentOptions o;
+        o.photometric = {.sigma = 0.02, .scale = 0.08};
+        return o;
+    }();
+    std::mt19937_64 random{1};
+};
+
+TEST_F(WideAlignerTest, FindsThePlaceFromAfar) {
+    const MeshRenderer floor(testing::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    WideAligner wide(floor, camera, options);
+    DenseAligner dense(floor, camera, options);
+    const Pose truth = cameraAt({0.9, -0.8, 2.1}, kDown);
+    const UncertainPose belief = prior(cameraAt({0., 0., 2.}, kDown), 0.45);
+    const ImageF image = seen(floor, truth);
+    const auto errorOf = [&](const Alignment& a) {
+        return logSE3(a.T_c_w * truth.inverse()).head<3>().norm();
+    };
+    EXPECT_GT(errorOf(dense.align(image, belief)), 0.1) << "too easy";
+    const Alignment a = wide.align(image, belief);
+    EXPECT_EQ(a.verdict, Verdict::converged);
+    EXPECT_LT(errorOf(a), 0.01);
+}
+
+/// The border of white and texture is just in view where the camera is thought to be, and not
+/// where it is. That is no measurement of the border: it moves out of view, and no more is known.
+TEST_F(WideAlignerTest, NothingInViewIsNoPlaceFound) {
+    Scene scene;
+    addPlane(scene, {-10., -10., 0.}, {10., 0., 0.}, {0., 20., 0.},
+             addTexture(scene, uniformTexture(0.5F)));
+    addPlane(
+        scene, {0., -10., 0.}, {10., 0., 0.}, {0., 20., 0.},
+        addTexture(scene,
+                   valueNoise({.size = {10., 20.}, .amplitudes = {0.03, 0.02, 0.01}, .seed = 3})));
+    const MeshRenderer floor(scene);
+    WideAligner wide(floor, camera, options);
+    const ImageF image = seen(floor, cameraAt({-1.2, 0., 2.}, kDown));
+    for (double x = -0.9; x < -0.6; x += 0.03) {
+        const UncertainPose belief = prior(cameraAt({x, 0., 2.}, kDown), 0.3);
+        const Alignment a = wide.align(image, belief);
+        EXPECT_EQ(a.verdict, Verdict::degenerate);
+        EXPECT_TRUE(a.covariance.isApprox(belief.covariance, 1e-3)) << x;
+    }
+}
+
+TEST_F(WideAlignerTest, StripesDoNotSayWhichOfThemItIs) {
+    const MeshRenderer floor(testing::floorOf(stripes({.width = 0.2, .softEdge = 0.05})));
+    WideAligner wide(floor, camera, options);
+    const UncertainPose belief = prior(cameraAt({0.05, 0., 2.}, kDown), 0.3);
+    expectUndecided(wide.align(seen(floor, cameraAt({0.15, 0., 2.}, kDown)), belief), belief);
+}
+
+TEST_F(WideAlignerTest, IsLostWhereNoPlaceExplainsTheImage) {
+    const MeshRenderer floor(testing::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    const MeshRenderer another(testing::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
+    WideAligner wide(floor, camera, options);
+    const Pose here = cameraAt({0., 0., 2.}, kDown);
+    EXPECT_TRUE(isLost(wide.align(seen(another, here), prior(here, 0.3)).verdict));
+}
+
+}  // namespace
+}  // namespace photonav
