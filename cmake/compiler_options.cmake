@@ -21,7 +21,8 @@ if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 # Never -ffast-math: it breaks Eigen's fixed-size inverses without a word.
-# The instruction set is PUBLIC because the alignment of Eigen's types depends on it.
+# The instruction set is PUBLIC because the alignment of Eigen's types depends on it. Programs of one
+# file build faster without a precompiled header (SINGLE_FILE).
 function(photonav_compiler_options target)
     target_compile_features(${target} PUBLIC cxx_std_20)
     if(PHOTONAV_MARCH)
@@ -35,7 +36,9 @@ function(photonav_compiler_options target)
     if(PHOTONAV_SANITIZE)
         target_link_options(${target} PUBLIC -fsanitize=address,undefined)
     endif()
-    target_precompile_headers(${target} PRIVATE
-        <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <memory>
-        <optional> <random> <span> <stdexcept> <string> <unordered_map> <vector>)
+    if(NOT "SINGLE_FILE" IN_LIST ARGN)
+        target_precompile_headers(${target} PRIVATE
+            <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <memory>
+            <optional> <random> <span> <stdexcept> <string> <unordered_map> <vector>)
+    endif()
 endfunction()
