@@ -441,16 +441,11 @@ int run(int argc, char** argv) {
     std::string commandLine = "photonav";
     for (int i = 1; i < argc; ++i) commandLine += std::string(" ") + argv[i];
 
-    const std::array commands{planCommand(app, commandLine),
-                              infoCommand(app, commandLine),
-                              flyCommand(app, commandLine),
-                              mapCommand(app, commandLine),
-                              sweepCommand(app, commandLine),
-                              compareCommand(app),
-                              benchmarkCommand(app, commandLine),
-                              referenceCommand(app),
-                              replayCommand(app, commandLine),
-                              reportCommand(app)};
+    const std::array commands{planCommand(app, commandLine),      infoCommand(app, commandLine),
+                              flyCommand(app, commandLine),       mapCommand(app, commandLine),
+                              sweepCommand(app, commandLine),     compareCommand(app),
+                              benchmarkCommand(app, commandLine), referenceCommand(app),
+                              replayCommand(app, commandLine),    reportCommand(app)};
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
