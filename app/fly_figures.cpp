@@ -35,6 +35,7 @@ std::vector<Canvas::Point> meansAlong(const FlightSet& set, Value value) {
 
 std::vector<Canvas::Point> placed(const Plot& plot, const std::vector<Canvas::Point>& curve) {
     std::vector<Canvas::Point> points;
+    points.reserve(curve.size());
     for (const Canvas::Point& p : curve) points.push_back(plot.at(p.x(), p.y()));
     return points;
 }

@@ -138,6 +138,7 @@ std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const Uncert
         if (chosen.size() == kStarts) break;
     }
     std::vector<Pose> starts;
+    starts.reserve(chosen.size());
     for (const std::size_t i : chosen) starts.push_back(poses[i]);
     return starts;
 }
