@@ -267,6 +267,10 @@ void addReplayOptions(CLI::App& parser, ReplayOptions& options) {
         .add_option("--max-width", options.maxWidth,
                     "images are halved until they are as wide, with --map")
         ->capture_default_str();
+    parser
+        .add_option("--min-overlap", options.minOverlap,
+                    "least share of an image that the model must cover")
+        ->capture_default_str();
     parser.add_flag("!--no-exposure", options.exposure, "images do not change in brightness");
 }
 

@@ -40,6 +40,8 @@ void checkOptions(const ReplayOptions& options) {
     require(!options.scale || isPositive(*options.scale), "--scale", "must be above 0");
     require(options.floorTranslation.value_or(0.) >= 0., "--floor", "must not be negative");
     require(options.floorRotation.value_or(0.) >= 0., "--floor-rotation", "must not be negative");
+    require(options.minOverlap > 0. && options.minOverlap < 1., "--min-overlap",
+            "must be between 0 and 1");
     require(options.maxWidth >= 24, "--max-width", "must be at least 24");
 }
 
@@ -137,6 +139,7 @@ ReplayTracker makeTracker(const ReplayOptions& options, const ReplaySource& sour
         alignment.photometric.sigma = options.sigma;
         alignment.exposure = options.exposure;
         alignment.robust = RobustWeight::huber;
+        alignment.trust.minOverlap = options.minOverlap;
         if (options.scale) alignment.photometric.scale = *options.scale;
         if (options.floorTranslation) alignment.trust.floorTranslation = *options.floorTranslation;
         if (options.floorRotation) alignment.trust.floorRotation = *options.floorRotation;
@@ -148,6 +151,8 @@ ReplayTracker makeTracker(const ReplayOptions& options, const ReplaySource& sour
     }
     LocalizerOptions localizer;
     localizer.alignment = realCameraOptions(map.octree ? map.octree->getResolution() : 0.);
+    // The motion is only guessed, so that nothing else stops a pose from sliding away.
+    localizer.alignment.trust.maxUnexplained = 0.25;
     set(localizer.alignment);
     return mapTracker(*map.views, source.camera, start, localizer,
                       static_cast<unsigned>(options.maxWidth));
@@ -170,6 +175,7 @@ json optionsJson(const ReplayOptions& o) {
             {"sigma", o.sigma},
             {"scale", orNull(o.scale)},
             {"floor", {orNull(o.floorTranslation), orNull(o.floorRotation)}},
+            {"min_overlap", o.minOverlap},
             {"max_width", o.maxWidth},
             {"exposure", o.exposure}};
 }

@@ -25,6 +25,7 @@ struct ReplayOptions : ReplaySourceOptions {
     std::optional<double> floorTranslation;  ///< least standard deviations of an alignment [m]
     std::optional<double> floorRotation;     ///< [rad]; without these three the tracker's defaults:
                                              ///< realCameraOptions(), KeyframeOptions
+    double minOverlap = 0.2;  ///< least share of the image's pixels that the model must explain
     int maxWidth = 320;       ///< images are halved until they are as wide (map) [pixels]
     bool exposure = true;     ///< estimate gain and offset of every image
     std::string commandLine;  ///< for the report

@@ -114,8 +114,9 @@ void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, Repla
     frame.status = frame.tracked.lost ? FrameStatus::lost : FrameStatus::tracked;
     const Alignment& alignment = frame.tracked.alignment;
     frame.words = frame.tracked.lost && !isLost(alignment.verdict)
-                      ? fmt::format("lost: nothing certain to be seen ({})", describe(alignment))
-                      : describe(alignment);
+                      ? fmt::format("lost: nothing certain to be seen ({})",
+                                    describe(alignment, tracker.trust))
+                      : describe(alignment, tracker.trust);
 }
 
 }  // namespace
@@ -130,6 +131,7 @@ ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
     const auto keyframe = std::make_shared<Keyframe>();  // of the images before
     const auto latest = std::make_shared<Keyframe>();
     ReplayTracker tracker;
+    tracker.trust = options.keyframe.alignment.trust;
     tracker.camera = camera;
     tracker.track = [=](const View& view, double timestamp) {
         const TrackedFrame frame = odometry->track(view, timestamp);
@@ -153,6 +155,7 @@ ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
 ReplayTracker mapTracker(const ViewSource& map, const Camera& camera, const UncertainPose& start,
                          const LocalizerOptions& options, unsigned maxWidth) {
     ReplayTracker tracker;
+    tracker.trust = options.alignment.trust;
     tracker.camera = camera;
     while (tracker.camera.width > maxWidth) {
         tracker.camera = halved(tracker.camera);

@@ -239,5 +239,7 @@ int main(int argc, char** argv) {
     const std::string folder =
         argc > 1 ? argv[1] : (data ? std::string(data) + "/rgbd_office" : std::string());
     trackInMaps();
-    if (!folder.empty()) compareOnPairs(folder, 5);
+    if (folder.empty()) return 0;
+    compareOnPairs(folder, 1);
+    compareOnPairs(folder, 5);
 }
