@@ -11,6 +11,7 @@
 #include "benchmark_command.hpp"
 #include "command_io.hpp"
 #include "compare_command.hpp"
+#include "depth_filter.hpp"
 #include "error.hpp"
 #include "fly_command.hpp"
 #include "info_command.hpp"
@@ -118,7 +119,7 @@ void printSummary(const ReportTable& table, const std::filesystem::path& folder)
 ScanMapOptions scanOptions(const CLI::App& parser, const MapOptions& options,
                            const std::vector<double>& scanner) {
     for (const char* name : {"--camera", "--up", "--every", "--frames", "--min-range",
-                             "--depth-scale", "--tolerance"}) {
+                             "--depth-scale", "--tolerance", "--depth"}) {
         if (parser.count(name) > 0) throw InputError(name, "", "is for images, not point clouds");
     }
     ScanMapOptions scan;
@@ -179,6 +180,10 @@ Command mapCommand(CLI::App& app, const std::string& commandLine) {
     parser->add_option("--every", options->every, "use every n-th frame")->capture_default_str();
     parser->add_option("--frames", options->frames, "only the frames from a on and before b")
         ->type_name("A:B");
+    parser
+        ->add_option("--depth", options->depth,
+                     "recorded, or monocular: from the images and their poses alone")
+        ->capture_default_str();
     parser->add_option("--min-range", options->fusion.minRange, "nearest depth trusted [m]")
         ->capture_default_str();
     parser
@@ -196,36 +201,40 @@ Command mapCommand(CLI::App& app, const std::string& commandLine) {
         ->capture_default_str();
     parser->add_flag("--quiet", options->quiet, "no progress, no summary");
     parser->add_flag("--json", options->json, "result.json on standard output");
-    return {parser, [options, parser] {
-                const std::string dataset = options->dataset;
-                const bool isConfig = std::filesystem::path(dataset).extension() == ".yaml";
-                if (isConfig) refuseOptionsBeside(dataset, *parser);
-                const bool isOfScans = isConfig ? isScanConfig(dataset) : isScan(dataset);
-                ScanMapOptions scan;
-                if (isOfScans) {
-                    scan = scanOptions(*parser, *options, options->scanner);
-                } else if (!options->scanner.empty()) {
-                    throw InputError("--scanner", "", "is for point clouds, not images");
-                } else if (isConfig) {
-                    readMapConfig(dataset, *options);
-                }
-                if (options->out.empty()) {
-                    options->out = "out/map-" + nameOf(isOfScans ? scan.scans : options->dataset);
-                }
-                scan.out = options->out;
-                ProgressLine line(options->quiet);
-                scan.progress = options->progress = [&line](std::size_t done, std::size_t total) {
-                    line.show(fmt::format("{} of {} fused", done, total));
-                };
-                const MapReport report =
-                    isOfScans ? runScanMap(scan, interrupted) : runMap(*options, interrupted);
-                line.clear();
-                if (options->json)
-                    fmt::print("{}\n", report.result.dump(2));
-                else if (!options->quiet)
-                    printSummary(report.summary, options->out);
-                return report.exitCode;
-            }};
+    return {
+        parser, [options, parser] {
+            const std::string dataset = options->dataset;
+            const bool isConfig = std::filesystem::path(dataset).extension() == ".yaml";
+            if (isConfig) refuseOptionsBeside(dataset, *parser);
+            const bool isOfScans = isConfig ? isScanConfig(dataset) : isScan(dataset);
+            ScanMapOptions scan;
+            if (isOfScans) {
+                scan = scanOptions(*parser, *options, options->scanner);
+            } else if (!options->scanner.empty()) {
+                throw InputError("--scanner", "", "is for point clouds, not images");
+            } else if (isConfig) {
+                readMapConfig(dataset, *options);
+            }
+            if (options->depth == "monocular" && !isConfig && parser->count("--min-range") == 0) {
+                options->fusion.minRange = DepthFilterOptions().minDepth;
+            }
+            if (options->out.empty()) {
+                options->out = "out/map-" + nameOf(isOfScans ? scan.scans : options->dataset);
+            }
+            scan.out = options->out;
+            ProgressLine line(options->quiet);
+            scan.progress = options->progress = [&line](std::size_t done, std::size_t total) {
+                line.show(fmt::format("{} of {} fused", done, total));
+            };
+            const MapReport report =
+                isOfScans ? runScanMap(scan, interrupted) : runMap(*options, interrupted);
+            line.clear();
+            if (options->json)
+                fmt::print("{}\n", report.result.dump(2));
+            else if (!options->quiet)
+                printSummary(report.summary, options->out);
+            return report.exitCode;
+        }};
 }
 
 void addReplayOptions(CLI::App& parser, ReplayOptions& options) {
@@ -271,6 +280,8 @@ void addReplayOptions(CLI::App& parser, ReplayOptions& options) {
         .add_option("--min-overlap", options.minOverlap,
                     "least share of an image that the model must cover")
         ->capture_default_str();
+    parser.add_flag("--calibrate", options.calibrate,
+                    "fit factor and floor that would have made the covariances true");
     parser.add_flag("!--no-exposure", options.exposure, "images do not change in brightness");
 }
 

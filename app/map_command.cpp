@@ -13,6 +13,7 @@
 #include "error.hpp"
 #include "map_comparison.hpp"
 #include "map_config.hpp"
+#include "monocular_fusion.hpp"
 #include "octree_file.hpp"
 #include "report.hpp"
 #include "sequence_tum.hpp"
@@ -56,6 +57,8 @@ void checkOptions(const MapOptions& options) {
     require(options.fusion.minRange < options.fusion.maxRange, "--max-range",
             fmt::format("not above the least range, {} m", options.fusion.minRange));
     if (options.depthScale) positive(*options.depthScale, "--depth-scale");
+    require(options.depth == "recorded" || options.depth == "monocular", "--depth",
+            fmt::format("'{}' is not one of recorded, monocular", options.depth));
     require(options.every >= 1, "--every", "must be at least 1");
 }
 
@@ -77,24 +80,36 @@ struct FusedFrames {
     std::size_t count = 0;  ///< less than all when interrupted
     double loadSeconds = 0.;
     double fuseSeconds = 0.;
+    json monocular;  ///< how good its depths are, null when they were recorded
 };
 
 FusedFrames fuseFrames(const MapOptions& options, const Sequence& sequence,
                        const std::atomic<bool>& interrupted, TexturedOcTree& map) {
     FusedFrames fused;
     Stopwatch watch;
+    std::optional<MonocularFusion> monocular;
+    if (options.depth == "monocular") monocular.emplace(map, sequence.camera, options.fusion);
     while (fused.count < sequence.frames.size() && !interrupted) {
         const RecordedFrame frame = loadFrame(sequence, fused.count);
         fused.loadSeconds += watch.lap();
         checkPosition(options, frame);
         try {
-            fuse(map, frame.view, sequence.camera, frame.T_c_w, options.fusion);
+            if (monocular) {
+                monocular->add(frame);
+            } else {
+                fuse(map, frame.view, sequence.camera, frame.T_c_w, options.fusion);
+            }
         } catch (const std::invalid_argument& error) {  // sizes are checked: cells are too small
             throw InputError("--resolution", "", error.what());
         }
         fused.fuseSeconds += watch.lap();
         ++fused.count;
         if (options.progress) options.progress(fused.count, sequence.frames.size());
+    }
+    if (monocular) {
+        monocular->finish();
+        fused.monocular = monocular->result();
+        fused.fuseSeconds += watch.lap();
     }
     return fused;
 }
@@ -198,7 +213,7 @@ ReportTable summary(const json& result) {
         return fmt::format(fmt::runtime(format), factor * means[key].get<double>());
     };
     const auto& frames = result["frames"];
-    return {
+    ReportTable table{
         "Map",
         {{"frames used", fmt::format("{} of {}", frames["used"].get<std::size_t>(),
                                      frames["recorded"].get<std::size_t>())},
@@ -214,6 +229,15 @@ ReportTable summary(const json& result) {
          {"mean absolute difference of depth", number("mean_abs_depth", 1., "{:.4f} m")},
          {"fusion of one frame",
           fmt::format("{:.1f} ms", result["time"]["fuse_per_frame_s"].get<double>() * 1e3)}}};
+    const json& mono = result["monocular"];
+    if (mono.is_object() && mono["median_relative_error"].is_number()) {
+        table.rows.emplace_back("depth from the images, of recorded pixels",
+                                fmt::format("{:.1f} %, error {:.1f} % (median), {:.1f} % (p90)",
+                                            100. * mono["completeness"].get<double>(),
+                                            100. * mono["median_relative_error"].get<double>(),
+                                            100. * mono["p90_relative_error"].get<double>()));
+    }
+    return table;
 }
 
 DrawnPath flown(const Trajectory& trajectory) {
@@ -321,6 +345,8 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
                      {"interrupted", report.exitCode == 130},
                      {"dataset", datasetJson(options, recording)},
                      {"frames", framesJson(options, recording, used)},
+                     {"depth", options.depth},
+                     {"monocular", fused.monocular},
                      {"resolution", options.resolution},
                      {"min_range", options.fusion.minRange},
                      {"max_range", options.fusion.maxRange},

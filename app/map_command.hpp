@@ -19,6 +19,7 @@ struct MapOptions : RecordingOptions {
     std::filesystem::path out;  ///< folder for the results; made when missing
     double resolution = 0.05;   ///< edge of a cell [m]
     FusionOptions fusion;
+    std::string depth = "recorded";  ///< or "monocular": from the images, with their poses
     int compareEvery = 10;    ///< predict every n-th used frame from the finished map; 0: none
     std::string commandLine;  ///< for the report
 

@@ -41,8 +41,9 @@ std::string toYaml(const MapOptions& options, const Recording& recording) {
     if (!options.frames.empty()) {
         text += fmt::format("frames: {}\n", YAML::Dump(YAML::Node(options.frames)));
     }
-    return text + fmt::format("resolution: {}\nmin_range: {}\nmax_range: {}\n", options.resolution,
-                              options.fusion.minRange, options.fusion.maxRange);
+    return text + fmt::format("depth: {}\nresolution: {}\nmin_range: {}\nmax_range: {}\n",
+                              options.depth, options.resolution, options.fusion.minRange,
+                              options.fusion.maxRange);
 }
 
 std::string toYaml(const ScanMapOptions& options) {
@@ -70,6 +71,7 @@ void readMapConfig(const std::string& file, MapOptions& options) {
     yaml.read("every", options.every);
     if (options.every < 1) yaml.fail("every", "must be at least 1");
     yaml.read("frames", options.frames);
+    yaml.read("depth", options.depth);
     yaml.readNumber("tolerance", options.tolerance, 1e-9, kInfinity);
     if (yaml.has("depth_scale")) {
         double scale = 0.;

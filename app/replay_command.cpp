@@ -14,6 +14,7 @@
 #include "error.hpp"
 #include "mesh_renderer.hpp"
 #include "octree_file.hpp"
+#include "replay_calibration.hpp"
 #include "replay_report.hpp"
 #include "replay_run.hpp"
 #include "scene.hpp"
@@ -196,6 +197,18 @@ json datasetJson(const ReplayOptions& options, const ReplaySource& source,
               {"cy", c.cy()}}}};
 }
 
+void calibrateReplay(const ReplayOptions& options, const ReplayRun& run, double scale,
+                     bool floorOnly, json& result) {
+    const auto calibration = calibrationOf(run, options.odometry, scale, floorOnly);
+    result["calibration"] = nullptr;
+    if (!calibration) return;
+    result["calibration"] = {{"scale", calibration->scale},
+                             {"floor", {calibration->floorTranslation, calibration->floorRotation}},
+                             {"nees_before", calibration->neesBefore},
+                             {"nees_after", calibration->neesAfter}};
+    writeFileAtomically(options.out / "calibration.yaml", toYaml(*calibration));
+}
+
 }  // namespace
 
 ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& interrupted) {
@@ -209,7 +222,8 @@ ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& in
     const ReplayTracker tracker = makeTracker(options, source, map);
     const std::optional<double> depth = checkDepths(options, source);
     prepareFolder(options.out);
-    for (const char* stale : {"result.json", "strips.png", "top_view.png", "groundtruth.tum"}) {
+    for (const char* stale :
+         {"result.json", "strips.png", "top_view.png", "groundtruth.tum", "calibration.yaml"}) {
         fs::remove(options.out / stale);
     }
 
@@ -232,6 +246,8 @@ ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& in
     result["time"] = {{"total_s", total.count()},
                       {"load_images_s", run.loadSeconds},
                       {"track_s", run.trackSeconds}};
+    if (options.calibrate)
+        calibrateReplay(options, run, tracker.scale, map.octree != nullptr, result);
     report.summary = replaySummary(result);
     writeReplayTables(options.out, run, errors);
     writeReplayReport(options, result, source, run, errors, map.describe);

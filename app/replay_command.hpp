@@ -27,6 +27,7 @@ struct ReplayOptions : ReplaySourceOptions {
                                              ///< realCameraOptions(), KeyframeOptions
     double minOverlap = 0.2;  ///< least share of the image's pixels that the model must explain
     int maxWidth = 320;       ///< images are halved until they are as wide (map) [pixels]
+    bool calibrate = false;   ///< also write calibration.yaml: factor and floor that fit the errors
     bool exposure = true;     ///< estimate gain and offset of every image
     std::string commandLine;  ///< for the report
 

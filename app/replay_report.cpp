@@ -118,6 +118,17 @@ ReportTable replaySummary(const json& result) {
         {"NEES per degree of freedom (honest: 1)", number(result["nees_per_dof"], 1., "{:.3g}")},
         {"tracking", number(result["fps"], 1., "{:.0f} frames/s", "nothing tracked")},
     };
+    if (result.contains("calibration")) {
+        const json& c = result["calibration"];
+        table.rows.emplace_back(
+            "calibrated",
+            c.is_null() ? "fewer than 20 alignments with a true pose"
+                        : fmt::format("--scale {:.3g} --floor {:.3g} --floor-rotation {:.3g} "
+                                      "(NEES of single alignments {:.3g}, then {:.3g})",
+                                      c["scale"].get<double>(), c["floor"][0].get<double>(),
+                                      c["floor"][1].get<double>(), c["nees_before"].get<double>(),
+                                      c["nees_after"].get<double>()));
+    }
     return table;
 }
 

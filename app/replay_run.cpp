@@ -132,6 +132,7 @@ ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
     const auto latest = std::make_shared<Keyframe>();
     ReplayTracker tracker;
     tracker.trust = options.keyframe.alignment.trust;
+    tracker.scale = options.keyframe.alignment.photometric.scale;
     tracker.camera = camera;
     tracker.track = [=](const View& view, double timestamp) {
         const TrackedFrame frame = odometry->track(view, timestamp);
@@ -156,6 +157,7 @@ ReplayTracker mapTracker(const ViewSource& map, const Camera& camera, const Unce
                          const LocalizerOptions& options, unsigned maxWidth) {
     ReplayTracker tracker;
     tracker.trust = options.alignment.trust;
+    tracker.scale = options.alignment.photometric.scale;
     tracker.camera = camera;
     while (tracker.camera.width > maxWidth) {
         tracker.camera = halved(tracker.camera);

@@ -49,6 +49,7 @@ struct ReplayTracker {
     std::function<TrackedFrame(const View& view, double timestamp)> track;
     /// The view of a frame as the model predicts it at the believed pose; depth 0: nothing there.
     std::function<View(const View& observed, const TrackedFrame& frame)> predict;
+    double scale = 1.;         ///< factor on the information of its alignments
     TrustOptions trust;        ///< of its alignments, to put them in words
     Camera camera;             ///< of the views to be given to it
     int halvings = 0;          ///< of the recorded views

@@ -48,6 +48,19 @@ void descend(std::span<const AlignmentError> errors, std::array<double, 3>& para
     }
 }
 
+/// The factor, and the errors themselves as floor.
+std::array<double, 3> startOf(std::span<const AlignmentError> errors, double scale) {
+    std::array<double, 3> start = {scale, 0., 0.};
+    for (const AlignmentError& e : errors) {
+        start[1] += e.xi.head<3>().squaredNorm();
+        start[2] += e.xi.tail<3>().squaredNorm();
+    }
+    const double n = 3. * static_cast<double>(errors.size());
+    start[1] = std::sqrt(start[1] / n);
+    start[2] = std::sqrt(start[2] / n);
+    return start;
+}
+
 }  // namespace
 
 double neesPerDof(std::span<const AlignmentError> errors, double scale, double floorTranslation,
@@ -67,14 +80,7 @@ Calibration calibrate(std::span<const AlignmentError> errors) {
     result.neesBefore = neesPerDof(errors);
     // Without a floor the most likely factor is the one that makes the NEES one.
     result.scale = 1. / result.neesBefore;
-    std::array<double, 3> withFloors = {1., 0., 0.};
-    for (const AlignmentError& e : errors) {
-        withFloors[1] += e.xi.head<3>().squaredNorm();
-        withFloors[2] += e.xi.tail<3>().squaredNorm();
-    }
-    const double n = 3. * static_cast<double>(errors.size());
-    withFloors[1] = std::sqrt(withFloors[1] / n);
-    withFloors[2] = std::sqrt(withFloors[2] / n);
+    std::array<double, 3> withFloors = startOf(errors, 1.);
     descend(errors, withFloors, 0, 3);
     constexpr double kWorthwhile = 0.05;  // misfit per degree of freedom
     if (misfit(errors, withFloors[0], withFloors[1], withFloors[2]) <
@@ -85,6 +91,16 @@ Calibration calibrate(std::span<const AlignmentError> errors) {
     }
     result.neesAfter =
         neesPerDof(errors, result.scale, result.floorTranslation, result.floorRotation);
+    return result;
+}
+
+Calibration calibrateFloor(std::span<const AlignmentError> errors, double scale) {
+    if (errors.size() < 20) throw std::invalid_argument("calibrate: fewer than 20 alignments");
+    std::array<double, 3> withFloors = startOf(errors, scale);
+    descend(errors, withFloors, 1, 3);
+    Calibration result{scale, withFloors[1], withFloors[2]};
+    result.neesBefore = neesPerDof(errors, scale);
+    result.neesAfter = neesPerDof(errors, scale, withFloors[1], withFloors[2]);
     return result;
 }
 

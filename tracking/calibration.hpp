@@ -24,7 +24,8 @@ struct Calibration {
     double scale = 1.;             ///< for PhotometricOptions::scale
     double floorTranslation = 0.;  ///< for TrustOptions [m]; 0 when the errors ask for none
     double floorRotation = 0.;     ///< [rad]
-    double neesBefore = 0.;        ///< per degree of freedom, with scale 1 and no floor
+    double neesBefore = 0.;        ///< per degree of freedom, without floor and with scale 1
+                                   ///< (calibrateFloor: the scale)
     double neesAfter = 0.;
 };
 
@@ -32,6 +33,11 @@ struct Calibration {
 /// is nearly as likely, there is no floor.
 /// @throws std::invalid_argument below 20 samples
 Calibration calibrate(std::span<const AlignmentError> errors);
+
+/// The floor alone, with this factor: for maps of cells, whose errors repeat from image to image,
+/// so that a factor which describes one alignment would be averaged away by the next.
+/// @throws std::invalid_argument below 20 samples
+Calibration calibrateFloor(std::span<const AlignmentError> errors, double scale);
 
 /// Options for images of a real camera, from the calibration in docs/tracking.md: exposure is
 /// estimated, Lambda weighs less, and the floor is that of a map.

@@ -9,7 +9,7 @@ namespace photonav {
 struct MonocularOptions {
     DepthFilterOptions filter;
     double maxShift = 0.3;  ///< from the reference [its median depth]
-    double maxTurn = 0.35;  ///< [rad]
+    double maxTurn = 0.6;   ///< [rad]
     int minImages = 10;     ///< that a reference is compared with, if it does not turn away
 };
 

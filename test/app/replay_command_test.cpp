@@ -8,6 +8,7 @@
 #include "map_command.hpp"
 #include "mesh_renderer.hpp"
 #include "trajectory.hpp"
+#include "yaml_reader.hpp"
 
 namespace photonav {
 namespace {
@@ -212,6 +213,45 @@ TEST_F(ReplayCommand, LocalisesInTheMapOfItsOwnFirstHalf) {
     EXPECT_EQ(report.result["frames"], 6);
     EXPECT_EQ(report.result["tracked"], 6);
     EXPECT_LT(report.result["ate_rmse_m"].get<double>(), 0.02);
+}
+
+TEST_F(ReplayCommand, LocalisesInAMapMadeWithoutDepthImages) {
+    Flight longer{.frames = 20};
+    longer.write(data);
+    MapOptions map;
+    map.dataset = data.string();
+    map.out = folder.path() / "map";
+    map.depth = "monocular";
+    map.fusion.minRange = 0.5;
+    const MapReport made = runMap(map, running);
+    const json& depth = made.result["monocular"];
+    EXPECT_GE(depth["references"], 1);
+    EXPECT_GT(depth["completeness"].get<double>(), 0.15);
+    EXPECT_LT(depth["median_relative_error"].get<double>(), 0.03);
+    EXPECT_LT(depth["share_above_10_percent"].get<double>(), 0.05);
+    options.odometry = false;
+    options.mapFile = (map.out / "map.ot").string();
+    options.minOverlap = 0.1;
+    options.frames = "2:10";
+    const ReplayReport report = run();
+    EXPECT_EQ(report.result["tracked"], 8);
+    EXPECT_LT(report.result["ate_rmse_m"].get<double>(), 0.08);
+    map.depth = "sonar";
+    expectInputError([&] { runMap(map, running); }, {"--depth", "'sonar'"});
+}
+
+TEST_F(ReplayCommand, CalibrationMakesCovariancesTrue) {
+    Flight longer{.frames = 30, .speed = 0.02};
+    longer.write(data);
+    useMap();
+    options.calibrate = true;
+    const json fitted = run().result["calibration"];
+    EXPECT_NEAR(fitted["nees_after"].get<double>(), 1., 0.3);
+    const YAML::Node file = YAML::LoadFile((options.out / "calibration.yaml").string());
+    EXPECT_NEAR(file["scale"].as<double>() / fitted["scale"].get<double>(), 1., 0.01);
+    EXPECT_EQ(file["floor"].size(), 2U);
+    options.frames = ":10";
+    EXPECT_TRUE(run().result["calibration"].is_null());
 }
 
 TEST_F(ReplayCommand, TheStartCanBeGiven) {

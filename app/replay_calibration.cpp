@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay_calibration.hpp"
+
+#include <fmt/format.h>
+
+#include "se3.hpp"
+
+namespace photonav {
+
+std::vector<AlignmentError> alignmentErrors(const ReplayRun& run, bool odometry, double scale) {
+    std::vector<AlignmentError> errors;
+    const ReplayedFrame* keyframe = nullptr;  // that images are aligned to
+    for (const ReplayedFrame& frame : run.frames) {
+        const bool isKnown = frame.status == FrameStatus::tracked && frame.truth_c_w;
+        const Alignment& alignment = frame.tracked.alignment;
+        if (isKnown && alignment.verdict == Verdict::converged && (!odometry || keyframe) &&
+            alignment.information.diagonal().minCoeff() > 0.) {
+            Pose truth = *frame.truth_c_w;
+            Pose estimate = frame.tracked.T_c_w.mean;
+            if (odometry) {
+                truth = truth * keyframe->truth_c_w->inverse();
+                estimate = estimate * keyframe->tracked.T_c_w.mean.inverse();
+            }
+            errors.push_back({logSE3(truth * estimate.inverse()), alignment.information / scale});
+        }
+        if (frame.tracked.isKeyframe) keyframe = isKnown ? &frame : nullptr;
+    }
+    return errors;
+}
+
+std::optional<Calibration> calibrationOf(const ReplayRun& run, bool odometry, double scale,
+                                         bool floorOnly) {
+    const auto errors = alignmentErrors(run, odometry, scale);
+    if (errors.size() < kLeastForCalibration) return {};
+    return floorOnly ? calibrateFloor(errors, scale) : calibrate(errors);
+}
+
+std::string toYaml(const Calibration& c) {
+    return fmt::format(
+        "# NEES per degree of freedom {:.3g} before, {:.3g} with these:\n"
+        "# photonav replay ... --scale {:.3g} --floor {:.3g} --floor-rotation {:.3g}\n"
+        "scale: {:.3g}\nfloor: [{:.3g}, {:.3g}]  # m, rad\n",
+        c.neesBefore, c.neesAfter, c.scale, c.floorTranslation, c.floorRotation, c.scale,
+        c.floorTranslation, c.floorRotation);
+}
+
+}  // namespace photonav

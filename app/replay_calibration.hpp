@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What factor and floor would have made the covariances of a replay true.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "calibration.hpp"
+#include "replay_run.hpp"
+
+namespace photonav {
+
+constexpr std::size_t kLeastForCalibration = 20;  ///< alignments
+
+/// The errors of the alignments that converged, of images whose true pose is known: in the map, or
+/// relative to the keyframe before.
+/// @param scale factor on the information that was in use
+std::vector<AlignmentError> alignmentErrors(const ReplayRun& run, bool odometry, double scale);
+
+/// Nothing when there are too few of them.
+/// @param floorOnly keep the factor: for maps of cells
+std::optional<Calibration> calibrationOf(const ReplayRun& run, bool odometry, double scale,
+                                         bool floorOnly);
+
+/// For the command line, and as YAML.
+std::string toYaml(const Calibration& calibration);
+
+}  // namespace photonav
