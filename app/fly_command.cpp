@@ -130,7 +130,8 @@ void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::pat
 }
 
 std::filesystem::path folderFor(const FlyOptions& options, const PlanSource& source) {
-    CommandOptions named = static_cast<const CommandOptions&>(options);
+    const CommandOptions& common = options;
+    CommandOptions named = common;
     if (!source.resultFile.empty()) {  // named as the plan, not as "config"
         named.config =
             std::filesystem::absolute(source.resultFile).parent_path().filename().string() + ".";

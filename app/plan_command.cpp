@@ -73,6 +73,7 @@ std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, const
     }
     stages.push_back(vertices);
     std::vector<TreeEvolution> evolutions;
+    evolutions.reserve(planners.size());
     for (const std::string& planner : planners) {
         evolutions.push_back(growInStages(run, planner, stages, interrupted));
     }

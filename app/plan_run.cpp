@@ -200,11 +200,12 @@ JudgedPath PlanRun::judge(const BeliefPlanner& planner) {
 JudgedPath PlanRun::judge(const std::string& planner, const std::vector<Place>& waypoints) {
     std::vector<ob::ScopedState<>> states;
     std::vector<const ob::State*> pointers;
+    states.reserve(waypoints.size());
+    pointers.reserve(waypoints.size());
     for (const Place& place : waypoints) {
-        states.emplace_back(si_);
+        pointers.push_back(states.emplace_back(si_).get());
         space_.setState(states.back().get(), place.position, place.yaw.value_or(0.));
     }
-    for (const auto& state : states) pointers.push_back(state.get());
     return judge(planner, pointers);
 }
 
