@@ -117,6 +117,7 @@ void drawLost(const Plot& plot, const std::vector<TimeInterval>& lost) {
 
 void drawLine(const Plot& plot, const std::vector<Sample>& samples) {
     std::vector<Canvas::Point> line;
+    line.reserve(samples.size());
     for (const Sample& s : samples) line.push_back(plot.at(s.time, s.value));
     plot.canvas.polyline(line, kPathColor, 2.2);
     if (line.size() < 60) {

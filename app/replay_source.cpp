@@ -16,7 +16,8 @@ namespace photonav {
 namespace {
 
 ReplaySource openTum(const ReplaySourceOptions& options) {
-    RecordingOptions forgiving = options;
+    const RecordingOptions& asked = options;
+    RecordingOptions forgiving = asked;
     forgiving.forgiving = true;
     const auto recording = std::make_shared<Recording>(readRecording(forgiving));
     const Sequence& sequence = recording->sequence;

@@ -142,6 +142,7 @@ MapReport runScanMap(const ScanMapOptions& options, const std::atomic<bool>& int
     const std::set<fs::path> files = plyFiles(options.scans);
     checkOptions(options, files.size());
     std::vector<std::pair<fs::path, PointCloudFile>> clouds;  // all headers, before any work
+    clouds.reserve(files.size());
     for (const fs::path& file : files) clouds.emplace_back(file, file.string());
     prepareFolder(options.out);
 
