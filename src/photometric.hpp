@@ -21,8 +21,8 @@ struct PhotometricOptions {
 /// (the paper's eqs. (19) and (20)). The gradient is the central difference of the predicted image;
 /// a border of one pixel is left out. A pixel counts when its four neighbours and itself have
 /// depth, none of them lies across a depth discontinuity, and it is not saturated. Nothing is
-/// stored per pixel; sums are single precision within 16 rows and double across them, with rotations
-/// about a point among those seen: the trace of the inverse keeps six digits.
+/// stored per pixel; sums are single precision within 16 rows and double across them, with
+/// rotations about a point among those seen: the trace of the inverse keeps six digits.
 Matrix6 photometricInformation(const View& view, const Camera& camera,
                                const PhotometricOptions& options = {});
 

@@ -91,8 +91,8 @@ struct Problem {
         const auto si = spaceInformation();
         std::shared_ptr<BeliefPlanner> planner;
         if (name == "belief_rrt_star") {
-            planner = std::make_shared<BeliefRRTstar>(
-                si, model, SearchOptions{.labels = labels}, growth);
+            planner =
+                std::make_shared<BeliefRRTstar>(si, model, SearchOptions{.labels = labels}, growth);
         } else if (name == "rrbt") {
             planner = std::make_shared<RRBT>(si, model, growth);
         } else {
