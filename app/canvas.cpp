@@ -140,7 +140,7 @@ void Canvas::verticalText(const std::string& content, const Point& at, const Col
     const cv::Point corner(cvRound(at.x() * kScale) - turned.cols / 2,
                            cvRound(at.y() * kScale) - turned.rows / 2);
     const cv::Rect room = cv::Rect(corner, turned.size()) & cv::Rect({0, 0}, image_->sheet.size());
-    turned(room - corner).copyTo(image_->sheet(room));
+    if (!room.empty()) turned(room - corner).copyTo(image_->sheet(room));
 }
 
 double Canvas::textWidth(const std::string& content, double size) {

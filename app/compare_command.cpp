@@ -23,8 +23,9 @@ std::string meanAndDeviation(const Values& values, int decimals) {
     const auto n = static_cast<double>(values.size());
     double mean = 0.;
     for (const double v : values) mean += v / n;
+    if (values.size() == 1) return fmt::format("{:.{}f}", mean, decimals);
     double variance = 0.;
-    for (const double v : values) variance += (v - mean) * (v - mean) / std::max(1., n - 1.);
+    for (const double v : values) variance += (v - mean) * (v - mean) / (n - 1.);
     return fmt::format("{:.{}f} ± {:.{}f}", mean, decimals, std::sqrt(variance), decimals);
 }
 
@@ -44,13 +45,13 @@ std::string tableRow(const std::string& method, const std::vector<const CompareR
     Values traces = ofPath(&JudgedPath::meanTrace);
     Values goalTraces = ofPath(&JudgedPath::goalTrace);
     for (Values* values : {&traces, &goalTraces}) {
-        for (double& v : *values) v *= 100.;
+        for (double& v : *values) v *= 1e4;
     }
     return fmt::format(
         "| {} | {} | {} | {} | {} | {} | {} | {} |\n", method,
         meanAndDeviation(ofPath(&JudgedPath::cost), 3),
-        meanAndDeviation(ofPath(&JudgedPath::length), 2), meanAndDeviation(traces, 2),
-        meanAndDeviation(goalTraces, 2),
+        meanAndDeviation(ofPath(&JudgedPath::length), 2), meanAndDeviation(traces, 1),
+        meanAndDeviation(goalTraces, 1),
         meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.vertices); }), 0),
         meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.views); }), 0),
         meanAndDeviation(ofRun([](const auto& o) { return o.planSeconds; }), 1));
@@ -138,9 +139,8 @@ CompareRun runMethod(const Config& config, const World& world, const CompareMeth
 
 std::string compareTable(const std::vector<CompareRun>& runs) {
     std::string table =
-        "| planner, information | cost J | length [m] | mean trace x100 | goal trace x100 | "
-        "vertices "
-        "| views | seconds |\n|---|---|---|---|---|---|---|---|\n";
+        "| planner, information | cost J | length [m] | mean trace [1e-4] | goal trace [1e-4] | "
+        "vertices | views | seconds |\n|---|---|---|---|---|---|---|---|\n";
     for (const CompareMethod& method : compareMethods()) {
         std::vector<const CompareRun*> own;
         for (const CompareRun& run : runs) {

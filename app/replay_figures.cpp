@@ -73,10 +73,11 @@ double largest(const std::vector<Sample>& samples, double factor = 1.) {
 }
 
 /// Up to the largest error, and the bands as far as they are not out of all proportion to it.
+/// An error that is nothing but rounding, of a first image, is none.
 Axis axisOf(const Panel& panel) {
     const double error = 1.15 * largest(panel.error);
     const double band = 1.05 * largest(panel.sigma, 3.);
-    const double most = error > 0. ? std::max(error, std::min(band, 4. * error)) : band;
+    const double most = error > 1e-9 ? std::max(error, std::min(band, 4. * error)) : band;
     return {0., most > 0. ? most : 1., false, panel.label};
 }
 

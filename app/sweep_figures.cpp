@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "plot.hpp"
 
@@ -24,6 +25,7 @@ struct Planner {
 
 std::vector<Planner> coloured(const std::vector<std::string>& names) {
     std::vector<Planner> planners;
+    planners.reserve(names.size());
     for (const std::string& name : names) {
         planners.push_back({name, kColors[planners.size() % kColors.size()]});
     }
@@ -39,8 +41,8 @@ std::vector<Planner> plannersOf(const std::vector<SweepCell>& cells) {
 }
 
 Axis axisOver(const std::vector<double>& values, bool log, const std::string& label) {
-    double low = INFINITY;
-    double high = -INFINITY;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
     for (const double value : values) {
         if (!std::isfinite(value) || (log && value <= 0.)) continue;
         low = std::min(low, value);

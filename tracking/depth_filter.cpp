@@ -93,9 +93,9 @@ View DepthFilter::view() const {
     View view;
     view.intensity = reference_;
     view.depth.resize(camera_.height, camera_.width, 0.F);
-    for (std::size_t i = 0; i < seeds_.size(); ++i) {
-        if (seeds_[i].state == DepthState::converged) view.depth.bitmap[i] = 1.F / seeds_[i].mean;
-    }
+    std::ranges::transform(seeds_, view.depth.bitmap, [](const Seed& seed) {
+        return seed.state == DepthState::converged ? 1.F / seed.mean : 0.F;
+    });
     return view;
 }
 

@@ -30,6 +30,7 @@ KeyframeOptions::KeyframeOptions() {
     alignment.photometric.scale = 0.7;
     alignment.trust.floorTranslation = 0.0075;
     alignment.trust.floorRotation = 0.0044;
+    alignment.trust.residualSigmas = 0.;
     alignment.levels = 3;
     alignment.coarseStep = 0.3;
     alignment.fineStep = 1.;

@@ -20,6 +20,9 @@ constexpr float kNoSurface = -1e30F;     ///< stands for the inverse depth of no
 constexpr float kUnused = 4.F;           ///< stands for the residual of a point out of view
 constexpr std::size_t kChunk = 32;       ///< vectors whose products are summed together
 constexpr std::size_t kSampleEvery = 4;  ///< chunks per chunk of residuals kept
+constexpr std::size_t kNoiseEvery = 16;  ///< points per point that the noise is reckoned from
+/// Least information, in units of what noise alone gives, for a direction to count.
+constexpr double kLeastSignal = 1.5;
 
 Float at(const float* p) { return simd::load<Float>(p); }
 
@@ -100,6 +103,19 @@ ImageF halvedDepth(const ImageF& depth, float spread) {
     return half;
 }
 
+/// Keeps the directions in which AtA exceeds kLeastSignal times `noise`.
+void dropNoise(NormalEquations& e, const Matrix6& noise) {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(e.AtA.topLeftCorner<6, 6>(),
+                                                                   noise);
+    if (solver.info() != Eigen::Success || solver.eigenvalues()[0] >= kLeastSignal) return;
+    const Vector6 keeps = (solver.eigenvalues().array() >= kLeastSignal).cast<double>();
+    Matrix8 P = Matrix8::Identity();
+    P.topLeftCorner<6, 6>() =
+        solver.eigenvectors() * keeps.asDiagonal() * solver.eigenvectors().transpose() * noise;
+    e.AtA = P.transpose() * e.AtA * P;
+    e.Atr = P.transpose() * e.Atr;
+}
+
 /// What is known of an image row before the choice is made; column u at index u.
 struct PointSet::Row {
     std::vector<float> inverseDepth, gx, gy;
@@ -111,7 +127,9 @@ struct PointSet::Row {
 };
 
 PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions& options)
-    : camera_(camera) {
+    : camera_(camera),
+      leastGradient_(4. * options.minGradient * options.minGradient),
+      sigma_(options.alignment.photometric.sigma) {
     const unsigned width = camera.width;
     const std::size_t capacity = std::size_t(width) * camera.height + kWidth;
     for (auto* field : {&x_, &y_, &w_, &intensity_, &gx_, &gy_}) field->resize(capacity);
@@ -120,7 +138,7 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
     const auto jump = static_cast<float>(p.depthJump);
     const auto dark = static_cast<float>(p.saturation);
     const auto aspect = static_cast<float>(camera.fy() / camera.fx());
-    const auto least = static_cast<float>(4. * options.minGradient * options.minGradient);
+    const auto least = static_cast<float>(leastGradient_);
     const auto nearerThan = static_cast<float>(1. / options.maxDepth);
     const auto fartherThan = static_cast<float>(1. / options.minDepth);
     std::vector<float> inverse(std::size_t(width) * camera.height);
@@ -129,6 +147,7 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
         inverse[i] = z > 0.F ? 1.F / z : kNoSurface;
     }
     Row row(width);
+    std::int32_t candidates = 0;
     for (unsigned v = 1; v + 1 < camera.height; ++v) {
         const float* W = &inverse[std::size_t(v) * width];
         const float* aboveW = W - width;
@@ -146,9 +165,11 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
             row.inverseDepth[u] = W[u];
             row.gx[u] = du;
             row.gy[u] = aspect * dv;
-            row.used[u] = (W[u] >= nearerThan) & (W[u] <= fartherThan) &
-                          (std::max(horizontal, vertical) <= jump * W[u]) & (I[u] > dark) &
-                          (I[u] < 1.F - dark) & (du * du + dv * dv >= least);
+            const std::int32_t counts = (W[u] >= nearerThan) & (W[u] <= fartherThan) &
+                                        (std::max(horizontal, vertical) <= jump * W[u]) &
+                                        (I[u] > dark) & (I[u] < 1.F - dark);
+            candidates += counts;
+            row.used[u] = counts & static_cast<std::int32_t>(du * du + dv * dv >= least);
         }
         append(row, width);
     }
@@ -159,6 +180,8 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
     for (auto* field : {&x_, &y_, &w_, &intensity_, &gx_, &gy_}) field->resize(padded);
     std::fill(x_.begin() + static_cast<std::ptrdiff_t>(size_), x_.end(), 1e6F);
     std::fill(w_.begin() + static_cast<std::ptrdiff_t>(size_), w_.end(), 0.F);
+    candidates_ = candidates;
+    meanSquaredMotion_ = meanSquaredMotion();
 }
 
 /// Every pixel is written, and the next goes over it unless it is used: no branch to predict.
@@ -176,6 +199,32 @@ void PointSet::append(const Row& row, unsigned width) {
         n += static_cast<std::size_t>(row.used[u]);
     }
     size_ = n;
+}
+
+/// Mean of D^T D, where (du, dv) = D xi is the motion of a point in the image, in units of the
+/// focal length and with the signs of compare(). With gradients of unit variance, this is their
+/// share of AtA.
+Matrix6 PointSet::meanSquaredMotion() const {
+    Matrix6 sum = Matrix6::Zero();
+    double points = 0.;
+    for (std::size_t i = 0; i < size_; i += kNoiseEvery, ++points) {
+        const double x = x_[i], y = y_[i], w = w_[i];
+        Eigen::Matrix<double, 2, 6> D;
+        D << w, 0., x * w, x * y, x * x + 1., -y, 0., w, y * w, y * y + 1., x * y, x;
+        sum += D.transpose() * D;
+    }
+    return sum / std::max(1., points);
+}
+
+/// Variance of gx and of gy that is noise. That of the intensity is read off the residuals, where
+/// both images' noise is; it is less than that when they are not aligned. The squared length of a
+/// gradient of noise is exponentially distributed: of those with nothing else, the share exp(-least
+/// / mean) is kept, and their mean is raised by the threshold.
+double PointSet::noiseOfGradients(const NormalEquations& e, double gain) const {
+    const double variance = std::min(sigma_ * sigma_, e.sumSquares / e.count / (1. + gain * gain));
+    const double kept = candidates_ * std::exp(-leastGradient_ / (4. * variance));
+    const double share = std::min(1., kept / static_cast<double>(size_));
+    return 2. * variance + 0.5 * share * leastGradient_;
 }
 
 NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
@@ -225,6 +274,12 @@ NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
     unit.head<6>() *= -exposure.gain * 0.5 * camera_.fx();
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
+    const double weights = equations.AtA(7, 7);
+    const auto scale = unit.head<6>().asDiagonal();
+    if (weights > 0.) {
+        dropNoise(equations, weights * noiseOfGradients(equations, exposure.gain) *
+                                 (scale * meanSquaredMotion_ * scale));
+    }
     return equations;
 }
 

@@ -23,7 +23,9 @@ class PointSet {
     PointSet(const View& view, const Camera& camera, const KeyframeOptions& options);
 
     /// Looks every point up in `observed` (bilinear), an image of the same camera.
-    /// xi of the equations is the perturbation of T on the right, T = T_mean exp(xi^).
+    /// xi of the equations is the perturbation of T on the right, T = T_mean exp(xi^). The noise of
+    /// the keyframe has gradients too: directions about which the points say hardly more than noise
+    /// would are taken out of AtA and Atr.
     /// @param T_c_k from the keyframe to the camera
     NormalEquations compare(const ImageF& observed, const Pose& T_c_k, const Exposure& exposure,
                             const Loss& loss);
@@ -36,10 +38,16 @@ class PointSet {
   private:
     struct Row;
     void append(const Row& row, unsigned width);
+    Matrix6 meanSquaredMotion() const;
+    double noiseOfGradients(const NormalEquations& equations, double gain) const;
 
     Camera camera_;
     std::size_t size_ = 0;
     double meanInverseDepth_ = 0.;
+    double candidates_ = 0.;  ///< pixels that would count if they had a gradient
+    double leastGradient_;    ///< squared length of (gx, gy)
+    double sigma_;            ///< noise of the intensity, at most
+    Matrix6 meanSquaredMotion_ = Matrix6::Zero();
     /// Structure of arrays, padded to whole vectors with points that are never in view: normalised
     /// coordinates, inverse depth [1/m], grey value, gradient as J has it (per pixel / 2).
     std::vector<float> x_, y_, w_, intensity_, gx_, gy_;

@@ -24,7 +24,7 @@ TrackedFrame Odometry::track(const View& view, double timestamp) {
     lastTime_ = timestamp;
     TrackedFrame frame;
     if (keyframes_.empty()) {
-        frame.lost = !begin(view);
+        frame.lost = !beginWith(view);
         frame.isKeyframe = !frame.lost;
         if (!frame.lost) frame.alignment.verdict = Verdict::converged;
         frame.T_c_w = belief_;
@@ -34,36 +34,47 @@ TrackedFrame Odometry::track(const View& view, double timestamp) {
     sinceTracked_ = compound(motion, {Pose::Identity(), sinceTracked_}).covariance;
     frame.alignment = search(view, {motion.mean * belief_.mean, sinceTracked_});
     frame.lost = knowsNothing(frame.alignment);
-    if (frame.lost) {
-        belief_.covariance = compound(motion, belief_).covariance;
-        motion_.forget();
-        lastTracked_.reset();
-    } else {
-        const Keyframe& keyframe = keyframes_.back();
-        const Pose T_c_w = orthonormal(frame.alignment.T_c_w);
-        motion_.observe(T_c_w * belief_.mean.inverse(), elapsed);
-        belief_ = compound({T_c_w * keyframe.T_k_w.mean.inverse(), frame.alignment.covariance},
-                           keyframe.T_k_w);
-        belief_.mean = T_c_w;
-        sinceTracked_.setZero();
-        frame.isKeyframe = needsKeyframe(frame.alignment);
-        if (frame.isKeyframe) {
-            addKeyframe(view, belief_);
-            lastTracked_.reset();
-        } else {
-            lastTracked_ = view;
-            lastTrackedPose_ = belief_;
-        }
-    }
+    frame.isKeyframe = frame.lost ? miss(view, motion) : take(view, frame.alignment, elapsed);
     frame.T_c_w = belief_;
     return frame;
 }
 
+/// The belief after an image that could be aligned; whether the image becomes a keyframe.
+bool Odometry::take(const View& view, const Alignment& alignment, double elapsed) {
+    const Keyframe& keyframe = keyframes_.back();
+    const Pose T_c_w = orthonormal(alignment.T_c_w);
+    motion_.observe(T_c_w * belief_.mean.inverse(), elapsed);
+    belief_ =
+        compound({T_c_w * keyframe.T_k_w.mean.inverse(), alignment.covariance}, keyframe.T_k_w);
+    belief_.mean = T_c_w;
+    sinceTracked_.setZero();
+    imagesLost_ = 0;
+    if (needsKeyframe(alignment)) {
+        addKeyframe(view, belief_);
+        lastTracked_.reset();
+        return true;
+    }
+    lastTracked_ = view;
+    lastTrackedPose_ = belief_;
+    return false;
+}
+
+/// The belief after a lost image; whether the flight is taken up from it.
+bool Odometry::miss(const View& view, const UncertainPose& motion) {
+    belief_.covariance = compound(motion, belief_).covariance;
+    motion_.forget();
+    lastTracked_.reset();
+    if (++imagesLost_ < options_.patience || !beginWith(view)) return false;
+    sinceTracked_.setZero();
+    imagesLost_ = 0;
+    return true;
+}
+
 /// An image that cannot even be aligned to itself is no keyframe.
-bool Odometry::begin(const View& view) {
+bool Odometry::beginWith(const View& view) {
     addKeyframe(view, belief_);
     if (!knowsNothing(keyframes_.back().model.align(view.intensity, belief_.mean))) return true;
-    keyframes_.clear();
+    keyframes_.pop_back();
     return false;
 }
 

@@ -19,12 +19,14 @@ struct OdometryOptions {
     double maxTurn = 0.2;        ///< angle from the keyframe [rad]
     double sureness = 0.5;       ///< share of maxUnexplained that a remembered keyframe may leave
     std::size_t keyframes = 12;  ///< remembered: a lost camera may come back to any of them
+    int patience = 20;           ///< images lost one after the other before a new beginning
 };
 
 /// Aligns every image to the latest keyframe, with the motion so far as prior. When that fails it
 /// looks for the camera in turn: where it was last, relative to the image tracked last, and at each
 /// remembered keyframe, where it must be found beyond doubt, because nothing but the image speaks
-/// for it; else the image is lost, and the belief goes on growing.
+/// for it; else the image is lost, and the belief goes on growing. When nothing is found for long,
+/// the image becomes a keyframe where the belief is then: what follows is as uncertain as that.
 ///
 /// Beliefs are those of the keyframes compounded with the alignment to them. Each keyframe adds its
 /// own error, none is ever taken back: there is no closing of loops.
@@ -45,7 +47,9 @@ class Odometry {
         UncertainPose T_k_w;
     };
 
-    bool begin(const View& view);
+    bool take(const View& view, const Alignment& alignment, double elapsed);
+    bool miss(const View& view, const UncertainPose& motion);
+    bool beginWith(const View& view);
     void addKeyframe(const View& view, const UncertainPose& T_k_w);
     Alignment search(const View& view, const UncertainPose& predicted);
     bool needsKeyframe(const Alignment& alignment) const;
@@ -59,6 +63,7 @@ class Odometry {
     std::optional<View> lastTracked_;  ///< unless it is a keyframe
     UncertainPose lastTrackedPose_;
     Matrix6 sinceTracked_ = Matrix6::Zero();  ///< covariance of the motion since then
+    int imagesLost_ = 0;                      ///< in a row
 };
 
 }  // namespace photonav

@@ -47,9 +47,10 @@ TEST_P(EveryKindOfPenalty, FlownEqualsReplayed) {
         const Vector3d p = T_c_w.inverse().translation();
         return {1. + p.x(), {0.7, Vector3d(0.1 * p.y(), 3., 2.).asDiagonal()}};
     });
-    const auto sampler = problem.space().sampler(4);
-    ob::ScopedState<> a(problem.space().space());
-    ob::ScopedState<> b(problem.space().space());
+    const auto& space = model->space();
+    const auto sampler = space.sampler(4);
+    ob::ScopedState<> a(space.space());
+    ob::ScopedState<> b(space.space());
     for (int i = 0; i < 20; ++i) {
         sampler->sampleUniform(a.get());
         sampler->sampleUniform(b.get());

@@ -82,6 +82,32 @@ TEST(KeyframeModel, InformationIsCarriedToTheCamera) {
     EXPECT_LT((b.information - carried).norm(), 0.5 * (b.information - planned).norm());
 }
 
+View floorView(const Texture& texture, const Pose& T_c_w, std::uint64_t seed) {
+    const MeshRenderer floor(testing::floorOf(texture));
+    View view;
+    floor.render(camera(), T_c_w, view);
+    std::mt19937_64 random(seed);
+    view.intensity = testing::noisy(view.intensity, AlignmentOptions().photometric.sigma, random);
+    return view;
+}
+
+/// The noise of a keyframe has gradients as texture has, and there are many pixels.
+TEST(KeyframeModel, NoiseIsNoTexture) {
+    const Pose above = cameraAt({0., 0., 1.5}, testing::kDown);
+    KeyframeModel grey(floorView(uniformTexture(0.5), above, 1), camera(), above);
+    const Alignment a = grey.align(floorView(uniformTexture(0.5), above, 2).intensity, above);
+    EXPECT_EQ(a.openDirections.size(), 6U) << describe(a);
+
+    const Texture bars = stripes({.width = 0.3, .softEdge = 0.05});
+    KeyframeModel striped(floorView(bars, above, 3), camera(), above);
+    const Pose moved = expSE3(Vector6(Vector6::Constant(0.01))) * above;
+    const Alignment b = striped.align(floorView(bars, moved, 4).intensity, above);
+    EXPECT_EQ(b.verdict, Verdict::degenerate) << describe(b);
+    EXPECT_LT(b.openDirections.size(), 6U) << describe(b);
+    const Vector6 e = error(b, moved);
+    EXPECT_LT(squaredDistance(e, b.covariance), 30.) << e.transpose();
+}
+
 TEST(KeyframeModel, SaysWhenItIsLost) {
     KeyframeModel keyframe(roomView(kPose), camera(), kPose);
     EXPECT_TRUE(

@@ -108,6 +108,26 @@ TEST(Odometry, ComesBackToAnOldKeyframe) {
     EXPECT_LT(distance(frame.T_c_w.mean, flight(12)), 0.03);
 }
 
+TEST(Odometry, LostForLongItBeginsAnewAsUncertainAsItIs) {
+    OdometryOptions options;
+    options.patience = 5;
+    Odometry odometry(camera(), start(), options);
+    int i = 0;
+    for (; i < 3; ++i) odometry.track(viewFrom(flight(i)), kInterval * i);
+    for (; i < 20; ++i) EXPECT_TRUE(odometry.track(black(), kInterval * i).lost) << i;
+    const double lost = odometry.belief().covariance.trace();
+    const auto elsewhere = [](int k) { return cameraAt({4., 1.5 + 0.03 * k, 1.6}, 0.5, 2.5); };
+    TrackedFrame frame;
+    for (int k = 0; k < 10; ++k, ++i) {
+        frame = odometry.track(viewFrom(elsewhere(k)), kInterval * i);
+        EXPECT_EQ(frame.lost, k == 0) << k;
+    }
+    EXPECT_GT(frame.T_c_w.covariance.trace(), lost);
+    const Pose motion = odometry.belief().mean.inverse();
+    odometry.track(viewFrom(elsewhere(10)), kInterval * i);
+    EXPECT_NEAR(distance(motion.inverse(), odometry.belief().mean), 0.03, 0.005);
+}
+
 TEST(Odometry, BlackFromTheBeginningIsLostUntilSomethingIsSeen) {
     Odometry odometry(camera(), start());
     EXPECT_TRUE(odometry.track(black(), 0.).lost);
