@@ -9,6 +9,8 @@
 #include <iterator>
 #include <set>
 
+#include "scene.hpp"
+
 namespace photonav {
 namespace {
 
@@ -31,6 +33,16 @@ void flatten(const YAML::Node& node, const std::string& prefix, SweepIdentity& v
             flatten(entry.second, key + ".", values);
         else
             values[key] = YAML::Dump(entry.second);
+    }
+}
+
+/// The contents of the other files that a scene was read from: textures, buffers, materials.
+void addParts(const std::string& sceneFile, SweepIdentity& identity) {
+    const auto folder = std::filesystem::path(sceneFile).parent_path();
+    for (const std::string& file : loadScene(sceneFile).files) {
+        if (file == sceneFile) continue;
+        const auto name = std::filesystem::path(file).lexically_relative(folder).string();
+        identity[fmt::format("scene.file (content of {})", name)] = digest(file);
     }
 }
 
@@ -81,13 +93,16 @@ std::vector<SweepItem> itemsOf(const SweepShard& shard, const std::vector<SweepI
 SweepIdentity sweepIdentity(const Config& config) {
     SweepIdentity identity;
     flatten(YAML::Load(toYaml(config)), "", identity);
-    std::erase_if(identity, [](const auto& entry) { return kIrrelevant.contains(entry.first); });
+    std::erase_if(identity, [](const auto& entry) {
+        return kIrrelevant.contains(entry.first) || entry.first.starts_with("fly.");
+    });
     for (const auto& [key, file] :
          {std::pair{"scene.file", config.sceneFile}, std::pair{"map.file", config.mapFile}}) {
         if (file.empty()) continue;
         identity[key] = std::filesystem::path(file).filename().string();
         identity[std::string(key) + " (content)"] = digest(file);
     }
+    if (!config.sceneFile.empty()) addParts(config.sceneFile, identity);
     identity["version"] = PHOTONAV_VERSION;
     return identity;
 }

@@ -39,8 +39,8 @@ std::string toString(const SweepShard& shard);
 std::vector<SweepItem> itemsOf(const SweepShard& shard, const std::vector<SweepItem>& items);
 
 /// Everything that the results of a sweep depend on, by dotted key: the config without what the
-/// sweep sets itself or only compares with, the contents of the scene or map (whose folder does not
-/// matter), the program's version.
+/// sweep sets itself or only compares with, the contents of the scene or map and of the textures,
+/// buffers and materials it is made of (whose folder does not matter), the program's version.
 using SweepIdentity = std::map<std::string, std::string>;
 
 SweepIdentity sweepIdentity(const Config& config);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh_io.hpp"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -59,11 +60,30 @@ std::optional<std::string> baseTextureName(const aiMaterial& material) {
     return std::nullopt;
 }
 
+/// Remembers which files assimp opened: the mesh, its buffers, its materials.
+class RememberingFiles : public Assimp::DefaultIOSystem {
+  public:
+    explicit RememberingFiles(std::vector<std::string>& files) : files_(files) {}
+
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
+        const bool isNew = std::find(files_.begin(), files_.end(), file) == files_.end();
+        if (stream != nullptr && isNew) files_.emplace_back(file);
+        return stream;
+    }
+
+  private:
+    std::vector<std::string>& files_;
+};
+
 /// Fills a Scene from what assimp read.
 class MeshReader {
   public:
-    MeshReader(const std::string& file, const MeshOptions& options, const aiScene& input)
-        : T_w_file_(fileToWorld(file, options)), file_(file), input_(input) {}
+    MeshReader(const std::string& file, const MeshOptions& options, const aiScene& input,
+               std::vector<std::string> files)
+        : T_w_file_(fileToWorld(file, options)), file_(file), input_(input) {
+        scene_.files = std::move(files);
+    }
 
     Scene read() {
         addNode(*input_.mRootNode, T_w_file_);
@@ -166,7 +186,7 @@ class MeshReader {
         return entry->second;
     }
 
-    ImageF readTexture(const std::string& name, const Rgb& factor) const {
+    ImageF readTexture(const std::string& name, const Rgb& factor) {
         if (const aiTexture* embedded = input_.GetEmbeddedTexture(name.c_str())) {
             return embeddedTexture(*embedded, name, factor);
         }
@@ -175,6 +195,10 @@ class MeshReader {
         const auto path = std::filesystem::path(file_).parent_path() / relative;
         if (!std::filesystem::is_regular_file(path)) {
             throw InputError(file_, "texture", "no such image '" + path.string() + "'");
+        }
+        auto& files = scene_.files;
+        if (std::find(files.begin(), files.end(), path) == files.end()) {
+            files.push_back(path.string());
         }
         return readGrey(path.string(), factor);
     }
@@ -211,14 +235,16 @@ Scene loadMesh(const std::string& file, const MeshOptions& options) {
     if (!std::filesystem::is_regular_file(file)) throw InputError(file, "", "not a file");
     if (std::filesystem::file_size(file) == 0) throw InputError(file, "", "the file is empty");
     checkMeshFile(file);
+    std::vector<std::string> files;  // outlives the importer, which owns the RememberingFiles
     Assimp::Importer importer;
+    importer.SetIOHandler(new RememberingFiles(files));  // NOLINT(cppcoreguidelines-owning-memory)
     const aiScene* input = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType);
     if (input == nullptr || input->mRootNode == nullptr) {
         std::string reason = importer.GetErrorString();
         std::replace(reason.begin(), reason.end(), '\n', ' ');
         throw InputError(file, "", reason.empty() ? "cannot read the mesh" : reason);
     }
-    return MeshReader(file, options, *input).read();
+    return MeshReader(file, options, *input, files).read();
 }
 
 }  // namespace photonav

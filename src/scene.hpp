@@ -22,6 +22,7 @@ struct Triangle {
 struct Scene {
     std::vector<Texture> textures;
     std::vector<Triangle> triangles;
+    std::vector<std::string> files;  ///< that were read for it: scene or mesh, textures, materials
 
     Eigen::AlignedBox3d boundingBox() const;
 };

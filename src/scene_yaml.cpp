@@ -17,7 +17,9 @@ constexpr double kSmallest = 1e-6;  // [m]: what counts as a positive length
 /// Reads one scene file: textures by name first, then the surfaces that refer to them.
 class SceneReader {
   public:
-    explicit SceneReader(const std::string& file) : file_(file), root_(file, loadYaml(file)) {}
+    explicit SceneReader(const std::string& file) : file_(file), root_(file, loadYaml(file)) {
+        scene_.files = {file};
+    }
 
     Scene read() {
         root_.read("seed", seed_);
@@ -146,6 +148,7 @@ Texture SceneReader::readImage(YamlMap& map) {
     if (!std::filesystem::is_regular_file(path)) {
         map.fail("file", fmt::format("no such image '{}'", path.string()));
     }
+    scene_.files.push_back(path.string());
     return imageTexture(path.string(), width);
 }
 

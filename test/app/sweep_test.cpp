@@ -145,6 +145,40 @@ TEST_F(SweepFiles, TheFolderOfASceneDoesNotMatterItsContentDoes) {
         difference(inFolder("c", "# edited\n"), base).starts_with("scene.file (content): "));
 }
 
+TEST_F(SweepFiles, TheFilesOfASceneAreNamedWhenTheyChange) {
+    const auto write = [&](const std::string& name, const std::string& text) {
+        std::ofstream(folder_ / name) << text;
+    };
+    const auto writeImage = [&](int grey) {
+        write("floor.pgm", "P2 2 2 255\n" + std::to_string(grey) + " 200 50 200\n");
+    };
+    const auto identity = [&](const std::string& scene) {
+        return sweepIdentity(
+            loadConfig(scenario("stripes"), {"scene.file=" + (folder_ / scene).string()}));
+    };
+    write("scene.yaml",
+          "textures:\n  - {name: floor, type: image, file: floor.pgm}\n"
+          "planes:\n  - {corner: [0, 0, 0], u: [9, 0, 0], v: [0, 9, 0], texture: floor}\n");
+    write("mesh.obj",
+          "mtllib mesh.mtl\nv 0 0 0\nv 9 0 0\nv 0 9 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+          "usemtl floor\nf 1/1 2/2 3/3\n");
+    write("mesh.mtl", "newmtl floor\nKd 1 1 1\nmap_Kd floor.pgm\n");
+    writeImage(50);
+    const auto scene = identity("scene.yaml");
+    const auto mesh = identity("mesh.obj");
+    EXPECT_EQ(difference(identity("scene.yaml"), scene), "");
+    EXPECT_EQ(difference(identity("mesh.obj"), mesh), "");
+    writeImage(51);
+    const std::string image = "scene.file (content of floor.pgm): ";
+    EXPECT_TRUE(difference(identity("scene.yaml"), scene).starts_with(image));
+    EXPECT_TRUE(difference(identity("mesh.obj"), mesh).starts_with(image));
+    writeImage(50);
+    write("mesh.mtl", "newmtl floor\nKd 0.5 0.5 0.5\nmap_Kd floor.pgm\n");
+    EXPECT_TRUE(
+        difference(identity("mesh.obj"), mesh).starts_with("scene.file (content of mesh.mtl): "))
+        << difference(identity("mesh.obj"), mesh);
+}
+
 TEST_F(SweepFiles, AJournalGivesBackWhatWasWritten) {
     const SweepItem solved{"rrt_star", 0.15, 3};
     const SweepItem failed{"rrt_star", 0.15, 4};
