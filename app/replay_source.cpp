@@ -25,6 +25,7 @@ ReplaySource openTum(const ReplaySourceOptions& options) {
     source.layout = "TUM RGB-D";
     if (sequence.cameraAssumed) source.note = "the benchmark's Kinect was assumed";
     source.camera = sequence.camera;
+    source.cameraFile = sequence.cameraFile;
     source.skipped = sequence.skipped;
     source.recorded = recording->recorded;
     for (const auto& entry : sequence.frames) {
@@ -35,7 +36,8 @@ ReplaySource openTum(const ReplaySourceOptions& options) {
     return source;
 }
 
-ReplaySource openEuroc(const ReplaySourceOptions& options) {
+/// What EuRoC recordings say themselves or do not have is an error. @return up
+Eigen::Vector3d checkForEuroc(const ReplaySourceOptions& options) {
     if (!options.cameraFile.empty()) {
         throw InputError("--camera", "", "EuRoC recordings say themselves what their cameras are");
     }
@@ -43,37 +45,45 @@ ReplaySource openEuroc(const ReplaySourceOptions& options) {
         throw InputError("--depth-scale", "", "EuRoC recordings have no depth images");
     }
     const auto up = parseUp(options.up);
-    if (!up) {
-        throw InputError("--up", "",
-                         fmt::format("'{}' is not one of {}, nor x,y,z", options.up,
-                                     fmt::join(axisNames(), ", ")));
+    if (up) return *up;
+    throw InputError(
+        "--up", "",
+        fmt::format("'{}' is not one of {}, nor x,y,z", options.up, fmt::join(axisNames(), ", ")));
+}
+
+std::shared_ptr<StereoDepth> stereoOf(const StereoSequence& sequence, const std::string& method) {
+    StereoOptions options;
+    if (method == "sgbm") options.method = StereoMethod::semiGlobal;
+    try {
+        return std::make_shared<StereoDepth>(sequence.left, sequence.right, options);
+    } catch (const std::invalid_argument& error) {
+        throw InputError(sequence.right.file, "T_BS", error.what());
     }
+}
+
+/// Whose poses they are.
+std::string noteOn(const StereoSequence& sequence) {
+    const std::string note = "poses are those of the left camera, rectified";
+    const std::string& of = sequence.groundtruthOf;
+    if (of.empty()) return note;
+    return note + "; recorded were the poses of the " + (of == "cam0" ? "left camera" : of);
+}
+
+ReplaySource openEuroc(const ReplaySourceOptions& options) {
+    Pose T_recorded_w = Pose::Identity();
+    T_recorded_w.linear() = worldUpRotation(checkForEuroc(options)).transpose();
     EurocOptions euroc;
     euroc.tolerance = options.tolerance;
     const auto sequence =
         std::make_shared<StereoSequence>(readEurocSequence(options.dataset, euroc));
-    StereoOptions stereoOptions;
-    if (options.stereo == "sgbm") stereoOptions.method = StereoMethod::semiGlobal;
-    std::shared_ptr<StereoDepth> stereo;
-    try {
-        stereo = std::make_shared<StereoDepth>(sequence->left, sequence->right, stereoOptions);
-    } catch (const std::invalid_argument& error) {
-        throw InputError(options.dataset, "T_BS", error.what());
-    }
+    const auto stereo = stereoOf(*sequence, options.stereo);
     ReplaySource source;
     source.layout = "EuRoC";
-    source.note = "poses are those of the left camera, rectified";
-    if (!sequence->groundtruthOf.empty()) {
-        source.note +=
-            "; recorded were the poses of the " +
-            (sequence->groundtruthOf == "cam0" ? "left camera" : sequence->groundtruthOf);
-    }
+    source.note = noteOn(*sequence);
     source.camera = stereo->camera();
     source.skipped = sequence->skipped;
     source.recorded = sequence->frames.size() + sequence->skipped.size();
     const auto [first, end] = parseFrames(options.frames, sequence->frames.size());
-    Pose T_recorded_w = Pose::Identity();
-    T_recorded_w.linear() = worldUpRotation(*up).transpose();
     std::vector<std::size_t> indices;
     for (std::size_t i = first; i < end; i += std::size_t(options.every)) {
         const auto& entry = sequence->frames[i];

@@ -34,6 +34,7 @@ struct Sequence {
     Camera camera;  ///< of the colour images, and of the views loaded
     /// Of the depth images when it differs; same size and centre of projection are assumed.
     std::optional<vpCameraParameters> depthIntrinsics;
+    std::string cameraFile;      ///< that says so; empty when it is assumed
     bool cameraAssumed = false;  ///< the dataset does not say; this is the format's usual one
     double depthScale = 5000.;   ///< depth image value of one metre
     std::vector<Entry> frames;   ///< in order of time

@@ -73,6 +73,7 @@ DistortedCamera readCamera(const fs::path& folder) {
                   fmt::format("'{}' is not known, only radial-tangential is", distortion));
     }
     DistortedCamera result;
+    result.file = file;
     const auto size = requiredNumbers(yaml, "resolution", 2);
     if (size[0] < 16. || size[1] < 16. || size[0] > 1e5 || size[1] > 1e5) {
         yaml.fail("resolution", "not the size of an image");
@@ -88,6 +89,15 @@ DistortedCamera readCamera(const fs::path& folder) {
     result.distortion = Eigen::Map<const Eigen::Vector4d>(d.data());
     result.T_b_c = readMount(yaml);
     return result;
+}
+
+void checkSameSize(const DistortedCamera& left, const DistortedCamera& right) {
+    const Camera& l = left.camera;
+    const Camera& r = right.camera;
+    if (l.width == r.width && l.height == r.height) return;
+    throw InputError(
+        right.file, "resolution",
+        fmt::format("{}x{}, but that of cam0 is {}x{}", r.width, r.height, l.width, l.height));
 }
 
 std::vector<StampedFile> readImageList(const fs::path& folder, StereoSequence& sequence) {
@@ -198,6 +208,7 @@ StereoSequence readEurocSequence(const std::string& folder, const EurocOptions& 
     StereoSequence sequence;
     sequence.left = readCamera(mav / "cam0");
     sequence.right = readCamera(mav / "cam1");
+    checkSameSize(sequence.left, sequence.right);
     const auto left = readImageList(mav / "cam0", sequence);
     const auto right = readImageList(mav / "cam1", sequence);
     pairImages(left, right, options.stereoTolerance, sequence);
@@ -212,8 +223,10 @@ StereoSequence readEurocSequence(const std::string& folder, const EurocOptions& 
 
 StereoImages loadStereo(const StereoSequence& sequence, std::size_t index) {
     const StereoSequence::Entry& entry = sequence.frames.at(index);
-    return {readGrey8(entry.leftFile, sequence.left.camera),
-            readGrey8(entry.rightFile, sequence.right.camera)};
+    const auto read = [](const std::string& file, const DistortedCamera& camera) {
+        return readGrey8(file, camera.camera, camera.file + " (resolution)");
+    };
+    return {read(entry.leftFile, sequence.left), read(entry.rightFile, sequence.right)};
 }
 
 }  // namespace photonav

@@ -14,6 +14,7 @@ struct DistortedCamera {
     Camera camera;  ///< size and intrinsics, as if there were no distortion
     Eigen::Vector4d distortion = Eigen::Vector4d::Zero();  ///< k1, k2, p1, p2
     Pose T_b_c = Pose::Identity();                         ///< mount on the body (T_BS)
+    std::string file;                                      ///< sensor.yaml that says so
 };
 
 /// What a dataset holds, without the images.
@@ -48,7 +49,8 @@ struct EurocOptions {
 /// body's. Images without partner, and those whose timestamps repeat or go back, are skipped and
 /// listed; images without pose are kept.
 /// @throws InputError naming file, line or key, and reason: also for a missing camera, another
-///         camera or distortion model, no pair of images, and ground truth that belongs to none
+///         camera or distortion model, cameras that differ in size, no pair of images, and ground
+///         truth that belongs to none
 StereoSequence readEurocSequence(const std::string& folder, const EurocOptions& options = {});
 
 /// Whether readEurocSequence() is the reader for a folder: it has mav0 or cam0 inside.

@@ -220,7 +220,8 @@ Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
     Sequence sequence;
     const std::string inFolder = (fs::path(folder) / "camera.yaml").string();
     if (!options.cameraFile.empty() || fs::exists(inFolder)) {
-        readCamera(options.cameraFile.empty() ? inFolder : options.cameraFile, sequence);
+        sequence.cameraFile = options.cameraFile.empty() ? inFolder : options.cameraFile;
+        readCamera(sequence.cameraFile, sequence);
     } else {
         sequence.camera = {640, 480, vpCameraParameters(525., 525., 319.5, 239.5)};
         sequence.cameraAssumed = true;
@@ -234,8 +235,10 @@ Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
 RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
     const Sequence::Entry& entry = sequence.frames.at(index);
     const Camera& camera = sequence.camera;
-    const vpImage<unsigned char> grey = readGrey8(entry.colourFile, camera);
-    const vpImage<std::uint16_t> depth = readDepth16(entry.depthFile, camera);
+    const std::string source = sequence.cameraAssumed ? "the camera assumed without a camera.yaml"
+                                                      : sequence.cameraFile + " (width, height)";
+    const vpImage<unsigned char> grey = readGrey8(entry.colourFile, camera, source);
+    const vpImage<std::uint16_t> depth = readDepth16(entry.depthFile, camera, source);
     RecordedFrame frame{entry.T_c_w, {}, entry.timestamp};
     frame.view.intensity.resize(camera.height, camera.width);
     frame.view.depth.resize(camera.height, camera.width, 0.F);
