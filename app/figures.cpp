@@ -172,7 +172,8 @@ std::vector<LegendEntry> legendOf(const TopView& view) {
                                canvas.translucent(0.22, [&] { canvas.disc(center, 9.0, color); });
                            }});
     }
-    for (const auto& [words, color] : {std::pair{"start", kStart}, std::pair{"goal", kGoal}})
+    for (const auto& [words, color] :
+         {std::pair{std::string("start"), kStart}, std::pair{view.goalName, kGoal}})
         entries.push_back({words, [color = color](Canvas& canvas, const auto& center) {
                                drawMarker(canvas, center, color);
                            }});

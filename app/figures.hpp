@@ -56,6 +56,7 @@ struct TopView {
     std::vector<DrawnPath> paths = {};  ///< the first one is drawn on top
     Eigen::Vector3d start = Eigen::Vector3d::Zero();
     Eigen::Vector3d goal = Eigen::Vector3d::Zero();  ///< in w
+    std::string goalName = "goal";
     double ellipseScale = 1.0;  ///< 3 sigma ellipses of the position are drawn this much larger
                                 ///< (the legend says so); 0: none
 };

@@ -36,19 +36,19 @@ json jsonOf(const FlightSet& set) {
                 {"collisions", s.collisions},
                 {"given_up", s.lost},
                 {"out_of_time", s.outOfTime},
-                {"position_rmse_m", s.positionRmse},
-                {"predicted_sigma_m", s.predictedSigma},
-                {"believed_sigma_m", s.believedSigma},
-                {"nees_per_dof", s.nees},
-                {"nees_at_goal_per_dof", s.neesAtGoal},
-                {"nees_at_goal_bounds", {s.neesLow, s.neesHigh}},
+                {"position_rmse_m", finiteOrNull(s.positionRmse)},
+                {"predicted_sigma_m", finiteOrNull(s.predictedSigma)},
+                {"believed_sigma_m", finiteOrNull(s.believedSigma)},
+                {"nees_per_dof", finiteOrNull(s.nees)},
+                {"nees_at_goal_per_dof", finiteOrNull(s.neesAtGoal)},
+                {"nees_at_goal_bounds", {finiteOrNull(s.neesLow), finiteOrNull(s.neesHigh)}},
                 {"lost_s", s.lostTime},
-                {"duration_s", s.duration},
-                {"goal_error_m", s.goalError},
+                {"duration_s", finiteOrNull(s.duration)},
+                {"goal_error_m", finiteOrNull(s.goalError)},
                 {"photometric_goal",
                  {{"flights", s.photometric},
-                  {"error_before_m", s.photometricBefore},
-                  {"error_after_m", s.photometricAfter}}},
+                  {"error_before_m", finiteOrNull(s.photometricBefore)},
+                  {"error_after_m", finiteOrNull(s.photometricAfter)}}},
                 {"each", json::array()}};
     for (const FlightResult& flight : set.flights) result["each"].push_back(jsonOf(flight));
     return result;
@@ -58,6 +58,10 @@ ReportTable tableOf(const FlightSet& set) {
     const FlightSummary s = summarise(set);
     const auto metres = [](double value) { return fmt::format("{:.3f} m", value); };
     ReportTable table{"Flights of " + set.path.planner, {}};
+    if (s.flights == 0) {
+        table.rows = {{"flown", "not once"}};
+        return table;
+    }
     table.rows = {{"arrived", fmt::format("{} of {}", s.arrived, s.flights)},
                   {"believed to be there, but elsewhere", fmt::format("{}", s.astray)},
                   {"collisions", fmt::format("{}", s.collisions)},
@@ -156,6 +160,7 @@ void writeFlyReport(const fs::path& folder, const Config& config, const World& w
     const Camera camera = config.camera.camera();
     ReportData report;
     report.title = fs::path(config.file).stem().string() + ", flown";
+    report.subtitle = "Plans flown in closed loop: what was predicted against what happened.";
     report.commandLine = commandLine;
     report.version = PHOTONAV_VERSION;
     report.result = result;
@@ -165,9 +170,6 @@ void writeFlyReport(const fs::path& folder, const Config& config, const World& w
         report.paths.push_back(drawnPath(sets[k].path, config.camera.T_b_c(), colorOf(k)));
         report.trees.push_back(drawnFlights(sets[k], colorOf(k)));
         report.tables.push_back(tableOf(sets[k]));
-        report.subtitle +=
-            fmt::format("{}{}: {} of {} flights arrived", k == 0 ? "" : "; ", sets[k].path.planner,
-                        summarise(sets[k]).arrived, sets[k].flights.size());
     }
     report.start = config.start.position;
     report.goal = config.goal.position;

@@ -17,23 +17,24 @@ double positionSigma(const Matrix6& covariance) {
 }
 
 double median(std::vector<double> values) {
-    if (values.empty()) return 0.;
+    if (values.empty()) return FlightSummary::kNone;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
 }
 
-void countEnds(const FlightSet& set, FlightSummary& s) {
-    s.flights = set.flights.size();
+void countEnds(const std::vector<FlightResult>& flights, FlightSummary& s) {
+    const auto n = static_cast<double>(flights.size());
     std::vector<double> errors, before, after;
-    for (const FlightResult& flight : set.flights) {
+    s.duration = 0.;
+    for (const FlightResult& flight : flights) {
         s.arrived += flight.end == FlightEnd::arrived;
         s.astray += flight.end == FlightEnd::astray;
         s.collisions += flight.end == FlightEnd::collided;
         s.lost += flight.end == FlightEnd::lost;
         s.outOfTime += flight.end == FlightEnd::outOfTime;
         s.lostTime += flight.lost;
-        s.duration += flight.duration / static_cast<double>(s.flights);
+        s.duration += flight.duration / n;
         errors.push_back(flight.goalError);
         if (!flight.photometric) continue;
         before.push_back(flight.goalErrorBefore);
@@ -43,6 +44,25 @@ void countEnds(const FlightSet& set, FlightSummary& s) {
     s.photometric = before.size();
     s.photometricBefore = median(before);
     s.photometricAfter = median(after);
+}
+
+/// Errors against what was predicted and believed, over all exposures.
+void judgeExposures(const FlightSet& set, FlightSummary& s) {
+    double error = 0., predicted = 0., believed = 0., nees = 0., n = 0.;
+    for (const FlightResult& flight : set.flights) {
+        for (const FlightSample& sample : flight.samples) {
+            const PositionError e = positionError(sample, set.plan);
+            error += e.error * e.error;
+            predicted += e.predicted * e.predicted;
+            believed += e.believed * e.believed;
+            nees += neesPerDof(sample);
+            ++n;
+        }
+    }
+    s.positionRmse = std::sqrt(error / n);
+    s.predictedSigma = std::sqrt(predicted / n);
+    s.believedSigma = std::sqrt(believed / n);
+    s.nees = nees / n;
 }
 
 }  // namespace
@@ -86,24 +106,14 @@ double chiSquareQuantile(double degrees, double z) {
 
 FlightSummary summarise(const FlightSet& set) {
     FlightSummary s;
+    s.flights = set.flights.size();
     if (set.flights.empty()) return s;
-    countEnds(set, s);
-    double n = 0.;
+    countEnds(set.flights, s);
+    judgeExposures(set, s);
+    s.neesAtGoal = 0.;
     for (const FlightResult& flight : set.flights) {
-        for (const FlightSample& sample : flight.samples) {
-            const PositionError e = positionError(sample, set.plan);
-            s.positionRmse += e.error * e.error;
-            s.predictedSigma += e.predicted * e.predicted;
-            s.believedSigma += e.believed * e.believed;
-            s.nees += neesPerDof(sample);
-            ++n;
-        }
         s.neesAtGoal += neesPerDof(flight.samples.back()) / static_cast<double>(s.flights);
     }
-    s.positionRmse = std::sqrt(s.positionRmse / n);
-    s.predictedSigma = std::sqrt(s.predictedSigma / n);
-    s.believedSigma = std::sqrt(s.believedSigma / n);
-    s.nees /= n;
     const double degrees = 6. * static_cast<double>(s.flights);
     s.neesLow = chiSquareQuantile(degrees, -1.96) / degrees;
     s.neesHigh = chiSquareQuantile(degrees, 1.96) / degrees;

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <functional>
+#include <limits>
 
 #include "flight.hpp"
 #include "plan_run.hpp"
@@ -36,22 +37,25 @@ PositionError positionError(const FlightSample& sample, const std::vector<Planne
 /// xi^T covariance^-1 xi / 6 of the believed against the true pose: 1 on average when honest.
 double neesPerDof(const FlightSample& sample);
 
+/// Numbers are NaN where no flight gave one.
 struct FlightSummary {
+    static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
     std::size_t flights = 0, arrived = 0, astray = 0, collisions = 0, lost = 0, outOfTime = 0;
-    double positionRmse = 0.;    ///< of the believed position, over all exposures [m]
-    double predictedSigma = 0.;  ///< root mean square over the same [m]
-    double believedSigma = 0.;   ///< root mean square over the same [m]
-    double nees = 0.;            ///< per degree of freedom, mean over all exposures
-    double neesAtGoal = 0.;      ///< per degree of freedom, mean over the flights' ends
+    double positionRmse = kNone;    ///< of the believed position, over all exposures [m]
+    double predictedSigma = kNone;  ///< root mean square over the same [m]
+    double believedSigma = kNone;   ///< root mean square over the same [m]
+    double nees = kNone;            ///< per degree of freedom, mean over all exposures
+    double neesAtGoal = kNone;      ///< per degree of freedom, mean over the flights' ends
     /// Within which neesAtGoal lies in 95 % of honest cases: chi-square with 6 degrees of freedom
     /// for every flight.
-    double neesLow = 0., neesHigh = 0.;
-    double lostTime = 0.;           ///< sum [s]
-    double duration = 0.;           ///< mean [s]
-    double goalError = 0.;          ///< median true distance to the goal at the end [m]
-    std::size_t photometric = 0;    ///< flights that ended on the goal's image
-    double photometricBefore = 0.;  ///< their median goal error when that began [m]
-    double photometricAfter = 0.;   ///< and at the end [m]
+    double neesLow = kNone, neesHigh = kNone;
+    double lostTime = 0.;              ///< sum [s]
+    double duration = kNone;           ///< mean [s]
+    double goalError = kNone;          ///< median true distance to the goal at the end [m]
+    std::size_t photometric = 0;       ///< flights that ended on the goal's image
+    double photometricBefore = kNone;  ///< their median goal error when that began [m]
+    double photometricAfter = kNone;   ///< and at the end [m]
 };
 FlightSummary summarise(const FlightSet& set);
 

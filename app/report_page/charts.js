@@ -92,7 +92,7 @@ function createCharts(onPick) {
         borderColor: paths.length ? paths[0].color : cssColor('--accent'),
         backgroundColor: cssColor('--accent'),
       }], 'vertices', 'best cost', {alongPath: false});
-    for (const [id, shown] of [['trace-box', hasBeliefs], ['cost-box', summaries.some((path) => path.cost > 0)],
+    for (const [id, shown] of [['trace-box', hasBeliefs], ['cost-box', hasCost],
                                ['progress-box', progress.length]])
       document.getElementById(id).hidden = !shown;
   }

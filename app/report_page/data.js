@@ -63,6 +63,12 @@ const hasBeliefs = paths.some((path) => path.points.some((point) => point.trace 
 if (summaries.length && typeof data.result.mean_trace === 'number')
   summaries[0].meanTrace = data.result.mean_trace;  // with every sub-step, not only path points
 
+const hasCost = summaries.some((path) => path.cost > 0);
+
+/// Paths that were recorded, not planned: they have frames and no goal.
+const isRecorded = ['map', 'replay'].includes(data.result.command);
+const placeName = isRecorded ? 'Frame' : 'Waypoint';
+
 /// The points that can be selected: those with a predicted view, or all if there are none. The paths
 /// of a sweep are only drawn.
 const waypoints = !paths.length || data.result.command === 'sweep' ? [] : data.views.length

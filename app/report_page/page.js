@@ -12,6 +12,7 @@ function make(tag, text, attributes = {}) {
 // Head --------------------------------------------------------------------------------------------
 function verdict() {
   if (sweep) return sweepVerdict();
+  if (data.result.command === 'fly') return flyVerdict();
   if (data.result.verdict) return `${data.result.verdict[0].toUpperCase()}${data.result.verdict.slice(1)}.`;
   if (!paths.length) return data.result.command === 'plan' ? 'No path was found.' : '';
   if (!hasBeliefs) return '';
@@ -31,6 +32,16 @@ function verdict() {
          `(1σ, worst direction)${factor}.`;
 }
 
+/// What was flown, against what the plans predicted.
+function flyVerdict() {
+  const flown = ({planner, flights, arrived, position_rmse_m: error, predicted_sigma_m: predicted,
+                  nees_per_dof: nees}) => !flights ? `${planner} was not flown`
+      : `${planner}: ${arrived} of ${flights} flights arrived, with a position error of ` +
+        `${say(100 * error, 'cm')} rms where ${say(100 * predicted, 'cm')} were predicted (NEES ${say(nees)})`;
+  const {planners} = data.result;
+  return planners.length ? `${planners.map(flown).join('; ')}.` : 'No path was found.';
+}
+
 function fillHead() {
   document.title = `${data.title} – photonav`;
   element('brand').textContent = ['photonav', data.version, data.result.command].filter(Boolean).join(' · ');
@@ -44,17 +55,30 @@ function replayTiles({ate_rmse_m: ate, rpe, nees_per_dof: nees, tracked, frames,
   const second = rpe.second || rpe.frame || {}, over = rpe.second ? 'a second' : 'a frame';
   return [
     ['frames tracked', tracked, `of ${frames}`], ['frames lost', lost, ''],
-    ['absolute error, rms', ate === null ? null : 1000 * ate, 'mm'],
+    ['absolute error, rms', times(1000, ate), 'mm'],
     [`error over ${over}, rms`, 1000 * second.translation_m, 'mm'],
     [`the same, turned`, second.rotation_deg, '°'],
     ['NEES per degree of freedom', nees, ''], ['frames per second', fps, ''],
   ];
 }
 
+/// A number times a factor, but null stays null.
+const times = (factor, value) => (value === null ? null : factor * value);
+
+function flyTiles({planners}) {
+  return planners.flatMap((flown) => [
+    [`${flown.planner}: arrived`, flown.arrived, `of ${flown.flights}`],
+    ['position error, rms', times(100, flown.position_rmse_m), 'cm'],
+    ['predicted, 1σ', times(100, flown.predicted_sigma_m), 'cm'],
+    ['NEES per degree of freedom', flown.nees_per_dof, ''],
+  ]);
+}
+
 function fillTiles() {
   const {result} = data, ours = hasBeliefs ? summaries[0] : {};
   const seconds = (result.time || {}).total_s;
-  const tiles = sweep ? sweepTiles() : result.command === 'replay' ? replayTiles(result) : [
+  const tiles = sweep ? sweepTiles() : result.command === 'replay' ? replayTiles(result)
+      : result.command === 'fly' ? flyTiles(result) : [
     ['path length', ours.length ?? result.length, 'm'],
     ['goal position, 1σ', 100 * ours.goalSigma, 'cm'],
     ['goal trace', ours.goalTrace ?? result.goal_trace, 'm²'],
@@ -85,7 +109,7 @@ function rows(table, pairs) {
 
 function showWaypoint(index) {
   const {point, view} = waypoints[index];
-  element('waypoint-name').textContent = `Waypoint ${index} of ${waypoints.length - 1}`;
+  element('waypoint-name').textContent = `${placeName} ${index} of ${waypoints.length - 1}`;
   element('waypoint').value = index;
   for (const kind of ['predicted', 'contribution']) {
     const uri = view && (kind === 'predicted' ? view.image : view.contribution);
@@ -101,8 +125,8 @@ function showWaypoint(index) {
     ['1σ in x, y, z', `${sigma.join(', ')}\u00a0cm`],
     ['1σ, worst direction', say(100 * worstSigma(point.position_covariance), 'cm')],
     ['Trace', say(point.trace, 'm²')],
-    ['Cost so far', say(point.cost)],
   ];
+  if (hasCost) belief.push(['Cost so far', say(point.cost)]);
   rows(element('waypoint-numbers'), hasBeliefs ? [...place, ...belief] : place);
   document.documentElement.dataset.waypoint = index;
 }
@@ -292,10 +316,10 @@ function setUpView() {
   element('perspective').addEventListener('click', view3d.views.perspective);
   element('top').addEventListener('click', view3d.views.top);
   element('scene-caption').textContent =
-      (hasBeliefs ? 'Paths with the 3σ ellipsoids of the predicted position' : paths.length ? 'Paths' : 'The map') +
+      (hasBeliefs ? `Paths with the 3σ ellipsoids of the ${isRecorded ? 'believed' : 'predicted'} position` : paths.length ? 'Paths' : 'The map') +
       `, grid of ${say(view3d.gridStep, 'm')}. Drag to turn, right button or two fingers to move, ` +
       'wheel to zoom after a click.' +
-      (waypoints.length ? ' Click a white waypoint, or use ← and →, to see through the camera there.' : '');
+      (waypoints.length ? ` Click a white ${placeName.toLowerCase()}, or use ← and →, to see ${data.views.length ? 'through the camera there' : 'its numbers'}.` : '');
 }
 
 function setUpWaypoints() {

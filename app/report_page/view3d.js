@@ -380,7 +380,7 @@ function createView3d(canvas, onPick) {
       addWaypoints();
     }
     addMarker('start', data.start, '#15803d');
-    addMarker('goal', data.goal, '#a21caf');
+    addMarker(isRecorded ? 'end' : 'goal', data.goal, '#a21caf');
   }
   drawGround();
   new ResizeObserver(resize).observe(canvas.parentElement);
