@@ -45,7 +45,7 @@ void applyOverride(const YAML::Node& root, const std::string& text) {
     }
     const std::string path = text.substr(0, equals);
     std::string value = text.substr(equals + 1);
-    const bool isFile = path.ends_with(".file") || path == "sweep.reference";
+    const bool isFile = path.ends_with(".file") || path == "sweep.reference" || path == "fly.plan";
     if (isFile && !value.empty()) value = fs::absolute(value).string();
     YAML::Node node = root;
     for (std::size_t begin = 0; begin <= path.size();) {
@@ -249,6 +249,8 @@ Config loadConfig(const std::string& file, const std::vector<std::string>& overr
     readPlanner(root, config);
     config.sweep = readSweep(root, plannerNames());
     config.sweep.reference = resolve(config.sweep.reference, file);
+    config.fly = readFly(root);
+    config.fly.plan = resolve(config.fly.plan, file);
     readCount(root, "seed", config.seed, 1., 4294967295.);
     root.finish();
     return config;
@@ -307,7 +309,7 @@ std::string toYaml(const Config& c) {
                     c.viewModel.kappa, c.viewModel.mapPriorSigma, c.field.positionPitch,
                     c.field.rotationPitch, c.compareWithRrtStar));
     line(fmt::format("seed: {}", c.seed));
-    return text + toYaml(c.sweep);
+    return text + toYaml(c.sweep) + toYaml(c.fly);
 }
 
 }  // namespace photonav

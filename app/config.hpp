@@ -9,6 +9,7 @@
 #include "belief.hpp"
 #include "belief_rrt_star.hpp"
 #include "camera.hpp"
+#include "fly_config.hpp"
 #include "photometric.hpp"
 #include "sweep_config.hpp"
 #include "textured_octree.hpp"
@@ -68,6 +69,7 @@ struct Config {
     double rotationWeight = 0.25;  ///< metres that a radian of rotation counts
     bool compareWithRrtStar = true;
     SweepConfig sweep;
+    FlyConfig fly;
 
     std::uint32_t seed = 1;
 };

@@ -8,7 +8,6 @@
 
 #include "atomic_file.hpp"
 #include "camera_noise.hpp"
-#include "error.hpp"
 #include "flight_recorder.hpp"
 #include "fly_plan.hpp"
 #include "fly_report.hpp"
@@ -18,32 +17,24 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void readBlackout(const std::string& text, SimulatedCameraOptions& camera) {
-    if (text.empty()) return;
-    char rest = 0;
-    const int read = std::sscanf(text.c_str(), "%lf,%lf%c", &camera.blackoutStart,
-                                 &camera.blackoutLength, &rest);
-    if (read != 2 || !(camera.blackoutStart >= 0.) || !(camera.blackoutLength >= 0.)) {
-        throw InputError("--blackout", text, "expected start,length in seconds");
-    }
-}
-
-FlightOptions flightOptions(const FlyOptions& options, const Config& config) {
+FlightOptions flightOptions(const Config& config) {
+    const FlyConfig& fly = config.fly;
     FlightOptions flight;
     flight.mav.odometryNoise = config.belief.motionNoise;
     flight.mav.rotationWeight = config.rotationWeight;
-    flight.mav.odometryFactor = options.odometry;
-    flight.camera.period = options.rate > 0. ? 1. / options.rate : config.belief.ds / options.speed;
-    flight.camera.latency = options.latency;
-    flight.camera.dropRate = options.drop;
-    flight.camera.blackRate = options.black;
-    readBlackout(options.blackout, flight.camera);
-    flight.servo.maxSpeed = options.speed;
+    flight.mav.odometryFactor = fly.odometry;
+    flight.camera.period = fly.rate > 0. ? 1. / fly.rate : config.belief.ds / fly.speed;
+    flight.camera.latency = fly.latency;
+    flight.camera.dropRate = fly.drop;
+    flight.camera.blackRate = fly.black;
+    flight.camera.blackoutStart = fly.blackout[0];
+    flight.camera.blackoutLength = fly.blackout[1];
+    flight.servo.maxSpeed = fly.speed;
     flight.alignment.photometric = config.photometric;
     flight.alignment.photometric.stride = 1;
     flight.lost.blindTime = std::max(flight.lost.blindTime, 4. * flight.camera.period);
-    flight.photometricGoal = options.photometricGoal;
-    flight.bodyRadius = options.bodyRadius > 0. ? options.bodyRadius : 0.5 * config.robotRadius;
+    flight.photometricGoal = fly.photometricGoal;
+    flight.bodyRadius = fly.bodyRadius > 0. ? fly.bodyRadius : 0.5 * config.robotRadius;
     flight.arrivalTolerance = std::max(config.robotRadius, 0.1);
     flight.seed = config.seed;
     return flight;
@@ -56,8 +47,8 @@ ImageNoise realNoise() {
 }
 
 /// The config's planner first, then RRT* if it is to be compared with.
-std::vector<FlightSet> planAll(const PlanSource& source, const Config& config, PlanRun& run,
-                               ProgressLine& line, const std::atomic<bool>& interrupted) {
+std::vector<FlightSet> planAll(const Config& config, PlanRun& run, ProgressLine& line,
+                               const std::atomic<bool>& interrupted) {
     std::vector<FlightSet> sets;
     const auto add = [&](JudgedPath path) {
         std::vector<PlannedView> plan = plannedViews(path);
@@ -71,8 +62,8 @@ std::vector<FlightSet> planAll(const PlanSource& source, const Config& config, P
         });
         if (outcome.path) add(std::move(*outcome.path));
     };
-    if (!source.resultFile.empty()) {
-        add(readPlannedPath(source.resultFile, run));
+    if (!config.fly.plan.empty()) {
+        add(readPlannedPath(config.fly.plan, run));
     } else {
         solve(config.planner);
     }
@@ -82,7 +73,8 @@ std::vector<FlightSet> planAll(const PlanSource& source, const Config& config, P
 }
 
 void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const FlightOptions& flight,
-            const FlyOptions& options, ProgressLine& line, const std::atomic<bool>& interrupted) {
+            const FlyOptions& options, unsigned count, ProgressLine& line,
+            const std::atomic<bool>& interrupted) {
     std::optional<FlightRecorder> recorder;
     if (!options.record.empty()) recorder.emplace(options.record, world.camera);
     OnExposure record;
@@ -100,13 +92,13 @@ void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const Flight
             arrived += result.end == FlightEnd::arrived;
             const double each = std::chrono::duration<double>(Clock::now() - begin).count() /
                                 static_cast<double>(flown);
-            const double all = static_cast<double>(options.flights * sets.size());
+            const double all = static_cast<double>(count * sets.size());
             line.show(fmt::format("{}: {} of {:.0f} flights, {} arrived, about {:.0f} s left",
                                   set.path.planner, flown, all, arrived,
                                   each * (all - static_cast<double>(flown))));
         };
-        set.flights = flyMany(set.plan, world, flight, options.flights, options.jobs, interrupted,
-                              onFlight, &set == &sets.front() ? record : OnExposure{});
+        set.flights = flyMany(set.plan, world, flight, count, options.jobs, interrupted, onFlight,
+                              &set == &sets.front() ? record : OnExposure{});
     }
     if (recorder) recorder->finish();
 }
@@ -120,6 +112,10 @@ void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::pat
     }
     for (const FlightSet& set : sets) {
         const FlightSummary s = summarise(set);
+        if (s.flights == 0) {
+            fmt::print("{:<16} {:>9}\n", set.path.planner, "not flown");
+            continue;
+        }
         fmt::print(
             "{:<16} {:>9} {:>10} {:>9.3f} m {:>8.3f} m {:>8.3f} m {:>6.2f} {:>5.1f} s "
             "{:>9.3f} m\n",
@@ -129,12 +125,11 @@ void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::pat
     fmt::print("report: {}\n", (folder / "report.html").string());
 }
 
-std::filesystem::path folderFor(const FlyOptions& options, const PlanSource& source) {
+std::filesystem::path folderFor(const FlyOptions& options, const std::filesystem::path& plan) {
     const CommandOptions& common = options;
     CommandOptions named = common;
-    if (!source.resultFile.empty()) {  // named as the plan, not as "config"
-        named.config =
-            std::filesystem::absolute(source.resultFile).parent_path().filename().string() + ".";
+    if (!plan.empty()) {  // named as the plan, not as "config"
+        named.config = plan.parent_path().filename().string() + ".";
     }
     const auto folder = resultFolder(named, "fly");
     for (const char* stale : {"trajectory.tum", "trajectory.cov", "trajectory.ov",
@@ -156,25 +151,28 @@ bool anyArrived(const std::vector<FlightSet>& sets) {
 int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     const auto begin = Clock::now();
     const PlanSource source = findPlan(options.config);
-    const Config config = loadConfig(source.configFile, options.overrides);
-    const FlightOptions flight = flightOptions(options, config);
+    Config config = loadConfig(source.configFile, options.overrides);
+    if (!source.resultFile.empty()) {
+        config.fly.plan = std::filesystem::absolute(source.resultFile).lexically_normal().string();
+    }
+    const FlightOptions flight = flightOptions(config);
     const World world(config);
     PlanRun run(config, world);
     run.checkPlaces();
-    const auto folder = folderFor(options, source);
+    const auto folder = folderFor(options, config.fly.plan);
 
     std::vector<FlightSet> sets;
     {
         ProgressLine line(options.quiet);
-        sets = planAll(source, config, run, line, interrupted);
+        sets = planAll(config, run, line, interrupted);
         const FlightWorld flightWorld{
             .truth = &world.views(),
             .map = &world.views(),
             .clearance = [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
             .camera = config.camera.camera(),
             .T_b_c = config.camera.T_b_c(),
-            .noise = options.camera == "real" ? realNoise() : assumedNoise(config.photometric)};
-        flyAll(sets, flightWorld, flight, options, line, interrupted);
+            .noise = config.fly.camera == "real" ? realNoise() : assumedNoise(config.photometric)};
+        flyAll(sets, flightWorld, flight, options, config.fly.flights, line, interrupted);
     }
     const bool stopped = interrupted;
     nlohmann::json result = flyResult(config, sets, flight, stopped);

@@ -9,20 +9,10 @@
 
 namespace photonav {
 
+/// All that the results depend on is in the config (FlyConfig) and its overrides.
 struct FlyOptions : CommandOptions {
-    unsigned flights = 20;  ///< per planner
-    unsigned jobs = 1;      ///< threads
-    double speed = 1.;      ///< at most [m/s]
-    double rate = 0.;       ///< of the camera [Hz]; 0: a view every planner.ds at full speed
-    double latency = 0.05;  ///< of images [s]
-    double drop = 0.;       ///< share of the images that never arrive
-    double black = 0.;      ///< share of the images that are black
-    std::string blackout;   ///< "start,length" of a time when all are black [s]
-    std::string camera = "assumed";  ///< noise of images: as planned with, or as of a real camera
-    double odometry = 1.;            ///< true variance of the odometry by what is assumed of it
-    double bodyRadius = 0.;          ///< of collisions [m]; 0: half of robot.radius
-    bool photometricGoal = true;     ///< servo on the goal's image at the end
-    std::filesystem::path record;    ///< folder for the first flight as a recording; empty: none
+    unsigned jobs = 1;             ///< threads
+    std::filesystem::path record;  ///< folder for the first flight as a recording; empty: none
 };
 
 /// Plans (or takes the plan of a result folder), flies it and writes result.json, config.yaml,

@@ -44,6 +44,7 @@ PlanSource findPlan(const std::string& argument) {
 
 JudgedPath readPlannedPath(const fs::path& resultFile, PlanRun& run) {
     std::ifstream stream(resultFile, std::ios::binary);
+    if (!stream) throw InputError(resultFile.string(), "", "cannot be read");
     const json result = json::parse(stream, nullptr, false);
     if (!result.is_object()) throw InputError(resultFile.string(), "", "not a JSON object");
     if (result.value("command", "") != "plan") {

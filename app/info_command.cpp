@@ -53,8 +53,17 @@ Pose bodyAt(const Place& place) {
     return T_w_b;
 }
 
-json resultOf(const Place& place, const Matrix6& Lambda, double height,
-              const Eigen::AlignedBox2d& area, const Eigen::ArrayXXd& information) {
+/// What a view from each place on a level is worth, and what it leaves unknown.
+struct Grids {
+    Eigen::AlignedBox2d area;
+    double height;
+    Eigen::ArrayXXd information;  ///< trace
+    Eigen::ArrayXXd sigma;        ///< of the position [m]
+};
+
+json resultOf(const Place& place, const Matrix6& Lambda, const Grids& grids) {
+    const Eigen::ArrayXXd& information = grids.information;
+    const Eigen::AlignedBox2d& area = grids.area;
     json lambda = json::array();
     for (int i = 0; i < 6; ++i) {
         for (int j = i; j < 6; ++j) lambda.push_back(Lambda(i, j));
@@ -78,7 +87,7 @@ json resultOf(const Place& place, const Matrix6& Lambda, double height,
               {"min_eigenvalue", std::max(0., eigen.eigenvalues()[0])}}},
             {"grid",
              {{"quantity", "trace of the Fisher information of one view"},
-              {"height", height},
+              {"height", grids.height},
               {"min", {area.min().x(), area.min().y()}},
               {"max", {area.max().x(), area.max().y()}},
               {"rows_from_smallest_y", rows}}}};
@@ -102,66 +111,54 @@ std::vector<NamedFigure> viewFigures(const View& view, const Config& config) {
     return figures;
 }
 
-std::vector<NamedFigure> heatMaps(const Eigen::AlignedBox2d& area, double height,
-                                  const Eigen::ArrayXXd& information,
-                                  const Eigen::ArrayXXd& sigma) {
+std::vector<NamedFigure> heatMaps(const Grids& grids) {
     const auto heatMap = [&](const char* title, const char* label, const Eigen::ArrayXXd& values) {
         return drawHeatMap(
-            {fmt::format("{} at {:.2f} m", title, height), label, area, values, true});
+            {fmt::format("{} at {:.2f} m", title, grids.height), label, grids.area, values, true});
     };
-    return {{"information.png",
-             {"Trace of the Fisher information of one view.",
-              heatMap("What a view is worth", "trace of the Fisher information", information)}},
-            {"uncertainty.png",
-             {"Standard deviation of the position after one view.",
-              heatMap("What a view leaves unknown", "1 sigma of the position [m]", sigma)}}};
+    return {
+        {"information.png",
+         {"Trace of the Fisher information of one view.",
+          heatMap("What a view is worth", "trace of the Fisher information", grids.information)}},
+        {"uncertainty.png",
+         {"Standard deviation of the position after one view.",
+          heatMap("What a view leaves unknown", "1 sigma of the position [m]", grids.sigma)}}};
 }
 
-}  // namespace
-
-int runInfo(const InfoOptions& options) {
-    const auto begin = std::chrono::steady_clock::now();
-    const auto seconds = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    };
-    const Config config = loadConfig(options.config, options.overrides);
+/// The view that is asked for, by --at or the config.
+Place placeOf(const InfoOptions& options, const Config& config) {
     Place place = options.at ? parsePlace(*options.at) : config.start;
     if (!place.yaw) place.yaw = config.start.yaw;  // the only heading there is in space xyz
+    if (!config.bounds.contains(place.position)) {
+        throw InputError("--at", *options.at, "outside the bounds of the config");
+    }
+    return place;
+}
+
+double heightOf(const InfoOptions& options, const Config& config) {
     const double height = options.height.value_or(config.start.position.z());
     if (!(height >= config.bounds.min().z() && height <= config.bounds.max().z())) {
         throw InputError("--height", fmt::format("{}", height), "outside the bounds of the config");
     }
-    if (!config.bounds.contains(place.position)) {
-        throw InputError("--at", *options.at, "outside the bounds of the config");
-    }
-    const World world(config);
-    PlanRun run(config, world);
-    const auto folder = resultFolder(options, "info");
+    return height;
+}
 
+Grids lookAround(const InfoOptions& options, const Config& config, double height, double yaw,
+                 PlanRun& run) {
+    ProgressLine line(options.quiet);
+    line.show("looking around");
     const Eigen::AlignedBox2d area(config.bounds.min().head<2>(), config.bounds.max().head<2>());
-    Eigen::ArrayXXd information;
-    Eigen::ArrayXXd sigma;
-    {
-        ProgressLine line(options.quiet);
-        line.show("looking around");
-        const double yaw = place.yaw.value_or(0.);
-        const Matrix6 prior = run.root().covariance;
-        information = viewGrid(run, area, height, yaw, options.cells,
-                               [](const Matrix6& gain) { return gain.trace(); });
-        sigma = viewGrid(run, area, height, yaw, options.cells, [&](const Matrix6& gain) {
-            return std::sqrt(updateCovariance(prior, gain).topLeftCorner<3, 3>().trace());
-        });
-    }
-    View view;
-    world.views().render(config.camera.camera(), (bodyAt(place) * config.camera.T_b_c()).inverse(),
-                         view);
+    const Matrix6 prior = run.root().covariance;
+    return {area, height,
+            viewGrid(run, area, height, yaw, options.cells,
+                     [](const Matrix6& gain) { return gain.trace(); }),
+            viewGrid(run, area, height, yaw, options.cells, [&](const Matrix6& gain) {
+                return std::sqrt(updateCovariance(prior, gain).topLeftCorner<3, 3>().trace());
+            })};
+}
 
-    auto figures = heatMaps(area, height, information, sigma);
-    for (NamedFigure& figure : viewFigures(view, config)) figures.push_back(std::move(figure));
-
-    const Matrix6 Lambda = photometricInformation(view, config.camera.camera(), config.photometric);
-    json result = resultOf(place, Lambda, height, area, information);
-
+ReportData reportOf(const InfoOptions& options, const Config& config, const World& world,
+                    const Place& place, const json& result) {
     ReportData report;
     report.title = fs::path(config.file).stem().string();
     report.subtitle = "What the camera can know from a view.";
@@ -173,8 +170,33 @@ int runInfo(const InfoOptions& options) {
     report.start = place.position;
     report.goal = config.goal.position;
     world.describe(report);
+    return report;
+}
+
+}  // namespace
+
+int runInfo(const InfoOptions& options) {
+    const auto begin = std::chrono::steady_clock::now();
+    const Config config = loadConfig(options.config, options.overrides);
+    const double height = heightOf(options, config);
+    const Place place = placeOf(options, config);
+    const World world(config);
+    PlanRun run(config, world);
+    const auto folder = resultFolder(options, "info");
+
+    const Grids grids = lookAround(options, config, height, place.yaw.value_or(0.), run);
+    const Camera camera = config.camera.camera();
+    View view;
+    world.views().render(camera, (bodyAt(place) * config.camera.T_b_c()).inverse(), view);
+    const Matrix6 Lambda = photometricInformation(view, camera, config.photometric);
+
+    json result = resultOf(place, Lambda, grids);
+    auto figures = heatMaps(grids);
+    for (NamedFigure& figure : viewFigures(view, config)) figures.push_back(std::move(figure));
+    ReportData report = reportOf(options, config, world, place, result);
     writeResultFolder(folder, report, figures);
-    result["time"]["total_s"] = seconds();
+    const std::chrono::duration<double> total = std::chrono::steady_clock::now() - begin;
+    result["time"]["total_s"] = total.count();
     writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
     if (options.json) {
         fmt::print("{}\n", result.dump(2));

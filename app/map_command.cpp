@@ -281,6 +281,42 @@ void writeMapReport(const MapOptions& options, const json& result, const Recordi
     writeReport(options.out / "report.html", report);
 }
 
+/// A dataset that cannot be fused leaves no new folder behind.
+FusedFrames fuseOrCleanUp(const MapOptions& options, const Sequence& sequence,
+                          const std::atomic<bool>& interrupted, TexturedOcTree& map) {
+    try {
+        return fuseFrames(options, sequence, interrupted, map);
+    } catch (const InputError&) {
+        std::error_code ignored;
+        fs::remove(options.out, ignored);  // only when there is nothing in it
+        throw;
+    }
+}
+
+void writeMaps(const fs::path& folder, const TexturedOcTree& map, const Trajectory& trajectory) {
+    saveTexturedOcTree(map, (folder / "map.ot").string());
+    saveColorOcTree(map, (folder / "map_color.ot").string());
+    saveBinaryOcTree(map, (folder / "map.bt").string());
+    writeTrajectory((folder / "trajectory.tum").string(), trajectory);
+}
+
+/// result.json but for the map and the time it took.
+json resultOf(const MapOptions& options, const Recording& recording, const FusedFrames& fused,
+              const json& compared, bool interrupted) {
+    return {{"schema", 1},
+            {"command", "map"},
+            {"version", PHOTONAV_VERSION},
+            {"interrupted", interrupted},
+            {"dataset", datasetJson(options, recording)},
+            {"frames", framesJson(options, recording, fused.count)},
+            {"depth", options.depth},
+            {"monocular", fused.monocular},
+            {"resolution", options.resolution},
+            {"min_range", options.fusion.minRange},
+            {"max_range", options.fusion.maxRange},
+            {"comparison", {{"mean", meansOf(compared)}, {"frames", compared}}}};
+}
+
 }  // namespace
 
 json voxelsJson(const TexturedOcTree& map) {
@@ -307,60 +343,38 @@ json voxelsJson(const TexturedOcTree& map) {
 MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted) {
     checkOptions(options);
     Stopwatch watch;
-    json time;
     const Recording recording = readRecording(options);
-    const Sequence& sequence = recording.sequence;
     prepareFolder(options.out);
-    time["read_s"] = watch.lap();
+    json time{{"read_s", watch.lap()}};
 
     TexturedOcTree map(options.resolution);
-    FusedFrames fused;
-    try {
-        fused = fuseFrames(options, sequence, interrupted, map);
-    } catch (const InputError&) {
-        std::error_code ignored;
-        fs::remove(options.out, ignored);  // only when there is nothing in it
-        throw;
-    }
-    const std::size_t used = fused.count;
+    const FusedFrames fused = fuseOrCleanUp(options, recording.sequence, interrupted, map);
     time["load_images_s"] = fused.loadSeconds;
     time["fuse_s"] = fused.fuseSeconds;
-    time["fuse_per_frame_s"] = fused.fuseSeconds / double(std::max<std::size_t>(1, used));
+    time["fuse_per_frame_s"] = fused.fuseSeconds / double(std::max<std::size_t>(1, fused.count));
     watch.lap();
-    saveTexturedOcTree(map, (options.out / "map.ot").string());
-    saveColorOcTree(map, (options.out / "map_color.ot").string());
-    saveBinaryOcTree(map, (options.out / "map.bt").string());
-    const Trajectory trajectory = trajectoryOf(sequence, used);
-    writeTrajectory((options.out / "trajectory.tum").string(), trajectory);
+    const Trajectory trajectory = trajectoryOf(recording.sequence, fused.count);
+    writeMaps(options.out, map, trajectory);
     time["write_s"] = watch.lap();
 
     std::vector<Strip> strips;
-    const json compared = compareFrames(options, sequence, map, interrupted, strips);
+    const json compared = compareFrames(options, recording.sequence, map, interrupted, strips);
     time["compare_s"] = watch.lap();
+    const bool stopped = interrupted;
     MapReport report;
-    report.exitCode = interrupted ? 130 : 0;
-    report.result = {{"schema", 1},
-                     {"command", "map"},
-                     {"version", PHOTONAV_VERSION},
-                     {"interrupted", report.exitCode == 130},
-                     {"dataset", datasetJson(options, recording)},
-                     {"frames", framesJson(options, recording, used)},
-                     {"depth", options.depth},
-                     {"monocular", fused.monocular},
-                     {"resolution", options.resolution},
-                     {"min_range", options.fusion.minRange},
-                     {"max_range", options.fusion.maxRange},
-                     {"voxels", voxelsJson(map)},
-                     {"time", time},
-                     {"comparison", {{"mean", meansOf(compared)}, {"frames", compared}}}};
-    if (!interrupted && report.result["voxels"]["occupied"] == 0) report.exitCode = 1;
+    report.result = resultOf(options, recording, fused, compared, stopped);
+    report.result["voxels"] = voxelsJson(map);
+    report.result["time"] = time;
     report.summary = summary(report.result);
+    report.exitCode = stopped                                    ? kInterrupted
+                      : report.result["voxels"]["occupied"] == 0 ? kNoAnswer
+                                                                 : kDone;
     for (std::size_t i = 0; i < strips.size(); ++i) {
         writeFileAtomically(options.out / fmt::format("comparison_{}.png", i), strips[i].picture);
     }
     writeFileAtomically(options.out / "config.yaml", toYaml(options, recording));
     writeFileAtomically(options.out / "result.json", report.result.dump(2) + "\n");
-    if (used > 0) writeMapReport(options, report.result, recording, trajectory, map, strips);
+    if (fused.count > 0) writeMapReport(options, report.result, recording, trajectory, map, strips);
     return report;
 }
 

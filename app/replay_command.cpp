@@ -15,6 +15,7 @@
 #include "mesh_renderer.hpp"
 #include "octree_file.hpp"
 #include "replay_calibration.hpp"
+#include "replay_config.hpp"
 #include "replay_report.hpp"
 #include "replay_run.hpp"
 #include "scene.hpp"
@@ -91,10 +92,11 @@ UncertainPose startOf(const ReplayOptions& options, const ReplaySource& source) 
 std::optional<double> checkDepths(const ReplayOptions& options, const ReplaySource& source) {
     const std::optional<double> depth = medianDepth(source);
     if (!depth) return {};
-    const std::string key = options.depthScale ? "--depth-scale" : "depth_scale";
     if (*depth > 0. && (*depth < kLeastDepth || *depth > kMostDepth)) {
+        const bool isOfFile = !options.depthScale && !source.cameraFile.empty();
         throw InputError(
-            options.dataset, key,
+            isOfFile ? source.cameraFile : options.dataset,
+            isOfFile ? "depth_scale" : "--depth-scale",
             fmt::format("implausible depths: their median is {:.3g} m; the scale seems "
                         "{} by a factor of about {:.0e}",
                         *depth, *depth > 1. ? "too small" : "too large",
@@ -250,7 +252,7 @@ ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& in
         calibrateReplay(options, run, tracker.scale, map.octree != nullptr, result);
     report.summary = replaySummary(result);
     writeReplayTables(options.out, run, errors);
-    writeReplayReport(options, result, source, run, errors, map.describe);
+    writeReplayReport(options, toYaml(options, tracker), result, source, run, errors, map.describe);
     writeFileAtomically(options.out / "result.json", result.dump(2) + "\n");
     return report;
 }

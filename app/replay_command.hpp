@@ -41,9 +41,9 @@ struct ReplayReport {
     int exitCode = 0;       ///< 1 when lost for good, 130 when interrupted
 };
 
-/// Replays a dataset and writes into options.out: result.json, frames.csv (a row per frame),
-/// trajectory.tum, trajectory.cov, trajectory.ov and groundtruth.tum (camera to world), errors.png,
-/// strips.png, top_view.png and report.html.
+/// Replays a dataset and writes into options.out: result.json, config.yaml (replay_config.hpp),
+/// frames.csv (a row per frame), trajectory.tum, trajectory.cov, trajectory.ov and groundtruth.tum
+/// (camera to world), errors.png, strips.png, top_view.png and report.html.
 /// @param interrupted checked between frames; what is there then is written
 /// @throws InputError for a dataset or map that cannot be used, an option out of range and a folder
 ///         that cannot be written, the last before any work is done

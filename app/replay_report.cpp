@@ -4,10 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
-#include "atomic_file.hpp"
 #include "figures.hpp"
+#include "plan_report.hpp"
 #include "replay_figures.hpp"
 
 namespace photonav {
@@ -90,8 +91,36 @@ Png topView(const std::vector<DrawnPath>& paths, const std::string& title) {
     view.area = areaOf(paths);
     view.start = paths[0].points.front().position;
     view.goal = paths[0].points.back().position;
+    view.goalName = "end";
     view.ellipseScale = ellipseScale(paths[0], view.area.sizes().maxCoeff());
     return drawTopView(view);
+}
+
+std::vector<NamedFigure> figuresOf(bool odometry, const ReplayRun& run, const ReplayErrors& errors,
+                                   const std::vector<DrawnPath>& paths, const std::string& name) {
+    std::vector<NamedFigure> figures;
+    if (!paths.empty()) {
+        const char* caption =
+            odometry && errors.judged.size() > 1
+                ? "From above: the estimate begins at the first true pose and is not aligned."
+                : "From above.";
+        figures.push_back({"top_view.png", {caption, topView(paths, name)}});
+    }
+    if (!run.frames.empty()) {
+        figures.push_back(
+            {"errors.png",
+             {"Error and predicted standard deviation (root of the trace) over time; below, the "
+              "squared error in units of its covariance, 1 on average when the prediction is "
+              "honest.",
+              drawReplayErrors("Error against prediction", run, errors)}});
+    }
+    if (!run.strips.empty()) {
+        const char* caption =
+            odometry ? "Observed; the keyframe as seen from there; their difference (yellow: 0.25)."
+                     : "Observed; predicted from the map; their difference (yellow: 0.25).";
+        figures.push_back({"strips.png", {caption, drawStrips(run.strips)}});
+    }
+    return figures;
 }
 
 }  // namespace
@@ -132,8 +161,8 @@ ReportTable replaySummary(const json& result) {
     return table;
 }
 
-void writeReplayReport(const ReplayOptions& options, const json& result, const ReplaySource& source,
-                       const ReplayRun& run, const ReplayErrors& errors,
+void writeReplayReport(const ReplayOptions& options, const std::string& config, const json& result,
+                       const ReplaySource& source, const ReplayRun& run, const ReplayErrors& errors,
                        const std::function<void(ReportData&)>& describeMap) {
     const std::string name =
         (fs::path(options.dataset) / "").lexically_normal().parent_path().filename().string();
@@ -146,41 +175,21 @@ void writeReplayReport(const ReplayOptions& options, const json& result, const R
     report.commandLine = options.commandLine;
     report.version = PHOTONAV_VERSION;
     report.result = result;
+    report.config = config;
     report.tables = {replaySummary(result)};
     report.fieldOfView = {2. * std::atan(0.5 * source.camera.width / source.camera.fx()),
                           2. * std::atan(0.5 * source.camera.height / source.camera.fy())};
     describeMap(report);
-    const auto add = [&](const char* file, const std::string& caption, Png picture) {
-        writeFileAtomically(options.out / file, picture);
-        report.figures.push_back({caption, std::move(picture)});
-    };
-    report.paths.push_back(estimatedPath(run));
-    if (DrawnPath truth = truePath(run); !truth.points.empty()) report.paths.push_back(truth);
-    if (report.paths[0].points.empty()) report.paths.erase(report.paths.begin());
+    std::array paths{estimatedPath(run), truePath(run)};
+    for (DrawnPath& path : paths) {
+        if (!path.points.empty()) report.paths.push_back(std::move(path));
+    }
     if (!report.paths.empty()) {
         report.start = report.paths[0].points.front().position;
         report.goal = report.paths[0].points.back().position;
-        add("top_view.png",
-            options.odometry && errors.judged.size() > 1
-                ? "From above: the estimate begins at the first true pose and is not aligned."
-                : "From above.",
-            topView(report.paths, name));
     }
-    if (!run.frames.empty()) {
-        add("errors.png",
-            "Error and predicted standard deviation (root of the trace) over time; below, the "
-            "squared error in units of its covariance, 1 on average when the prediction is honest.",
-            drawReplayErrors("Error against prediction", run, errors));
-    }
-    if (!run.strips.empty()) {
-        add("strips.png",
-            options.odometry
-                ? "Observed; the keyframe as seen from there; their difference (yellow: 0.25)."
-                : "Observed; predicted from the map; their difference (yellow: 0.25).",
-            drawStrips(run.strips));
-    }
-    writeFileAtomically(options.out / "report.json", toJson(report).dump());
-    writeReport(options.out / "report.html", report);
+    writeResultFolder(options.out, report,
+                      figuresOf(options.odometry, run, errors, report.paths, name));
 }
 
 }  // namespace photonav

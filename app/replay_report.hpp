@@ -10,10 +10,12 @@ namespace photonav {
 /// The numbers that matter, in words.
 ReportTable replaySummary(const nlohmann::json& result);
 
-/// Writes errors.png, strips.png, top_view.png, report.json and report.html.
+/// Writes config.yaml, errors.png, strips.png, top_view.png, report.json and report.html.
+/// @param config as YAML, complete
 /// @param describeMap puts the map into the report's 3-D view
-void writeReplayReport(const ReplayOptions& options, const nlohmann::json& result,
-                       const ReplaySource& source, const ReplayRun& run, const ReplayErrors& errors,
+void writeReplayReport(const ReplayOptions& options, const std::string& config,
+                       const nlohmann::json& result, const ReplaySource& source,
+                       const ReplayRun& run, const ReplayErrors& errors,
                        const std::function<void(ReportData&)>& describeMap);
 
 }  // namespace photonav

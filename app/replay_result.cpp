@@ -93,6 +93,33 @@ const char* nameOf(FrameStatus status) {
     return "unreadable";
 }
 
+constexpr const char* kOverlapHint = "; a smaller --min-overlap asks for less";
+
+bool isLostFrame(const ReplayedFrame& frame) { return frame.status == FrameStatus::lost; }
+
+bool isShortOfOverlap(const ReplayedFrame& frame) {
+    return frame.tracked.alignment.verdict == Verdict::lostOverlap;
+}
+
+std::size_t countBlack(const ReplayRun& run) {
+    return static_cast<std::size_t>(
+        std::count_if(run.frames.begin(), run.frames.end(),
+                      [](const ReplayedFrame& f) { return isLostFrame(f) && f.isBlack; }));
+}
+
+std::string whyLostAtOnce(const ReplayRun& run, std::size_t lost, bool inMap) {
+    const bool isStopped = !run.stopped.empty();
+    if (countBlack(run) == lost) {
+        return fmt::format("all {}{} images are black", isStopped ? "of the first " : "", lost);
+    }
+    const auto first = std::find_if(run.frames.begin(), run.frames.end(), isLostFrame);
+    std::string text = isStopped ? run.stopped + "; first image: " : "first image: ";
+    text += first->words;
+    if (isShortOfOverlap(*first)) text += kOverlapHint;
+    if (inMap) text += "; poses and map must share a world (--up, --start)";
+    return text;
+}
+
 /// Quoted: file names and verdicts may have commas.
 std::string quoted(const std::string& text) {
     std::string result = "\"";
@@ -180,20 +207,18 @@ bool isLostForGood(const ReplayRun& run) {
     return !run.interrupted;
 }
 
-std::string verdictOf(const ReplayRun& run) {
+std::string verdictOf(const ReplayRun& run, bool inMap) {
     const std::size_t tracked = count(run, FrameStatus::tracked);
     const std::size_t lost = count(run, FrameStatus::lost);
-    const auto firstLost = std::find_if(run.frames.begin(), run.frames.end(), [](const auto& f) {
-        return f.status == FrameStatus::lost;
-    });
-    if (tracked == 0 && lost > 0) {
-        return fmt::format("lost at once{}{}; first image: {}", run.stopped.empty() ? "" : ": ",
-                           run.stopped, firstLost->words);
-    }
+    if (tracked == 0 && lost > 0) return "lost at once: " + whyLostAtOnce(run, lost, inMap);
     std::string text = fmt::format("tracked {} of {} frames", tracked, run.frames.size());
     if (lost > 0) text += fmt::format(", lost {}", lost);
+    const std::size_t black = countBlack(run);
+    if (black > 0) text += fmt::format(" ({} of them black)", black);
     if (isLostForGood(run) && lost > 0) {
         text += fmt::format(", and for good from {:.3f} s on", lostIntervals(run).back().first);
+        const auto last = std::find_if(run.frames.rbegin(), run.frames.rend(), isLostFrame);
+        if (isShortOfOverlap(*last)) text += ": " + last->words + kOverlapHint;
     }
     return text;
 }
@@ -215,7 +240,7 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
     const bool judged = !errors.judged.empty();
     const auto keyframes = std::count_if(run.frames.begin(), run.frames.end(),
                                          [](const auto& f) { return f.tracked.isKeyframe; });
-    return {{"verdict", verdictOf(run)},
+    return {{"verdict", verdictOf(run, !aligned)},
             {"frames", run.frames.size()},
             {"recorded", source.recorded},
             {"tracked", tracked},

@@ -39,8 +39,9 @@ std::vector<TimeInterval> lostIntervals(const ReplayRun& run);
 /// Pauses of more than three times the usual interval between frames.
 std::vector<TimeInterval> gaps(const ReplaySource& source);
 
-/// The run in one sentence.
-std::string verdictOf(const ReplayRun& run);
+/// The run in one sentence, with what may be wrong when it was lost.
+/// @param inMap localised in a map, not by odometry
+std::string verdictOf(const ReplayRun& run, bool inMap);
 
 /// Whether it ended without knowing where the camera is.
 bool isLostForGood(const ReplayRun& run);

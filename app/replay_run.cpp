@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "error.hpp"
@@ -105,9 +106,16 @@ void checkReadable(const std::vector<ReplayedFrame>& frames, const ReplaySource&
     if (!anyRead) source.load(0);  // throws
 }
 
+/// Mean grey value below 5 of 255: the noise of a covered lens.
+bool isBlack(const ImageF& image) {
+    const double sum = std::accumulate(image.bitmap, image.bitmap + image.getSize(), 0.);
+    return sum < 0.02 * image.getSize();
+}
+
 void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, ReplayRun& run) {
     Stopwatch watch;
     for (int h = 0; h < tracker.halvings; ++h) view = halvedView(view);
+    frame.isBlack = isBlack(view.intensity);
     frame.tracked = tracker.track(view, frame.timestamp);
     frame.seconds = watch.lap();
     run.trackSeconds += frame.seconds;

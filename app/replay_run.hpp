@@ -25,8 +25,9 @@ struct ReplayedFrame {
     FrameStatus status = FrameStatus::unreadable;
     TrackedFrame tracked;  ///< nothing in it when unreadable
     std::optional<Pose> truth_c_w;
-    double seconds = 0.;  ///< of tracking, pyramids included
-    std::string words;    ///< the alignment's verdict, or why the frame is unreadable
+    double seconds = 0.;   ///< of tracking, pyramids included
+    bool isBlack = false;  ///< nothing to be seen in the image
+    std::string words;     ///< the alignment's verdict, or why the frame is unreadable
 };
 
 /// What was seen and what was predicted where the tracker believes to be.

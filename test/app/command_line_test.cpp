@@ -220,7 +220,15 @@ TEST_F(CommandLine, BadInputIsOneLineAndExitCodeTwo) {
     expectBadInput(photonav("map nowhere --out \"\""), "--out");
     expectBadInput(photonav("map " + config("room") + " --every 2"), "--every: not together");
     expectBadInput(photonav("plan"), "config");
-    expectBadInput(photonav("fly-away"), "subcommand");
+    expectBadInput(photonav("fly-away"), "fly-away: no such command");
+    expectBadInput(photonav("pln x.yaml"), "pln: no such command, did you mean 'plan'?");
+    expectBadInput(photonav("--plan"), "--plan: no such option");
+    expectBadInput(photonav(""), "subcommand");
+    for (const char* command : {"plan", "sweep", "benchmark", "fly"}) {
+        const Execution run = photonav(std::string(command) + " x.yaml --seed abc");
+        expectBadInput(run, "photonav: --seed: ");
+        expectBadInput(photonav(std::string(command) + " x.yaml --seed 0"), "photonav: --seed: ");
+    }
     expectBadInput(photonav("report " + folder_.string()), "report.json");
     expectBadInput(
         photonav("info " + config("two_textures") + " --at 1,2 --out " + folder_.string()), "--at");

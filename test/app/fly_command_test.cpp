@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "executable.hpp"
 #include "fly_runs.hpp"
@@ -100,6 +101,81 @@ TEST_F(FlyCommand, FliesThePlanOfAResultFolder) {
     }
 }
 
+std::string contentOf(const fs::path& file) {
+    std::ostringstream content;
+    content << std::ifstream(file).rdbuf();
+    return content.str();
+}
+
+TEST_F(FlyCommand, ItsConfigRepeatsTheRun) {
+    ASSERT_NE(fly("a",
+                  "--flights 2 --seed 3 --camera real --odometry 4 --latency 0.1 --rate 5"
+                  " --blackout 3,0.2 --drop 0.1 --speed 0.8 --no-photometric-goal")
+                  .exitCode,
+              2);
+    const auto again = [&](const std::string& from, const std::string& to) {
+        return photonav(fmt::format("fly {} --out {}", at(from + "/config.yaml"), at(to)));
+    };
+    const Execution run = again("a", "b");
+    ASSERT_NE(run.exitCode, 2) << run.output;
+    EXPECT_EQ(result("a")["planners"], result("b")["planners"]);
+    EXPECT_EQ(result("a")["flight"], result("b")["flight"]);
+    EXPECT_EQ(contentOf(folder_ / "a/config.yaml"), contentOf(folder_ / "b/config.yaml"));
+    EXPECT_NE(photonav(fmt::format("fly {} --flights 1 --camera assumed --out {}",
+                                   at("a/config.yaml"), at("c")))
+                  .exitCode,
+              2);
+    EXPECT_EQ(result("c")["planners"][0]["flights"], 1);  // options go over the config
+    EXPECT_NE(contentOf(folder_ / "c/config.yaml").find("rate: 5"), std::string::npos);
+    const Execution bad = photonav(fmt::format("fly {} --set fly.odometri=2", at("a/config.yaml")));
+    EXPECT_EQ(bad.exitCode, 2);
+    EXPECT_NE(bad.output.find("fly.odometri: unknown key, did you mean 'odometry'"),
+              std::string::npos)
+        << bad.output;
+}
+
+TEST_F(FlyCommand, TheConfigOfAFlownPlanFliesThatPlan) {
+    ASSERT_EQ(photonav(fmt::format("plan {} {} --set planner.compare_with_rrt_star=false --out {}",
+                                   config("two_textures"), kQuick, at("plan")))
+                  .exitCode,
+              0);
+    ASSERT_NE(photonav(fmt::format("fly {} --flights 1 --set planner.vertices=20 --out {}",
+                                   at("plan"), at("a")))
+                  .exitCode,
+              2);
+    ASSERT_NE(photonav(fmt::format("fly {} --out {}", at("a/config.yaml"), at("b"))).exitCode, 2);
+    EXPECT_NEAR(result("b")["planners"][0]["length_m"], result("plan")["length"], 1e-6);
+    EXPECT_EQ(result("a")["planners"], result("b")["planners"]);
+    fs::remove_all(folder_ / "plan");
+    const Execution gone = photonav(fmt::format("fly {}", at("a/config.yaml")));
+    EXPECT_EQ(gone.exitCode, 2);
+    EXPECT_NE(gone.output.find("plan/result.json: cannot be read"), std::string::npos)
+        << gone.output;
+}
+
+TEST_F(FlyCommand, WhatWasNeverFlownHasNoErrors) {
+    // Interrupted as soon as the folder is there: long before a flight has ended.
+    const Execution run = execute(fmt::format(
+        "{{ {} fly {} {} --flights 1000 --quiet --out {} & until [ -d {} ]; do sleep 0.02; done;"
+        " kill -INT $!; wait $!; }}",
+        PHOTONAV_BINARY, config("two_textures"), kQuick, at("out"), at("out")));
+    EXPECT_EQ(run.exitCode, 130) << run.output;
+    const json r = result("out");
+    EXPECT_EQ(r["status"], "interrupted");
+    for (const json& planner : r["planners"]) {
+        if (planner["flights"] != 0) continue;
+        for (const char* key : {"position_rmse_m", "predicted_sigma_m", "believed_sigma_m",
+                                "nees_per_dof", "duration_s", "goal_error_m"}) {
+            EXPECT_TRUE(planner[key].is_null()) << key << planner[key];
+        }
+    }
+    FlightSet none;
+    none.plan = {PlannedView{}};
+    EXPECT_TRUE(std::isnan(summarise(none).positionRmse));
+    EXPECT_TRUE(std::isnan(summarise(none).nees));
+    EXPECT_TRUE(std::isnan(summarise(none).goalError));
+}
+
 TEST_F(FlyCommand, ExitsWithOneWhenNoFlightArrives) {
     const Execution run = fly("dark", "--flights 1 --black 1");
     EXPECT_EQ(run.exitCode, 1) << run.output;
@@ -115,6 +191,7 @@ TEST_F(FlyCommand, RejectsBadInput) {
     };
     expect(fly("x", "--blackout 3"), "expected start,length");
     expect(fly("x", "--flights 0"), "--flights");
+    expect(fly("x", "--seed abc"), "--seed");
     expect(photonav("fly " + at("")), "not a result of photonav plan");
     fs::create_directories(folder_ / "no");
     fs::copy(config("two_textures"), folder_ / "no" / "config.yaml");

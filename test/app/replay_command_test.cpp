@@ -283,7 +283,58 @@ TEST_F(ReplayCommand, InTheMapOfAnotherRoomItIsLostAtOnce) {
     EXPECT_EQ(report.result["lost"], 10);
     const auto verdict = report.result["verdict"].get<std::string>();
     EXPECT_TRUE(verdict.starts_with("lost at once")) << verdict;
+    EXPECT_NE(verdict.find("must share a world (--up, --start)"), std::string::npos) << verdict;
+    EXPECT_EQ(verdict.find("--min-overlap"), std::string::npos) << verdict;
     EXPECT_TRUE(test::fs::exists(options.out / "report.html"));
+}
+
+TEST_F(ReplayCommand, LostForTooLittleOverlapItNamesTheOption) {
+    useMap();
+    options.minOverlap = 0.5;
+    std::string small = kScene;  // a floor that fills a small part of the images
+    small.replace(small.find("u: [6, 0, 0], v: [0, 6, 0]"), 26, "u: [2.7, 0, 0], v: [0, 3, 0]");
+    writeText(folder.path() / "room.yaml", small);
+    const auto verdict = run().result["verdict"].get<std::string>();
+    EXPECT_NE(verdict.find("overlap 0."), std::string::npos) << verdict;
+    EXPECT_NE(verdict.find("--min-overlap"), std::string::npos) << verdict;
+}
+
+TEST_F(ReplayCommand, ItsConfigRepeatsTheRun) {
+    useMap();
+    options.frames = "1:9";
+    options.every = 2;
+    options.startSigma = 0.02;
+    options.floorTranslation = 0.003;
+    options.calibrate = true;
+    json first = run().result;
+    const auto textOf = [](const test::fs::path& file) {
+        std::ostringstream text;
+        text << std::ifstream(file).rdbuf();
+        return text.str();
+    };
+    const auto again = folder.path() / "again";
+    const std::string config = (options.out / "config.yaml").string();
+    const Execution good = photonav(fmt::format("replay {} --out {}", config, again.string()));
+    ASSERT_EQ(good.exitCode, 0) << good.output;
+    json second = json::parse(textOf(again / "result.json"));
+    EXPECT_EQ(second["options"]["floor"][0], 0.003);
+    for (const char* key : {"time", "fps", "options"}) {
+        first.erase(key);
+        second.erase(key);
+    }
+    EXPECT_EQ(first, second);
+    EXPECT_EQ(textOf(again / "config.yaml"), textOf(config));
+    const auto expectRefused = [&](const std::string& arguments, const std::string& reason) {
+        const Execution run = photonav("replay " + arguments);
+        EXPECT_EQ(run.exitCode, 2);
+        EXPECT_NE(run.output.find(reason), std::string::npos) << run.output;
+    };
+    expectRefused(config + " --every 3", "--every: not together with a config; edit ");
+    writeText(folder.path() / "bad.yaml", textOf(config) + "minoverlap: 0.1\n");
+    expectRefused((folder.path() / "bad.yaml").string(),
+                  "minoverlap: unknown key, did you mean 'min_overlap'");
+    writeText(folder.path() / "bad.yaml", "odometry: true\n");
+    expectRefused((folder.path() / "bad.yaml").string(), "dataset: missing");
 }
 
 TEST_F(ReplayCommand, DamagedMissingAndBlackImagesAreSurvived) {
@@ -298,6 +349,7 @@ TEST_F(ReplayCommand, DamagedMissingAndBlackImagesAreSurvived) {
         EXPECT_EQ(report.result["tracked"], 8);
         EXPECT_EQ(report.result["unreadable"], 2);
         EXPECT_EQ(report.result["lost"], 2);
+        EXPECT_EQ(report.result["verdict"], "tracked 8 of 12 frames, lost 2 (2 of them black)");
         ASSERT_EQ(report.result["lost_intervals"].size(), 1U);
         EXPECT_NEAR(report.result["lost_intervals"][0][0].get<double>(), Flight::time(7), 1e-9);
         EXPECT_NEAR(report.result["lost_intervals"][0][1].get<double>(), Flight::time(8), 1e-9);
@@ -323,11 +375,12 @@ TEST_F(ReplayCommand, ABlackRecordingIsLost) {
     ReplayReport report = run();
     EXPECT_EQ(report.exitCode, 1);
     EXPECT_EQ(report.result["lost"], 12);
-    EXPECT_TRUE(report.result["verdict"].get<std::string>().starts_with("lost at once"));
+    EXPECT_EQ(report.result["verdict"], "lost at once: all 12 images are black");
     useMap();
     report = run();
     EXPECT_EQ(report.exitCode, 1);
     EXPECT_EQ(report.result["tracked"], 0);
+    EXPECT_EQ(report.result["verdict"], "lost at once: all of the first 10 images are black");
 }
 
 TEST_F(ReplayCommand, EndingLostIsNoAnswer) {
@@ -377,7 +430,15 @@ TEST_F(ReplayCommand, RejectsWhatItCannotReplay) {
                       "width: 640\nheight: 480\nfx: 500\nfy: 500\ncx: 320\ncy: 240\n");
             options.cameraFile = (folder.path() / "large.yaml").string();
         },
-        {"160x120", "640x480"});
+        {"rgb/0.png", "160x120 pixels, not the 640x480 of", "large.yaml (width, height)"});
+    rejected(
+        [&] {
+            writeText(folder.path() / "scaled.yaml",
+                      "width: 160\nheight: 120\nfx: 130\nfy: 130\ncx: 80\ncy: 60\n"
+                      "depth_scale: 5\n");
+            options.cameraFile = (folder.path() / "scaled.yaml").string();
+        },
+        {"scaled.yaml: depth_scale: implausible"});
     writeText(data / "groundtruth.txt", "5 0 0 1 0 0 0 1\n");
     expectRejected({"groundtruth.txt", "poses from 5.000", "images from 50.000 to 51.100"});
 }
@@ -398,7 +459,14 @@ TEST_F(ReplayCommand, StereoRecordings) {
     options.depthScale = 1000.;
     expectInputError([&] { run(); }, {"--depth-scale", "EuRoC"});
     options.depthScale.reset();
-    test::fs::remove_all(folder.path() / "wall/mav0/cam1");
+    wall.width = 300;
+    const auto cam1 = folder.path() / "wall/mav0/cam1";
+    writeText(cam1 / "sensor.yaml", wall.sensor(1));
+    expectInputError([&] { run(); }, {"cam1/sensor.yaml: resolution: 300x240", "320x240"});
+    writeText(folder.path() / "wall/mav0/cam0/sensor.yaml", wall.sensor(0));
+    expectInputError([&] { run(); },
+                     {".png: 320x240 pixels", "300x240", "cam0/sensor.yaml (resolution)"});
+    test::fs::remove_all(cam1);
     expectInputError([&] { run(); }, {"cam1", "no such folder"});
 }
 

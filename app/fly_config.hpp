@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a config says about `photonav fly`: how often and under which conditions a plan is flown.
+#pragma once
+
+#include <string>
+
+#include "yaml_reader.hpp"
+
+namespace photonav {
+
+struct FlyConfig {
+    std::string plan;       ///< result.json of `photonav plan` to fly, absolute; empty: plan anew
+    unsigned flights = 20;  ///< per planner
+    double speed = 1.;      ///< at most [m/s]
+    double rate = 0.;       ///< of the camera [Hz]; 0: a view every planner.ds at full speed
+    double latency = 0.05;  ///< of images [s]
+    double drop = 0.;       ///< share of the images that never arrive
+    double black = 0.;      ///< share of the images that are black
+    Eigen::Vector2d blackout = Eigen::Vector2d::Zero();  ///< all are black: from, how long [s]
+    std::string camera = "assumed";  ///< noise of images: as planned with, or as of a real camera
+    double odometry = 1.;            ///< true variance of the odometry by what is assumed of it
+    double bodyRadius = 0.;          ///< of collisions [m]; 0: half of robot.radius
+    bool photometricGoal = true;     ///< servo on the goal's image at the end
+};
+
+/// Reads the config's `fly`.
+/// @throws InputError for an unknown key and a value out of range
+FlyConfig readFly(YamlMap& root);
+
+/// The same as YAML that readFly() reads back.
+std::string toYaml(const FlyConfig& fly);
+
+}  // namespace photonav

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include "command_line.hpp"
+#include "replay_command.hpp"
+#include "replay_config.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options : ReplayOptions {
+    bool quiet = false;
+    bool json = false;
+};
+
+void addTracking(CLI::App& parser, ReplayOptions& options) {
+    parser.add_option("--stereo", options.stereo, "bm or sgbm: block matching, semi-global")
+        ->capture_default_str();
+    parser.add_option("--sigma", options.sigma, "image noise, grey values in [0, 1]")
+        ->capture_default_str();
+    parser.add_option("--scale", options.scale,
+                      "factor on the information (default: the tracker's)");
+    parser
+        .add_option("--floor", options.floorTranslation,
+                    "least standard deviation of a position in a map [m] (default: the tracker's)")
+        ->capture_default_str();
+    parser.add_option("--floor-rotation", options.floorRotation, "the same of a rotation [rad]")
+        ->capture_default_str();
+    parser
+        .add_option("--max-width", options.maxWidth,
+                    "images are halved until they are as wide, with --map")
+        ->capture_default_str();
+    parser
+        .add_option("--min-overlap", options.minOverlap,
+                    "least share of an image that the model must cover")
+        ->capture_default_str();
+    parser.add_flag("!--no-exposure", options.exposure, "images do not change in brightness");
+}
+
+void addOptions(CLI::App& parser, Options& options) {
+    parser
+        .add_option("dataset", options.dataset,
+                    "folder in the TUM RGB-D or the EuRoC layout; or the config.yaml of an earlier "
+                    "replay")
+        ->required();
+    parser.add_option("--map", options.mapFile,
+                      "localise in this textured octree (.ot), mesh or scene file");
+    parser.add_flag("--odometry", options.odometry, "from image to image instead, without a map");
+    parser.add_option("--start", options.start, "x,y,z,qx,qy,qz,qw of the first frame's camera")
+        ->type_name("POSE");
+    parser.add_option("--start-sigma", options.startSigma, "its standard deviation [m] and [rad]")
+        ->capture_default_str();
+    addRecording(parser, options);
+    addTracking(parser, options);
+    parser.add_flag("--calibrate", options.calibrate,
+                    "fit factor and floor that would have made the covariances true");
+    addOutput(parser, {options.out, options.quiet, options.json}, "out/replay-<dataset>");
+}
+
+void printSummary(const ReportTable& table, const fs::path& folder) {
+    for (const auto& [label, value] : table.rows) fmt::print("{:<42}{}\n", label, value);
+    fmt::print("report: {}\n", (folder / "report.html").string());
+}
+
+int run(const CLI::App& parser, Options& options, const std::atomic<bool>& interrupted) {
+    if (fs::path(options.dataset).extension() == ".yaml") {
+        refuseOptionsBeside(options.dataset, parser);
+        readReplayConfig(std::string(options.dataset), options);
+    }
+    if (options.out.empty()) options.out = "out/replay-" + folderName(options.dataset);
+    ProgressLine line(options.quiet);
+    options.progress = [&line](std::size_t done, std::size_t total) {
+        line.show(fmt::format("{} of {} frames", done, total));
+    };
+    const ReplayReport report = runReplay(options, interrupted);
+    line.clear();
+    if (options.json)
+        fmt::print("{}\n", report.result.dump(2));
+    else if (!options.quiet)
+        printSummary(report.summary, options.out);
+    return report.exitCode;
+}
+
+}  // namespace
+
+Command replayCommand(CLI::App& app, const Invocation& invocation) {
+    auto options = std::make_shared<Options>();
+    options->commandLine = invocation.commandLine;
+    CLI::App* parser = app.add_subcommand(
+        "replay", "Track a recorded flight, in a map or by odometry, and say how well.");
+    addOptions(*parser, *options);
+    return {parser, [options, parser, &interrupted = invocation.interrupted] {
+                return run(*parser, *options, interrupted);
+            }};
+}
+
+}  // namespace photonav

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay_config.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "recording_config.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kTiny = 1e-12;
+
+void readOptional(YamlMap& yaml, const char* key, std::optional<double>& value, double least) {
+    if (yaml.has(key)) yaml.readNumber(key, value.emplace(least), least, kInfinity);
+}
+
+}  // namespace
+
+std::string toYaml(const ReplayOptions& o, const ReplayTracker& tracker) {
+    const RecordingOptions& recording = o;
+    std::string text = toYaml(recording);
+    if (!o.mapFile.empty()) text += fmt::format("map: {}\n", absolutePath(o.mapFile));
+    text += fmt::format("odometry: {}\n", o.odometry);
+    if (!o.start.empty()) text += fmt::format("start: {}\n", YAML::Dump(YAML::Node(o.start)));
+    return text +
+           fmt::format(
+               "start_sigma: {}\nstereo: {}\nsigma: {}\nscale: {}\nfloor: {}\n"
+               "floor_rotation: {}\nmin_overlap: {}\nmax_width: {}\nexposure: {}\ncalibrate: {}\n",
+               o.startSigma, o.stereo, o.sigma, tracker.scale, tracker.trust.floorTranslation,
+               tracker.trust.floorRotation, o.minOverlap, o.maxWidth, o.exposure, o.calibrate);
+}
+
+void readReplayConfig(const std::string& file, ReplayOptions& options) {
+    YamlMap yaml(file, loadYaml(file));
+    readRecordingKeys(yaml, options);
+    yaml.read("map", options.mapFile);
+    options.mapFile = resolvedPath(options.mapFile, file);
+    yaml.read("odometry", options.odometry);
+    yaml.read("start", options.start);
+    yaml.readNumber("start_sigma", options.startSigma, kTiny, kInfinity);
+    yaml.readChoice("stereo", options.stereo, {"bm", "sgbm"});
+    yaml.readNumber("sigma", options.sigma, kTiny, kInfinity);
+    readOptional(yaml, "scale", options.scale, kTiny);
+    readOptional(yaml, "floor", options.floorTranslation, 0.);
+    readOptional(yaml, "floor_rotation", options.floorRotation, 0.);
+    yaml.readNumber("min_overlap", options.minOverlap, kTiny, 1. - kTiny);
+    yaml.read("max_width", options.maxWidth);
+    if (options.maxWidth < 24) yaml.fail("max_width", "must be at least 24");
+    yaml.read("exposure", options.exposure);
+    yaml.read("calibrate", options.calibrate);
+    yaml.finish();
+}
+
+}  // namespace photonav

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The config.yaml that `photonav replay` leaves in its folder.
+#pragma once
+
+#include <string>
+
+#include "replay_command.hpp"
+#include "replay_run.hpp"
+
+namespace photonav {
+
+/// Everything a replay depends on, as YAML that readReplayConfig() reads back: paths absolute,
+/// factor and floor as the tracker had them.
+std::string toYaml(const ReplayOptions& options, const ReplayTracker& tracker);
+
+/// Overwrites what the file says; paths in it are relative to the file.
+/// @throws InputError naming file, key and reason, also for a file without `dataset`
+void readReplayConfig(const std::string& file, ReplayOptions& options);
+
+}  // namespace photonav
