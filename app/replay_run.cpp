@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "error.hpp"
@@ -135,27 +136,30 @@ ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
         View view;
         Pose T_k_w;
     };
+    struct Keyframes {
+        std::optional<Keyframe> used, next;  // the next one is not used by its own image
+    };
     const auto odometry = std::make_shared<Odometry>(camera, start, options);
-    const auto keyframe = std::make_shared<Keyframe>();  // of the images before
-    const auto latest = std::make_shared<Keyframe>();
+    const auto keyframes = std::make_shared<Keyframes>();
     ReplayTracker tracker;
     tracker.trust = options.keyframe.alignment.trust;
     tracker.scale = options.keyframe.alignment.photometric.scale;
     tracker.camera = camera;
     tracker.track = [=](const View& view, double timestamp) {
         const TrackedFrame frame = odometry->track(view, timestamp);
-        if (latest->view.intensity.getSize() > 0) *keyframe = std::exchange(*latest, {});
-        if (frame.isKeyframe) *latest = {view, frame.T_c_w.mean};
+        if (keyframes->next) keyframes->used = std::move(keyframes->next);
+        keyframes->next.reset();
+        if (frame.isKeyframe) keyframes->next = {view, frame.T_c_w.mean};
         return frame;
     };
     tracker.predict = [=](const View& observed, const TrackedFrame& frame) {
-        const Keyframe& model = keyframe->view.intensity.getSize() > 0 ? *keyframe : *latest;
-        if (model.view.intensity.getSize() == 0) {  // nothing was seen yet
+        const auto& model = keyframes->used ? keyframes->used : keyframes->next;
+        if (!model) {  // nothing was seen yet
             View nothing = observed;
             nothing.depth = 0.F;
             return nothing;
         }
-        return seenFrom(model.view, camera, model.T_k_w * frame.T_c_w.mean.inverse(),
+        return seenFrom(model->view, camera, model->T_k_w * frame.T_c_w.mean.inverse(),
                         observed.depth);
     };
     return tracker;
