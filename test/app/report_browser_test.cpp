@@ -154,6 +154,56 @@ TEST_F(ReportBrowserTest, MapOfVoxelsWithoutPathIsDrawn) {
     EXPECT_EQ(published(outcome.dom, "canvas"), "drawn");
 }
 
+TEST_F(ReportBrowserTest, FlightsBeginWithWhatWasFlown) {
+    ReportData data = sampleReport();
+    data.result = {{"command", "fly"},
+                   {"planners",
+                    {{{"planner", "ours"},
+                      {"flights", 20},
+                      {"arrived", 19},
+                      {"position_rmse_m", 0.0213},
+                      {"predicted_sigma_m", 0.0241},
+                      {"nees_per_dof", 0.93}},
+                     {{"planner", "theirs"},
+                      {"flights", 0},
+                      {"arrived", 0},
+                      {"position_rmse_m", nullptr},
+                      {"predicted_sigma_m", nullptr},
+                      {"nees_per_dof", nullptr}}}}};
+    const Outcome outcome = open(data);
+    expectNoErrors(outcome);
+    EXPECT_TRUE(contains(outcome.dom,
+                         "ours: 19 of 20 flights arrived, with a position error of "
+                         "2.13&nbsp;cm rms where 2.41&nbsp;cm were predicted (NEES "
+                         "0.930); theirs was not flown."));
+    EXPECT_TRUE(contains(outcome.dom, "<b>19<small>of 20</small></b><span>ours: arrived</span>"));
+    EXPECT_FALSE(contains(outcome.dom, "<span>goal trace</span>"));
+}
+
+TEST_F(ReportBrowserTest, RecordedFlightsHaveFramesAndNeitherGoalNorCost) {
+    ReportData data = sampleReport();
+    data.views.clear();
+    for (DrawnPath& path : data.paths)
+        for (PathPoint& point : path.points) point.cost = 0.;
+    data.result = {{"command", "replay"},
+                   {"verdict", "tracked 3 of 4 frames, lost 1"},
+                   {"frames", 4},
+                   {"tracked", 3},
+                   {"lost", 1},
+                   {"ate_rmse_m", 0.0123},
+                   {"nees_per_dof", 1.1},
+                   {"fps", 30.},
+                   {"rpe", {{"second", nullptr}, {"frame", nullptr}}}};
+    const Outcome outcome = open(data, "#waypoint=2");
+    expectNoErrors(outcome);
+    EXPECT_TRUE(contains(outcome.dom, "Tracked 3 of 4 frames, lost 1."));
+    EXPECT_TRUE(contains(outcome.dom, "<b>12.3<small>mm</small></b>"));
+    EXPECT_TRUE(contains(outcome.dom, "Frame 2 of"));
+    EXPECT_FALSE(contains(outcome.dom, "Waypoint 2"));
+    EXPECT_FALSE(contains(outcome.dom, "<th>Cost so far</th>"));
+    EXPECT_FALSE(contains(outcome.dom, "<span>cost</span>"));
+}
+
 TEST_F(ReportBrowserTest, WithoutWebGLThePageSaysSoAndTheRestWorks) {
     const Outcome outcome = open(sampleReport(), "#waypoint=2", "--disable-3d-apis");
     EXPECT_EQ(published(outcome.dom, "errors"), "");
