@@ -20,7 +20,8 @@ bool hasKey(const std::string& file, const char* key) {
 }  // namespace
 
 std::string toYaml(const MapOptions& options, const Recording& recording) {
-    RecordingOptions found = options;
+    const RecordingOptions& asked = options;
+    RecordingOptions found = asked;
     found.up = upText(recording.up);
     found.depthScale = recording.sequence.depthScale;
     return toYaml(found) + fmt::format("depth: {}\nresolution: {}\nmin_range: {}\nmax_range: {}\n",
