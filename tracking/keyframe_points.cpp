@@ -21,13 +21,21 @@ constexpr float kUnused = 4.F;           ///< stands for the residual of a point
 constexpr std::size_t kChunk = 32;       ///< vectors whose products are summed together
 constexpr std::size_t kSampleEvery = 4;  ///< chunks per chunk of residuals kept
 constexpr std::size_t kNoiseEvery = 16;  ///< points per point that the noise is reckoned from
-/// Least information, in units of what noise alone gives, for a direction to count.
-constexpr double kLeastSignal = 1.5;
+constexpr double kLeastNoise = 1e-8;     ///< of a gradient's variance, to divide by
+constexpr double kNoiseMargin = 1.2;     ///< for its chance, that pure noise says nothing at all
+
+double square(double x) { return x * x; }
 
 Float at(const float* p) { return simd::load<Float>(p); }
 
-/// The grey value at (u, v), both within [0, size - 1).
-Float bilinear(const ImageF& image, const Float& u, const Float& v) {
+/// An image between its pixels.
+struct Sample {
+    Float grey;
+    Float du, dv;  ///< gradient [grey value per pixel]
+};
+
+/// At (u, v), both within [0, size - 1).
+Sample bilinear(const ImageF& image, const Float& u, const Float& v) {
     const Int column = simd::toInt(u);
     const Int row = simd::toInt(v);
     const Float du = u - simd::toFloat(column);
@@ -38,9 +46,11 @@ Float bilinear(const ImageF& image, const Float& u, const Float& v) {
     const auto pixel = [&](const float* from) {
         return reinterpret_cast<Float>(simd::gather<4>(from, index));
     };
-    const Float left = pixel(base) + dv * (pixel(below) - pixel(base));
-    const Float right = pixel(base + 1) + dv * (pixel(below + 1) - pixel(base + 1));
-    return left + du * (right - left);
+    const Float left = pixel(base), right = pixel(base + 1);
+    const Float downLeft = pixel(below) - left, downRight = pixel(below + 1) - right;
+    const Float atLeft = left + dv * downLeft;
+    const Float across = right + dv * downRight - atLeft;
+    return {atLeft + du * across, across, downLeft + du * (downRight - downLeft)};
 }
 
 /// Elements first, first + 2, ... of two vectors one after the other.
@@ -103,17 +113,20 @@ ImageF halvedDepth(const ImageF& depth, float spread) {
     return half;
 }
 
-/// Keeps the directions in which AtA exceeds kLeastSignal times `noise`.
-void dropNoise(NormalEquations& e, const Matrix6& noise) {
+/// Takes what the keyframe's noise adds out of the equations. With gradients g + n, b = A^T r is
+/// about (A - N) xi, and its covariance is A: of the estimate (A - N)^-1 b the information is
+/// (A - N) A^-1 (A - N). In the basis where N = 1 and A = diag(mu) this scales both equations by
+/// 1 - 1/mu; directions with mu < 1 say nothing.
+void takeOutNoise(NormalEquations& e, const Matrix6& noise) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(e.AtA.topLeftCorner<6, 6>(),
                                                                    noise);
-    if (solver.info() != Eigen::Success || solver.eigenvalues()[0] >= kLeastSignal) return;
-    const Vector6 keeps = (solver.eigenvalues().array() >= kLeastSignal).cast<double>();
-    Matrix8 P = Matrix8::Identity();
-    P.topLeftCorner<6, 6>() =
-        solver.eigenvectors() * keeps.asDiagonal() * solver.eigenvectors().transpose() * noise;
-    e.AtA = P.transpose() * e.AtA * P;
-    e.Atr = P.transpose() * e.Atr;
+    const Vector6 kept = 1. - solver.eigenvalues().array().max(1.).inverse();
+    if (!kept.allFinite()) return;  // fewer points than unknowns
+    Matrix8 D = Matrix8::Identity();
+    D.topLeftCorner<6, 6>() =
+        solver.eigenvectors() * kept.asDiagonal() * solver.eigenvectors().transpose() * noise;
+    e.AtA = D.transpose() * e.AtA * D;
+    e.Atr = D.transpose() * e.Atr;
 }
 
 /// What is known of an image row before the choice is made; column u at index u.
@@ -128,8 +141,8 @@ struct PointSet::Row {
 
 PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions& options)
     : camera_(camera),
-      leastGradient_(4. * options.minGradient * options.minGradient),
-      sigma_(options.alignment.photometric.sigma) {
+      mostNoise_(2. * square(options.alignment.photometric.sigma) +
+                 2. * square(options.minGradient)) {
     const unsigned width = camera.width;
     const std::size_t capacity = std::size_t(width) * camera.height + kWidth;
     for (auto* field : {&x_, &y_, &w_, &intensity_, &gx_, &gy_}) field->resize(capacity);
@@ -138,7 +151,7 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
     const auto jump = static_cast<float>(p.depthJump);
     const auto dark = static_cast<float>(p.saturation);
     const auto aspect = static_cast<float>(camera.fy() / camera.fx());
-    const auto least = static_cast<float>(leastGradient_);
+    const auto least = static_cast<float>(4. * square(options.minGradient));
     const auto nearerThan = static_cast<float>(1. / options.maxDepth);
     const auto fartherThan = static_cast<float>(1. / options.minDepth);
     std::vector<float> inverse(std::size_t(width) * camera.height);
@@ -147,7 +160,6 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
         inverse[i] = z > 0.F ? 1.F / z : kNoSurface;
     }
     Row row(width);
-    std::int32_t candidates = 0;
     for (unsigned v = 1; v + 1 < camera.height; ++v) {
         const float* W = &inverse[std::size_t(v) * width];
         const float* aboveW = W - width;
@@ -165,11 +177,9 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
             row.inverseDepth[u] = W[u];
             row.gx[u] = du;
             row.gy[u] = aspect * dv;
-            const std::int32_t counts = (W[u] >= nearerThan) & (W[u] <= fartherThan) &
-                                        (std::max(horizontal, vertical) <= jump * W[u]) &
-                                        (I[u] > dark) & (I[u] < 1.F - dark);
-            candidates += counts;
-            row.used[u] = counts & static_cast<std::int32_t>(du * du + dv * dv >= least);
+            row.used[u] = (W[u] >= nearerThan) & (W[u] <= fartherThan) &
+                          (std::max(horizontal, vertical) <= jump * W[u]) & (I[u] > dark) &
+                          (I[u] < 1.F - dark) & (du * du + dv * dv >= least);
         }
         append(row, width);
     }
@@ -180,8 +190,7 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
     for (auto* field : {&x_, &y_, &w_, &intensity_, &gx_, &gy_}) field->resize(padded);
     std::fill(x_.begin() + static_cast<std::ptrdiff_t>(size_), x_.end(), 1e6F);
     std::fill(w_.begin() + static_cast<std::ptrdiff_t>(size_), w_.end(), 0.F);
-    candidates_ = candidates;
-    meanSquaredMotion_ = meanSquaredMotion();
+    averageMotion();
 }
 
 /// Every pixel is written, and the next goes over it unless it is used: no branch to predict.
@@ -201,30 +210,27 @@ void PointSet::append(const Row& row, unsigned width) {
     size_ = n;
 }
 
-/// Mean of D^T D, where (du, dv) = D xi is the motion of a point in the image, in units of the
-/// focal length and with the signs of compare(). With gradients of unit variance, this is their
-/// share of AtA.
-Matrix6 PointSet::meanSquaredMotion() const {
-    Matrix6 sum = Matrix6::Zero();
+/// With (du, dv) = D xi the motion of a point in the image, in units of the focal length and with
+/// the signs of compare(): the means of D's rows squared. Times the variance of a gradient, this is
+/// its noise's share of AtA.
+void PointSet::averageMotion() {
     double points = 0.;
     for (std::size_t i = 0; i < size_; i += kNoiseEvery, ++points) {
         const double x = x_[i], y = y_[i], w = w_[i];
-        Eigen::Matrix<double, 2, 6> D;
-        D << w, 0., x * w, x * y, x * x + 1., -y, 0., w, y * w, y * y + 1., x * y, x;
-        sum += D.transpose() * D;
+        const Vector6 du{{w, 0., x * w, x * y, x * x + 1., -y}};
+        const Vector6 dv{{0., w, y * w, y * y + 1., x * y, x}};
+        meanOfX_ += du * du.transpose();
+        meanOfY_ += dv * dv.transpose();
     }
-    return sum / std::max(1., points);
+    meanOfX_ /= std::max(1., points);
+    meanOfY_ /= std::max(1., points);
 }
 
-/// Variance of gx and of gy that is noise. That of the intensity is read off the residuals, where
-/// both images' noise is; it is less than that when they are not aligned. The squared length of a
-/// gradient of noise is exponentially distributed: of those with nothing else, the share exp(-least
-/// / mean) is kept, and their mean is raised by the threshold.
-double PointSet::noiseOfGradients(const NormalEquations& e, double gain) const {
-    const double variance = std::min(sigma_ * sigma_, e.sumSquares / e.count / (1. + gain * gain));
-    const double kept = candidates_ * std::exp(-leastGradient_ / (4. * variance));
-    const double share = std::min(1., kept / static_cast<double>(size_));
-    return 2. * variance + 0.5 * share * leastGradient_;
+/// Of the noise of one component of the gradients, from sums over the points.
+double PointSet::variance(const Float& notShared, double count) const {
+    double sum = 0.;
+    for (int i = 0; i < kWidth; ++i) sum += notShared[i];
+    return kNoiseMargin * std::clamp(sum / count, kLeastNoise, mostNoise_);
 }
 
 NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
@@ -237,6 +243,9 @@ NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
     const auto offset = static_cast<float>(exposure.offset);
     const float right = static_cast<float>(camera_.width) - 1.001F;
     const float bottom = static_cast<float>(camera_.height) - 1.001F;
+
+    const float aspect = fy / fx;
+    Float noiseX{}, noiseY{};
 
     ProductSums sums(loss, kChunk);
     residualSample_.clear();
@@ -255,9 +264,14 @@ NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
             const Float v = fy * py * inverse + cy;
             const Int inView = (pz > 0.01F) & (u >= 0.F) & (u < right) & (v >= 0.F) & (v < bottom);
             const Float I = at(&intensity_[k]);
-            const Float seen = bilinear(observed, inView ? u : Float{}, inView ? v : Float{});
-            const Float r = seen - (gain * I + offset);
+            const Sample seen = bilinear(observed, inView ? u : Float{}, inView ? v : Float{});
+            const Float r = seen.grey - (gain * I + offset);
             const Float gx = at(&gx_[k]), gy = at(&gy_[k]);
+            // Noise is what it does not share with the gradient seen, turned to the keyframe.
+            const Float perPixel = inView ? 2.F / gain * inverse : Float{};
+            const Float du = perPixel * seen.du, dv = perPixel * aspect * seen.dv;
+            noiseX += gx * ((inView ? gx : Float{}) - (R(0, 0) * du + R(1, 0) * dv));
+            noiseY += gy * ((inView ? gy : Float{}) - (R(0, 1) * du + R(1, 1) * dv));
             const Float s = x * gx + y * gy;
             sums.add({gx * w, gy * w, s * w, y * s + gy, x * s + gx, x * gy - y * gx, I}, r,
                      inView);
@@ -274,11 +288,11 @@ NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
     unit.head<6>() *= -exposure.gain * 0.5 * camera_.fx();
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
-    const double weights = equations.AtA(7, 7);
-    const auto scale = unit.head<6>().asDiagonal();
-    if (weights > 0.) {
-        dropNoise(equations, weights * noiseOfGradients(equations, exposure.gain) *
-                                 (scale * meanSquaredMotion_ * scale));
+    if (equations.count > 0.) {
+        const auto scale = unit.head<6>().asDiagonal();
+        const Matrix6 perPoint = variance(noiseX, equations.count) * meanOfX_ +
+                                 variance(noiseY, equations.count) * meanOfY_;
+        takeOutNoise(equations, equations.AtA(7, 7) * (scale * perPoint * scale));
     }
     return equations;
 }

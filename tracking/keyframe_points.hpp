@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "keyframe_model.hpp"
+#include "simd.hpp"
 
 namespace photonav {
 
@@ -24,8 +25,7 @@ class PointSet {
 
     /// Looks every point up in `observed` (bilinear), an image of the same camera.
     /// xi of the equations is the perturbation of T on the right, T = T_mean exp(xi^). The noise of
-    /// the keyframe has gradients too: directions about which the points say hardly more than noise
-    /// would are taken out of AtA and Atr.
+    /// the keyframe has gradients too: what they add to AtA is taken out.
     /// @param T_c_k from the keyframe to the camera
     NormalEquations compare(const ImageF& observed, const Pose& T_c_k, const Exposure& exposure,
                             const Loss& loss);
@@ -38,16 +38,14 @@ class PointSet {
   private:
     struct Row;
     void append(const Row& row, unsigned width);
-    Matrix6 meanSquaredMotion() const;
-    double noiseOfGradients(const NormalEquations& equations, double gain) const;
+    void averageMotion();
+    double variance(const simd::Float& notShared, double count) const;
 
     Camera camera_;
     std::size_t size_ = 0;
     double meanInverseDepth_ = 0.;
-    double candidates_ = 0.;  ///< pixels that would count if they had a gradient
-    double leastGradient_;    ///< squared length of (gx, gy)
-    double sigma_;            ///< noise of the intensity, at most
-    Matrix6 meanSquaredMotion_ = Matrix6::Zero();
+    double mostNoise_;  ///< variance of gx and of gy, if they were of white noise
+    Matrix6 meanOfX_ = Matrix6::Zero(), meanOfY_ = Matrix6::Zero();
     /// Structure of arrays, padded to whole vectors with points that are never in view: normalised
     /// coordinates, inverse depth [1/m], grey value, gradient as J has it (per pixel / 2).
     std::vector<float> x_, y_, w_, intensity_, gx_, gy_;
