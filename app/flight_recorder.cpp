@@ -30,16 +30,18 @@ Png depthPng(const ImageF& depth) {
 
 }  // namespace
 
-FlightRecorder::FlightRecorder(const std::filesystem::path& folder, const Camera& camera)
+FlightRecorder::FlightRecorder(const std::filesystem::path& folder, const Camera& camera,
+                               double informationScale)
     : folder_(folder),
       pairs_("# timestamp colour timestamp depth\n"),
       poses_("# timestamp tx ty tz qx qy qz qw (true, camera to world)\n") {
     for (const char* name : {"rgb", "depth"}) prepareFolder(folder_ / name);
     writeFileAtomically(
         folder_ / "camera.yaml",
-        fmt::format("width: {}\nheight: {}\nfx: {}\nfy: {}\ncx: {}\ncy: {}\ndepth_scale: {}\n",
+        fmt::format("width: {}\nheight: {}\nfx: {}\nfy: {}\ncx: {}\ncy: {}\ndepth_scale: {}\n"
+                    "information_scale: {}\n",
                     camera.width, camera.height, camera.fx(), camera.fy(), camera.cx(), camera.cy(),
-                    kDepthScale));
+                    kDepthScale, informationScale));
 }
 
 void FlightRecorder::add(double time, const Pose& T_c_w, const ImageF& image, const ImageF& depth) {

@@ -14,7 +14,8 @@ namespace photonav {
 class FlightRecorder {
   public:
     /// Makes the folder. @throws InputError when it cannot be written
-    FlightRecorder(const std::filesystem::path& folder, const Camera& camera);
+    FlightRecorder(const std::filesystem::path& folder, const Camera& camera,
+                   double informationScale);
 
     /// @param depth true, along the optical axis [m]; 0 or beyond 13 m: none
     void add(double time, const Pose& T_c_w, const ImageF& image, const ImageF& depth);

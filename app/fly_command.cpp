@@ -76,7 +76,9 @@ void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const Flight
             const FlyOptions& options, unsigned count, ProgressLine& line,
             const std::atomic<bool>& interrupted) {
     std::optional<FlightRecorder> recorder;
-    if (!options.record.empty()) recorder.emplace(options.record, world.camera);
+    if (!options.record.empty()) {
+        recorder.emplace(options.record, world.camera, flight.alignment.photometric.scale);
+    }
     OnExposure record;
     if (recorder) {
         record = [&](double time, const Pose& T_c_w, const ImageF& image, const ImageF& depth) {

@@ -156,6 +156,7 @@ ReplayTracker makeTracker(const ReplayOptions& options, const ReplaySource& sour
     localizer.alignment = realCameraOptions(map.octree ? map.octree->getResolution() : 0.);
     // The motion is only guessed, so that nothing else stops a pose from sliding away.
     localizer.alignment.trust.maxUnexplained = 0.25;
+    if (source.informationScale) localizer.alignment.photometric.scale = *source.informationScale;
     set(localizer.alignment);
     return mapTracker(*map.views, source.camera, start, localizer,
                       static_cast<unsigned>(options.maxWidth));

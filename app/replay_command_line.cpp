@@ -20,8 +20,10 @@ void addTracking(CLI::App& parser, ReplayOptions& options) {
         ->capture_default_str();
     parser.add_option("--sigma", options.sigma, "image noise, grey values in [0, 1]")
         ->capture_default_str();
-    parser.add_option("--scale", options.scale,
-                      "factor on the information (default: the tracker's)");
+    parser.add_option(
+        "--scale", options.scale,
+        "factor on the information (default: information_scale of camera.yaml in a map, "
+        "else the tracker's)");
     parser
         .add_option("--floor", options.floorTranslation,
                     "least standard deviation of a position in a map [m] (default: the tracker's)")

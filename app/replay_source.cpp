@@ -26,6 +26,7 @@ ReplaySource openTum(const ReplaySourceOptions& options) {
     if (sequence.cameraAssumed) source.note = "the benchmark's Kinect was assumed";
     source.camera = sequence.camera;
     source.cameraFile = sequence.cameraFile;
+    source.informationScale = sequence.informationScale;
     source.skipped = sequence.skipped;
     source.recorded = recording->recorded;
     for (const auto& entry : sequence.frames) {

@@ -23,10 +23,11 @@ struct ReplaySource {
         std::string file;           ///< of the (left) image
     };
 
-    std::string layout;      ///< "TUM RGB-D", "EuRoC"
-    std::string note;        ///< what a reader of the poses must know
-    Camera camera;           ///< of the views
-    std::string cameraFile;  ///< that says so and the depth scale; may be empty
+    std::string layout;                      ///< "TUM RGB-D", "EuRoC"
+    std::string note;                        ///< what a reader of the poses must know
+    Camera camera;                           ///< of the views
+    std::string cameraFile;                  ///< that says so and the depth scale; may be empty
+    std::optional<double> informationScale;  ///< see Sequence
     std::vector<Frame> frames;
     std::size_t recorded = 0;  ///< frames of the dataset
     std::vector<Sequence::Skipped> skipped;

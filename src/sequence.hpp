@@ -37,7 +37,9 @@ struct Sequence {
     std::string cameraFile;      ///< that says so; empty when it is assumed
     bool cameraAssumed = false;  ///< the dataset does not say; this is the format's usual one
     double depthScale = 5000.;   ///< depth image value of one metre
-    std::vector<Entry> frames;   ///< in order of time
+    /// Factor on the photometric information that the noise of these images asks for, if known.
+    std::optional<double> informationScale;
+    std::vector<Entry> frames;  ///< in order of time
     std::vector<Skipped> skipped;
 };
 

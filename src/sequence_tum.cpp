@@ -164,6 +164,10 @@ void readCamera(const std::string& file, Sequence& sequence) {
     sequence.camera.intrinsics = readIntrinsics(yaml, sequence.camera);
     yaml.readNumber("depth_scale", sequence.depthScale, 1e-6,
                     std::numeric_limits<double>::infinity());
+    if (yaml.has("information_scale")) {
+        yaml.readNumber("information_scale", sequence.informationScale.emplace(), 1e-6,
+                        std::numeric_limits<double>::infinity());
+    }
     if (yaml.has("depth_camera")) {
         YamlMap depthCamera = yaml.map("depth_camera");
         sequence.depthIntrinsics = readIntrinsics(depthCamera, sequence.camera);

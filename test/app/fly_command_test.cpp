@@ -74,6 +74,7 @@ TEST_F(FlyCommand, FliesBothPlannersAndWritesWhatOthersRead) {
     EXPECT_EQ(readTrajectory(at("a/trajectory.tum")).size(), truth.size());
     const Sequence recorded = readTumSequence(at("recorded"));
     ASSERT_EQ(recorded.frames.size(), truth.size());
+    EXPECT_EQ(recorded.informationScale, 0.08);  // of the config
     const RecordedFrame frame = loadFrame(recorded, 3);
     EXPECT_TRUE(frame.T_c_w.inverse().isApprox(truth[3].T_w_c, 1e-6));
     EXPECT_NEAR(frame.view.depth[30][47], truth[3].T_w_c.translation().z(), 0.01);

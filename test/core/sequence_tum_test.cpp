@@ -62,6 +62,12 @@ TEST_F(TumSequence, DepthScaleComesFromOptionCameraFileOrStandard) {
     EXPECT_EQ(read({.depthScale = 2500.}).depthScale, 2500.);
 }
 
+TEST_F(TumSequence, TheCameraFileMayKnowTheFactorOnTheInformation) {
+    EXPECT_FALSE(read().informationScale);
+    std::ofstream(path / "camera.yaml", std::ios::app) << "information_scale: 0.08\n";
+    EXPECT_EQ(read().informationScale, 0.08);
+}
+
 TEST_F(TumSequence, UnregisteredDepthIsLookedUpAlongTheSameRay) {
     cv::Mat depth(60, 80, CV_16UC1);
     for (int v = 0; v < 60; ++v) {
