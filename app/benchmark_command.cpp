@@ -68,8 +68,8 @@ ReportTable summaryTable(const SweepCell& cell) {
             {{"runs with a path", fmt::format("{} of {}", cell.solved, cell.runs)},
              {"cost", value("cost")},
              {"length [m]", value("length")},
-             {"mean trace [m²]", value("mean_trace")},
-             {"trace at the goal [m²]", value("goal_trace")},
+             {"mean trace [m² + rad²]", value("mean_trace")},
+             {"trace at the goal [m² + rad²]", value("goal_trace")},
              {"vertices", value("vertices")},
              {"views", value("views")},
              {"time [s]", value("seconds")}}};

@@ -154,8 +154,8 @@ void drawQuantity(Canvas& canvas, const Frame& frame, const Quantity& quantity,
 Png drawSweepCurves(const std::string& title, const std::vector<SweepCell>& cells) {
     const std::array<Quantity, 3> quantities{
         {{"length", "length [m]", false, &PaperRow::length},
-         {"mean_trace", "mean trace [m^2]", true, &PaperRow::meanTrace},
-         {"goal_trace", "goal trace [m^2]", true, &PaperRow::goalTrace}}};
+         {"mean_trace", "mean trace [m^2 + rad^2]", true, &PaperRow::meanTrace},
+         {"goal_trace", "goal trace [m^2 + rad^2]", true, &PaperRow::goalTrace}}};
     const double step = kHeight + kBelow + kGap - 20.0;
     Canvas canvas(kLeft + kWidth + 36.0, kTop + quantities.size() * step);
     drawHead(canvas, title, plannersOf(cells), hasPaper(cells));
@@ -184,7 +184,7 @@ Png drawSweepFront(const std::string& title, const std::vector<SweepCell>& cells
     Canvas canvas(frame.right() + 36.0, frame.bottom() + kBelow);
     drawHead(canvas, title, plannersOf(cells), hasPaper(cells));
     const Plot plot{canvas, frame, axisOver(lengths, false, "length [m]"),
-                    axisOver(traces, true, "mean trace [m^2]")};
+                    axisOver(traces, true, "mean trace [m^2 + rad^2]")};
     plot.drawGrid();
     const auto at = [&](const SweepCell& cell) {
         return plot.at(cell.columns.at("length").mean, cell.columns.at("mean_trace").mean);

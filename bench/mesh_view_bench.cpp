@@ -25,7 +25,7 @@ Scene hall() {
     const auto floor = addTexture(scene, valueNoise({.size = {8., 8.}, .seed = 1}));
     const auto walls = addTexture(scene, valueNoise({.size = {4., 3.}, .seed = 2}));
     const auto crates = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 3}));
-    addBox(scene, {0., 0., 0.}, {20., 20., 3.}, walls);
+    addBox(scene, {0., 0., 0.}, {20., 20., 3.}, walls, BoxInside::hollow);
     addPlane(scene, {0., 0., 0.01}, {20., 0., 0.}, {0., 20., 0.}, floor);
     std::mt19937 random(4);
     std::uniform_real_distribution<double> place(0.5, 19.);

@@ -18,7 +18,7 @@ inline Scene furnishedHall() {
     const auto floor = addTexture(scene, valueNoise({.size = {8., 8.}, .seed = 1}));
     const auto walls = addTexture(scene, valueNoise({.size = {4., 3.}, .seed = 2}));
     const auto crates = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 3}));
-    addBox(scene, {0., 0., 0.}, {8., 8., 3.}, walls);
+    addBox(scene, {0., 0., 0.}, {8., 8., 3.}, walls, BoxInside::hollow);
     addPlane(scene, {0., 0., 0.01}, {8., 0., 0.}, {0., 8., 0.}, floor);
     for (int i = 0; i < 12; ++i) {
         const Eigen::Vector3d corner(1. + 0.5 * i, 1. + 1.7 * (i * 5 % 4), 0.);

@@ -286,6 +286,39 @@ void markTriangle(const std::array<Eigen::Vector3d, 3>& corners, ObstacleCells& 
     }
 }
 
+/// Whether p lies in a convex polygon.
+bool isInside(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& polygon) {
+    bool left = false, right = false;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Eigen::Vector2d side = polygon[(i + 1) % polygon.size()] - polygon[i];
+        const Eigen::Vector2d to = p - polygon[i];
+        const double area = side.x() * to.y() - side.y() * to.x();
+        left = left || area > 0.;
+        right = right || area < 0.;
+    }
+    return !(left && right);
+}
+
+/// Marks the cells whose centre is in a prism; cell i has its centre at i times the resolution.
+void markPrism(const Prism& prism, ObstacleCells& cells) {
+    Eigen::AlignedBox2d around;
+    for (const auto& corner : prism.footprint) around.extend(corner);
+    const auto firstAt = [&](double x) {
+        return static_cast<int>(std::ceil(std::clamp(x / cells.resolution, -1e9, 1e9)));
+    };
+    const Eigen::Array3i origin = cells.first - cells.reach;
+    const Eigen::Array3i end = origin + cells.outer();
+    const int lowest = firstAt(prism.low), above = firstAt(prism.high);
+    for (int y = std::max(firstAt(around.min().y()), origin.y());
+         y < end.y() && y * cells.resolution <= around.max().y(); ++y) {
+        for (int x = std::max(firstAt(around.min().x()), origin.x());
+             x < end.x() && x * cells.resolution <= around.max().x(); ++x) {
+            if (!isInside({x * cells.resolution, y * cells.resolution}, prism.footprint)) continue;
+            fillBox(cells, {x, y, lowest}, {x + 1, y + 1, above}, 1);
+        }
+    }
+}
+
 }  // namespace
 
 DistanceMap::DistanceMap(const TexturedOcTree& map, const Eigen::AlignedBox3d& bounds,
@@ -312,6 +345,7 @@ DistanceMap::DistanceMap(const Scene& scene, double resolution, const Eigen::Ali
         }
         markTriangle(corners, cells);
     }
+    for (const Prism& solid : scene.solids) markPrism(solid, cells);
     compute(cells);
 }
 

@@ -29,7 +29,7 @@ class DistanceMap {
                 const Options& options);
 
     /// Obstacles are all cells that a triangle touches (and, along slanted outlines, some of their
-    /// neighbours); cells are cubes of `resolution` [m] around
+    /// neighbours), and those whose centre is in a solid; cells are cubes of `resolution` [m] around
     /// the multiples of it. Throws as above; `unknown` does not matter, a scene knows everything.
     DistanceMap(const Scene& scene, double resolution, const Eigen::AlignedBox3d& bounds,
                 const Options& options);

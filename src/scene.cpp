@@ -91,7 +91,7 @@ void addPlane(Scene& scene, const Eigen::Vector3d& corner, const Eigen::Vector3d
 }
 
 void addBox(Scene& scene, const Eigen::Vector3d& min, const Eigen::Vector3d& max,
-            std::uint32_t texture) {
+            std::uint32_t texture, BoxInside inside) {
     const Eigen::Vector3d size = max - min;
     if (!(size.minCoeff() > 0.)) throw std::invalid_argument("box: max must be beyond min");
     const Eigen::Vector3d x(size.x(), 0., 0.);
@@ -103,6 +103,10 @@ void addBox(Scene& scene, const Eigen::Vector3d& min, const Eigen::Vector3d& max
     addPlane(scene, max, -x, -z, texture);          // towards +y
     addPlane(scene, min + y + z, -y, -z, texture);  // towards -x
     addPlane(scene, min + x + z, y, -z, texture);   // towards +x
+    if (inside == BoxInside::hollow) return;
+    const Eigen::Vector2d low = min.head<2>(), high = max.head<2>();
+    scene.solids.push_back(
+        {{low, {high.x(), low.y()}, high, {low.x(), high.y()}}, min.z(), max.z()});
 }
 
 void addWall(Scene& scene, const Wall& wall, std::uint32_t texture) {
@@ -129,6 +133,7 @@ void addWall(Scene& scene, const Wall& wall, std::uint32_t texture) {
                 {lifted(right[i], z), lifted(right[j], z), lifted(left[j], z), lifted(left[i], z)},
                 texture, {along, 0.});
         }
+        scene.solids.push_back({{right[i], right[j], left[j], left[i]}, low, high});
         along += (wall.footprint[j] - wall.footprint[i]).norm();
     }
     if (wall.closed) return;

@@ -19,9 +19,18 @@ struct Triangle {
     std::uint32_t texture = 0;  ///< index into Scene::textures
 };
 
+/// An upright prism full of matter.
+struct Prism {
+    std::vector<Eigen::Vector2d> footprint;  ///< convex, x-y [m]
+    double low = 0., high = 0.;              ///< z [m]
+};
+
 struct Scene {
     std::vector<Texture> textures;
     std::vector<Triangle> triangles;
+    /// Where there is no room although no surface is near: the inside of boxes and walls. (Of a
+    /// mesh only surfaces are known; its inside counts as free.)
+    std::vector<Prism> solids;
     std::vector<std::string> files;  ///< that were read for it: scene or mesh, textures, materials
 
     Eigen::AlignedBox3d boundingBox() const;
@@ -41,9 +50,10 @@ void addPlane(Scene& scene, const Eigen::Vector3d& corner, const Eigen::Vector3d
               const Eigen::Vector3d& v, std::uint32_t texture,
               const Eigen::Vector2d& offset = Eigen::Vector2d::Zero());
 
-/// The six faces of an axis-aligned box.
+/// The six faces of an axis-aligned box, which is full inside, or hollow as a room is.
+enum class BoxInside { solid, hollow };
 void addBox(Scene& scene, const Eigen::Vector3d& min, const Eigen::Vector3d& max,
-            std::uint32_t texture);
+            std::uint32_t texture, BoxInside inside = BoxInside::solid);
 
 /// An upright wall along a polyline on the ground, joints mitred.
 struct Wall {

@@ -200,9 +200,13 @@ void SceneReader::readBox(YamlMap& map) {
     Eigen::Vector3d max = Eigen::Vector3d::Ones();
     requireVector(map, "min", min);
     requireVector(map, "max", max);
+    bool hollow = false;
+    map.read("hollow", hollow);
     const std::uint32_t texture = textureNamed(map, "texture");
     map.finish();
-    checked(map, "max", [&] { addBox(scene_, min, max, texture); });
+    checked(map, "max", [&] {
+        addBox(scene_, min, max, texture, hollow ? BoxInside::hollow : BoxInside::solid);
+    });
 }
 
 void SceneReader::readWall(YamlMap& map) {

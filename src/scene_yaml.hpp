@@ -22,7 +22,7 @@ namespace photonav {
 ///     planes:
 ///       - {corner: [0, 0, 0], u: [10, 0, 0], v: [0, 10, 0], texture: floor, offset: [0, 0]}
 ///     boxes:
-///       - {min: [4, 4, 0], max: [5, 5, 1], texture: tiles}
+///       - {min: [4, 4, 0], max: [5, 5, 1], texture: tiles, hollow: false}  # true: a room
 ///     walls:
 ///       - {footprint: [[0, 0], [10, 0], [10, 10]], height: 2.5, thickness: 0.1, bottom: 0,
 ///          closed: false, texture: bars}

@@ -60,8 +60,10 @@ const summaries = paths.map(summaryOf);
 
 /// A recorded trajectory is a path without beliefs.
 const hasBeliefs = paths.some((path) => path.points.some((point) => point.trace > 0));
-if (summaries.length && typeof data.result.mean_trace === 'number')
-  summaries[0].meanTrace = data.result.mean_trace;  // with every sub-step, not only path points
+// The planner's own and its baseline's mean, with every sub-step, not only path points.
+[data.result, data.result.baseline].forEach((judged, i) => {
+  if (summaries[i] && typeof judged?.mean_trace === 'number') summaries[i].meanTrace = judged.mean_trace;
+});
 
 const hasCost = summaries.some((path) => path.cost > 0);
 

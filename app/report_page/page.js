@@ -81,8 +81,8 @@ function fillTiles() {
       : result.command === 'fly' ? flyTiles(result) : [
     ['path length', ours.length ?? result.length, 'm'],
     ['goal position, 1σ', 100 * ours.goalSigma, 'cm'],
-    ['goal trace', ours.goalTrace ?? result.goal_trace, 'm²'],
-    ['mean trace', ours.meanTrace ?? result.mean_trace, 'm²'],
+    ['goal trace', ours.goalTrace ?? result.goal_trace, 'm² + rad²'],
+    ['mean trace', ours.meanTrace ?? result.mean_trace, 'm² + rad²'],
     ['cost', ours.cost ?? result.cost, ''],
     ['vertices', result.vertices, ''],
     ['views predicted', result.views, ''],
@@ -124,7 +124,7 @@ function showWaypoint(index) {
   const belief = [
     ['1σ in x, y, z', `${sigma.join(', ')}\u00a0cm`],
     ['1σ, worst direction', say(100 * worstSigma(point.position_covariance), 'cm')],
-    ['Trace', say(point.trace, 'm²')],
+    ['Trace', say(point.trace, 'm² + rad²')],
   ];
   if (hasCost) belief.push(['Cost so far', say(point.cost)]);
   rows(element('waypoint-numbers'), hasBeliefs ? [...place, ...belief] : place);
@@ -133,13 +133,14 @@ function showWaypoint(index) {
 
 // Tables ------------------------------------------------------------------------------------------
 const kNames = {
-  length: ['Length of the path', 'm'], mean_trace: ['Mean trace', 'm²'], goal_trace: ['Trace at the goal', 'm²'],
+  length: ['Length of the path', 'm'], mean_trace: ['Mean trace', 'm² + rad²'],
+  goal_trace: ['Trace at the goal', 'm² + rad²'],
   alpha: ['Alpha (1: only length counts)', ''], cost: ['Cost', ''], views: ['Views predicted', ''],
   cache_hits: ['Views taken from the cache', ''], seed: ['Seed of the random numbers', ''],
   'time.total_s': ['Time, all', 's'], 'time.views_s': ['Time for views', 's'],
   'time.beliefs_s': ['Time for beliefs', 's'], 'time.tree_s': ['Time for the tree', 's'],
   'audit.max_cost_error': ['Audit: largest error of a cost', ''],
-  'audit.max_covariance_error': ['Audit: largest error of a covariance', 'm²'],
+  'audit.max_covariance_error': ['Audit: largest error of a covariance', 'm² + rad²'],
 };
 const kUnits = {_s: 's', _ms: 'ms', _m: 'm', _cm: 'cm', _m2: 'm²', _rad: 'rad', _deg: '°'};
 
@@ -187,7 +188,7 @@ function addComparison() {
     const swatch = make('span', undefined, {className: 'swatch'});
     swatch.style.background = path.color;
     name.append(swatch, path.name);
-    row.append(name, ...[say(s.length, 'm'), say(s.cost), say(s.meanTrace, 'm²'), say(s.goalTrace, 'm²'),
+    row.append(name, ...[say(s.length, 'm'), say(s.cost), say(s.meanTrace, 'm² + rad²'), say(s.goalTrace, 'm² + rad²'),
                          say(100 * s.goalSigma, 'cm')].map((t) => make('td', t)));
     body.append(row);
   });

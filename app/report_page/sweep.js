@@ -15,7 +15,7 @@ function sweepVerdict() {
     return failed ? `${failed.planner}: ${failed.status}.` : 'No run was finished.';
   }
   const cells = solved.sort((a, b) => a.alpha - b.alpha), first = cells[0], last = cells[cells.length - 1];
-  const at = (cell) => `${say(cell.length_mean, 'm')} with a mean trace of ${say(cell.mean_trace_mean, 'm²')} ` +
+  const at = (cell) => `${say(cell.length_mean, 'm')} with a mean trace of ${say(cell.mean_trace_mean, 'm² + rad²')} ` +
                        `at alpha ${cell.alpha}`;
   const excess = sweep.planners.flatMap((planner) => {
     const known = cellsOf(planner).filter((cell) => isNumber(cell.excess_mean));
@@ -110,13 +110,13 @@ function sweepCurves(x, y) {
 function drawSweepCharts() {
   sweepCharts.splice(0).forEach((chart) => chart.destroy());
   drawSweepChart('length-chart', sweepCurves('alpha', 'length'), 'alpha', 'length [m]', false);
-  drawSweepChart('mean-chart', sweepCurves('alpha', 'mean_trace'), 'alpha', 'mean trace [m²]', true);
-  drawSweepChart('goal-chart', sweepCurves('alpha', 'goal_trace'), 'alpha', 'trace at the goal [m²]', true);
-  drawSweepChart('front-chart', sweepCurves('length', 'mean_trace'), 'length [m]', 'mean trace [m²]', true);
+  drawSweepChart('mean-chart', sweepCurves('alpha', 'mean_trace'), 'alpha', 'mean trace [m² + rad²]', true);
+  drawSweepChart('goal-chart', sweepCurves('alpha', 'goal_trace'), 'alpha', 'trace at the goal [m² + rad²]', true);
+  drawSweepChart('front-chart', sweepCurves('length', 'mean_trace'), 'length [m]', 'mean trace [m² + rad²]', true);
 }
 
 // Tables ------------------------------------------------------------------------------------------
-const kTraceScale = 100;  // the tables give traces in 0.01 m², as the paper does
+const kTraceScale = 100;  // the tables give traces in 0.01 (m² + rad²), as the paper does
 
 const sweepColumns = [
   ['J', 'cost', 3], ['length [m]', 'length', 2, 'paper_length'],
@@ -156,7 +156,7 @@ function plannerTable(planner) {
   swatch.style.background = plannerColor(planner);
   title.append(swatch, planner);
   box.append(title, table, make('p', `Mean ± standard deviation over ${sweep.runs_per_cell} seeds. Traces in ` +
-    '0.01 m² (rotations count at 1 m).', {className: 'note'}));
+    '0.01 (m² + rad²).', {className: 'note'}));
   return box;
 }
 

@@ -122,8 +122,34 @@ TEST(DistanceMap, FloorIsNeverTooFarAndHardlyTooNear) {
     EXPECT_LT(map.clearance(Vector3d(0.3, 0.3, 0.)), 0.);
 }
 
+/// Far from all their surfaces.
+TEST(DistanceMap, BoxesAndWallsAreFullInside) {
+    const AlignedBox3d bounds(Vector3d(-5., -5., 0.), Vector3d(5., 5., 4.));
+    const auto clearance = [&](const Scene& scene, const Vector3d& p_w) {
+        return DistanceMap(scene, 0.1, bounds, {}).clearance(p_w);
+    };
+    Scene box;
+    addTexture(box, uniformTexture(0.5));
+    addBox(box, {-2., -2., 0.}, {2., 2., 4.}, 0);
+    EXPECT_LT(clearance(box, {0., 0., 2.}), 0.);
+    EXPECT_LT(clearance(box, {1.9, -1.9, 3.9}), 0.);
+    EXPECT_GT(clearance(box, {3., 0., 2.}), 0.8);
+    Scene room;
+    addTexture(room, uniformTexture(0.5));
+    addBox(room, {-4., -4., 0.}, {4., 4., 4.}, 0, BoxInside::hollow);
+    EXPECT_EQ(clearance(room, {0., 0., 2.}), 1.);
+    Scene wall;
+    addTexture(wall, uniformTexture(0.5));
+    addWall(wall, {.footprint = {{-3., -3.}, {0., 0.}, {3., -3.}}, .height = 4., .thickness = 2.},
+            0);
+    EXPECT_LT(clearance(wall, {-1.5, -1.5, 2.}), 0.);
+    EXPECT_LT(clearance(wall, {0., 0., 2.}), 0.);
+    EXPECT_GT(clearance(wall, {0., -4., 2.}), 0.9);
+}
+
 TEST(DistanceMap, ObstaclesOutsideTheBoundsCount) {
     Scene wall;
+    addTexture(wall, uniformTexture(0.5));
     wall.triangles = {triangle({1.5, -9., -9.}, {1.5, 9., -9.}, {1.5, 0., 9.})};
     const AlignedBox3d bounds(Vector3d::Zero(), Vector3d::Ones());
     const DistanceMap map(wall, 0.1, bounds, {.maxDistance = 1.});

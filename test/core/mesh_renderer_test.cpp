@@ -27,7 +27,7 @@ Pose lookingFrom(const Eigen::Vector3d& position, double yaw, double belowHorizo
 Scene clutter(int boxes) {
     Scene scene;
     const auto texture = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 3}));
-    addBox(scene, {0., 0., 0.}, {6., 6., 3.}, texture);
+    addBox(scene, {0., 0., 0.}, {6., 6., 3.}, texture, BoxInside::hollow);
     std::mt19937 random(7);
     std::uniform_real_distribution<double> place(0.2, 5.5);
     std::uniform_real_distribution<double> size(0.03, 0.6);

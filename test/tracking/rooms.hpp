@@ -16,7 +16,7 @@ inline Scene texturedRoom() {
     const auto floor = addTexture(scene, valueNoise({.size = {6., 6.}, .seed = 1}));
     const auto walls = addTexture(scene, valueNoise({.size = {6., 3.}, .seed = 2}));
     const auto crates = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 3}));
-    addBox(scene, {0., 0., 0.}, {6., 6., 3.}, walls);
+    addBox(scene, {0., 0., 0.}, {6., 6., 3.}, walls, BoxInside::hollow);
     addPlane(scene, {0., 0., 0.01}, {6., 0., 0.}, {0., 6., 0.}, floor);
     addBox(scene, {3.8, 2.4, 0.}, {4.3, 2.9, 0.6}, crates);
     addBox(scene, {3.2, 3.6, 0.}, {3.6, 4.2, 0.4}, crates);
