@@ -34,12 +34,12 @@ void printSummary(const PlanOutcome& outcome, const std::optional<JudgedPath>& b
         fmt::print("{:<16} {:>8.2f} m {:>12.3g} {:>12.3g} {:>10.4g}\n", path.planner, path.length,
                    path.meanTrace, path.goalTrace, path.cost);
     };
-    fmt::print("{:<16} {:>10} {:>12} {:>12} {:>10}\n", "planner", "length", "mean trace",
-               "goal trace", "cost");
-    if (outcome.path)
-        row(*outcome.path);
-    else
-        fmt::print("no path found with {} vertices\n", outcome.vertices);
+    if (!outcome.path) fmt::print("no path found with {} vertices\n", outcome.vertices);
+    if (outcome.path || baseline) {
+        fmt::print("{:<16} {:>10} {:>12} {:>12} {:>10}\n", "planner", "length", "mean trace",
+                   "goal trace", "cost");
+    }
+    if (outcome.path) row(*outcome.path);
     if (baseline) row(*baseline);
     if (audit) {
         fmt::print("audit: {} beliefs replayed, cost error {:.1e}, covariance error {:.1e}\n",
