@@ -70,8 +70,10 @@ TEST(KeyframeModel, InformationIsCarriedToTheCamera) {
     KeyframeModel keyframe(view, camera(), kPose, options);
     const Alignment a = keyframe.align(view.intensity, kPose);
     const Matrix6 planned = photometricInformation(view, camera(), options.alignment.photometric);
-    // A border of a pixel and a few points on its edge are looked up outside the image.
-    EXPECT_LT((a.information - planned).norm(), 0.01 * planned.norm());
+    // A border of a pixel and a few points on its edge are looked up outside the image, and
+    // gradients seen over one pixel are not quite those of the keyframe over two: a little counts
+    // as noise.
+    EXPECT_LT((a.information - planned).norm(), 0.1 * planned.norm());
 
     Vector6 turn = 0.3 * Vector6::Unit(5);
     turn[0] = 0.02;
