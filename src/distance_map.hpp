@@ -29,8 +29,9 @@ class DistanceMap {
                 const Options& options);
 
     /// Obstacles are all cells that a triangle touches (and, along slanted outlines, some of their
-    /// neighbours), and those whose centre is in a solid; cells are cubes of `resolution` [m] around
-    /// the multiples of it. Throws as above; `unknown` does not matter, a scene knows everything.
+    /// neighbours), and those whose centre is in a solid; cells are cubes of `resolution` [m]
+    /// around the multiples of it. Throws as above; `unknown` does not matter, a scene knows
+    /// everything.
     DistanceMap(const Scene& scene, double resolution, const Eigen::AlignedBox3d& bounds,
                 const Options& options);
 
