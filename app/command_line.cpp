@@ -29,6 +29,20 @@ void addOutput(CLI::App& parser, OutputOptions output, const std::string& defaul
     parser.add_flag("--json", output.json, "result.json on standard output");
 }
 
+void printOutput(const OutputOptions& output, const nlohmann::json& result,
+                 const ReportTable& summary, const std::vector<std::string>& files) {
+    if (output.json) {
+        fmt::print("{}\n", result.dump(2));
+        return;
+    }
+    if (output.quiet) return;
+    for (const auto& [label, value] : summary.rows) fmt::print("{:<42}{}\n", label, value);
+    for (const std::string& file : files) {
+        fmt::print("{}: {}\n", std::filesystem::path(file).stem().string(),
+                   (output.out / file).string());
+    }
+}
+
 void addOverrides(CLI::App& parser, std::vector<std::string>& overrides) {
     parser.add_option("--set", overrides, "override a value of the config")
         ->type_name("KEY.PATH=VALUE")

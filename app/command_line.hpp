@@ -9,6 +9,7 @@
 
 #include "command_io.hpp"
 #include "recording.hpp"
+#include "report.hpp"
 
 namespace photonav {
 
@@ -35,6 +36,10 @@ struct OutputOptions {
     bool& json;
 };
 void addOutput(CLI::App& parser, OutputOptions output, const std::string& defaultFolder);
+
+/// result.json as asked for, else the summary and where the `files` of the result folder are.
+void printOutput(const OutputOptions& output, const nlohmann::json& result,
+                 const ReportTable& summary, const std::vector<std::string>& files);
 
 void addOverrides(CLI::App& parser, std::vector<std::string>& overrides);
 

@@ -94,12 +94,6 @@ MapReport mapImages(const CLI::App& parser, bool isConfig, Options& options, Pro
     return runMap(options, interrupted);
 }
 
-void printSummary(const ReportTable& table, const fs::path& folder) {
-    for (const auto& [label, value] : table.rows) fmt::print("{:<42}{}\n", label, value);
-    fmt::print("map: {}\nreport: {}\n", (folder / "map.ot").string(),
-               (folder / "report.html").string());
-}
-
 int run(const CLI::App& parser, Options& options, const std::atomic<bool>& interrupted) {
     const bool isConfig = fs::path(options.dataset).extension() == ".yaml";
     if (isConfig) refuseOptionsBeside(options.dataset, parser);
@@ -108,10 +102,8 @@ int run(const CLI::App& parser, Options& options, const std::atomic<bool>& inter
     const MapReport report = isOfScans ? mapScans(parser, options, line, interrupted)
                                        : mapImages(parser, isConfig, options, line, interrupted);
     line.clear();
-    if (options.json)
-        fmt::print("{}\n", report.result.dump(2));
-    else if (!options.quiet)
-        printSummary(report.summary, options.out);
+    printOutput({options.out, options.quiet, options.json}, report.result, report.summary,
+                {"map.ot", "report.html"});
     return report.exitCode;
 }
 

@@ -190,6 +190,46 @@ json planResult(const Config& config, const PlanOutcome& outcome,
     return result;
 }
 
+namespace {
+
+std::vector<NamedFigure> planFigures(const Config& config, const World& world, PlanRun& run,
+                                     const PlanOutcome& outcome,
+                                     const std::optional<RecordedComparison>& recorded,
+                                     const std::vector<DrawnPath>& paths) {
+    std::vector<NamedFigure> figures{
+        {"top_view.png",
+         {"From above: search tree, paths and 3 sigma ellipses of the position.",
+          drawTopView(topView(config, world, outcome, paths))}}};
+    if (!paths.empty() && world.hasTexture()) {
+        figures.push_back(
+            {"information.png",
+             {"What one view is worth, over the area.", drawHeatMap(heatMap(config, run))}});
+    }
+    if (config.bounds.sizes().z() > 0. && world.hasTexture()) {
+        figures.push_back(
+            {"perspective.png",
+             {"In perspective, with the shadows of the paths: thin where something hides them.",
+              drawPerspective(world.views(), perspective(config, world, outcome, paths))}});
+    }
+    if (!paths.empty()) {
+        figures.push_back({"trace.png",
+                           {"Trace of the pose covariance along the way.",
+                            drawTrace("Uncertainty along the way", paths, true)}});
+    }
+    if (recorded) {
+        figures.push_back(
+            {"recorded_frames.png",
+             {fmt::format("Views along the path and the recorded frames nearest to them; what the "
+                          "map predicts at the frames' own poses differs from them by {:.3f} in "
+                          "the mean.",
+                          meanDifference(*recorded)),
+              recorded->picture}});
+    }
+    return figures;
+}
+
+}  // namespace
+
 void writePlanReport(const fs::path& folder, const Config& config, const World& world, PlanRun& run,
                      const PlanOutcome& outcome, const std::optional<JudgedPath>& baseline,
                      const std::optional<RecordedComparison>& recorded,
@@ -218,35 +258,8 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
     }
     report.progress = outcome.progress;
 
-    std::vector<NamedFigure> figures{
-        {"top_view.png",
-         {"From above: search tree, paths and 3 sigma ellipses of the position.",
-          drawTopView(topView(config, world, outcome, report.paths))}}};
-    if (!report.paths.empty() && world.hasTexture()) {
-        figures.push_back(
-            {"information.png",
-             {"What one view is worth, over the area.", drawHeatMap(heatMap(config, run))}});
-    }
-    if (config.bounds.sizes().z() > 0. && world.hasTexture()) {
-        figures.push_back(
-            {"perspective.png",
-             {"In perspective, with the shadows of the paths: thin where something hides them.",
-              drawPerspective(world.views(), perspective(config, world, outcome, report.paths))}});
-    }
-    if (!report.paths.empty()) {
-        figures.push_back({"trace.png",
-                           {"Trace of the pose covariance along the way.",
-                            drawTrace("Uncertainty along the way", report.paths, true)}});
-    }
-    if (recorded) {
-        figures.push_back(
-            {"recorded_frames.png",
-             {fmt::format("Views along the path and the recorded frames nearest to them; what the "
-                          "map predicts at the frames' own poses differs from them by {:.3f} in "
-                          "the mean.",
-                          meanDifference(*recorded)),
-              recorded->picture}});
-    }
+    std::vector<NamedFigure> figures =
+        planFigures(config, world, run, outcome, recorded, report.paths);
     if (!evolutions.empty()) {
         const TopView map = topView(config, world, outcome, {});
         figures.push_back({"tree_evolution.png",

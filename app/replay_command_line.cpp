@@ -61,11 +61,6 @@ void addOptions(CLI::App& parser, Options& options) {
     addOutput(parser, {options.out, options.quiet, options.json}, "out/replay-<dataset>");
 }
 
-void printSummary(const ReportTable& table, const fs::path& folder) {
-    for (const auto& [label, value] : table.rows) fmt::print("{:<42}{}\n", label, value);
-    fmt::print("report: {}\n", (folder / "report.html").string());
-}
-
 int run(const CLI::App& parser, Options& options, const std::atomic<bool>& interrupted) {
     if (fs::path(options.dataset).extension() == ".yaml") {
         refuseOptionsBeside(options.dataset, parser);
@@ -78,10 +73,8 @@ int run(const CLI::App& parser, Options& options, const std::atomic<bool>& inter
     };
     const ReplayReport report = runReplay(options, interrupted);
     line.clear();
-    if (options.json)
-        fmt::print("{}\n", report.result.dump(2));
-    else if (!options.quiet)
-        printSummary(report.summary, options.out);
+    printOutput({options.out, options.quiet, options.json}, report.result, report.summary,
+                {"report.html"});
     return report.exitCode;
 }
 

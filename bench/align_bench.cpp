@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <numbers>
@@ -21,19 +20,13 @@
 #include "mesh_renderer.hpp"
 #include "se3.hpp"
 #include "sequence_tum.hpp"
+#include "thread_time.hpp"
 #include "tracking_scenes.hpp"
 #include "voxel_renderer.hpp"
 
 using namespace photonav;
 
 namespace {
-
-/// Processor time of this thread: other programs' turns do not count.
-double threadTime() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 double milliseconds(const std::function<void()>& call) {
     const double start = threadTime();

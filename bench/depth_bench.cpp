@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "mesh_renderer.hpp"
 #include "monocular_depth.hpp"
 #include "stereo_depth.hpp"
+#include "thread_time.hpp"
 #include "tracking_scenes.hpp"
 
 using namespace photonav;
@@ -27,13 +27,6 @@ constexpr double kStep = 0.02;      // on the circle of 2 m radius: 4 cm [rad]
 constexpr double kBaseline = 0.11;  // EuRoC's [m]
 constexpr double kCell = 0.05;      // of the maps [m]
 const FusionOptions kFusion{.maxRange = 5.};
-
-/// Processor time of this thread [s]: other programs' turns do not count.
-double threadTime() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 double quantile(std::vector<float>& values, double q) {
     if (values.empty()) return 0.;
@@ -146,7 +139,7 @@ void fly(const char* title, const ViewSource& hall, double belowHorizon) {
         View view;
         const double before = threadTime();
         stereo(images, view);
-        pair.seconds.push_back(threadTime() - before);
+        pair.seconds.push_back(1e-3 * (threadTime() - before));
         pair.add(view, ideal.depth, camera, filter.pose());
         ++references;
     };
@@ -155,7 +148,7 @@ void fly(const char* title, const ViewSource& hall, double belowHorizon) {
         const ImageF image = picture(T_c_w, camera);
         const double before = threadTime();
         const auto finished = filters.add(image, T_c_w);
-        mono.seconds.push_back(threadTime() - before);
+        mono.seconds.push_back(1e-3 * (threadTime() - before));
         if (finished) judge(*finished);
     }
     if (const auto last = filters.finish()) judge(*last);

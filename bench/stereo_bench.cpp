@@ -6,23 +6,16 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <ctime>
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "odometry.hpp"
 #include "stereo_depth.hpp"
+#include "thread_time.hpp"
 
 using namespace photonav;
 
 namespace {
-
-/// Processor time of this thread [ms]: other programs' turns do not count.
-double threadTime() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + std::ssize(values) / 2;

@@ -6,23 +6,16 @@
 #include <octomap/OcTree.h>
 #include <visp3/visual_features/vpFeatureLuminance.h>
 
-#include <ctime>
 #include <numbers>
 
 #include "map_fusion.hpp"
 #include "photometric.hpp"
+#include "thread_time.hpp"
 #include "voxel_renderer.hpp"
 
 using namespace photonav;
 
 namespace {
-
-/// Processor time of this thread in milliseconds: other programs' turns do not count.
-double threadTime() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 /// Least time of one call in milliseconds.
 template <class Call>
