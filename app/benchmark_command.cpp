@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 
 #include "atomic_file.hpp"
 #include "plan_report.hpp"
 #include "plan_run.hpp"
 #include "planner_benchmark.hpp"
+#include "stopwatch.hpp"
 #include "sweep_figures.hpp"
 #include "sweep_report.hpp"
 
@@ -17,8 +17,6 @@ namespace photonav {
 namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 Config loadBenchmarkConfig(const BenchmarkOptions& options) {
     std::vector<std::string> overrides = options.overrides;
@@ -114,7 +112,7 @@ void writeReport(const fs::path& folder, const BenchmarkOptions& options, const 
 }  // namespace
 
 int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& interrupted) {
-    const auto begin = Clock::now();
+    const Stopwatch watch;
     const Config config = loadBenchmarkConfig(options);
     const World world(config);
     PlanRun(config, world).checkPlaces();
@@ -128,7 +126,7 @@ int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& inter
         outcome = benchmarkPlanners(
             config, world, {options.interval, options.timeLimit}, interrupted,
             [&](const SweepItem& item) {
-                const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+                const double seconds = watch.seconds();
                 const double rest = seconds / std::max<double>(1., static_cast<double>(done)) *
                                     static_cast<double>(asked - done);
                 line.show(fmt::format("{} of {} runs, {} seed {}{}", done, asked, item.planner,
@@ -138,7 +136,7 @@ int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& inter
             });
     }
     const bool stopped = outcome.runs.size() < asked;
-    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    const double seconds = watch.seconds();
     const json result = benchmarkResult(config, outcome, stopped, seconds);
     writeReport(folder, options, config, outcome, result);
     if (options.json) {

@@ -5,17 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
-#include <limits>
-#include <numbers>
 
+#include "constants.hpp"
 #include "yaml_reader.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDegree = std::numbers::pi / 180.;
 constexpr double kTiny = 1e-6;
 
 const std::vector<std::string> kUnknown{"free", "occupied"};

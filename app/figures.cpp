@@ -5,10 +5,10 @@
 
 #include <Eigen/Eigenvalues>
 #include <functional>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
+#include "constants.hpp"
 #include "plot.hpp"
 
 namespace photonav {
@@ -183,7 +183,7 @@ std::vector<LegendEntry> legendOf(const TopView& view) {
 /// Smallest and largest positive finite value, widened so that an axis has a length.
 template <typename Values>
 Axis axisAround(const Values& values, bool log, const std::string& label) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+    double low = kInfinity, high = -low;
     for (const double value : values)
         if (std::isfinite(value) && (!log || value > 0.0)) {
             low = std::min(low, value);

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <optional>
 
 #include "atomic_file.hpp"
@@ -11,11 +10,10 @@
 #include "flight_recorder.hpp"
 #include "fly_plan.hpp"
 #include "fly_report.hpp"
+#include "stopwatch.hpp"
 
 namespace photonav {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 FlightOptions flightOptions(const Config& config) {
     const FlyConfig& fly = config.fly;
@@ -85,15 +83,14 @@ void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const Flight
             recorder->add(time, T_c_w, image, depth);
         };
     }
-    const auto begin = Clock::now();
+    const Stopwatch watch;
     std::size_t flown = 0;
     std::size_t arrived = 0;
     for (FlightSet& set : sets) {
         const auto onFlight = [&](const FlightResult& result) {
             ++flown;
             arrived += result.end == FlightEnd::arrived;
-            const double each = std::chrono::duration<double>(Clock::now() - begin).count() /
-                                static_cast<double>(flown);
+            const double each = watch.seconds() / static_cast<double>(flown);
             const double all = static_cast<double>(count * sets.size());
             line.show(fmt::format("{}: {} of {:.0f} flights, {} arrived, about {:.0f} s left",
                                   set.path.planner, flown, all, arrived,
@@ -151,7 +148,7 @@ bool anyArrived(const std::vector<FlightSet>& sets) {
 }  // namespace
 
 int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
-    const auto begin = Clock::now();
+    const Stopwatch watch;
     const PlanSource source = findPlan(options.config);
     Config config = loadConfig(source.configFile, options.overrides);
     if (!source.resultFile.empty()) {
@@ -178,7 +175,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     }
     const bool stopped = interrupted;
     nlohmann::json result = flyResult(config, sets, flight, stopped);
-    result["time"]["total_s"] = std::chrono::duration<double>(Clock::now() - begin).count();
+    result["time"]["total_s"] = watch.seconds();
     writeFlyReport(folder, config, world, sets, options.commandLine, result);
     writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
 

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <chrono>
 
 #include "atomic_file.hpp"
 #include "error.hpp"
 #include "plan_report.hpp"
+#include "stopwatch.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -176,7 +176,7 @@ ReportData reportOf(const InfoOptions& options, const Config& config, const Worl
 }  // namespace
 
 int runInfo(const InfoOptions& options) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const Config config = loadConfig(options.config, options.overrides);
     const double height = heightOf(options, config);
     const Place place = placeOf(options, config);
@@ -195,8 +195,7 @@ int runInfo(const InfoOptions& options) {
     for (NamedFigure& figure : viewFigures(view, config)) figures.push_back(std::move(figure));
     ReportData report = reportOf(options, config, world, place, result);
     writeResultFolder(folder, report, figures);
-    const std::chrono::duration<double> total = std::chrono::steady_clock::now() - begin;
-    result["time"]["total_s"] = total.count();
+    result["time"]["total_s"] = watch.seconds();
     writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
     if (options.json) {
         fmt::print("{}\n", result.dump(2));

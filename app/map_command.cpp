@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <vector>
 
@@ -17,6 +16,7 @@
 #include "octree_file.hpp"
 #include "report.hpp"
 #include "sequence_tum.hpp"
+#include "stopwatch.hpp"
 #include "trajectory.hpp"
 #include "voxel_renderer.hpp"
 
@@ -26,22 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t kStrips = 4;
-
-class Stopwatch {
-  public:
-    /// Seconds since the last call (or the beginning).
-    double lap() {
-        const auto now = Clock::now();
-        const double seconds = std::chrono::duration<double>(now - last_).count();
-        last_ = now;
-        return seconds;
-    }
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point last_ = Clock::now();
-};
+constexpr std::size_t kCompared = 4;  // images beside their predictions
 
 void checkOptions(const MapOptions& options) {
     const auto require = [](bool good, const char* option, const std::string& reason) {
@@ -148,8 +133,8 @@ json compareFrames(const MapOptions& options, const Sequence& sequence, const Te
                             {"contrast", d.contrast},
                             {"mean_abs_depth", d.meanDepth},
                             {"median_abs_depth", d.medianDepth}});
-        const std::size_t every = std::max<std::size_t>(1, count / kStrips);
-        if (k % every == every / 2 && strips.size() < kStrips) {
+        const std::size_t every = std::max<std::size_t>(1, count / kCompared);
+        if (k % every == every / 2 && strips.size() < kCompared) {
             strips.push_back(
                 {k * step, panelsPng({comparisonPanels(
                                frame.view, predicted,

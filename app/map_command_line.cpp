@@ -13,13 +13,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options : MapOptions {
+struct MapArguments : MapOptions {
     std::vector<double> scanner;
     bool quiet = false;
     bool json = false;
 };
 
-void addOptions(CLI::App& parser, Options& options) {
+void addOptions(CLI::App& parser, MapArguments& options) {
     parser
         .add_option("dataset", options.dataset,
                     "folder in the TUM RGB-D layout; or a coloured point cloud (.ply), or a "
@@ -48,7 +48,7 @@ void addOptions(CLI::App& parser, Options& options) {
 }
 
 /// The options for a laser scan; those that belong to images are errors.
-ScanMapOptions scanOptions(const CLI::App& parser, const Options& options) {
+ScanMapOptions scanOptions(const CLI::App& parser, const MapArguments& options) {
     for (const char* name : {"--camera", "--up", "--every", "--frames", "--min-range",
                              "--depth-scale", "--tolerance", "--depth"}) {
         if (parser.count(name) > 0) throw InputError(name, "", "is for images, not point clouds");
@@ -66,7 +66,7 @@ ScanMapOptions scanOptions(const CLI::App& parser, const Options& options) {
     return scan;
 }
 
-MapReport mapScans(const CLI::App& parser, Options& options, ProgressLine& line,
+MapReport mapScans(const CLI::App& parser, MapArguments& options, ProgressLine& line,
                    const std::atomic<bool>& interrupted) {
     ScanMapOptions scan = scanOptions(parser, options);
     if (options.out.empty()) options.out = "out/map-" + folderName(scan.scans);
@@ -77,8 +77,8 @@ MapReport mapScans(const CLI::App& parser, Options& options, ProgressLine& line,
     return runScanMap(scan, interrupted);
 }
 
-MapReport mapImages(const CLI::App& parser, bool isConfig, Options& options, ProgressLine& line,
-                    const std::atomic<bool>& interrupted) {
+MapReport mapImages(const CLI::App& parser, bool isConfig, MapArguments& options,
+                    ProgressLine& line, const std::atomic<bool>& interrupted) {
     if (!options.scanner.empty()) {
         throw InputError("--scanner", "", "is for point clouds, not images");
     }
@@ -94,7 +94,7 @@ MapReport mapImages(const CLI::App& parser, bool isConfig, Options& options, Pro
     return runMap(options, interrupted);
 }
 
-int run(const CLI::App& parser, Options& options, const std::atomic<bool>& interrupted) {
+int run(const CLI::App& parser, MapArguments& options, const std::atomic<bool>& interrupted) {
     const bool isConfig = fs::path(options.dataset).extension() == ".yaml";
     if (isConfig) refuseOptionsBeside(options.dataset, parser);
     const bool isOfScans = isConfig ? isScanConfig(options.dataset) : isScan(options.dataset);
@@ -110,7 +110,7 @@ int run(const CLI::App& parser, Options& options, const std::atomic<bool>& inter
 }  // namespace
 
 Command mapCommand(CLI::App& app, const Invocation& invocation) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<MapArguments>();
     options->commandLine = invocation.commandLine;
     CLI::App* parser = app.add_subcommand(
         "map", "Turn a recorded RGB-D sequence or laser scans into a textured OctoMap.");

@@ -3,14 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
+#include "constants.hpp"
 #include "recording_config.hpp"
 
 namespace photonav {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool hasKey(const std::string& file, const char* key) {
     const YAML::Node node = loadYaml(file);

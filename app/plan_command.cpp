@@ -3,19 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <set>
 
 #include "atomic_file.hpp"
 #include "error.hpp"
 #include "plan_report.hpp"
 #include "plan_run.hpp"
+#include "stopwatch.hpp"
 #include "tree_evolution.hpp"
 
 namespace photonav {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 std::string progressText(const ReportProgress& progress, unsigned vertices) {
     const double rest =
@@ -83,10 +81,7 @@ std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, const
 }  // namespace
 
 int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
-    const auto begin = Clock::now();
-    const auto seconds = [&] {
-        return std::chrono::duration<double>(Clock::now() - begin).count();
-    };
+    const Stopwatch watch;
     const Config config = loadConfig(options.config, options.overrides);
     const World world(config);
     PlanRun run(config, world);
@@ -118,16 +113,16 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     nlohmann::json result = planResult(config, outcome, baseline, stopped);
     const auto recorded = lookAtRecording(config, world, outcome);
     if (recorded) result["recorded_frames"] = toJson(*recorded);
-    result["time"]["total_s"] = seconds();
+    result["time"]["total_s"] = watch.seconds();
     writePlanReport(folder, config, world, run, outcome, baseline, recorded, evolutions,
                     options.commandLine, result);
-    result["time"]["total_s"] = seconds();
+    result["time"]["total_s"] = watch.seconds();
     writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
 
     if (options.json)
         fmt::print("{}\n", result.dump(2));
     else if (!options.quiet)
-        printSummary(outcome, baseline, options.audit, folder, seconds());
+        printSummary(outcome, baseline, options.audit, folder, watch.seconds());
     if (stopped) return kInterrupted;
     return outcome.path ? kDone : kNoAnswer;
 }

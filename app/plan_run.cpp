@@ -6,13 +6,13 @@
 #include <ompl/base/goals/GoalStates.h>
 #include <ompl/geometric/PathGeometric.h>
 
-#include <chrono>
 #include <numbers>
 
 #include "belief_rrt_star.hpp"
 #include "error.hpp"
 #include "perception_rrt_star.hpp"
 #include "rrbt.hpp"
+#include "stopwatch.hpp"
 #include "tree_evolution.hpp"
 
 namespace photonav {
@@ -22,10 +22,6 @@ namespace {
 constexpr int kFreeHeadings = 8;               // goals offered where the goal has no yaw
 constexpr std::size_t kProgressInterval = 50;  // vertices
 constexpr std::size_t kMostSamples = 200;      // per vertex asked for: most are in vain, give up
-
-double secondsSince(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// The answer may come from an earlier tree than the one audited.
 void includePath(Audit& audit, double stored, double replayed) {
@@ -71,13 +67,13 @@ void PlanRun::checkPlace(const std::string& key, const Place& place) const {
 
 PlanOutcome PlanRun::solve(const std::string& name, const std::atomic<bool>& interrupted,
                            const std::function<void(const ReportProgress&)>& onProgress) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const auto planner = makePlanner(name);
     const BeliefModel& model = planner->model();
     PlanOutcome outcome;
     const auto report = [&] {
         outcome.progress.push_back(
-            {planner->vertices(), secondsSince(begin), planner->bestCost(), model.field().views()});
+            {planner->vertices(), watch.seconds(), planner->bestCost(), model.field().views()});
         onProgress(outcome.progress.back());
     };
     std::size_t next = kProgressInterval;
@@ -97,7 +93,7 @@ PlanOutcome PlanRun::solve(const std::string& name, const std::atomic<bool>& int
     outcome.views = model.field().views();
     outcome.cacheHits = model.field().cacheHits();
     outcome.fallbacks = model.fallbacks();
-    outcome.planSeconds = secondsSince(begin);
+    outcome.planSeconds = watch.seconds();
     outcome.viewSeconds = model.field().seconds();
     outcome.beliefSeconds = model.seconds();
     outcome.tree = drawnEdges(*planner);

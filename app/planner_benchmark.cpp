@@ -4,16 +4,14 @@
 #include <ompl/tools/benchmark/Benchmark.h>
 
 #include <filesystem>
-#include <limits>
 #include <sstream>
 
+#include "constants.hpp"
 #include "plan_run.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Thrown out of OMPL's loop over runs; no std::exception, which it would swallow.
 struct Interrupted {};

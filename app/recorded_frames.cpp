@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-#include <numbers>
-
+#include "constants.hpp"
 #include "map_config.hpp"
 #include "sequence_tum.hpp"
 
@@ -14,7 +12,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kWaypoints = 6;
-constexpr double kDegree = std::numbers::pi / 180.;
 
 std::optional<Sequence> recordingOf(const std::string& mapFile) {
     if (mapFile.empty()) return {};
@@ -53,7 +50,7 @@ double typicalDepth(const View& view) {
 
 std::size_t nearestFrame(const Sequence& sequence, const Pose& T_c_w, double depth,
                          NearestFrame& nearest) {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     std::size_t index = 0;
     for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
         const Pose motion = T_c_w * sequence.frames[i].T_c_w.inverse();

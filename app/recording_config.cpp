@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <limits>
+#include "constants.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -31,7 +31,6 @@ std::string toYaml(const RecordingOptions& options) {
 }
 
 void readRecordingKeys(YamlMap& yaml, RecordingOptions& options) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     if (!yaml.has("dataset")) yaml.fail("dataset", "missing");
     yaml.read("dataset", options.dataset);
     yaml.read("camera", options.cameraFile);

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <sstream>
@@ -19,6 +18,7 @@
 #include "replay_report.hpp"
 #include "replay_run.hpp"
 #include "scene.hpp"
+#include "stopwatch.hpp"
 #include "voxel_renderer.hpp"
 
 namespace photonav {
@@ -216,7 +216,7 @@ void calibrateReplay(const ReplayOptions& options, const ReplayRun& run, double 
 
 ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& interrupted) {
     checkOptions(options);
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const ReplaySource source = openReplaySource(options);
     if (options.odometry && source.frames.size() < 2) {
         throw InputError(options.dataset, "", "a single frame: odometry needs two or more");
@@ -245,8 +245,7 @@ ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& in
     result["interrupted"] = run.interrupted;
     result["options"] = optionsJson(options);
     result["dataset"] = datasetJson(options, source, depth);
-    const std::chrono::duration<double> total = std::chrono::steady_clock::now() - begin;
-    result["time"] = {{"total_s", total.count()},
+    result["time"] = {{"total_s", watch.seconds()},
                       {"load_images_s", run.loadSeconds},
                       {"track_s", run.trackSeconds}};
     if (options.calibrate)

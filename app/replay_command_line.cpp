@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options : ReplayOptions {
+struct ReplayArguments : ReplayOptions {
     bool quiet = false;
     bool json = false;
 };
@@ -41,7 +41,7 @@ void addTracking(CLI::App& parser, ReplayOptions& options) {
     parser.add_flag("!--no-exposure", options.exposure, "images do not change in brightness");
 }
 
-void addOptions(CLI::App& parser, Options& options) {
+void addOptions(CLI::App& parser, ReplayArguments& options) {
     parser
         .add_option("dataset", options.dataset,
                     "folder in the TUM RGB-D or the EuRoC layout; or the config.yaml of an earlier "
@@ -61,7 +61,7 @@ void addOptions(CLI::App& parser, Options& options) {
     addOutput(parser, {options.out, options.quiet, options.json}, "out/replay-<dataset>");
 }
 
-int run(const CLI::App& parser, Options& options, const std::atomic<bool>& interrupted) {
+int run(const CLI::App& parser, ReplayArguments& options, const std::atomic<bool>& interrupted) {
     if (fs::path(options.dataset).extension() == ".yaml") {
         refuseOptionsBeside(options.dataset, parser);
         readReplayConfig(std::string(options.dataset), options);
@@ -81,7 +81,7 @@ int run(const CLI::App& parser, Options& options, const std::atomic<bool>& inter
 }  // namespace
 
 Command replayCommand(CLI::App& app, const Invocation& invocation) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ReplayArguments>();
     options->commandLine = invocation.commandLine;
     CLI::App* parser = app.add_subcommand(
         "replay", "Track a recorded flight, in a map or by odometry, and say how well.");

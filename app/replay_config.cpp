@@ -3,15 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
+#include "constants.hpp"
 #include "recording_config.hpp"
 
 namespace photonav {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kTiny = 1e-12;
+constexpr double kLeast = 1e-12;
 
 void readOptional(YamlMap& yaml, const char* key, std::optional<double>& value, double least) {
     if (yaml.has(key)) yaml.readNumber(key, value.emplace(least), least, kInfinity);
@@ -40,13 +38,13 @@ void readReplayConfig(const std::string& file, ReplayOptions& options) {
     options.mapFile = resolvedPath(options.mapFile, file);
     yaml.read("odometry", options.odometry);
     yaml.read("start", options.start);
-    yaml.readNumber("start_sigma", options.startSigma, kTiny, kInfinity);
+    yaml.readNumber("start_sigma", options.startSigma, kLeast, kInfinity);
     yaml.readChoice("stereo", options.stereo, {"bm", "sgbm"});
-    yaml.readNumber("sigma", options.sigma, kTiny, kInfinity);
-    readOptional(yaml, "scale", options.scale, kTiny);
+    yaml.readNumber("sigma", options.sigma, kLeast, kInfinity);
+    readOptional(yaml, "scale", options.scale, kLeast);
     readOptional(yaml, "floor", options.floorTranslation, 0.);
     readOptional(yaml, "floor_rotation", options.floorRotation, 0.);
-    yaml.readNumber("min_overlap", options.minOverlap, kTiny, 1. - kTiny);
+    yaml.readNumber("min_overlap", options.minOverlap, kLeast, 1. - kLeast);
     yaml.read("max_width", options.maxWidth);
     if (options.maxWidth < 24) yaml.fail("max_width", "must be at least 24");
     yaml.read("exposure", options.exposure);

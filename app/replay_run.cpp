@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -13,6 +12,7 @@
 
 #include "error.hpp"
 #include "image_pyramid.hpp"
+#include "stopwatch.hpp"
 
 namespace photonav {
 namespace {
@@ -20,17 +20,6 @@ namespace {
 constexpr std::size_t kStrips = 5;
 constexpr std::size_t kFirstFrames = 10;  // at least one of them must be readable
 constexpr std::size_t kPatience = 10;
-
-class Stopwatch {
-  public:
-    double lap() {
-        const auto now = std::chrono::steady_clock::now();
-        return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 /// The grey value between four pixels; nothing outside.
 std::optional<float> sample(const ImageF& image, double u, double v) {

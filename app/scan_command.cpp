@@ -5,7 +5,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <set>
 
 #include "atomic_file.hpp"
@@ -15,6 +14,7 @@
 #include "octree_file.hpp"
 #include "perspective.hpp"
 #include "point_cloud.hpp"
+#include "stopwatch.hpp"
 #include "voxel_renderer.hpp"
 
 namespace photonav {
@@ -25,10 +25,6 @@ using nlohmann::json;
 
 // A scanner's echo is a surface, and a ray that grazes its cell on the way elsewhere says little.
 constexpr double kHit = 0.9, kMiss = 0.4;
-
-double secondsSince(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 std::set<fs::path> plyFiles(const fs::path& path) {
     if (!fs::is_directory(path)) return {path};
@@ -59,7 +55,7 @@ json fuseStation(const PointCloudFile& cloud, const fs::path& file, const ScanMa
                  TexturedOcTree& map) {
     const auto scanner = options.scanner ? options.scanner : cloud.scanner();
     std::uint64_t visits = 0;
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const auto points = [&](const std::function<void(const ScanPoint&)>& visit) {
         visits = 0;
         cloud.read([&](const ScanPoint& point) {
@@ -79,7 +75,7 @@ json fuseStation(const PointCloudFile& cloud, const fs::path& file, const ScanMa
     json station{{"file", file.filename().string()},
                  {"points", cloud.size()},
                  {"used", visits},
-                 {"seconds", secondsSince(begin)},
+                 {"seconds", watch.seconds()},
                  {"scanner", nullptr}};
     if (scanner) station["scanner"] = {scanner->x(), scanner->y(), scanner->z()};
     return station;
@@ -146,7 +142,7 @@ MapReport runScanMap(const ScanMapOptions& options, const std::atomic<bool>& int
     for (const fs::path& file : files) clouds.emplace_back(file, file.string());
     prepareFolder(options.out);
 
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     TexturedOcTree map(options.resolution);
     map.setProbHit(kHit);
     map.setProbMiss(kMiss);
@@ -167,7 +163,7 @@ MapReport runScanMap(const ScanMapOptions& options, const std::atomic<bool>& int
                      {"resolution", options.resolution},
                      {"max_range", options.maxRange},
                      {"voxels", voxelsJson(map)},
-                     {"time", {{"fuse_s", secondsSince(begin)}}},
+                     {"time", {{"fuse_s", watch.seconds()}}},
                      {"peak_memory_mb", peakMegabytes()}};
     report.summary = summaryOf(report.result);
     saveTexturedOcTree(map, (options.out / "map.ot").string());

@@ -4,22 +4,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <chrono>
-
 #include "atomic_file.hpp"
 #include "error.hpp"
 #include "plan_run.hpp"
+#include "stopwatch.hpp"
 #include "sweep_report.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 /// The config with the command line's wishes. Lists are what `--set` would take.
 Config loadSweepConfig(const SweepOptions& options, const std::string& file) {
@@ -96,10 +89,10 @@ void sortRuns(std::vector<SweepRun>& runs, const std::vector<SweepItem>& items) 
 /// The last step of every sweep: sort, report, tell.
 int conclude(const SweepOptions& options, const Config& config, const World& world,
              const fs::path& folder, SweepOutcome outcome, const ReferenceCosts& reference,
-             Clock::time_point begin) {
+             const Stopwatch& watch) {
     sortRuns(outcome.runs, sweepItems(config));
     outcome.commandLine = options.commandLine;
-    outcome.seconds = secondsSince(begin);
+    outcome.seconds = watch.seconds();
     const nlohmann::json result = sweepResult(config, outcome, reference);
     writeSweepReport(folder, config, world, outcome, reference, result);
     if (options.json) {
@@ -166,7 +159,7 @@ void removeOldResults(const fs::path& folder) {
 }
 
 int runAll(const SweepOptions& options, const std::atomic<bool>& interrupted) {
-    const auto begin = Clock::now();
+    const Stopwatch watch;
     const Config config = loadSweepConfig(options, options.config);
     const ReferenceCosts reference = referenceOf(config);
     const SweepShard shard = options.shard ? parseShard(*options.shard) : SweepShard{};
@@ -183,11 +176,11 @@ int runAll(const SweepOptions& options, const std::atomic<bool>& interrupted) {
     {
         ProgressLine line(options.quiet);
         RemainingTime rest(open);
-        const auto sweepBegin = Clock::now();
+        const Stopwatch running;
         line.show(fmt::format("{} of {} runs", items.size() - open.size(), items.size()));
         runItems(config, world, open, options.jobs, interrupted, [&](const SweepRun& run) {
             journal.append(run);
-            rest.count(run, secondsSince(sweepBegin));
+            rest.count(run, running.seconds());
             line.show(fmt::format("{} of {} runs, {} alpha {} seed {} done, about {} left",
                                   journal.runs().size(), items.size(), run.item.planner,
                                   run.item.alpha, run.item.seed, durationText(rest.seconds())));
@@ -195,7 +188,7 @@ int runAll(const SweepOptions& options, const std::atomic<bool>& interrupted) {
     }
     const bool stopped = interrupted && journal.runs().size() < items.size();
     return conclude(options, config, world, folder,
-                    {name, "", shard, journal.runs(), items.size(), stopped, 0.}, reference, begin);
+                    {name, "", shard, journal.runs(), items.size(), stopped, 0.}, reference, watch);
 }
 
 /// Shards that make one sweep.
@@ -264,7 +257,7 @@ SweepJournal gather(const SweepOptions& options, const std::vector<SweepJournal>
 }
 
 int mergeShards(const SweepOptions& options) {
-    const auto begin = Clock::now();
+    const Stopwatch watch;
     const auto shards = readShards(options.merge);
     const std::string name = shards.front().header().name;
     const fs::path folder = sweepFolder(options, name, {});
@@ -280,7 +273,7 @@ int mergeShards(const SweepOptions& options) {
     removeOldResults(folder);
     const SweepJournal whole = gather(options, shards, items, folder);
     return conclude(options, config, world, folder,
-                    {name, "", {}, whole.runs(), items.size(), false, 0.}, reference, begin);
+                    {name, "", {}, whole.runs(), items.size(), false, 0.}, reference, watch);
 }
 
 }  // namespace

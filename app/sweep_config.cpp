@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <sstream>
+
+#include "constants.hpp"
 
 namespace photonav {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMaxAlphas = 10000;
 
 double parseNumber(const std::string& text) {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "constants.hpp"
 #include "plot.hpp"
 
 namespace photonav {
@@ -41,7 +41,7 @@ std::vector<Planner> plannersOf(const std::vector<SweepCell>& cells) {
 }
 
 Axis axisOver(const std::vector<double>& values, bool log, const std::string& label) {
-    double low = std::numeric_limits<double>::infinity();
+    double low = kInfinity;
     double high = -low;
     for (const double value : values) {
         if (!std::isfinite(value) || (log && value <= 0.)) continue;

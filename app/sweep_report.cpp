@@ -16,9 +16,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-constexpr double kPicturePixel = 0.025;     // of the background of paths.png [m]
-constexpr double kMaxPicturePixels = 800.;  // along its longer side
-constexpr const char* kNothing = "-";       // in the table
+constexpr const char* kBlank = "-";  // in the table
 
 const std::vector<std::string> kRunKeys{"planner", "alpha",      "seed",       "cost",
                                         "length",  "mean_trace", "goal_trace", "vertices",
@@ -44,23 +42,15 @@ std::string statusOf(const SweepOutcome& outcome) {
 }
 
 TopView pathsView(const Config& config, const World& world, const std::vector<DrawnPath>& paths) {
-    TopView view;
+    TopView view = viewFromAbove(config, world, paths);
     view.title = fmt::format("{}: the cheapest path per alpha", config.sweep.planners.front());
-    view.area = {config.bounds.min().head<2>(), config.bounds.max().head<2>()};
-    view.area.min().array() -= config.robotRadius;
-    view.area.max().array() += config.robotRadius;
-    const double pixel = std::max(kPicturePixel, view.area.sizes().maxCoeff() / kMaxPicturePixels);
-    view.background = world.pictureFromAbove(view.area, config.bounds.max().z(), pixel);
-    view.paths = paths;
-    view.start = config.start.position;
-    view.goal = config.goal.position;
     view.ellipseScale = 0.;
     return view;
 }
 
 /// "12.34 +- 0.05" with a fixed number of decimals, the deviation only where there is one.
 std::string cellText(const Statistic& value, double scale, int decimals) {
-    if (!std::isfinite(value.mean)) return kNothing;
+    if (!std::isfinite(value.mean)) return kBlank;
     const std::string mean = fmt::format("{:.{}f}", scale * value.mean, decimals);
     if (!std::isfinite(value.deviation)) return mean;
     return fmt::format("{} ± {:.{}f}", mean, scale * value.deviation, decimals);
@@ -115,7 +105,7 @@ std::vector<TextColumn> textColumns(const std::vector<SweepCell>& cells) {
     std::erase_if(columns, [&](const TextColumn& column) {
         return std::all_of(cells.begin(), cells.end(), [&](const SweepCell& cell) {
             const std::string text = column.text(cell);
-            return text.empty() || text == kNothing;
+            return text.empty() || text == kBlank;
         });
     });
     return columns;

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <exception>
-#include <limits>
 #include <mutex>
 #include <set>
 #include <thread>
 
 #include "command_io.hpp"
+#include "constants.hpp"
 #include "error.hpp"
 #include "plan_run.hpp"
 
@@ -19,8 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr int kSchema = 1;
+constexpr int kJournalSchema = 1;
 
 SweepRun runFrom(const json& line) {
     const auto number = [&](const char* key) {
@@ -41,7 +40,7 @@ SweepRun runFrom(const json& line) {
 }
 
 SweepHeader headerFrom(const json& line) {
-    if (line.at("photonav_sweep") != kSchema) throw InputError("", "", "of another version");
+    if (line.at("photonav_sweep") != kJournalSchema) throw InputError("", "", "of another version");
     return {line.at("name"),
             line.at("config"),
             line.at("identity"),
@@ -135,7 +134,7 @@ SweepJournal SweepJournal::create(const fs::path& folder, const SweepHeader& hea
     SweepJournal journal(folder / kFileName);
     if (fs::exists(journal.file_)) fs::rename(journal.file_, journal.file_.string() + "~");
     journal.header_ = header;
-    journal.write({{"photonav_sweep", kSchema},
+    journal.write({{"photonav_sweep", kJournalSchema},
                    {"name", header.name},
                    {"config", header.config},
                    {"identity", header.identity},

@@ -6,18 +6,17 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <sstream>
 
 #include "command_io.hpp"
+#include "constants.hpp"
 #include "error.hpp"
 
 namespace photonav {
 using nlohmann::json;
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSameAlpha = 1e-6;
 
 std::vector<std::string> fieldsOf(std::string line) {

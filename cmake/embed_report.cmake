@@ -21,7 +21,8 @@ function(photonav_embed_report target)
         DEPENDS ${script} ${page}/page.html ${parts}
         COMMENT "Inlining the report page" VERBATIM)
     target_sources(${target} PRIVATE ${generated})
-    set_source_files_properties(${generated} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+    set_source_files_properties(${generated} PROPERTIES
+        SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 if(NOT CMAKE_SCRIPT_MODE_FILE)

@@ -6,14 +6,13 @@
 #include <ompl/geometric/PathGeometric.h>
 
 #include <cmath>
-#include <limits>
 
+#include "constants.hpp"
 #include "path_cost_objective.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kExploration = 0.2;  // share of the samples taken wherever they fall
 
 BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,

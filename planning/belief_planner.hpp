@@ -9,13 +9,13 @@
 
 #include <atomic>
 #include <deque>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "belief.hpp"
+#include "constants.hpp"
 
 namespace photonav {
 
@@ -110,7 +110,7 @@ class BeliefPlanner : public ompl::base::Planner {
     }
     /// What benchmarks sample from another thread while solve() runs.
     struct Progress {
-        std::atomic<double> cost{std::numeric_limits<double>::infinity()};
+        std::atomic<double> cost{kInfinity};
         std::atomic<std::size_t> vertices{0}, iterations{0}, views{0};
     };
     void publishProgress();

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "constants.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFirstSearch = 100;  // vertices
 constexpr std::size_t kSearchGrowth = 2;   // of the roadmap between searches
 

@@ -4,6 +4,7 @@
 
 #include <atomic>
 
+#include "constants.hpp"
 #include "cost_to_go.hpp"
 #include "path_descent.hpp"
 #include "roadmap.hpp"
@@ -82,7 +83,7 @@ class BeliefRRTstar : public BeliefPlanner {
     std::size_t searched_ = 0;                    // number of vertices at the last complete search
     std::vector<bool> promising_;                 // by vertex, from the last search while growing
     std::vector<const ompl::base::State*> path_;  // the best over the roadmap
-    double pathCost_ = std::numeric_limits<double>::infinity();
+    double pathCost_ = kInfinity;
     std::atomic<unsigned> shortcutsTried_ = 0;  // progress properties are read from other threads
     std::atomic<unsigned> shortcutsTaken_ = 0;
 };

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <queue>
+
+#include "constants.hpp"
 
 namespace photonav {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBlind = 1e-6;  // a view that tells a coordinate to 1 km tells nothing [1/m^2]
 constexpr double kTrust = 0.99;  // of the charge
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "constants.hpp"
+
 namespace photonav {
 
 PerceptionRRTstar::PerceptionRRTstar(const ompl::base::SpaceInformationPtr& si,
@@ -32,7 +34,7 @@ void PerceptionRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near,
 /// Lines 6 to 24 of Algorithm 1. Candidates come in the order of a bound on what they can give, so
 /// the first that cannot improve ends the search.
 void PerceptionRRTstar::chooseParent(Vertex& fresh, std::vector<Candidate>& candidates) {
-    fresh.belief.cost = std::numeric_limits<double>::infinity();
+    fresh.belief.cost = kInfinity;
     const Candidate* best = nullptr;
     for (Candidate& candidate : candidates) {
         const Belief& belief = candidate.vertex->belief;

@@ -9,6 +9,12 @@
 
 namespace photonav {
 
+/// An image of a recording's list.
+struct StampedFile {
+    double timestamp;  ///< [s]
+    std::string file;
+};
+
 /// Colour becomes grey as OpenCV weighs it; orientation tags are ignored.
 /// @param source what says the camera's size, for messages: "camera.yaml (width, height)"
 /// @throws InputError for a file that is missing, damaged or of another size than the camera's

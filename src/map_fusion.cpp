@@ -12,7 +12,6 @@ namespace {
 using Eigen::Array3i;
 using Eigen::Vector3d;
 
-constexpr int kKeyOfZero = 32768;  // OctoMap's key of the cell that begins at the origin
 constexpr double kMaxCells = 2e9;  // one byte of scratch memory each
 constexpr std::int32_t kNoPixels = -1;
 

@@ -49,12 +49,12 @@ struct Lens {
 };
 
 /// a x + b y + c over the image, one per lane.
-struct Affine {
+struct AffineLanes {
     Float a, b, c;
 };
 
 /// @param slack added to the value, relative to the size of its coefficients
-Affine inPixels(const Float3& perRay, const Lens& lens, float slack) {
+AffineLanes inPixels(const Float3& perRay, const Lens& lens, float slack) {
     const Float a = perRay.x / lens.fx;
     const Float b = perRay.y / lens.fy;
     const Float size = simd::abs(perRay.x) + simd::abs(perRay.y) + simd::abs(perRay.z);
@@ -63,8 +63,8 @@ Affine inPixels(const Float3& perRay, const Lens& lens, float slack) {
 
 /// What is needed to draw kWidth triangles.
 struct Batch {
-    std::array<Affine, 3> edges;
-    Affine inverseDepth;
+    std::array<AffineLanes, 3> edges;
+    AffineLanes inverseDepth;
     Float left, right, top, bottom;  ///< bounds in the image [pixel]
 };
 
@@ -110,10 +110,10 @@ void setCoefficients(Batch& batch, const std::array<Float3, 3>& p, const Float3&
     };
     const Float3 edge12{edge2.x - edge1.x, edge2.y - edge1.y, edge2.z - edge1.z};
     // A millionth: neighbours overlap a little instead of leaving pixels out between them.
-    constexpr float kSlack = 1e-6F;
-    batch.edges[0] = inPixels(scaled(cross(p[1], edge12)), lens, kSlack);
-    batch.edges[1] = inPixels(scaled(cross(edge2, p[0])), lens, kSlack);
-    batch.edges[2] = inPixels(scaled(cross(p[0], edge1)), lens, kSlack);
+    constexpr float kRounding = 1e-6F;
+    batch.edges[0] = inPixels(scaled(cross(p[1], edge12)), lens, kRounding);
+    batch.edges[1] = inPixels(scaled(cross(edge2, p[0])), lens, kRounding);
+    batch.edges[2] = inPixels(scaled(cross(p[0], edge1)), lens, kRounding);
     batch.inverseDepth = inPixels(scaled(normal), lens, 0.F);
 }
 
@@ -126,7 +126,7 @@ struct Target {
 /// Draws lane i of the batch as triangle `id`.
 void draw(const Batch& batch, int i, std::uint32_t id, Target& target) {
     struct Line {
-        explicit Line(const Affine& f, int lane) : a(f.a[lane]), b(f.b[lane]), c(f.c[lane]) {}
+        explicit Line(const AffineLanes& f, int lane) : a(f.a[lane]), b(f.b[lane]), c(f.c[lane]) {}
         Float atRow(float y, Float lanes) const { return a * lanes + (b * y + c); }
         float a, b, c;
     };

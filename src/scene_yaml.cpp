@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <limits>
 
+#include "constants.hpp"
 #include "yaml_reader.hpp"
 
 namespace photonav {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSmallest = 1e-6;  // [m]: what counts as a positive length
 
 /// Reads one scene file: textures by name first, then the surfaces that refer to them.

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
+#include "constants.hpp"
 #include "image_file.hpp"
 #include "text_table.hpp"
 #include "trajectory.hpp"
@@ -19,11 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kNanosecond = 1e-9;
-
-struct StampedFile {
-    double timestamp;
-    std::string file;
-};
 
 fs::path mavFolder(const std::string& folder) {
     const fs::path inside = fs::path(folder) / "mav0";
@@ -103,7 +98,7 @@ void checkSameSize(const DistortedCamera& left, const DistortedCamera& right) {
 std::vector<StampedFile> readImageList(const fs::path& folder, StereoSequence& sequence) {
     const std::string file = (folder / "data.csv").string();
     std::vector<StampedFile> list;
-    double last = -std::numeric_limits<double>::infinity();
+    double last = -kInfinity;
     for (const TextRow& row : readCsv(file, 2)) {
         StampedFile image{kNanosecond * row.number(0), (folder / "data" / row.text(1)).string()};
         if (image.timestamp > last) {

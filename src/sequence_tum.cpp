@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
+#include "constants.hpp"
 #include "image_file.hpp"
 #include "text_table.hpp"
 #include "trajectory.hpp"
@@ -17,11 +17,6 @@ namespace photonav {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct StampedFile {
-    double timestamp;
-    std::string file;
-};
 
 struct Pair {
     StampedFile colour;
@@ -49,7 +44,7 @@ class TimeOrder {
 
   private:
     Sequence* forgiven_;
-    double last_ = -std::numeric_limits<double>::infinity();
+    double last_ = -kInfinity;
 };
 
 std::vector<StampedFile> readFileList(const fs::path& folder, const std::string& name,
@@ -162,11 +157,9 @@ void readCamera(const std::string& file, Sequence& sequence) {
     readPixels("width", sequence.camera.width);
     readPixels("height", sequence.camera.height);
     sequence.camera.intrinsics = readIntrinsics(yaml, sequence.camera);
-    yaml.readNumber("depth_scale", sequence.depthScale, 1e-6,
-                    std::numeric_limits<double>::infinity());
+    yaml.readNumber("depth_scale", sequence.depthScale, 1e-6, kInfinity);
     if (yaml.has("information_scale")) {
-        yaml.readNumber("information_scale", sequence.informationScale.emplace(), 1e-6,
-                        std::numeric_limits<double>::infinity());
+        yaml.readNumber("information_scale", sequence.informationScale.emplace(), 1e-6, kInfinity);
     }
     if (yaml.has("depth_camera")) {
         YamlMap depthCamera = yaml.map("depth_camera");

@@ -15,6 +15,8 @@
 
 namespace photonav {
 
+inline constexpr int kKeyOfZero = 32768;  ///< OctoMap's key of the cell that begins at the origin
+
 /// What a cell that no ray has visited counts as. There is no silent default anywhere.
 enum class UnknownPolicy { free, occupied };
 

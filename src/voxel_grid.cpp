@@ -13,8 +13,7 @@ namespace {
 
 using Eigen::Array3i;
 
-constexpr int kKeyOfZero = 32768;  // OctoMap's key of the cell that begins at the origin
-constexpr double kMaxCells = 2147483647.;
+constexpr double kMostCells = 2147483647.;
 constexpr std::uint8_t kFar = 255;
 
 /// What a brick of 4 x 4 x 4 cells knows before neighbours are asked. Bit x + 4 y + 16 z.
@@ -76,7 +75,7 @@ void GridBuilder::layOut() {
     grid_.first = low - 1;
     grid_.size = high - low + 2;
     const double cells = grid_.size.cast<double>().prod();
-    if (cells > kMaxCells) {
+    if (cells > kMostCells) {
         throw std::invalid_argument(fmt::format(
             "voxel view: the map's bounding box has {} x {} x {} cells of {} m, more than 2^31; "
             "use a coarser map or a part of it",

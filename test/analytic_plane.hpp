@@ -57,6 +57,9 @@ struct AnalyticPlane {
     }
 };
 
+/// The paper's camera at a quarter of its size.
+inline Camera defaultCamera() { return makeCamera(188, 120, 70. * std::numbers::pi / 180.); }
+
 /// Camera pose from its position and the angle of its optical axis below the horizon.
 inline Pose lookFrom(const Eigen::Vector3d& position_w, double belowHorizon, double yaw = 0.) {
     Pose T_w_b = Pose::Identity();

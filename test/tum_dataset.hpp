@@ -12,30 +12,11 @@
 
 #include "camera.hpp"
 #include "error.hpp"
+#include "temporary_folder.hpp"
 
 namespace photonav::test {
 
 namespace fs = std::filesystem;
-
-/// A folder of this test's own, gone when the test is.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        path_ = fs::temp_directory_path() /
-                fmt::format("photonav-{}-{}-{}", info->test_suite_name(), info->name(), getpid());
-        fs::remove_all(path_);
-        fs::create_directories(path_);
-    }
-    ~TemporaryFolder() { fs::remove_all(path_); }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const fs::path& path() const { return path_; }
-
-  private:
-    fs::path path_;
-};
 
 inline void writeText(const fs::path& file, const std::string& text) {
     std::ofstream(file) << text;

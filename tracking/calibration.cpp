@@ -3,9 +3,10 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <vector>
+
+#include "constants.hpp"
 
 namespace photonav {
 
@@ -19,7 +20,7 @@ double misfit(std::span<const AlignmentError> errors, double scale, double trans
         const Matrix6 covariance =
             withFloor((scale * e.information).inverse(), translation, rotation);
         const Eigen::LLT<Matrix6> factor(covariance);
-        if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+        if (factor.info() != Eigen::Success) return kInfinity;
         const Matrix6 L = factor.matrixL();
         sum += factor.matrixL().solve(e.xi).squaredNorm() + 2. * L.diagonal().array().log().sum();
     }

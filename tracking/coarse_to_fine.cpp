@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "constants.hpp"
 #include "se3.hpp"
 
 namespace photonav {
@@ -66,7 +67,7 @@ Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
 
 /// -2 log likelihood, as if `pixels` had been seen: iterates see different numbers of them.
 double Search::cost(const Iterate& at, double pixels) const {
-    if (at.equations.count < 1.) return std::numeric_limits<double>::infinity();
+    if (at.equations.count < 1.) return kInfinity;
     const PhotometricOptions& p = options_.photometric;
     return p.scale / (p.sigma * p.sigma) * at.equations.loss * pixels / at.equations.count +
            at.priorTerm;

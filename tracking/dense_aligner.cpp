@@ -9,12 +9,6 @@
 
 namespace photonav {
 
-namespace {
-
-constexpr unsigned kLeastSide = 12;  ///< pixels: smaller images are not worth a level
-
-}  // namespace
-
 /// Compares images with the model rendered for the camera of each level.
 class DenseAligner::RenderedModel : public Comparison {
   public:

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "constants.hpp"
 #include "flight_estimator.hpp"
 #include "lost_watch.hpp"
 #include "photometric_servo.hpp"
@@ -51,7 +51,7 @@ class Flight {
           goalServo_(*world.map, world.camera, world.T_b_c, route_.cameraAt(plan.back()),
                      {.photometric = options.alignment.photometric}),
           timeLimit_(60. + options.timePerMetre * plan.back().distance) {
-        result_.leastClearance = std::numeric_limits<double>::infinity();
+        result_.leastClearance = kInfinity;
     }
 
     FlightResult run(const std::function<bool()>& isStopped) {

@@ -13,8 +13,6 @@ namespace photonav {
 
 namespace {
 
-constexpr unsigned kLeastSide = 12;  ///< pixels: smaller images are not worth a level
-
 /// The same equations for a perturbation on the left: exp(eta^) T = T exp(xi^), eta = Ad(T) xi.
 NormalEquations onTheLeft(NormalEquations e, const Pose& T) {
     Matrix8 M = Matrix8::Identity();

@@ -16,8 +16,6 @@ using simd::Float;
 using simd::Int;
 using simd::kWidth;
 
-constexpr float kNoSurface = -1e30F;     ///< stands for the inverse depth of nothing
-constexpr float kUnused = 4.F;           ///< stands for the residual of a point out of view
 constexpr std::size_t kChunk = 32;       ///< vectors whose products are summed together
 constexpr std::size_t kSampleEvery = 4;  ///< chunks per chunk of residuals kept
 constexpr std::size_t kNoiseEvery = 16;  ///< points per point that the noise is reckoned from

@@ -17,12 +17,6 @@ using simd::Float;
 using simd::Int;
 using simd::kWidth;
 
-/// Stands for the inverse depth of nothing: fails every test of a surface, yet is finite.
-constexpr float kNoSurface = -1e30F;
-
-/// Stands for the residual of a pixel that does not count: grey values differ by less.
-constexpr float kUnused = 4.F;
-
 Float at(const std::vector<float>& image, std::size_t index) {
     return simd::load<Float>(image.data() + index);
 }

@@ -12,6 +12,12 @@
 
 namespace photonav {
 
+/// Stands for the inverse depth of nothing: fails every test of a surface, yet is finite.
+inline constexpr float kNoSurface = -1e30F;
+
+/// Stands for the residual of what does not count: grey values differ by less.
+inline constexpr float kUnused = 4.F;
+
 /// Accumulates the upper triangle of sum w c^T c for c = (7 columns, 1, residual), single precision
 /// within a few rows and double across them, with the weights of a robust loss.
 class ProductSums {

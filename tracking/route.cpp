@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "constants.hpp"
 
 namespace photonav {
 
@@ -40,7 +41,7 @@ const PlannedView& Route::advance(const UncertainPose& belief) {
 }
 
 double Route::progress(const Eigen::Vector3d& p_w) const {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     double distance = wanted().distance;  // at the goal there is no way left
     for (std::size_t i = passed_; i < wanted_; ++i) {
         const Eigen::Vector3d from = plan_[i].T_w_b.translation();

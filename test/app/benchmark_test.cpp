@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* kStatistics = "/usr/bin/ompl_benchmark_statistics";
-const std::string kQuick =
+const std::string kQuickBenchmark =
     " --set planner.vertices=150 --set planner.view_pitch=0.5 --runs 2 --seed 3"
     " --planners pa_rrt_star,rrt_star ";
 
@@ -52,7 +52,7 @@ class BenchmarkCommand : public testing::Test {
 
 TEST_F(BenchmarkCommand, ItsLogIsReadByOmplsOwnTool) {
     if (!fs::exists(kStatistics)) GTEST_SKIP() << kStatistics << " (ompl-demos) is not installed";
-    const Execution run = benchmark(kQuick + "--interval 0.001");
+    const Execution run = benchmark(kQuickBenchmark + "--interval 0.001");
     ASSERT_EQ(run.exitCode, 0) << run.output;
     const Execution read =
         execute(fmt::format("{} {} -d {}", kStatistics, (folder_ / "benchmark.log").string(),
@@ -91,14 +91,14 @@ TEST_F(BenchmarkCommand, ItsLogIsReadByOmplsOwnTool) {
 }
 
 TEST_F(BenchmarkCommand, ItsRunsAreThoseOfASweep) {
-    const Execution run = benchmark(kQuick + "--set planner.alpha=0.4");
+    const Execution run = benchmark(kQuickBenchmark + "--set planner.alpha=0.4");
     ASSERT_EQ(run.exitCode, 0) << run.output;
     const json ours = parsed(folder_ / "result.json")["runs"];
     for (const char* name : {"benchmark.log", "progress.png", "config.yaml", "report.html"}) {
         EXPECT_TRUE(fs::exists(folder_ / name)) << name;
     }
     ASSERT_EQ(photonav(fmt::format("sweep {} {} --alpha 0.4 --out {}", config("two_textures"),
-                                   kQuick, folder_.string()))
+                                   kQuickBenchmark, folder_.string()))
                   .exitCode,
               0);
     const json theirs = parsed(folder_ / "result.json")["runs"];

@@ -43,10 +43,10 @@ class CommandLine : public testing::Test {
     fs::path folder_;
 };
 
-constexpr const char* kQuick = " --set planner.vertices=300 --set planner.view_pitch=0.4 ";
+constexpr const char* kQuickPlan = " --set planner.vertices=300 --set planner.view_pitch=0.4 ";
 
 TEST_F(CommandLine, PlanWritesEverythingItPromises) {
-    const Execution run = plan(std::string("--audit") + kQuick);
+    const Execution run = plan(std::string("--audit") + kQuickPlan);
     ASSERT_EQ(run.exitCode, 0) << run.output;
     for (const char* name : {"result.json", "config.yaml", "path.tum", "top_view.png", "trace.png",
                              "information.png", "report.json", "report.html"}) {
@@ -71,7 +71,7 @@ TEST_F(CommandLine, PlanWritesEverythingItPromises) {
 }
 
 TEST_F(CommandLine, EvolutionIsAFigureAndAnAnimation) {
-    const Execution run = plan(std::string("--evolution") + kQuick);
+    const Execution run = plan(std::string("--evolution") + kQuickPlan);
     ASSERT_EQ(run.exitCode, 0) << run.output;
     EXPECT_TRUE(fs::exists(folder_ / "tree_evolution.png"));
     std::ifstream stream(folder_ / "report.json");
@@ -83,7 +83,7 @@ TEST_F(CommandLine, EvolutionIsAFigureAndAnAnimation) {
 }
 
 TEST_F(CommandLine, TheDetourBuysCertainty) {
-    ASSERT_EQ(plan(kQuick).exitCode, 0);
+    ASSERT_EQ(plan(kQuickPlan).exitCode, 0);
     const json r = result();
     EXPECT_GT(r["length"].get<double>(), r["baseline"]["length"].get<double>() + 1.);
     EXPECT_LT(r["goal_trace"].get<double>(), 0.2 * r["baseline"]["goal_trace"].get<double>());
@@ -91,7 +91,7 @@ TEST_F(CommandLine, TheDetourBuysCertainty) {
 }
 
 TEST_F(CommandLine, PlansAreDeterministicAndConfigsRerunnable) {
-    ASSERT_EQ(plan(std::string("--seed 7") + kQuick).exitCode, 0);
+    ASSERT_EQ(plan(std::string("--seed 7") + kQuickPlan).exitCode, 0);
     const json first = result();
     const fs::path copy = folder_.string() + "_config.yaml";
     fs::copy_file(folder_ / "config.yaml", copy, fs::copy_options::overwrite_existing);
@@ -103,7 +103,7 @@ TEST_F(CommandLine, PlansAreDeterministicAndConfigsRerunnable) {
 }
 
 TEST_F(CommandLine, RrtStarRendersNoViewWhilePlanning) {
-    ASSERT_EQ(plan(std::string("--set planner.name=rrt_star") + kQuick).exitCode, 0);
+    ASSERT_EQ(plan(std::string("--set planner.name=rrt_star") + kQuickPlan).exitCode, 0);
     EXPECT_EQ(result()["views"], 0);
     EXPECT_EQ(result()["alpha"], 1.);
     EXPECT_GT(result()["goal_trace"].get<double>(), 0.1);
@@ -199,7 +199,7 @@ TEST_F(CommandLine, InfoDrawsHeatMapsAndContributions) {
 }
 
 TEST_F(CommandLine, ReportIsRebuiltFromItsFolder) {
-    ASSERT_EQ(plan(kQuick).exitCode, 0);
+    ASSERT_EQ(plan(kQuickPlan).exitCode, 0);
     fs::remove(folder_ / "report.html");
     EXPECT_EQ(photonav("report " + folder_.string()).exitCode, 0);
     EXPECT_TRUE(fs::exists(folder_ / "report.html"));

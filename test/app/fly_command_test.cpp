@@ -11,6 +11,7 @@
 #include "executable.hpp"
 #include "fly_runs.hpp"
 #include "sequence_tum.hpp"
+#include "temporary_folder.hpp"
 #include "trajectory.hpp"
 
 namespace photonav {
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 // A small image, coarse views and few vertices: a flight takes a fraction of a second.
-const std::string kQuick =
+const std::string kQuickFlight =
     " --set planner.vertices=150 --set planner.view_pitch=0.5 --set camera.width=94"
     " --set camera.height=60 --set goal=[2,3,2] ";
 
@@ -38,7 +39,7 @@ class FlyCommand : public testing::Test {
     std::string at(const std::string& name) const { return (folder_ / name).string(); }
 
     Execution fly(const std::string& name, const std::string& arguments) const {
-        return photonav(fmt::format("fly {} {} {} --out {}", config("two_textures"), kQuick,
+        return photonav(fmt::format("fly {} {} {} --out {}", config("two_textures"), kQuickFlight,
                                     arguments, at(name)));
     }
 
@@ -87,8 +88,8 @@ TEST_F(FlyCommand, IsDeterministicWhateverTheThreads) {
 }
 
 TEST_F(FlyCommand, FliesThePlanOfAResultFolder) {
-    const Execution planned =
-        photonav(fmt::format("plan {} {} --out {}", config("two_textures"), kQuick, at("plan")));
+    const Execution planned = photonav(
+        fmt::format("plan {} {} --out {}", config("two_textures"), kQuickFlight, at("plan")));
     ASSERT_EQ(planned.exitCode, 0) << planned.output;
     for (const std::string what : {"plan", "plan/result.json", "plan/path.tum"}) {
         const Execution run =
@@ -100,12 +101,6 @@ TEST_F(FlyCommand, FliesThePlanOfAResultFolder) {
         ASSERT_EQ(flown.size(), 1U);
         EXPECT_NEAR(flown[0]["length_m"], result("plan")["length"], 1e-6);
     }
-}
-
-std::string contentOf(const fs::path& file) {
-    std::ostringstream content;
-    content << std::ifstream(file).rdbuf();
-    return content.str();
 }
 
 TEST_F(FlyCommand, ItsConfigRepeatsTheRun) {
@@ -121,13 +116,14 @@ TEST_F(FlyCommand, ItsConfigRepeatsTheRun) {
     ASSERT_NE(run.exitCode, 2) << run.output;
     EXPECT_EQ(result("a")["planners"], result("b")["planners"]);
     EXPECT_EQ(result("a")["flight"], result("b")["flight"]);
-    EXPECT_EQ(contentOf(folder_ / "a/config.yaml"), contentOf(folder_ / "b/config.yaml"));
+    EXPECT_EQ(test::contentOf(folder_ / "a/config.yaml"),
+              test::contentOf(folder_ / "b/config.yaml"));
     EXPECT_NE(photonav(fmt::format("fly {} --flights 1 --camera assumed --out {}",
                                    at("a/config.yaml"), at("c")))
                   .exitCode,
               2);
     EXPECT_EQ(result("c")["planners"][0]["flights"], 1);  // options go over the config
-    EXPECT_NE(contentOf(folder_ / "c/config.yaml").find("rate: 5"), std::string::npos);
+    EXPECT_NE(test::contentOf(folder_ / "c/config.yaml").find("rate: 5"), std::string::npos);
     const Execution bad = photonav(fmt::format("fly {} --set fly.odometri=2", at("a/config.yaml")));
     EXPECT_EQ(bad.exitCode, 2);
     EXPECT_NE(bad.output.find("fly.odometri: unknown key, did you mean 'odometry'"),
@@ -137,7 +133,7 @@ TEST_F(FlyCommand, ItsConfigRepeatsTheRun) {
 
 TEST_F(FlyCommand, TheConfigOfAFlownPlanFliesThatPlan) {
     ASSERT_EQ(photonav(fmt::format("plan {} {} --set planner.compare_with_rrt_star=false --out {}",
-                                   config("two_textures"), kQuick, at("plan")))
+                                   config("two_textures"), kQuickFlight, at("plan")))
                   .exitCode,
               0);
     ASSERT_NE(photonav(fmt::format("fly {} --flights 1 --set planner.vertices=20 --out {}",
@@ -159,7 +155,7 @@ TEST_F(FlyCommand, WhatWasNeverFlownHasNoErrors) {
     const Execution run = execute(fmt::format(
         "{{ {} fly {} {} --flights 1000 --quiet --out {} & until [ -d {} ]; do sleep 0.02; done;"
         " kill -INT $!; wait $!; }}",
-        PHOTONAV_BINARY, config("two_textures"), kQuick, at("out"), at("out")));
+        PHOTONAV_BINARY, config("two_textures"), kQuickFlight, at("out"), at("out")));
     EXPECT_EQ(run.exitCode, 130) << run.output;
     const json r = result("out");
     EXPECT_EQ(r["status"], "interrupted");

@@ -73,8 +73,7 @@ TEST_F(MapCommand, WritesWhatOtherProgramsRead) {
     const Trajectory trajectory = readTrajectory(file("trajectory.tum"));
     ASSERT_EQ(trajectory.size(), 6U);
     EXPECT_TRUE(trajectory[2].T_w_c.isApprox(dataset.T_w_c(2), 1e-5));
-    std::ifstream json(file("result.json"));
-    EXPECT_EQ(nlohmann::json::parse(json), report.result);
+    EXPECT_EQ(nlohmann::json::parse(test::contentOf(file("result.json"))), report.result);
 }
 
 TEST_F(MapCommand, TurnsTheRecordedWorldUpright) {

@@ -11,6 +11,7 @@
 #include "base64.hpp"
 #include "report.hpp"
 #include "sample_report.hpp"
+#include "temporary_folder.hpp"
 
 namespace photonav {
 namespace {
@@ -23,12 +24,6 @@ struct Outcome {
     std::string dom;  ///< the page after its scripts ran
     std::string log;  ///< what Chromium said, its console included
 };
-
-std::string contentOf(const fs::path& file) {
-    std::ostringstream content;
-    content << std::ifstream(file, std::ios::binary).rdbuf();
-    return content.str();
-}
 
 class ReportBrowserTest : public testing::Test {
   protected:
@@ -59,8 +54,8 @@ class ReportBrowserTest : public testing::Test {
             (folder_ / "profile").string() + " " + options + " --dump-dom 'file://" +
             (folder_ / "report.html").string() + hash + "' >" + (folder_ / "dom").string() + " 2>" +
             (folder_ / "log").string();
-        EXPECT_EQ(std::system(command.c_str()), 0) << contentOf(folder_ / "log");
-        return {contentOf(folder_ / "dom"), contentOf(folder_ / "log")};
+        EXPECT_EQ(std::system(command.c_str()), 0) << test::contentOf(folder_ / "log");
+        return {test::contentOf(folder_ / "dom"), test::contentOf(folder_ / "log")};
     }
 
     fs::path folder_;

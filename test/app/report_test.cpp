@@ -13,6 +13,7 @@
 #include "base64.hpp"
 #include "error.hpp"
 #include "sample_report.hpp"
+#include "temporary_folder.hpp"
 
 namespace photonav {
 namespace {
@@ -43,12 +44,6 @@ class ReportTest : public testing::Test {
 
     fs::path folder_;
 };
-
-std::string contentOf(const fs::path& file) {
-    std::ostringstream content;
-    content << std::ifstream(file, std::ios::binary).rdbuf();
-    return content.str();
-}
 
 TEST(Base64, KnownValuesAndRoundTrip) {
     EXPECT_EQ(base64Encode("photonav"), "cGhvdG9uYXY=");
@@ -113,7 +108,7 @@ TEST_F(ReportTest, MalformedInputIsNamed) {
 TEST_F(ReportTest, PageIsOneFileWithEverythingInside) {
     const fs::path file = folder_ / "report.html";
     writeReport(file, sampleReport());
-    const std::string page = contentOf(file);
+    const std::string page = test::contentOf(file);
     EXPECT_EQ(page.find("@PHOTONAV"), std::string::npos);
     EXPECT_EQ(page.find("src=\"http"), std::string::npos);
     EXPECT_EQ(page.find("href=\"http"), std::string::npos);

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "executable.hpp"
+#include "temporary_folder.hpp"
 
 namespace photonav {
 namespace {
@@ -18,15 +19,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 // Coarse views and few vertices: 8 runs take about a second.
-const std::string kQuick =
+const std::string kQuickSweep =
     " --set planner.vertices=120 --set planner.view_pitch=0.5 --alpha 0.1,0.6 --runs 2"
     " --planners pa_rrt_star,rrt_star ";
-
-std::string contentOf(const fs::path& file) {
-    std::ostringstream content;
-    content << std::ifstream(file, std::ios::binary).rdbuf();
-    return content.str();
-}
 
 class SweepCommand : public testing::Test {
   protected:
@@ -42,13 +37,13 @@ class SweepCommand : public testing::Test {
     std::string at(const std::string& name) const { return (folder_ / name).string(); }
 
     Execution sweep(const std::string& name, const std::string& arguments,
-                    const std::string& settings = kQuick) const {
+                    const std::string& settings = kQuickSweep) const {
         return photonav(fmt::format("sweep {} {} {} --out {}", config("two_textures"), settings,
                                     arguments, at(name)));
     }
 
     json result(const std::string& name) const {
-        return json::parse(contentOf(folder_ / name / "result.json"));
+        return json::parse(test::contentOf(folder_ / name / "result.json"));
     }
 
     /// The runs, without what depends on the machine.
@@ -108,7 +103,7 @@ TEST_F(SweepCommand, WritesEverythingItPromises) {
                 0.5 * (first["length"].get<double>() + r["runs"][1]["length"].get<double>()),
                 1e-12);
     EXPECT_TRUE(r["summary"][0]["paper_length"].is_null());  // the paper has no alpha 0.1
-    const std::string csv = contentOf(folder_ / "out/runs.csv");
+    const std::string csv = test::contentOf(folder_ / "out/runs.csv");
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 9);
     EXPECT_NE(run.output.find("pa_rrt_star"), std::string::npos);
 }
@@ -153,10 +148,11 @@ TEST_F(SweepCommand, ShardsMergeToTheWhole) {
         photonav(fmt::format("sweep --merge {} {} --out {}", at("b"), at("a"), at("merged")));
     ASSERT_EQ(merge.exitCode, 0) << merge.output;
     EXPECT_EQ(runs("merged"), runs("whole"));
-    EXPECT_EQ(contentOf(folder_ / "merged/config.yaml"), contentOf(folder_ / "whole/config.yaml"));
+    EXPECT_EQ(test::contentOf(folder_ / "merged/config.yaml"),
+              test::contentOf(folder_ / "whole/config.yaml"));
     const Execution named =
-        photonav(fmt::format("sweep {} {} --merge {} {} --out {}", config("two_textures"), kQuick,
-                             at("a"), at("b"), at("named")));
+        photonav(fmt::format("sweep {} {} --merge {} {} --out {}", config("two_textures"),
+                             kQuickSweep, at("a"), at("b"), at("named")));
     ASSERT_EQ(named.exitCode, 0) << named.output;
     EXPECT_EQ(runs("named"), runs("whole"));
 }
@@ -194,7 +190,7 @@ TEST_F(SweepCommand, AKilledSweepResumesWhereItWas) {
     const std::string kept = cutAfter("out", 5);
     ASSERT_EQ(sweep("out", "--resume --jobs 2").exitCode, 0);
     EXPECT_EQ(runs("out"), whole);
-    EXPECT_TRUE(contentOf(folder_ / "out/runs.jsonl").starts_with(kept));  // not run again
+    EXPECT_TRUE(test::contentOf(folder_ / "out/runs.jsonl").starts_with(kept));  // not run again
     ASSERT_EQ(sweep("fresh", "--resume").exitCode, 0);  // nothing there: from the start
     EXPECT_EQ(runs("fresh"), whole);
 }
@@ -226,8 +222,8 @@ TEST_F(SweepCommand, CtrlCKeepsTheRunsDone) {
 }
 
 TEST_F(SweepCommand, ItsPageShowsCurvesAndTables) {
-    constexpr const char* kChromium = "/usr/bin/chromium";
-    if (!fs::exists(kChromium)) GTEST_SKIP() << kChromium << " is not installed";
+    constexpr const char* kBrowser = "/usr/bin/chromium";
+    if (!fs::exists(kBrowser)) GTEST_SKIP() << kBrowser << " is not installed";
     ASSERT_EQ(sweep("out",
                     "--set \"sweep.paper=[{alpha: 0.6, length: 9, mean_trace: 4.25,"
                     " goal_trace: 1}]\"")
@@ -236,7 +232,7 @@ TEST_F(SweepCommand, ItsPageShowsCurvesAndTables) {
     const Execution page = execute(fmt::format(
         "{} --headless --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader"
         " --no-first-run --virtual-time-budget=8000 --user-data-dir={} --dump-dom file://{}",
-        kChromium, at("profile"), at("out/report.html")));
+        kBrowser, at("profile"), at("out/report.html")));
     EXPECT_NE(page.output.find("<section class=\"charts\" id=\"sweep-charts\">"),
               std::string::npos);  // not hidden
     EXPECT_NE(page.output.find("</span>pa_rrt_star</h2>"), std::string::npos);

@@ -5,8 +5,7 @@
 
 #include <numbers>
 
-using namespace photonav;
-
+namespace photonav {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -54,3 +53,4 @@ TEST(CameraMount, LooksForwardObliqueAndDown) {
 }
 
 }  // namespace
+}  // namespace photonav

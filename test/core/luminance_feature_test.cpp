@@ -15,11 +15,7 @@
 namespace photonav {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
-Pose obliquePose() { return lookFrom({0.1, 0.5, 1.5}, kPi / 4., -0.7); }
-
-Camera defaultCamera() { return makeCamera(188, 120, 70. * kPi / 180.); }
+Pose obliquePose() { return lookFrom({0.1, 0.5, 1.5}, std::numbers::pi / 4., -0.7); }
 
 Matrix6 gram(const vpMatrix& L, double weight) { return weight * matrix6FromVisp(L.AtA()); }
 
@@ -44,7 +40,7 @@ TEST(PixelDepthLuminance, InteractionMatrixIsThePhotometricJacobian) {
 
 TEST(PixelDepthLuminance, InformationIsThatOfTheKernel) {
     const Camera camera = defaultCamera();
-    for (const Pose& T_c_w : {lookFrom({0.3, -0.2, 2.}, kPi / 2., 0.4), obliquePose(),
+    for (const Pose& T_c_w : {lookFrom({0.3, -0.2, 2.}, std::numbers::pi / 2., 0.4), obliquePose(),
                               lookFrom({0.3, -0.2, 0.25}, 1.4, 1.)}) {
         AnalyticPlane plane;
         plane.wavelength = 0.4;
@@ -65,7 +61,7 @@ TEST(PixelDepthLuminance, OneDepthForTheImageIsFarOffOnAnObliqueView) {
     const Camera camera = defaultCamera();
     AnalyticPlane plane;
     plane.wavelength = 0.7;
-    const View view = plane.view(camera, lookFrom({0., 0., 1.}, 35. * kPi / 180.));
+    const View view = plane.view(camera, lookFrom({0., 0., 1.}, 35. * std::numbers::pi / 180.));
     const auto information = [&](const View& seen) {
         PixelDepthLuminance feature;
         feature.buildFrom(seen, camera);

@@ -9,11 +9,11 @@
 #include "error.hpp"
 #include "temporary_folder.hpp"
 
-using namespace photonav;
-using photonav::test::messageOf;
-using photonav::test::TemporaryFolder;
-
+namespace photonav {
 namespace {
+
+using test::messageOf;
+using test::TemporaryFolder;
 
 std::string complaint(const std::string& file) {
     return messageOf<InputError>([&] { loadMesh(file); });
@@ -198,3 +198,4 @@ TEST(MeshIo, SomeDegenerateTrianglesAreDropped) {
 }
 
 }  // namespace
+}  // namespace photonav

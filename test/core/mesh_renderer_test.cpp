@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh_renderer.hpp"
+#include "synthetic_floor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,15 +8,8 @@
 #include <random>
 #include <thread>
 
-using namespace photonav;
-
+namespace photonav {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-
-std::vector<float> pixels(const ImageF& image) {
-    return {image.bitmap, image.bitmap + image.getSize()};
-}
 
 Pose lookingFrom(const Eigen::Vector3d& position, double yaw, double belowHorizon) {
     Pose T_w_b(Eigen::Translation3d{position});
@@ -92,7 +86,7 @@ TEST(MeshRenderer, DepthAgreesWithTryingEveryTriangle) {
     for (const unsigned width : {61U, 37U}) {
         const Camera camera = makeCamera(width, width * 2 / 3, 1.4);
         int compared = 0;
-        for (const double belowHorizon : {kPi / 2., kPi / 4., 0.1}) {
+        for (const double belowHorizon : {std::numbers::pi / 2., std::numbers::pi / 4., 0.1}) {
             for (const double yaw : {0.3, 2., 4.}) {
                 compared += compareWithBruteForce(scene, renderer, camera,
                                                   lookingFrom({3., 2.7, 2.2}, yaw, belowHorizon));
@@ -108,7 +102,7 @@ TEST(MeshRenderer, NoPixelSlipsBetweenNeighbours) {
     const auto texture = addTexture(scene, uniformTexture(0.5));
     constexpr int kSectors = 64;
     const auto rim = [](int i) -> Eigen::Vector3f {
-        const double angle = 2. * kPi * i / kSectors;
+        const double angle = 2. * std::numbers::pi * i / kSectors;
         return {static_cast<float>(9. * std::cos(angle)), static_cast<float>(9. * std::sin(angle)),
                 0.F};
     };
@@ -123,7 +117,7 @@ TEST(MeshRenderer, NoPixelSlipsBetweenNeighbours) {
     for (const unsigned width : {61U, 13U}) {
         for (const double x : {0., 0.1, 1.}) {
             const Camera camera = makeCamera(width, width, 1.2);
-            renderer.render(camera, lookingFrom({x, 0., 2.}, 0., kPi / 2.), view);
+            renderer.render(camera, lookingFrom({x, 0., 2.}, 0., std::numbers::pi / 2.), view);
             for (unsigned i = 0; i < view.depth.getSize(); ++i) {
                 ASSERT_NEAR(view.depth.bitmap[i], 2., 1e-5) << i;
             }
@@ -137,9 +131,10 @@ TEST(MeshRenderer, NothingToSeeIsDepthZero) {
              addTexture(scene, uniformTexture(0.5)));
     const MeshRenderer renderer(scene);
     View view;
-    renderer.render(makeCamera(40, 30, 1.), lookingFrom({0.5, 0.5, 1.}, 0., -kPi / 2.), view);
-    EXPECT_EQ(pixels(view.depth), std::vector<float>(1200, 0.F));
-    EXPECT_EQ(pixels(view.intensity), std::vector<float>(1200, 0.F));
+    renderer.render(makeCamera(40, 30, 1.), lookingFrom({0.5, 0.5, 1.}, 0., -std::numbers::pi / 2.),
+                    view);
+    EXPECT_EQ(test::pixels(view.depth), std::vector<float>(1200, 0.F));
+    EXPECT_EQ(test::pixels(view.intensity), std::vector<float>(1200, 0.F));
 }
 
 TEST(MeshRenderer, UniformSurfacesAreUniformToTheBit) {
@@ -190,7 +185,7 @@ struct Comparison {
 Comparison compareWithSupersampling(const Texture& texture, const Pose& T_c_w) {
     Scene scene;
     addPlane(scene, {0., 0., 0.}, {40., 0., 0.}, {0., 40., 0.}, addTexture(scene, texture));
-    const Camera camera = makeCamera(94, 60, 70. * kPi / 180.);
+    const Camera camera = makeCamera(94, 60, 70. * std::numbers::pi / 180.);
     View view, truth;
     MeshRenderer(scene).render(camera, T_c_w, view);
     truth.intensity = supersampled(texture, camera, T_c_w);
@@ -212,11 +207,11 @@ TEST(MeshRenderer, FineTextureIsIntegratedOverPixels) {
     // At 1 m a pixel of this camera covers 1.5 cm, as the default one does at 2 m.
     const Texture fine = valueNoise({.size = {5., 5.}, .cells = {0.1, 0.03}, .seed = 2});
     for (const double height : {0.5, 1., 1.5, 3.}) {
-        const auto down =
-            compareWithSupersampling(fine, lookingFrom({20.3, 20.1, height}, 0.4, kPi / 2.));
+        const auto down = compareWithSupersampling(
+            fine, lookingFrom({20.3, 20.1, height}, 0.4, std::numbers::pi / 2.));
         EXPECT_LT(down.error, 0.08 * down.contrast) << height << " m, contrast " << down.contrast;
-        const auto oblique =
-            compareWithSupersampling(fine, lookingFrom({20.3, 20.1, height}, 0.4, kPi / 4.));
+        const auto oblique = compareWithSupersampling(
+            fine, lookingFrom({20.3, 20.1, height}, 0.4, std::numbers::pi / 4.));
         EXPECT_LT(oblique.error, 0.15 * oblique.contrast)
             << height << " m, contrast " << oblique.contrast;
     }
@@ -228,12 +223,12 @@ TEST(MeshRenderer, LevelsOfDetailChangeWithoutSteps) {
         addTexture(scene, valueNoise({.size = {5., 5.}, .cells = {0.1, 0.03}, .seed = 2}));
     addPlane(scene, {0., 0., 0.}, {40., 0., 0.}, {0., 40., 0.}, texture);
     const MeshRenderer renderer(scene);
-    const Camera camera = makeCamera(47, 30, 70. * kPi / 180.);
+    const Camera camera = makeCamera(47, 30, 70. * std::numbers::pi / 180.);
     View before, view;
-    renderer.render(camera, lookingFrom({20.3, 20.1, 0.5}, 0., kPi / 4.), before);
+    renderer.render(camera, lookingFrom({20.3, 20.1, 0.5}, 0., std::numbers::pi / 4.), before);
     float largest = 0.F;
     for (double height = 0.5; height < 4.; height *= 1.0002) {
-        renderer.render(camera, lookingFrom({20.3, 20.1, height}, 0., kPi / 4.), view);
+        renderer.render(camera, lookingFrom({20.3, 20.1, height}, 0., std::numbers::pi / 4.), view);
         for (unsigned i = 0; i < view.intensity.getSize(); ++i) {
             largest =
                 std::max(largest, std::abs(view.intensity.bitmap[i] - before.intensity.bitmap[i]));
@@ -246,7 +241,7 @@ TEST(MeshRenderer, LevelsOfDetailChangeWithoutSteps) {
 TEST(MeshRenderer, TheSamePoseGivesTheSameBitsInAnyThread) {
     const MeshRenderer renderer(clutter(20));
     const Camera camera = makeCamera(94, 60, 1.2);
-    const Pose T_c_w = lookingFrom({3., 2.7, 2.2}, 0.3, kPi / 4.);
+    const Pose T_c_w = lookingFrom({3., 2.7, 2.2}, 0.3, std::numbers::pi / 4.);
     View expected;
     renderer.render(camera, T_c_w, expected);
     std::vector<View> views(4);
@@ -260,9 +255,10 @@ TEST(MeshRenderer, TheSamePoseGivesTheSameBitsInAnyThread) {
     }
     for (std::thread& thread : threads) thread.join();
     for (const View& view : views) {
-        EXPECT_EQ(pixels(view.intensity), pixels(expected.intensity));
-        EXPECT_EQ(pixels(view.depth), pixels(expected.depth));
+        EXPECT_EQ(test::pixels(view.intensity), test::pixels(expected.intensity));
+        EXPECT_EQ(test::pixels(view.depth), test::pixels(expected.depth));
     }
 }
 
 }  // namespace
+}  // namespace photonav

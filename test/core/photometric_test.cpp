@@ -13,8 +13,6 @@
 namespace photonav {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 struct Case {
     const char* name;
     AnalyticPlane plane;
@@ -26,12 +24,10 @@ std::vector<Case> cases() {
     AnalyticPlane floor;
     AnalyticPlane fine = floor;
     fine.wavelength = 0.15;
-    return {{"downward", floor, lookFrom({0.3, -0.2, 2.}, kPi / 2., 0.4)},
-            {"oblique", floor, lookFrom({0.1, 0.5, 1.5}, kPi / 4., -0.7)},
+    return {{"downward", floor, lookFrom({0.3, -0.2, 2.}, std::numbers::pi / 2., 0.4)},
+            {"oblique", floor, lookFrom({0.1, 0.5, 1.5}, std::numbers::pi / 4., -0.7)},
             {"close", fine, lookFrom({0.3, -0.2, 0.25}, 1.4, 1.)}};
 }
-
-Camera defaultCamera() { return makeCamera(188, 120, 70. * kPi / 180.); }
 
 /// The camera whose pixel factor * (u, v) looks along the same ray as pixel (u, v) of `camera`.
 Camera refined(const Camera& camera, unsigned factor) {
@@ -203,7 +199,7 @@ TEST(Information, KernelKeepsTheCovarianceFromAnyHeightAndTilt) {
     const Camera camera = defaultCamera();
     for (int k = 0; k < 24; ++k) {
         const Pose T_c_w =
-            lookFrom({0.1 * k, 0.05 * k, 0.6 + 0.1 * k}, kPi / 2. - 0.06 * k, 0.3 * k);
+            lookFrom({0.1 * k, 0.05 * k, 0.6 + 0.1 * k}, std::numbers::pi / 2. - 0.06 * k, 0.3 * k);
         const View view = AnalyticPlane{}.view(camera, T_c_w);
         EXPECT_NEAR(traceOfInverse(photometricInformation(view, camera)) /
                         traceOfInverse(informationByPixels(view, camera)),
@@ -295,7 +291,7 @@ TEST(Information, StripesSeeOneAxisOnly) {
     const Camera camera = defaultCamera();
     AnalyticPlane floor;
     floor.stripes = true;
-    const Pose T_c_w = lookFrom({0., 0., 2.}, kPi / 2.);
+    const Pose T_c_w = lookFrom({0., 0., 2.}, std::numbers::pi / 2.);
     const Matrix6 information = photometricInformation(floor.view(camera, T_c_w), camera);
     // Moving along the stripes (world y, image x) shows nothing; across them (image y) it does.
     EXPECT_LT(information(0, 0), 1e-9 * information(1, 1));
@@ -359,7 +355,7 @@ TEST(Counts, APlaneHoweverOblique) {
     AnalyticPlane floor;
     // 3 degrees below the horizon, cut off by the image just below the vanishing line: depth
     // changes by tens of per cent from row to row.
-    const Pose T_c_w = lookFrom({0., 0., 1.}, 27. * kPi / 180.);
+    const Pose T_c_w = lookFrom({0., 0., 1.}, 27. * std::numbers::pi / 180.);
     View view = floor.view(camera, T_c_w);
     unsigned surfaces = 0;
     for (unsigned v = 1; v + 1 < camera.height; ++v) {

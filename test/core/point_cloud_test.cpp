@@ -119,7 +119,7 @@ TEST(PointCloud, SaysWhatIsWrongWithAFile) {
     EXPECT_NE(readingError(folder.file("none.ply")).find("no such file"), std::string::npos);
 }
 
-const TexturedOcTreeNode* at(const TexturedOcTree& map, double x, double y, double z) {
+const TexturedOcTreeNode* cellAt(const TexturedOcTree& map, double x, double y, double z) {
     return map.search(octomap::point3d(float(x), float(y), float(z)));
 }
 
@@ -133,21 +133,21 @@ void twoGreys(const std::function<void(const ScanPoint&)>& visit) {
 TEST(FuseScan, FloorIsOccupiedAndTheWayToItFree) {
     TexturedOcTree map(0.05);
     fuseScan(map, twoGreys, Eigen::Vector3d(0., 0., 1.5), 40.);
-    const auto* left = at(map, -0.52, 0.52, 0.02);
+    const auto* left = cellAt(map, -0.52, 0.52, 0.02);
     ASSERT_NE(left, nullptr);
     EXPECT_TRUE(map.isNodeOccupied(left));
     EXPECT_NEAR(left->faces[5].mean, 0.2, 1e-6);
     EXPECT_FALSE(left->faces[4].observed()) << "nothing was seen from below";
-    EXPECT_NEAR(*at(map, 0.52, 0.52, 0.02)->meanGrey(), 0.8, 1e-6);
-    EXPECT_FALSE(map.isNodeOccupied(at(map, -0.02, 0.02, 0.7)));
-    EXPECT_EQ(at(map, 0.52, 0.52, -0.07), nullptr) << "below the floor nothing is known";
+    EXPECT_NEAR(*cellAt(map, 0.52, 0.52, 0.02)->meanGrey(), 0.8, 1e-6);
+    EXPECT_FALSE(map.isNodeOccupied(cellAt(map, -0.02, 0.02, 0.7)));
+    EXPECT_EQ(cellAt(map, 0.52, 0.52, -0.07), nullptr) << "below the floor nothing is known";
 }
 
 TEST(FuseScan, WithoutAScannerNothingIsFree) {
     TexturedOcTree map(0.05);
     fuseScan(map, twoGreys, std::nullopt, 40.);
-    EXPECT_EQ(at(map, -0.02, 0.02, 0.7), nullptr);
-    const auto* cell = at(map, -0.52, 0.52, 0.02);
+    EXPECT_EQ(cellAt(map, -0.02, 0.02, 0.7), nullptr);
+    const auto* cell = cellAt(map, -0.52, 0.52, 0.02);
     ASSERT_NE(cell, nullptr);
     EXPECT_NEAR(cell->faces[5].mean, 0.2, 1e-6);
     EXPECT_NEAR(cell->faces[4].mean, 0.2, 1e-6) << "seen from all sides";
@@ -157,8 +157,8 @@ TEST(FuseScan, WithoutAScannerNothingIsFree) {
 TEST(FuseScan, FartherThanTheRangeThereIsOnlyFreeSpace) {
     TexturedOcTree map(0.05);
     fuseScan(map, twoGreys, Eigen::Vector3d(0., 0., 1.5), 1.);
-    EXPECT_EQ(at(map, 0.02, 0.02, 0.02), nullptr);
-    EXPECT_FALSE(map.isNodeOccupied(at(map, 0.02, 0.02, 0.7)));
+    EXPECT_EQ(cellAt(map, 0.02, 0.02, 0.02), nullptr);
+    EXPECT_FALSE(map.isNodeOccupied(cellAt(map, 0.02, 0.02, 0.7)));
     const auto far = [](const std::function<void(const ScanPoint&)>& visit) {
         visit({{1e6, 0., 0.}, 0.F});
     };

@@ -9,17 +9,14 @@
 #include "error.hpp"
 #include "mesh_renderer.hpp"
 #include "photometric.hpp"
+#include "synthetic_floor.hpp"
 #include "temporary_folder.hpp"
 
-using namespace photonav;
-using photonav::test::messageOf;
-using photonav::test::TemporaryFolder;
-
+namespace photonav {
 namespace {
 
-std::vector<float> pixels(const ImageF& image) {
-    return {image.bitmap, image.bitmap + image.getSize()};
-}
+using test::messageOf;
+using test::TemporaryFolder;
 
 double area(const Scene& scene) {
     double sum = 0.;
@@ -39,10 +36,10 @@ TEST(Texture, NoiseIsReproducibleTilesAndStaysInRange) {
     const Texture noise = valueNoise(options);
     EXPECT_EQ(noise.image.getWidth(), 200U);
     EXPECT_EQ(noise.image.getHeight(), 100U);
-    EXPECT_EQ(pixels(noise.image), pixels(valueNoise(options).image));
+    EXPECT_EQ(test::pixels(noise.image), test::pixels(valueNoise(options).image));
     NoiseOptions other = options;
     other.seed = 6;
-    EXPECT_NE(pixels(noise.image), pixels(valueNoise(other).image));
+    EXPECT_NE(test::pixels(noise.image), test::pixels(valueNoise(other).image));
 
     float largestStep = 0.F;
     float largestStepAtSeam = 0.F;
@@ -243,3 +240,4 @@ TEST(ShippedScenes, TheFlatIsClosedAroundTheCamera) {
 }
 
 }  // namespace
+}  // namespace photonav

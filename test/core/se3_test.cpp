@@ -13,15 +13,14 @@
 namespace photonav {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Twists with rotation angles from nothing to nearly pi, in random directions.
 std::vector<Vector6> twistSweep() {
     std::mt19937 random(1);
     std::normal_distribution<double> normal;
     std::vector<Vector6> twists;
-    for (double angle : {0., 1e-300, 1e-160, 1e-12, 1e-8, 1e-4, 0.01, 0.3, 0.70710, 0.70712, 1., 2.,
-                         3., kPi - 1e-3, kPi - 1e-6, kPi - 1e-9}) {
+    for (double angle :
+         {0., 1e-300, 1e-160, 1e-12, 1e-8, 1e-4, 0.01, 0.3, 0.70710, 0.70712, 1., 2., 3.,
+          std::numbers::pi - 1e-3, std::numbers::pi - 1e-6, std::numbers::pi - 1e-9}) {
         for (int i = 0; i < 20; ++i) {
             Vector6 xi;
             for (double& x : xi) x = normal(random);
@@ -29,7 +28,8 @@ std::vector<Vector6> twistSweep() {
             twists.push_back(xi);
         }
     }
-    for (int axis = 3; axis < 6; ++axis) twists.push_back(Vector6::Unit(axis) * (kPi - 1e-9));
+    for (int axis = 3; axis < 6; ++axis)
+        twists.push_back(Vector6::Unit(axis) * (std::numbers::pi - 1e-9));
     return twists;
 }
 
@@ -50,7 +50,7 @@ TEST(Se3, LogKeepsTinyRotationsToRelativePrecision) {
 TEST(Se3, LogOfHalfTurnHasAnglePi) {
     Pose T = Pose::Identity();
     T.linear() = Eigen::Vector3d(-1., -1., 1.).asDiagonal();
-    EXPECT_NEAR(logSE3(T).tail<3>().norm(), kPi, 1e-15);
+    EXPECT_NEAR(logSE3(T).tail<3>().norm(), std::numbers::pi, 1e-15);
 }
 
 TEST(Se3, ExpAgreesWithVisp) {

@@ -8,7 +8,7 @@
 
 #include "view.hpp"
 
-namespace photonav::testing {
+namespace photonav::test {
 
 using FloorTexture = std::function<double(double x, double y)>;
 
@@ -74,4 +74,10 @@ inline void addNoise(ImageF& image, double sigma, unsigned seed) {
     }
 }
 
-}  // namespace photonav::testing
+inline std::vector<float> pixels(const ImageF& image) {
+    return {image.bitmap, image.bitmap + image.getSize()};
+}
+
+inline constexpr double kDown = std::numbers::pi / 2.;
+
+}  // namespace photonav::test

@@ -17,10 +17,10 @@
 namespace photonav {
 namespace {
 
-using testing::floorView;
-using testing::lookDown;
+using test::floorView;
+using test::kDown;
+using test::lookDown;
 
-constexpr double kDown = std::numbers::pi / 2;
 constexpr unsigned kTop = 5;  // face +z
 
 const TexturedOcTreeNode* at(const TexturedOcTree& map, double x, double y, double z) {
@@ -37,7 +37,7 @@ struct Look {
 Look overCarpet(double x, double height) {
     const Camera camera = makeCamera(160, 120, 1.2);
     const Pose T_c_w = lookDown(x, 0.01, height, kDown);
-    return {camera, T_c_w, floorView(camera, T_c_w, testing::carpet, 0.02)};
+    return {camera, T_c_w, floorView(camera, T_c_w, test::carpet, 0.02)};
 }
 
 /// A few views of a carpet from above.
@@ -46,7 +46,7 @@ TexturedOcTree carpetMap(double resolution = 0.05) {
     const Camera camera = makeCamera(160, 120, 1.2);
     for (const double x : {-0.3, 0., 0.3}) {
         const Pose T_c_w = lookDown(x, 0.1, 1.5, kDown, x);
-        fuse(map, floorView(camera, T_c_w, testing::carpet, 0.02), camera, T_c_w);
+        fuse(map, floorView(camera, T_c_w, test::carpet, 0.02), camera, T_c_w);
     }
     return map;
 }
@@ -299,7 +299,7 @@ TEST(Fuse, FacesTowardTheCameraTakeTheMeanGrey) {
     TexturedOcTree lone(0.05);
     for (unsigned v = 0; v < camera.height; ++v) {
         for (unsigned u = 0; u < camera.width; ++u) {
-            const Eigen::Vector3d p = testing::pointOf(view, camera, T_c_w, u, v);
+            const Eigen::Vector3d p = test::pointOf(view, camera, T_c_w, u, v);
             if (p.x() < 0. || p.x() >= 0.05 || p.y() < 0. || p.y() >= 0.05) view.depth[v][u] = 0.F;
         }
     }
@@ -353,7 +353,7 @@ TEST(Fuse, DropsPixelsAtDepthEdges) {
 TEST(Fuse, RefusesInputThatDoesNotFit) {
     const Camera camera = makeCamera(16, 12, 1.2);
     TexturedOcTree map(0.05);
-    View view = floorView(camera, lookDown(0., 0., 1., kDown), testing::carpet);
+    View view = floorView(camera, lookDown(0., 0., 1., kDown), test::carpet);
     EXPECT_THROW(fuse(map, view, makeCamera(17, 12, 1.2), Pose::Identity()), std::invalid_argument);
     Pose broken = Pose::Identity();
     broken.translation().x() = std::nan("");

@@ -13,10 +13,10 @@
 namespace photonav {
 namespace {
 
-using testing::floorView;
-using testing::lookDown;
+using test::floorView;
+using test::kDown;
+using test::lookDown;
 
-constexpr double kDown = std::numbers::pi / 2;
 constexpr double kCell = 0.05;
 
 /// Sets one cell; grey < 0 leaves its faces unobserved.
@@ -185,7 +185,7 @@ TEST(VoxelRenderer, InterpolatesBetweenFaceCentres) {
         View expected = view;
         for (unsigned v = 0; v < camera.height; ++v) {
             for (unsigned u = 0; u < camera.width; ++u) {
-                const Eigen::Vector3d p = testing::pointOf(view, camera, T_c_w, u, v);
+                const Eigen::Vector3d p = test::pointOf(view, camera, T_c_w, u, v);
                 const double x = p.x() / kCell - 0.5, y = p.y() / kCell - 0.5;
                 const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
                 EXPECT_NEAR(p.z(), kCell, 1e-5);
@@ -242,13 +242,13 @@ TEST(VoxelRenderer, SurfacesGoOnOverStepsOfOneCell) {
 }
 
 /// A floor mapped from noisy images of a camera that flies over it, like a recording.
-TexturedOcTree mapFloor(double resolution, const testing::FloorTexture& texture) {
+TexturedOcTree mapFloor(double resolution, const test::FloorTexture& texture) {
     TexturedOcTree map(resolution);
     const Camera camera = makeCamera(240, 180, 1.1);
     for (int i = 0; i < 12; ++i) {
         const Pose T_c_w = lookDown(-0.7 + 0.3 * (i % 6), -0.3 + 0.6 * (i / 6), 1.4, 1.35, 0.3 * i);
         View view = floorView(camera, T_c_w, texture, 0.02);
-        testing::addNoise(view.intensity, 0.02, i);
+        test::addNoise(view.intensity, 0.02, i);
         fuse(map, view, camera, T_c_w);
     }
     return map;
@@ -263,7 +263,7 @@ double informationTrace(const ViewSource& source, const Camera& camera, const Po
 TEST(VoxelRenderer, UniformFloorsMappedFromNoisyImagesCarryNoInformation) {
     const Camera camera = makeCamera(188, 120, 1.2);
     for (const double resolution : {0.05, 0.025}) {
-        const VoxelRenderer carpet(mapFloor(resolution, testing::carpet), UnknownPolicy::free);
+        const VoxelRenderer carpet(mapFloor(resolution, test::carpet), UnknownPolicy::free);
         const VoxelRenderer uniform(mapFloor(resolution, [](double, double) { return 0.5; }),
                                     UnknownPolicy::free);
         for (const double belowHorizon : {kDown, 0.9}) {
@@ -281,10 +281,10 @@ TEST(VoxelRenderer, UniformFloorsMappedFromNoisyImagesCarryNoInformation) {
 TEST(VoxelRenderer, KeepsMostOfTheInformationOfTheOriginalImage) {
     const Camera camera = makeCamera(188, 120, 1.2);
     for (const auto& [resolution, least] : {std::pair{0.05, 0.6}, {0.025, 0.85}}) {
-        const VoxelRenderer carpet(mapFloor(resolution, testing::carpet), UnknownPolicy::free);
+        const VoxelRenderer carpet(mapFloor(resolution, test::carpet), UnknownPolicy::free);
         for (const double belowHorizon : {kDown, 0.9}) {
             const Pose T_c_w = lookDown(-0.2, 0., 1.4, belowHorizon, 0.2);
-            View original = floorView(camera, T_c_w, testing::carpet, 0.02);
+            View original = floorView(camera, T_c_w, test::carpet, 0.02);
             View seen;
             carpet.render(camera, T_c_w, seen);
             for (unsigned i = 0; i < seen.depth.getSize(); ++i) {  // the same pixels in both

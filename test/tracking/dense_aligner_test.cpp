@@ -8,18 +8,15 @@
 namespace photonav {
 namespace {
 
-using testing::cameraAt;
-using testing::kDown;
-using testing::kOblique;
+using test::cameraAt;
+using test::errorOf;
+using test::kDown;
+using test::kOblique;
+using test::room;
 
 const Camera& camera() {
     static const Camera quarter = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
     return quarter;
-}
-
-const MeshRenderer& room() {
-    static const MeshRenderer renderer(testing::texturedRoom());
-    return renderer;
 }
 
 const Pose kPose = cameraAt({1.6, 3., 1.6}, kOblique, 0.1);
@@ -29,19 +26,17 @@ ImageF observe(const ViewSource& model, const Pose& T_c_w, double sigma = 0.,
     View view;
     model.render(c, T_c_w, view);
     std::mt19937_64 random(seed);
-    return sigma > 0. ? testing::noisy(view.intensity, sigma, random) : view.intensity;
+    return sigma > 0. ? test::noisy(view.intensity, sigma, random) : view.intensity;
 }
-
-Vector6 error(const Alignment& a, const Pose& truth) { return logSE3(truth * a.T_c_w.inverse()); }
 
 TEST(DenseAligner, FindsTheExactPoseWithoutNoise) {
     DenseAligner aligner(room(), camera());
     std::mt19937_64 random(1);
     for (int i = 0; i < 5; ++i) {
-        const Pose start = expSE3(testing::randomTwist(0.06, 0.04, random)) * kPose;
+        const Pose start = expSE3(test::randomTwist(0.06, 0.04, random)) * kPose;
         const Alignment a = aligner.align(observe(room(), kPose), start);
         EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
-        EXPECT_LT(error(a, kPose).norm(), 1e-4);
+        EXPECT_LT(errorOf(a, kPose).norm(), 1e-4);
         EXPECT_LT(a.residual.rms, 1e-3);
         EXPECT_GT(a.overlap, 0.8);
         EXPECT_TRUE(a.openDirections.empty());
@@ -61,7 +56,7 @@ TEST(DenseAligner, CovarianceIsThePlannersInverse) {
 }
 
 TEST(DenseAligner, PriorDecidesWhereTheImageIsSilent) {
-    const MeshRenderer white(testing::floorOf(uniformTexture(0.9)));
+    const MeshRenderer white(test::floorOf(uniformTexture(0.9)));
     const Pose truth = cameraAt({0., 0., 2.}, kDown);
     DenseAligner aligner(white, camera());
     UncertainPose prior{truth, 1e-4 * Matrix6::Identity()};
@@ -69,29 +64,29 @@ TEST(DenseAligner, PriorDecidesWhereTheImageIsSilent) {
     EXPECT_EQ(a.verdict, Verdict::degenerate);
     EXPECT_EQ(a.openDirections.size(), 6U);
     EXPECT_LT((a.covariance - prior.covariance).norm(), 1e-12);
-    EXPECT_LT(error(a, truth).norm(), 1e-9);
+    EXPECT_LT(errorOf(a, truth).norm(), 1e-9);
 }
 
 TEST(DenseAligner, NamesTheDirectionsThatStripesLeaveOpen) {
-    const MeshRenderer bars(testing::floorOf(stripes({.width = 0.3})));
+    const MeshRenderer bars(test::floorOf(stripes({.width = 0.3})));
     const Pose truth = cameraAt({0., 0., 2.}, kDown);  // image x along world -y, y along -x
     DenseAligner aligner(bars, camera());
     const Pose start = expSE3(0.01 * Vector6::Unit(1)) * truth;
     const Alignment a = aligner.align(observe(bars, truth, 0.01), start);
     EXPECT_EQ(a.verdict, Verdict::degenerate) << describe(a);
     EXPECT_EQ(a.openDirections, std::vector<std::string>{"x"}) << describe(a);
-    EXPECT_LT(std::abs(error(a, truth)[1]), 0.005);
+    EXPECT_LT(std::abs(errorOf(a, truth)[1]), 0.005);
     EXPECT_GT(std::abs(a.directions(0, 0)), 0.7);
     EXPECT_GT(a.covariance(0, 0), 0.5);
     EXPECT_EQ(describe(a), "degenerate along x");
 }
 
 TEST(DenseAligner, OpenDirectionsStayWhereTheyWere) {
-    const MeshRenderer white(testing::floorOf(uniformTexture(0.9)));
+    const MeshRenderer white(test::floorOf(uniformTexture(0.9)));
     const Pose truth = cameraAt({0., 0., 2.}, kDown);
     DenseAligner aligner(white, camera());
     const Alignment a = aligner.align(observe(white, truth, 0.02), truth);
-    EXPECT_LT(error(a, truth).norm(), 1e-12);
+    EXPECT_LT(errorOf(a, truth).norm(), 1e-12);
 }
 
 /// The posterior is the minimum of image and prior: compared with the two on their own, which are
@@ -103,7 +98,7 @@ TEST(DenseAligner, WeighsImageAgainstPrior) {
     options.fineStep = 1e-4;
     DenseAligner aligner(room(), camera(), options);
     std::mt19937_64 random(5);
-    const Vector6 offset = testing::randomTwist(0.01, 0.005, random);
+    const Vector6 offset = test::randomTwist(0.01, 0.005, random);
     UncertainPose prior;
     prior.mean = expSE3(offset) * kPose;
     Vector6 sigmas;
@@ -120,7 +115,7 @@ TEST(DenseAligner, WeighsImageAgainstPrior) {
 TEST(DenseAligner, NoPriorVarianceNoMotion) {
     DenseAligner aligner(room(), camera());
     std::mt19937_64 random(5);
-    UncertainPose prior{expSE3(testing::randomTwist(0.01, 0., random)) * kPose, {}};
+    UncertainPose prior{expSE3(test::randomTwist(0.01, 0., random)) * kPose, {}};
     prior.covariance.setZero();
     prior.covariance(0, 0) = 1e-3;
     const Alignment a = aligner.align(observe(room(), kPose), prior);
@@ -136,12 +131,12 @@ TEST(DenseAligner, EstimatesExposure) {
     options.exposure = true;
     DenseAligner aligner(room(), camera(), options);
     std::mt19937_64 random(2);
-    const Pose start = expSE3(testing::randomTwist(0.04, 0.02, random)) * kPose;
+    const Pose start = expSE3(test::randomTwist(0.04, 0.02, random)) * kPose;
     const Alignment a = aligner.align(image, start);
     EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
     EXPECT_NEAR(a.exposure.gain, 0.7, 0.005);
     EXPECT_NEAR(a.exposure.offset, 0.1, 0.005);
-    EXPECT_LT(error(a, kPose).norm(), 3e-3);
+    EXPECT_LT(errorOf(a, kPose).norm(), 3e-3);
     // Unknown exposure can only cost information.
     DenseAligner fixed(room(), camera());
     const Alignment known = fixed.align(observe(room(), kPose, 0.01), kPose);
@@ -158,7 +153,7 @@ TEST(DenseAligner, RobustWeightsSurviveAnOccluder) {
         options.robust = robust;
         DenseAligner aligner(room(), camera(), options);
         const Vector6 offset = 0.02 * Vector6::Unit(0);
-        return error(aligner.align(image, expSE3(offset) * kPose), kPose).norm();
+        return errorOf(aligner.align(image, expSE3(offset) * kPose), kPose).norm();
     };
     EXPECT_GT(errorWith(RobustWeight::none), 4e-3);
     EXPECT_LT(errorWith(RobustWeight::huber), 4e-3);
@@ -169,7 +164,7 @@ TEST(DenseAligner, SaysWhenItIsLost) {
     DenseAligner aligner(room(), camera());
     const ImageF image = observe(room(), kPose, 0.02);
     // Looking away from everything.
-    const MeshRenderer patch(testing::floorOf(valueNoise()));
+    const MeshRenderer patch(test::floorOf(valueNoise()));
     DenseAligner overFloor(patch, camera());
     const Alignment sky = overFloor.align(image, cameraAt({0., 0., 1.}, -kOblique));
     EXPECT_EQ(sky.verdict, Verdict::lostOverlap);
@@ -186,7 +181,7 @@ TEST(DenseAligner, SaysWhenItIsLost) {
 }
 
 TEST(DenseAligner, IsLostInTheDarkOverWhite) {
-    const MeshRenderer white(testing::floorOf(uniformTexture(0.9)));
+    const MeshRenderer white(test::floorOf(uniformTexture(0.9)));
     const Pose truth = cameraAt({0., 0., 2.}, kDown);
     DenseAligner aligner(white, camera());
     const ImageF black(aligner.camera().height, aligner.camera().width, 0.F);
@@ -236,10 +231,10 @@ TEST(DenseAligner, CovarianceIsHonestOnTexture) {
     for (int i = 0; i < n; ++i) {
         const Pose truth = cameraAt({1.5 + 0.01 * i, 2. + 0.03 * i, 1.5}, kOblique, 0.05 * i);
         const ImageF image = observe(room(), truth, 0.02, 100 + i, small);
-        const Pose start = expSE3(testing::randomTwist(0.02, 0.01, random)) * truth;
+        const Pose start = expSE3(test::randomTwist(0.02, 0.01, random)) * truth;
         const Alignment a = aligner.align(image, start);
         ASSERT_EQ(a.verdict, Verdict::converged) << describe(a);
-        const Vector6 xi = error(a, truth);
+        const Vector6 xi = errorOf(a, truth);
         sum += xi.dot(a.covariance.ldlt().solve(xi)) / 6.;
     }
     const double sigma = std::sqrt(2. / (6. * n));

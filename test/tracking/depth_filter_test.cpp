@@ -7,16 +7,11 @@
 namespace photonav {
 namespace {
 
-using namespace testing;
+using namespace test;
 
 /// A camera that slides past a floor and crates, looking down at 45 degrees.
 class DepthFilterTest : public ::testing::Test {
   protected:
-    static const MeshRenderer& room() {
-        static const MeshRenderer renderer(texturedRoom());
-        return renderer;
-    }
-
     static Pose pose(int i) {
         return cameraAt({2.2 + 0.01 * i, 2.6 - 0.03 * i, 1.4}, kOblique, 0.01 * i);
     }

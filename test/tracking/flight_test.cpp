@@ -9,7 +9,7 @@
 namespace photonav {
 namespace {
 
-using testing::kDown;
+using test::kDown;
 
 /// A floor of texture, a body above it, and a plan of 2 m along x with a turn at its end.
 class Flight : public ::testing::Test {
@@ -38,7 +38,7 @@ class Flight : public ::testing::Test {
         }
     }
 
-    MeshRenderer floor{testing::floorOf(valueNoise({.size = {20., 20.}, .seed = 3}))};
+    MeshRenderer floor{test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3}))};
     FlightWorld world;
     FlightOptions options;
     std::vector<PlannedView> plan;
@@ -136,7 +136,7 @@ TEST_F(Flight, EndsInACollision) {
 }
 
 TEST_F(Flight, BelievesToHaveArrivedOverWhite) {
-    MeshRenderer white{testing::floorOf(uniformTexture(0.9F))};
+    MeshRenderer white{test::floorOf(uniformTexture(0.9F))};
     world.truth = world.map = &white;
     options.mav.odometryFactor = 100.;
     const FlightResult flight = fly(plan, world, options);

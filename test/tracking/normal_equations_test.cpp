@@ -11,21 +11,20 @@
 namespace photonav {
 namespace {
 
-using testing::cameraAt;
+using test::cameraAt;
 
-const Camera& camera() {
+const Camera& tinyCamera() {
     static const Camera small = makeCamera(94, 61, 1.2);
     return small;
 }
 
-View roomView(const Pose& T_c_w) {
-    static const MeshRenderer renderer(testing::texturedRoom());
+View viewAt(const Pose& T_c_w) {
     View view;
-    renderer.render(camera(), T_c_w, view);
+    test::room().render(tinyCamera(), T_c_w, view);
     return view;
 }
 
-const Pose kPose = cameraAt({2., 3., 1.5}, 0.5);
+const Pose kViewpoint = cameraAt({2., 3., 1.5}, 0.5);
 
 double relative(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
     return (a - b).norm() / b.norm();
@@ -35,9 +34,9 @@ double relative(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 NormalEquations byPixels(const View& view, const ImageF& observed, const Exposure& exposure,
                          const std::function<double(double)>& weight) {
     NormalEquations e;
-    for (unsigned v = 1; v + 1 < camera().height; ++v) {
-        for (unsigned u = 1; u + 1 < camera().width; ++u) {
-            const Vector6 J = pixelJacobian(view, camera(), u, v);
+    for (unsigned v = 1; v + 1 < tinyCamera().height; ++v) {
+        for (unsigned u = 1; u + 1 < tinyCamera().width; ++u) {
+            const Vector6 J = pixelJacobian(view, tinyCamera(), u, v);
             if (J.isZero(0.)) continue;
             const double I = view.intensity[v][u];
             const double r = observed[v][u] - (exposure.gain * I + exposure.offset);
@@ -54,21 +53,21 @@ NormalEquations byPixels(const View& view, const ImageF& observed, const Exposur
 }
 
 TEST(NormalEquations, InformationIsThatOfThePlanner) {
-    const View view = roomView(kPose);
+    const View view = viewAt(kViewpoint);
     const PhotometricOptions options;
-    ViewComparison compare(camera(), options);
+    ViewComparison compare(tinyCamera(), options);
     const NormalEquations e = compare(view, view.intensity, {}, {});
     const Matrix6 information = e.AtA.topLeftCorner<6, 6>() / (options.sigma * options.sigma);
-    EXPECT_LT(relative(information, photometricInformation(view, camera(), options)), 1e-6);
+    EXPECT_LT(relative(information, photometricInformation(view, tinyCamera(), options)), 1e-6);
     EXPECT_EQ(e.sumSquares, 0.);
 }
 
 TEST(NormalEquations, AgreeWithTheSumOverPixels) {
-    const View view = roomView(kPose);
+    const View view = viewAt(kViewpoint);
     std::mt19937_64 random(1);
-    const ImageF observed = testing::noisy(view.intensity, 0.1, random);
+    const ImageF observed = test::noisy(view.intensity, 0.1, random);
     const Exposure exposure{1.2, -0.05};
-    ViewComparison compare(camera(), {});
+    ViewComparison compare(tinyCamera(), {});
     for (const RobustWeight kind : {RobustWeight::none, RobustWeight::huber, RobustWeight::tukey}) {
         const Loss loss{kind, 0.06};
         const auto weight = [&](double r) {
@@ -89,13 +88,13 @@ TEST(NormalEquations, AgreeWithTheSumOverPixels) {
 
 /// The derivative of the loss is the weighted residual: the two are written apart.
 TEST(NormalEquations, WeightsAreTheDerivativeOfTheLoss) {
-    View view = roomView(kPose);
-    view.intensity = ImageF(camera().height, camera().width, 0.5F);
-    ViewComparison compare(camera(), {});
+    View view = viewAt(kViewpoint);
+    view.intensity = ImageF(tinyCamera().height, tinyCamera().width, 0.5F);
+    ViewComparison compare(tinyCamera(), {});
     for (const RobustWeight kind : {RobustWeight::none, RobustWeight::huber, RobustWeight::tukey}) {
         for (const double r : {0.01, 0.05, 0.09, 0.2, 0.4}) {
             const auto at = [&](double offset) {
-                const ImageF observed(camera().height, camera().width,
+                const ImageF observed(tinyCamera().height, tinyCamera().width,
                                       static_cast<float>(0.5 + offset));
                 return compare(view, observed, {}, {kind, 0.05});
             };
@@ -155,9 +154,9 @@ TEST(NormalEquations, RefuseWhatDoesNotFit) {
     EXPECT_THROW(ViewComparison(makeCamera(2, 9, 1.), {}), std::invalid_argument);
     PhotometricOptions sparse;
     sparse.stride = 2;
-    EXPECT_THROW(ViewComparison(camera(), sparse), std::invalid_argument);
-    ViewComparison compare(camera(), {});
-    const View view = roomView(kPose);
+    EXPECT_THROW(ViewComparison(tinyCamera(), sparse), std::invalid_argument);
+    ViewComparison compare(tinyCamera(), {});
+    const View view = viewAt(kViewpoint);
     EXPECT_THROW(compare(view, ImageF(10, 10), {}, {}), std::invalid_argument);
 }
 

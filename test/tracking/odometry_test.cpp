@@ -9,21 +9,17 @@
 namespace photonav {
 namespace {
 
-using testing::cameraAt;
+using test::cameraAt;
+using test::room;
 
-const Camera& camera() {
+const Camera& flightCamera() {
     static const Camera small = makeCamera(160, 120, 1.1);
     return small;
 }
 
-const MeshRenderer& room() {
-    static const MeshRenderer renderer(testing::texturedRoom());
-    return renderer;
-}
-
 View viewFrom(const Pose& T_c_w) {
     View view;
-    room().render(camera(), T_c_w, view);
+    room().render(flightCamera(), T_c_w, view);
     return view;
 }
 
@@ -48,7 +44,7 @@ double distance(const Pose& a, const Pose& b) {
 }
 
 TEST(Odometry, FollowsAFlightThroughSeveralKeyframes) {
-    Odometry odometry(camera(), start());
+    Odometry odometry(flightCamera(), start());
     int keyframes = 0;
     double last = 0.;
     for (int i = 0; i < 30; ++i) {
@@ -71,7 +67,7 @@ TEST(Odometry, FollowsAFlightThroughSeveralKeyframes) {
 TEST(Odometry, RotationsStayRotationsOverManyKeyframes) {
     OdometryOptions options;
     options.maxTurn = 0.;  // every image becomes a keyframe
-    Odometry odometry(camera(), start(), options);
+    Odometry odometry(flightCamera(), start(), options);
     for (int i = 0; i < 40; ++i) {
         const int there = i % 4 < 2 ? i % 4 : 4 - i % 4;
         odometry.track(viewFrom(flight(there)), kInterval * i);
@@ -82,7 +78,7 @@ TEST(Odometry, RotationsStayRotationsOverManyKeyframes) {
 }
 
 TEST(Odometry, BlackImagesAreLostAndThenItGoesOn) {
-    Odometry odometry(camera(), start());
+    Odometry odometry(flightCamera(), start());
     for (int i = 0; i < 5; ++i) odometry.track(viewFrom(flight(i)), kInterval * i);
     const double before = odometry.belief().covariance.trace();
     const Pose certain = odometry.belief().mean;
@@ -99,7 +95,7 @@ TEST(Odometry, BlackImagesAreLostAndThenItGoesOn) {
 }
 
 TEST(Odometry, ComesBackToAnOldKeyframe) {
-    Odometry odometry(camera(), start());
+    Odometry odometry(flightCamera(), start());
     for (int i = 0; i < 30; ++i) odometry.track(viewFrom(flight(i)), kInterval * i);
     const View wall = viewFrom(cameraAt({3., 3., 1.5}, 0., 2.5));
     EXPECT_TRUE(odometry.track(wall, 3.).lost);
@@ -111,7 +107,7 @@ TEST(Odometry, ComesBackToAnOldKeyframe) {
 TEST(Odometry, LostForLongItBeginsAnewAsUncertainAsItIs) {
     OdometryOptions options;
     options.patience = 5;
-    Odometry odometry(camera(), start(), options);
+    Odometry odometry(flightCamera(), start(), options);
     int i = 0;
     for (; i < 3; ++i) odometry.track(viewFrom(flight(i)), kInterval * i);
     for (; i < 20; ++i) EXPECT_TRUE(odometry.track(black(), kInterval * i).lost) << i;
@@ -129,7 +125,7 @@ TEST(Odometry, LostForLongItBeginsAnewAsUncertainAsItIs) {
 }
 
 TEST(Odometry, BlackFromTheBeginningIsLostUntilSomethingIsSeen) {
-    Odometry odometry(camera(), start());
+    Odometry odometry(flightCamera(), start());
     EXPECT_TRUE(odometry.track(black(), 0.).lost);
     EXPECT_TRUE(odometry.track(black(), 0.1).lost);
     const TrackedFrame frame = odometry.track(viewFrom(flight(0)), 0.2);
@@ -145,11 +141,11 @@ UncertainPose roughStart(int i) {
 }
 
 TEST(Localizer, FollowsAFlightInAMap) {
-    Localizer localizer(room(), camera(), roughStart(0));
+    Localizer localizer(room(), flightCamera(), roughStart(0));
     std::mt19937_64 random(2);
     double sum = 0.;
     for (int i = 0; i < 30; ++i) {
-        const ImageF image = testing::noisy(viewFrom(flight(i)).intensity, 0.02, random);
+        const ImageF image = test::noisy(viewFrom(flight(i)).intensity, 0.02, random);
         const TrackedFrame frame = localizer.track(image, kInterval * i);
         EXPECT_FALSE(frame.lost) << i << ": " << describe(frame.alignment);
         EXPECT_LT(distance(frame.T_c_w.mean, flight(i)), 5e-3) << i;
@@ -161,7 +157,7 @@ TEST(Localizer, FollowsAFlightInAMap) {
 }
 
 TEST(Localizer, LostInTheDarkItWaitsWhereItWasAndTakesUpAgain) {
-    Localizer localizer(room(), camera(), roughStart(0));
+    Localizer localizer(room(), flightCamera(), roughStart(0));
     for (int i = 0; i < 5; ++i) localizer.track(viewFrom(flight(i)).intensity, kInterval * i);
     const Pose certain = localizer.belief().mean;
     for (int i = 5; i < 9; ++i) {
@@ -175,15 +171,15 @@ TEST(Localizer, LostInTheDarkItWaitsWhereItWasAndTakesUpAgain) {
 }
 
 TEST(Localizer, ALostBeliefStopsGrowing) {
-    Localizer localizer(room(), camera(), roughStart(0));
+    Localizer localizer(room(), flightCamera(), roughStart(0));
     for (int i = 0; i < 12; ++i) localizer.track(black().intensity, 10. * i);
     EXPECT_LT(localizer.belief().covariance.trace(), 3. * 1. + 3. * 0.25 + 1e-9);
     EXPECT_TRUE(isCovariance(localizer.belief().covariance));
 }
 
 TEST(Localizer, AnotherRoomIsNotThisOne) {
-    const MeshRenderer floor(testing::floorOf(valueNoise({.size = {20., 20.}, .seed = 9})));
-    Localizer localizer(floor, camera(), roughStart(0));
+    const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 9})));
+    Localizer localizer(floor, flightCamera(), roughStart(0));
     for (int i = 0; i < 8; ++i) {
         const TrackedFrame frame = localizer.track(viewFrom(flight(i)).intensity, kInterval * i);
         EXPECT_TRUE(frame.lost) << i;

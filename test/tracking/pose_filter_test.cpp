@@ -8,10 +8,10 @@
 namespace photonav {
 namespace {
 
-using testing::cameraAt;
-using testing::kOblique;
+using test::cameraAt;
+using test::kOblique;
 
-const Camera& camera() {
+const Camera& filterCamera() {
     static const Camera small = makeCamera(94, 60, 1.2);
     return small;
 }
@@ -42,11 +42,11 @@ TEST(PoseFilter, PropagatesAsThePlannerDoes) {
 }
 
 TEST(PoseFilter, LostImagesChangeNothing) {
-    const MeshRenderer room(testing::texturedRoom());
-    DenseAligner aligner(room, camera());
+    const MeshRenderer room(test::texturedRoom());
+    DenseAligner aligner(room, filterCamera());
     PoseFilter filter({cameraAt({2., 3., 1.5}, kOblique), 1e-4 * Matrix6::Identity()});
     const UncertainPose before = filter.belief();
-    const ImageF black(camera().height, camera().width, 0.F);
+    const ImageF black(filterCamera().height, filterCamera().width, 0.F);
     EXPECT_TRUE(isLost(filter.update(aligner, black).verdict));
     EXPECT_EQ(filter.belief().mean.matrix(), before.mean.matrix());
     EXPECT_EQ(filter.belief().covariance, before.covariance);
@@ -56,10 +56,10 @@ TEST(PoseFilter, LostImagesChangeNothing) {
 /// texture odometry and images count about equally, so an error in either would show.
 TEST(PoseFilter, IsHonestAlongFlights) {
     const MeshRenderer floor(
-        testing::floorOf(valueNoise({.amplitudes = {0.004, 0.003, 0.002}, .seed = 4})));
+        test::floorOf(valueNoise({.amplitudes = {0.004, 0.003, 0.002}, .seed = 4})));
     AlignmentOptions options;
     options.trust.openSigma = 0.5;
-    DenseAligner aligner(floor, camera(), options);
+    DenseAligner aligner(floor, filterCamera(), options);
     std::mt19937_64 random(11);
     const Matrix6 startCovariance = motion().covariance;
     double sum = 0., odometry = 0., final = 0.;
@@ -72,9 +72,8 @@ TEST(PoseFilter, IsHonestAlongFlights) {
             filter.propagate(motion());
             odometry += filter.belief().covariance.trace();
             View view;
-            floor.render(camera(), truth, view);
-            const Alignment a =
-                filter.update(aligner, testing::noisy(view.intensity, 0.02, random));
+            floor.render(filterCamera(), truth, view);
+            const Alignment a = filter.update(aligner, test::noisy(view.intensity, 0.02, random));
             ASSERT_FALSE(isLost(a.verdict)) << describe(a);
             final += filter.belief().covariance.trace();
         }

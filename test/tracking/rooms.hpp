@@ -5,10 +5,11 @@
 #include <numbers>
 #include <random>
 
+#include "alignment.hpp"
 #include "mesh_renderer.hpp"
 #include "se3.hpp"
 
-namespace photonav::testing {
+namespace photonav::test {
 
 /// A room of 6 x 6 x 3 m with textured floor and walls and a few boxes.
 inline Scene texturedRoom() {
@@ -21,6 +22,11 @@ inline Scene texturedRoom() {
     addBox(scene, {3.8, 2.4, 0.}, {4.3, 2.9, 0.6}, crates);
     addBox(scene, {3.2, 3.6, 0.}, {3.6, 4.2, 0.4}, crates);
     return scene;
+}
+
+inline const MeshRenderer& room() {
+    static const MeshRenderer renderer(texturedRoom());
+    return renderer;
 }
 
 /// A large floor of one texture.
@@ -37,6 +43,11 @@ inline Pose cameraAt(const Eigen::Vector3d& position_w, double belowHorizon, dou
     T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     T_w_b.translation() = position_w;
     return (T_w_b * cameraMount(belowHorizon)).inverse();
+}
+
+/// The twist from an estimate to the truth, in the camera.
+inline Vector6 errorOf(const Alignment& a, const Pose& truth) {
+    return logSE3(truth * a.T_c_w.inverse());
 }
 
 inline constexpr double kDown = std::numbers::pi / 2.;
@@ -63,4 +74,4 @@ inline Vector6 randomTwist(double metres, double radians, std::mt19937_64& rando
     return xi;
 }
 
-}  // namespace photonav::testing
+}  // namespace photonav::test

@@ -9,9 +9,9 @@
 namespace photonav {
 namespace {
 
-using testing::cameraAt;
-using testing::kDown;
-using testing::kOblique;
+using test::cameraAt;
+using test::kDown;
+using test::kOblique;
 
 Pose moved(const Pose& T_w_b, const BodyVelocity& velocity, double dt) {
     Vector6 motion = Vector6::Zero();
@@ -52,7 +52,7 @@ TEST_P(ServoWithMount, ReachesAPlannedViewFromAnywhere) {
 }
 
 TEST_P(ServoWithMount, ReachesTheGoalsImage) {
-    const MeshRenderer room(testing::texturedRoom());
+    const MeshRenderer room(test::texturedRoom());
     const Camera camera = makeCamera(188, 120, 1.2);
     const Pose T_b_c = cameraMount(GetParam());
     Pose T_w_goal = Pose::Identity();
@@ -75,14 +75,14 @@ TEST_P(ServoWithMount, ReachesTheGoalsImage) {
 INSTANTIATE_TEST_SUITE_P(Mounts, ServoWithMount, ::testing::Values(kDown, kOblique));
 
 TEST(PhotometricServo, DoesNotTrustAnotherPlacesImageNorAWhiteFloor) {
-    const MeshRenderer floor(testing::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
     const Camera camera = makeCamera(94, 60, 1.2);
     const Pose T_goal_w = cameraAt({0., 0., 2.}, kDown);
     PhotometricServo servo(floor, camera, cameraMount(kDown), T_goal_w, {});
     View elsewhere;
     floor.render(camera, cameraAt({3., 1., 2.}, kDown), elsewhere);
     EXPECT_FALSE(servo.toward(elsewhere.intensity).isTrusted);
-    const MeshRenderer white(testing::floorOf(uniformTexture(0.9F)));
+    const MeshRenderer white(test::floorOf(uniformTexture(0.9F)));
     EXPECT_FALSE(PhotometricServo(white, camera, cameraMount(kDown), T_goal_w, {}).isInformative());
 }
 
@@ -113,7 +113,7 @@ TEST(SimulatedMav, ItsOdometryIsAsUncertainAsItSays) {
 }
 
 TEST(SimulatedCamera, DeliversLateDropsAndGoesBlack) {
-    const MeshRenderer floor(testing::floorOf(valueNoise({.seed = 3})));
+    const MeshRenderer floor(test::floorOf(valueNoise({.seed = 3})));
     const Pose T_c_w = cameraAt({0., 0., 2.}, kDown);
     const SimulatedCameraOptions options{.period = 0.1,
                                          .latency = 0.25,

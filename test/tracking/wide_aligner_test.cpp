@@ -8,15 +8,15 @@
 namespace photonav {
 namespace {
 
-using testing::cameraAt;
-using testing::kDown;
+using test::cameraAt;
+using test::kDown;
 
 class WideAlignerTest : public ::testing::Test {
   protected:
     ImageF seen(const ViewSource& world, const Pose& T_c_w) {
         View view;
         world.render(camera, T_c_w, view);
-        return testing::noisy(view.intensity, 0.02, random);
+        return test::noisy(view.intensity, 0.02, random);
     }
     static UncertainPose prior(const Pose& T_c_w, double sigma) {
         UncertainPose belief{T_c_w, 1e-5 * Matrix6::Identity()};
@@ -39,7 +39,7 @@ class WideAlignerTest : public ::testing::Test {
 };
 
 TEST_F(WideAlignerTest, FindsThePlaceFromAfar) {
-    const MeshRenderer floor(testing::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
     WideAligner wide(floor, camera, options);
     DenseAligner dense(floor, camera, options);
     const Pose truth = cameraAt({0.9, -0.8, 2.1}, kDown);
@@ -76,15 +76,15 @@ TEST_F(WideAlignerTest, NothingInViewIsNoPlaceFound) {
 }
 
 TEST_F(WideAlignerTest, StripesDoNotSayWhichOfThemItIs) {
-    const MeshRenderer floor(testing::floorOf(stripes({.width = 0.2, .softEdge = 0.05})));
+    const MeshRenderer floor(test::floorOf(stripes({.width = 0.2, .softEdge = 0.05})));
     WideAligner wide(floor, camera, options);
     const UncertainPose belief = prior(cameraAt({0.05, 0., 2.}, kDown), 0.3);
     expectUndecided(wide.align(seen(floor, cameraAt({0.15, 0., 2.}, kDown)), belief), belief);
 }
 
 TEST_F(WideAlignerTest, IsLostWhereNoPlaceExplainsTheImage) {
-    const MeshRenderer floor(testing::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
-    const MeshRenderer another(testing::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
+    const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    const MeshRenderer another(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
     WideAligner wide(floor, camera, options);
     const Pose here = cameraAt({0., 0., 2.}, kDown);
     EXPECT_TRUE(isLost(wide.align(seen(another, here), prior(here, 0.3)).verdict));

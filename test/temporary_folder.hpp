@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 
 namespace photonav::test {
@@ -16,14 +17,16 @@ class TemporaryFolder {
     TemporaryFolder() {
         const auto* test = testing::UnitTest::GetInstance()->current_test_info();
         path_ = std::filesystem::temp_directory_path() /
-                (std::string("photonav_") + test->test_suite_name() + "_" + test->name() + "_" +
+                (std::string("photonav-") + test->test_suite_name() + "-" + test->name() + "-" +
                  std::to_string(getpid()));
+        std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
     ~TemporaryFolder() { std::filesystem::remove_all(path_); }
 
+    const std::filesystem::path& path() const { return path_; }
     std::string file(const std::string& name) const { return (path_ / name).string(); }
 
     /// Writes a file and returns its path.
@@ -35,6 +38,12 @@ class TemporaryFolder {
   private:
     std::filesystem::path path_;
 };
+
+inline std::string contentOf(const std::filesystem::path& file) {
+    std::ostringstream content;
+    content << std::ifstream(file, std::ios::binary).rdbuf();
+    return content.str();
+}
 
 /// The message of the InputError that `work` throws, "" when it throws none.
 template <typename Error, typename Work>
