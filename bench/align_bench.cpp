@@ -106,6 +106,7 @@ std::vector<Method> keyframeMethods() {
     for (const int finest : {0, 1, 2}) {
         KeyframeOptions options;
         options.finest = finest;
+        if (finest == 0) options.minGradient = 0.02;
         options.alignment.levels = 4 - finest;
         const char* size = finest == 0 ? "640x480" : finest == 1 ? "320x240" : "160x120";
         methods.push_back({fmt::format("keyframe, {}", size), options, {}});

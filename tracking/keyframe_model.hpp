@@ -18,6 +18,9 @@ struct KeyframeOptions {
     double minDepth = 0.1;      ///< nearer depths are not used [m]
     double maxDepth = 10.;      ///< farther ones neither [m]
     double depthSpread = 0.05;  ///< pixels merged by the pyramid must agree in depth to this share
+    /// Relative second difference of inverse depth from pixel to pixel, per pixel's angle [1/rad]:
+    /// where measured depth bends by more, it is mostly wrong.
+    double mostBend = 1.5;
     /// Pixels whose grey value changes by less from one to the next tell little but take time
     /// [grey value per pixel of the level].
     double minGradient = 0.01;

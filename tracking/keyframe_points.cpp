@@ -146,7 +146,7 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
     for (auto* field : {&x_, &y_, &w_, &intensity_, &gx_, &gy_}) field->resize(capacity);
 
     const PhotometricOptions& p = options.alignment.photometric;
-    const auto jump = static_cast<float>(p.depthJump);
+    const auto jump = static_cast<float>(std::min(p.depthJump, options.mostBend / camera.fx()));
     const auto dark = static_cast<float>(p.saturation);
     const auto aspect = static_cast<float>(camera.fy() / camera.fx());
     const auto least = static_cast<float>(4. * square(options.minGradient));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "constants.hpp"
 #include "rooms.hpp"
 
 namespace photonav {
@@ -43,6 +44,23 @@ TEST(KeyframeModel, FindsTheMotion) {
     }
 }
 
+TEST(KeyframeModel, LeavesOutDepthThatBends) {
+    View view = roomView(kFirst);
+    for (unsigned v = 60; v < 180; ++v) {  // half the image: every other column is too far
+        for (unsigned u = 0; u < 320; u += 2) view.depth[v][u] *= 1.024F;
+    }
+    const Pose truth = cameraAt({1.7, 3.05, 1.6}, 0.6, 0.1);
+    const auto distance = [&](double mostBend) {
+        KeyframeOptions options;
+        options.finest = 0;
+        options.mostBend = mostBend;
+        KeyframeModel keyframe(view, wideCamera(), kFirst, options);
+        return errorOf(keyframe.align(roomView(truth).intensity, kFirst), truth).norm();
+    };
+    EXPECT_LT(distance(KeyframeOptions().mostBend), 2e-3);
+    EXPECT_GT(distance(1e9), 2. * distance(KeyframeOptions().mostBend));
+}
+
 TEST(KeyframeModel, EstimatesExposure) {
     KeyframeOptions options;
     options.alignment.exposure = true;
@@ -63,6 +81,7 @@ TEST(KeyframeModel, InformationIsCarriedToTheCamera) {
     KeyframeOptions options;
     options.finest = 0;
     options.minGradient = 0.;
+    options.mostBend = kInfinity;  // the pixels that planning counts
     options.alignment.robust = RobustWeight::none;
     const View view = roomView(kFirst);
     KeyframeModel keyframe(view, wideCamera(), kFirst, options);
