@@ -59,7 +59,7 @@ TEST_P(EveryPlanner, StoredBeliefsSurviveRewiringAndResumption) {
         Problem problem;
         problem.growth.seed = seed;
         const auto planner = problem.planner(GetParam());
-        for (const std::size_t vertices : {7U, 40U + seed, 150U, 320U}) {  // prefixes of one tree
+        for (const std::size_t vertices : {7U, 40U + seed, 180U, 500U}) {  // prefixes of one tree
             grow(*planner, vertices);
             expectHonest(*planner);
         }
@@ -81,7 +81,7 @@ TEST_P(EveryPlanner, CostNeverRisesAndIsTheCostOfThePath) {
     Problem problem;
     const auto planner = problem.planner(GetParam());
     double last = kInfinity;
-    for (std::size_t vertices = 100; vertices <= 500; vertices += 100) {
+    for (std::size_t vertices = 100; vertices <= 800; vertices += 100) {
         grow(*planner, vertices);
         EXPECT_LE(planner->bestCost(), last);
         last = planner->bestCost();
