@@ -42,14 +42,18 @@ std::string tableRow(const std::string& method, const std::vector<const CompareR
         for (const CompareRun* run : runs) values.push_back(value(run->outcome));
         return values;
     };
+    const Values costs = ofPath(&JudgedPath::cost);
+    const std::string label =
+        costs.size() == runs.size()
+            ? method
+            : fmt::format("{} ({} of {} found a path)", method, costs.size(), runs.size());
     Values traces = ofPath(&JudgedPath::meanTrace);
     Values goalTraces = ofPath(&JudgedPath::goalTrace);
     for (Values* values : {&traces, &goalTraces}) {
         for (double& v : *values) v *= 1e4;
     }
     return fmt::format(
-        "| {} | {} | {} | {} | {} | {} | {} | {} |\n", method,
-        meanAndDeviation(ofPath(&JudgedPath::cost), 3),
+        "| {} | {} | {} | {} | {} | {} | {} | {} |\n", label, meanAndDeviation(costs, 3),
         meanAndDeviation(ofPath(&JudgedPath::length), 2), meanAndDeviation(traces, 1),
         meanAndDeviation(goalTraces, 1),
         meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.vertices); }), 0),
@@ -59,9 +63,8 @@ std::string tableRow(const std::string& method, const std::vector<const CompareR
 
 json jsonOf(const CompareRun& run) {
     const PlanOutcome& o = run.outcome;
-    json result{{"method", run.method},     {"seed", run.seed},
-                {"vertices", o.vertices},   {"views", o.views},
-                {"seconds", o.planSeconds}, {"status", o.path ? "done" : "no path"}};
+    json result{{"method", run.method}, {"seed", run.seed},         {"vertices", o.vertices},
+                {"views", o.views},     {"seconds", o.planSeconds}, {"status", run.status}};
     if (!o.path) return result;
     result.update({{"cost", o.path->cost},
                    {"planner_cost", o.plannerCost},
@@ -134,7 +137,9 @@ CompareRun runMethod(const Config& config, const World& world, const CompareMeth
     own.viewModel.name = method.information;
     if (method.maxVertices > 0) own.vertices = std::min(own.vertices, method.maxVertices);
     PlanRun run(own, world);
-    return {method.label(), seed, run.solve(method.planner, interrupted, [](const auto&) {})};
+    PlanOutcome outcome = run.solve(method.planner, interrupted, [](const auto&) {});
+    const std::string status = run.statusOf(outcome);
+    return {method.label(), seed, std::move(outcome), status};
 }
 
 std::string compareTable(const std::vector<CompareRun>& runs) {

@@ -37,6 +37,7 @@ struct CompareRun {
     std::string method;
     std::uint32_t seed = 0;
     PlanOutcome outcome;
+    std::string status;  ///< "done", or why there is no path
 };
 
 /// Runs a method on a problem. The path is judged by the photometric beliefs and the config's
@@ -44,7 +45,8 @@ struct CompareRun {
 CompareRun runMethod(const Config& config, const World& world, const CompareMethod& method,
                      std::uint32_t seed, const std::atomic<bool>& interrupted);
 
-/// Rows of a Markdown table: mean +- standard deviation over the seeds, methods in their order.
+/// Rows of a Markdown table: mean +- standard deviation over the seeds, methods in their order,
+/// with the number of runs that found a path where some did not.
 std::string compareTable(const std::vector<CompareRun>& runs);
 
 /// Writes, for every config, <name>.md (table) and <name>.png (the first seed's paths from above)

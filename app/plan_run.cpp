@@ -65,6 +65,15 @@ void PlanRun::checkPlace(const std::string& key, const Place& place) const {
                                  world_.clearance(place.position), config_.robotRadius));
 }
 
+std::string PlanRun::statusOf(const PlanOutcome& outcome) const {
+    if (outcome.path) return "done";
+    if (outcome.vertices >= config_.vertices) {
+        return fmt::format("no path: the goal was not reached by {} vertices", outcome.vertices);
+    }
+    return fmt::format("no path: {} vertices after {} samples, then given up", outcome.vertices,
+                       outcome.iterations);
+}
+
 PlanOutcome PlanRun::solve(const std::string& name, const std::atomic<bool>& interrupted,
                            const std::function<void(const ReportProgress&)>& onProgress) {
     const Stopwatch watch;

@@ -47,6 +47,9 @@ class PlanRun {
     PlanOutcome solve(const std::string& planner, const std::atomic<bool>& interrupted,
                       const std::function<void(const ReportProgress&)>& onProgress);
 
+    /// "done", or why there is no path.
+    std::string statusOf(const PlanOutcome& outcome) const;
+
     /// The best path that descent from these waypoints (of the body) finds.
     /// @return nothing if the way along them is not free
     std::optional<JudgedPath> descend(const std::vector<Pose>& waypoints,

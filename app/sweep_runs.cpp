@@ -47,14 +47,6 @@ SweepHeader headerFrom(const json& line) {
             {line.at("shard").at(0), line.at("shard").at(1)}};
 }
 
-std::string reasonFor(const PlanOutcome& outcome, const Config& config) {
-    if (outcome.vertices >= config.vertices) {
-        return fmt::format("no path: the goal was not reached by {} vertices", outcome.vertices);
-    }
-    return fmt::format("no path: {} vertices after {} samples, then given up", outcome.vertices,
-                       outcome.iterations);
-}
-
 }  // namespace
 
 std::optional<SweepRun> runItem(const Config& config, const World& world, const SweepItem& item,
@@ -74,7 +66,7 @@ std::optional<SweepRun> runItem(const Config& config, const World& world, const 
                  outcome.vertices,
                  outcome.views,
                  outcome.planSeconds,
-                 outcome.path ? "done" : reasonFor(outcome, own),
+                 plan.statusOf(outcome),
                  {}};
     if (!outcome.path) return run;
     run.cost = outcome.path->cost;

@@ -43,6 +43,17 @@ TEST(Compare, EveryMethodOnceJudgedByTheSameBeliefs) {
     fs::remove_all(folder);
 }
 
+TEST(Compare, ItsTableSaysHowManyRunsFoundAPath) {
+    const std::string method = compareMethods().front().label();
+    PlanOutcome found;
+    found.path = JudgedPath{};
+    found.path->cost = 2.;
+    const std::string table =
+        compareTable({{method, 1, found, "done"}, {method, 2, PlanOutcome{}, "no path"}});
+    EXPECT_NE(table.find("| " + method + " (1 of 2 found a path) | 2.000 |"), std::string::npos)
+        << table;
+}
+
 TEST(Compare, AMissingConfigIsOneLine) {
     const Execution run = photonav("compare no_such.yaml");
     EXPECT_EQ(run.exitCode, 2);
