@@ -21,8 +21,9 @@ if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 # Never -ffast-math: it breaks Eigen's fixed-size inverses without a word.
-# The instruction set is PUBLIC because the alignment of Eigen's types depends on it. Programs of one
-# file build faster without a precompiled header (SINGLE_FILE). Left out of the sanitizers are
+# The instruction set is PUBLIC because the alignment of Eigen's types depends on it. All targets share
+# the precompiled header of photonav_core, for which their macros and code model must be the same:
+# hence fmt and -fPIC (instead of -fPIE) for programs too. Left out of the sanitizers are
 # nonnull-attribute (ViSP's headers copy empty images by memcpy from null) and what costs a third of
 # the build to find no more than the address sanitizer and the processor do: null, alignment,
 # object-size.
@@ -39,9 +40,13 @@ function(photonav_compiler_options target)
     if(PHOTONAV_SANITIZE)
         target_link_options(${target} PUBLIC -fsanitize=address,undefined)
     endif()
-    if(NOT "SINGLE_FILE" IN_LIST ARGN)
+    if(target STREQUAL photonav_core)
         target_precompile_headers(${target} PRIVATE
             <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <memory>
             <optional> <random> <span> <stdexcept> <string> <unordered_map> <vector>)
+    else()
+        target_precompile_headers(${target} REUSE_FROM photonav_core)
+        set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+        target_compile_options(${target} PRIVATE -fPIC)
     endif()
 endfunction()

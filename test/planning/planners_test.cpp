@@ -59,7 +59,8 @@ TEST_P(EveryPlanner, StoredBeliefsSurviveRewiringAndResumption) {
         Problem problem;
         problem.growth.seed = seed;
         const auto planner = problem.planner(GetParam());
-        for (const std::size_t vertices : {7U, 40U + seed, 180U, 500U}) {  // prefixes of one tree
+        for (const std::size_t vertices : {std::size_t{7}, std::size_t{40} + seed, treeOf(180),
+                                           treeOf(500)}) {  // prefixes of one tree
             grow(*planner, vertices);
             expectHonest(*planner);
         }
@@ -81,7 +82,7 @@ TEST_P(EveryPlanner, CostNeverRisesAndIsTheCostOfThePath) {
     Problem problem;
     const auto planner = problem.planner(GetParam());
     double last = kInfinity;
-    for (std::size_t vertices = 100; vertices <= 800; vertices += 100) {
+    for (std::size_t vertices = 100; vertices <= treeOf(800); vertices += 100) {
         grow(*planner, vertices);
         EXPECT_LE(planner->bestCost(), last);
         last = planner->bestCost();
@@ -96,13 +97,13 @@ TEST_P(EveryPlanner, IsDeterministicForASeed) {
     Problem problem;
     const auto once = problem.planner(GetParam());
     const auto twice = problem.planner(GetParam());
-    grow(*once, 300);
-    grow(*twice, 300);
+    grow(*once, treeOf(300));
+    grow(*twice, treeOf(300));
     EXPECT_EQ(once->iterations(), twice->iterations());
     EXPECT_DOUBLE_EQ(once->bestCost(), twice->bestCost());
     const auto other = problem.planner(GetParam());
     EXPECT_TRUE(other->params().setParam("seed", "99"));
-    grow(*other, 300);
+    grow(*other, treeOf(300));
     EXPECT_NE(once->bestCost(), other->bestCost());
 }
 
@@ -223,7 +224,7 @@ TEST_P(EveryPlanner, PlannerDataIsATreeThatReachesTheGoal) {
 TEST_P(EveryPlanner, SolutionsCompareByOurCost) {
     const auto planner = Problem{}.planner(GetParam());
     grow(*planner, 150);
-    grow(*planner, 600);
+    grow(*planner, treeOf(600));
     const auto solutions = planner->getProblemDefinition()->getSolutions();
     ASSERT_EQ(solutions.size(), 2U);
     EXPECT_DOUBLE_EQ(solutions[0].cost_.value(), planner->bestCost());
