@@ -66,12 +66,15 @@ void PlanRun::checkPlace(const std::string& key, const Place& place) const {
 }
 
 std::string PlanRun::statusOf(const PlanOutcome& outcome) const {
-    if (outcome.path) return "done";
-    if (outcome.vertices >= config_.vertices) {
-        return fmt::format("no path: the goal was not reached by {} vertices", outcome.vertices);
+    return outcome.path ? "done" : reasonForNoPath(outcome.vertices, outcome.iterations);
+}
+
+std::string PlanRun::reasonForNoPath(std::size_t vertices, std::size_t iterations) const {
+    if (vertices >= config_.vertices) {
+        return fmt::format("no path: the goal was not reached by {} vertices", vertices);
     }
-    return fmt::format("no path: {} vertices after {} samples, then given up", outcome.vertices,
-                       outcome.iterations);
+    return fmt::format("no path: {} vertices after {} samples, then given up", vertices,
+                       iterations);
 }
 
 PlanOutcome PlanRun::solve(const std::string& name, const std::atomic<bool>& interrupted,

@@ -49,6 +49,8 @@ class PlanRun {
 
     /// "done", or why there is no path.
     std::string statusOf(const PlanOutcome& outcome) const;
+    /// For a tree of this size that does not reach the goal.
+    std::string reasonForNoPath(std::size_t vertices, std::size_t iterations) const;
 
     /// The best path that descent from these waypoints (of the body) finds.
     /// @return nothing if the way along them is not free

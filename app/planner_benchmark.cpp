@@ -99,7 +99,7 @@ class Session {
                      ours.vertices(),
                      ours.model().field().views(),
                      std::stod(properties.at("time REAL")),
-                     "no path",
+                     plan_.reasonForNoPath(ours.vertices(), ours.iterations()),
                      {}};
         properties["seed INTEGER"] = std::to_string(run.item.seed);
         properties["vertices INTEGER"] = std::to_string(run.vertices);

@@ -114,7 +114,9 @@ TEST_F(BenchmarkCommand, ItsRunsAreThoseOfASweep) {
 TEST_F(BenchmarkCommand, NoPathIsExitCodeOneWithALog) {
     const Execution run = benchmark("--set planner.vertices=2 --runs 2 --planners rrt_star");
     EXPECT_EQ(run.exitCode, 1) << run.output;
-    EXPECT_EQ(parsed(folder_ / "result.json")["status"], "no path");
+    const json result = parsed(folder_ / "result.json");
+    EXPECT_EQ(result["status"], "no path");
+    EXPECT_EQ(result["runs"][0]["status"], "no path: the goal was not reached by 2 vertices");
     EXPECT_TRUE(fs::exists(folder_ / "benchmark.log"));
 }
 
