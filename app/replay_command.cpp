@@ -27,6 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr int kWidthInMap = 320, kLeastWidth = 24;       // [pixels]
 constexpr double kLeastDepth = 0.05, kMostDepth = 100.;  // of a median, plausible [m]
 
 void checkOptions(const ReplayOptions& options) {
@@ -44,7 +45,8 @@ void checkOptions(const ReplayOptions& options) {
     require(options.floorRotation.value_or(0.) >= 0., "--floor-rotation", "must not be negative");
     require(options.minOverlap > 0. && options.minOverlap < 1., "--min-overlap",
             "must be between 0 and 1");
-    require(options.maxWidth >= 24, "--max-width", "must be at least 24");
+    require(options.maxWidth.value_or(kWidthInMap) >= kLeastWidth, "--max-width",
+            "must be at least 24");
 }
 
 Pose parsePose(const std::string& text) {
@@ -135,6 +137,13 @@ ReplayMap loadMap(const std::string& file) {
     return map;
 }
 
+void setWidth(KeyframeOptions& keyframe, const Camera& camera, int maxWidth) {
+    keyframe.finest = 0;
+    while (static_cast<int>(camera.width >> keyframe.finest) > maxWidth) ++keyframe.finest;
+    // Of all pixels only those that tell something: faster, and as accurate (docs/tracking.md).
+    if (keyframe.finest == 0) keyframe.minGradient = 0.02;
+}
+
 ReplayTracker makeTracker(const ReplayOptions& options, const ReplaySource& source,
                           const ReplayMap& map) {
     const UncertainPose start = startOf(options, source);
@@ -150,6 +159,7 @@ ReplayTracker makeTracker(const ReplayOptions& options, const ReplaySource& sour
     if (options.odometry) {
         OdometryOptions odometry;
         set(odometry.keyframe.alignment);
+        if (options.maxWidth) setWidth(odometry.keyframe, source.camera, *options.maxWidth);
         return odometryTracker(source.camera, start, odometry);
     }
     LocalizerOptions localizer;
@@ -159,7 +169,7 @@ ReplayTracker makeTracker(const ReplayOptions& options, const ReplaySource& sour
     if (source.informationScale) localizer.alignment.photometric.scale = *source.informationScale;
     set(localizer.alignment);
     return mapTracker(*map.views, source.camera, start, localizer,
-                      static_cast<unsigned>(options.maxWidth));
+                      static_cast<unsigned>(options.maxWidth.value_or(kWidthInMap)));
 }
 
 json orNull(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
@@ -180,7 +190,7 @@ json optionsJson(const ReplayOptions& o) {
             {"scale", orNull(o.scale)},
             {"floor", {orNull(o.floorTranslation), orNull(o.floorRotation)}},
             {"min_overlap", o.minOverlap},
-            {"max_width", o.maxWidth},
+            {"max_width", o.maxWidth ? json(*o.maxWidth) : json(nullptr)},
             {"exposure", o.exposure}};
 }
 

@@ -30,10 +30,9 @@ void addTracking(CLI::App& parser, ReplayOptions& options) {
         ->capture_default_str();
     parser.add_option("--floor-rotation", options.floorRotation, "the same of a rotation [rad]")
         ->capture_default_str();
-    parser
-        .add_option("--max-width", options.maxWidth,
-                    "images are halved until they are as wide, with --map")
-        ->capture_default_str();
+    parser.add_option("--max-width", options.maxWidth,
+                      "images are halved until they are as wide [pixels] (default: 320 in a map, "
+                      "once in odometry)");
     parser
         .add_option("--min-overlap", options.minOverlap,
                     "least share of an image that the model must cover")

@@ -23,12 +23,13 @@ std::string toYaml(const ReplayOptions& o, const ReplayTracker& tracker) {
     if (!o.mapFile.empty()) text += fmt::format("map: {}\n", absolutePath(o.mapFile));
     text += fmt::format("odometry: {}\n", o.odometry);
     if (!o.start.empty()) text += fmt::format("start: {}\n", YAML::Dump(YAML::Node(o.start)));
+    if (o.maxWidth) text += fmt::format("max_width: {}\n", *o.maxWidth);
     return text +
            fmt::format(
                "start_sigma: {}\nstereo: {}\nsigma: {}\nscale: {}\nfloor: {}\n"
-               "floor_rotation: {}\nmin_overlap: {}\nmax_width: {}\nexposure: {}\ncalibrate: {}\n",
+               "floor_rotation: {}\nmin_overlap: {}\nexposure: {}\ncalibrate: {}\n",
                o.startSigma, o.stereo, o.sigma, tracker.scale, tracker.trust.floorTranslation,
-               tracker.trust.floorRotation, o.minOverlap, o.maxWidth, o.exposure, o.calibrate);
+               tracker.trust.floorRotation, o.minOverlap, o.exposure, o.calibrate);
 }
 
 void readReplayConfig(const std::string& file, ReplayOptions& options) {
@@ -45,8 +46,10 @@ void readReplayConfig(const std::string& file, ReplayOptions& options) {
     readOptional(yaml, "floor", options.floorTranslation, 0.);
     readOptional(yaml, "floor_rotation", options.floorRotation, 0.);
     yaml.readNumber("min_overlap", options.minOverlap, kLeast, 1. - kLeast);
-    yaml.read("max_width", options.maxWidth);
-    if (options.maxWidth < 24) yaml.fail("max_width", "must be at least 24");
+    if (yaml.has("max_width")) {
+        yaml.read("max_width", options.maxWidth.emplace());
+        if (*options.maxWidth < 24) yaml.fail("max_width", "must be at least 24");
+    }
     yaml.read("exposure", options.exposure);
     yaml.read("calibrate", options.calibrate);
     yaml.finish();

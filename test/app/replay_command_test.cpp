@@ -158,6 +158,18 @@ TEST_F(ReplayCommand, OdometryFollowsTheFlight) {
     EXPECT_GT(result["fps"].get<double>(), 0.);
 }
 
+TEST_F(ReplayCommand, OdometryAtTheWidthAskedFor) {
+    const auto errorAt = [&](std::optional<int> maxWidth) {
+        options.maxWidth = maxWidth;
+        return run().result["ate_rmse_m"].get<double>();
+    };
+    const double byDefault = errorAt({});
+    EXPECT_DOUBLE_EQ(errorAt(80), byDefault);  // half of the images' 160
+    EXPECT_NE(errorAt(40), byDefault);
+    EXPECT_LT(errorAt(160), 3e-3);
+    EXPECT_NE(errorAt(160), byDefault);
+}
+
 TEST_F(ReplayCommand, WritesWhatOtherProgramsRead) {
     const ReplayReport report = run();
     for (const char* name : {"report.html", "errors.png", "strips.png", "top_view.png"}) {
@@ -305,6 +317,7 @@ TEST_F(ReplayCommand, ItsConfigRepeatsTheRun) {
     options.every = 2;
     options.startSigma = 0.02;
     options.floorTranslation = 0.003;
+    options.maxWidth = 80;
     options.calibrate = true;
     json first = run().result;
     const auto textOf = [](const test::fs::path& file) {
@@ -318,6 +331,7 @@ TEST_F(ReplayCommand, ItsConfigRepeatsTheRun) {
     ASSERT_EQ(good.exitCode, 0) << good.output;
     json second = json::parse(textOf(again / "result.json"));
     EXPECT_EQ(second["options"]["floor"][0], 0.003);
+    EXPECT_EQ(second["options"]["max_width"], 80);
     for (const char* key : {"time", "fps", "options"}) {
         first.erase(key);
         second.erase(key);
