@@ -263,7 +263,10 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
     if (!evolutions.empty()) {
         const TopView map = topView(config, world, outcome, {});
         figures.push_back({"tree_evolution.png",
-                           {"The trees as they grow, and the best path so far.",
+                           {"The trees as they grow, and the best path so far. Grown anew for this "
+                            "picture, with a pause at every number of vertices, after which what "
+                            "was found steers the samples: the last path may differ from the "
+                            "answer above.",
                             drawTreeEvolution(map, evolutions, {10, 500, config.vertices})}});
         for (const TreeStage& stage : evolutions.front().stages) {
             report.frames.push_back({fmt::format("{} vertices", stage.vertices),
