@@ -196,7 +196,7 @@ Axis axisAround(const Values& values, bool log, const std::string& label) {
 }
 
 /// Cells as pixels, the largest y first; NaN where nothing is known shows as white.
-constexpr Color kNothing{58, 58, 62};  // zero has no place on a logarithmic scale
+constexpr Color kOffScale{58, 58, 62};  // zero has no place on a logarithmic scale
 
 std::vector<Color> cellColors(const HeatMap& map, const Axis& scale) {
     const std::array<Color, 256> colors = viridis();
@@ -207,7 +207,7 @@ std::vector<Color> cellColors(const HeatMap& map, const Axis& scale) {
             const double level = std::clamp(255.0 * scale.fraction(value), 0.0, 255.0);
             const bool isNothing = map.logScale && value <= 0.0;
             pixels.push_back(!std::isfinite(value) ? kWhite
-                             : isNothing           ? kNothing
+                             : isNothing           ? kOffScale
                                                    : colors[static_cast<std::size_t>(level)]);
         }
     return pixels;
@@ -354,7 +354,7 @@ Png drawHeatMap(const HeatMap& map) {
     double left = frame.x;
     if (map.logScale && (map.values <= 0.0).any()) {
         const LegendEntry entry{"nothing", [](Canvas& sheet, const Canvas::Point& center) {
-                                    fillSwatch(sheet, center, kNothing);
+                                    fillSwatch(sheet, center, kOffScale);
                                 }};
         drawLegendEntry(canvas, entry, {left, frame.bottom() + kBottom + 8.0});
         left += 150.0;

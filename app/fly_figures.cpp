@@ -9,7 +9,8 @@
 namespace photonav {
 namespace {
 
-constexpr double kLeft = 116., kTop = 62., kWidth = 900., kHeight = 300., kBetween = 120.;
+constexpr double kFlightLeft = 116., kFlightTop = 62., kFlightWidth = 900., kFlightHeight = 300.,
+                 kFlightBetween = 120.;
 constexpr double kBin = 0.5;  // of the way, for means over flights [m]
 
 /// Mean of a value of all samples, by way along the plan; bins without samples are left out.
@@ -131,11 +132,12 @@ void drawErrorLegend(Canvas& canvas, const Frame& frame, const std::string& name
 
 Png drawErrorBands(const std::vector<FlightSet>& sets) {
     const double n = static_cast<double>(sets.size());
-    Canvas canvas(kLeft + kWidth + 32., kTop + n * (kHeight + kBetween));
+    Canvas canvas(kFlightLeft + kFlightWidth + 32.,
+                  kFlightTop + n * (kFlightHeight + kFlightBetween));
     const Axis x{0., longest(sets), false, "way along the plan [m]"};
     const Axis y{0., mostOf(sets), false, "position error [m]"};
-    Frame frame{kLeft, kTop, kWidth, kHeight};
-    for (std::size_t k = 0; k < sets.size(); ++k, frame.y += kHeight + kBetween) {
+    Frame frame{kFlightLeft, kFlightTop, kFlightWidth, kFlightHeight};
+    for (std::size_t k = 0; k < sets.size(); ++k, frame.y += kFlightHeight + kFlightBetween) {
         const Plot plot{canvas, frame, x, y};
         plot.drawGrid();
         drawErrors(plot, sets[k], colorOf(k));
@@ -146,7 +148,7 @@ Png drawErrorBands(const std::vector<FlightSet>& sets) {
 }
 
 Png drawNees(const std::vector<FlightSet>& sets) {
-    const Frame frame{kLeft, kTop, kWidth, kHeight};
+    const Frame frame{kFlightLeft, kFlightTop, kFlightWidth, kFlightHeight};
     Canvas canvas(frame.right() + 32., frame.bottom() + 76.);
     std::vector<std::vector<Canvas::Point>> curves;
     double most = 2.;

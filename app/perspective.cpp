@@ -10,8 +10,8 @@
 namespace photonav {
 namespace {
 
-constexpr unsigned kWidth = 960, kHeight = 660;
-constexpr double kTop = 58.0;           // margin with the title [px]
+constexpr unsigned kPictureWidth = 960, kPictureHeight = 660;
+constexpr double kPictureTop = 58.0;    // margin with the title [px]
 constexpr double kHeightOfEye = 0.8;    // above the box, over its longer side
 constexpr double kSurfaceMargin = 0.1;  // a path this far behind a surface is hidden [m]
 
@@ -50,10 +50,11 @@ Camera cameraAround(const Eigen::AlignedBox3d& box, const Pose& T_c_w) {
         const Eigen::Vector3d p =
             T_c_w * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
         if (p.z() < 0.1) continue;  // right below the eye
-        reach = std::max(
-            {reach, std::abs(p.x() / p.z()), std::abs(p.y() / p.z()) * kWidth / double{kHeight}});
+        reach = std::max({reach, std::abs(p.x() / p.z()),
+                          std::abs(p.y() / p.z()) * kPictureWidth / double{kPictureHeight}});
     }
-    return makeCamera(kWidth, kHeight, 2. * std::atan(std::clamp(1.03 * reach, 0.1, 2.)));
+    return makeCamera(kPictureWidth, kPictureHeight,
+                      2. * std::atan(std::clamp(1.03 * reach, 0.1, 2.)));
 }
 
 /// Draws world points into the rendered picture.
@@ -86,14 +87,14 @@ class Sketch {
     Canvas::Point at(const Eigen::Vector3d& p_w) const {
         const Eigen::Vector3d p = T_c_w_ * p_w;
         return {camera_.cx() + camera_.fx() * p.x() / p.z(),
-                kTop + camera_.cy() + camera_.fy() * p.y() / p.z()};
+                kPictureTop + camera_.cy() + camera_.fy() * p.y() / p.z()};
     }
 
     bool isVisible(const Eigen::Vector3d& p_w) const {
         const Eigen::Vector3d p = T_c_w_ * p_w;
         const auto u = static_cast<long>(std::lround(camera_.cx() + camera_.fx() * p.x() / p.z()));
         const auto v = static_cast<long>(std::lround(camera_.cy() + camera_.fy() * p.y() / p.z()));
-        if (u < 0 || v < 0 || u >= long{kWidth} || v >= long{kHeight}) return true;
+        if (u < 0 || v < 0 || u >= long{kPictureWidth} || v >= long{kPictureHeight}) return true;
         const float depth = view_.depth[static_cast<unsigned>(v)][static_cast<unsigned>(u)];
         return depth <= 0.F || p.z() < depth + kSurfaceMargin;
     }
@@ -124,7 +125,7 @@ void drawPicture(Canvas& canvas, const View& view) {
         pixels.push_back(view.depth.bitmap[i] > 0.F ? Color{level, level, level}
                                                     : Color{255, 255, 255});
     }
-    canvas.picture(pixels, kWidth, {0., kTop, kWidth, kHeight}, true);
+    canvas.picture(pixels, kPictureWidth, {0., kPictureTop, kPictureWidth, kPictureHeight}, true);
 }
 
 }  // namespace
@@ -138,7 +139,7 @@ Png drawPerspective(const ViewSource& world, const Perspective& perspective) {
     View view;
     world.render(camera, T_c_w, view);
 
-    Canvas canvas(kWidth, kTop + kHeight);
+    Canvas canvas(kPictureWidth, kPictureTop + kPictureHeight);
     drawPicture(canvas, view);
     const Sketch sketch(canvas, world, view, camera, T_c_w);
     for (auto path = perspective.paths.rbegin(); path != perspective.paths.rend(); ++path) {

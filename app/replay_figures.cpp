@@ -14,10 +14,11 @@
 namespace photonav {
 namespace {
 
-constexpr double kLeft = 112., kTop = 92., kWidth = 900., kHeight = 220., kStep = 262.;  // [px]
+constexpr double kReplayLeft = 112., kReplayTop = 92., kReplayWidth = 900., kReplayHeight = 220.,
+                 kStep = 262.;  // [px]
 constexpr Color kBand = kBaselineColor;
 constexpr Color kLost{178, 182, 188};
-constexpr Color kNothing{24, 44, 92};
+constexpr Color kNoColor{24, 44, 92};
 // 95 % of the squared normalised errors of a six-dimensional Gaussian, per degree of freedom.
 constexpr double kNeesLow = 1.2373 / 6., kNeesHigh = 14.4494 / 6.;
 
@@ -26,14 +27,14 @@ struct Sample {
 };
 
 /// What one panel shows, over time since the first frame.
-struct Panel {
+struct ErrorPanel {
     std::vector<Sample> sigma;  ///< predicted standard deviation
     std::vector<Sample> error;
     std::string label;
 };
 
 struct Panels {
-    Panel position, rotation, nees;
+    ErrorPanel position, rotation, nees;
     double duration = 1.;
     std::vector<TimeInterval> lost;
 };
@@ -74,14 +75,14 @@ double largest(const std::vector<Sample>& samples, double factor = 1.) {
 
 /// Up to the largest error, and the bands as far as they are not out of all proportion to it.
 /// An error that is nothing but rounding, of a first image, is none.
-Axis axisOf(const Panel& panel) {
+Axis axisOf(const ErrorPanel& panel) {
     const double error = 1.15 * largest(panel.error);
     const double band = 1.05 * largest(panel.sigma, 3.);
     const double most = error > 1e-9 ? std::max(error, std::min(band, 4. * error)) : band;
     return {0., most > 0. ? most : 1., false, panel.label};
 }
 
-Axis neesAxis(const Panel& panel) {
+Axis neesAxis(const ErrorPanel& panel) {
     double low = 0.1;
     double high = 5.;
     for (const Sample& s : panel.error) {
@@ -126,7 +127,7 @@ void drawLine(const Plot& plot, const std::vector<Sample>& samples) {
     }
 }
 
-void drawPanel(const Plot& plot, const Panel& panel, const std::vector<TimeInterval>& lost,
+void drawPanel(const Plot& plot, const ErrorPanel& panel, const std::vector<TimeInterval>& lost,
                bool isNees) {
     {
         const auto clipped = plot.canvas.clip(plot.frame);
@@ -151,7 +152,7 @@ void drawPanel(const Plot& plot, const Panel& panel, const std::vector<TimeInter
 }
 
 void drawLegend(Canvas& canvas, bool hasErrors, bool hasLost) {
-    double x = kLeft;
+    double x = kReplayLeft;
     const auto entry = [&](const std::string& words, const Color& color, double opacity) {
         canvas.translucent(opacity, [&] {
             canvas.fill({{x, 57.}, {x + 30., 57.}, {x + 30., 73.}, {x, 73.}}, color);
@@ -169,18 +170,21 @@ void drawLegend(Canvas& canvas, bool hasErrors, bool hasLost) {
 
 Png drawReplayErrors(const std::string& title, const ReplayRun& run, const ReplayErrors& errors) {
     const Panels panels = panelsOf(run, errors);
-    std::vector<const Panel*> shown = {&panels.position, &panels.rotation};
+    std::vector<const ErrorPanel*> shown = {&panels.position, &panels.rotation};
     if (!panels.nees.error.empty()) shown.push_back(&panels.nees);
-    Canvas canvas(kLeft + kWidth + 32., kTop + double(shown.size()) * kStep + 44.);
-    canvas.text(title, {kLeft, 34.}, Align::left, kInk, 21.);
+    Canvas canvas(kReplayLeft + kReplayWidth + 32.,
+                  kReplayTop + double(shown.size()) * kStep + 44.);
+    canvas.text(title, {kReplayLeft, 34.}, Align::left, kInk, 21.);
     drawLegend(canvas, !errors.judged.empty(), !panels.lost.empty());
-    double y = kTop;
-    for (const Panel* panel : shown) {
+    double y = kReplayTop;
+    for (const ErrorPanel* panel : shown) {
         const bool isNees = panel == &panels.nees;
         const Axis time{0., panels.duration, false, panel == shown.back() ? "time [s]" : ""};
-        drawPanel(
-            {canvas, {kLeft, y, kWidth, kHeight}, time, isNees ? neesAxis(*panel) : axisOf(*panel)},
-            *panel, panels.lost, isNees);
+        drawPanel({canvas,
+                   {kReplayLeft, y, kReplayWidth, kReplayHeight},
+                   time,
+                   isNees ? neesAxis(*panel) : axisOf(*panel)},
+                  *panel, panels.lost, isNees);
         y += kStep;
     }
     return canvas.png();
@@ -201,7 +205,7 @@ Png drawStrips(const std::vector<ReplayStrip>& strips) {
     double y = 0.;
     for (const auto& [caption, observed, predicted] : strips) {
         const unsigned size = observed.intensity.getSize();
-        std::vector<Color> left(size), middle(size, kNothing), right(size, kNothing);
+        std::vector<Color> left(size), middle(size, kNoColor), right(size, kNoColor);
         for (unsigned i = 0; i < size; ++i) {
             left[i] = grey(observed.intensity.bitmap[i]);
             if (!(predicted.depth.bitmap[i] > 0.F)) continue;

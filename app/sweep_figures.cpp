@@ -12,7 +12,8 @@
 namespace photonav {
 namespace {
 
-constexpr double kLeft = 112.0, kTop = 96.0, kWidth = 860.0, kHeight = 260.0, kGap = 44.0;  // [px]
+constexpr double kSweepLeft = 112.0, kSweepTop = 96.0, kSweepWidth = 860.0, kSweepHeight = 260.0,
+                 kGap = 44.0;    // [px]
 constexpr double kBelow = 76.0;  // a frame: ticks and label of the x axis [px]
 constexpr std::array<Color, 6> kColors{
     {kPathColor, kBaselineColor, kTreeColor, {142, 68, 173}, {176, 128, 12}, {98, 104, 112}}};
@@ -56,8 +57,8 @@ Axis axisOver(const std::vector<double>& values, bool log, const std::string& la
 
 void drawHead(Canvas& canvas, const std::string& title, const std::vector<Planner>& planners,
               bool withPaper) {
-    canvas.text(title, {kLeft, 34.0}, Align::left, kInk, 21.0);
-    double x = kLeft;
+    canvas.text(title, {kSweepLeft, 34.0}, Align::left, kInk, 21.0);
+    double x = kSweepLeft;
     const auto entry = [&](const std::string& name, const Color& color) {
         canvas.disc({x + 8.0, 66.0}, 7.0, color);
         canvas.text(name, {x + 24.0, 72.0}, Align::left, kInk);
@@ -156,12 +157,12 @@ Png drawSweepCurves(const std::string& title, const std::vector<SweepCell>& cell
         {{"length", "length [m]", false, &PaperRow::length},
          {"mean_trace", "mean trace [m^2 + rad^2]", true, &PaperRow::meanTrace},
          {"goal_trace", "goal trace [m^2 + rad^2]", true, &PaperRow::goalTrace}}};
-    const double step = kHeight + kBelow + kGap - 20.0;
-    Canvas canvas(kLeft + kWidth + 36.0, kTop + quantities.size() * step);
+    const double step = kSweepHeight + kBelow + kGap - 20.0;
+    Canvas canvas(kSweepLeft + kSweepWidth + 36.0, kSweepTop + quantities.size() * step);
     drawHead(canvas, title, plannersOf(cells), hasPaper(cells));
-    double y = kTop;
+    double y = kSweepTop;
     for (const Quantity& quantity : quantities) {
-        drawQuantity(canvas, {kLeft, y, kWidth, kHeight}, quantity, cells);
+        drawQuantity(canvas, {kSweepLeft, y, kSweepWidth, kSweepHeight}, quantity, cells);
         y += step;
     }
     return canvas.png();
@@ -180,7 +181,7 @@ Png drawSweepFront(const std::string& title, const std::vector<SweepCell>& cells
         lengths.push_back(cell.paper->length);
         traces.push_back(cell.paper->meanTrace);
     }
-    const Frame frame{kLeft, kTop, kWidth, 560.0};
+    const Frame frame{kSweepLeft, kSweepTop, kSweepWidth, 560.0};
     Canvas canvas(frame.right() + 36.0, frame.bottom() + kBelow);
     drawHead(canvas, title, plannersOf(cells), hasPaper(cells));
     const Plot plot{canvas, frame, axisOver(lengths, false, "length [m]"),
@@ -229,7 +230,7 @@ Png drawCostOverTime(const std::string& title, const std::vector<std::string>& p
         return std::none_of(curves.begin(), curves.end(),
                             [&](const auto& curve) { return curve.planner == planner.name; });
     });
-    const Frame frame{kLeft, kTop, kWidth, 480.0};
+    const Frame frame{kSweepLeft, kSweepTop, kSweepWidth, 480.0};
     Canvas canvas(frame.right() + 36.0, frame.bottom() + kBelow);
     drawHead(canvas, title, drawn, false);
     const Plot plot{canvas, frame, axisOver(times, true, "time [s]"),

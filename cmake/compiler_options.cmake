@@ -26,7 +26,7 @@ endif()
 # hence fmt and -fPIC (instead of -fPIE) for programs too. Left out of the sanitizers are
 # nonnull-attribute (ViSP's headers copy empty images by memcpy from null) and what costs a third of
 # the build to find no more than the address sanitizer and the processor do: null, alignment,
-# object-size.
+# object-size, pointer-overflow, vptr.
 function(photonav_compiler_options target)
     target_compile_features(${target} PUBLIC cxx_std_20)
     if(PHOTONAV_MARCH)
@@ -36,7 +36,7 @@ function(photonav_compiler_options target)
         -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-psabi
         -fno-math-errno -fno-trapping-math -fpch-preprocess
         $<$<BOOL:${PHOTONAV_WERROR}>:-Werror>
-        $<$<BOOL:${PHOTONAV_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize=nonnull-attribute,null,alignment,object-size;-fno-sanitize-recover=undefined;-fno-omit-frame-pointer;-UNDEBUG;-O1;-g1>)
+        $<$<BOOL:${PHOTONAV_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize=nonnull-attribute,null,alignment,object-size,pointer-overflow,vptr;-fno-sanitize-recover=undefined;-fno-omit-frame-pointer;-UNDEBUG;-O1;-g1>)
     if(PHOTONAV_SANITIZE)
         target_link_options(${target} PUBLIC -fsanitize=address,undefined)
     endif()
