@@ -68,16 +68,33 @@ struct FusedFrames {
     json monocular;  ///< how good its depths are, null when they were recorded
 };
 
+/// Looks at one frame with recorded depth. @returns whether it had any
+bool checkDepths(const MapOptions& options, const Sequence& sequence, const View& view) {
+    std::vector<float> depths;
+    for (unsigned k = 0; k < view.depth.getSize(); ++k) {
+        if (view.depth.bitmap[k] > 0.F) depths.push_back(view.depth.bitmap[k]);
+    }
+    if (depths.empty()) return false;
+    const auto middle = depths.begin() + std::ssize(depths) / 2;
+    std::nth_element(depths.begin(), middle, depths.end());
+    requirePlausibleDepth(*middle, options, sequence.cameraFile);
+    return true;
+}
+
 FusedFrames fuseFrames(const MapOptions& options, const Sequence& sequence,
                        const std::atomic<bool>& interrupted, TexturedOcTree& map) {
     FusedFrames fused;
     Stopwatch watch;
     std::optional<MonocularFusion> monocular;
+    bool isDepthChecked = false;
     if (options.depth == "monocular") monocular.emplace(map, sequence.camera, options.fusion);
     while (fused.count < sequence.frames.size() && !interrupted) {
         const RecordedFrame frame = loadFrame(sequence, fused.count);
         fused.loadSeconds += watch.lap();
         checkPosition(options, frame);
+        if (!monocular && !isDepthChecked) {
+            isDepthChecked = checkDepths(options, sequence, frame.view);
+        }
         try {
             if (monocular) {
                 monocular->add(frame);

@@ -76,6 +76,19 @@ Eigen::Vector3d upByFloor(const Sequence& sequence) {
 
 }  // namespace
 
+void requirePlausibleDepth(double median, const RecordingOptions& options,
+                           const std::string& cameraFile) {
+    constexpr double kLeast = 0.05, kMost = 100., kUsual = 2.;  // [m]
+    if (median >= kLeast && median <= kMost) return;
+    const bool isOfFile = !options.depthScale && !cameraFile.empty();
+    throw InputError(isOfFile ? cameraFile : options.dataset,
+                     isOfFile ? "depth_scale" : "--depth-scale",
+                     fmt::format("implausible depths: their median is {:.3g} m; the scale seems "
+                                 "{} by a factor of about {:.0e}",
+                                 median, median > 1. ? "too small" : "too large",
+                                 std::max(median / kUsual, kUsual / median)));
+}
+
 std::optional<Eigen::Vector3d> parseUp(const std::string& text) {
     const auto& axes = axisNames();
     if (std::find(axes.begin(), axes.end(), text) != axes.end()) {

@@ -37,6 +37,13 @@ struct Recording {
 /// @throws InputError for a dataset that cannot be used and for `up` ("--up")
 Recording readRecording(const RecordingOptions& options);
 
+/// A depth scale wrong by 1000 is found here, before it looks like bad tracking or an empty map.
+/// @param median of depths that were measured [m]
+/// @param cameraFile that says the scale when the options do not; may be empty
+/// @throws InputError unless the median lies in 5 cm to 100 m
+void requirePlausibleDepth(double median, const RecordingOptions& options,
+                           const std::string& cameraFile);
+
 /// An axis name or "x,y,z"; nothing for anything else.
 std::optional<Eigen::Vector3d> parseUp(const std::string& text);
 

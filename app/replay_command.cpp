@@ -27,8 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr int kWidthInMap = 320, kLeastWidth = 24;       // [pixels]
-constexpr double kLeastDepth = 0.05, kMostDepth = 100.;  // of a median, plausible [m]
+constexpr int kWidthInMap = 320, kLeastWidth = 24;  // [pixels]
 
 void checkOptions(const ReplayOptions& options) {
     const auto require = [](bool good, const char* option, const char* reason) {
@@ -90,20 +89,10 @@ UncertainPose startOf(const ReplayOptions& options, const ReplaySource& source) 
     return start;
 }
 
-/// A scale wrong by 1000 is found here, before it looks like bad tracking.
 std::optional<double> checkDepths(const ReplayOptions& options, const ReplaySource& source) {
     const std::optional<double> depth = medianDepth(source);
     if (!depth) return {};
-    if (*depth > 0. && (*depth < kLeastDepth || *depth > kMostDepth)) {
-        const bool isOfFile = !options.depthScale && !source.cameraFile.empty();
-        throw InputError(
-            isOfFile ? source.cameraFile : options.dataset,
-            isOfFile ? "depth_scale" : "--depth-scale",
-            fmt::format("implausible depths: their median is {:.3g} m; the scale seems "
-                        "{} by a factor of about {:.0e}",
-                        *depth, *depth > 1. ? "too small" : "too large",
-                        std::max(*depth / 2., 2. / *depth)));
-    }
+    if (*depth > 0.) requirePlausibleDepth(*depth, options, source.cameraFile);
     if (*depth == 0. && options.odometry) {
         throw InputError(options.dataset, "", "no depth in any of the images looked at");
     }

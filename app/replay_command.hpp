@@ -26,7 +26,8 @@ struct ReplayOptions : ReplaySourceOptions {
     std::optional<double> floorRotation;     ///< [rad]; without these three the tracker's defaults:
                                              ///< realCameraOptions(), KeyframeOptions
     double minOverlap = 0.2;  ///< least share of the image's pixels that the model must explain
-    /// Images are halved until they are as wide [pixels]; by default 320 in a map, once in odometry.
+    /// Images are halved until they are as wide [pixels]; by default 320 in a map, once in
+    /// odometry.
     std::optional<int> maxWidth;
     bool calibrate = false;   ///< also write calibration.yaml: factor and floor that fit the errors
     bool exposure = true;     ///< estimate gain and offset of every image

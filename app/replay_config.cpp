@@ -24,12 +24,12 @@ std::string toYaml(const ReplayOptions& o, const ReplayTracker& tracker) {
     text += fmt::format("odometry: {}\n", o.odometry);
     if (!o.start.empty()) text += fmt::format("start: {}\n", YAML::Dump(YAML::Node(o.start)));
     if (o.maxWidth) text += fmt::format("max_width: {}\n", *o.maxWidth);
-    return text +
-           fmt::format(
-               "start_sigma: {}\nstereo: {}\nsigma: {}\nscale: {}\nfloor: {}\n"
-               "floor_rotation: {}\nmin_overlap: {}\nexposure: {}\ncalibrate: {}\n",
-               o.startSigma, o.stereo, o.sigma, tracker.scale, tracker.trust.floorTranslation,
-               tracker.trust.floorRotation, o.minOverlap, o.exposure, o.calibrate);
+    return text + fmt::format(
+                      "start_sigma: {}\nstereo: {}\nsigma: {}\nscale: {}\nfloor: {}\n"
+                      "floor_rotation: {}\nmin_overlap: {}\nexposure: {}\ncalibrate: {}\n",
+                      o.startSigma, o.stereo, o.sigma, tracker.scale,
+                      tracker.trust.floorTranslation, tracker.trust.floorRotation, o.minOverlap,
+                      o.exposure, o.calibrate);
 }
 
 void readReplayConfig(const std::string& file, ReplayOptions& options) {

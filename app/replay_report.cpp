@@ -116,8 +116,12 @@ std::vector<NamedFigure> figuresOf(bool odometry, const ReplayRun& run, const Re
     }
     if (!run.strips.empty()) {
         const char* caption =
-            odometry ? "Observed; the keyframe as seen from there; their difference (yellow: 0.25)."
-                     : "Observed; predicted from the map; their difference (yellow: 0.25).";
+            odometry
+                ? "Observed; the keyframe as seen from there, in the exposure estimated; their "
+                  "difference "
+                  "(violet: none, yellow: 0.25 of the grey scale)."
+                : "Observed; predicted from the map, in the exposure estimated; their difference "
+                  "(violet: none, yellow: 0.25 of the grey scale).";
         figures.push_back({"strips.png", {caption, drawStrips(run.strips)}});
     }
     return figures;

@@ -161,8 +161,12 @@ ReplayErrors judge(const ReplayRun& run, bool align) {
         pairs.push_back(errors.judged.back().pair);
     }
     if (pairs.empty()) return errors;
-    if (align) errors.T_truth_estimate = alignmentOf(pairs);
-    errors.absolute = absoluteErrors(pairs, errors.T_truth_estimate);
+    if (align) {
+        errors.absolute.translation = absoluteErrors(pairs, positionAlignment(pairs)).translation;
+        errors.absolute.rotation = absoluteErrors(pairs, alignmentOf(pairs)).rotation;
+    } else {
+        errors.absolute = absoluteErrors(pairs);
+    }
     errors.perFrame = relativeErrors(pairs, Spacing::frames, 1.);
     errors.perSecond = relativeErrors(pairs, Spacing::seconds, 1.);
     errors.perMetre = relativeErrors(pairs, Spacing::metres, 1.);

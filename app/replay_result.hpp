@@ -28,7 +28,6 @@ struct JudgedFrame {
 /// (absolute errors only; relative ones need none, NEES is of the belief as it is).
 struct ReplayErrors {
     std::vector<JudgedFrame> judged;
-    Pose T_truth_estimate = Pose::Identity();  ///< identity when nothing was aligned
     PoseErrors absolute, perFrame, perSecond, perMetre;
 };
 ReplayErrors judge(const ReplayRun& run, bool align);

@@ -102,6 +102,14 @@ bool isBlack(const ImageF& image) {
     return sum < 0.02 * image.getSize();
 }
 
+/// What the tracker compares the observed image with.
+void expose(ImageF& predicted, const Exposure& exposure) {
+    for (unsigned i = 0; i < predicted.getSize(); ++i) {
+        predicted.bitmap[i] =
+            static_cast<float>(exposure.gain * predicted.bitmap[i] + exposure.offset);
+    }
+}
+
 void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, ReplayRun& run) {
     Stopwatch watch;
     for (int h = 0; h < tracker.halvings; ++h) view = halvedView(view);
@@ -200,8 +208,10 @@ ReplayRun replay(const ReplaySource& source, const ReplayTracker& tracker,
             track(tracker, *view, frame, run);
             const bool isFirstLoss = frame.tracked.lost && lost == 0;
             if (isFirstLoss || isStripFrame(i, source.frames.size())) {
-                run.strips.push_back({fmt::format("frame {}: {}", i, frame.words), *view,
-                                      tracker.predict(*view, frame.tracked)});
+                View predicted = tracker.predict(*view, frame.tracked);
+                expose(predicted.intensity, frame.tracked.alignment.exposure);
+                run.strips.push_back(
+                    {fmt::format("frame {}: {}", i, frame.words), *view, std::move(predicted)});
             }
             ++(frame.tracked.lost ? lost : tracked);
         }

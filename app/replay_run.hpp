@@ -30,7 +30,7 @@ struct ReplayedFrame {
     std::string words;     ///< the alignment's verdict, or why the frame is unreadable
 };
 
-/// What was seen and what was predicted where the tracker believes to be.
+/// What was seen and what was predicted where the tracker believes to be, with its exposure.
 struct ReplayStrip {
     std::string caption;
     View observed, predicted;

@@ -123,15 +123,22 @@ Pose rigidAlignment(const std::vector<Eigen::Vector3d>& from,
     return T;
 }
 
-Pose alignmentOf(const std::vector<PosePair>& pairs) {
+Pose positionAlignment(const std::vector<PosePair>& pairs) {
     std::vector<Eigen::Vector3d> estimate;
     std::vector<Eigen::Vector3d> truth;
     for (const PosePair& pair : pairs) {
         estimate.emplace_back(pair.T_w_c_estimate.translation());
         truth.emplace_back(pair.T_w_c_truth.translation());
     }
-    const Pose T = rigidAlignment(estimate, truth);
+    return rigidAlignment(estimate, truth);
+}
+
+Pose alignmentOf(const std::vector<PosePair>& pairs) {
+    const Pose T = positionAlignment(pairs);
     const double left = summarise(absoluteErrors(pairs, T).translation).rmse;
+    std::vector<Eigen::Vector3d> truth;
+    truth.reserve(pairs.size());
+    for (const PosePair& pair : pairs) truth.emplace_back(pair.T_w_c_truth.translation());
     return secondSpread(truth) > kLeastSpread * left + 1e-9 ? T : byOrientations(pairs);
 }
 

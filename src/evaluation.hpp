@@ -38,9 +38,13 @@ struct PoseErrors {
 Pose rigidAlignment(const std::vector<Eigen::Vector3d>& from,
                     const std::vector<Eigen::Vector3d>& to);
 
-/// rigidAlignment() of the estimated positions to the true ones: T_truth_estimate. Where they do
-/// not spread enough to tell a rotation (across their main direction less than five times what is
-/// left of the errors), it is the mean of what the orientations say.
+/// rigidAlignment() of the estimated positions to the true ones, T_truth_estimate: the alignment of
+/// the absolute trajectory error. Near-static or straight flights leave its rotation open.
+Pose positionAlignment(const std::vector<PosePair>& pairs);
+
+/// The same for orientations. Where the positions do not spread enough to tell a rotation (across
+/// their main direction less than five times what is left of the errors), it is the mean of what
+/// the orientations say.
 Pose alignmentOf(const std::vector<PosePair>& pairs);
 
 /// Of every pose, after the estimates were moved by T_truth_estimate: distance of the camera

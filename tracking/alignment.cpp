@@ -159,9 +159,11 @@ void conclude(Alignment& a, const NormalEquations& equations, std::size_t pixels
 }
 
 Matrix6 withFloor(const Matrix6& covariance, double translation, double rotation) {
-    if (!(translation > 0. && rotation > 0.)) return covariance;
+    if (!(translation > 0. || rotation > 0.)) return covariance;
+    constexpr double kNegligible = 1e-6;  // of the one that is not given [m], [rad]
     Vector6 floor;
-    floor << Eigen::Vector3d::Constant(translation), Eigen::Vector3d::Constant(rotation);
+    floor << Eigen::Vector3d::Constant(std::max(translation, kNegligible)),
+        Eigen::Vector3d::Constant(std::max(rotation, kNegligible));
     const Vector6 inverse = floor.cwiseInverse();
     const Eigen::SelfAdjointEigenSolver<Matrix6> solver(inverse.asDiagonal() * covariance *
                                                         inverse.asDiagonal());

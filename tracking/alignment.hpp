@@ -119,6 +119,7 @@ void conclude(Alignment& alignment, const NormalEquations& equations, std::size_
               const std::optional<Matrix6>& prior, const TrustOptions& options);
 
 /// The covariance raised where it is below floor (eigenvalues relative to the floor, clipped at 1).
+/// A floor of 0 is none.
 Matrix6 withFloor(const Matrix6& covariance, double translation, double rotation);
 
 /// Squared Mahalanobis distance e^T covariance^-1 e; directions without variance count by a

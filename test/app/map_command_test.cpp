@@ -192,6 +192,13 @@ TEST_F(MapCommand, RejectsDamagedDatasets) {
     expectRejected({"groundtruth.txt", "line 1", "not a finite number"});
 }
 
+TEST_F(MapCommand, NoticesADepthScaleThatIsWrongByAThousand) {
+    options.depthScale = 5.;
+    expectRejected({"--depth-scale", "implausible depths", "too small"});
+    options.depthScale = 5e6;
+    expectRejected({"--depth-scale", "implausible depths", "too large"});
+}
+
 /// It is not the cells that are too small.
 TEST_F(MapCommand, NamesThePoseThatIsTooFarAway) {
     writeText(data / "groundtruth.txt", "100 0 5e6 1.5 1 0 0 0\n");

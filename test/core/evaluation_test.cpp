@@ -83,6 +83,9 @@ TEST(Evaluation, AlignmentOfACameraThatHovers) {
     const PoseErrors errors = absoluteErrors(pairs, alignmentOf(pairs));
     EXPECT_LT(summarise(errors.translation).rmse, 3e-3);
     EXPECT_LT(summarise(errors.rotation).max, 1e-6);
+    const PoseErrors byPositions = absoluteErrors(pairs, positionAlignment(pairs));
+    EXPECT_LT(summarise(byPositions.translation).rmse, summarise(errors.translation).rmse);
+    EXPECT_GT(summarise(byPositions.rotation).max, 1e-3);
 }
 
 TEST(Evaluation, AbsoluteErrorsByHand) {

@@ -201,6 +201,9 @@ TEST(DenseAligner, FloorBoundsTheCovarianceFromBelow) {
     EXPECT_LT((a.covariance - floor).norm(), 1e-9);
     const Matrix6 large = 2. * floor;
     EXPECT_LT((withFloor(large, 0.01, 0.005) - large).norm(), 1e-12);
+    const Matrix6 raised = withFloor(floor, 0.02, 0.);  // of positions alone
+    EXPECT_NEAR(raised(0, 0), 0.02 * 0.02, 1e-12);
+    EXPECT_NEAR(raised(4, 4), floor(4, 4), 1e-12);
 }
 
 TEST(DenseAligner, ResidualStatisticsAreThoseOfTheNoise) {
