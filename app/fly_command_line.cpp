@@ -39,7 +39,9 @@ void addFlight(CLI::App& parser, FlyConfig& typed) {
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str();
     number("--speed", typed.speed, "at most [m/s]", 0.01, 100.);
-    number("--rate", typed.rate, "of the camera [Hz] (0: a view every planner.ds)", 0., 1000.);
+    number("--rate", typed.rate,
+           "of the camera [Hz], at most one image a step of 20 ms (0: a view every planner.ds)", 0.,
+           50.);
     number("--latency", typed.latency, "of images [s]", 0., 10.);
     number("--drop", typed.drop, "share of the images that never arrive", 0., 1.);
     number("--black", typed.black, "share of the images that are black", 0., 1.);

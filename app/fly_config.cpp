@@ -16,7 +16,7 @@ FlyConfig readFly(YamlMap& root) {
     if (flights != std::floor(flights)) fly.fail("flights", "not a whole number");
     config.flights = static_cast<unsigned>(flights);
     fly.readNumber("speed", config.speed, 0.01, 100.);
-    fly.readNumber("rate", config.rate, 0., 1000.);
+    fly.readNumber("rate", config.rate, 0., 50.);
     fly.readNumber("latency", config.latency, 0., 10.);
     fly.readNumber("drop", config.drop, 0., 1.);
     fly.readNumber("black", config.black, 0., 1.);

@@ -81,7 +81,8 @@ TextColumn ownColumn(const std::string& heading, std::size_t width, const std::s
 
 TextColumn paperColumn(double PaperRow::*value, double scale) {
     return {"paper", 7, [=](const SweepCell& cell) {
-                return cell.paper ? fmt::format("{:.2f}", scale * ((*cell.paper).*value)) : "";
+                const bool isBeside = cell.paper && cell.solved > 0;  // a value of ours
+                return isBeside ? fmt::format("{:.2f}", scale * ((*cell.paper).*value)) : "";
             }};
 }
 

@@ -261,6 +261,7 @@ TEST_F(SweepCommand, AnUnreachableGoalIsSaidByEveryPlanner) {
         EXPECT_EQ(entry["vertices"], 60);
     }
     EXPECT_TRUE(fs::exists(folder_ / "out/report.html"));
+    EXPECT_EQ(run.output.find("paper"), std::string::npos) << run.output;  // beside nothing of ours
     for (const char* planner : {"belief_rrt_star", "pa_rrt_star", "rrt_star"}) {
         const auto line = fmt::format(
             "\n{}: no path: the goal was not reached by 60 vertices (4 runs)\n", planner);
