@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 
+#include "median.hpp"
 #include "se3.hpp"
 
 namespace photonav {
@@ -14,13 +15,6 @@ namespace {
 
 double positionSigma(const Matrix6& covariance) {
     return std::sqrt(covariance.topLeftCorner<3, 3>().trace());
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) return FlightSummary::kNone;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 void countEnds(const std::vector<FlightResult>& flights, FlightSummary& s) {
@@ -40,10 +34,10 @@ void countEnds(const std::vector<FlightResult>& flights, FlightSummary& s) {
         before.push_back(flight.goalErrorBefore);
         after.push_back(flight.goalError);
     }
-    s.goalError = median(errors);
+    s.goalError = median(errors, FlightSummary::kNone);
     s.photometric = before.size();
-    s.photometricBefore = median(before);
-    s.photometricAfter = median(after);
+    s.photometricBefore = median(before, FlightSummary::kNone);
+    s.photometricAfter = median(after, FlightSummary::kNone);
 }
 
 /// Errors against what was predicted and believed, over all exposures.

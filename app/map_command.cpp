@@ -12,6 +12,7 @@
 #include "error.hpp"
 #include "map_comparison.hpp"
 #include "map_config.hpp"
+#include "median.hpp"
 #include "monocular_fusion.hpp"
 #include "octree_file.hpp"
 #include "report.hpp"
@@ -75,9 +76,7 @@ bool checkDepths(const MapOptions& options, const Sequence& sequence, const View
         if (view.depth.bitmap[k] > 0.F) depths.push_back(view.depth.bitmap[k]);
     }
     if (depths.empty()) return false;
-    const auto middle = depths.begin() + std::ssize(depths) / 2;
-    std::nth_element(depths.begin(), middle, depths.end());
-    requirePlausibleDepth(*middle, options, sequence.cameraFile);
+    requirePlausibleDepth(median(std::move(depths), 0.), options, sequence.cameraFile);
     return true;
 }
 

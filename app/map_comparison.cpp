@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "canvas.hpp"
+#include "median.hpp"
 
 namespace photonav {
 namespace {
@@ -21,13 +22,6 @@ constexpr double kFullDifference = 0.5;  // grey values; brightest colour of the
 double mean(const std::vector<float>& values) {
     if (values.empty()) return 0.;
     return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
-}
-
-double median(std::vector<float> values) {
-    if (values.empty()) return 0.;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 Color grey(float intensity) {
@@ -58,10 +52,10 @@ ViewDifference compareViews(const View& observed, const View& predicted) {
     ViewDifference difference;
     difference.predicted = size == 0 ? 0. : static_cast<double>(known.size()) / size;
     difference.meanIntensity = mean(intensity);
-    difference.medianIntensity = median(intensity);
+    difference.medianIntensity = median(intensity, 0.);
     difference.meanDepth = mean(depth);
-    difference.medianDepth = median(depth);
-    const auto typical = static_cast<float>(median(known));
+    difference.medianDepth = median(depth, 0.);
+    const auto typical = static_cast<float>(median(known, 0.));
     for (float& value : known) value = std::abs(value - typical);
     difference.contrast = mean(known);
     return difference;

@@ -129,7 +129,7 @@ ReplayMap loadMap(const std::string& file) {
 void setWidth(KeyframeOptions& keyframe, const Camera& camera, int maxWidth) {
     keyframe.finest = 0;
     while (static_cast<int>(camera.width >> keyframe.finest) > maxWidth) ++keyframe.finest;
-    // Of all pixels only those that tell something: faster, and as accurate (docs/tracking.md).
+    // Of all pixels only those that tell something: faster, and as accurate (docs/replay.md).
     if (keyframe.finest == 0) keyframe.minGradient = 0.02;
 }
 

@@ -12,6 +12,7 @@
 
 #include "error.hpp"
 #include "image_pyramid.hpp"
+#include "median.hpp"
 #include "stopwatch.hpp"
 
 namespace photonav {
@@ -242,10 +243,7 @@ std::optional<double> medianDepth(const ReplaySource& source) {
         }
     }
     if (!anyRead) return {};
-    if (depths.empty()) return 0.;
-    const auto middle = depths.begin() + std::ssize(depths) / 2;
-    std::nth_element(depths.begin(), middle, depths.end());
-    return *middle;
+    return median(std::move(depths), 0.);
 }
 
 }  // namespace photonav
