@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,5 +46,6 @@ class ProgressLine {
 
 /// A JSON number, or null where there is none (infinite or NaN).
 nlohmann::json finiteOrNull(double value);
+nlohmann::json orNull(const std::optional<double>& value);
 
 }  // namespace photonav

@@ -68,7 +68,21 @@ std::string resolve(const std::string& path, const std::string& configFile) {
     return fs::weakly_canonical(fs::absolute(configFile).parent_path() / path).string();
 }
 
+/// Files that other commands write are often given in place of a planning problem.
+void checkThatIsProblem(const std::string& file) {
+    const std::string extension = fs::path(file).extension().string();
+    if (extension == ".ot" || extension == ".bt") {
+        throw InputError(file, "",
+                         "is a map, not a planning problem: name it as map.file in a config "
+                         "(photonav info shows what it holds)");
+    }
+}
+
 void readWorld(YamlMap& root, Config& config) {
+    for (const char* key : {"dataset", "scans"}) {
+        if (!root.has(key)) continue;
+        root.fail(key, "this is the config of a map or a replay, not of a planning problem");
+    }
     YamlMap scene = root.map("scene");
     scene.read("file", config.sceneFile);
     scene.finish();
@@ -233,6 +247,7 @@ const std::vector<std::string>& viewModelNames() {
 }
 
 Config loadConfig(const std::string& file, const std::vector<std::string>& overrides) {
+    checkThatIsProblem(file);
     YAML::Node node = loadYaml(file);
     for (const auto& text : overrides) applyOverride(node, text);
     YamlMap root(file, node);

@@ -11,7 +11,9 @@
 #include "benchmark_command.hpp"
 #include "command_line.hpp"
 #include "compare_command.hpp"
+#include "error.hpp"
 #include "info_command.hpp"
+#include "map_info.hpp"
 #include "plan_command.hpp"
 #include "reference_command.hpp"
 #include "report.hpp"
@@ -62,20 +64,36 @@ Command compareCommand(CLI::App& app) {
     return {parser, [options] { return runCompare(*options, interrupted); }};
 }
 
+int describeMap(const CLI::App& parser, InfoOptions& options) {
+    for (const char* name : {"--height", "--at", "--cells"}) {
+        if (parser.count(name) == 0) continue;
+        throw InputError(name, "", "is for a planning problem, not for a map");
+    }
+    const std::filesystem::path file = options.config;
+    if (options.out.empty()) options.out = "out/info-" + file.stem().string();
+    const MapReport report = runMapInfo(options);
+    printOutput({options.out, options.quiet, options.json}, report.result, report.summary,
+                {"report.html"});
+    return kDone;
+}
+
 Command infoCommand(CLI::App& app, const Invocation& invocation) {
     auto options = std::make_shared<InfoOptions>();
     options->commandLine = invocation.commandLine;
     CLI::App* parser = app.add_subcommand(
         "info", "Show where a view is worth something, and which of its pixels.");
     addCommon(*parser, *options);
+    parser->get_option("config")->description(
+        "YAML file of the planning problem; or a map (.ot, .bt), to see what it holds");
     parser->add_option("--height", options->height, "of the heat map [m] (default: the start's)");
     parser->add_option("--at", options->at, "x,y,z[,yaw] of the single view (default: the start)");
     parser->add_option("--cells", options->cells, "along the longer side of the heat map")
         ->check(CLI::Range(1, 2000))
         ->capture_default_str();
-    return {parser, [options] {
+    return {parser, [options, parser] {
                 std::signal(SIGINT, SIG_DFL);  // seconds of work, nothing to keep
-                return runInfo(*options);
+                if (!isMapFile(options->config)) return runInfo(*options);
+                return describeMap(*parser, *options);
             }};
 }
 

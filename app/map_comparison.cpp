@@ -15,7 +15,6 @@
 namespace photonav {
 namespace {
 
-constexpr Color kNothing{24, 44, 92};
 constexpr Color kText{30, 30, 30};
 constexpr double kFullDifference = 0.5;  // grey values; brightest colour of the difference
 
@@ -53,16 +52,24 @@ ViewDifference compareViews(const View& observed, const View& predicted) {
     difference.predicted = size == 0 ? 0. : static_cast<double>(known.size()) / size;
     difference.meanIntensity = mean(intensity);
     difference.medianIntensity = median(intensity, 0.);
-    difference.meanDepth = mean(depth);
-    difference.medianDepth = median(depth, 0.);
+    if (!depth.empty()) {
+        difference.meanDepth = mean(depth);
+        difference.medianDepth = median(depth, 0.);
+    }
     const auto typical = static_cast<float>(median(known, 0.));
     for (float& value : known) value = std::abs(value - typical);
     difference.contrast = mean(known);
     return difference;
 }
 
+Panel imagePanel(const ImageF& image, const std::string& caption) {
+    Panel panel{caption, std::vector<Color>(image.getSize()), static_cast<int>(image.getWidth())};
+    std::transform(image.bitmap, image.bitmap + image.getSize(), panel.pixels.begin(), grey);
+    return panel;
+}
+
 Panel predictedPanel(const View& predicted, const std::string& caption) {
-    Panel panel{caption, std::vector<Color>(predicted.intensity.getSize(), kNothing),
+    Panel panel{caption, std::vector<Color>(predicted.intensity.getSize(), kNothingKnown),
                 static_cast<int>(predicted.intensity.getWidth())};
     for (unsigned i = 0; i < predicted.intensity.getSize(); ++i) {
         if (predicted.depth.bitmap[i] > 0.F) panel.pixels[i] = grey(predicted.intensity.bitmap[i]);
@@ -75,20 +82,17 @@ std::vector<Panel> comparisonPanels(const View& observed, const View& predicted,
     const ViewDifference difference = compareViews(observed, predicted);
     const int columns = static_cast<int>(observed.intensity.getWidth());
     const unsigned size = observed.intensity.getSize();
-    Panel left{caption, std::vector<Color>(size), columns};
     Panel right{fmt::format("difference (mean {:.3f}; yellow >= {})", difference.meanIntensity,
                             kFullDifference),
-                std::vector<Color>(size, kNothing), columns};
+                std::vector<Color>(size, kNothingKnown), columns};
     const auto scale = viridis();
     for (unsigned i = 0; i < size; ++i) {
-        const float seen = observed.intensity.bitmap[i];
-        left.pixels[i] = grey(seen);
         if (!(predicted.depth.bitmap[i] > 0.F)) continue;
-        const double error = std::abs(predicted.intensity.bitmap[i] - seen);
+        const double error = std::abs(predicted.intensity.bitmap[i] - observed.intensity.bitmap[i]);
         right.pixels[i] =
             scale[static_cast<std::size_t>(255. * std::min(error / kFullDifference, 1.))];
     }
-    return {left,
+    return {imagePanel(observed.intensity, caption),
             predictedPanel(predicted, fmt::format("predicted there ({:.0f} % of pixels)",
                                                   100. * difference.predicted)),
             right};

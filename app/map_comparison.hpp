@@ -2,6 +2,7 @@
 // How well a map predicts the images it was made from.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,11 +15,11 @@ namespace photonav {
 struct ViewDifference {
     double meanIntensity = 0.;    ///< mean absolute, grey values in [0, 1]
     double medianIntensity = 0.;  ///< median absolute
-    double contrast = 0.;   ///< mean absolute deviation of the observed image from its median over
-                            ///< the same pixels: what predicting the best uniform grey would cost
-    double meanDepth = 0.;  ///< mean absolute [m]
-    double medianDepth = 0.;  ///< median absolute [m]
-    double predicted = 0.;    ///< fraction of all pixels at which the map has a surface
+    double contrast = 0.;  ///< mean absolute deviation of the observed image from its median over
+                           ///< the same pixels: what predicting the best uniform grey would cost
+    std::optional<double> meanDepth;    ///< mean absolute [m]; none without observed depth
+    std::optional<double> medianDepth;  ///< median absolute [m]
+    double predicted = 0.;              ///< fraction of all pixels at which the map has a surface
 };
 
 /// @throws std::invalid_argument unless both views have the same size
@@ -30,6 +31,11 @@ struct Panel {
     std::vector<Color> pixels;  ///< row by row
     int columns = 0;
 };
+
+inline constexpr Color kNothingKnown{24, 44, 92};  ///< of pixels of which nothing can be said
+
+/// An image as it is.
+Panel imagePanel(const ImageF& image, const std::string& caption);
 
 /// A predicted view; where nothing is predicted, the picture is blue.
 Panel predictedPanel(const View& predicted, const std::string& caption);

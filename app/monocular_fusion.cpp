@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "monocular_fusion.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "convergence_figure.hpp"
 
 namespace photonav {
 namespace {
+
+constexpr std::size_t kMostDrawn = 5;  // references
 
 MonocularOptions optionsFor(const FusionOptions& fusion) {
     MonocularOptions options;
@@ -22,7 +29,9 @@ MonocularFusion::MonocularFusion(TexturedOcTree& map, const Camera& camera,
 void MonocularFusion::add(const RecordedFrame& frame) {
     const auto finished = depth_.add(frame.view.intensity, frame.T_c_w);
     if (finished) fuseReference(*finished);
-    if (finished || recorded_.getSize() == 0) recorded_ = frame.view.depth;
+    if (!finished && recorded_.getSize() > 0) return;
+    recorded_ = frame.view.depth;
+    timestamp_ = frame.timestamp;
 }
 
 void MonocularFusion::finish() {
@@ -31,19 +40,53 @@ void MonocularFusion::finish() {
 
 void MonocularFusion::fuseReference(const DepthFilter& filter) {
     const View view = filter.view();
+    count(filter, view.depth);
+    draw(filter);
     ++references_;
-    for (unsigned i = 0; i < recorded_.getSize(); ++i) {
-        const float z = recorded_.bitmap[i];
-        if (!(z > 0.F)) continue;
-        ++pixels_;
-        const float found = view.depth.bitmap[i];
-        if (found > 0.F) errors_.push_back(std::abs(found - z) / z);
-    }
     fuse(map_, view, camera_, filter.pose(), options_);
 }
 
+void MonocularFusion::count(const DepthFilter& filter, const ImageF& found) {
+    for (unsigned v = 0; v < found.getHeight(); ++v) {
+        for (unsigned u = 0; u < found.getWidth(); ++u) {
+            ++states_[static_cast<std::size_t>(filter.state(v, u))];
+            const float z = recorded_[v][u];
+            if (!(z > 0.F)) continue;
+            ++pixels_;
+            if (found[v][u] > 0.F) errors_.push_back(std::abs(found[v][u] - z) / z);
+        }
+    }
+}
+
+/// How many there will be is not known: when there are too many, every other one goes.
+void MonocularFusion::draw(const DepthFilter& filter) {
+    if (references_ % stride_ != 0) return;
+    drawn_.push_back(convergencePanels(
+        filter, recorded_, fmt::format("reference {}, at {:.3f} s", references_ + 1, timestamp_)));
+    if (drawn_.size() <= kMostDrawn) return;
+    for (std::size_t k = 1; 2 * k < drawn_.size(); ++k) drawn_[k] = std::move(drawn_[2 * k]);
+    drawn_.resize((drawn_.size() + 1) / 2);
+    stride_ *= 2;
+}
+
+std::optional<ReportFigure> MonocularFusion::figure() const {
+    if (drawn_.empty()) return {};
+    return ReportFigure{
+        fmt::format("What the images said about depth: {} of {} reference images, what was found, "
+                    "what became of every pixel, and the error where depth was recorded.",
+                    drawn_.size(), references_),
+        panelsPng(drawn_)};
+}
+
 nlohmann::json MonocularFusion::result() const {
+    const auto shareOf = [&, all = states_[0] + states_[1] + states_[2]](DepthState state) {
+        const auto n = static_cast<double>(states_[static_cast<std::size_t>(state)]);
+        return all > 0 ? nlohmann::json(n / static_cast<double>(all)) : nlohmann::json(nullptr);
+    };
     nlohmann::json result = {{"references", references_},
+                             {"converged", shareOf(DepthState::converged)},
+                             {"given_up", shareOf(DepthState::givenUp)},
+                             {"searching", shareOf(DepthState::searching)},
                              {"completeness", nullptr},
                              {"median_relative_error", nullptr},
                              {"p90_relative_error", nullptr},

@@ -19,6 +19,8 @@ std::optional<Sequence> recordingOf(const std::string& mapFile) {
     if (!fs::exists(file) || !isMapConfig(file.string())) return {};
     MapOptions options;
     readMapConfig(file.string(), options);
+    options.needsDepth = false;  // grey values are compared
+    options.depthScale.reset();
     return readRecording(options).sequence;
 }
 

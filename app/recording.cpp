@@ -17,6 +17,8 @@
 namespace photonav {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::size_t kFloorFrames = 30;
 constexpr unsigned kFloorColumns = 32;
 
@@ -57,6 +59,9 @@ Seen pointsBelow(const Sequence& sequence, const Eigen::Vector3d& roughUp) {
 }
 
 Eigen::Vector3d upByFloor(const Sequence& sequence) {
+    if (!sequence.hasDepth()) {
+        throw InputError("--up", "floor", "the recording has no depth images to find it in");
+    }
     Eigen::Vector3d roughUp = Eigen::Vector3d::Zero();  // the upper edge of the images
     for (const auto& frame : sequence.frames) {
         roughUp -= frame.T_c_w.linear().row(1).transpose();
@@ -72,6 +77,17 @@ Eigen::Vector3d upByFloor(const Sequence& sequence) {
     }
     if (!up) throw InputError("--up", "floor", "no floor to be seen below the cameras");
     return *up;
+}
+
+void checkDepthImages(const RecordingOptions& options) {
+    const fs::path folder = options.dataset;
+    if (!options.needsDepth || !fs::exists(folder / "rgb.txt")) return;
+    for (const char* list : {"depth.txt", "assoc.txt", "associations.txt"}) {
+        if (fs::exists(folder / list)) return;
+    }
+    throw InputError((folder / "depth.txt").string(), "",
+                     "no such file; without depth images there is `map --depth monocular`, and "
+                     "`replay --map`");
 }
 
 }  // namespace
@@ -132,8 +148,13 @@ Recording readRecording(const RecordingOptions& options) {
     tum.depthScale = options.depthScale;
     tum.cameraFile = options.cameraFile;
     tum.forgiving = options.forgiving;
+    tum.needsDepth = options.needsDepth;
+    checkDepthImages(options);
     Recording recording;
     recording.sequence = readTumSequence(options.dataset, tum);
+    if (options.depthScale && !recording.sequence.hasDepth()) {
+        throw InputError("--depth-scale", "", "the recording has no depth images");
+    }
     auto& frames = recording.sequence.frames;
     recording.recorded = frames.size() + recording.sequence.skipped.size();
     recording.up = given ? *given : upByFloor(recording.sequence);

@@ -21,6 +21,7 @@ struct RecordingOptions {
                               ///< missing
     bool forgiving = false;   ///< see TumOptions
     double tolerance = 0.02;  ///< of timestamps, see TumOptions [s]
+    bool needsDepth = true;   ///< see TumOptions
     std::string cameraFile;   ///< instead of the dataset's camera.yaml
     std::optional<double> depthScale;  ///< depth image value of one metre, instead of the dataset's
 };

@@ -15,7 +15,8 @@ std::string absolutePath(const std::string& path);
 /// A path in a config is relative to the config.
 std::string resolvedPath(const std::string& path, const std::string& config);
 
-/// All but `forgiving` as YAML that readRecordingKeys() reads back, paths absolute.
+/// All but `forgiving` and `needsDepth` as YAML that readRecordingKeys() reads back, paths
+/// absolute.
 std::string toYaml(const RecordingOptions& options);
 
 /// Overwrites what the file says.

@@ -27,10 +27,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr int kWidthInMap = 320, kLeastWidth = 24;  // [pixels]
+constexpr int kWidthInMap = 320;  // [pixels]
 
 void checkOptions(const ReplayOptions& options) {
-    const auto require = [](bool good, const char* option, const char* reason) {
+    const auto require = [](bool good, const char* option, const std::string& reason) {
         if (!good) throw InputError(option, "", reason);
     };
     const auto isPositive = [](double x) { return std::isfinite(x) && x > 0.; };
@@ -38,14 +38,17 @@ void checkOptions(const ReplayOptions& options) {
             "needed, or --odometry: nothing to find the camera in");
     require(!options.odometry || options.mapFile.empty(), "--odometry", "not together with --map");
     require(isPositive(options.sigma), "--sigma", "must be above 0");
-    require(isPositive(options.startSigma), "--start-sigma", "must be above 0");
+    require(!options.startSigma || !options.odometry, "--start-sigma",
+            "is for --map: odometry is exact where it begins");
+    require(isPositive(options.startSigma.value_or(kStartSigma)), "--start-sigma",
+            "must be above 0");
     require(!options.scale || isPositive(*options.scale), "--scale", "must be above 0");
     require(options.floorTranslation.value_or(0.) >= 0., "--floor", "must not be negative");
     require(options.floorRotation.value_or(0.) >= 0., "--floor-rotation", "must not be negative");
     require(options.minOverlap > 0. && options.minOverlap < 1., "--min-overlap",
             "must be between 0 and 1");
     require(options.maxWidth.value_or(kWidthInMap) >= kLeastWidth, "--max-width",
-            "must be at least 24");
+            fmt::format("must be at least {}", kLeastWidth));
 }
 
 Pose parsePose(const std::string& text) {
@@ -73,7 +76,8 @@ Pose parsePose(const std::string& text) {
 UncertainPose startOf(const ReplayOptions& options, const ReplaySource& source) {
     UncertainPose start;
     if (!options.odometry) {
-        start.covariance = options.startSigma * options.startSigma * Matrix6::Identity();
+        const double sigma = options.startSigma.value_or(kStartSigma);
+        start.covariance = sigma * sigma * Matrix6::Identity();
     }
     if (!options.start.empty()) {
         start.mean = parsePose(options.start).inverse();
@@ -92,11 +96,14 @@ UncertainPose startOf(const ReplayOptions& options, const ReplaySource& source) 
 std::optional<double> checkDepths(const ReplayOptions& options, const ReplaySource& source) {
     const std::optional<double> depth = medianDepth(source);
     if (!depth) return {};
-    if (*depth > 0.) requirePlausibleDepth(*depth, options, source.cameraFile);
-    if (*depth == 0. && options.odometry) {
+    if (*depth > 0.) {
+        requirePlausibleDepth(*depth, options, source.cameraFile);
+        return depth;
+    }
+    if (options.odometry) {
         throw InputError(options.dataset, "", "no depth in any of the images looked at");
     }
-    return depth;
+    return {};
 }
 
 /// What images are compared with.
@@ -161,9 +168,7 @@ ReplayTracker makeTracker(const ReplayOptions& options, const ReplaySource& sour
                       static_cast<unsigned>(options.maxWidth.value_or(kWidthInMap)));
 }
 
-json orNull(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
-
-json optionsJson(const ReplayOptions& o) {
+json optionsJson(const ReplayOptions& o, const ReplaySource& source) {
     return {{"mode", o.odometry ? "odometry" : "map"},
             {"map", o.mapFile},
             {"every", o.every},
@@ -172,9 +177,9 @@ json optionsJson(const ReplayOptions& o) {
             {"tolerance_s", o.tolerance},
             {"camera", o.cameraFile},
             {"depth_scale", orNull(o.depthScale)},
-            {"stereo", o.stereo},
+            {"stereo", source.stereo.empty() ? json(nullptr) : json(source.stereo)},
             {"start", o.start},
-            {"start_sigma", o.startSigma},
+            {"start_sigma", o.odometry ? json(nullptr) : json(o.startSigma.value_or(kStartSigma))},
             {"sigma", o.sigma},
             {"scale", orNull(o.scale)},
             {"floor", {orNull(o.floorTranslation), orNull(o.floorRotation)}},
@@ -216,7 +221,9 @@ void calibrateReplay(const ReplayOptions& options, const ReplayRun& run, double 
 ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& interrupted) {
     checkOptions(options);
     const Stopwatch watch;
-    const ReplaySource source = openReplaySource(options);
+    ReplaySourceOptions asked = options;
+    asked.needsDepth = options.odometry;
+    const ReplaySource source = openReplaySource(asked);
     if (options.odometry && source.frames.size() < 2) {
         throw InputError(options.dataset, "", "a single frame: odometry needs two or more");
     }
@@ -242,7 +249,7 @@ ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& in
     result["command"] = "replay";
     result["version"] = PHOTONAV_VERSION;
     result["interrupted"] = run.interrupted;
-    result["options"] = optionsJson(options);
+    result["options"] = optionsJson(options, source);
     result["dataset"] = datasetJson(options, source, depth);
     result["time"] = {{"total_s", watch.seconds()},
                       {"load_images_s", run.loadSeconds},
@@ -251,7 +258,8 @@ ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& in
         calibrateReplay(options, run, tracker.scale, map.octree != nullptr, result);
     report.summary = replaySummary(result);
     writeReplayTables(options.out, run, errors);
-    writeReplayReport(options, toYaml(options, tracker), result, source, run, errors, map.describe);
+    writeReplayReport(options, toYaml(options, source, tracker), result, source, run, errors,
+                      map.describe);
     writeFileAtomically(options.out / "result.json", result.dump(2) + "\n");
     return report;
 }

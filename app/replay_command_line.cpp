@@ -16,8 +16,8 @@ struct ReplayArguments : ReplayOptions {
 };
 
 void addTracking(CLI::App& parser, ReplayOptions& options) {
-    parser.add_option("--stereo", options.stereo, "bm or sgbm: block matching, semi-global")
-        ->capture_default_str();
+    parser.add_option("--stereo", options.stereo,
+                      "bm or sgbm: block matching (default), semi-global; for EuRoC recordings");
     parser.add_option("--sigma", options.sigma, "image noise, grey values in [0, 1]")
         ->capture_default_str();
     parser.add_option(
@@ -51,8 +51,9 @@ void addOptions(CLI::App& parser, ReplayArguments& options) {
     parser.add_flag("--odometry", options.odometry, "from image to image instead, without a map");
     parser.add_option("--start", options.start, "x,y,z,qx,qy,qz,qw of the first frame's camera")
         ->type_name("POSE");
-    parser.add_option("--start-sigma", options.startSigma, "its standard deviation [m] and [rad]")
-        ->capture_default_str();
+    parser.add_option(
+        "--start-sigma", options.startSigma,
+        fmt::format("its standard deviation in a map [m] and [rad] (default: {})", kStartSigma));
     addRecording(parser, options);
     addTracking(parser, options);
     parser.add_flag("--calibrate", options.calibrate,

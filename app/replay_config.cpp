@@ -17,19 +17,21 @@ void readOptional(YamlMap& yaml, const char* key, std::optional<double>& value, 
 
 }  // namespace
 
-std::string toYaml(const ReplayOptions& o, const ReplayTracker& tracker) {
+std::string toYaml(const ReplayOptions& o, const ReplaySource& source,
+                   const ReplayTracker& tracker) {
     const RecordingOptions& recording = o;
     std::string text = toYaml(recording);
     if (!o.mapFile.empty()) text += fmt::format("map: {}\n", absolutePath(o.mapFile));
     text += fmt::format("odometry: {}\n", o.odometry);
+    if (!o.odometry) text += fmt::format("start_sigma: {}\n", o.startSigma.value_or(kStartSigma));
+    if (!source.stereo.empty()) text += fmt::format("stereo: {}\n", source.stereo);
     if (!o.start.empty()) text += fmt::format("start: {}\n", YAML::Dump(YAML::Node(o.start)));
     if (o.maxWidth) text += fmt::format("max_width: {}\n", *o.maxWidth);
     return text + fmt::format(
-                      "start_sigma: {}\nstereo: {}\nsigma: {}\nscale: {}\nfloor: {}\n"
+                      "sigma: {}\nscale: {}\nfloor: {}\n"
                       "floor_rotation: {}\nmin_overlap: {}\nexposure: {}\ncalibrate: {}\n",
-                      o.startSigma, o.stereo, o.sigma, tracker.scale,
-                      tracker.trust.floorTranslation, tracker.trust.floorRotation, o.minOverlap,
-                      o.exposure, o.calibrate);
+                      o.sigma, tracker.scale, tracker.trust.floorTranslation,
+                      tracker.trust.floorRotation, o.minOverlap, o.exposure, o.calibrate);
 }
 
 void readReplayConfig(const std::string& file, ReplayOptions& options) {
@@ -39,8 +41,8 @@ void readReplayConfig(const std::string& file, ReplayOptions& options) {
     options.mapFile = resolvedPath(options.mapFile, file);
     yaml.read("odometry", options.odometry);
     yaml.read("start", options.start);
-    yaml.readNumber("start_sigma", options.startSigma, kLeast, kInfinity);
-    yaml.readChoice("stereo", options.stereo, {"bm", "sgbm"});
+    readOptional(yaml, "start_sigma", options.startSigma, kLeast);
+    if (yaml.has("stereo")) yaml.readChoice("stereo", options.stereo, {"bm", "sgbm"});
     yaml.readNumber("sigma", options.sigma, kLeast, kInfinity);
     readOptional(yaml, "scale", options.scale, kLeast);
     readOptional(yaml, "floor", options.floorTranslation, 0.);
@@ -48,7 +50,9 @@ void readReplayConfig(const std::string& file, ReplayOptions& options) {
     yaml.readNumber("min_overlap", options.minOverlap, kLeast, 1. - kLeast);
     if (yaml.has("max_width")) {
         yaml.read("max_width", options.maxWidth.emplace());
-        if (*options.maxWidth < 24) yaml.fail("max_width", "must be at least 24");
+        if (*options.maxWidth < kLeastWidth) {
+            yaml.fail("max_width", fmt::format("must be at least {}", kLeastWidth));
+        }
     }
     yaml.read("exposure", options.exposure);
     yaml.read("calibrate", options.calibrate);

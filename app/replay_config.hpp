@@ -11,7 +11,8 @@ namespace photonav {
 
 /// Everything a replay depends on, as YAML that readReplayConfig() reads back: paths absolute,
 /// factor and floor as the tracker had them.
-std::string toYaml(const ReplayOptions& options, const ReplayTracker& tracker);
+std::string toYaml(const ReplayOptions& options, const ReplaySource& source,
+                   const ReplayTracker& tracker);
 
 /// Overwrites what the file says; paths in it are relative to the file.
 /// @throws InputError naming file, key and reason, also for a file without `dataset`

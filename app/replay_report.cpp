@@ -149,6 +149,9 @@ ReportTable replaySummary(const json& result) {
         {"relative error over a second", relative(rpe["second"])},
         {"relative error over a metre", relative(rpe["metre"])},
         {"NEES per degree of freedom (honest: 1)", number(result["nees_per_dof"], 1., "{:.3g}")},
+        {result["dataset"]["layout"] == "EuRoC" ? "pixels with depth from stereo"
+                                                : "pixels with recorded depth",
+         number(result["depth_density"], 100., "{:.1f} %", "none")},
         {"tracking", number(result["fps"], 1., "{:.0f} frames/s", "nothing tracked")},
     };
     if (result.contains("calibration")) {

@@ -63,6 +63,18 @@ json neesJson(const ReplayErrors& errors) {
     return n > 0. ? finiteOrNull(sum / n) : json(nullptr);
 }
 
+/// Mean share of the pixels with depth, of the images that could be read.
+json densityJson(const ReplayRun& run) {
+    double sum = 0.;
+    int n = 0;
+    for (const ReplayedFrame& frame : run.frames) {
+        if (frame.status == FrameStatus::unreadable) continue;
+        sum += frame.density;
+        ++n;
+    }
+    return n > 0 && sum > 0. ? json(sum / n) : json(nullptr);
+}
+
 json intervalsJson(const std::vector<TimeInterval>& intervals) {
     json list = json::array();
     for (const auto& [from, to] : intervals) list.push_back({from, to});
@@ -267,6 +279,7 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
             {"nees_per_dof", neesJson(errors)},
             {"fps", run.trackSeconds > 0. ? json(double(tracked + lost) / run.trackSeconds)
                                           : json(nullptr)},
+            {"depth_density", densityJson(run)},
             {"skipped", skippedJson(source, run)},
             {"covariance_frame",
              "camera, left perturbation T_c_w = exp(xi) mean, order (rho, phi), upper triangle by "

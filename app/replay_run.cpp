@@ -103,6 +103,13 @@ bool isBlack(const ImageF& image) {
     return sum < 0.02 * image.getSize();
 }
 
+/// Share of the pixels with depth.
+double shareKnown(const ImageF& depth) {
+    const auto known = std::count_if(depth.bitmap, depth.bitmap + depth.getSize(),
+                                     [](float z) { return z > 0.F; });
+    return static_cast<double>(known) / depth.getSize();
+}
+
 /// What the tracker compares the observed image with.
 void expose(ImageF& predicted, const Exposure& exposure) {
     for (unsigned i = 0; i < predicted.getSize(); ++i) {
@@ -112,6 +119,7 @@ void expose(ImageF& predicted, const Exposure& exposure) {
 }
 
 void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, ReplayRun& run) {
+    frame.density = shareKnown(view.depth);
     Stopwatch watch;
     for (int h = 0; h < tracker.halvings; ++h) view = halvedView(view);
     frame.isBlack = isBlack(view.intensity);

@@ -26,6 +26,7 @@ struct ReplayedFrame {
     TrackedFrame tracked;  ///< nothing in it when unreadable
     std::optional<Pose> truth_c_w;
     double seconds = 0.;   ///< of tracking, pyramids included
+    double density = 0.;   ///< share of the pixels with depth, before halving
     bool isBlack = false;  ///< nothing to be seen in the image
     std::string words;     ///< the alignment's verdict, or why the frame is unreadable
 };

@@ -16,6 +16,9 @@ namespace photonav {
 namespace {
 
 ReplaySource openTum(const ReplaySourceOptions& options) {
+    if (!options.stereo.empty()) {
+        throw InputError("--stereo", "", "is for EuRoC recordings: this one has depth images");
+    }
     const RecordingOptions& asked = options;
     RecordingOptions forgiving = asked;
     forgiving.forgiving = true;
@@ -77,9 +80,10 @@ ReplaySource openEuroc(const ReplaySourceOptions& options) {
     euroc.tolerance = options.tolerance;
     const auto sequence =
         std::make_shared<StereoSequence>(readEurocSequence(options.dataset, euroc));
-    const auto stereo = stereoOf(*sequence, options.stereo);
     ReplaySource source;
     source.layout = "EuRoC";
+    source.stereo = options.stereo.empty() ? "bm" : options.stereo;
+    const auto stereo = stereoOf(*sequence, source.stereo);
     source.note = noteOn(*sequence);
     source.camera = stereo->camera();
     source.skipped = sequence->skipped;
@@ -114,11 +118,15 @@ ReplaySource openReplaySource(const ReplaySourceOptions& options) {
     if (options.depthScale && !(*options.depthScale > 0.)) {
         throw InputError("--depth-scale", "", "must be above 0");
     }
-    if (options.stereo != "bm" && options.stereo != "sgbm") {
+    if (!options.stereo.empty() && options.stereo != "bm" && options.stereo != "sgbm") {
         throw InputError("--stereo", "",
                          fmt::format("'{}' is not one of bm, sgbm", options.stereo));
     }
-    return isEurocFolder(options.dataset) ? openEuroc(options) : openTum(options);
+    ReplaySource source = isEurocFolder(options.dataset) ? openEuroc(options) : openTum(options);
+    if (options.up != "z" && !source.hasGroundtruth()) {
+        throw InputError("--up", "", "the recording has no true poses to turn");
+    }
+    return source;
 }
 
 }  // namespace photonav

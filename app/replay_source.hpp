@@ -13,7 +13,7 @@ namespace photonav {
 
 /// Which recording, in the TUM RGB-D or the EuRoC layout, and how to read it.
 struct ReplaySourceOptions : RecordingOptions {
-    std::string stereo = "bm";  ///< "bm" or "sgbm": block matching, semi-global (EuRoC)
+    std::string stereo;  ///< EuRoC: "bm" or "sgbm", block matching (the default) or semi-global
 };
 
 struct ReplaySource {
@@ -24,6 +24,7 @@ struct ReplaySource {
     };
 
     std::string layout;                      ///< "TUM RGB-D", "EuRoC"
+    std::string stereo;                      ///< how depth is found; empty: it is recorded
     std::string note;                        ///< what a reader of the poses must know
     Camera camera;                           ///< of the views
     std::string cameraFile;                  ///< that says so and the depth scale; may be empty
@@ -40,7 +41,8 @@ struct ReplaySource {
 };
 
 /// Reads the tables of a dataset.
-/// @throws InputError for what cannot be used: dataset, options ("--every"), a range without frames
+/// @throws InputError for what cannot be used: dataset, options ("--every"), also those that mean
+///         nothing for this recording, a range without frames
 ReplaySource openReplaySource(const ReplaySourceOptions& options);
 
 }  // namespace photonav

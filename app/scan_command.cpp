@@ -11,11 +11,10 @@
 #include "command_io.hpp"
 #include "error.hpp"
 #include "map_config.hpp"
+#include "map_report.hpp"
 #include "octree_file.hpp"
-#include "perspective.hpp"
 #include "point_cloud.hpp"
 #include "stopwatch.hpp"
-#include "voxel_renderer.hpp"
 
 namespace photonav {
 namespace {
@@ -81,13 +80,6 @@ json fuseStation(const PointCloudFile& cloud, const fs::path& file, const ScanMa
     return station;
 }
 
-Eigen::AlignedBox3d boxOf(const TexturedOcTree& map) {
-    Eigen::AlignedBox3d box;
-    map.getMetricMin(box.min().x(), box.min().y(), box.min().z());
-    map.getMetricMax(box.max().x(), box.max().y(), box.max().z());
-    return box;
-}
-
 ReportTable summaryOf(const json& result) {
     std::uint64_t points = 0;
     for (const json& station : result["stations"]) points += station["used"].get<std::uint64_t>();
@@ -103,7 +95,6 @@ ReportTable summaryOf(const json& result) {
 
 void writeScanReport(const ScanMapOptions& options, const json& result, const ReportTable& summary,
                      const TexturedOcTree& map) {
-    const VoxelRenderer renderer(map, UnknownPolicy::free);
     ReportData report;
     report.title = "Map of " + fs::path(options.scans).lexically_normal().filename().string();
     report.subtitle = "A textured OctoMap from laser scans.";
@@ -112,8 +103,7 @@ void writeScanReport(const ScanMapOptions& options, const json& result, const Re
     report.result = result;
     report.config = toYaml(options);
     report.voxels = makeReportVoxels(map);
-    report.figures = {{"The map as a camera would see it.",
-                       drawPerspective(renderer, {report.title, boxOf(map), {}})}};
+    report.figures = {{"The map as a camera would see it.", drawOverview(map, report.title)}};
     report.tables = {summary};
     writeFileAtomically(options.out / "overview.png", report.figures.front().image);
     writeFileAtomically(options.out / "report.json", toJson(report).dump());

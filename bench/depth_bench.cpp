@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth along a synthetic flight at 376x240, images of a real camera (shot noise, read noise,
-// blur): the monocular filter and stereo block matching against the true depth, image by image and
-// as maps of 5 cm. One thread; both see the same images.
+// Depth along flights: the monocular filter and stereo block matching against the true depth, image
+// by image and as maps of 5 cm. One thread; both see the same world from the same places. The
+// sample flights again, at their own size and with their own noise; and flights through a hall at
+// 376x240, with the noise of a real camera (shot noise, read noise, blur).
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <opencv2/core.hpp>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -14,6 +17,8 @@
 #include "map_fusion.hpp"
 #include "mesh_renderer.hpp"
 #include "monocular_depth.hpp"
+#include "sequence_tum.hpp"
+#include "simulated_camera.hpp"
 #include "stereo_depth.hpp"
 #include "thread_time.hpp"
 #include "tracking_scenes.hpp"
@@ -22,8 +27,8 @@ using namespace photonav;
 
 namespace {
 
-constexpr int kImages = 80;
-constexpr double kStep = 0.02;      // on the circle of 2 m radius: 4 cm [rad]
+constexpr int kImages = 80;         // through the hall
+constexpr double kStep = 0.02;      // on its circle of 2 m radius: 4 cm [rad]
 constexpr double kBaseline = 0.11;  // EuRoC's [m]
 constexpr double kCell = 0.05;      // of the maps [m]
 const FusionOptions kFusion{.maxRange = 5.};
@@ -108,44 +113,76 @@ struct Judge {
     }
 };
 
-void fly(const char* title, const ViewSource& hall, double belowHorizon) {
-    DistortedCamera left;
-    left.camera = makeCamera(376, 240, 80. * std::numbers::pi / 180.);
-    DistortedCamera right = left;
-    right.T_b_c.translation().x() = kBaseline;
-    StereoDepth stereo(left, right, {.halvings = 0});
-    const Camera camera = stereo.camera();
-    std::mt19937_64 random(1);
-    const auto picture = [&](const Pose& T_c_w, const Camera& of) {
+/// What is flown, and what the camera makes of an ideal image.
+struct Flight {
+    std::string title;
+    const ViewSource& world;
+    Camera camera;
+    std::vector<Pose> T_c_w;
+    std::function<ImageF(const ImageF& ideal, std::mt19937_64& random)> expose;
+};
+
+/// Two cameras side by side; the left one is also the one that the monocular filter has.
+class Rig {
+  public:
+    explicit Rig(const Flight& flight)
+        : flight_(flight), left_{.camera = flight.camera}, right_(left_), stereo_(pair()) {}
+
+    const Camera& camera() const { return stereo_.camera(); }
+
+    View ideal(const Pose& T_c_w) const {
         View view;
-        hall.render(of, T_c_w, view);
-        return takePicture(view.intensity, {}, random);
-    };
-    const auto truthAt = [&](const Pose& T_c_w) {
-        View view;
-        hall.render(camera, T_c_w, view);
+        flight_.world.render(camera(), T_c_w, view);
         return view;
-    };
+    }
+
+    ImageF picture(const Pose& T_c_w) { return flight_.expose(ideal(T_c_w).intensity, random_); }
+
+    /// @param T_c_w of the rectified left camera
+    /// @return seconds it took
+    double measure(const Pose& T_c_w, View& view) {
+        const Pose T_l_w = stereo_.T_r_c().inverse() * T_c_w;
+        const StereoImages images{taken(T_l_w), taken(right_.T_b_c.inverse() * T_l_w)};
+        const double before = threadTime();
+        stereo_(images, view);
+        return 1e-3 * (threadTime() - before);
+    }
+
+  private:
+    StereoDepth pair() {
+        right_.T_b_c.translation().x() = kBaseline;
+        return {left_, right_, {.halvings = 0}};
+    }
+
+    vpImage<unsigned char> taken(const Pose& T_c_w) {
+        View view;
+        flight_.world.render(flight_.camera, T_c_w, view);
+        return bytes(flight_.expose(view.intensity, random_));
+    }
+
+    const Flight& flight_;
+    DistortedCamera left_, right_;
+    StereoDepth stereo_;
+    std::mt19937_64 random_{1};
+};
+
+void fly(const Flight& flight) {
+    Rig rig(flight);
+    const Camera& camera = rig.camera();
     Judge mono("monocular"), pair("stereo"), truth("true depth");
     MonocularDepth filters(camera);
     int references = 0;
     const auto judge = [&](const DepthFilter& filter) {
-        const View ideal = truthAt(filter.pose());
+        const View ideal = rig.ideal(filter.pose());
         mono.add(filter.view(), ideal.depth, camera, filter.pose());
         truth.add(ideal, ideal.depth, camera, filter.pose());
-        const Pose T_l_w = stereo.T_r_c().inverse() * filter.pose();
-        const StereoImages images{bytes(picture(T_l_w, left.camera)),
-                                  bytes(picture(right.T_b_c.inverse() * T_l_w, right.camera))};
         View view;
-        const double before = threadTime();
-        stereo(images, view);
-        pair.seconds.push_back(1e-3 * (threadTime() - before));
+        pair.seconds.push_back(rig.measure(filter.pose(), view));
         pair.add(view, ideal.depth, camera, filter.pose());
         ++references;
     };
-    for (int i = 0; i < kImages; ++i) {
-        const Pose T_c_w = onCircle(kStep * i, belowHorizon);
-        const ImageF image = picture(T_c_w, camera);
+    for (const Pose& T_c_w : flight.T_c_w) {
+        const ImageF image = rig.picture(T_c_w);
         const double before = threadTime();
         const auto finished = filters.add(image, T_c_w);
         mono.seconds.push_back(1e-3 * (threadTime() - before));
@@ -153,18 +190,48 @@ void fly(const char* title, const ViewSource& hall, double belowHorizon) {
     }
     if (const auto last = filters.finish()) judge(*last);
     truth.seconds.push_back(0.);
-    fmt::print("{}: {} images, {} references\n", title, kImages, references);
+    fmt::print("{}: {} images, {} references\n", flight.title, flight.T_c_w.size(), references);
     fmt::print("  {:<22} {:>7}   {:>15}   {:>7}    {:>15}   {:>8}\n", "", "pixels",
                "error p50, p90", "> 10 %", "cells right, found", "time mean, max");
     for (Judge* judged : {&mono, &pair, &truth}) judged->print(truth.map);
+}
+
+void flyThroughHall(const char* title, const ViewSource& hall, double belowHorizon) {
+    Flight flight{title, hall, makeCamera(376, 240, 80. * std::numbers::pi / 180.), {}, {}};
+    for (int i = 0; i < kImages; ++i) flight.T_c_w.push_back(onCircle(kStep * i, belowHorizon));
+    flight.expose = [](const ImageF& ideal, std::mt19937_64& random) {
+        return takePicture(ideal, {}, random);
+    };
+    fly(flight);
+}
+
+/// A sample flight, by the same poses in the scene it was flown in.
+void flyAgain(const std::string& name, const std::string& scene) {
+    const std::string root = PHOTONAV_SOURCE_DIR;
+    const MeshRenderer world(loadScene(root + "/config/scenes/" + scene + ".yaml"));
+    const Sequence recorded = readTumSequence(root + "/data/" + name);
+    Flight flight{name + " in " + scene, world, recorded.camera, {}, {}};
+    for (const auto& frame : recorded.frames) flight.T_c_w.push_back(frame.T_c_w);
+    PhotometricOptions photometric;
+    photometric.scale = recorded.informationScale.value_or(1.);
+    flight.expose = [noise = assumedNoise(photometric)](ImageF image, std::mt19937_64& random) {
+        noise(image, random);
+        for (unsigned i = 0; i < image.getSize(); ++i) {
+            image.bitmap[i] = std::round(255.F * std::clamp(image.bitmap[i], 0.F, 1.F)) / 255.F;
+        }
+        return image;
+    };
+    fly(flight);
 }
 
 }  // namespace
 
 int main() {
     cv::setNumThreads(1);
+    flyAgain("flight_down", "two_textures");
+    flyAgain("flight_front45", "room");
     const MeshRenderer hall(furnishedHall());
-    fly("hall with boxes, 45 degrees", hall, std::numbers::pi / 4.);
-    fly("hall with boxes, 10 degrees below the horizon", hall, std::numbers::pi / 18.);
-    fly("hall with boxes, downward", hall, std::numbers::pi / 2.);
+    flyThroughHall("hall with boxes, 45 degrees", hall, std::numbers::pi / 4.);
+    flyThroughHall("hall with boxes, 10 degrees below the horizon", hall, std::numbers::pi / 18.);
+    flyThroughHall("hall with boxes, downward", hall, std::numbers::pi / 2.);
 }

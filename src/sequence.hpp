@@ -2,6 +2,7 @@
 // A recorded flight: images with depth and camera poses, loaded one at a time.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,7 +25,7 @@ struct Sequence {
         Pose T_c_w = Pose::Identity();
         bool hasPose = true;  ///< false only where the reader was told to keep such frames
         std::string colourFile;
-        std::string depthFile;
+        std::string depthFile;  ///< empty: none
     };
     struct Skipped {
         std::string file;
@@ -41,6 +42,10 @@ struct Sequence {
     std::optional<double> informationScale;
     std::vector<Entry> frames;  ///< in order of time
     std::vector<Skipped> skipped;
+
+    bool hasDepth() const {
+        return std::ranges::any_of(frames, [](const Entry& f) { return !f.depthFile.empty(); });
+    }
 };
 
 }  // namespace photonav

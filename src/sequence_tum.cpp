@@ -114,12 +114,17 @@ std::vector<Pair> readPairs(const fs::path& folder, const TumOptions& options, S
         if (fs::exists(folder / name)) return readAssociation(folder, name, forgiven);
     }
     const auto colour = readFileList(folder, "rgb.txt", forgiven);
-    const auto depth = readFileList(folder, "depth.txt", forgiven);
+    std::vector<StampedFile> depth;
+    if (options.needsDepth || fs::exists(folder / "depth.txt")) {
+        depth = readFileList(folder, "depth.txt", forgiven);
+    }
     const auto partner = associate(colour, depth, tolerance);
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < colour.size(); ++i) {
         if (partner[i] >= 0) {
             pairs.push_back({colour[i], depth[partner[i]]});
+        } else if (!options.needsDepth) {
+            pairs.push_back({colour[i], {}});
         } else {
             sequence.skipped.push_back(
                 {colour[i].file, fmt::format("no depth image within {} s", tolerance)});
@@ -130,6 +135,12 @@ std::vector<Pair> readPairs(const fs::path& folder, const TumOptions& options, S
                          fmt::format("no depth image within {} s of any colour image", tolerance));
     }
     return pairs;
+}
+
+void forgetMissingDepth(std::vector<Pair>& pairs) {
+    for (auto& [colour, depth] : pairs) {
+        if (!fs::exists(depth.file)) depth.file.clear();
+    }
 }
 
 /// Fields of view up to 179 degrees, principal points up to ten images outside: beyond, a number
@@ -180,6 +191,25 @@ std::vector<int> depthPixels(unsigned count, double focal, double centre, double
     return pixels;
 }
 
+/// @param source what says the camera's size, for errors
+void loadDepth(const Sequence& sequence, const std::string& file, const std::string& source,
+               ImageF& metres) {
+    const Camera& camera = sequence.camera;
+    const vpImage<std::uint16_t> values = readDepth16(file, camera, source);
+    const vpCameraParameters& k = camera.intrinsics;
+    const vpCameraParameters& d = sequence.depthIntrinsics.value_or(k);
+    const auto columns = depthPixels(camera.width, k.get_px(), k.get_u0(), d.get_px(), d.get_u0());
+    const auto rows = depthPixels(camera.height, k.get_py(), k.get_v0(), d.get_py(), d.get_v0());
+    const auto unit = static_cast<float>(1. / sequence.depthScale);
+    for (unsigned v = 0; v < camera.height; ++v) {
+        if (rows[v] < 0) continue;
+        const std::uint16_t* z = values[rows[v]];
+        for (unsigned u = 0; u < camera.width; ++u) {
+            if (columns[u] >= 0) metres[v][u] = unit * z[columns[u]];
+        }
+    }
+}
+
 void addPoses(const std::string& groundtruth, const std::vector<Pair>& pairs,
               const TumOptions& options, Sequence& sequence) {
     Trajectory trajectory;
@@ -224,7 +254,8 @@ Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
         sequence.cameraAssumed = true;
     }
     if (options.depthScale) sequence.depthScale = *options.depthScale;
-    const auto pairs = readPairs(folder, options, sequence);
+    auto pairs = readPairs(folder, options, sequence);
+    if (!options.needsDepth) forgetMissingDepth(pairs);
     addPoses((fs::path(folder) / "groundtruth.txt").string(), pairs, options, sequence);
     return sequence;
 }
@@ -235,27 +266,14 @@ RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
     const std::string source = sequence.cameraAssumed ? "the camera assumed without a camera.yaml"
                                                       : sequence.cameraFile + " (width, height)";
     const vpImage<unsigned char> grey = readGrey8(entry.colourFile, camera, source);
-    const vpImage<std::uint16_t> depth = readDepth16(entry.depthFile, camera, source);
     RecordedFrame frame{entry.T_c_w, {}, entry.timestamp};
     frame.view.intensity.resize(camera.height, camera.width);
     frame.view.depth.resize(camera.height, camera.width, 0.F);
-    const vpCameraParameters& k = camera.intrinsics;
-    const vpCameraParameters& d = sequence.depthIntrinsics.value_or(k);
-    const auto metres = static_cast<float>(1. / sequence.depthScale);
-    const auto depthColumns =
-        depthPixels(camera.width, k.get_px(), k.get_u0(), d.get_px(), d.get_u0());
-    const auto depthRows =
-        depthPixels(camera.height, k.get_py(), k.get_v0(), d.get_py(), d.get_v0());
-    for (unsigned v = 0; v < camera.height; ++v) {
-        const unsigned char* g = grey[v];
-        for (unsigned u = 0; u < camera.width; ++u) {
-            frame.view.intensity[v][u] = static_cast<float>(g[u]) / 255.F;
-        }
-        if (depthRows[v] < 0) continue;
-        const std::uint16_t* z = depth[depthRows[v]];
-        for (unsigned u = 0; u < camera.width; ++u) {
-            if (depthColumns[u] >= 0) frame.view.depth[v][u] = metres * z[depthColumns[u]];
-        }
+    for (unsigned i = 0; i < grey.getSize(); ++i) {
+        frame.view.intensity.bitmap[i] = static_cast<float>(grey.bitmap[i]) / 255.F;
+    }
+    if (!entry.depthFile.empty()) {
+        loadDepth(sequence, entry.depthFile, source, frame.view.depth);
     }
     return frame;
 }

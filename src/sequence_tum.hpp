@@ -17,6 +17,9 @@ struct TumOptions {
     /// For trackers: frames without pose are kept, groundtruth.txt need not be there, and images
     /// whose timestamps repeat or go back are skipped.
     bool forgiving = false;
+    /// Otherwise colour images without a depth image are kept, too, and `depth.txt` and the files
+    /// it names need not be there.
+    bool needsDepth = true;
 };
 
 /// Reads the tables of a dataset, no images:
@@ -35,7 +38,8 @@ struct TumOptions {
 Sequence readTumSequence(const std::string& folder, const TumOptions& options = {});
 
 /// Loads the images of frame `index`: 8-bit colour by OpenCV's grey conversion to [0, 1], 16-bit
-/// depth to metres along the optical axis, looked up where the colour camera's pixels lie in it.
+/// depth to metres along the optical axis, looked up where the colour camera's pixels lie in it; 0
+/// everywhere in a frame without depth image.
 /// @throws InputError for a file that is missing, damaged or of another size than the camera's
 RecordedFrame loadFrame(const Sequence& sequence, std::size_t index);
 

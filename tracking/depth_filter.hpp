@@ -30,8 +30,8 @@ enum class DepthState : std::uint8_t { searching, converged, givenUp };
 ///     p(x | w, rho) = rho N(x; w, tau^2) + (1 - rho) U(x; 0, 1 / minDepth)
 /// (Vogiatzis and Hernandez, Video-based, real-time multi-view stereo, 2011, with inverse depth in
 /// place of depth; REMODE, Pizzoli, Forster and Scaramuzza, ICRA 2014). Each image is searched
-/// along the epipolar line, within two standard deviations of what is believed, for the patch of 5
-/// x 5 pixels that correlates best; tau is what image noise and `matchSigma` make of the place
+/// along the epipolar line, within two standard deviations of what is believed, for the patch of 9
+/// x 9 pixels that correlates best; tau is what image noise and `matchSigma` make of the place
 /// found. Pixels that have converged are left alone.
 ///
 /// Poses are taken as exact. Surfaces without texture along the epipolar line stay unknown.

@@ -24,6 +24,7 @@ using namespace photonav;
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.;
+const PhotometricOptions kPhotometric{.sigma = 0.02};
 
 /// A crate on a carpet.
 Scene crateOnCarpet() {
@@ -79,28 +80,23 @@ Error errorOf(const Pose& T_c_w, const Pose& T_true_w) {
     return {xi.head<3>().norm(), xi.tail<3>().norm() / kDegree};
 }
 
-}  // namespace
-
-int main() {
-    const MeshRenderer model(crateOnCarpet());
-    const Camera camera = makeCamera(188, 120, 70. * kDegree);
-    const PhotometricOptions photometric{.sigma = 0.02};
+/// Where the camera of this tutorial really is: 1.6 m up, looking down by `pitch` [rad].
+Pose trueCamera(double pitch) {
     Pose T_w_b = Pose::Identity();
     T_w_b.translation().z() = 1.6;
-    const Pose T_true_w = (T_w_b * cameraMount(45. * kDegree)).inverse();
-    View view;
-    model.render(camera, T_true_w, view);
-    const ImageF observed = noisy(view.intensity, photometric.sigma);
+    return (T_w_b * cameraMount(pitch)).inverse();
+}
 
+void watchItConverge(const ViewSource& model, const Camera& camera, const ImageF& observed,
+                     const Pose& T_true_w, const Vector6& offset) {
     std::puts("Gauss-Newton at full size, from 4 cm and 1.2 degrees away");
     std::puts("step   residual   error [mm]  [deg]");
-    Vector6 offset;
-    offset << 0.03, -0.02, 0.02, 0.01, 0.015, -0.01;
     Window window;
     cv::Mat sheet;
+    View view;
     //! [gauss newton]
     Pose T_c_w = expSE3(offset) * T_true_w;
-    ViewComparison compare(camera, photometric);
+    ViewComparison compare(camera, kPhotometric);
     for (int step = 0; step <= 6; ++step) {
         model.render(camera, T_c_w, view);  // anew: where we now think we are
         const NormalEquations e = compare(view, observed, Exposure{}, Loss{});
@@ -112,18 +108,21 @@ int main() {
                                 picture(residual(observed, view.intensity))},
                     row);
         window.show(row);
-        if (step == 0 || step == 1 || step == 2) sheet.push_back(row);
-        const PoseEquations p = poseEquations(e, photometric, false);
+        if (step <= 2) sheet.push_back(row);
+        const PoseEquations p = poseEquations(e, kPhotometric, false);
         T_c_w = expSE3(p.information.ldlt().solve(p.right)) * T_c_w;
     }
     //! [gauss newton]
     cv::imwrite("alignment.png", sheet);
+}
 
+void startFartherAway(const ViewSource& model, const Camera& camera, const ImageF& observed,
+                      const Pose& T_true_w, const Vector6& offset) {
     std::puts("coarse to fine, from ever farther away");
     std::puts("start [cm]  [deg]   verdict      views  error [mm]  believed [mm]");
     //! [aligner]
     AlignmentOptions options;
-    options.photometric = photometric;
+    options.photometric = kPhotometric;
     DenseAligner aligner(model, camera, options);
     for (const double factor : {1., 2., 3., 4., 6., 20.}) {
         const Pose T_start = expSE3(factor * offset) * T_true_w;
@@ -135,20 +134,42 @@ int main() {
                     1000. * std::sqrt(a.covariance.topLeftCorner<3, 3>().trace()));
     }
     //! [aligner]
+}
 
+void lookAtStripes(const Camera& camera, const Vector6& offset) {
+    AlignmentOptions options;
+    options.photometric = kPhotometric;
+    View view;
     //! [prior]
     // Stripes along the way say nothing about the way: without a prior that direction stays.
     Scene stripes;
     addPlane(stripes, {-4., -4., 0.}, {8., 0., 0.}, {0., 8., 0.},
              addTexture(stripes, photonav::stripes({.width = 0.4, .softEdge = 0.05})));
     const MeshRenderer floor(stripes);
-    const Pose T_down_w = (T_w_b * cameraMount(90. * kDegree)).inverse();
+    const Pose T_down_w = trueCamera(90. * kDegree);
     floor.render(camera, T_down_w, view);
     DenseAligner onStripes(floor, camera, options);
-    const Alignment a = onStripes.align(noisy(view.intensity, photometric.sigma),
+    const Alignment a = onStripes.align(noisy(view.intensity, kPhotometric.sigma),
                                         {expSE3(offset) * T_down_w, 1e-2 * Matrix6::Identity()});
     //! [prior]
     std::printf("over stripes: %s; standard deviation along x %.4f m, along y %.4f m\n",
                 describe(a).c_str(), std::sqrt(a.covariance(0, 0)), std::sqrt(a.covariance(1, 1)));
+}
+
+}  // namespace
+
+int main() {
+    const MeshRenderer model(crateOnCarpet());
+    const Camera camera = makeCamera(188, 120, 70. * kDegree);
+    const Pose T_true_w = trueCamera(45. * kDegree);
+    View view;
+    model.render(camera, T_true_w, view);
+    const ImageF observed = noisy(view.intensity, kPhotometric.sigma);
+    Vector6 offset;  // of the first guess
+    offset << 0.03, -0.02, 0.02, 0.01, 0.015, -0.01;
+
+    watchItConverge(model, camera, observed, T_true_w, offset);
+    startFartherAway(model, camera, observed, T_true_w, offset);
+    lookAtStripes(camera, offset);
     std::puts("wrote alignment.png");
 }

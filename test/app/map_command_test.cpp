@@ -4,6 +4,7 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
+#include "executable.hpp"
 #include "octree_file.hpp"
 #include "trajectory.hpp"
 #include "tum_dataset.hpp"
@@ -175,6 +176,49 @@ TEST_F(MapCommand, RejectsAFolderItCannotWriteBeforeTheWork) {
     expectRejected({"file/out", "cannot be"});
     options.out = "/proc/photonav";
     expectRejected({"/proc/photonav", "cannot be"});
+}
+
+TEST_F(MapCommand, WithoutDepthImages) {
+    test::fs::remove_all(data / "depth");
+    test::fs::remove(data / "depth.txt");
+    expectRejected({"depth.txt: no such file", "map --depth monocular"});
+    options.depth = "monocular";
+    const MapReport report = runMap(options, running);
+    EXPECT_EQ(report.result["frames"]["used"], 6);
+    const auto& depth = report.result["monocular"];
+    EXPECT_GE(depth["references"], 1);
+    EXPECT_TRUE(depth["converged"].is_number());
+    EXPECT_TRUE(depth["completeness"].is_null());
+    EXPECT_TRUE(report.result["comparison"]["frames"][0]["mean_abs_depth"].is_null());
+    EXPECT_FALSE(report.result["comparison"]["mean"].contains("mean_abs_depth"));
+    EXPECT_TRUE(test::fs::exists(options.out / "convergence.png"));
+    MapOptions again;
+    readMapConfig((options.out / "config.yaml").string(), again);
+    again.out = options.out;
+    again.compareEvery = 0;
+    EXPECT_EQ(runMap(again, running).result["voxels"], report.result["voxels"]);
+    EXPECT_FALSE(test::fs::exists(options.out / "comparison_0.png"));
+}
+
+TEST_F(MapCommand, InfoSaysWhatAMapHolds) {
+    const auto voxels = runMap(options, running).result["voxels"];
+    const auto map = (options.out / "map.ot").string();
+    const auto out = (folder.path() / "info").string();
+    const Execution good = photonav(fmt::format("info {} --json --out {}", map, out));
+    ASSERT_EQ(good.exitCode, 0) << good.output;
+    const auto result = nlohmann::json::parse(good.output);
+    EXPECT_EQ(result["voxels"], voxels);
+    EXPECT_EQ(result["resolution"], 0.05);
+    EXPECT_GT(result["textured"].get<double>(), 0.9);
+    EXPECT_TRUE(test::fs::exists(folder.path() / "info/overview.png"));
+    const auto expectRefused = [](const std::string& arguments, const std::string& reason) {
+        const Execution run = photonav(arguments);
+        EXPECT_EQ(run.exitCode, 2);
+        EXPECT_NE(run.output.find(reason), std::string::npos) << run.output;
+    };
+    expectRefused("info " + map + " --at 1,2,3", "--at: is for a planning problem");
+    expectRefused("plan " + map, "map.ot: is a map, not a planning problem");
+    expectRefused("plan " + (options.out / "config.yaml").string(), "dataset: this is the config");
 }
 
 TEST_F(MapCommand, RejectsDamagedDatasets) {

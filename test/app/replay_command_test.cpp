@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replay_command.hpp"
 
-#include <numbers>
-
 #include "euroc_dataset.hpp"
 #include "executable.hpp"
 #include "map_command.hpp"
-#include "mesh_renderer.hpp"
+#include "recorded_flight.hpp"
 #include "trajectory.hpp"
 #include "yaml_reader.hpp"
 
@@ -15,80 +13,9 @@ namespace {
 
 using nlohmann::json;
 using test::expectInputError;
+using test::Flight;
+using test::kScene;
 using test::writeText;
-
-/// A floor and boxes on it, as YAML that --map reads.
-constexpr const char* kScene = R"(textures:
-  - {name: floor, type: noise, size: [6, 6], seed: 4}
-  - {name: crate, type: noise, size: [1, 1], seed: 5}
-planes:
-  - {corner: [-3, -3, 0.01], u: [6, 0, 0], v: [0, 6, 0], texture: floor}
-boxes:
-  - {min: [0.5, -0.4, 0], max: [0.8, 0, 0.3], texture: crate}
-)";
-
-/// A flight over textured ground as a TUM RGB-D folder: pictures of a scene of this test's own.
-struct Flight {
-    int frames = 12;
-    double speed = 0.03;  ///< metres a frame
-
-    Camera camera = makeCamera(160, 120, 1.1);
-
-    static const MeshRenderer& world() {
-        static const MeshRenderer renderer = [] {
-            Scene scene;
-            const auto floor = addTexture(scene, valueNoise({.size = {6., 6.}, .seed = 4}));
-            const auto crate = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 5}));
-            addPlane(scene, {-3., -3., 0.01}, {6., 0., 0.}, {0., 6., 0.}, floor);
-            addBox(scene, {0.5, -0.4, 0.}, {0.8, 0., 0.3}, crate);
-            return MeshRenderer(std::move(scene));
-        }();
-        return renderer;
-    }
-
-    Pose T_w_c(int i) const {
-        Pose T_w_b = Pose::Identity();
-        T_w_b.translation() = Eigen::Vector3d(-0.5 + speed * i, 0.005 * i, 1.4);
-        T_w_b.rotate(Eigen::AngleAxisd(0.01 * i, Eigen::Vector3d::UnitZ()));
-        return T_w_b * cameraMount(0.9);
-    }
-
-    static double time(int i) { return 50. + 0.1 * i; }
-
-    void write(const test::fs::path& folder) const {
-        test::fs::create_directories(folder / "rgb");
-        test::fs::create_directories(folder / "depth");
-        std::string rgb, depth, poses;
-        for (int i = 0; i < frames; ++i) {
-            rgb += fmt::format("{:.6f} rgb/{}.png\n", time(i), i);
-            depth += fmt::format("{:.6f} depth/{}.png\n", time(i), i);
-            const Pose pose = T_w_c(i);
-            const Eigen::Quaterniond q(pose.linear());
-            poses += fmt::format("{:.6f} {} {} {} {} {} {} {}\n", time(i), pose.translation().x(),
-                                 pose.translation().y(), pose.translation().z(), q.x(), q.y(),
-                                 q.z(), q.w());
-            View view;
-            world().render(camera, pose.inverse(), view);
-            writeImages(folder, i, view);
-        }
-        writeText(folder / "rgb.txt", rgb);
-        writeText(folder / "depth.txt", depth);
-        writeText(folder / "groundtruth.txt", poses);
-        writeText(folder / "camera.yaml",
-                  fmt::format("width: 160\nheight: 120\nfx: {0}\nfy: {0}\ncx: 79.5\ncy: 59.5\n",
-                              camera.fx()));
-    }
-
-    static void writeImages(const test::fs::path& folder, int i, const View& view) {
-        const int rows = int(view.depth.getHeight());
-        const int columns = int(view.depth.getWidth());
-        cv::Mat grey, depth;
-        cv::Mat(rows, columns, CV_32FC1, view.intensity.bitmap).convertTo(grey, CV_8U, 255.);
-        cv::Mat(rows, columns, CV_32FC1, view.depth.bitmap).convertTo(depth, CV_16U, 5000.);
-        cv::imwrite((folder / fmt::format("rgb/{}.png", i)).string(), grey);
-        cv::imwrite((folder / fmt::format("depth/{}.png", i)).string(), depth);
-    }
-};
 
 class ReplayCommand : public testing::Test {
   protected:
@@ -241,6 +168,10 @@ TEST_F(ReplayCommand, LocalisesInAMapMadeWithoutDepthImages) {
     EXPECT_GT(depth["completeness"].get<double>(), 0.15);
     EXPECT_LT(depth["median_relative_error"].get<double>(), 0.03);
     EXPECT_LT(depth["share_above_10_percent"].get<double>(), 0.05);
+    EXPECT_NEAR(depth["converged"].get<double>() + depth["given_up"].get<double>() +
+                    depth["searching"].get<double>(),
+                1., 1e-9);
+    EXPECT_TRUE(test::fs::exists(map.out / "convergence.png"));
     options.odometry = false;
     options.mapFile = (map.out / "map.ot").string();
     options.minOverlap = 0.1;
@@ -250,6 +181,25 @@ TEST_F(ReplayCommand, LocalisesInAMapMadeWithoutDepthImages) {
     EXPECT_LT(report.result["ate_rmse_m"].get<double>(), 0.08);
     map.depth = "sonar";
     expectInputError([&] { runMap(map, running); }, {"--depth", "'sonar'"});
+}
+
+TEST_F(ReplayCommand, LocalisesWithoutDepthImages) {
+    test::fs::remove_all(data / "depth");
+    expectRejected({"depth/0.png", "no such file"});
+    test::fs::remove(data / "depth.txt");
+    expectRejected({"depth.txt: no such file", "`replay --map`"});
+    useMap();
+    const json result = run().result;
+    EXPECT_EQ(result["tracked"], 12);
+    EXPECT_LT(result["ate_rmse_m"].get<double>(), 2e-3);
+    EXPECT_TRUE(result["depth_density"].is_null());
+    EXPECT_TRUE(result["dataset"]["median_depth_m"].is_null());
+    test::fs::remove(options.out / "result.json");
+    options.up = "floor";
+    expectRejected({"--up: floor", "no depth images"});
+    options.up = "z";
+    options.depthScale = 5000.;
+    expectRejected({"--depth-scale", "no depth images"});
 }
 
 TEST_F(ReplayCommand, CalibrationMakesCovariancesTrue) {
@@ -270,6 +220,9 @@ TEST_F(ReplayCommand, TheStartCanBeGiven) {
     useMap();
     test::fs::remove(data / "groundtruth.txt");
     expectRejected({"--start", "no ground truth"});
+    options.up = "y";
+    expectRejected({"--up", "no true poses"});
+    options.up = "z";
     const Pose T_w_c = flight.T_w_c(0);
     const Eigen::Quaterniond q(T_w_c.linear());
     const auto& p = T_w_c.translation();
@@ -360,14 +313,17 @@ TEST_F(ReplayCommand, DamagedMissingAndBlackImagesAreSurvived) {
         if (inMap) useMap();
         const ReplayReport report = run();
         EXPECT_EQ(report.exitCode, 0);
-        EXPECT_EQ(report.result["tracked"], 8);
-        EXPECT_EQ(report.result["unreadable"], 2);
+        const int unreadable = inMap ? 1 : 2;  // localisation needs no depth
+        EXPECT_EQ(report.result["tracked"], 10 - unreadable);
+        EXPECT_EQ(report.result["unreadable"], unreadable);
         EXPECT_EQ(report.result["lost"], 2);
-        EXPECT_EQ(report.result["verdict"], "tracked 8 of 12 frames, lost 2 (2 of them black)");
+        EXPECT_EQ(
+            report.result["verdict"],
+            fmt::format("tracked {} of 12 frames, lost 2 (2 of them black)", 10 - unreadable));
         ASSERT_EQ(report.result["lost_intervals"].size(), 1U);
         EXPECT_NEAR(report.result["lost_intervals"][0][0].get<double>(), Flight::time(7), 1e-9);
         EXPECT_NEAR(report.result["lost_intervals"][0][1].get<double>(), Flight::time(8), 1e-9);
-        EXPECT_EQ(report.result["skipped"].size(), 2U);
+        EXPECT_EQ(report.result["skipped"].size(), std::size_t(unreadable));
         EXPECT_LT(report.result["ate_rmse_m"].get<double>(), 5e-3);
     }
 }
@@ -430,6 +386,8 @@ TEST_F(ReplayCommand, RejectsWhatItCannotReplay) {
     rejected([&] { options.every = 0; }, {"--every"});
     rejected([&] { options.up = "q"; }, {"--up", "'q'"});
     rejected([&] { options.stereo = "xy"; }, {"--stereo", "'xy'"});
+    rejected([&] { options.stereo = "bm"; }, {"--stereo", "EuRoC"});
+    rejected([&] { options.startSigma = 0.1; }, {"--start-sigma", "--map"});
     rejected([&] { options.frames = "3"; }, {"--frames", "'3'"});
     rejected([&] { options.frames = "20:"; }, {"--frames", "none of 12"});
     rejected([&] { options.frames = "3:4"; }, {"single frame"});
@@ -466,6 +424,9 @@ TEST_F(ReplayCommand, StereoRecordings) {
     EXPECT_EQ(report.result["tracked"], 6);
     EXPECT_EQ(report.result["dataset"]["layout"], "EuRoC");
     EXPECT_EQ(report.result["dataset"]["camera"]["width"], 160);
+    EXPECT_EQ(report.result["options"]["stereo"], "bm");
+    EXPECT_GT(report.result["depth_density"].get<double>(), 0.3);
+    EXPECT_LT(report.result["depth_density"].get<double>(), 1.);
     EXPECT_LT(report.result["ate_rmse_m"].get<double>(), 5e-3);
     const Trajectory truth = readTrajectory((options.out / "groundtruth.tum").string());
     const Pose expected = wall.T_w_b(2) * wall.camera(0).T_b_c;

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a map of a recording amounts to: numbers and page.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "map_command.hpp"
+#include "plan_report.hpp"
+#include "trajectory.hpp"
+
+namespace photonav {
+
+/// What is known of a map besides its cells.
+struct MapRun {
+    std::size_t frames = 0;    ///< fused: less than all when interrupted
+    Trajectory trajectory;     ///< of these
+    nlohmann::json monocular;  ///< how good its depths are, null when they were recorded
+    nlohmann::json compared = nlohmann::json::array();  ///< frames and their predictions
+    std::vector<NamedFigure> figures;
+    double loadSeconds = 0.;  ///< images
+    double fuseSeconds = 0.;
+    bool interrupted = false;
+};
+
+/// How many cells are free and occupied, and the box of the occupied ones.
+nlohmann::json voxelsJson(const TexturedOcTree& map);
+
+/// The map as a camera would see it that looks at it from above one of its corners.
+Png drawOverview(const TexturedOcTree& map, const std::string& title);
+
+/// result.json but for the cells and the time it took.
+nlohmann::json mapResult(const MapOptions& options, const Recording& recording, const MapRun& run);
+
+/// result.json in words.
+ReportTable mapSummary(const nlohmann::json& result);
+
+/// Writes the figures, config.yaml, report.json and report.html.
+void writeMapReport(const MapOptions& options, const nlohmann::json& result,
+                    const Recording& recording, const TexturedOcTree& map, const MapRun& run);
+
+}  // namespace photonav
