@@ -116,10 +116,14 @@ class Kernel {
         for (next_ = std::max(next_, v - 1); next_ <= v + 1; ++next_) {
             for (std::size_t i = 0; i <= vectors_; ++i) invert(next_, i);
         }
-        fill(v);
+        const bool isBlank = !fill(v);
+        const unsigned ahead = std::min(next_++, camera_.height - 1);
+        if (isBlank) {
+            for (std::size_t i = 0; i <= vectors_; ++i) invert(ahead, i);
+            return;
+        }
         // The divisions of the row after next go along with the first pass: they take long, and
         // little else meanwhile.
-        const unsigned ahead = std::min(next_++, camera_.height - 1);
         addProducts<0>([this, ahead](std::size_t i) { invert(ahead, i); });
         invert(ahead, vectors_);
         [this]<std::size_t... kPass>(std::index_sequence<kPass...>) {
@@ -174,7 +178,8 @@ class Kernel {
         simd::store(inverseDepth(v) + u, inverseDepthOf(simd::load<Float>(view_.depth[v] + u)));
     }
 
-    void fill(unsigned v) {
+    /// The Jacobians of row v; false where nothing in it has a gradient.
+    bool fill(unsigned v) {
         // x and y with the ratio of the focal lengths where gradients would need it
         const double row = v - camera_.cy();
         const float yOfGradient = static_cast<float>(row / camera_.fx());
@@ -189,6 +194,7 @@ class Kernel {
         const float* belowW = inverseDepth(v + 1);
         const float* xs = x_.data();
         const std::size_t last = width_ - 1 - simd::kWidth;
+        Int gradients{};
         for (std::size_t i = 0; i < vectors_; ++i) {
             const std::size_t u = std::min(1 + i * simd::kWidth, last);
             const auto at = [u](const float* p) { return simd::load<Float>(p + u); };
@@ -202,6 +208,7 @@ class Kernel {
             };
             const Float gx = masked(at(I + 1) - at(I - 1));
             const Float gy = masked(at(belowI) - at(aboveI));
+            gradients |= reinterpret_cast<Int>(gx) | reinterpret_cast<Int>(gy);
             const Float x = at(xs);
             const Float s = x * gx + yOfGradient * gy;
             const Float a = gx * w;
@@ -209,6 +216,7 @@ class Kernel {
             jacobian_[i] = {
                 a, b, s * w, (y * s + gy) - pivot * b, (x * s + gx) - pivot * a, x * gy - y * gx};
         }
+        return simd::bits(gradients != 0) != 0;
     }
 
     /// Adds the products of one pass to the lanes; `alongside` is called for every vector.

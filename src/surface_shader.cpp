@@ -168,21 +168,25 @@ struct Halves {
 [[gnu::always_inline]] inline Float bilinear(const MipTexture& texture, std::size_t level,
                                              const Surface::Level& origin, Float u, Float v) {
     const MipTexture::Level& image = texture.levels()[level];
+    const std::uint16_t* texels = texture.texels(level);
     const Float x = u * origin.uScale + origin.uPart;
-    const Float y = v * origin.vScale + origin.vPart;
     const Float column = rounded(x - 0.5F);  // floor, or one less with x - column = 1: the same
+    const Float s = x - column;
+    const Int across = toInt(wrapped(column + origin.uWhole, image.width, image.inverseWidth));
+    const auto between = [s](const std::uint16_t* row, Int index) {
+        // A texel and its right neighbour are 32 bits in one piece.
+        const Halves pair(simd::gather<sizeof(*row)>(row, index));
+        return pair.low + (pair.high - pair.low) * s;
+    };
+    if (image.height == 1.F) return between(texels, across);  // stripes: rows are alike
+
+    const Float y = v * origin.vScale + origin.vPart;
     const Float row = rounded(y - 0.5F);
     const Int index =
         toInt(wrapped(row + origin.vWhole, image.height, image.inverseHeight)) * image.pitch +
-        toInt(wrapped(column + origin.uWhole, image.width, image.inverseWidth));
-
-    // A texel and its right neighbour are 32 bits in one piece.
-    const std::uint16_t* texels = texture.texels(level);
-    const Halves above(simd::gather<sizeof(*texels)>(texels, index));
-    const Halves below(simd::gather<sizeof(*texels)>(texels + image.pitch, index));
-    const Float s = x - column;
-    const Float top = above.low + (above.high - above.low) * s;
-    const Float bottom = below.low + (below.high - below.low) * s;
+        across;
+    const Float top = between(texels, index);
+    const Float bottom = between(texels + image.pitch, index);
     return top + (bottom - top) * (y - row);
 }
 
