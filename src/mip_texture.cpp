@@ -59,7 +59,7 @@ ImageF halved(const ImageF& fine) {
 }
 
 std::uint16_t stored(float grey) {
-    return static_cast<std::uint16_t>(std::lround(std::clamp(grey, 0.F, 1.F) * MipTexture::kOne));
+    return static_cast<std::uint16_t>(std::clamp(grey, 0.F, 1.F) * MipTexture::kOne + 0.5F);
 }
 
 }  // namespace
@@ -86,10 +86,12 @@ void MipTexture::append(const ImageF& image) {
     const auto rows = static_cast<float>(height);
     levels_.push_back(
         {columns, rows, 1.F / columns, 1.F / rows, static_cast<int>(width + 1), texels_.size()});
+    texels_.resize(texels_.size() + std::size_t{width + 1} * (height + 1));
+    std::uint16_t* out = texels_.data() + levels_.back().start;
     for (unsigned v = 0; v <= height; ++v) {
-        for (unsigned u = 0; u <= width; ++u) {
-            texels_.push_back(stored(image[v % height][u % width]));
-        }
+        const float* row = image[v < height ? v : 0];
+        out = std::transform(row, row + width, out, stored);
+        *out++ = stored(row[0]);
     }
 }
 

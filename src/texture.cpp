@@ -127,6 +127,7 @@ ImageF greyOf(const cv::Mat& file, const std::array<double, 3>& factor) {
 }  // namespace
 
 float Texture::at(const Eigen::Vector2d& position) const {
+    if (image.getSize() == 1) return *image.bitmap;
     const double x = position.x() / size.x() * image.getWidth() - 0.5;
     const double y = position.y() / size.y() * image.getHeight() - 0.5;
     const int column = static_cast<int>(std::floor(x));
