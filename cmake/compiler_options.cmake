@@ -16,7 +16,7 @@ set(PHOTONAV_MARCH "${_photonav_march}" CACHE STRING
 
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_DEPEND=1
         CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE})
 endif()
 
@@ -36,7 +36,7 @@ function(photonav_compiler_options target)
         -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-psabi
         -fno-math-errno -fno-trapping-math -fpch-preprocess
         $<$<BOOL:${PHOTONAV_WERROR}>:-Werror>
-        $<$<BOOL:${PHOTONAV_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize=nonnull-attribute,null,alignment,object-size,pointer-overflow,vptr;-fno-sanitize-recover=undefined;-fno-omit-frame-pointer;-UNDEBUG;-O1;-g1>)
+        $<$<BOOL:${PHOTONAV_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize=nonnull-attribute,null,alignment,object-size,pointer-overflow,vptr;-fno-sanitize-recover=undefined;-fno-omit-frame-pointer;-UNDEBUG;-O1>)
     if(PHOTONAV_SANITIZE)
         target_link_options(${target} PUBLIC -fsanitize=address,undefined)
     endif()

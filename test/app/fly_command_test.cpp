@@ -174,7 +174,8 @@ TEST_F(FlyCommand, WhatWasNeverFlownHasNoErrors) {
 }
 
 TEST_F(FlyCommand, ExitsWithOneWhenNoFlightArrives) {
-    const Execution run = fly("dark", "--flights 1 --black 1");
+    const Execution run =
+        fly("dark", "--flights 1 --black 1 --set planner.compare_with_rrt_star=false");
     EXPECT_EQ(run.exitCode, 1) << run.output;
     EXPECT_EQ(result("dark")["planners"][0]["each"][0]["end"], "lost");
     EXPECT_GT(result("dark")["planners"][0]["lost_s"].get<double>(), 5.);

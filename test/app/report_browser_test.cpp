@@ -28,6 +28,9 @@ struct Outcome {
 class ReportBrowserTest : public testing::Test {
   protected:
     void SetUp() override {
+#ifdef __SANITIZE_ADDRESS__
+        GTEST_SKIP() << "the page runs in the browser, not under the sanitizers";
+#endif
         if (!fs::exists(kChromium)) GTEST_SKIP() << kChromium << " is not installed";
         std::string name = (fs::temp_directory_path() / "photonav_browser_XXXXXX").string();
         ASSERT_NE(mkdtemp(name.data()), nullptr);
