@@ -120,7 +120,8 @@ ReferenceCosts referenceOf(const Config& config) {
     }
 }
 
-/// The folder's runs so far, or a new file where there are none.
+/// The folder's runs so far, or a new file where there are none. Which runs are wanted may have
+/// changed, what they depend on may not.
 SweepJournal openJournal(const SweepOptions& options, const fs::path& folder,
                          const SweepHeader& header) {
     if (!options.resume || !fs::exists(folder / SweepJournal::kFileName)) {
@@ -128,7 +129,8 @@ SweepJournal openJournal(const SweepOptions& options, const fs::path& folder,
     }
     SweepJournal journal = SweepJournal::read(folder);
     const std::string file = journal.file().string();
-    const std::string changed = difference(header.identity, journal.header().identity);
+    const std::string changed =
+        difference(runIdentity(header.identity), runIdentity(journal.header().identity));
     if (!changed.empty()) {
         throw InputError("--resume", file, "the sweep was begun with another config: " + changed);
     }
@@ -137,6 +139,7 @@ SweepJournal openJournal(const SweepOptions& options, const fs::path& folder,
                          fmt::format("holds shard {}, not {}", toString(journal.header().shard),
                                      toString(header.shard)));
     }
+    if (journal.header().config != header.config) journal.replaceHeader(header);
     return journal;
 }
 
@@ -177,18 +180,20 @@ int runAll(const SweepOptions& options, const std::atomic<bool>& interrupted) {
         ProgressLine line(options.quiet);
         RemainingTime rest(open);
         const Stopwatch running;
-        line.show(fmt::format("{} of {} runs", items.size() - open.size(), items.size()));
+        std::size_t done = items.size() - open.size();
+        line.show(fmt::format("{} of {} runs", done, items.size()));
         runItems(config, world, open, options.jobs, interrupted, [&](const SweepRun& run) {
             journal.append(run);
             rest.count(run, running.seconds());
-            line.show(fmt::format("{} of {} runs, {} alpha {} seed {} done, about {} left",
-                                  journal.runs().size(), items.size(), run.item.planner,
-                                  run.item.alpha, run.item.seed, durationText(rest.seconds())));
+            line.show(fmt::format("{} of {} runs, {} alpha {} seed {} done, about {} left", ++done,
+                                  items.size(), run.item.planner, run.item.alpha, run.item.seed,
+                                  durationText(rest.seconds())));
         });
     }
-    const bool stopped = interrupted && journal.runs().size() < items.size();
+    const bool stopped = interrupted && !journal.missing(items).empty();
     return conclude(options, config, world, folder,
-                    {name, "", shard, journal.runs(), items.size(), stopped, 0.}, reference, watch);
+                    {name, "", shard, journal.runsOf(items), items.size(), stopped, 0.}, reference,
+                    watch);
 }
 
 /// Shards that make one sweep.
@@ -251,7 +256,7 @@ SweepJournal gather(const SweepOptions& options, const std::vector<SweepJournal>
     header.shard = {};
     SweepJournal whole = SweepJournal::create(folder, header);
     for (const SweepJournal& shard : shards) {
-        for (const SweepRun& run : shard.runs()) whole.append(run);
+        for (const SweepRun& run : shard.runsOf(items)) whole.append(run);
     }
     return whole;
 }

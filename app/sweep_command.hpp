@@ -17,7 +17,7 @@ struct SweepOptions : CommandOptions {
     unsigned jobs = 1;                    ///< threads
     std::optional<std::string> shard;     ///< "k/n"
     std::vector<std::string> merge;       ///< folders of shards: no runs, only the table
-    bool resume = false;                  ///< go on with what the result folder holds
+    bool resume = false;                  ///< go on with what the result folder holds, or extend it
 };
 
 /// Runs all combinations and writes runs.jsonl, runs.csv, summary.csv, sweep.png, pareto.png,

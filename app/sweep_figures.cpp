@@ -22,13 +22,15 @@ constexpr Color kPaperColor = kInk;
 struct Planner {
     std::string name;
     Color color;
+    double extra = 0.;  ///< width, so that it shows below those drawn upon it [px]
 };
 
 std::vector<Planner> coloured(const std::vector<std::string>& names) {
     std::vector<Planner> planners;
     planners.reserve(names.size());
     for (const std::string& name : names) {
-        planners.push_back({name, kColors[planners.size() % kColors.size()]});
+        planners.push_back({name, kColors[planners.size() % kColors.size()],
+                            2.6 * static_cast<double>(planners.size())});
     }
     return planners;
 }
@@ -83,7 +85,8 @@ struct CurvePoint {
     double alpha, mean, deviation;
 };
 
-void drawCurve(const Plot& plot, const std::vector<CurvePoint>& points, const Color& color) {
+void drawCurve(const Plot& plot, const std::vector<CurvePoint>& points, const Planner& planner) {
+    const Color& color = planner.color;
     std::vector<Canvas::Point> line;
     for (const CurvePoint& p : points) {
         line.push_back(plot.at(p.alpha, p.mean));
@@ -95,8 +98,9 @@ void drawCurve(const Plot& plot, const std::vector<CurvePoint>& points, const Co
         plot.canvas.line(low - half, low + half, color, 1.6);
         plot.canvas.line(high - half, high + half, color, 1.6);
     }
-    plot.canvas.polyline(line, color, 2.4);
-    for (const Canvas::Point& point : line) plot.canvas.disc(point, 4.5, color);
+    plot.canvas.polyline(line, color, 2.4 + planner.extra / 2.);
+    for (const Canvas::Point& point : line)
+        plot.canvas.disc(point, 4.5 + planner.extra / 2., color);
 }
 
 std::vector<CurvePoint> curveOf(const std::string& planner, const Quantity& quantity,
@@ -112,13 +116,11 @@ std::vector<CurvePoint> curveOf(const std::string& planner, const Quantity& quan
     return points;
 }
 
-/// The paper's row of every alpha once, in discs without a line.
+/// The paper's rows, in discs without a line.
 std::vector<CurvePoint> paperPoints(const Quantity& quantity, const std::vector<SweepCell>& cells) {
     std::vector<CurvePoint> points;
     for (const SweepCell& cell : cells) {
-        if (cell.paper && cell.planner == cells.front().planner) {
-            points.push_back({cell.alpha, (*cell.paper).*quantity.paper, 0.});
-        }
+        if (cell.paper) points.push_back({cell.alpha, (*cell.paper).*quantity.paper, 0.});
     }
     return points;
 }
@@ -144,7 +146,7 @@ void drawQuantity(Canvas& canvas, const Frame& frame, const Quantity& quantity,
         for (const CurvePoint& p : paper) canvas.disc(plot.at(p.alpha, p.mean), 6.0, kPaperColor);
         const auto planners = plannersOf(cells);
         for (auto planner = planners.rbegin(); planner != planners.rend(); ++planner) {
-            drawCurve(plot, curveOf(planner->name, quantity, cells), planner->color);
+            drawCurve(plot, curveOf(planner->name, quantity, cells), *planner);
         }
     }
     plot.drawAxes();
@@ -207,7 +209,7 @@ Png drawSweepFront(const std::string& title, const std::vector<SweepCell>& cells
         canvas.polyline(front, planner->color, 2.0);
         for (const SweepCell& cell : cells) {
             if (cell.planner == planner->name && cell.solved > 0)
-                canvas.disc(at(cell), 6.0, planner->color);
+                canvas.disc(at(cell), 5.0 + planner->extra, planner->color);
         }
     }
     plot.drawAxes();

@@ -49,7 +49,8 @@ void addParts(const std::string& sceneFile, SweepIdentity& identity) {
 /// Keys that the sweep sets itself, run by run, or that change no run.
 const std::set<std::string> kIrrelevant{
     "planner.name", "planner.alpha",          "planner.compare_with_rrt_star",
-    "sweep.paper",  "sweep.paper_trace_unit", "sweep.reference"};
+    "sweep.paper",  "sweep.paper_trace_unit", "sweep.reference",
+    "map.made_by"};
 
 }  // namespace
 
@@ -104,6 +105,13 @@ SweepIdentity sweepIdentity(const Config& config) {
     }
     if (!config.sceneFile.empty()) addParts(config.sceneFile, identity);
     identity["version"] = PHOTONAV_VERSION;
+    return identity;
+}
+
+SweepIdentity runIdentity(SweepIdentity identity) {
+    std::erase_if(identity, [](const auto& entry) {
+        return entry.first == "seed" || entry.first.starts_with("sweep.");
+    });
     return identity;
 }
 

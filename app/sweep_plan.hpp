@@ -45,6 +45,9 @@ using SweepIdentity = std::map<std::string, std::string>;
 
 SweepIdentity sweepIdentity(const Config& config);
 
+/// What a single run depends on: the same without the keys that choose which runs there are.
+SweepIdentity runIdentity(SweepIdentity identity);
+
 /// The first key that differs, as "planner.vertices: 300 instead of 2500"; empty when none does.
 std::string difference(const SweepIdentity& found, const SweepIdentity& expected);
 

@@ -86,7 +86,7 @@ TextColumn paperColumn(double PaperRow::*value, double scale) {
             }};
 }
 
-/// The columns that have anything to say.
+/// The columns that have anything to say about a planner.
 std::vector<TextColumn> textColumns(const std::vector<SweepCell>& cells) {
     std::vector<TextColumn> columns{
         {"alpha", 6, [](const SweepCell& cell) { return fmt::format("{}", cell.alpha); }},
@@ -174,18 +174,19 @@ void writeSweepReport(const fs::path& folder, const Config& config, const World&
 }
 
 std::string sweepTable(const std::vector<SweepCell>& cells) {
-    const auto columns = textColumns(cells);
     std::string text;
-    std::string planner;
-    for (const SweepCell& cell : cells) {
-        if (cell.planner != planner) {
-            planner = cell.planner;
-            text += "\n" + planner + "  (traces in 0.01 m^2 + rad^2)\n";
-            for (const TextColumn& column : columns) text += padded(column.heading, column.width);
+    for (auto first = cells.begin(); first != cells.end();) {
+        const auto last = std::find_if(
+            first, cells.end(), [&](const SweepCell& c) { return c.planner != first->planner; });
+        text += "\n" + first->planner + "  (traces in 0.01 m^2 + rad^2)\n";
+        const auto columns = textColumns({first, last});
+        for (const TextColumn& column : columns) text += padded(column.heading, column.width);
+        text += '\n';
+        for (; first != last; ++first) {
+            for (const TextColumn& column : columns)
+                text += padded(column.text(*first), column.width);
             text += '\n';
         }
-        for (const TextColumn& column : columns) text += padded(column.text(cell), column.width);
-        text += '\n';
     }
     return text;
 }

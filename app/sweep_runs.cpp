@@ -9,6 +9,7 @@
 #include <set>
 #include <thread>
 
+#include "atomic_file.hpp"
 #include "command_io.hpp"
 #include "constants.hpp"
 #include "error.hpp"
@@ -45,6 +46,21 @@ SweepHeader headerFrom(const json& line) {
             line.at("config"),
             line.at("identity"),
             {line.at("shard").at(0), line.at("shard").at(1)}};
+}
+
+json lineOf(const SweepHeader& header) {
+    return {{"photonav_sweep", kJournalSchema},
+            {"name", header.name},
+            {"config", header.config},
+            {"identity", header.identity},
+            {"shard", {header.shard.index, header.shard.count}}};
+}
+
+json lineOf(const SweepRun& run) {
+    json line = toJson(run);
+    line["path"] = json::array();
+    for (const Eigen::Vector3d& p : run.path) line["path"].push_back({p.x(), p.y(), p.z()});
+    return line;
 }
 
 }  // namespace
@@ -126,11 +142,7 @@ SweepJournal SweepJournal::create(const fs::path& folder, const SweepHeader& hea
     SweepJournal journal(folder / kFileName);
     if (fs::exists(journal.file_)) fs::rename(journal.file_, journal.file_.string() + "~");
     journal.header_ = header;
-    journal.write({{"photonav_sweep", kJournalSchema},
-                   {"name", header.name},
-                   {"config", header.config},
-                   {"identity", header.identity},
-                   {"shard", {header.shard.index, header.shard.count}}});
+    journal.write(lineOf(header));
     return journal;
 }
 
@@ -168,11 +180,24 @@ void SweepJournal::write(const json& line) {
 }
 
 void SweepJournal::append(const SweepRun& run) {
-    json line = toJson(run);
-    line["path"] = json::array();
-    for (const Eigen::Vector3d& p : run.path) line["path"].push_back({p.x(), p.y(), p.z()});
-    write(line);
+    write(lineOf(run));
     runs_.push_back(run);
+}
+
+void SweepJournal::replaceHeader(const SweepHeader& header) {
+    std::string text = lineOf(header).dump() + "\n";
+    for (const SweepRun& run : runs_) text += lineOf(run).dump() + "\n";
+    stream_.close();
+    writeFileAtomically(file_, text);
+    header_ = header;
+    size_ = text.size();
+}
+
+std::vector<SweepRun> SweepJournal::runsOf(const std::vector<SweepItem>& items) const {
+    const std::set<SweepItem> wanted(items.begin(), items.end());
+    std::vector<SweepRun> runs = runs_;
+    std::erase_if(runs, [&](const SweepRun& run) { return !wanted.contains(run.item); });
+    return runs;
 }
 
 std::vector<SweepItem> SweepJournal::missing(const std::vector<SweepItem>& items) const {

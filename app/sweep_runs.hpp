@@ -62,12 +62,19 @@ class SweepJournal {
     /// @throws InputError if it is missing or not ours
     static SweepJournal read(const std::filesystem::path& folder);
 
+    /// Puts another header before the same runs. The old file stays whole until that is done.
+    /// @throws InputError if it cannot be written
+    void replaceHeader(const SweepHeader& header);
+
     /// @throws InputError if it cannot be written
     void append(const SweepRun& run);
 
     const SweepHeader& header() const { return header_; }
     const std::vector<SweepRun>& runs() const { return runs_; }
     const std::filesystem::path& file() const { return file_; }
+
+    /// The runs that belong to `items`.
+    std::vector<SweepRun> runsOf(const std::vector<SweepItem>& items) const;
 
     /// Those of `items` that have no run yet.
     std::vector<SweepItem> missing(const std::vector<SweepItem>& items) const;

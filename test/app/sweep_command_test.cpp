@@ -203,9 +203,26 @@ TEST_F(SweepCommand, AResumedSweepMustBeTheSame) {
     ASSERT_EQ(sweep("out", "", quick).exitCode, 0);
     expectBadInput(sweep("out", "--set camera.sigma=0.03", quick),
                    "camera.sigma: 0.03 instead of 0.02");
-    expectBadInput(sweep("out", "--seed 4", quick), "seed: 4 instead of 1");
     expectBadInput(sweep("out", "--shard 1/2", quick), "holds shard 1/1, not 1/2");
     EXPECT_EQ(result("out")["runs"].size(), 2U);  // still there
+}
+
+TEST_F(SweepCommand, AResumedSweepMayAskForOtherRuns) {
+    const std::string quick = " --set planner.vertices=150 --planners rrt_star --resume ";
+    ASSERT_EQ(sweep("out", "--alpha 0.5,0.7 --runs 2", quick).exitCode, 0);
+    const json first = runs("out");
+    const std::string kept = test::contentOf(folder_ / "out/runs.jsonl");
+    const std::string wanted = "--alpha 0.3,0.5 --runs 3 --seed 2";
+    ASSERT_EQ(sweep("out", wanted, quick).exitCode, 0);
+    ASSERT_EQ(sweep("fresh", wanted, quick).exitCode, 0);
+    EXPECT_EQ(runs("out"), runs("fresh"));
+    EXPECT_EQ(runs("out")[3], first[1]);  // alpha 0.5, seed 2
+    EXPECT_EQ(test::contentOf(folder_ / "out/config.yaml"),
+              test::contentOf(folder_ / "fresh/config.yaml"));
+    const std::string all = test::contentOf(folder_ / "out/runs.jsonl");
+    const std::string done = kept.substr(kept.find('\n'));     // behind the header
+    EXPECT_EQ(all.substr(all.find('\n'), done.size()), done);  // not run again, none forgotten
+    EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 1 + 4 + 5);
 }
 
 TEST_F(SweepCommand, CtrlCKeepsTheRunsDone) {

@@ -9,6 +9,7 @@
 
 #include "error.hpp"
 #include "sweep_figures.hpp"
+#include "sweep_report.hpp"
 #include "sweep_summary.hpp"
 
 namespace photonav {
@@ -124,6 +125,9 @@ TEST(SweepIdentityTest, SaysWhichKeyDiffers) {
     EXPECT_EQ(difference(identity({"planner.vertices=300"}), base),
               "planner.vertices: 300 instead of 2500");
     EXPECT_EQ(difference(identity({"sweep.runs=3"}), base), "sweep.runs: 3 instead of 10");
+    EXPECT_EQ(difference(runIdentity(identity({"sweep.runs=3", "sweep.alphas=[0.2]", "seed=7"})),
+                         runIdentity(base)),
+              "");
     // What no run depends on, or what every run sets itself:
     EXPECT_EQ(difference(identity({"planner.alpha=0.7", "planner.name=rrt_star",
                                    "sweep.reference=x.csv", "sweep.paper=[]"}),
@@ -254,18 +258,18 @@ TEST_F(SweepFiles, ReferencesGiveTheExcess) {
 
 TEST(SweepTables, PutThePaperBesideOurs) {
     SweepConfig config;
-    config.planners = {"a", "b"};
+    config.planners = {"a", "b", "rrt_star"};
     config.alphas = {0.05, 0.15};
     config.paper = {{0.15, 40.45, 7.75, 9.25}};
     SweepRun lost = makeRun({"a", 0.15, 2}, kNone, kNone, kNone);
     lost.goalTrace = kNone;
     lost.status = "no path";
-    const auto cells =
-        summarize(config,
-                  {makeRun({"a", 0.15, 1}, 3., 10., 0.2), lost,
-                   makeRun({"b", 0.05, 1}, 5., 11., 0.3), makeRun({"b", 0.05, 2}, 7., 13., 0.1)},
-                  {});
-    ASSERT_EQ(cells.size(), 2U);
+    const auto cells = summarize(
+        config,
+        {makeRun({"a", 0.15, 1}, 3., 10., 0.2), lost, makeRun({"b", 0.05, 1}, 5., 11., 0.3),
+         makeRun({"b", 0.05, 2}, 7., 13., 0.1), makeRun({"rrt_star", 0.15, 1}, 9., 8., 0.4)},
+        {});
+    ASSERT_EQ(cells.size(), 3U);
     const auto first = toJson(cells[0]);
     EXPECT_EQ(first["runs"], 2);
     EXPECT_EQ(first["solved"], 1);
@@ -280,6 +284,10 @@ TEST(SweepTables, PutThePaperBesideOurs) {
     EXPECT_EQ(second["length_mean"], 12.);
     EXPECT_DOUBLE_EQ(second["length_std"].get<double>(), std::sqrt(2.));
     EXPECT_TRUE(second["paper_length"].is_null());
+    EXPECT_TRUE(toJson(cells[2])["paper_length"].is_null());  // no look, no row of the paper
+    const std::string table = sweepTable(cells);
+    EXPECT_NE(table.find("40.45"), std::string::npos) << table;
+    EXPECT_EQ(table.find("paper", table.find("rrt_star")), std::string::npos) << table;
 }
 
 TEST(SweepTables, CsvQuotesWhatNeedsIt) {
