@@ -88,6 +88,7 @@ void readWorld(YamlMap& root, Config& config) {
     scene.finish();
     YamlMap map = root.map("map");
     map.read("file", config.mapFile);
+    map.read("made_by", config.mapMadeBy);
     std::string toPlanner = "occupied";
     std::string toCamera = "free";
     map.readChoice("unknown", toPlanner, kUnknown);
@@ -289,6 +290,7 @@ std::string toYaml(const Config& c) {
              ? fmt::format("scene:\n  file: {}", quoted(c.sceneFile))
              : fmt::format("map:\n  file: {}\n  unknown: {}\n  unknown_to_camera: {}", c.mapFile,
                            policy(c.unknownToPlanner), policy(c.unknownToCamera)));
+    if (!c.mapMadeBy.empty()) line("  made_by: " + quoted(c.mapMadeBy));
     line(fmt::format("bounds: [{}, {}]", corner(c.bounds.min()), corner(c.bounds.max())));
     line(fmt::format("space: {}", kSpaces[1 + static_cast<int>(c.space)]));
     line(fmt::format("start: {}\ngoal: {}", place(c.start), place(c.goal)));

@@ -46,6 +46,7 @@ struct Config {
 
     std::string sceneFile;  ///< procedural scene (.yaml) or mesh; absolute. Either this
     std::string mapFile;    ///< or a textured OctoMap (.ot, .bt); absolute
+    std::string mapMadeBy;  ///< the command that makes it, for whoever does not have it yet
     UnknownPolicy unknownToPlanner = UnknownPolicy::occupied;
     UnknownPolicy unknownToCamera = UnknownPolicy::free;
 

@@ -89,8 +89,7 @@ ReportTable summaryOf(const json& result) {
              {"cell", fmt::format("{} m", result["resolution"].get<double>())},
              {"occupied cells", result["voxels"]["occupied"].dump()},
              {"free cells", result["voxels"]["free"].dump()},
-             {"fusion", fmt::format("{:.1f} s", result["time"]["fuse_s"].get<double>())},
-             {"peak memory", fmt::format("{} MB", result["peak_memory_mb"].get<long>())}}};
+             {"fusion", fmt::format("{:.1f} s", result["time"]["fuse_s"].get<double>())}}};
 }
 
 void writeScanReport(const ScanMapOptions& options, const json& result, const ReportTable& summary,
@@ -110,6 +109,7 @@ void writeScanReport(const ScanMapOptions& options, const json& result, const Re
     writeReport(options.out / "report.html", report);
 }
 
+/// Of this process, so far.
 long peakMegabytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -153,14 +153,16 @@ MapReport runScanMap(const ScanMapOptions& options, const std::atomic<bool>& int
                      {"resolution", options.resolution},
                      {"max_range", options.maxRange},
                      {"voxels", voxelsJson(map)},
-                     {"time", {{"fuse_s", watch.seconds()}}},
-                     {"peak_memory_mb", peakMegabytes()}};
+                     {"time", {{"fuse_s", watch.seconds()}}}};
     report.summary = summaryOf(report.result);
     saveTexturedOcTree(map, (options.out / "map.ot").string());
     saveColorOcTree(map, (options.out / "map_color.ot").string());
     saveBinaryOcTree(map, (options.out / "map.bt").string());
     writeFileAtomically(options.out / "config.yaml", toYaml(options));
     if (!stations.empty()) writeScanReport(options, report.result, report.summary, map);
+    const long peak = peakMegabytes();  // all work is done, the report is written
+    report.result["peak_memory_mb"] = peak;
+    report.summary.rows.emplace_back("peak memory", fmt::format("{} MB", peak));
     writeFileAtomically(options.out / "result.json", report.result.dump(2) + "\n");
     return report;
 }

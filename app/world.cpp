@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "error.hpp"
 #include "mesh_renderer.hpp"
@@ -18,9 +19,28 @@ double reach(double robotRadius, double cell) {
     return std::min(std::max(1., 2. * robotRadius), 150. * cell);
 }
 
+/// Darkens what lies beside a step between surfaces, so that things of one grey can be told apart.
+void outlineSteps(ImageF& picture, const ImageF& depth) {
+    constexpr float kStep = 0.15F, kShade = 0.45F;  // [m], of the brightness
+    const auto isStep = [&](float a, float b) { return a > 0.F && b > 0.F && a - b > kStep; };
+    for (unsigned v = 1; v + 1 < depth.getHeight(); ++v) {
+        for (unsigned u = 1; u + 1 < depth.getWidth(); ++u) {
+            const float here = depth[v][u];
+            if (isStep(here, depth[v][u - 1]) || isStep(here, depth[v][u + 1]) ||
+                isStep(here, depth[v - 1][u]) || isStep(here, depth[v + 1][u]))
+                picture[v][u] *= kShade;
+        }
+    }
+}
+
 }  // namespace
 
 World::World(const Config& config) {
+    if (!config.mapMadeBy.empty() && !std::filesystem::exists(config.mapFile)) {
+        throw InputError(
+            config.file, "map.file",
+            config.mapFile + ": not there; this config's map is made by " + config.mapMadeBy);
+    }
     try {
         if (config.mapFile.empty())
             loadScene(config);
@@ -75,6 +95,7 @@ ImageF World::pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double
     Pose T_w_c = Pose::Identity();  // image right is world x, image down is world -y
     T_w_c.linear() = Eigen::Vector3d(1., -1., -1.).asDiagonal();
     ImageF picture(height, width);
+    ImageF depths(height, width);
     View view;
     for (unsigned v = 0; v < height; v += kTile) {
         for (unsigned u = 0; u < width; u += kTile) {
@@ -85,10 +106,12 @@ ImageF World::pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double
                 for (unsigned column = 0; column < kTile; ++column) {
                     const bool isSeen = view.depth[row][column] > 0.F;
                     picture[v + row][u + column] = isSeen ? view.intensity[row][column] : 1.F;
+                    depths[v + row][u + column] = view.depth[row][column];
                 }
             }
         }
     }
+    outlineSteps(picture, depths);
     return picture;
 }
 

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "error.hpp"
+#include "world.hpp"
 
 namespace photonav {
 namespace {
@@ -109,6 +110,22 @@ TEST(Config, ComplaintsNameKeyAndReason) {
     expectComplaint("map.file=x.ot", "scene.file", "either");
     expectComplaint("scene.file=", "scene.file", "either");
     expectComplaint("noequals", "noequals", "key.path=value");
+}
+
+TEST(Config, AMapThatIsNotThereYetIsMadeBySomething) {
+    const std::vector<std::string> room{"map.file=nowhere.ot", "map.made_by=scripts/make it"};
+    const Config config = loadConfig(PHOTONAV_SOURCE_DIR "/config/scan_room_1.yaml", room);
+    EXPECT_NE(toYaml(config).find("made_by: scripts/make it"), std::string::npos);
+    try {
+        const World world(config);
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const InputError& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find("scan_room_1.yaml: map.file: "), std::string::npos) << text;
+        EXPECT_NE(text.find("nowhere.ot: not there; this config's map is made by scripts/make it"),
+                  std::string::npos)
+            << text;
+    }
 }
 
 TEST(Config, ComplaintsAboutTheFileItself) {
