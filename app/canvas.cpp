@@ -133,6 +133,7 @@ void Canvas::text(const std::string& content, Point at, Align align, const Color
 }
 
 void Canvas::verticalText(const std::string& content, const Point& at, const Color& color) {
+    if (content.empty()) return;
     Canvas strip(textWidth(content) + 4.0, 2.0 * kTextSize);
     strip.text(content, {2.0, 1.45 * kTextSize}, Align::left, color);
     cv::Mat3b turned;

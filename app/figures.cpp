@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <functional>
 #include <numbers>
 #include <stdexcept>
 
 #include "constants.hpp"
+#include "path_overlap.hpp"
 #include "plot.hpp"
 
 namespace photonav {
@@ -17,6 +19,7 @@ namespace {
 constexpr double kSigmas = 3.0;                      // size of the ellipses
 constexpr double kLeft = 96.0, kBottom = 76.0;       // margins with tick and axis labels [px]
 constexpr double kTop = 58.0;                        // margin with the title [px]
+constexpr double kBetween = 52.0, kTicks = 36.0;     // maps in rows: room for ticks alone [px]
 constexpr double kLegendGap = 28.0, kSwatch = 34.0;  // [px]
 constexpr Color kWhite{255, 255, 255};
 
@@ -113,16 +116,35 @@ void drawEllipses(const Plot& plot, const DrawnPath& path, double scale) {
     for (const auto& outline : outlines) plot.canvas.polyline(outline, path.color, 1.2);
 }
 
-void drawRoute(const Plot& plot, const DrawnPath& path) {
+/// Whether most of one path of a view is drawn along another one.
+bool areTogether(const TopView& view, const DrawnPath& path, const DrawnPath& other) {
+    return runsAlong(path, other, 0.004 * view.area.sizes().maxCoeff());
+}
+
+/// Wider for each path on top, so that none hides another.
+double routeWidth(const TopView& view, std::size_t path) {
+    double width = 3.6;
+    for (std::size_t i = 0; i < path; ++i)
+        if (areTogether(view, view.paths[path], view.paths[i])) width += 4.0;
+    return width;
+}
+
+/// White on both sides sets it off, but from a path that runs below.
+void drawRoute(const Plot& plot, const TopView& view, std::size_t path) {
     std::vector<Canvas::Point> route;
-    for (const PathPoint& point : path.points)
+    for (const PathPoint& point : view.paths[path].points)
         route.push_back(plot.at(point.position.x(), point.position.y()));
-    plot.canvas.polyline(route, kWhite, 6.0);
-    plot.canvas.polyline(route, path.color, 3.6);
+    const double width = routeWidth(view, path);
+    const bool isLowest =
+        std::none_of(view.paths.begin() + static_cast<long>(path) + 1, view.paths.end(),
+                     [&](const auto& below) { return areTogether(view, below, view.paths[path]); });
+    if (isLowest) plot.canvas.polyline(route, kWhite, width + 2.4);
+    plot.canvas.polyline(route, view.paths[path].color, width);
 }
 
 void drawTree(const Plot& plot, const DrawnTree& tree) {
-    plot.canvas.translucent(0.25, [&] {
+    const double opacity = std::clamp(60.0 / static_cast<double>(tree.edges.size()), 0.25, 0.8);
+    plot.canvas.translucent(opacity, [&] {
         for (const Edge& edge : tree.edges)
             plot.canvas.line(plot.at(edge[0].x(), edge[0].y()), plot.at(edge[1].x(), edge[1].y()),
                              tree.color, 0.7);
@@ -150,8 +172,7 @@ void drawMap(const Plot& plot, const TopView& view) {
         for (const DrawnTree& tree : view.trees) drawTree(plot, tree);
         if (view.ellipseScale > 0.0)
             for (const DrawnPath& path : view.paths) drawEllipses(plot, path, view.ellipseScale);
-        for (auto path = view.paths.rbegin(); path != view.paths.rend(); ++path)
-            drawRoute(plot, *path);
+        for (std::size_t i = view.paths.size(); i-- > 0;) drawRoute(plot, view, i);
         drawMarker(plot.canvas, plot.at(view.start.x(), view.start.y()), kStart);
         drawMarker(plot.canvas, plot.at(view.goal.x(), view.goal.y()), kGoal);
     }
@@ -160,8 +181,9 @@ void drawMap(const Plot& plot, const TopView& view) {
 
 std::vector<LegendEntry> legendOf(const TopView& view) {
     std::vector<LegendEntry> entries;
-    for (const DrawnPath& path : view.paths)
-        entries.push_back(lineEntry(path.name, path.color, 3.6));
+    for (std::size_t i = 0; i < view.paths.size(); ++i)
+        entries.push_back(lineEntry(view.paths[i].name, view.paths[i].color,
+                                    std::min(routeWidth(view, i), 10.0)));
     for (const DrawnTree& tree : view.trees)
         entries.push_back(lineEntry(tree.name, tree.color, 1.0));
     if (view.ellipseScale > 0.0 && !view.paths.empty()) {
@@ -195,9 +217,8 @@ Axis axisAround(const Values& values, bool log, const std::string& label) {
     return {low, high, false, label};
 }
 
-/// Cells as pixels, the largest y first; NaN where nothing is known shows as white.
 constexpr Color kOffScale{58, 58, 62};  // zero has no place on a logarithmic scale
-
+/// Cells as pixels, the largest y first; NaN where nothing is known shows as white.
 std::vector<Color> cellColors(const HeatMap& map, const Axis& scale) {
     const std::array<Color, 256> colors = viridis();
     std::vector<Color> pixels;
@@ -273,11 +294,10 @@ Png drawTopView(const TopView& view) {
                            kTop + 60.0 + 32.0 * static_cast<double>(legend.size())));
     drawMap(mapPlot(canvas, frame, view.area), view);
     drawTitle(canvas, view.title, frame.x);
-    Canvas::Point corner(frame.right() + kLegendGap, frame.y + 12.0);
-    for (const LegendEntry& entry : legend) {
-        drawLegendEntry(canvas, entry, corner);
-        corner.y() += 32.0;
-    }
+    for (std::size_t i = 0; i < legend.size(); ++i)
+        drawLegendEntry(
+            canvas, legend[i],
+            {frame.right() + kLegendGap, frame.y + 12.0 + 32.0 * static_cast<double>(i)});
     return canvas.png();
 }
 
@@ -285,11 +305,12 @@ Png drawMaps(const std::vector<std::vector<TopView>>& rows) {
     if (rows.empty() || rows[0].empty()) throw std::invalid_argument("figure: no maps");
     requireArea(rows[0][0].area);
     const Frame first = mapFrame(rows[0][0].area, 420.0);
-    const double width = first.right() + 24.0;
-    const double height = first.bottom() + kBottom;
+    const double width = first.width + kBetween;
+    const double height = first.bottom() + kTicks;
     std::size_t columns = 0;
     for (const auto& row : rows) columns = std::max(columns, row.size());
-    Canvas canvas(width * static_cast<double>(columns), height * static_cast<double>(rows.size()));
+    Canvas canvas(first.x + width * static_cast<double>(columns),
+                  height * static_cast<double>(rows.size()) + kBottom - kTicks);
     for (std::size_t i = 0; i < rows.size(); ++i)
         for (std::size_t j = 0; j < rows[i].size(); ++j) {
             TopView view = rows[i][j];
@@ -299,7 +320,10 @@ Png drawMaps(const std::vector<std::vector<TopView>>& rows) {
                                        height * static_cast<double>(i));
             const Frame frame{corner.x() + first.x, corner.y() + first.y, first.width,
                               first.height};
-            drawMap(mapPlot(canvas, frame, view.area), view);
+            Plot plot = mapPlot(canvas, frame, view.area);
+            if (i + 1 < rows.size()) plot.x.label.clear();
+            if (j > 0) plot.y.label.clear();
+            drawMap(plot, view);
             canvas.text(view.title, {frame.x, corner.y() + 34.0}, Align::left, kInk);
         }
     return canvas.png();
@@ -317,7 +341,6 @@ Png drawTrace(const std::string& title, const std::vector<DrawnPath>& paths, boo
     if (!logScale) traces.push_back(0.0);
     const Plot plot{canvas, frame, axisAround(distances, false, "distance along the path [m]"),
                     axisAround(traces, logScale, "trace of the pose covariance [m^2 + L^2 rad^2]")};
-
     plot.drawGrid();
     {
         const auto clipped = canvas.clip(frame);
@@ -345,7 +368,6 @@ Png drawHeatMap(const HeatMap& map) {
     Canvas canvas(frame.right() + 190.0, frame.bottom() + kBottom + 34.0);
     const Axis scale = axisAround(map.values.reshaped(), map.logScale, map.label);
     const Plot plot = mapPlot(canvas, frame, map.area);
-
     canvas.picture(cellColors(map, scale), static_cast<int>(map.values.rows()), frame, false);
     drawUnflyable(map, plot);
     plot.drawAxes();

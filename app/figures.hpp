@@ -53,7 +53,8 @@ struct TopView {
     ImageF background = {};  ///< grey values in [0, 1] over `area`: first row at the largest y,
                              ///< first column at the smallest x; may be empty
     std::vector<DrawnTree> trees = {};
-    std::vector<DrawnPath> paths = {};  ///< the first one is drawn on top
+    std::vector<DrawnPath> paths = {};  ///< the first one is drawn on top, of those that run
+                                        ///< along it the lower ones wider
     Eigen::Vector3d start = Eigen::Vector3d::Zero();
     Eigen::Vector3d goal = Eigen::Vector3d::Zero();  ///< in w
     std::string goalName = "goal";

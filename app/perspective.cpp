@@ -43,19 +43,64 @@ Pose lookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target) {
     return T_w_c.inverse();
 }
 
-/// A camera at T_c_w that just sees the whole box.
-Camera cameraAround(const Eigen::AlignedBox3d& box, const Pose& T_c_w) {
-    double reach = 0.;  // half the image width at depth 1
+/// Where a box lies in the image plane at depth 1.
+Eigen::AlignedBox2d projected(const Eigen::AlignedBox3d& box, const Pose& T_c_w) {
+    Eigen::AlignedBox2d image;
     for (int i = 0; i < 8; ++i) {
         const Eigen::Vector3d p =
             T_c_w * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
-        if (p.z() < 0.1) continue;  // right below the eye
-        reach = std::max({reach, std::abs(p.x() / p.z()),
-                          std::abs(p.y() / p.z()) * kPictureWidth / double{kPictureHeight}});
+        if (p.z() > 0.1) image.extend(Eigen::Vector2d(p.head<2>() / p.z()));
     }
+    return image;
+}
+
+/// T_c_w of a camera at the eye with the box in the middle of its picture.
+Pose lookAtMiddle(const Eigen::Vector3d& eye, const Eigen::AlignedBox3d& box) {
+    Pose T_c_w = lookAt(eye, box.center());
+    for (int i = 0; i < 8; ++i) {
+        const Eigen::Vector3d middle = projected(box, T_c_w).center().homogeneous();
+        T_c_w = lookAt(eye, T_c_w.inverse() * middle);
+    }
+    return T_c_w;
+}
+
+/// A camera at T_c_w that just sees the whole box.
+Camera cameraAround(const Eigen::AlignedBox3d& box, const Pose& T_c_w) {
+    const Eigen::AlignedBox2d image = projected(box, T_c_w);
+    const Eigen::Vector2d half = image.min().cwiseAbs().cwiseMax(image.max().cwiseAbs());
+    const double reach = std::max(half.x(), half.y() * kPictureWidth / double{kPictureHeight});
     return makeCamera(kPictureWidth, kPictureHeight,
                       2. * std::atan(std::clamp(1.03 * reach, 0.1, 2.)));
 }
+
+/// How bright surfaces are drawn: upright ones darker, by the axis that they face. Told by the
+/// points seen some pixels away, beyond the steps between cells of a map.
+class Shading {
+  public:
+    Shading(const View& view, const Camera& camera, const Pose& T_c_w)
+        : view_(view), camera_(camera), T_w_c_(T_c_w.inverse()) {}
+
+    float at(unsigned u, unsigned v) const {
+        constexpr unsigned kReach = 4;
+        if (u < kReach || v < kReach || u + kReach >= kPictureWidth || v + kReach >= kPictureHeight)
+            return 1.F;
+        const Eigen::Vector3d down = point(u, v + kReach) - point(u, v - kReach);
+        if (std::abs(down.z()) <= down.head<2>().norm()) return 1.F;
+        const Eigen::Vector3d right = point(u + kReach, v) - point(u - kReach, v);
+        return std::abs(right.x()) > std::abs(right.y()) ? 0.82F : 0.68F;
+    }
+
+  private:
+    Eigen::Vector3d point(unsigned u, unsigned v) const {
+        return T_w_c_ * Eigen::Vector3d(view_.depth[v][u] *
+                                        Eigen::Vector3d((u - camera_.cx()) / camera_.fx(),
+                                                        (v - camera_.cy()) / camera_.fy(), 1.));
+    }
+
+    const View& view_;
+    const Camera& camera_;
+    Pose T_w_c_;
+};
 
 /// Draws world points into the rendered picture.
 class Sketch {
@@ -116,11 +161,12 @@ class Sketch {
     const Pose& T_c_w_;
 };
 
-void drawPicture(Canvas& canvas, const View& view) {
+void drawPicture(Canvas& canvas, const View& view, const Shading& shading) {
     std::vector<Color> pixels;
     pixels.reserve(view.intensity.getSize());
     for (unsigned i = 0; i < view.intensity.getSize(); ++i) {
-        const float grey = std::clamp(view.intensity.bitmap[i], 0.F, 1.F);
+        const float grey = std::clamp(view.intensity.bitmap[i], 0.F, 1.F) *
+                           shading.at(i % kPictureWidth, i / kPictureWidth);
         const auto level = static_cast<std::uint8_t>(std::lround(70.F + 170.F * grey));
         pixels.push_back(view.depth.bitmap[i] > 0.F ? Color{level, level, level}
                                                     : Color{255, 255, 255});
@@ -132,15 +178,13 @@ void drawPicture(Canvas& canvas, const View& view) {
 
 Png drawPerspective(const ViewSource& world, const Perspective& perspective) {
     const Eigen::AlignedBox3d& box = perspective.box;
-    Eigen::Vector3d target = box.center();
-    target.z() = box.min().z();
-    const Pose T_c_w = lookAt(eyeAbove(world, box), target);
+    const Pose T_c_w = lookAtMiddle(eyeAbove(world, box), box);
     const Camera camera = cameraAround(box, T_c_w);
     View view;
     world.render(camera, T_c_w, view);
 
     Canvas canvas(kPictureWidth, kPictureTop + kPictureHeight);
-    drawPicture(canvas, view);
+    drawPicture(canvas, view, {view, camera, T_c_w});
     const Sketch sketch(canvas, world, view, camera, T_c_w);
     for (auto path = perspective.paths.rbegin(); path != perspective.paths.rend(); ++path) {
         sketch.route(*path);

@@ -61,7 +61,7 @@ std::optional<RecordedComparison> lookAtRecording(const Config& config, const Wo
 }
 
 /// At every 1, 2 and 5 times a power of ten, up to the number of vertices.
-std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, const PlanRun& run,
+std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, PlanRun& run,
                                     std::size_t vertices, const std::atomic<bool>& interrupted) {
     std::vector<std::size_t> stages;
     for (std::size_t ten = 10; ten < vertices; ten *= 10) {

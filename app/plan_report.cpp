@@ -105,10 +105,14 @@ HeatMap heatMap(const Config& config, PlanRun& run) {
     return map;
 }
 
-/// Where the robot may be, down to the floor.
+/// Where the robot may be, and what stands around that, down to the floor.
 Perspective perspective(const Config& config, const World& world, const PlanOutcome& outcome,
                         const std::vector<DrawnPath>& paths) {
     Eigen::AlignedBox3d box = config.bounds;
+    const double margin = 0.1 * box.sizes().maxCoeff();
+    box.min().array() -= margin;
+    box.max().array() += margin;
+    box = box.intersection(world.extent()).merged(config.bounds);
     box.min().z() = std::min(box.min().z(), world.extent().min().z());
     return {fmt::format("{}, alpha {}", config.planner, outcome.alpha), box, paths};
 }

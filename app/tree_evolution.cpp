@@ -19,7 +19,7 @@ double lengthOf(const std::vector<Eigen::Vector3d>& path) {
 
 }  // namespace
 
-TreeEvolution growInStages(const PlanRun& run, const std::string& name,
+TreeEvolution growInStages(PlanRun& run, const std::string& name,
                            const std::vector<std::size_t>& vertices,
                            const std::atomic<bool>& interrupted) {
     const auto planner = run.makePlanner(name);
@@ -36,6 +36,7 @@ TreeEvolution growInStages(const PlanRun& run, const std::string& name,
         for (const ob::State* state : path->as<ompl::geometric::PathGeometric>()->getStates()) {
             stage.path.push_back(space.position(state));
         }
+        stage.cost = run.judge(*planner).cost;
     }
     return evolution;
 }
@@ -65,8 +66,10 @@ Png drawTreeEvolution(const TopView& map, const std::vector<TreeEvolution>& evol
                 continue;
             }
             TopView& view = row.emplace_back(map);
-            view.title = fmt::format("{}, {} vertices", evolution.planner, stage.vertices);
-            if (!stage.path.empty()) view.title += fmt::format(", {:.2f} m", lengthOf(stage.path));
+            view.title = fmt::format("{}, {} vertices: ", evolution.planner, stage.vertices) +
+                         (stage.path.empty() ? "no path yet"
+                                             : fmt::format("J {:.2f}, {:.2f} m", stage.cost,
+                                                           lengthOf(stage.path)));
             view.trees = {{evolution.planner, kTreeColor, stage.tree}};
             view.paths = {{evolution.planner, kPathColor, {}}};
             for (const Eigen::Vector3d& p : stage.path) {

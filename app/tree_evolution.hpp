@@ -14,6 +14,7 @@ struct TreeStage {
     std::size_t vertices = 0;
     std::vector<Edge> tree;
     std::vector<Eigen::Vector3d> path;  ///< positions in w; empty: none yet
+    double cost = 0.;                   ///< of that path, as `plan` judges it
 };
 
 struct TreeEvolution {
@@ -24,7 +25,7 @@ struct TreeEvolution {
 /// Grows a planner, pausing at each of these numbers of vertices (in rising order). A pause lets it
 /// finish: belief_rrt_star searches its roadmap there, so its last stage is not to the digit what
 /// it gives in one go.
-TreeEvolution growInStages(const PlanRun& run, const std::string& planner,
+TreeEvolution growInStages(PlanRun& run, const std::string& planner,
                            const std::vector<std::size_t>& vertices,
                            const std::atomic<bool>& interrupted);
 

@@ -68,6 +68,23 @@ TEST(Figures, PathIsDrawnWhereItIs) {
     EXPECT_FALSE(isPath(600, 280));
 }
 
+TEST(Figures, NoPathHidesAnother) {
+    TopView view;
+    view.area = {Eigen::Vector2d(0, 0), Eigen::Vector2d(10, 10)};
+    view.start = view.goal = {-50, -50, 0};
+    view.ellipseScale = 0.0;
+    view.paths = {samplePath("above", kPathColor, {{2, 0, 1}, {2, 5, 1}}),
+                  samplePath("below", kBaselineColor, {{2, 0, 1}, {2, 1, 1}, {2, 5, 1}}),
+                  samplePath("aside", kTreeColor, {{4, 0, 1}, {4, 5, 1}})};
+    const cv::Mat3b image = decoded(drawTopView(view), "paths");
+    const auto widthOf = [&](const Color& color) {  // on a row that all cross, left of the legend
+        return countOf(image(cv::Rect(100, 600, 800, 1)), color);
+    };
+    EXPECT_GE(widthOf(kPathColor), 3);
+    EXPECT_GE(widthOf(kBaselineColor), 2);  // on both sides
+    EXPECT_EQ(widthOf(kTreeColor), widthOf(kPathColor));
+}
+
 TEST(Figures, EmptyAreaIsRefused) {
     EXPECT_THROW(drawTopView({}), std::invalid_argument);
     EXPECT_THROW(drawMaps({}), std::invalid_argument);
