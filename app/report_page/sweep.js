@@ -102,7 +102,7 @@ function sweepCurves(x, y) {
     cellsOf(planner).filter((cell) => isNumber(cell[`${y}_mean`])).sort((a, b) => a.alpha - b.alpha)
         .map((cell) => point(cell, isAlpha ? cell.alpha : cell[`${x}_mean`], cell[`${y}_mean`],
                              isAlpha ? cell[`${y}_std`] : 0)), true));
-  const paper = cellsOf(sweep.planners[0]).filter((cell) => isNumber(cell[`paper_${y}`]))
+  const paper = sweep.summary.filter((cell) => isNumber(cell[`paper_${y}`]))
       .map((cell) => point(cell, isAlpha ? cell.alpha : cell[`paper_${x}`], cell[`paper_${y}`], 0));
   return paper.length ? [...curves, curve('paper', cssColor('--ink'), paper, false)] : curves;
 }
@@ -134,7 +134,7 @@ function meanAndDeviation(cell, key, decimals, scale) {
 
 function plannerTable(planner) {
   const table = make('table'), thead = make('thead'), body = make('tbody'), head = make('tr');
-  const hasPaper = (key) => key && sweep.summary.some((cell) => isNumber(cell[key]));
+  const hasPaper = (key) => key && cellsOf(planner).some((cell) => isNumber(cell[key]));
   head.append(make('th', 'alpha'));
   for (const [title, , , paper] of sweepColumns)
     head.append(make('th', title), ...(hasPaper(paper) ? [make('th', 'paper')] : []));
