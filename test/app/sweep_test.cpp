@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sweeps: what is run, what is kept of it, and the table it becomes.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::string scenario(const std::string& name) {
-    return std::string(PHOTONAV_SOURCE_DIR) + "/config/" + name + ".yaml";
+    return fmt::format("{}/config/{}.yaml", PHOTONAV_SOURCE_DIR, name);
 }
 
 std::string reasonOf(const std::function<void()>& action) {
