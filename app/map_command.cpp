@@ -17,6 +17,7 @@
 #include "median.hpp"
 #include "monocular_fusion.hpp"
 #include "octree_file.hpp"
+#include "sequence_euroc.hpp"
 #include "sequence_tum.hpp"
 #include "stopwatch.hpp"
 #include "voxel_renderer.hpp"
@@ -28,6 +29,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::size_t kCompared = 4;  // images beside their predictions
+constexpr double kNearest = 0.05;     // of depth from the images, which is sought from there on [m]
 constexpr const char* kConvergence = "convergence.png";
 
 std::string comparisonName(std::size_t i) { return fmt::format("comparison_{}.png", i); }
@@ -54,6 +56,8 @@ void checkOptions(const MapOptions& options) {
     if (options.depthScale) positive(*options.depthScale, "--depth-scale");
     require(options.depth == "recorded" || options.depth == "monocular", "--depth",
             fmt::format("'{}' is not one of recorded, monocular", options.depth));
+    require(options.depth == "recorded" || options.fusion.minRange >= kNearest, "--min-range",
+            fmt::format("depth from the images begins at {} m or farther", kNearest));
     require(options.every >= 1, "--every", "must be at least 1");
 }
 
@@ -93,9 +97,7 @@ MapRun fuseFrames(const MapOptions& options, const Sequence& sequence,
         const RecordedFrame frame = loadFrame(sequence, run.frames);
         run.loadSeconds += watch.lap();
         checkPosition(options, frame);
-        if (!monocular && !isDepthChecked) {
-            isDepthChecked = checkDepths(options, sequence, frame.view);
-        }
+        if (!isDepthChecked) isDepthChecked = checkDepths(options, sequence, frame.view);
         try {
             if (monocular) {
                 monocular->add(frame);
@@ -144,9 +146,9 @@ void compareFrames(const MapOptions& options, const Sequence& sequence, const Te
         const ViewDifference d = compareViews(frame.view, predicted);
         run.compared.push_back({{"timestamp", frame.timestamp},
                                 {"predicted", d.predicted},
-                                {"mean_abs_intensity", d.meanIntensity},
-                                {"median_abs_intensity", d.medianIntensity},
-                                {"contrast", d.contrast},
+                                {"mean_abs_intensity", orNull(d.meanIntensity)},
+                                {"median_abs_intensity", orNull(d.medianIntensity)},
+                                {"contrast", orNull(d.contrast)},
                                 {"mean_abs_depth", orNull(d.meanDepth)},
                                 {"median_abs_depth", orNull(d.medianDepth)}});
         const std::size_t every = std::max<std::size_t>(1, count / kCompared);
@@ -183,6 +185,10 @@ void writeMaps(const fs::path& folder, const TexturedOcTree& map, const Trajecto
 MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted) {
     checkOptions(options);
     Stopwatch watch;
+    if (isEurocFolder(options.dataset)) {
+        throw InputError(options.dataset, "",
+                         "a recording in the EuRoC layout; maps are made of the TUM RGB-D layout");
+    }
     RecordingOptions asked = options;
     asked.needsDepth = options.depth == "recorded";
     const Recording recording = readRecording(asked);

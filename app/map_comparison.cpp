@@ -19,7 +19,6 @@ constexpr Color kText{30, 30, 30};
 constexpr double kFullDifference = 0.5;  // grey values; brightest colour of the difference
 
 double mean(const std::vector<float>& values) {
-    if (values.empty()) return 0.;
     return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
 }
 
@@ -50,6 +49,7 @@ ViewDifference compareViews(const View& observed, const View& predicted) {
     }
     ViewDifference difference;
     difference.predicted = size == 0 ? 0. : static_cast<double>(known.size()) / size;
+    if (known.empty()) return difference;
     difference.meanIntensity = mean(intensity);
     difference.medianIntensity = median(intensity, 0.);
     if (!depth.empty()) {
@@ -82,9 +82,11 @@ std::vector<Panel> comparisonPanels(const View& observed, const View& predicted,
     const ViewDifference difference = compareViews(observed, predicted);
     const int columns = static_cast<int>(observed.intensity.getWidth());
     const unsigned size = observed.intensity.getSize();
-    Panel right{fmt::format("difference (mean {:.3f}; yellow >= {})", difference.meanIntensity,
-                            kFullDifference),
-                std::vector<Color>(size, kNothingKnown), columns};
+    Panel right{"nothing is predicted", std::vector<Color>(size, kNothingKnown), columns};
+    if (difference.meanIntensity) {
+        right.caption = fmt::format("difference (mean {:.3f}; yellow >= {})",
+                                    *difference.meanIntensity, kFullDifference);
+    }
     const auto scale = viridis();
     for (unsigned i = 0; i < size; ++i) {
         if (!(predicted.depth.bitmap[i] > 0.F)) continue;

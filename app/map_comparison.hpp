@@ -13,10 +13,12 @@ namespace photonav {
 
 /// Differences of a predicted and an observed view, over the pixels where both are known.
 struct ViewDifference {
-    double meanIntensity = 0.;    ///< mean absolute, grey values in [0, 1]
-    double medianIntensity = 0.;  ///< median absolute
-    double contrast = 0.;  ///< mean absolute deviation of the observed image from its median over
-                           ///< the same pixels: what predicting the best uniform grey would cost
+    // These three: none where nothing is predicted.
+    std::optional<double> meanIntensity;    ///< mean absolute, grey values in [0, 1]
+    std::optional<double> medianIntensity;  ///< median absolute
+    std::optional<double>
+        contrast;  ///< mean absolute deviation of the observed image from its median over
+                   ///< the same pixels: what predicting the best uniform grey would cost
     std::optional<double> meanDepth;    ///< mean absolute [m]; none without observed depth
     std::optional<double> medianDepth;  ///< median absolute [m]
     double predicted = 0.;              ///< fraction of all pixels at which the map has a surface

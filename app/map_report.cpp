@@ -182,6 +182,9 @@ ReportTable mapSummary(const json& result) {
          {"mean absolute difference of depth", number("mean_abs_depth", 1., "{:.4f} m")},
          {"fusion of one frame",
           fmt::format("{:.1f} ms", result["time"]["fuse_per_frame_s"].get<double>() * 1e3)}}};
+    if (result["voxels"]["occupied"] == 0) {
+        table.rows.emplace(table.rows.begin(), "verdict", "the map is empty: no surface was found");
+    }
     for (auto& row : depthRows(result["monocular"])) table.rows.push_back(std::move(row));
     return table;
 }

@@ -72,8 +72,9 @@ void MonocularFusion::draw(const DepthFilter& filter) {
 std::optional<ReportFigure> MonocularFusion::figure() const {
     if (drawn_.empty()) return {};
     return ReportFigure{
-        fmt::format("What the images said about depth: {} of {} reference images, what was found, "
-                    "what became of every pixel, and the error where depth was recorded.",
+        fmt::format("What the images said about depth: {} of {} reference images, the depth found, "
+                    "what became of every pixel (grey: still open), and the error where depth was "
+                    "recorded.",
                     drawn_.size(), references_),
         panelsPng(drawn_)};
 }

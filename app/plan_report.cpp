@@ -221,12 +221,14 @@ std::vector<NamedFigure> planFigures(const Config& config, const World& world, P
                             drawTrace("Uncertainty along the way", paths, true)}});
     }
     if (recorded) {
+        const auto mean = meanDifference(*recorded);
         figures.push_back(
             {"recorded_frames.png",
-             {fmt::format("Views along the path and the recorded frames nearest to them; what the "
-                          "map predicts at the frames' own poses differs from them by {:.3f} in "
-                          "the mean.",
-                          meanDifference(*recorded)),
+             {"Views along the path and the recorded frames nearest to them" +
+                  (mean ? fmt::format("; what the map predicts at the frames' own poses differs "
+                                      "from them by {:.3f} in the mean.",
+                                      *mean)
+                        : "; the map predicts nothing of them."),
               recorded->picture}});
     }
     return figures;

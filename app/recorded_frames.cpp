@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "command_io.hpp"
 #include "constants.hpp"
 #include "map_config.hpp"
 #include "sequence_tum.hpp"
@@ -109,15 +110,20 @@ nlohmann::json toJson(const RecordedComparison& comparison) {
                           {"distance_m", frame.distance},
                           {"angle_deg", frame.angle / kDegree},
                           {"predicted", frame.difference.predicted},
-                          {"mean_abs_difference", frame.difference.meanIntensity}});
+                          {"mean_abs_difference", orNull(frame.difference.meanIntensity)}});
     }
     return frames;
 }
 
-double meanDifference(const RecordedComparison& comparison) {
+std::optional<double> meanDifference(const RecordedComparison& comparison) {
     double sum = 0.;
-    for (const NearestFrame& frame : comparison.frames) sum += frame.difference.meanIntensity;
-    return sum / static_cast<double>(std::max<std::size_t>(1, comparison.frames.size()));
+    int count = 0;
+    for (const NearestFrame& frame : comparison.frames) {
+        if (!frame.difference.meanIntensity) continue;
+        sum += *frame.difference.meanIntensity;
+        ++count;
+    }
+    return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
 }  // namespace photonav

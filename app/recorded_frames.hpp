@@ -34,10 +34,11 @@ struct RecordedComparison {
 std::optional<RecordedComparison> compareWithRecording(const Config& config, const World& world,
                                                        const JudgedPath& path);
 
-/// [{waypoint, stamp, distance_m, angle_deg, predicted, mean_abs_difference}]
+/// [{waypoint, stamp, distance_m, angle_deg, predicted, mean_abs_difference}], the last one null
+/// where nothing is predicted.
 nlohmann::json toJson(const RecordedComparison& comparison);
 
-/// Of all compared frames.
-double meanDifference(const RecordedComparison& comparison);
+/// Of all compared frames; none when nothing is predicted in any.
+std::optional<double> meanDifference(const RecordedComparison& comparison);
 
 }  // namespace photonav

@@ -167,6 +167,12 @@ TEST_F(MapCommand, RejectsOptionsOutOfRange) {
     rejected([&] { options.fusion.maxRange = 0.1; }, {"--max-range", "least range"});
     rejected([&] { options.depthScale = 0.; }, {"--depth-scale"});
     rejected([&] { options.resolution = 1e-5; }, {"--resolution", "too large"});
+    rejected(
+        [&] {
+            options.depth = "monocular";
+            options.fusion.minRange = 0.;
+        },
+        {"--min-range", "0.05 m"});
 }
 
 TEST_F(MapCommand, RejectsAFolderItCannotWriteBeforeTheWork) {
@@ -189,7 +195,10 @@ TEST_F(MapCommand, WithoutDepthImages) {
     EXPECT_GE(depth["references"], 1);
     EXPECT_TRUE(depth["converged"].is_number());
     EXPECT_TRUE(depth["completeness"].is_null());
+    EXPECT_EQ(report.exitCode, 1);  // a floor that is smooth
+    EXPECT_EQ(report.summary.rows[0].second, "the map is empty: no surface was found");
     EXPECT_TRUE(report.result["comparison"]["frames"][0]["mean_abs_depth"].is_null());
+    EXPECT_TRUE(report.result["comparison"]["frames"][0]["mean_abs_intensity"].is_null());
     EXPECT_FALSE(report.result["comparison"]["mean"].contains("mean_abs_depth"));
     EXPECT_TRUE(test::fs::exists(options.out / "convergence.png"));
     MapOptions again;
@@ -224,6 +233,9 @@ TEST_F(MapCommand, InfoSaysWhatAMapHolds) {
 TEST_F(MapCommand, RejectsDamagedDatasets) {
     options.dataset = (folder.path() / "nothing").string();
     expectRejected({"nothing", "no such folder"});
+    test::fs::create_directories(folder.path() / "mav/mav0/cam0");
+    options.dataset = (folder.path() / "mav").string();
+    expectRejected({"mav: a recording in the EuRoC layout"});
     options.dataset = data.string();
     cv::imwrite((data / "depth/3.png").string(), cv::Mat(30, 40, CV_16UC1, cv::Scalar(1)));
     expectRejected({"depth/3.png", "40x30", "80x60"});
@@ -240,6 +252,8 @@ TEST_F(MapCommand, NoticesADepthScaleThatIsWrongByAThousand) {
     options.depthScale = 5.;
     expectRejected({"--depth-scale", "implausible depths", "too small"});
     options.depthScale = 5e6;
+    expectRejected({"--depth-scale", "implausible depths", "too large"});
+    options.depth = "monocular";
     expectRejected({"--depth-scale", "implausible depths", "too large"});
 }
 
