@@ -15,7 +15,7 @@ namespace {
 constexpr double kFullError = 0.1;  // brightest colour of the relative error
 constexpr std::array<Color, 3> kStateColors{{{205, 205, 205}, {38, 140, 122}, {222, 79, 12}}};
 
-Color colorOf(double share) {
+Color onScale(double share) {
     static const auto scale = viridis();
     return scale[static_cast<std::size_t>(255. * std::clamp(share, 0., 1.))];
 }
@@ -41,7 +41,7 @@ Panel depthPanel(const ImageF& depth) {
     const double far = known[known.size() - 1 - known.size() / 20];
     for (unsigned i = 0; i < depth.getSize(); ++i) {
         const double z = depth.bitmap[i];
-        if (z > 0.) panel.pixels[i] = colorOf((z - near) / std::max(far - near, 1e-6));
+        if (z > 0.) panel.pixels[i] = onScale((z - near) / std::max(far - near, 1e-6));
     }
     panel.caption = fmt::format("depth found, {:.2f} m (violet) to {:.2f} m (yellow)", near, far);
     return panel;
@@ -71,7 +71,7 @@ Panel errorPanel(const ImageF& depth, const ImageF& recorded) {
         const float truth = recorded.bitmap[i];
         if (!(truth > 0.F && depth.bitmap[i] > 0.F)) continue;
         errors.push_back(std::abs(depth.bitmap[i] - truth) / truth);
-        panel.pixels[i] = colorOf(errors.back() / kFullError);
+        panel.pixels[i] = onScale(errors.back() / kFullError);
     }
     panel.caption = fmt::format("its error (median {:.1f} %, yellow: 10 %)",
                                 100. * median(std::move(errors), 0.));

@@ -73,15 +73,15 @@ json framesJson(const MapOptions& options, const Recording& recording, std::size
             {"skipped", skipped}};
 }
 
-using Rows = std::vector<std::pair<std::string, std::string>>;
+using TableRows = std::vector<std::pair<std::string, std::string>>;
 
 /// What one camera found out about depth; nothing when depth was recorded.
-Rows depthRows(const json& mono) {
+TableRows depthRows(const json& mono) {
     if (!mono.is_object()) return {};
     const auto percent = [&](const char* key) {
         return fmt::format("{:.1f} %", 100. * mono[key].get<double>());
     };
-    Rows rows{{"depth from the images, reference images", mono["references"].dump()}};
+    TableRows rows{{"depth from the images, reference images", mono["references"].dump()}};
     if (mono["converged"].is_number()) {
         rows.emplace_back("pixels converged, given up, still open",
                           fmt::format("{}, {}, {}", percent("converged"), percent("given_up"),
