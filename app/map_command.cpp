@@ -189,7 +189,8 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
         throw InputError(options.dataset, "",
                          "a recording in the EuRoC layout; maps are made of the TUM RGB-D layout");
     }
-    RecordingOptions asked = options;
+    const RecordingOptions& given = options;
+    RecordingOptions asked = given;
     asked.needsDepth = options.depth == "recorded";
     const Recording recording = readRecording(asked);
     prepareFolder(options.out);

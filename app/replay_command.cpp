@@ -221,7 +221,8 @@ void calibrateReplay(const ReplayOptions& options, const ReplayRun& run, double 
 ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& interrupted) {
     checkOptions(options);
     const Stopwatch watch;
-    ReplaySourceOptions asked = options;
+    const ReplaySourceOptions& given = options;
+    ReplaySourceOptions asked = given;
     asked.needsDepth = options.odometry;
     const ReplaySource source = openReplaySource(asked);
     if (options.odometry && source.frames.size() < 2) {
