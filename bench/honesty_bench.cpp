@@ -187,7 +187,7 @@ int main(int argc, char** argv) {
     const MeshRenderer room(furnishedHall()), floor(texturedFloor());
     const AlignmentOptions ideal;
     AlignmentOptions exposed;
-    exposed.exposure = true;
+    exposed.exposure = ExposurePrior{};
     const double sigma = std::sqrt(2. / (6. * count));
     fmt::print(
         "{} alignments a row; NEES per degree of freedom, 95 % of chi-square: [{:.3f}, "

@@ -11,7 +11,8 @@ namespace photonav {
 
 namespace {
 
-/// Standard deviations of a weak prior on exposure, which keeps images of one grey value solvable.
+/// Standard deviations that steps of the exposure are taken to have at most, which keeps images of
+/// one grey value solvable.
 constexpr double kExposureSigma = 0.3;
 
 constexpr std::array kAxes = {"x", "y", "z", "pitch", "yaw", "roll"};
@@ -85,18 +86,23 @@ std::string describe(const Alignment& a, const TrustOptions& options) {
 }
 
 PoseEquations poseEquations(const NormalEquations& equations, const PhotometricOptions& options,
-                            bool estimateExposure) {
+                            const std::optional<ExposurePrior>& prior, const Exposure& exposure) {
     const double weight = options.scale / (options.sigma * options.sigma);
     PoseEquations p;
     p.information = weight * equations.AtA.topLeftCorner<6, 6>();
     p.right = weight * equations.Atr.head<6>();
-    if (!estimateExposure) return p;
-    const Eigen::Matrix2d prior = Eigen::Matrix2d::Identity() / (kExposureSigma * kExposureSigma);
-    const Eigen::Matrix2d inverse =
-        (weight * equations.AtA.bottomRightCorner<2, 2>() + prior).inverse();
+    if (!prior) return p;
+    const Eigen::Vector2d known = prior->information();
+    const Eigen::Vector2d atLeast =
+        known.cwiseMax(Eigen::Vector2d::Constant(1. / (kExposureSigma * kExposureSigma)));
+    Eigen::Matrix2d ofExposure = weight * equations.AtA.bottomRightCorner<2, 2>();
+    ofExposure.diagonal() += atLeast;
+    const Eigen::Matrix2d inverse = ofExposure.inverse();
+    const Eigen::Vector2d right =
+        weight * equations.Atr.tail<2>() - known.cwiseProduct(ExposurePrior::difference(exposure));
     const Eigen::Matrix<double, 2, 6> coupling = weight * equations.AtA.bottomLeftCorner<2, 6>();
     p.exposureOfPose = inverse * coupling;
-    p.exposureRight = inverse * (weight * equations.Atr.tail<2>());
+    p.exposureRight = inverse * right;
     p.information -= coupling.transpose() * p.exposureOfPose;
     p.right -= coupling.transpose() * p.exposureRight;
     p.information = 0.5 * (p.information + p.information.transpose()).eval();
@@ -130,12 +136,13 @@ Vector6 mapStep(const Spectrum& s, const PoseEquations& equations, const Vector6
 }
 
 void conclude(Alignment& a, const NormalEquations& equations, std::size_t pixels,
-              const PhotometricOptions& photometric, bool exposureEstimated,
+              const PhotometricOptions& photometric,
+              const std::optional<ExposurePrior>& exposurePrior,
               const std::optional<Matrix6>& prior, const TrustOptions& options) {
     a.overlap = equations.count / static_cast<double>(pixels);
     a.residual = statisticsOf(equations, a.exposure);
     a.meanDepth = equations.meanInverseDepth > 0. ? 1. / equations.meanInverseDepth : 1.;
-    a.information = poseEquations(equations, photometric, exposureEstimated).information;
+    a.information = poseEquations(equations, photometric, exposurePrior).information;
     const Spectrum s = spectrum(a.information, a.meanDepth);
     a.eigenvalues = s.values;
     a.directions = s.directions;
@@ -151,7 +158,7 @@ void conclude(Alignment& a, const NormalEquations& equations, std::size_t pixels
         a.verdict = Verdict::lostOverlap;
     } else if (a.residual.rms > noise && a.residual.unexplained > options.maxUnexplained) {
         a.verdict = Verdict::lostResidual;
-    } else if (exposureEstimated && isAtLimit(a.exposure.gain, options.maxGain)) {
+    } else if (exposurePrior && isAtLimit(a.exposure.gain, options.maxGain)) {
         a.verdict = Verdict::lostExposure;
     } else if (!isLost(a.verdict)) {
         a.verdict = open > 0 ? Verdict::degenerate : Verdict::converged;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "constants.hpp"
 #include "normal_equations.hpp"
 #include "uncertain_pose.hpp"
 
@@ -24,6 +25,26 @@ enum class Verdict {
 inline bool isLost(Verdict verdict) {
     return verdict != Verdict::converged && verdict != Verdict::degenerate;
 }
+
+/// How far an image's gain and offset may be from 1 and 0, where they are estimated: standard
+/// deviations. Where an image is half blank, they would otherwise take the place of the pose.
+struct ExposurePrior {
+    double gainSigma = kInfinity;
+    double offsetSigma = kInfinity;  ///< [grey value]
+
+    /// Inverse variances.
+    Eigen::Vector2d information() const {
+        return {1. / (gainSigma * gainSigma), 1. / (offsetSigma * offsetSigma)};
+    }
+    /// From the likeliest exposure.
+    static Eigen::Vector2d difference(const Exposure& exposure) {
+        return {exposure.gain - 1., exposure.offset};
+    }
+    /// Squared Mahalanobis distance.
+    double squaredDistance(const Exposure& exposure) const {
+        return information().dot(difference(exposure).cwiseAbs2());
+    }
+};
 
 /// When to believe an alignment, and its noise.
 struct TrustOptions {
@@ -89,8 +110,11 @@ struct PoseEquations {
     Eigen::Vector2d exposureRight = Eigen::Vector2d::Zero();
     Eigen::Matrix<double, 2, 6> exposureOfPose = Eigen::Matrix<double, 2, 6>::Zero();
 };
+/// @param prior of the exposure; none: the exposure is fixed
+/// @param exposure at which the equations are
 PoseEquations poseEquations(const NormalEquations& equations, const PhotometricOptions& options,
-                            bool estimateExposure);
+                            const std::optional<ExposurePrior>& prior = {},
+                            const Exposure& exposure = {});
 
 /// Eigenvalues of `information` with translations in units of `meanDepth`, ascending.
 struct Spectrum {
@@ -115,7 +139,8 @@ Vector6 mapStep(const Spectrum& spectrum, const PoseEquations& equations, const 
 /// Fills in everything of an alignment that follows from its last comparison.
 /// @param prior transported covariance at alignment.T_c_w, if there is one
 void conclude(Alignment& alignment, const NormalEquations& equations, std::size_t pixels,
-              const PhotometricOptions& photometric, bool exposureEstimated,
+              const PhotometricOptions& photometric,
+              const std::optional<ExposurePrior>& exposurePrior,
               const std::optional<Matrix6>& prior, const TrustOptions& options);
 
 /// The covariance raised where it is below floor (eigenvalues relative to the floor, clipped at 1).

@@ -65,12 +65,15 @@ Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
     return at;
 }
 
-/// -2 log likelihood, as if `pixels` had been seen: iterates see different numbers of them.
+/// -2 log likelihood of image and priors, as if `pixels` had been seen: iterates see different
+/// numbers of them.
 double Search::cost(const Iterate& at, double pixels) const {
     if (at.equations.count < 1.) return kInfinity;
     const PhotometricOptions& p = options_.photometric;
+    const double exposureTerm =
+        options_.exposure ? options_.exposure->squaredDistance(at.exposure) : 0.;
     return p.scale / (p.sigma * p.sigma) * at.equations.loss * pixels / at.equations.count +
-           at.priorTerm;
+           at.priorTerm + exposureTerm;
 }
 
 /// The prior's covariance at the iterate: with T = exp(e^) T_prior, a perturbation of the prior on
@@ -116,7 +119,7 @@ void Search::adaptLoss(double below) {
 /// One step that lowers the cost, raising the damping until it does; false when there is none.
 bool Search::improve(double& damping) {
     const PoseEquations equations =
-        poseEquations(at_.equations, options_.photometric, options_.exposure);
+        poseEquations(at_.equations, options_.photometric, options_.exposure, at_.exposure);
     for (;;) {
         const Vector6 xi = step(equations, damping);
         const Eigen::Vector2d change = equations.exposureRight - equations.exposureOfPose * xi;

@@ -12,7 +12,8 @@ struct AlignmentOptions {
     PhotometricOptions photometric;
     TrustOptions trust;
     RobustWeight robust = RobustWeight::none;
-    bool exposure = false;    ///< estimate gain and offset of the observed image as well
+    /// Estimate gain and offset of the observed image as well, with this prior (by default: none).
+    std::optional<ExposurePrior> exposure;
     int levels = 4;           ///< of the pyramid, each half the size; fewer when images are small
     int maxIterations = 25;   ///< views rendered per level
     double coarseStep = 0.3;  ///< a level but the finest is done below this step [its pixels]

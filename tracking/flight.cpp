@@ -33,6 +33,15 @@ std::uint64_t seedOf(std::uint64_t seed, std::uint64_t use) {
     return (static_cast<std::uint64_t>(words[0]) << 32) | words[1];
 }
 
+/// An image in the exposure of the model.
+ImageF asModelled(const ImageF& observed, const Exposure& exposure) {
+    ImageF image = observed;
+    for (unsigned i = 0; i < image.getSize(); ++i) {
+        image.bitmap[i] = static_cast<float>((image.bitmap[i] - exposure.offset) / exposure.gain);
+    }
+    return image;
+}
+
 class Flight {
   public:
     Flight(const std::vector<PlannedView>& plan, const FlightWorld& world,
@@ -148,7 +157,8 @@ void Flight::receive(const TakenImage& taken) {
     if (watch_.isLostNow()) {
         search(taken.image);
     } else if (atGoalSince_) {
-        approachOnImage(taken.image);
+        approachOnImage(isLost(alignment.verdict) ? taken.image
+                                                  : asModelled(taken.image, alignment.exposure));
     }
 }
 

@@ -63,6 +63,18 @@ ImageNoise assumedNoise(const PhotometricOptions& options) {
     };
 }
 
+ImageNoise realNoise(const CameraNoiseOptions& options, const WanderingExposure& wandering) {
+    return [options, wandering, state = std::optional<double>{}](ImageF& image,
+                                                                 std::mt19937_64& random) mutable {
+        std::normal_distribution<double> normal;
+        const double c = wandering.correlation;
+        state = state ? c * *state + std::sqrt(1. - c * c) * normal(random) : normal(random);
+        CameraNoiseOptions now = options;
+        now.exposure.gain *= 1. + wandering.gainSigma * std::clamp(*state, -2., 2.);
+        image = takePicture(image, now, random);
+    };
+}
+
 SimulatedCamera::SimulatedCamera(const ViewSource& world, const Camera& camera, ImageNoise noise,
                                  const SimulatedCameraOptions& options, std::uint64_t seed)
     : world_(world), camera_(camera), noise_(std::move(noise)), options_(options), random_(seed) {

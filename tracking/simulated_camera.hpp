@@ -8,6 +8,7 @@
 #include <optional>
 #include <random>
 
+#include "camera_noise.hpp"
 #include "photometric.hpp"
 
 namespace photonav {
@@ -19,6 +20,17 @@ using ImageNoise = std::function<void(ImageF& image, std::mt19937_64& random)>;
 /// of 1 / scale pixels correlated. `scale` says that neighbouring pixels are not independent; with
 /// noise like this an image is worth what Lambda says. Independent pixels for a scale of 1 or more.
 ImageNoise assumedNoise(const PhotometricOptions& options);
+
+/// How the exposure of a camera wanders that sets it by itself: a first-order Gauss-Markov process.
+struct WanderingExposure {
+    double gainSigma = 0.1;  ///< standard deviation of the gain about 1, cut off at twice as much
+    double correlation = 0.95;  ///< of the gains of consecutive images
+};
+
+/// The noise of a real camera, image by image, times a gain that wanders. A copy has an exposure of
+/// its own, from where the original's is.
+ImageNoise realNoise(const CameraNoiseOptions& options = {},
+                     const WanderingExposure& wandering = {});
 
 struct SimulatedCameraOptions {
     double period = 0.25;        ///< between exposures [s]

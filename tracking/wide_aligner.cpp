@@ -70,17 +70,28 @@ double meanDepth(const View& view) {
     return count > 0. ? count / sum : 1.;
 }
 
-/// Mean square difference where there is a surface.
-double difference(const ImageF& observed, const View& predicted) {
+/// -2 log likelihood of an image where there is a surface, in its likeliest exposure.
+/// @param weight that makes mean square differences -2 log likelihoods
+double misfit(const ImageF& observed, const View& predicted, double weight,
+              const std::optional<ExposurePrior>& prior) {
+    Eigen::Matrix2d AtA = Eigen::Matrix2d::Zero();  // of gain and offset, from 1 and 0
+    Eigen::Vector2d Atr = Eigen::Vector2d::Zero();
     double sum = 0.;
-    double count = 0.;
     for (unsigned i = 0; i < observed.getSize(); ++i) {
         if (predicted.depth.bitmap[i] <= 0.F) continue;
-        const double r = observed.bitmap[i] - predicted.intensity.bitmap[i];
+        const Eigen::Vector2d a(predicted.intensity.bitmap[i], 1.);
+        const double r = observed.bitmap[i] - a[0];
+        AtA += a * a.transpose();
+        Atr += r * a;
         sum += r * r;
-        ++count;
     }
-    return count > 0. ? sum / count : 1.;
+    const double count = AtA(1, 1);
+    if (count == 0.) return weight;
+    AtA *= weight / count;
+    Atr *= weight / count;
+    if (!prior) return weight * sum / count;
+    AtA.diagonal() += prior->information();
+    return weight * sum / count - Atr.dot(AtA.completeOrthogonalDecomposition().solve(Atr));
 }
 
 double variance(const ImageF& image) {
@@ -122,7 +133,7 @@ std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const Uncert
         offset.head<3>() = play.axes * place;
         poses.push_back(expSE3(offset) * prior.mean);
         model_.render(camera, poses.back(), view);
-        costs.push_back(weight() * difference(small, view) +
+        costs.push_back(misfit(small, view, weight(), aligner_.options().exposure) +
                         place.cwiseQuotient(play.sigmas.cwiseMax(1e-3)).squaredNorm());
     }
     std::vector<std::size_t> order(places.size());
@@ -150,9 +161,11 @@ double WideAligner::weight() const {
     return p.scale * camera.width * camera.height / (p.sigma * p.sigma);
 }
 
-/// -2 log likelihood of image and prior.
+/// -2 log likelihood of image and priors.
 double WideAligner::costOf(const Alignment& a, const UncertainPose& prior) const {
+    const auto& exposure = aligner_.options().exposure;
     return weight() * a.residual.rms * a.residual.rms +
+           (exposure ? exposure->squaredDistance(a.exposure) : 0.) +
            squaredDistance(logSE3(a.T_c_w * prior.mean.inverse()), prior.covariance);
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "simulated_camera.hpp"
+
 namespace photonav {
 namespace {
 
@@ -58,6 +60,27 @@ TEST(CameraNoise, ExposesVignettesClipsAndQuantises) {
     EXPECT_EQ(takePicture(grey(0.9F), options, random)[50][50], 1.F);
     options.bits = 2;  // 0, 1/3, 2/3, 1
     EXPECT_NEAR(takePicture(grey(0.4F), options, random)[50][50], 2. / 3., 1e-6);
+}
+
+/// Every copy is a camera of its own: flights on several threads share the original.
+TEST(CameraNoise, ExposureWandersSlowly) {
+    const ImageNoise original = realNoise(noiseless(), {.gainSigma = 0.1, .correlation = 0.9});
+    std::mt19937_64 random(5);
+    double squares = 0., steps = 0.;
+    constexpr int kCameras = 200;
+    for (int k = 0; k < kCameras; ++k) {
+        ImageNoise camera = original;
+        ImageF first(3, 3, 0.5F), second(3, 3, 0.5F);
+        camera(first, random);
+        camera(second, random);
+        const double gain = first[1][1] / 0.5 - 1.;
+        const double step = second[1][1] / 0.5 - 1. - gain;
+        EXPECT_LE(std::abs(gain), 0.2 + 1e-5);
+        squares += gain * gain / kCameras;
+        steps += step * step / kCameras;
+    }
+    EXPECT_NEAR(std::sqrt(squares), 0.1, 0.015);
+    EXPECT_NEAR(std::sqrt(steps), 0.1 * std::sqrt(2. - 2. * 0.9), 0.008);
 }
 
 TEST(CameraNoise, BlurSpreadsAPointAndKeepsItsLight) {

@@ -63,7 +63,7 @@ TEST(KeyframeModel, LeavesOutDepthThatBends) {
 
 TEST(KeyframeModel, EstimatesExposure) {
     KeyframeOptions options;
-    options.alignment.exposure = true;
+    options.alignment.exposure = ExposurePrior{};
     KeyframeModel keyframe(roomView(kFirst), wideCamera(), kFirst, options);
     const Pose truth = expSE3(0.05 * Vector6::Unit(1)) * kFirst;
     ImageF image = roomView(truth).intensity;

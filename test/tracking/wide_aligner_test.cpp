@@ -54,6 +54,19 @@ TEST_F(WideAlignerTest, FindsThePlaceFromAfar) {
     EXPECT_LT(errorOf(a), 0.01);
 }
 
+TEST_F(WideAlignerTest, FindsThePlaceInAnotherExposure) {
+    options.exposure = {.gainSigma = 0.15, .offsetSigma = 0.01};
+    const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    WideAligner wide(floor, camera, options);
+    const Pose truth = cameraAt({0.9, -0.8, 2.1}, kDown);
+    ImageF image = seen(floor, truth);
+    for (unsigned i = 0; i < image.getSize(); ++i) image.bitmap[i] *= 0.65F;
+    const Alignment a = wide.align(image, prior(cameraAt({0., 0., 2.}, kDown), 0.45));
+    EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
+    EXPECT_LT(logSE3(a.T_c_w * truth.inverse()).head<3>().norm(), 0.02);
+    EXPECT_NEAR(a.exposure.gain, 0.65, 0.02);
+}
+
 /// The border of white and texture is just in view where the camera is thought to be, and not
 /// where it is. That is no measurement of the border: it moves out of view, and no more is known.
 TEST_F(WideAlignerTest, NothingInViewIsNoPlaceFound) {
