@@ -264,6 +264,7 @@ Config loadConfig(const std::string& file, const std::vector<std::string>& overr
     config.sweep.reference = resolve(config.sweep.reference, file);
     config.fly = readFly(root);
     config.fly.plan = resolve(config.fly.plan, file);
+    config.fly.map = resolve(config.fly.map, file);
     readCount(root, "seed", config.seed, 1., 4294967295.);
     root.finish();
     return config;

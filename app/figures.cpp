@@ -143,11 +143,11 @@ void drawRoute(const Plot& plot, const TopView& view, std::size_t path) {
 }
 
 void drawTree(const Plot& plot, const DrawnTree& tree) {
-    const double opacity = std::clamp(60.0 / static_cast<double>(tree.edges.size()), 0.25, 0.8);
-    plot.canvas.translucent(opacity, [&] {
+    const double sparse = std::clamp(60.0 / static_cast<double>(tree.edges.size()), 0.25, 0.8);
+    plot.canvas.translucent(tree.isOnTop ? 0.6 : sparse, [&] {
         for (const Edge& edge : tree.edges)
             plot.canvas.line(plot.at(edge[0].x(), edge[0].y()), plot.at(edge[1].x(), edge[1].y()),
-                             tree.color, 0.7);
+                             tree.color, tree.isOnTop ? 1.3 : 0.7);
     });
 }
 
@@ -169,10 +169,15 @@ void drawMap(const Plot& plot, const TopView& view) {
     drawBackground(plot.canvas, view.background, plot.frame);
     {
         const auto clipped = plot.canvas.clip(plot.frame);
-        for (const DrawnTree& tree : view.trees) drawTree(plot, tree);
+        const auto drawTrees = [&](bool onTop) {
+            for (const DrawnTree& tree : view.trees)
+                if (tree.isOnTop == onTop) drawTree(plot, tree);
+        };
+        drawTrees(false);
         if (view.ellipseScale > 0.0)
             for (const DrawnPath& path : view.paths) drawEllipses(plot, path, view.ellipseScale);
         for (std::size_t i = view.paths.size(); i-- > 0;) drawRoute(plot, view, i);
+        drawTrees(true);
         drawMarker(plot.canvas, plot.at(view.start.x(), view.start.y()), kStart);
         drawMarker(plot.canvas, plot.at(view.goal.x(), view.goal.y()), kGoal);
     }

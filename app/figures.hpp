@@ -44,6 +44,7 @@ struct DrawnTree {
     std::string name = "search tree";
     Color color = kTreeColor;
     std::vector<Edge> edges;
+    bool isOnTop = false;  ///< drawn over the paths, and stronger: what was flown
 };
 
 /// Start, goal, paths and tree from above, over the grey values of the floor or map.

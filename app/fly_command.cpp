@@ -6,16 +6,39 @@
 #include <optional>
 
 #include "atomic_file.hpp"
+#include "calibration.hpp"
 #include "camera_noise.hpp"
 #include "flight_recorder.hpp"
 #include "fly_plan.hpp"
 #include "fly_report.hpp"
 #include "stopwatch.hpp"
+#include "tracking_map.hpp"
 
 namespace photonav {
 namespace {
 
-FlightOptions flightOptions(const Config& config) {
+/// A real camera's images are worth less than planned with: what vignetting does to them is alike
+/// in all images of a place (docs/fly.md).
+constexpr double kRealCamera = 0.25;  // of camera.information_scale
+
+/// How images are aligned: as they were planned with, or as those of a real camera.
+/// @param resolution of the map [m]; 0: a mesh
+AlignmentOptions flightAlignment(const Config& config, double resolution) {
+    const FlyConfig& fly = config.fly;
+    const bool isReal = fly.camera == "real";
+    const AlignmentOptions real = realCameraOptions(resolution);
+    AlignmentOptions alignment;
+    alignment.photometric = config.photometric;
+    alignment.photometric.stride = 1;
+    alignment.photometric.scale =
+        fly.scale.value_or((isReal ? kRealCamera : 1.) * config.photometric.scale);
+    alignment.trust.floorTranslation = fly.floorTranslation.value_or(real.trust.floorTranslation);
+    alignment.trust.floorRotation = fly.floorRotation.value_or(real.trust.floorRotation);
+    if (isReal) alignment.exposure = real.exposure;
+    return alignment;
+}
+
+FlightOptions flightOptions(const Config& config, double resolution) {
     const FlyConfig& fly = config.fly;
     FlightOptions flight;
     flight.mav.odometryNoise = config.belief.motionNoise;
@@ -28,20 +51,13 @@ FlightOptions flightOptions(const Config& config) {
     flight.camera.blackoutStart = fly.blackout[0];
     flight.camera.blackoutLength = fly.blackout[1];
     flight.servo.maxSpeed = fly.speed;
-    flight.alignment.photometric = config.photometric;
-    flight.alignment.photometric.stride = 1;
+    flight.alignment = flightAlignment(config, resolution);
     flight.lost.blindTime = std::max(flight.lost.blindTime, 4. * flight.camera.period);
     flight.photometricGoal = fly.photometricGoal;
     flight.bodyRadius = fly.bodyRadius > 0. ? fly.bodyRadius : 0.5 * config.robotRadius;
     flight.arrivalTolerance = std::max(config.robotRadius, 0.1);
     flight.seed = config.seed;
     return flight;
-}
-
-ImageNoise realNoise() {
-    return [](ImageF& image, std::mt19937_64& random) {
-        image = takePicture(image, CameraNoiseOptions{}, random);
-    };
 }
 
 /// The config's planner first, then RRT* if it is to be compared with.
@@ -102,12 +118,19 @@ void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const Flight
     if (recorder) recorder->finish();
 }
 
+void printFailure(const FlightSet& set) {
+    const FlightSummary s = summarise(set);
+    if (s.flights == 0 || s.arrived > 0) return;
+    fmt::print("no flight of {} arrived: {} astray, {} collided, {} gave up lost, {} out of time\n",
+               set.path.planner, s.astray, s.collisions, s.lost, s.outOfTime);
+}
+
 void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::path& folder) {
     if (sets.empty()) fmt::print("no path found\n");
     if (!sets.empty()) {
-        fmt::print("{:<16} {:>9} {:>10} {:>11} {:>10} {:>10} {:>6} {:>7} {:>11}\n", "planner",
-                   "arrived", "collisions", "error (rms)", "predicted", "believed", "NEES", "lost",
-                   "goal error");
+        fmt::print("{:<16} {:>9} {:>10} {:>11} {:>10} {:>10} {:>6} {:>12} {:>7} {:>11}\n",
+                   "planner", "arrived", "collisions", "error (rms)", "predicted", "believed",
+                   "NEES", "NEES at goal", "lost", "goal error");
     }
     for (const FlightSet& set : sets) {
         const FlightSummary s = summarise(set);
@@ -116,11 +139,13 @@ void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::pat
             continue;
         }
         fmt::print(
-            "{:<16} {:>9} {:>10} {:>9.3f} m {:>8.3f} m {:>8.3f} m {:>6.2f} {:>5.1f} s "
+            "{:<16} {:>9} {:>10} {:>9.3f} m {:>8.3f} m {:>8.3f} m {:>6.2f} {:>12.2f} {:>5.1f} s "
             "{:>9.3f} m\n",
             set.path.planner, fmt::format("{} of {}", s.arrived, s.flights), s.collisions,
-            s.positionRmse, s.predictedSigma, s.believedSigma, s.nees, s.lostTime, s.goalError);
+            s.positionRmse, s.predictedSigma, s.believedSigma, s.nees, s.neesAtGoal, s.lostTime,
+            s.goalError);
     }
+    if (!sets.empty()) printFailure(sets.front());
     fmt::print("report: {}\n", (folder / "report.html").string());
 }
 
@@ -138,11 +163,9 @@ std::filesystem::path folderFor(const FlyOptions& options, const std::filesystem
     return folder;
 }
 
-bool anyArrived(const std::vector<FlightSet>& sets) {
-    for (const FlightSet& set : sets) {
-        if (summarise(set).arrived > 0) return true;
-    }
-    return false;
+/// The config's own plan is the first one: what it is compared with is no success.
+bool hasArrived(const std::vector<FlightSet>& sets) {
+    return !sets.empty() && summarise(sets.front()).arrived > 0;
 }
 
 }  // namespace
@@ -154,7 +177,9 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     if (!source.resultFile.empty()) {
         config.fly.plan = std::filesystem::absolute(source.resultFile).lexically_normal().string();
     }
-    const FlightOptions flight = flightOptions(config);
+    const TrackingMap map =
+        config.fly.map.empty() ? TrackingMap{} : loadTrackingMap(config.fly.map);
+    const FlightOptions flight = flightOptions(config, map.resolution());
     const World world(config);
     PlanRun run(config, world);
     run.checkPlaces();
@@ -166,7 +191,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
         sets = planAll(config, run, line, interrupted);
         const FlightWorld flightWorld{
             .truth = &world.views(),
-            .map = &world.views(),
+            .map = map.views ? map.views.get() : &world.views(),
             .clearance = [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
             .camera = config.camera.camera(),
             .T_b_c = config.camera.T_b_c(),
@@ -184,7 +209,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     else if (!options.quiet)
         printSummary(sets, folder);
     if (stopped) return kInterrupted;
-    return anyArrived(sets) ? kDone : kNoAnswer;
+    return hasArrived(sets) ? kDone : kNoAnswer;
 }
 
 }  // namespace photonav

@@ -19,7 +19,8 @@ struct FlyOptions : CommandOptions {
 /// trajectory.tum, .cov and .ov and groundtruth.tum of the first flight, errors.png, nees.png,
 /// top_view.png, report.json and report.html.
 /// @param interrupted when set, flying ends with the flights that were flown (exit code 130)
-/// @return the exit code: kNoAnswer when there was no path or no flight arrived
+/// @return the exit code: kNoAnswer when there was no path or no flight of the config's own planner
+///         arrived (whether RRT*'s did does not count)
 /// @throws InputError for bad input, before anything is written
 int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted);
 

@@ -6,16 +6,18 @@
 #include <cstdio>
 
 #include "command_line.hpp"
+#include "constants.hpp"
 #include "fly_command.hpp"
 #include "fly_config.hpp"
+#include "replay_calibration.hpp"
 
 namespace photonav {
 namespace {
 
 /// Every key of the config's `fly` that has an option: --body-radius is fly.body_radius.
-constexpr std::array kKeys{"flights",         "speed",    "rate",   "latency",  "drop",
-                           "black",           "blackout", "camera", "odometry", "body_radius",
-                           "photometric_goal"};
+constexpr std::array kKeys{
+    "flights", "speed",    "rate",        "latency",          "drop",  "black", "blackout",
+    "camera",  "odometry", "body_radius", "photometric_goal", "scale", "floor", "floor_rotation"};
 
 std::string optionOf(std::string key) {
     std::replace(key.begin(), key.end(), '_', '-');
@@ -61,8 +63,41 @@ void addFlight(CLI::App& parser, FlyConfig& typed) {
                     "servo on the goal's image at the end (the default)");
 }
 
+/// What the images are worth, and what they are compared with.
+void addTracking(CLI::App& parser, FlyConfig& typed) {
+    const auto number = [&](const char* name, std::optional<double>& value, const char* what,
+                            double least) {
+        parser.add_option(name, value, what)->check(CLI::Range(least, kInfinity));
+    };
+    parser.add_option("--map", typed.map,
+                      "track in this textured octree (.ot), mesh or scene file instead of the true "
+                      "world");
+    number("--scale", typed.scale,
+           "factor on the information (default: camera.information_scale, a quarter of it with "
+           "--camera real)",
+           1e-12);
+    number("--floor", typed.floorTranslation,
+           "least standard deviation of a position [m] (default: that of the map's cells)", 0.);
+    number("--floor-rotation", typed.floorRotation, "the same of a rotation [rad]", 0.);
+    parser
+        .add_option("--calibration",
+                    "these three from the calibration.yaml of a replay --calibrate (each gives way "
+                    "to its own option)")
+        ->type_name("FILE");
+}
+
 /// What was typed goes over the config, as --set would.
 void override(const CLI::App& parser, std::vector<std::string>& overrides) {
+    if (parser.count("--calibration") > 0) {
+        const Calibration c = readCalibration(parser["--calibration"]->as<std::string>());
+        overrides.push_back(fmt::format("fly.scale={}", c.scale));
+        overrides.push_back(fmt::format("fly.floor={}", c.floorTranslation));
+        overrides.push_back(fmt::format("fly.floor_rotation={}", c.floorRotation));
+    }
+    if (parser.count("--map") > 0) {
+        const auto file = std::filesystem::absolute(parser["--map"]->as<std::string>());
+        overrides.push_back("fly.map=" + file.lexically_normal().string());
+    }
     for (const std::string key : kKeys) {
         const CLI::Option* option = parser.get_option(optionOf(key));
         if (option->count() == 0) continue;
@@ -82,7 +117,9 @@ Command flyCommand(CLI::App& app, const Invocation& invocation) {
     auto options = std::make_shared<Options>();
     options->commandLine = invocation.commandLine;
     CLI::App* parser =
-        app.add_subcommand("fly", "Fly a plan in closed loop, many times, beside RRT*'s.");
+        app.add_subcommand("fly",
+                           "Fly a plan in closed loop, many times, beside RRT*'s. Exit code 0: a "
+                           "flight of the config's planner arrived.");
     addCommon(*parser, *options);
     parser->get_option("config")->description("YAML file, or result folder of photonav plan");
     parser->add_option("--jobs", options->jobs, "threads")
@@ -90,6 +127,7 @@ Command flyCommand(CLI::App& app, const Invocation& invocation) {
         ->capture_default_str();
     addSeed(*parser, options->seed, "of everything random");
     addFlight(*parser, options->typed);
+    addTracking(*parser, options->typed);
     parser
         ->add_option("--record", options->record, "write the first flight as a TUM RGB-D recording")
         ->type_name("DIR");

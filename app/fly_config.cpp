@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "constants.hpp"
+
 namespace photonav {
 
 FlyConfig readFly(YamlMap& root) {
@@ -26,13 +28,30 @@ FlyConfig readFly(YamlMap& root) {
     fly.readNumber("odometry", config.odometry, 0., 1e6);
     fly.readNumber("body_radius", config.bodyRadius, 0., 1e3);
     fly.read("photometric_goal", config.photometricGoal);
+    fly.read("map", config.map);
+    const auto optional = [&](const char* key, std::optional<double>& value, double least) {
+        if (fly.has(key)) fly.readNumber(key, value.emplace(), least, kInfinity);
+    };
+    optional("scale", config.scale, 1e-12);
+    optional("floor", config.floorTranslation, 0.);
+    optional("floor_rotation", config.floorRotation, 0.);
     fly.finish();
     return config;
 }
 
 std::string toYaml(const FlyConfig& c) {
     std::string text = "fly:\n";
-    if (!c.plan.empty()) text += fmt::format("  plan: {}\n", YAML::Dump(YAML::Node(c.plan)));
+    const auto path = [&](const char* key, const std::string& file) {
+        if (!file.empty()) text += fmt::format("  {}: {}\n", key, YAML::Dump(YAML::Node(file)));
+    };
+    const auto optional = [&](const char* key, const std::optional<double>& value) {
+        if (value) text += fmt::format("  {}: {}\n", key, *value);
+    };
+    path("plan", c.plan);
+    path("map", c.map);
+    optional("scale", c.scale);
+    optional("floor", c.floorTranslation);
+    optional("floor_rotation", c.floorRotation);
     return text + fmt::format(
                       "  flights: {}\n  speed: {}\n  rate: {}\n  latency: {}\n  drop: {}\n"
                       "  black: {}\n  blackout: [{}, {}]\n  camera: {}\n  odometry: {}\n"

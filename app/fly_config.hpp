@@ -2,6 +2,7 @@
 // What a config says about `photonav fly`: how often and under which conditions a plan is flown.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "yaml_reader.hpp"
@@ -21,6 +22,11 @@ struct FlyConfig {
     double odometry = 1.;            ///< true variance of the odometry by what is assumed of it
     double bodyRadius = 0.;          ///< of collisions [m]; 0: half of robot.radius
     bool photometricGoal = true;     ///< servo on the goal's image at the end
+    std::string map;  ///< octree, mesh or scene file to track in, absolute; empty: the true world
+    std::optional<double> scale;             ///< factor on the information of an image
+    std::optional<double> floorTranslation;  ///< least standard deviations of an alignment [m]
+    std::optional<double> floorRotation;     ///< [rad]; without these three the defaults of camera
+                                             ///< and map: flightAlignment()
 };
 
 /// Reads the config's `fly`.

@@ -47,20 +47,20 @@ double longest(const std::vector<FlightSet>& sets) {
     return length;
 }
 
-/// The largest predicted sigma, and almost all of the errors.
+/// The largest predicted 3 sigma, and almost all of the errors.
 double mostOf(const std::vector<FlightSet>& sets) {
     double most = 0.;
     for (const FlightSet& set : sets) {
         std::vector<double> errors{0.};
         for (const PlannedView& view : set.plan)
-            most = std::max(most, 2. * predictedSigma(set.plan, view.distance));
+            most = std::max(most, 3. * predictedSigma(set.plan, view.distance));
         for (const FlightResult& flight : set.flights)
             for (const FlightSample& sample : flight.samples)
                 errors.push_back(positionError(sample, set.plan).error);
         std::sort(errors.begin(), errors.end());
         most = std::max(most, errors[(errors.size() - 1) * 99 / 100]);
     }
-    return std::max(1.1 * most, 1e-3);
+    return std::max(1.05 * most, 1e-3);
 }
 
 void drawBand(const Plot& plot, const FlightSet& set, double sigmas, double opacity,
@@ -154,7 +154,8 @@ Png drawNees(const std::vector<FlightSet>& sets) {
     double most = 2.;
     double least = 0.5;
     for (const FlightSet& set : sets) {
-        curves.push_back(meansAlong(set, neesPerDof));
+        curves.push_back(
+            meansAlong(set, [](const FlightSample& sample) { return neesPerDof(sample); }));
         for (const Canvas::Point& p : curves.back()) {
             most = std::max(most, p.y());
             if (p.y() > 0.) least = std::min(least, p.y());
@@ -183,7 +184,9 @@ Png drawNees(const std::vector<FlightSet>& sets) {
 }
 
 DrawnTree drawnFlights(const FlightSet& set, const Color& color) {
-    DrawnTree lines{"flights, " + set.path.planner, color, {}};
+    const auto darker = [](std::uint8_t level) { return static_cast<std::uint8_t>(level * 2 / 5); };
+    const Color dark{darker(color.red), darker(color.green), darker(color.blue)};
+    DrawnTree lines{"flights, " + set.path.planner, dark, {}, true};
     for (const FlightResult& flight : set.flights) {
         for (std::size_t i = 1; i < flight.samples.size(); ++i) {
             lines.edges.push_back(

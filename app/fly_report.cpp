@@ -132,24 +132,29 @@ std::vector<NamedFigure> figuresOf(const Config& config, const World& world,
 
 json flyResult(const Config& config, const std::vector<FlightSet>& sets,
                const FlightOptions& options, bool interrupted) {
-    json result{{"schema", 1},
-                {"command", "fly"},
-                {"version", PHOTONAV_VERSION},
-                {"status", interrupted    ? "interrupted"
-                           : sets.empty() ? "no path"
-                                          : "done"},
-                {"seed", config.seed},
-                {"flight",
-                 {{"camera_period_s", options.camera.period},
-                  {"camera_latency_s", options.camera.latency},
-                  {"camera_drop_rate", options.camera.dropRate},
-                  {"camera_black_rate", options.camera.blackRate},
-                  {"blackout_s", {options.camera.blackoutStart, options.camera.blackoutLength}},
-                  {"max_speed_mps", options.servo.maxSpeed},
-                  {"odometry_factor", options.mav.odometryFactor},
-                  {"body_radius_m", options.bodyRadius},
-                  {"arrival_tolerance_m", options.arrivalTolerance}}},
-                {"planners", json::array()}};
+    json result{
+        {"schema", 1},
+        {"command", "fly"},
+        {"version", PHOTONAV_VERSION},
+        {"status", interrupted    ? "interrupted"
+                   : sets.empty() ? "no path"
+                                  : "done"},
+        {"seed", config.seed},
+        {"flight",
+         {{"camera_period_s", options.camera.period},
+          {"camera_latency_s", options.camera.latency},
+          {"camera_drop_rate", options.camera.dropRate},
+          {"camera_black_rate", options.camera.blackRate},
+          {"blackout_s", {options.camera.blackoutStart, options.camera.blackoutLength}},
+          {"max_speed_mps", options.servo.maxSpeed},
+          {"odometry_factor", options.mav.odometryFactor},
+          {"body_radius_m", options.bodyRadius},
+          {"arrival_tolerance_m", options.arrivalTolerance},
+          {"map", config.fly.map},
+          {"scale", options.alignment.photometric.scale},
+          {"floor",
+           {options.alignment.trust.floorTranslation, options.alignment.trust.floorRotation}}}},
+        {"planners", json::array()}};
     for (const FlightSet& set : sets) result["planners"].push_back(jsonOf(set));
     return result;
 }

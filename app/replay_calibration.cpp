@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "constants.hpp"
 #include "se3.hpp"
+#include "yaml_reader.hpp"
 
 namespace photonav {
 
@@ -39,9 +41,20 @@ std::string toYaml(const Calibration& c) {
     return fmt::format(
         "# NEES per degree of freedom {:.3g} before, {:.3g} with these:\n"
         "# photonav replay ... --scale {:.3g} --floor {:.3g} --floor-rotation {:.3g}\n"
-        "scale: {:.3g}\nfloor: [{:.3g}, {:.3g}]  # m, rad\n",
+        "scale: {:.3g}\nfloor: {:.3g}  # m\nfloor_rotation: {:.3g}  # rad\n",
         c.neesBefore, c.neesAfter, c.scale, c.floorTranslation, c.floorRotation, c.scale,
         c.floorTranslation, c.floorRotation);
+}
+
+Calibration readCalibration(const std::string& file) {
+    YamlMap yaml(file, loadYaml(file));
+    Calibration c;
+    if (!yaml.has("scale")) yaml.fail("scale", "missing");
+    yaml.readNumber("scale", c.scale, 1e-12, kInfinity);
+    yaml.readNumber("floor", c.floorTranslation, 0., kInfinity);
+    yaml.readNumber("floor_rotation", c.floorRotation, 0., kInfinity);
+    yaml.finish();
+    return c;
 }
 
 }  // namespace photonav

@@ -22,7 +22,11 @@ std::vector<AlignmentError> alignmentErrors(const ReplayRun& run, bool odometry,
 std::optional<Calibration> calibrationOf(const ReplayRun& run, bool odometry, double scale,
                                          bool floorOnly);
 
-/// For the command line, and as YAML.
+/// For the command line, and as YAML that readCalibration() reads back.
 std::string toYaml(const Calibration& calibration);
+
+/// Factor and floor of such a file.
+/// @throws InputError naming file, key and reason
+Calibration readCalibration(const std::string& file);
 
 }  // namespace photonav

@@ -11,15 +11,12 @@
 #include "calibration.hpp"
 #include "command_io.hpp"
 #include "error.hpp"
-#include "mesh_renderer.hpp"
-#include "octree_file.hpp"
 #include "replay_calibration.hpp"
 #include "replay_config.hpp"
 #include "replay_report.hpp"
 #include "replay_run.hpp"
-#include "scene.hpp"
 #include "stopwatch.hpp"
-#include "voxel_renderer.hpp"
+#include "tracking_map.hpp"
 
 namespace photonav {
 namespace {
@@ -106,33 +103,6 @@ std::optional<double> checkDepths(const ReplayOptions& options, const ReplaySour
     return {};
 }
 
-/// What images are compared with.
-struct ReplayMap {
-    std::shared_ptr<TexturedOcTree> octree;
-    std::unique_ptr<ViewSource> views;
-    std::function<void(ReportData&)> describe = [](ReportData&) {};
-};
-
-ReplayMap loadMap(const std::string& file) {
-    ReplayMap map;
-    if (file.empty()) return map;
-    const std::string extension = fs::path(file).extension().string();
-    if (extension == ".ot" || extension == ".bt") {
-        map.octree = loadTexturedOcTree(file);
-        map.views = std::make_unique<VoxelRenderer>(*map.octree, UnknownPolicy::free);
-        map.describe = [octree = map.octree](ReportData& report) {
-            report.voxels = makeReportVoxels(*octree);
-        };
-        return map;
-    }
-    auto renderer = std::make_unique<MeshRenderer>(loadScene(file));
-    map.describe = [mesh = renderer.get()](ReportData& report) {
-        report.mesh = makeReportMesh(mesh->scene());
-    };
-    map.views = std::move(renderer);
-    return map;
-}
-
 void setWidth(KeyframeOptions& keyframe, const Camera& camera, int maxWidth) {
     keyframe.finest = 0;
     while (static_cast<int>(camera.width >> keyframe.finest) > maxWidth) ++keyframe.finest;
@@ -141,11 +111,15 @@ void setWidth(KeyframeOptions& keyframe, const Camera& camera, int maxWidth) {
 }
 
 ReplayTracker makeTracker(const ReplayOptions& options, const ReplaySource& source,
-                          const ReplayMap& map) {
+                          const TrackingMap& map) {
     const UncertainPose start = startOf(options, source);
     const auto set = [&](AlignmentOptions& alignment) {
         alignment.photometric.sigma = options.sigma;
-        alignment.exposure = options.exposure;
+        if (!options.exposure) {
+            alignment.exposure.reset();
+        } else if (!alignment.exposure) {
+            alignment.exposure.emplace();
+        }
         alignment.robust = RobustWeight::huber;
         alignment.trust.minOverlap = options.minOverlap;
         if (options.scale) alignment.photometric.scale = *options.scale;
@@ -159,7 +133,7 @@ ReplayTracker makeTracker(const ReplayOptions& options, const ReplaySource& sour
         return odometryTracker(source.camera, start, odometry);
     }
     LocalizerOptions localizer;
-    localizer.alignment = realCameraOptions(map.octree ? map.octree->getResolution() : 0.);
+    localizer.alignment = realCameraOptions(map.resolution());
     // The motion is only guessed, so that nothing else stops a pose from sliding away.
     localizer.alignment.trust.maxUnexplained = 0.25;
     if (source.informationScale) localizer.alignment.photometric.scale = *source.informationScale;
@@ -228,7 +202,8 @@ ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& in
     if (options.odometry && source.frames.size() < 2) {
         throw InputError(options.dataset, "", "a single frame: odometry needs two or more");
     }
-    const ReplayMap map = loadMap(options.mapFile);
+    const TrackingMap map =
+        options.mapFile.empty() ? TrackingMap{} : loadTrackingMap(options.mapFile);
     const ReplayTracker tracker = makeTracker(options, source, map);
     const std::optional<double> depth = checkDepths(options, source);
     prepareFolder(options.out);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "command_line.hpp"
+#include "replay_calibration.hpp"
 #include "replay_command.hpp"
 #include "replay_config.hpp"
 
@@ -13,9 +14,10 @@ namespace fs = std::filesystem;
 struct ReplayArguments : ReplayOptions {
     bool quiet = false;
     bool json = false;
+    std::string calibration;  ///< file that says what scale and floors were not typed
 };
 
-void addTracking(CLI::App& parser, ReplayOptions& options) {
+void addTracking(CLI::App& parser, ReplayArguments& options) {
     parser.add_option("--stereo", options.stereo,
                       "bm or sgbm: block matching (default), semi-global; for EuRoC recordings");
     parser.add_option("--sigma", options.sigma, "image noise, grey values in [0, 1]")
@@ -30,6 +32,11 @@ void addTracking(CLI::App& parser, ReplayOptions& options) {
         ->capture_default_str();
     parser.add_option("--floor-rotation", options.floorRotation, "the same of a rotation [rad]")
         ->capture_default_str();
+    parser
+        .add_option("--calibration", options.calibration,
+                    "these three from the calibration.yaml of a --calibrate (each gives way to its "
+                    "own option)")
+        ->type_name("FILE");
     parser.add_option("--max-width", options.maxWidth,
                       "images are halved until they are as wide [pixels] (default: 320 in a map, "
                       "once in odometry)");
@@ -65,6 +72,15 @@ int run(const CLI::App& parser, ReplayArguments& options, const std::atomic<bool
     if (fs::path(options.dataset).extension() == ".yaml") {
         refuseOptionsBeside(options.dataset, parser);
         readReplayConfig(std::string(options.dataset), options);
+    }
+    if (!options.calibration.empty()) {
+        const Calibration calibration = readCalibration(options.calibration);
+        const auto give = [](std::optional<double>& option, double value) {
+            if (!option) option = value;
+        };
+        give(options.scale, calibration.scale);
+        give(options.floorTranslation, calibration.floorTranslation);
+        give(options.floorRotation, calibration.floorRotation);
     }
     if (options.out.empty()) options.out = "out/replay-" + folderName(options.dataset);
     ProgressLine line(options.quiet);

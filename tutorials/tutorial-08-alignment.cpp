@@ -109,7 +109,7 @@ void watchItConverge(const ViewSource& model, const Camera& camera, const ImageF
                     row);
         window.show(row);
         if (step <= 2) sheet.push_back(row);
-        const PoseEquations p = poseEquations(e, kPhotometric, false);
+        const PoseEquations p = poseEquations(e, kPhotometric);
         T_c_w = expSE3(p.information.ldlt().solve(p.right)) * T_c_w;
     }
     //! [gauss newton]
