@@ -90,8 +90,9 @@ double misfit(const ImageF& observed, const View& predicted, double weight,
     AtA *= weight / count;
     Atr *= weight / count;
     if (!prior) return weight * sum / count;
-    AtA.diagonal() += prior->information();
-    return weight * sum / count - Atr.dot(AtA.completeOrthogonalDecomposition().solve(Atr));
+    // A little more on the diagonal: gain and offset of a uniform image cannot be told apart.
+    AtA.diagonal() += prior->information() + Eigen::Vector2d::Constant(1e-9 * weight);
+    return weight * sum / count - Atr.dot(AtA.inverse() * Atr);
 }
 
 double variance(const ImageF& image) {

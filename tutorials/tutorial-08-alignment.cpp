@@ -9,10 +9,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
+#include "constants.hpp"
 #include "dense_aligner.hpp"
 #include "mesh_renderer.hpp"
 #include "picture.hpp"
@@ -23,7 +23,6 @@ using namespace photonav;
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.;
 const PhotometricOptions kPhotometric{.sigma = 0.02};
 
 /// A crate on a carpet.

@@ -5,10 +5,10 @@
 
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <opencv2/imgcodecs.hpp>
 
 #include "belief.hpp"
+#include "constants.hpp"
 #include "flight.hpp"
 #include "mesh_renderer.hpp"
 #include "plot.hpp"
@@ -18,7 +18,6 @@ using namespace photonav;
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.;
 constexpr int kFlights = 4;
 
 /// A floor of almost nothing, with a strip of carpet across the way.
