@@ -126,7 +126,10 @@ struct Flight {
 class Rig {
   public:
     explicit Rig(const Flight& flight)
-        : flight_(flight), left_{.camera = flight.camera}, right_(left_), stereo_(pair()) {}
+        : flight_(flight),
+          left_{flight.camera, Eigen::Vector4d::Zero(), Pose::Identity(), {}},
+          right_(left_),
+          stereo_(pair()) {}
 
     const Camera& camera() const { return stereo_.camera(); }
 
