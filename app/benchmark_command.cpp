@@ -24,6 +24,7 @@ Config loadBenchmarkConfig(const BenchmarkOptions& options) {
     if (options.runs) overrides.push_back(fmt::format("sweep.runs={}", *options.runs));
     if (options.seed) overrides.push_back("seed=" + *options.seed);
     Config config = loadConfig(options.config, overrides);
+    checkSeeds(config, config.sweep.runs);
     config.sweep.alphas = {config.belief.alpha};
     return config;
 }
@@ -87,7 +88,7 @@ std::vector<BenchmarkCurve> comparable(const BenchmarkOutcome& outcome) {
 }
 
 void writeReport(const fs::path& folder, const BenchmarkOptions& options, const Config& config,
-                 const BenchmarkOutcome& outcome, const json& result) {
+                 const World& world, const BenchmarkOutcome& outcome, const json& result) {
     ReportData report;
     report.title = fs::path(options.config).stem().string();
     report.subtitle =
@@ -97,6 +98,9 @@ void writeReport(const fs::path& folder, const BenchmarkOptions& options, const 
     report.version = PHOTONAV_VERSION;
     report.result = result;
     report.config = toYaml(config);
+    report.start = config.start.position;
+    report.goal = config.goal.position;
+    world.describe(report);
     for (const SweepCell& cell : summarize(config.sweep, outcome.runs, {})) {
         report.tables.push_back(summaryTable(cell));
     }
@@ -138,12 +142,12 @@ int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& inter
     const bool stopped = outcome.runs.size() < asked;
     const double seconds = watch.seconds();
     const json result = benchmarkResult(config, outcome, stopped, seconds);
-    writeReport(folder, options, config, outcome, result);
+    writeReport(folder, options, config, world, outcome, result);
     if (options.json) {
         fmt::print("{}\n", result.dump(2));
     } else if (!options.quiet) {
         fmt::print("{}\nlog: {}\nreport: {}\n",
-                   sweepTable(summarize(config.sweep, outcome.runs, {})),
+                   sweepTable(config.sweep, summarize(config.sweep, outcome.runs, {})),
                    (folder / "benchmark.log").string(), (folder / "report.html").string());
     }
     if (stopped) return kInterrupted;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -13,6 +14,34 @@
 
 namespace photonav {
 namespace fs = std::filesystem;
+namespace {
+
+/// What `plan`, `info`, `fly` and `benchmark` write into their folder, but not always.
+constexpr std::array kSometimesWritten{
+    "result.json",
+    "path.tum",
+    "top_view.png",
+    "perspective.png",
+    "information.png",
+    "trace.png",
+    "recorded_frames.png",
+    "tree_evolution.png",
+    "uncertainty.png",
+    "view.png",
+    "contribution.png",
+    "contribution_right.png",
+    "contribution_down.png",
+    "contribution_forward.png",
+    "contribution_about_right.png",
+    "contribution_about_down.png",
+    "contribution_about_forward.png",
+    "overview.png",
+    "progress.png",
+    "errors.png",
+    "nees.png",
+};
+
+}  // namespace
 
 void prepareFolder(const fs::path& folder) {
     std::error_code error;
@@ -29,9 +58,7 @@ fs::path resultFolder(const CommandOptions& options, const std::string& command)
         folder = fs::path("out") / (command + "-" + fs::path(options.config).stem().string());
     }
     prepareFolder(folder);
-    for (const char* stale :
-         {"result.json", "path.tum", "trace.png", "information.png", "recorded_frames.png"})
-        fs::remove(folder / stale);
+    for (const char* stale : kSometimesWritten) fs::remove(folder / stale);
     return folder;
 }
 

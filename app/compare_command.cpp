@@ -5,9 +5,12 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "atomic_file.hpp"
+#include "error.hpp"
 #include "plan_report.hpp"
+#include "sweep_plan.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -17,6 +20,8 @@ namespace {
 constexpr unsigned kRrbtVertices = 400;
 
 using Values = std::vector<double>;
+
+std::string nameOf(const Config& config) { return fs::path(config.file).stem().string(); }
 
 std::string meanAndDeviation(const Values& values, int decimals) {
     if (values.empty()) return "-";
@@ -86,8 +91,7 @@ Png picture(const Config& config, const World& world, const std::vector<CompareR
         paths.back().name = method.label();
     }
     TopView view = viewFromAbove(config, world, paths);
-    view.title =
-        fmt::format("{}, alpha {}", fs::path(config.file).stem().string(), config.belief.alpha);
+    view.title = fmt::format("{}, alpha {}", nameOf(config), config.belief.alpha);
     view.ellipseScale = 0.;
     return drawTopView(view);
 }
@@ -96,17 +100,45 @@ std::vector<CompareRun> runMethods(const Config& config, const World& world,
                                    const CompareOptions& options, ProgressLine& line,
                                    const std::atomic<bool>& interrupted) {
     std::vector<CompareRun> runs;
-    const auto name = fs::path(config.file).stem().string();
+    const std::string name = nameOf(config);
     for (const CompareMethod& method : compareMethods()) {
-        for (std::uint32_t seed = 1; seed <= options.runs; ++seed) {
-            line.show(
-                fmt::format("{}: {}, seed {} of {}", name, method.label(), seed, options.runs));
+        for (unsigned i = 0; i < options.runs; ++i) {
+            const std::uint32_t seed = config.seed + i;
+            line.show(fmt::format("{}: {}, seed {} ({} of {})", name, method.label(), seed, i + 1,
+                                  options.runs));
             CompareRun run = runMethod(config, world, method, seed, interrupted);
             if (interrupted) return runs;
             runs.push_back(std::move(run));
         }
     }
     return runs;
+}
+
+/// @throws InputError also when the tables of two would go to the same file
+std::vector<Config> loadConfigs(const CompareOptions& options) {
+    std::vector<Config> configs;
+    std::map<std::string, std::string> fileOf;
+    for (const std::string& file : options.configs) {
+        const Config& config = configs.emplace_back(loadConfig(file, options.overrides));
+        checkSeeds(config, options.runs);
+        const auto [known, isNew] = fileOf.emplace(nameOf(config), file);
+        if (isNew) continue;
+        throw InputError(file, "", "has the name of " + known->second + ", and so would its table");
+    }
+    return configs;
+}
+
+/// Writes the table and picture of one problem.
+json writeScenario(const Config& config, const World& world, const std::vector<CompareRun>& runs,
+                   const CompareOptions& options) {
+    const std::string name = nameOf(config);
+    const std::string table = compareTable(runs);
+    writeFileAtomically(options.out / (name + ".md"), table);
+    writeFileAtomically(options.out / (name + ".png"), picture(config, world, runs));
+    if (!options.quiet) fmt::print("{}\n{}\n", name, table);
+    json scenario{{"config", name}, {"alpha", config.belief.alpha}, {"runs", json::array()}};
+    for (const CompareRun& run : runs) scenario["runs"].push_back(jsonOf(run));
+    return scenario;
 }
 
 }  // namespace
@@ -157,10 +189,7 @@ std::string compareTable(const std::vector<CompareRun>& runs) {
 }
 
 int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupted) {
-    std::vector<Config> configs;
-    for (const std::string& file : options.configs) {
-        configs.push_back(loadConfig(file, options.overrides));
-    }
+    const std::vector<Config> configs = loadConfigs(options);
     prepareFolder(options.out);
     json result{{"schema", 1},
                 {"command", "compare"},
@@ -173,20 +202,14 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
         ProgressLine line(options.quiet);
         const auto runs = runMethods(config, world, options, line, interrupted);
         line.clear();
-        if (interrupted) return kInterrupted;
-        const std::string name = fs::path(config.file).stem().string();
-        const std::string table = compareTable(runs);
-        writeFileAtomically(options.out / (name + ".md"), table);
-        writeFileAtomically(options.out / (name + ".png"), picture(config, world, runs));
-        if (!options.quiet) fmt::print("{}\n{}\n", name, table);
-        json scenario{{"config", name}, {"alpha", config.belief.alpha}, {"runs", json::array()}};
-        for (const CompareRun& run : runs) {
-            anyPath = anyPath || run.outcome.path;
-            scenario["runs"].push_back(jsonOf(run));
-        }
-        result["scenarios"].push_back(scenario);
+        for (const CompareRun& run : runs) anyPath = anyPath || run.outcome.path;
+        if (!runs.empty())
+            result["scenarios"].push_back(writeScenario(config, world, runs, options));
+        if (interrupted) break;
     }
+    result["interrupted"] = interrupted.load();
     writeFileAtomically(options.out / "result.json", result.dump(2) + "\n");
+    if (interrupted) return kInterrupted;
     return anyPath ? kDone : kNoAnswer;
 }
 

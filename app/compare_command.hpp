@@ -14,7 +14,7 @@ struct CompareOptions {
     std::vector<std::string> configs;    ///< YAML files
     std::vector<std::string> overrides;  ///< key.path=value, for all of them
     std::filesystem::path out = "out/compare";
-    unsigned runs = 3;  ///< seeds 1, 2, ...
+    unsigned runs = 3;  ///< seeds: the config's and those after it
     bool quiet = false;
 };
 
@@ -50,8 +50,10 @@ CompareRun runMethod(const Config& config, const World& world, const CompareMeth
 std::string compareTable(const std::vector<CompareRun>& runs);
 
 /// Writes, for every config, <name>.md (table) and <name>.png (the first seed's paths from above)
-/// and, when all is done, result.json with all runs.
+/// and at last result.json with all runs. An interrupt leaves out the run in progress and all later
+/// ones.
 /// @return the exit code; 1 when no run found a path
+/// @throws InputError also when two configs have the same name
 int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

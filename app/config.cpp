@@ -34,6 +34,25 @@ std::optional<double> mountDegrees(const std::string& mount) {
     return std::nullopt;
 }
 
+bool isPath(const std::string& key) {
+    return key.ends_with(".file") || key == "sweep.reference" || key == "fly.plan" ||
+           key == "fly.map";
+}
+
+/// The value of an override. A path is what was typed, whatever YAML makes of ' #' and ': ', unless
+/// it is quoted; then made absolute.
+YAML::Node overrideValue(const std::string& key, const std::string& text) {
+    if (text.empty()) return YAML::Node("");
+    try {
+        const bool isQuoted = text.front() == '"' || text.front() == '\'';
+        if (!isPath(key)) return YAML::Load(text);
+        const auto path = isQuoted ? YAML::Load(text).as<std::string>() : text;
+        return YAML::Node(path.empty() ? path : fs::absolute(path).string());
+    } catch (const YAML::Exception&) {
+        throw InputError("--set", key, "cannot read the value '" + text + "'");
+    }
+}
+
 /// Sets node[a][b] = value for the override "a.b=value".
 void applyOverride(const YAML::Node& root, const std::string& text) {
     const auto equals = text.find('=');
@@ -41,20 +60,14 @@ void applyOverride(const YAML::Node& root, const std::string& text) {
         throw InputError("--set", text, "expected key.path=value");
     }
     const std::string path = text.substr(0, equals);
-    std::string value = text.substr(equals + 1);
-    const bool isFile = path.ends_with(".file") || path == "sweep.reference" || path == "fly.plan";
-    if (isFile && !value.empty()) value = fs::absolute(value).string();
+    const YAML::Node value = overrideValue(path, text.substr(equals + 1));
     YAML::Node node = root;
     for (std::size_t begin = 0; begin <= path.size();) {
         const std::size_t end = std::min(path.find('.', begin), path.size());
         const std::string key = path.substr(begin, end - begin);
         if (!node.IsMap() && !node.IsNull()) throw InputError("--set", path, "no such key");
         if (end == path.size()) {
-            try {
-                node[key] = value.empty() ? YAML::Node("") : YAML::Load(value);
-            } catch (const YAML::Exception&) {
-                throw InputError("--set", path, "cannot read the value '" + value + "'");
-            }
+            node[key] = value;
         } else if (!node[key].IsDefined()) {
             node[key] = YAML::Node(YAML::NodeType::Map);
         }
@@ -287,10 +300,10 @@ std::string toYaml(const Config& c) {
     const auto quoted = [](const std::string& path) { return YAML::Dump(YAML::Node(path)); };
     std::string text;
     const auto line = [&](const std::string& s) { text += s + "\n"; };
-    line(c.mapFile.empty()
-             ? fmt::format("scene:\n  file: {}", quoted(c.sceneFile))
-             : fmt::format("map:\n  file: {}\n  unknown: {}\n  unknown_to_camera: {}", c.mapFile,
-                           policy(c.unknownToPlanner), policy(c.unknownToCamera)));
+    line(c.mapFile.empty() ? fmt::format("scene:\n  file: {}", quoted(c.sceneFile))
+                           : fmt::format("map:\n  file: {}\n  unknown: {}\n  unknown_to_camera: {}",
+                                         quoted(c.mapFile), policy(c.unknownToPlanner),
+                                         policy(c.unknownToCamera)));
     if (!c.mapMadeBy.empty()) line("  made_by: " + quoted(c.mapMadeBy));
     line(fmt::format("bounds: [{}, {}]", corner(c.bounds.min()), corner(c.bounds.max())));
     line(fmt::format("space: {}", kSpaces[1 + static_cast<int>(c.space)]));

@@ -370,7 +370,8 @@ Png drawHeatMap(const HeatMap& map) {
     requireArea(map.area);
     if (map.values.size() == 0) throw std::invalid_argument("drawHeatMap: no values");
     const Frame frame = mapFrame(map.area, 760.0);
-    Canvas canvas(frame.right() + 190.0, frame.bottom() + kBottom + 34.0);
+    const double title = 12.5 * static_cast<double>(map.title.size());
+    Canvas canvas(std::max(frame.right() + 190., frame.x + title), frame.bottom() + kBottom + 34.);
     const Axis scale = axisAround(map.values.reshaped(), map.logScale, map.label);
     const Plot plot = mapPlot(canvas, frame, map.area);
     canvas.picture(cellColors(map, scale), static_cast<int>(map.values.rows()), frame, false);

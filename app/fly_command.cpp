@@ -156,8 +156,8 @@ std::filesystem::path folderFor(const FlyOptions& options, const std::filesystem
         named.config = plan.parent_path().filename().string() + ".";
     }
     const auto folder = resultFolder(named, "fly");
-    for (const char* stale : {"trajectory.tum", "trajectory.cov", "trajectory.ov",
-                              "groundtruth.tum", "errors.png", "nees.png"}) {
+    for (const char* stale :
+         {"trajectory.tum", "trajectory.cov", "trajectory.ov", "groundtruth.tum"}) {
         std::filesystem::remove(folder / stale);
     }
     return folder;

@@ -111,10 +111,10 @@ std::vector<NamedFigure> viewFigures(const View& view, const Config& config) {
     return figures;
 }
 
-std::vector<NamedFigure> heatMaps(const Grids& grids) {
+std::vector<NamedFigure> heatMaps(const Grids& grids, const std::string& place) {
     const auto heatMap = [&](const char* title, const char* label, const Eigen::ArrayXXd& values) {
         return drawHeatMap(
-            {fmt::format("{} at {:.2f} m", title, grids.height), label, grids.area, values, true});
+            {fmt::format("{} at {}", title, place), label, grids.area, values, true});
     };
     return {
         {"information.png",
@@ -191,7 +191,7 @@ int runInfo(const InfoOptions& options) {
     const Matrix6 Lambda = photometricInformation(view, camera, config.photometric);
 
     json result = resultOf(place, Lambda, grids);
-    auto figures = heatMaps(grids);
+    auto figures = heatMaps(grids, placeText(config, height, place.yaw.value_or(0.)));
     for (NamedFigure& figure : viewFigures(view, config)) figures.push_back(std::move(figure));
     ReportData report = reportOf(options, config, world, place, result);
     writeResultFolder(folder, report, figures);

@@ -56,7 +56,7 @@ Command compareCommand(CLI::App& app) {
         "compare", "Every planner, information model and objective on the same problems.");
     parser->add_option("configs", options->configs, "YAML files of planning problems")->required();
     addOverrides(*parser, options->overrides);
-    parser->add_option("--runs", options->runs, "seeds per method")
+    parser->add_option("--runs", options->runs, "seeds per method, from the config's on")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
     parser->add_option("--out", options->out, "result folder")->capture_default_str();

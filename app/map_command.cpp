@@ -194,7 +194,6 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
     asked.needsDepth = options.depth == "recorded";
     const Recording recording = readRecording(asked);
     prepareFolder(options.out);
-    removeFigures(options.out);
     json time{{"read_s", watch.lap()}};
 
     TexturedOcTree map(options.resolution);
@@ -203,6 +202,7 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
     time["fuse_s"] = run.fuseSeconds;
     time["fuse_per_frame_s"] = run.fuseSeconds / double(std::max<std::size_t>(1, run.frames));
     watch.lap();
+    removeFigures(options.out);  // not before: a recording that is refused leaves an old map whole
     run.trajectory = trajectoryOf(recording.sequence, run.frames);
     writeMaps(options.out, map, run.trajectory);
     time["write_s"] = watch.lap();

@@ -7,6 +7,7 @@
 
 #include "atomic_file.hpp"
 #include "command_io.hpp"
+#include "constants.hpp"
 #include "perspective.hpp"
 #include "trajectory.hpp"
 
@@ -35,6 +36,7 @@ json jsonOf(const BeliefPoint& point) {
             {"yaw", yawOf(point.T_w_b)},
             {"waypoint", point.isWaypoint},
             {"distance", point.length},
+            {"metric_length", point.distance},
             {"trace", point.trace},
             {"trace_before_view", point.traceBefore},
             {"cost", point.cost},
@@ -44,11 +46,9 @@ json jsonOf(const BeliefPoint& point) {
 }
 
 json jsonOf(const JudgedPath& path) {
-    return {{"planner", path.planner},
-            {"cost", path.cost},
-            {"length", path.length},
-            {"mean_trace", path.meanTrace},
-            {"goal_trace", path.goalTrace}};
+    return {{"planner", path.planner},      {"cost", path.cost},
+            {"length", path.length},        {"metric_length", path.points.back().distance},
+            {"mean_trace", path.meanTrace}, {"goal_trace", path.goalTrace}};
 }
 
 UncertainPose belief(const BeliefPoint& point, const Pose& T_b_c) {
@@ -96,7 +96,7 @@ HeatMap heatMap(const Config& config, PlanRun& run) {
     const double height = config.start.position.z();
     const double yaw = config.start.yaw.value_or(0.);
     HeatMap map;
-    map.title = fmt::format("What a view is worth at {:.2f} m", height);
+    map.title = "What a view is worth at " + placeText(config, height, yaw);
     map.label = "trace of the Fisher information";
     map.area = areaOf(config);
     map.values = viewGrid(run, map.area, height, yaw, kHeatMapCells,
@@ -126,6 +126,11 @@ void writeTrajectory(const fs::path& file, const JudgedPath& path, const Pose& T
 }
 
 }  // namespace
+
+std::string placeText(const Config& config, double height, double yaw) {
+    if (config.space == StateKind::position) return fmt::format("{:.2f} m", height);
+    return fmt::format("{:.2f} m, heading {:.0f} deg", height, yaw / kDegree);
+}
 
 DrawnPath drawnPath(const JudgedPath& path, const Pose& T_b_c, const Color& color) {
     DrawnPath result{path.planner, color, {}};
@@ -166,6 +171,7 @@ json planResult(const Config& config, const PlanOutcome& outcome,
                 {"cost", nullptr},
                 {"planner_cost", nullptr},
                 {"length", nullptr},
+                {"metric_length", nullptr},
                 {"mean_trace", nullptr},
                 {"goal_trace", nullptr},
                 {"vertices", outcome.vertices},
@@ -207,7 +213,11 @@ std::vector<NamedFigure> planFigures(const Config& config, const World& world, P
     if (!paths.empty() && world.hasTexture()) {
         figures.push_back(
             {"information.png",
-             {"What one view is worth, over the area.", drawHeatMap(heatMap(config, run))}});
+             {config.space == StateKind::position
+                  ? "What one view is worth, over the area."
+                  : "What one view is worth, over the area, when looking as at the start; the "
+                    "paths turn, and see something else.",
+              drawHeatMap(heatMap(config, run))}});
     }
     if (config.bounds.sizes().z() > 0. && world.hasTexture()) {
         figures.push_back(

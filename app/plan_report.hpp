@@ -46,6 +46,9 @@ struct NamedFigure {
 void writeResultFolder(const std::filesystem::path& folder, ReportData& report,
                        const std::vector<NamedFigure>& figures);
 
+/// Where the views of a heat map are: the height, and the heading [rad] where it is free.
+std::string placeText(const Config& config, double height, double yaw);
+
 /// A value of the view from every cell of a horizontal grid; NaN where the robot cannot be.
 /// @param cells about how many along the longer side
 /// @param value of the view's Fisher information (camera frame)

@@ -28,7 +28,17 @@ std::vector<Tick> linearTicks(const Axis& axis, int wanted) {
     return ticks;
 }
 
-std::vector<Tick> logTicks(const Axis& axis) {
+/// For a logarithmic axis that is shorter than the distance of its round numbers.
+std::vector<Tick> shortLogTicks(const Axis& axis, int wanted) {
+    std::vector<Tick> ticks = linearTicks(axis, wanted);
+    const int decade = static_cast<int>(std::floor(std::log10(axis.max) + 1e-9));
+    const double unit = std::pow(10.0, decade);
+    if (decade >= -2 && decade <= 3) return ticks;
+    for (Tick& tick : ticks) tick.label = fmt::format("{:.4g}x10^{}", tick.value / unit, decade);
+    return ticks;
+}
+
+std::vector<Tick> logTicks(const Axis& axis, int wanted) {
     const int first = static_cast<int>(std::floor(std::log10(axis.min) + 1e-9));
     const int last = static_cast<int>(std::floor(std::log10(axis.max) + 1e-9));
     const int stride = 1 + (last - first) / 9;
@@ -41,7 +51,7 @@ std::vector<Tick> logTicks(const Axis& axis) {
             ticks.push_back({value, digit == 1 ? fmt::format("10^{}", decade)
                                                : fmt::format("{}x10^{}", digit, decade)});
         }
-    return ticks;
+    return ticks.size() < 2 ? shortLogTicks(axis, wanted) : ticks;
 }
 
 double widestLabel(const std::vector<Tick>& ticks) {
@@ -65,7 +75,7 @@ double Axis::fraction(double value) const {
 }
 
 std::vector<Tick> ticksOf(const Axis& axis, int wanted) {
-    return axis.log ? logTicks(axis) : linearTicks(axis, wanted);
+    return axis.log ? logTicks(axis, wanted) : linearTicks(axis, wanted);
 }
 
 Canvas::Point Plot::at(double px, double py) const {

@@ -26,7 +26,8 @@ struct Tick {
 };
 
 /// About `wanted` ticks at multiples of 1, 2 or 5 times a power of ten; decades (and 2 and 5
-/// between them when there are few) on a logarithmic axis.
+/// between them when there are few) on a logarithmic axis, unless fewer than two of these lie on
+/// it.
 std::vector<Tick> ticksOf(const Axis& axis, int wanted);
 
 /// A frame on a canvas with its two axes; labels stand left of it and below.

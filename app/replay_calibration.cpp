@@ -49,7 +49,9 @@ std::string toYaml(const Calibration& c) {
 Calibration readCalibration(const std::string& file) {
     YamlMap yaml(file, loadYaml(file));
     Calibration c;
-    if (!yaml.has("scale")) yaml.fail("scale", "missing");
+    for (const char* key : {"scale", "floor", "floor_rotation"}) {
+        if (!yaml.has(key)) yaml.fail(key, "missing");
+    }
     yaml.readNumber("scale", c.scale, 1e-12, kInfinity);
     yaml.readNumber("floor", c.floorTranslation, 0., kInfinity);
     yaml.readNumber("floor_rotation", c.floorRotation, 0., kInfinity);

@@ -40,8 +40,11 @@ void checkOptions(const ReplayOptions& options) {
     require(isPositive(options.startSigma.value_or(kStartSigma)), "--start-sigma",
             "must be above 0");
     require(!options.scale || isPositive(*options.scale), "--scale", "must be above 0");
-    require(options.floorTranslation.value_or(0.) >= 0., "--floor", "must not be negative");
-    require(options.floorRotation.value_or(0.) >= 0., "--floor-rotation", "must not be negative");
+    const auto isFloor = [](const std::optional<double>& x) {
+        return !x || (std::isfinite(*x) && *x >= 0.);
+    };
+    require(isFloor(options.floorTranslation), "--floor", "must be a number, not negative");
+    require(isFloor(options.floorRotation), "--floor-rotation", "must be a number, not negative");
     require(options.minOverlap > 0. && options.minOverlap < 1., "--min-overlap",
             "must be between 0 and 1");
     require(options.maxWidth.value_or(kWidthInMap) >= kLeastWidth, "--max-width",

@@ -67,8 +67,8 @@ json fuseStation(const PointCloudFile& cloud, const fs::path& file, const ScanMa
         fuseScan(map, points, scanner, options.maxRange);
     } catch (const std::invalid_argument&) {
         throw InputError(file.string(), "",
-                         fmt::format("the points reach too far for cells of {} m: see "
-                                     "--resolution and --max-range",
+                         fmt::format("the points reach too far for cells of {} m: take a "
+                                     "larger --resolution or a smaller --max-range",
                                      options.resolution));
     }
     json station{{"file", file.filename().string()},
@@ -78,6 +78,19 @@ json fuseStation(const PointCloudFile& cloud, const fs::path& file, const ScanMa
                  {"scanner", nullptr}};
     if (scanner) station["scanner"] = {scanner->x(), scanner->y(), scanner->z()};
     return station;
+}
+
+/// Fuses all files until interrupted. @returns what result.json says of them
+json fuseStations(const std::vector<std::pair<fs::path, PointCloudFile>>& clouds,
+                  const ScanMapOptions& options, const std::atomic<bool>& interrupted,
+                  TexturedOcTree& map) {
+    json stations = json::array();
+    for (const auto& [file, cloud] : clouds) {
+        if (interrupted) break;
+        stations.push_back(fuseStation(cloud, file, options, map));
+        if (options.progress) options.progress(stations.size(), clouds.size());
+    }
+    return stations;
 }
 
 ReportTable summaryOf(const json& result) {
@@ -130,17 +143,20 @@ MapReport runScanMap(const ScanMapOptions& options, const std::atomic<bool>& int
     std::vector<std::pair<fs::path, PointCloudFile>> clouds;  // all headers, before any work
     clouds.reserve(files.size());
     for (const fs::path& file : files) clouds.emplace_back(file, file.string());
+    const bool isNewFolder = !fs::exists(options.out);
     prepareFolder(options.out);
 
     const Stopwatch watch;
     TexturedOcTree map(options.resolution);
     map.setProbHit(kHit);
     map.setProbMiss(kMiss);
-    json stations = json::array();
-    for (const auto& [file, cloud] : clouds) {
-        if (interrupted) break;
-        stations.push_back(fuseStation(cloud, file, options, map));
-        if (options.progress) options.progress(stations.size(), clouds.size());
+    json stations;
+    try {
+        stations = fuseStations(clouds, options, interrupted, map);
+    } catch (const InputError&) {
+        std::error_code isNeeded;
+        if (isNewFolder) fs::remove(options.out, isNeeded);  // a refused scan leaves nothing
+        throw;
     }
     MapReport report;
     report.exitCode = interrupted ? kInterrupted : kDone;

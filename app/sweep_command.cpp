@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <memory>
 
 #include "atomic_file.hpp"
 #include "error.hpp"
@@ -24,7 +27,9 @@ Config loadSweepConfig(const SweepOptions& options, const std::string& file) {
     if (options.planners) overrides.push_back("sweep.planners=[" + *options.planners + "]");
     if (options.runs) overrides.push_back(fmt::format("sweep.runs={}", *options.runs));
     if (options.seed) overrides.push_back("seed=" + *options.seed);
-    return loadConfig(file, overrides);
+    Config config = loadConfig(file, overrides);
+    checkSeeds(config, config.sweep.runs);
+    return config;
 }
 
 std::string nameOf(const std::string& file) { return fs::path(file).stem().string(); }
@@ -98,7 +103,8 @@ int conclude(const SweepOptions& options, const Config& config, const World& wor
     if (options.json) {
         fmt::print("{}\n", result.dump(2));
     } else if (!options.quiet) {
-        fmt::print("{}\n", sweepTable(summarize(config.sweep, outcome.runs, reference)));
+        fmt::print("{}\n",
+                   sweepTable(config.sweep, summarize(config.sweep, outcome.runs, reference)));
         std::map<std::string, int> failures;
         for (const SweepRun& run : outcome.runs) {
             if (!run.isSolved()) ++failures[run.item.planner + ": " + run.status];
@@ -150,7 +156,6 @@ fs::path sweepFolder(const SweepOptions& options, const std::string& name,
         folder = fs::path("out") / ("sweep-" + name);
         if (shard.count > 1) folder += fmt::format("-{}of{}", shard.index, shard.count);
     }
-    prepareFolder(folder);
     return folder;
 }
 
@@ -170,6 +175,7 @@ int runAll(const SweepOptions& options, const std::atomic<bool>& interrupted) {
     PlanRun(config, world).checkPlaces();
     const std::string name = nameOf(options.config);
     const fs::path folder = sweepFolder(options, name, shard);
+    prepareFolder(folder);
     const auto items = itemsOf(shard, sweepItems(config));
     SweepJournal journal =
         openJournal(options, folder, {name, toYaml(config), sweepIdentity(config), shard});
@@ -229,29 +235,41 @@ std::vector<SweepJournal> readShards(const std::vector<std::string>& folders) {
     return shards;
 }
 
-/// The config of the shards: the one given, which must be theirs, or the one they keep.
-Config configOfShards(const SweepOptions& options, const SweepHeader& header,
-                      const fs::path& folder) {
-    std::string file = options.config;
-    if (file.empty()) {
-        file = (folder / "config.yaml").string();
-        writeFileAtomically(file, header.config);
-    }
-    const Config config = loadSweepConfig(options, file);
-    const std::string changed = difference(header.identity, sweepIdentity(config));
-    if (changed.empty()) return config;
-    throw InputError("--merge", options.merge.front(), changed + ", as in " + file);
+/// The config that the shards keep. Nothing is written to the result's folder yet.
+Config keptConfig(const SweepOptions& options, const SweepJournal& shard) {
+    const fs::path copy =
+        fs::temp_directory_path() / fmt::format("photonav_merge_{}.yaml", getpid());
+    writeFileAtomically(copy, shard.header().config);
+    const std::unique_ptr<const fs::path, void (*)(const fs::path*)> removed(
+        &copy, [](const fs::path* file) { fs::remove(*file); });
+    Config config = loadSweepConfig(options, copy.string());
+    config.file = shard.file().string();
+    return config;
 }
 
-/// All runs of the shards as one sweep's.
-SweepJournal gather(const SweepOptions& options, const std::vector<SweepJournal>& shards,
-                    const std::vector<SweepItem>& items, const fs::path& folder) {
+/// The config of the shards: the one given, which must be theirs, or the one they keep.
+Config configOfShards(const SweepOptions& options, const SweepJournal& shard) {
+    const Config config = options.config.empty() ? keptConfig(options, shard)
+                                                 : loadSweepConfig(options, options.config);
+    const std::string changed = difference(shard.header().identity, sweepIdentity(config));
+    if (changed.empty()) return config;
+    throw InputError("--merge", options.merge.front(), changed + ", as in " + config.file);
+}
+
+/// @throws InputError naming the first folder with runs to do
+void checkComplete(const SweepOptions& options, const std::vector<SweepJournal>& shards,
+                   const std::vector<SweepItem>& items) {
     for (std::size_t i = 0; i < shards.size(); ++i) {
         const auto open = shards[i].missing(itemsOf(shards[i].header().shard, items));
         if (open.empty()) continue;
         throw InputError("--merge", options.merge[i],
                          fmt::format("{} runs are missing; finish it with --resume", open.size()));
     }
+}
+
+/// All runs of the shards as one sweep's.
+SweepJournal gather(const std::vector<SweepJournal>& shards, const std::vector<SweepItem>& items,
+                    const fs::path& folder) {
     SweepHeader header = shards.front().header();
     header.shard = {};
     SweepJournal whole = SweepJournal::create(folder, header);
@@ -267,16 +285,19 @@ int mergeShards(const SweepOptions& options) {
     const std::string name = shards.front().header().name;
     const fs::path folder = sweepFolder(options, name, {});
     for (const std::string& shard : options.merge) {
-        if (fs::equivalent(shard, folder)) {
+        std::error_code noFolder;  // none yet: no shard's
+        if (fs::equivalent(shard, folder, noFolder)) {
             throw InputError("--merge", shard, "the result needs another folder (--out)");
         }
     }
-    const Config config = configOfShards(options, shards.front().header(), folder);
+    const Config config = configOfShards(options, shards.front());
     const ReferenceCosts reference = referenceOf(config);
     const World world(config);
     const auto items = sweepItems(config);
+    checkComplete(options, shards, items);
+    prepareFolder(folder);  // an earlier result there stays until nothing can be refused any more
     removeOldResults(folder);
-    const SweepJournal whole = gather(options, shards, items, folder);
+    const SweepJournal whole = gather(shards, items, folder);
     return conclude(options, config, world, folder,
                     {name, "", {}, whole.runs(), items.size(), false, 0.}, reference, watch);
 }

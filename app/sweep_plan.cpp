@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <set>
 
 #include "scene.hpp"
@@ -53,6 +54,14 @@ const std::set<std::string> kIrrelevant{
     "map.made_by"};
 
 }  // namespace
+
+void checkSeeds(const Config& config, unsigned runs) {
+    constexpr std::uint64_t kLast = std::numeric_limits<std::uint32_t>::max();
+    if (std::uint64_t{config.seed} + runs - 1 <= kLast) return;
+    throw InputError(
+        config.file, "seed",
+        fmt::format("{} runs from {} on go beyond the last seed, {}", runs, config.seed, kLast));
+}
 
 std::vector<SweepItem> sweepItems(const Config& config) {
     std::vector<SweepItem> items;

@@ -20,6 +20,9 @@ struct SweepItem {
     auto operator<=>(const SweepItem&) const = default;
 };
 
+/// @throws InputError unless there are `runs` seeds from the config's on
+void checkSeeds(const Config& config, unsigned runs);
+
 /// All runs that a config asks for: planner by planner, alpha by alpha, seed by seed.
 std::vector<SweepItem> sweepItems(const Config& config);
 

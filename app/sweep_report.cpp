@@ -8,6 +8,7 @@
 
 #include "atomic_file.hpp"
 #include "command_io.hpp"
+#include "constants.hpp"
 #include "plan_report.hpp"
 #include "sweep_figures.hpp"
 
@@ -63,7 +64,18 @@ std::string padded(const std::string& text, std::size_t width) {
     return std::string(width > characters ? width - characters : 0, ' ') + text;
 }
 
-constexpr double kTraceUnit = 0.01;  // of traces in the table, as the paper prints them
+/// Of traces in the table.
+double traceUnit(const SweepConfig& config, const std::vector<SweepCell>& cells) {
+    if (!config.paper.empty()) return config.paperTraceUnit;
+    double smallest = kInfinity;
+    for (const SweepCell& cell : cells) {
+        for (const char* column : {"mean_trace", "goal_trace"}) {
+            const double mean = cell.columns.at(column).mean;
+            if (mean > 0.) smallest = std::min(smallest, mean);
+        }
+    }
+    return smallest < kInfinity ? std::pow(10., std::floor(std::log10(smallest)) + 1.) : 1.;
+}
 
 /// A column of the table: its heading and what a cell says.
 struct TextColumn {
@@ -87,16 +99,16 @@ TextColumn paperColumn(double PaperRow::*value, double scale) {
 }
 
 /// The columns that have anything to say about a planner.
-std::vector<TextColumn> textColumns(const std::vector<SweepCell>& cells) {
+std::vector<TextColumn> textColumns(const std::vector<SweepCell>& cells, double unit) {
     std::vector<TextColumn> columns{
         {"alpha", 6, [](const SweepCell& cell) { return fmt::format("{}", cell.alpha); }},
         ownColumn("J", 17, "cost", 1., 3),
         ownColumn("length [m]", 15, "length", 1., 2),
         paperColumn(&PaperRow::length, 1.),
-        ownColumn("mean trace", 16, "mean_trace", 1. / kTraceUnit, 2),
-        paperColumn(&PaperRow::meanTrace, 1. / kTraceUnit),
-        ownColumn("goal trace", 16, "goal_trace", 1. / kTraceUnit, 2),
-        paperColumn(&PaperRow::goalTrace, 1. / kTraceUnit),
+        ownColumn("mean trace", 16, "mean_trace", 1. / unit, 2),
+        paperColumn(&PaperRow::meanTrace, 1. / unit),
+        ownColumn("goal trace", 16, "goal_trace", 1. / unit, 2),
+        paperColumn(&PaperRow::goalTrace, 1. / unit),
         ownColumn("excess [%]", 15, "excess", 100., 2),
         ownColumn("vertices", 12, "vertices", 1., 0),
         ownColumn("views", 13, "views", 1., 0),
@@ -136,9 +148,9 @@ json sweepResult(const Config& config, const SweepOutcome& outcome,
         row["excess"] = finiteOrNull(reference.excess(run));
         result["runs"].push_back(row);
     }
-    for (const SweepCell& cell : summarize(config.sweep, outcome.runs, reference)) {
-        result["summary"].push_back(toJson(cell));
-    }
+    const auto cells = summarize(config.sweep, outcome.runs, reference);
+    result["trace_unit"] = traceUnit(config.sweep, cells);
+    for (const SweepCell& cell : cells) result["summary"].push_back(toJson(cell));
     return result;
 }
 
@@ -173,13 +185,14 @@ void writeSweepReport(const fs::path& folder, const Config& config, const World&
     writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
 }
 
-std::string sweepTable(const std::vector<SweepCell>& cells) {
+std::string sweepTable(const SweepConfig& config, const std::vector<SweepCell>& cells) {
     std::string text;
+    const double unit = traceUnit(config, cells);
     for (auto first = cells.begin(); first != cells.end();) {
         const auto last = std::find_if(
             first, cells.end(), [&](const SweepCell& c) { return c.planner != first->planner; });
-        text += "\n" + first->planner + "  (traces in 0.01 m^2 + rad^2)\n";
-        const auto columns = textColumns({first, last});
+        text += "\n" + first->planner + fmt::format("  (traces in {:g} m^2 + rad^2)\n", unit);
+        const auto columns = textColumns({first, last}, unit);
         for (const TextColumn& column : columns) text += padded(column.heading, column.width);
         text += '\n';
         for (; first != last; ++first) {

@@ -12,7 +12,9 @@ namespace {
 using Eigen::Array3i;
 using Eigen::Vector3d;
 
-constexpr double kMaxCells = 2e9;  // one byte of scratch memory each
+// Of one observation: a byte of scratch memory each, and about 18 with the map when all are seen,
+// so that it takes less than 16 GB.
+constexpr double kMaxCells = 8.5e8;
 constexpr std::int32_t kNoPixels = -1;
 
 /// What the pixels that end in a cell have seen.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -111,19 +112,15 @@ class Kernel {
         }
     }
 
-    /// Adds row v; rows come in ascending order.
+    /// Adds row v; rows come in ascending order, blank ones may be left out.
     void add(unsigned v) {
         for (next_ = std::max(next_, v - 1); next_ <= v + 1; ++next_) {
             for (std::size_t i = 0; i <= vectors_; ++i) invert(next_, i);
         }
-        const bool isBlank = !fill(v);
-        const unsigned ahead = std::min(next_++, camera_.height - 1);
-        if (isBlank) {
-            for (std::size_t i = 0; i <= vectors_; ++i) invert(ahead, i);
-            return;
-        }
+        fill(v);
         // The divisions of the row after next go along with the first pass: they take long, and
         // little else meanwhile.
+        const unsigned ahead = std::min(next_++, camera_.height - 1);
         addProducts<0>([this, ahead](std::size_t i) { invert(ahead, i); });
         invert(ahead, vectors_);
         [this]<std::size_t... kPass>(std::index_sequence<kPass...>) {
@@ -178,8 +175,7 @@ class Kernel {
         simd::store(inverseDepth(v) + u, inverseDepthOf(simd::load<Float>(view_.depth[v] + u)));
     }
 
-    /// The Jacobians of row v; false where nothing in it has a gradient.
-    bool fill(unsigned v) {
+    void fill(unsigned v) {
         // x and y with the ratio of the focal lengths where gradients would need it
         const double row = v - camera_.cy();
         const float yOfGradient = static_cast<float>(row / camera_.fx());
@@ -194,7 +190,6 @@ class Kernel {
         const float* belowW = inverseDepth(v + 1);
         const float* xs = x_.data();
         const std::size_t last = width_ - 1 - simd::kWidth;
-        Int gradients{};
         for (std::size_t i = 0; i < vectors_; ++i) {
             const std::size_t u = std::min(1 + i * simd::kWidth, last);
             const auto at = [u](const float* p) { return simd::load<Float>(p + u); };
@@ -208,7 +203,6 @@ class Kernel {
             };
             const Float gx = masked(at(I + 1) - at(I - 1));
             const Float gy = masked(at(belowI) - at(aboveI));
-            gradients |= reinterpret_cast<Int>(gx) | reinterpret_cast<Int>(gy);
             const Float x = at(xs);
             const Float s = x * gx + yOfGradient * gy;
             const Float a = gx * w;
@@ -216,7 +210,6 @@ class Kernel {
             jacobian_[i] = {
                 a, b, s * w, (y * s + gy) - pivot * b, (x * s + gx) - pivot * a, x * gy - y * gx};
         }
-        return simd::bits(gradients != 0) != 0;
     }
 
     /// Adds the products of one pass to the lanes; `alongside` is called for every vector.
@@ -258,6 +251,14 @@ class Kernel {
     std::array<double, kProducts.size()* simd::kWidth> wideLanes_ = {};
 };
 
+/// Whether row v has no gradient. Not inlined: the kernel needs all registers.
+[[gnu::noinline]] bool isBlank(const ImageF& intensity, unsigned v) {
+    const float* I = intensity[v];
+    const std::size_t bytes = (intensity.getWidth() - 2) * sizeof(float);
+    return I[0] == I[2] && std::memcmp(I, I + 2, bytes) == 0 &&
+           std::memcmp(intensity[v - 1] + 1, intensity[v + 1] + 1, bytes) == 0;
+}
+
 double weight(const PhotometricOptions& options) {
     return options.scale * options.stride * options.stride / (options.sigma * options.sigma);
 }
@@ -289,7 +290,7 @@ Matrix6 photometricInformation(const View& view, const Camera& camera,
     }
     Kernel kernel(view, camera, options);
     for (unsigned v = firstInStride(options.stride); v + 1 < camera.height; v += options.stride) {
-        kernel.add(v);
+        if (!isBlank(view.intensity, v)) kernel.add(v);
     }
     return weight(options) * kernel.sum();
 }

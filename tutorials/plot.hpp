@@ -57,8 +57,10 @@ class Plot {
         }
     }
 
-    void label(const std::string& text, const cv::Scalar& rgb) {
-        const cv::Point at(kMargin + 30 * kFine, kMargin + (24 + 24 * labels_++) * kFine);
+    /// A line of the legend, at the top.
+    /// @param left of it, from the left end of the x axis [pixels]
+    void label(const std::string& text, const cv::Scalar& rgb, int left = 30) {
+        const cv::Point at(kMargin + left * kFine, kMargin + (24 + 24 * labels_++) * kFine);
         cv::line(image_, at, at + cv::Point(24 * kFine, 0), bgr(rgb), 4 * kFine, cv::LINE_AA);
         write(text, at + cv::Point(34 * kFine, 5 * kFine));
     }

@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
         std::printf("%-20s %11.2f  %10.2f  %10.2f  %16.3f\n", name, path.back().distance,
                     100. * meanTrace(path), 100. * path.back().trace, path.back().cost);
         plot.curve(route(path), colour, width);
-        plot.label(name, colour);
+        plot.label(name, colour, 390);
     }
 
     //! [forced]

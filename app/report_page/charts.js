@@ -1,6 +1,12 @@
 // Curves along the path and of the search.
 'use strict';
 
+function isDecade(value) {
+  const exponent = Math.log10(value);
+  return Math.abs(exponent - Math.round(exponent)) < 1e-6;
+}
+
+/// On a logarithmic axis only decades are labelled, unless there are fewer than two.
 function chartAxis(title, log) {
   return {
     type: log ? 'logarithmic' : 'linear',
@@ -9,10 +15,12 @@ function chartAxis(title, log) {
     ticks: {
       color: cssColor('--quiet'),
       maxRotation: 0,
-      callback: (value) => {
+      callback: (value, _, ticks) => {
         if (!log) return String(Number(value.toPrecision(6))).replace('-', '−');
-        const exponent = Math.log10(value);
-        return Math.abs(exponent - Math.round(exponent)) < 1e-6 ? `10${superscript(Math.round(exponent))}` : '';
+        if (isDecade(value)) return `10${superscript(Math.round(Math.log10(value)))}`;
+        if (ticks.filter((tick) => isDecade(tick.value)).length > 1) return '';
+        const exponent = Math.floor(Math.log10(value));
+        return `${Number((value / 10 ** exponent).toPrecision(3))}·10${superscript(exponent)}`;
       },
     },
   };

@@ -69,6 +69,14 @@ const whiskers = {
 
 const sweepCharts = [];
 
+/// An axis that holds the whiskers, too; below zero a logarithmic one cannot.
+function valueAxis(title, log, datasets) {
+  const points = datasets.flatMap((dataset) => dataset.data);
+  const ends = points.flatMap((p) => [p.y - (p.deviation || 0), p.y + (p.deviation || 0)]).filter((y) => !log || y > 0);
+  if (!ends.length) return chartAxis(title, log);
+  return {...chartAxis(title, log), suggestedMin: Math.min(...ends), suggestedMax: Math.max(...ends)};
+}
+
 function drawSweepChart(id, datasets, xTitle, yTitle, log) {
   sweepCharts.push(new Chart(element(id), {
     type: 'line',
@@ -77,7 +85,7 @@ function drawSweepChart(id, datasets, xTitle, yTitle, log) {
     options: {
       animation: false, responsive: true, maintainAspectRatio: false, parsing: false, normalized: true,
       interaction: {mode: 'nearest', intersect: false},
-      scales: {x: chartAxis(xTitle, false), y: chartAxis(yTitle, log)},
+      scales: {x: chartAxis(xTitle, false), y: valueAxis(yTitle, log, datasets)},
       plugins: {
         legend: {align: 'start', labels: {boxWidth: 14, boxHeight: 2, color: cssColor('--ink')}},
         tooltip: {callbacks: {
@@ -116,12 +124,12 @@ function drawSweepCharts() {
 }
 
 // Tables ------------------------------------------------------------------------------------------
-const kTraceScale = 100;  // the tables give traces in 0.01 (m² + rad²), as the paper does
+const traceScale = sweep ? 1 / sweep.trace_unit : 1;  // of traces in the tables
 
 const sweepColumns = [
   ['J', 'cost', 3], ['length [m]', 'length', 2, 'paper_length'],
-  ['mean trace', 'mean_trace', 2, 'paper_mean_trace', kTraceScale],
-  ['goal trace', 'goal_trace', 2, 'paper_goal_trace', kTraceScale],
+  ['mean trace', 'mean_trace', 2, 'paper_mean_trace', traceScale],
+  ['goal trace', 'goal_trace', 2, 'paper_goal_trace', traceScale],
   ['excess [%]', 'excess', 2, null, 100], ['vertices', 'vertices', 0], ['views', 'views', 0], ['seconds', 'seconds', 2],
 ].filter(([, key]) => !sweep || sweep.summary.some((cell) => isNumber(cell[`${key}_mean`])));
 
@@ -156,7 +164,7 @@ function plannerTable(planner) {
   swatch.style.background = plannerColor(planner);
   title.append(swatch, planner);
   box.append(title, table, make('p', `Mean ± standard deviation over ${sweep.runs_per_cell} seeds. Traces in ` +
-    '0.01 (m² + rad²).', {className: 'note'}));
+    `${sweep.trace_unit} (m² + rad²).`, {className: 'note'}));
   return box;
 }
 

@@ -58,6 +58,10 @@ TEST_F(CommandLine, PlanWritesEverythingItPromises) {
                             "cache_hits", "time", "audit", "path"}) {
         EXPECT_TRUE(r.contains(key)) << key;
     }
+    const double lengthInJ = r["metric_length"];  // nothing turns here
+    EXPECT_NEAR(lengthInJ, r["length"].get<double>(), 1e-9);
+    EXPECT_NEAR(r["cost"].get<double>(),
+                (0.1 + 0.9 * 2.5 * r["mean_trace"].get<double>()) * lengthInJ, 1e-9);
     for (const char* key : {"total_s", "views_s", "beliefs_s", "tree_s"}) {
         EXPECT_GE(r["time"][key].get<double>(), 0.) << key;
     }
@@ -110,12 +114,15 @@ TEST_F(CommandLine, RrtStarRendersNoViewWhilePlanning) {
 }
 
 TEST_F(CommandLine, NoPathIsExitCodeOneWithResults) {
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "tree_evolution.png") << "of an earlier run";
     const Execution run = plan("--set planner.vertices=2");  // the goal is not among the first two
     EXPECT_EQ(run.exitCode, 1) << run.output;
     EXPECT_EQ(result()["status"], "no path");
     EXPECT_TRUE(result()["path"].empty());
     EXPECT_TRUE(fs::exists(folder_ / "report.html"));
     EXPECT_FALSE(fs::exists(folder_ / "information.png"));  // nothing to look for
+    EXPECT_FALSE(fs::exists(folder_ / "tree_evolution.png"));
 }
 
 /// A map of a small recording, and a config for planning in it.

@@ -19,13 +19,16 @@ TEST(Compare, EveryMethodOnceJudgedByTheSameBeliefs) {
     fs::remove_all(folder);
     const Execution run =
         photonav("compare " + config("two_textures") + " --runs 1 --out " + folder.string() +
-                 " --set planner.vertices=150 --set planner.view_pitch=0.5 --quiet");
+                 " --set planner.vertices=150 --set planner.view_pitch=0.5 --set seed=7 --quiet");
     ASSERT_EQ(run.exitCode, 0) << run.output;
     const auto result = nlohmann::json::parse(std::ifstream(folder / "result.json"));
     const auto& runs = result["scenarios"][0]["runs"];
     ASSERT_EQ(runs.size(), compareMethods().size());
     std::map<std::string, nlohmann::json> byMethod;
-    for (const auto& r : runs) byMethod[r["method"]] = r;
+    for (const auto& r : runs) {
+        byMethod[r["method"]] = r;
+        EXPECT_EQ(r["seed"], 7);
+    }
     // The planner that goes by what judges sees its own cost; one that sees nothing does not.
     const auto& ours = byMethod["belief_rrt_star, photometric"];
     EXPECT_NEAR(ours["cost"], ours["planner_cost"], 1e-9);
@@ -52,6 +55,15 @@ TEST(Compare, ItsTableSaysHowManyRunsFoundAPath) {
         compareTable({{method, 1, found, "done"}, {method, 2, PlanOutcome{}, "no path"}});
     EXPECT_NE(table.find("| " + method + " (1 of 2 found a path) | 2.000 |"), std::string::npos)
         << table;
+}
+
+TEST(Compare, TwoConfigsOfOneNameAreRefused) {
+    const fs::path folder = fs::temp_directory_path() / "photonav_compare_names";
+    const std::string file = config("two_textures");
+    const Execution run = photonav("compare " + file + " " + file + " --out " + folder.string());
+    EXPECT_EQ(run.exitCode, 2);
+    EXPECT_NE(run.output.find("has the name of"), std::string::npos) << run.output;
+    EXPECT_FALSE(fs::exists(folder));
 }
 
 TEST(Compare, AMissingConfigIsOneLine) {

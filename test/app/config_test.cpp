@@ -5,9 +5,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <set>
 
 #include "error.hpp"
 #include "world.hpp"
+#include "yaml_reader.hpp"
 
 namespace photonav {
 namespace {
@@ -67,6 +70,37 @@ TEST(Config, PathsAreRelativeToTheFileOrOnTheCommandLineToTheFolderOne) {
               std::string(PHOTONAV_SOURCE_DIR) + "/config/scenes/two_textures.yaml");
     EXPECT_EQ(loadConfig(kTwoTextures, {"scene.file=here.yaml"}).sceneFile,
               (fs::current_path() / "here.yaml").string());
+    for (const std::string quote : {"", "'", "\""}) {
+        const std::string odd = "a #b/c: d.yaml";
+        EXPECT_EQ(loadConfig(kTwoTextures, {"scene.file=" + quote + odd + quote}).sceneFile,
+                  (fs::current_path() / odd).string());
+    }
+}
+
+/// Dotted names of all values below a mapping.
+void collectKeys(const YAML::Node& node, const std::string& prefix, std::set<std::string>& keys) {
+    for (const auto& entry : node) {
+        const auto key = prefix + entry.first.as<std::string>();
+        if (entry.second.IsMap()) {
+            collectKeys(entry.second, key + ".", keys);
+        } else {
+            keys.insert(key);
+        }
+    }
+}
+
+TEST(Config, EveryKeyIsInTheReference) {
+    const Config ofScene = loadConfig(kTwoTextures, {"fly.plan=a", "fly.map=b", "fly.scale=1",
+                                                     "fly.floor=0", "fly.floor_rotation=0"});
+    const Config ofMap = loadConfig(PHOTONAV_SOURCE_DIR "/config/scan_room_1.yaml");
+    std::set<std::string> keys;
+    collectKeys(YAML::Load(toYaml(ofScene)), "", keys);
+    collectKeys(YAML::Load(toYaml(ofMap)), "", keys);
+    std::ifstream file(PHOTONAV_SOURCE_DIR "/docs/config.md");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    for (const std::string& key : keys) {
+        EXPECT_NE(text.find("| `" + key + "` |"), std::string::npos) << key;
+    }
 }
 
 TEST(Config, MountsAreWordsOrDegrees) {
@@ -113,9 +147,14 @@ TEST(Config, ComplaintsNameKeyAndReason) {
 }
 
 TEST(Config, AMapThatIsNotThereYetIsMadeBySomething) {
-    const std::vector<std::string> room{"map.file=nowhere.ot", "map.made_by=scripts/make it"};
+    const std::vector<std::string> room{"map.file=no #1: nowhere.ot",
+                                        "map.made_by=scripts/make it"};
     const Config config = loadConfig(PHOTONAV_SOURCE_DIR "/config/scan_room_1.yaml", room);
     EXPECT_NE(toYaml(config).find("made_by: scripts/make it"), std::string::npos);
+    const fs::path file = fs::temp_directory_path() / "photonav_config_of_map.yaml";
+    std::ofstream(file) << toYaml(config);
+    EXPECT_EQ(loadConfig(file.string()).mapFile, (fs::current_path() / "no #1: nowhere.ot"));
+    fs::remove(file);
     try {
         const World world(config);
         ADD_FAILURE() << "nothing was thrown";

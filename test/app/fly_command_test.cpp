@@ -105,7 +105,8 @@ TEST_F(FlyCommand, FliesThePlanOfAResultFolder) {
 }
 
 TEST_F(FlyCommand, ItsConfigRepeatsTheRun) {
-    std::ofstream(folder_ / "calibration.yaml") << "scale: 0.05\nfloor: 0.01\n";
+    std::ofstream(folder_ / "calibration.yaml")
+        << "scale: 0.05\nfloor: 0.01\nfloor_rotation: 0.001\n";
     ASSERT_NE(fly("a",
                   "--flights 2 --seed 3 --camera real --odometry 4 --latency 0.1 --rate 5"
                   " --blackout 3,0.2 --drop 0.1 --speed 0.8 --no-photometric-goal"
@@ -203,7 +204,9 @@ TEST_F(FlyCommand, RejectsBadInput) {
         return fly("x", "--calibration " + at("calibration.yaml"));
     };
     expect(calibration("floor: 0.01\n"), "calibration.yaml: scale: missing");
-    expect(calibration("scale: 1\nfloor: [0.01, 0.005]\n"), "calibration.yaml: floor: ");
+    expect(calibration("scale: 1\n"), "calibration.yaml: floor: missing");
+    expect(calibration("scale: 1\nfloor_rotation: 0\nfloor: [0.01, 0.005]\n"),
+           "calibration.yaml: floor: ");
     expect(calibration("scale: [\n"), "calibration.yaml");
     expect(photonav("fly " + at("")), "not a result of photonav plan");
     fs::create_directories(folder_ / "no");

@@ -75,6 +75,11 @@ TEST_F(MapCommand, WritesWhatOtherProgramsRead) {
     ASSERT_EQ(trajectory.size(), 6U);
     EXPECT_TRUE(trajectory[2].T_w_c.isApprox(dataset.T_w_c(2), 1e-5));
     EXPECT_EQ(nlohmann::json::parse(test::contentOf(file("result.json"))), report.result);
+
+    writeText(data / "groundtruth.txt",
+              "100 0 5e6 1.5 1 0 0 0\n");  // refused: all is left as it is
+    expectInputError([&] { runMap(options, running); }, {"groundtruth.txt"});
+    EXPECT_TRUE(test::fs::exists(options.out / "comparison_0.png"));
 }
 
 TEST_F(MapCommand, TurnsTheRecordedWorldUpright) {

@@ -115,6 +115,7 @@ TEST_F(ScanCommand, ABadStationStopsItBeforeAnyWork) {
     test::fs::remove(scans / "2.ply");
     options.resolution = 1e-5;
     expectInputError([&] { runScanMap(options, running); }, {"1.ply", "--resolution"});
+    EXPECT_FALSE(test::fs::exists(options.out));
 }
 
 }  // namespace

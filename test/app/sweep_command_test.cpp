@@ -166,6 +166,9 @@ TEST_F(SweepCommand, ShardsThatDoNotMatchAreRefused) {
     ASSERT_EQ(sweep("2of2", "--shard 2/2", quick).exitCode, 0);
     ASSERT_EQ(sweep("2of3", "--shard 2/3", quick).exitCode, 0);
     ASSERT_EQ(sweep("other", "--shard 2/2 --set planner.range=1.5", quick).exitCode, 0);
+    // A result of its own, as an earlier merge left it.
+    ASSERT_EQ(sweep("m", "", quick).exitCode, 0);
+    const std::string before = test::contentOf(folder_ / "m/runs.jsonl");
     const auto merge = [&](const std::vector<std::string>& names, const std::string& out = "m") {
         std::ostringstream arguments;
         arguments << "sweep --out " << at(out) << " --merge";
@@ -183,7 +186,12 @@ TEST_F(SweepCommand, ShardsThatDoNotMatchAreRefused) {
                    "instead of");
     cutAfter("2of2", 0);
     expectBadInput(merge({"1of2", "2of2"}), "1 runs are missing");
-    EXPECT_FALSE(fs::exists(folder_ / "m/result.json"));
+    expectBadInput(merge({"1of2", "2of2"}, "new"), "1 runs are missing");
+    EXPECT_FALSE(fs::exists(folder_ / "new"));
+    for (const char* kept : {"result.json", "runs.csv", "summary.csv", "report.html"}) {
+        EXPECT_TRUE(fs::exists(folder_ / "m" / kept)) << kept;
+    }
+    EXPECT_EQ(test::contentOf(folder_ / "m/runs.jsonl"), before);
 }
 
 TEST_F(SweepCommand, AKilledSweepResumesWhereItWas) {
@@ -298,6 +306,8 @@ TEST_F(SweepCommand, BadInputIsOneLineAndExitCodeTwo) {
     expectBadInput(sweep("out", "--alpha 0.5,1.5", " "), "1.5 is outside [0, 1]");
     expectBadInput(sweep("out", "--shard 3/2", " "), "--shard: '3/2' is not k/n");
     expectBadInput(sweep("out", "--runs 0", " "), "sweep.runs");
+    expectBadInput(sweep("out", "--seed 4294967295 --runs 2", " "),
+                   "2 runs from 4294967295 on go beyond the last seed");
     expectBadInput(sweep("out", "--jobs 0", " "), "--jobs");
     expectBadInput(sweep("out", "--set sweep.reference=nowhere.csv", " "), "nowhere.csv");
     expectBadInput(photonav("sweep"), "give a CONFIG");

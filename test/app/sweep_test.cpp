@@ -286,9 +286,16 @@ TEST(SweepTables, PutThePaperBesideOurs) {
     EXPECT_DOUBLE_EQ(second["length_std"].get<double>(), std::sqrt(2.));
     EXPECT_TRUE(second["paper_length"].is_null());
     EXPECT_TRUE(toJson(cells[2])["paper_length"].is_null());  // no look, no row of the paper
-    const std::string table = sweepTable(cells);
+    const std::string table = sweepTable(config, cells);
     EXPECT_NE(table.find("40.45"), std::string::npos) << table;
     EXPECT_EQ(table.find("paper", table.find("rrt_star")), std::string::npos) << table;
+    EXPECT_NE(table.find("(traces in 0.01 "), std::string::npos) << table;
+    // Without a published table: the unit that the smallest trace, 1.5e-5, can be read in.
+    config.paper.clear();
+    const std::string small =
+        sweepTable(config, summarize(config, {makeRun({"a", 0.15, 1}, 3., 10., 3e-5)}, {}));
+    EXPECT_NE(small.find("(traces in 0.0001 "), std::string::npos) << small;
+    EXPECT_NE(small.find(" 0.15 "), std::string::npos) << small;
 }
 
 TEST(SweepTables, CsvQuotesWhatNeedsIt) {
