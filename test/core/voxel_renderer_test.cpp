@@ -8,6 +8,7 @@
 
 #include "core/synthetic_floor.hpp"
 #include "map_fusion.hpp"
+#include "mesh_renderer.hpp"
 #include "photometric.hpp"
 
 namespace photonav {
@@ -297,6 +298,33 @@ TEST(VoxelRenderer, KeepsMostOfTheInformationOfTheOriginalImage) {
             EXPECT_LT(kept, 1.1) << resolution << ' ' << belowHorizon;
             RecordProperty(fmt::format("kept_{}_{:.2f}", resolution, belowHorizon),
                            fmt::format("{:.4f}", kept));
+        }
+    }
+}
+
+TEST(VoxelRenderer, KeepsMuchOfTheInformationOfTheMeshItWasMadeFrom) {
+    Scene scene;
+    const auto carpet = addTexture(scene, valueNoise({.size = {8., 8.}, .seed = 4}));
+    addPlane(scene, {-4., -4., 0.02}, {8., 0., 0.}, {0., 8., 0.}, carpet);
+    const MeshRenderer mesh(scene);
+    const Camera camera = makeCamera(188, 120, 1.2);
+    for (const auto& [resolution, least] : {std::pair{0.05, 0.5}, {0.025, 0.7}}) {
+        TexturedOcTree map(resolution);
+        const Camera recorder = makeCamera(240, 180, 1.1);
+        for (int i = 0; i < 12; ++i) {
+            const Pose T_c_w =
+                lookDown(-0.7 + 0.3 * (i % 6), -0.3 + 0.6 * (i / 6), 1.4, 1.35, 0.3 * i);
+            View view;
+            mesh.render(recorder, T_c_w, view);
+            fuse(map, view, recorder, T_c_w);
+        }
+        const VoxelRenderer voxels(map, UnknownPolicy::free);
+        for (const double belowHorizon : {kDown, 1.2}) {
+            const Pose T_c_w = lookDown(-0.2, 0., 1., belowHorizon, 0.2);
+            const double kept =
+                informationTrace(voxels, camera, T_c_w) / informationTrace(mesh, camera, T_c_w);
+            EXPECT_GT(kept, least) << resolution << ' ' << belowHorizon;
+            EXPECT_LT(kept, 1.1) << resolution << ' ' << belowHorizon;
         }
     }
 }
