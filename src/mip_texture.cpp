@@ -2,6 +2,7 @@
 #include "mip_texture.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace photonav {
 namespace {
@@ -59,7 +60,7 @@ ImageF halved(const ImageF& fine) {
 }
 
 std::uint16_t stored(float grey) {
-    return static_cast<std::uint16_t>(std::clamp(grey, 0.F, 1.F) * MipTexture::kOne + 0.5F);
+    return static_cast<std::uint16_t>(std::lrint(std::clamp(grey, 0.F, 1.F) * MipTexture::kOne));
 }
 
 }  // namespace
