@@ -48,8 +48,7 @@ int main(int argc, char** argv) {
         fromAbovePlot.curve(route(path), colourOf(alpha), 3);
         tradeOff.dots({answers.back()}, colourOf(alpha), 1., 6);
         if (i % 3 == 0) {
-            fromAbovePlot.label("alpha " + std::to_string(alpha).substr(0, 4), colourOf(alpha),
-                                270);
+            fromAbovePlot.label("alpha " + std::to_string(alpha).substr(0, 4), colourOf(alpha));
         }
     }
     tradeOff.curve(answers, {120, 120, 120}, 1);
