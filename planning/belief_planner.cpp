@@ -15,6 +15,25 @@ namespace ob = ompl::base;
 
 constexpr double kExploration = 0.2;  // share of the samples taken wherever they fall
 
+namespace {
+
+/// OMPL's tree of neighbours draws its pivots by a seed from the clock, and which of two vertices
+/// at the same distance comes first depends on them. Here the seed is always the same.
+template <typename T>
+class SeededNeighbours : public ompl::NearestNeighborsGNATNoThreadSafety<T> {
+  public:
+    SeededNeighbours() { Pivots::rngOf(this->pivotSelector_).setLocalSeed(1); }
+
+  private:
+    struct Pivots : ompl::GreedyKCenters<T> {
+        static ompl::RNG& rngOf(ompl::GreedyKCenters<T>& centers) {
+            return centers.*(&Pivots::rng_);
+        }
+    };
+};
+
+}  // namespace
+
 BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
                              const std::string& name, const GrowthOptions& growth)
     : ob::Planner(si, name),
@@ -49,7 +68,7 @@ BeliefPlanner::~BeliefPlanner() { freeMemory(); }
 void BeliefPlanner::setup() {
     Planner::setup();
     if (!neighbours_) {
-        neighbours_ = std::make_shared<ompl::NearestNeighborsGNATNoThreadSafety<Vertex*>>();
+        neighbours_ = std::make_shared<SeededNeighbours<Vertex*>>();
         neighbours_->setDistanceFunction(
             [this](const Vertex* a, const Vertex* b) { return si_->distance(a->state, b->state); });
     }
