@@ -86,4 +86,9 @@ nlohmann::json orNull(const std::optional<double>& value) {
     return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
+nlohmann::json cameraJson(const Camera& camera) {
+    return {{"width", camera.width}, {"height", camera.height}, {"fx", camera.fx()},
+            {"fy", camera.fy()},     {"cx", camera.cx()},       {"cy", camera.cy()}};
+}
+
 }  // namespace photonav

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "camera.hpp"
+
 namespace photonav {
 
 enum ExitCode { kDone = 0, kNoAnswer = 1, kBadInput = 2, kInterrupted = 130 };
@@ -47,5 +49,8 @@ class ProgressLine {
 /// A JSON number, or null where there is none (infinite or NaN).
 nlohmann::json finiteOrNull(double value);
 nlohmann::json orNull(const std::optional<double>& value);
+
+/// Size and intrinsics [pixels].
+nlohmann::json cameraJson(const Camera& camera);
 
 }  // namespace photonav

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "constants.hpp"
+#include "octree_file.hpp"
 #include "yaml_reader.hpp"
 
 namespace photonav {
@@ -83,8 +84,7 @@ std::string resolve(const std::string& path, const std::string& configFile) {
 
 /// Files that other commands write are often given in place of a planning problem.
 void checkThatIsProblem(const std::string& file) {
-    const std::string extension = fs::path(file).extension().string();
-    if (extension == ".ot" || extension == ".bt") {
+    if (isOcTreeFile(file)) {
         throw InputError(file, "",
                          "is a map, not a planning problem: name it as map.file in a config "
                          "(photonav info shows what it holds)");

@@ -73,6 +73,10 @@ Panel errorPanel(const ImageF& depth, const ImageF& recorded) {
         errors.push_back(std::abs(depth.bitmap[i] - truth) / truth);
         panel.pixels[i] = onScale(errors.back() / kFullError);
     }
+    if (errors.empty()) {
+        panel.caption = "no error: no depth found";
+        return panel;
+    }
     panel.caption = fmt::format("its error (median {:.1f} %, yellow: 10 %)",
                                 100. * median(std::move(errors), 0.));
     return panel;

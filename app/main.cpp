@@ -14,6 +14,7 @@
 #include "error.hpp"
 #include "info_command.hpp"
 #include "map_info.hpp"
+#include "octree_file.hpp"
 #include "plan_command.hpp"
 #include "reference_command.hpp"
 #include "report.hpp"
@@ -92,7 +93,7 @@ Command infoCommand(CLI::App& app, const Invocation& invocation) {
         ->capture_default_str();
     return {parser, [options, parser] {
                 std::signal(SIGINT, SIG_DFL);  // seconds of work, nothing to keep
-                if (!isMapFile(options->config)) return runInfo(*options);
+                if (!isOcTreeFile(options->config)) return runInfo(*options);
                 return describeMap(*parser, *options);
             }};
 }

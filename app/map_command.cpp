@@ -182,6 +182,10 @@ void writeMaps(const fs::path& folder, const TexturedOcTree& map, const Trajecto
 
 }  // namespace
 
+double defaultMinRange(const std::string& depth) {
+    return depth == "monocular" ? DepthFilterOptions().minDepth : FusionOptions().minRange;
+}
+
 MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted) {
     checkOptions(options);
     Stopwatch watch;

@@ -27,6 +27,9 @@ struct MapOptions : RecordingOptions {
     std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
+/// Nearest depth trusted when nothing else is asked for [m].
+double defaultMinRange(const std::string& depth);
+
 struct MapReport {
     nlohmann::json result;  ///< what was written as result.json
     ReportTable summary;    ///< the same in words

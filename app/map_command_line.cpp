@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include "command_line.hpp"
-#include "depth_filter.hpp"
 #include "error.hpp"
 #include "map_command.hpp"
 #include "map_config.hpp"
@@ -32,8 +31,8 @@ void addOptions(CLI::App& parser, MapArguments& options) {
         .add_option("--depth", options.depth,
                     "recorded, or monocular: from the images and their poses alone")
         ->capture_default_str();
-    parser.add_option("--min-range", options.fusion.minRange, "nearest depth trusted [m]")
-        ->capture_default_str();
+    parser.add_option("--min-range", options.fusion.minRange,
+                      "nearest depth trusted [m] (0.2, monocular: 0.5)");
     parser
         .add_option("--max-range", options.fusion.maxRange,
                     "farthest surface entered [m] (point clouds: 40)")
@@ -84,8 +83,8 @@ MapReport mapImages(const CLI::App& parser, bool isConfig, MapArguments& options
     }
     if (isConfig) {
         readMapConfig(std::string(options.dataset), options);
-    } else if (options.depth == "monocular" && parser.count("--min-range") == 0) {
-        options.fusion.minRange = DepthFilterOptions().minDepth;
+    } else if (parser.count("--min-range") == 0) {
+        options.fusion.minRange = defaultMinRange(options.depth);
     }
     if (options.out.empty()) options.out = "out/map-" + folderName(options.dataset);
     options.progress = [&line](std::size_t done, std::size_t total) {

@@ -46,6 +46,7 @@ void readMapConfig(const std::string& file, MapOptions& options) {
     readRecordingKeys(yaml, options);
     yaml.read("depth", options.depth);
     yaml.readNumber("resolution", options.resolution, 1e-6, kInfinity);
+    options.fusion.minRange = defaultMinRange(options.depth);
     yaml.readNumber("min_range", options.fusion.minRange, 0., kInfinity);
     yaml.readNumber("max_range", options.fusion.maxRange, 0., kInfinity);
     yaml.finish();

@@ -51,11 +51,6 @@ ReportTable factsOf(const json& result) {
 
 }  // namespace
 
-bool isMapFile(const std::string& file) {
-    const std::string extension = fs::path(file).extension().string();
-    return extension == ".ot" || extension == ".bt";
-}
-
 MapReport runMapInfo(const CommandOptions& options) {
     if (!options.overrides.empty()) {
         throw InputError("--set", "", "is for a planning problem, not for a map");
@@ -79,12 +74,9 @@ MapReport runMapInfo(const CommandOptions& options) {
     page.result = report.result;
     page.voxels = makeReportVoxels(*map);
     page.tables = {report.summary};
-    if (report.result["voxels"]["occupied"] > 0) {
-        page.figures = {{"The map as a camera would see it.", drawOverview(*map, page.title)}};
-        writeFileAtomically(folder / "overview.png", page.figures.front().image);
-    }
-    writeFileAtomically(folder / "report.json", toJson(page).dump());
-    writeReport(folder / "report.html", page);
+    std::vector<NamedFigure> figures;
+    if (report.result["voxels"]["occupied"] > 0) figures.push_back(overview(*map, page.title));
+    writeResultFolder(folder, page, figures);
     writeFileAtomically(folder / "result.json", report.result.dump(2) + "\n");
     return report;
 }

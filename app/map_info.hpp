@@ -7,9 +7,6 @@
 
 namespace photonav {
 
-/// By its name: OctoMap's .ot or .bt.
-bool isMapFile(const std::string& file);
-
 /// Says how large the map in the file `config` is and how much of it has grey values. Writes
 /// result.json, overview.png, report.json and report.html.
 /// @throws InputError for a file that is no map, and for overrides: a map has no keys

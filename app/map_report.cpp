@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "command_io.hpp"
 #include "map_config.hpp"
 #include "perspective.hpp"
 #include "voxel_renderer.hpp"
@@ -41,19 +42,13 @@ json vectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 json datasetJson(const MapOptions& options, const Recording& recording) {
     const Sequence& sequence = recording.sequence;
-    const Camera& camera = sequence.camera;
+    json camera = cameraJson(sequence.camera);
+    camera["assumed"] = sequence.cameraAssumed;
+    camera["depth_registered_here"] = sequence.depthIntrinsics.has_value();
     const Eigen::Matrix3d R = worldUpRotation(recording.up);
     return {{"folder", fs::absolute(options.dataset).lexically_normal().string()},
-            {"camera",
-             {{"width", camera.width},
-              {"height", camera.height},
-              {"fx", camera.fx()},
-              {"fy", camera.fy()},
-              {"cx", camera.cx()},
-              {"cy", camera.cy()},
-              {"assumed", sequence.cameraAssumed},
-              {"depth_registered_here", sequence.depthIntrinsics.has_value()}}},
-            {"depth_scale", sequence.depthScale},
+            {"camera", camera},
+            {"depth_scale", sequence.hasDepth() ? json(sequence.depthScale) : json(nullptr)},
             {"up", options.up},
             {"up_direction", vectorJson(recording.up)},
             {"tilt_degrees", tiltDegrees(recording.up)},
@@ -81,7 +76,9 @@ TableRows depthRows(const json& mono) {
     const auto percent = [&](const char* key) {
         return fmt::format("{:.1f} %", 100. * mono[key].get<double>());
     };
-    TableRows rows{{"depth from the images, reference images", mono["references"].dump()}};
+    TableRows rows{{"depth from the images, reference images",
+                    fmt::format("{}, and {} given up", mono["references"].get<int>(),
+                                mono["references_given_up"].get<int>())}};
     if (mono["converged"].is_number()) {
         rows.emplace_back("pixels converged, given up, still open",
                           fmt::format("{}, {}, {}", percent("converged"), percent("given_up"),
@@ -152,11 +149,13 @@ json voxelsJson(const TexturedOcTree& map) {
     return result;
 }
 
-Png drawOverview(const TexturedOcTree& map, const std::string& title) {
+NamedFigure overview(const TexturedOcTree& map, const std::string& title) {
     Eigen::AlignedBox3d box;
     map.getMetricMin(box.min().x(), box.min().y(), box.min().z());
     map.getMetricMax(box.max().x(), box.max().y(), box.max().z());
-    return drawPerspective(VoxelRenderer(map, UnknownPolicy::free), {title, box, {}});
+    return {"overview.png",
+            {"The map as a camera would see it.",
+             drawPerspective(VoxelRenderer(map, UnknownPolicy::free), {title, box, {}})}};
 }
 
 ReportTable mapSummary(const json& result) {

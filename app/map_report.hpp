@@ -28,7 +28,7 @@ struct MapRun {
 nlohmann::json voxelsJson(const TexturedOcTree& map);
 
 /// The map as a camera would see it that looks at it from above one of its corners.
-Png drawOverview(const TexturedOcTree& map, const std::string& title);
+NamedFigure overview(const TexturedOcTree& map, const std::string& title);
 
 /// result.json but for the cells and the time it took.
 nlohmann::json mapResult(const MapOptions& options, const Recording& recording, const MapRun& run);

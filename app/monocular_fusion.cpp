@@ -16,7 +16,7 @@ constexpr std::size_t kMostDrawn = 5;  // references
 
 MonocularOptions optionsFor(const FusionOptions& fusion) {
     MonocularOptions options;
-    options.filter.minDepth = std::max(fusion.minRange, 0.01);
+    options.filter.minDepth = fusion.minRange;
     return options;
 }
 
@@ -29,7 +29,7 @@ MonocularFusion::MonocularFusion(TexturedOcTree& map, const Camera& camera,
 void MonocularFusion::add(const RecordedFrame& frame) {
     const auto finished = depth_.add(frame.view.intensity, frame.T_c_w);
     if (finished) fuseReference(*finished);
-    if (!finished && recorded_.getSize() > 0) return;
+    if (!depth_.isAtReference()) return;
     recorded_ = frame.view.depth;
     timestamp_ = frame.timestamp;
 }
@@ -85,6 +85,7 @@ nlohmann::json MonocularFusion::result() const {
         return all > 0 ? nlohmann::json(n / static_cast<double>(all)) : nlohmann::json(nullptr);
     };
     nlohmann::json result = {{"references", references_},
+                             {"references_given_up", depth_.givenUp()},
                              {"converged", shareOf(DepthState::converged)},
                              {"given_up", shareOf(DepthState::givenUp)},
                              {"searching", shareOf(DepthState::searching)},

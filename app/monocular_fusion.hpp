@@ -27,9 +27,9 @@ class MonocularFusion {
     /// Fuses what the last reference has learned.
     void finish();
 
-    /// {references; converged, given_up, searching: shares of their pixels; completeness,
-    /// median_relative_error, p90_relative_error, share_above_10_percent: of the pixels with
-    /// recorded depth, null when there are none}.
+    /// {references, references_given_up; converged, given_up, searching: shares of their pixels;
+    /// completeness, median_relative_error, p90_relative_error, share_above_10_percent: of the
+    /// pixels with recorded depth, null when there are none}.
     nlohmann::json result() const;
 
     /// What a few references spread over the recording have learned; none when there was none.

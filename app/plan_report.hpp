@@ -41,8 +41,9 @@ struct NamedFigure {
     ReportFigure figure;
 };
 
-/// Writes the figures (also into the report), config.yaml, report.json and report.html. result.json
-/// comes last and is the command's: where it is, the folder is complete.
+/// Writes the figures (also into the report), config.yaml (unless the report has none), report.json
+/// and report.html. result.json comes last and is the command's: where it is, the folder is
+/// complete.
 void writeResultFolder(const std::filesystem::path& folder, ReportData& report,
                        const std::vector<NamedFigure>& figures);
 

@@ -115,11 +115,10 @@ void writeScanReport(const ScanMapOptions& options, const json& result, const Re
     report.result = result;
     report.config = toYaml(options);
     report.voxels = makeReportVoxels(map);
-    report.figures = {{"The map as a camera would see it.", drawOverview(map, report.title)}};
     report.tables = {summary};
-    writeFileAtomically(options.out / "overview.png", report.figures.front().image);
-    writeFileAtomically(options.out / "report.json", toJson(report).dump());
-    writeReport(options.out / "report.html", report);
+    std::vector<NamedFigure> figures;
+    if (!result["stations"].empty()) figures.push_back(overview(map, report.title));
+    writeResultFolder(options.out, report, figures);
 }
 
 /// Of this process, so far.
@@ -174,8 +173,7 @@ MapReport runScanMap(const ScanMapOptions& options, const std::atomic<bool>& int
     saveTexturedOcTree(map, (options.out / "map.ot").string());
     saveColorOcTree(map, (options.out / "map_color.ot").string());
     saveBinaryOcTree(map, (options.out / "map.bt").string());
-    writeFileAtomically(options.out / "config.yaml", toYaml(options));
-    if (!stations.empty()) writeScanReport(options, report.result, report.summary, map);
+    writeScanReport(options, report.result, report.summary, map);
     const long peak = peakMegabytes();  // all work is done, the report is written
     report.result["peak_memory_mb"] = peak;
     report.summary.rows.emplace_back("peak memory", fmt::format("{} MB", peak));

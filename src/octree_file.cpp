@@ -230,6 +230,11 @@ std::unique_ptr<TexturedOcTree> loadTexturedOcTree(const std::string& file) {
     return map;
 }
 
+bool isOcTreeFile(const std::string& file) {
+    const std::string extension = std::filesystem::path(file).extension().string();
+    return extension == ".ot" || extension == ".bt";
+}
+
 void saveTexturedOcTree(const TexturedOcTree& map, const std::string& file) {
     replaceFile(file, [&](std::ostream& stream) {
         writeHeader(stream, kOtLine, map.getTreeType(), map);

@@ -9,6 +9,9 @@
 
 namespace photonav {
 
+/// By its name: OctoMap's .ot or .bt.
+bool isOcTreeFile(const std::string& file);
+
 /// Reads a map. Besides our own .ot (class TexturedOcTree) it takes what other OctoMap programs
 /// write: .ot of class ColorOcTree (all six faces of an occupied cell take the luma of its colour,
 /// with weight 1) and .ot or .bt of class OcTree (occupancy only: no face was ever observed, so one

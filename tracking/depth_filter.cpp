@@ -17,6 +17,11 @@ void checkSize(const ImageF& image, const Camera& camera) {
     throw std::invalid_argument("DepthFilter: an image of another size than the camera's");
 }
 
+/// Variance of a uniform distribution of inverse depths.
+float priorVariance(const DepthFilterOptions& options) {
+    return static_cast<float>(1. / (12. * options.minDepth * options.minDepth));
+}
+
 double gaussian(double x, double variance) {
     return std::exp(-0.5 * x * x / variance) / std::sqrt(2. * std::numbers::pi * variance);
 }
@@ -27,9 +32,8 @@ DepthFilter::DepthFilter(ImageF reference, const Camera& camera, const Pose& T_r
                          const DepthFilterOptions& options)
     : reference_(std::move(reference)), camera_(camera), T_r_w_(T_r_w), options_(options) {
     checkSize(reference_, camera_);
-    const auto range = static_cast<float>(1. / options_.minDepth);
-    // Mean and variance of a uniform distribution.
-    const Seed unknown{0.5F * range, range * range / 12.F, 10.F, 10.F, DepthState::searching};
+    const auto middle = static_cast<float>(0.5 / options_.minDepth);
+    const Seed unknown{middle, priorVariance(options_), 10.F, 10.F, DepthState::searching};
     seeds_.assign(reference_.getSize(), unknown);
 }
 
@@ -104,6 +108,13 @@ double DepthFilter::shareConverged() const {
         return seed.state == DepthState::converged;
     });
     return static_cast<double>(converged) / static_cast<double>(seeds_.size());
+}
+
+double DepthFilter::shareNarrowed() const {
+    const float half = 0.5F * priorVariance(options_);
+    const auto narrowed = std::count_if(seeds_.begin(), seeds_.end(),
+                                        [&](const Seed& seed) { return seed.variance <= half; });
+    return static_cast<double>(narrowed) / static_cast<double>(seeds_.size());
 }
 
 std::optional<double> DepthFilter::medianDepth() const {

@@ -50,6 +50,7 @@ class DepthFilter {
 
     DepthState state(unsigned v, unsigned u) const { return seeds_[v * camera_.width + u].state; }
     double shareConverged() const;               ///< of all pixels
+    double shareNarrowed() const;                ///< of all pixels: to half the variance or less
     std::optional<double> medianDepth() const;   ///< of the converged pixels [m]
     const Pose& pose() const { return T_r_w_; }  ///< T_r_w
     const ImageF& reference() const { return reference_; }

@@ -13,8 +13,14 @@ std::optional<DepthFilter> MonocularDepth::add(const ImageF& image, const Pose& 
     if (filter_) {
         filter_->observe(image, T_c_w);
         ++images_;
-        if (!hasMovedOn(T_c_w)) return {};
-        finished = finish();
+        if (isFruitless()) {
+            ++givenUp_;
+            images_ = 0;
+        } else if (hasMovedOn(T_c_w)) {
+            finished = finish();
+        } else {
+            return {};
+        }
     }
     filter_.emplace(image, camera_, T_c_w, options_.filter);
     return finished;
@@ -25,6 +31,12 @@ std::optional<DepthFilter> MonocularDepth::finish() {
     if (std::exchange(images_, 0) > 0) finished = std::move(filter_);
     filter_.reset();
     return finished;
+}
+
+bool MonocularDepth::isFruitless() const {
+    if (images_ < options_.minImages) return false;
+    return filter_->shareNarrowed() < options_.fruitful ||
+           (images_ >= 10 * options_.minImages && !filter_->medianDepth());
 }
 
 bool MonocularDepth::hasMovedOn(const Pose& T_c_w) const {

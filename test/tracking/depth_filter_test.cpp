@@ -113,6 +113,30 @@ TEST_F(DepthFilterTest, ReferencesFollowTheFlight) {
     for (const DepthFilter& filter : finished) EXPECT_GT(filter.shareConverged(), 0.2);
     EXPECT_TRUE(depth.finish());
     EXPECT_FALSE(depth.finish());
+    EXPECT_EQ(depth.givenUp(), 0);
+}
+
+TEST_F(DepthFilterTest, AReferenceWithoutTextureOrMotionIsGivenUp) {
+    const MonocularOptions options;
+    MonocularDepth depth(camera, options);
+    EXPECT_FALSE(depth.add(ImageF(camera.height, camera.width, 0.F), pose(0)));
+    for (int i = 0; i < options.minImages; ++i) {
+        EXPECT_FALSE(depth.add(seen(0).intensity, pose(0)));
+    }
+    EXPECT_TRUE(depth.isAtReference());
+    EXPECT_EQ(depth.givenUp(), 1);
+    for (int i = 0; i < options.minImages; ++i) {
+        EXPECT_FALSE(depth.add(seen(0).intensity, pose(0)));
+    }
+    EXPECT_EQ(depth.givenUp(), 2);  // it did not move
+    for (int i = 1; i < 15; ++i) {
+        EXPECT_FALSE(depth.isAtReference() && i > 1);
+        depth.add(seen(i).intensity, pose(i));
+    }
+    EXPECT_EQ(depth.givenUp(), 2);
+    const auto last = depth.finish();
+    ASSERT_TRUE(last);
+    EXPECT_GT(last->shareConverged(), 0.2);
 }
 
 }  // namespace
