@@ -9,6 +9,7 @@
 #include "command_io.hpp"
 #include "constants.hpp"
 #include "perspective.hpp"
+#include "se3.hpp"
 #include "trajectory.hpp"
 
 namespace photonav {
@@ -299,7 +300,7 @@ void writeResultFolder(const fs::path& folder, ReportData& report,
         writeFileAtomically(folder / named.name, named.figure.image);
         report.figures.push_back(named.figure);
     }
-    writeFileAtomically(folder / "config.yaml", report.config);
+    if (!report.config.empty()) writeFileAtomically(folder / "config.yaml", report.config);
     writeFileAtomically(folder / "report.json", toJson(report).dump());
     writeReport(folder / "report.html", report);
 }

@@ -12,6 +12,7 @@
 #include "error.hpp"
 #include "perception_rrt_star.hpp"
 #include "rrbt.hpp"
+#include "se3.hpp"
 #include "stopwatch.hpp"
 #include "tree_evolution.hpp"
 

@@ -12,6 +12,7 @@
 #include "atomic_file.hpp"
 #include "error.hpp"
 #include "flight_space.hpp"
+#include "se3.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;

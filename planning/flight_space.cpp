@@ -250,8 +250,6 @@ double FlightSpace::unitBallMeasure() const {
     return product * std::tgamma(k + 1.) * std::tgamma(m + 1.) / std::tgamma(k + m + 1.);
 }
 
-double yawOf(const Pose& T_w_b) { return std::atan2(T_w_b(1, 0), T_w_b(0, 0)); }
-
 ob::SpaceInformationPtr makeSpaceInformation(const FlightSpace& space, Clearance clearance,
                                              double radius) {
     auto si = std::make_shared<ob::SpaceInformation>(space.space());

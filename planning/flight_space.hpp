@@ -64,9 +64,6 @@ class FlightSpace {
     ompl::base::StateSpacePtr space_;
 };
 
-/// Heading of a body pose about the world's z axis [rad].
-double yawOf(const Pose& T_w_b);
-
 /// Distance from a point in the world to the nearest obstacle [m]; motions are as safe as it is
 /// exact.
 using Clearance = std::function<double(const Eigen::Vector3d& p_w)>;

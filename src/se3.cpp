@@ -139,6 +139,8 @@ Vector6 logSE3(const Pose& T) {
     return xi;
 }
 
+double yawOf(const Pose& T_w_b) { return std::atan2(T_w_b(1, 0), T_w_b(0, 0)); }
+
 Matrix6 adjoint(const Pose& T) {
     Matrix6 Ad = Matrix6::Zero();
     Ad.topLeftCorner<3, 3>() = T.linear();

@@ -16,6 +16,9 @@ Pose expSE3(const Vector6& xi);
 /// The twist with expSE3(logSE3(T)) = T and a rotation angle in [0, pi].
 Vector6 logSE3(const Pose& T);
 
+/// Heading of a body about the world's z axis [rad].
+double yawOf(const Pose& T_w_b);
+
 /// Ad(T) = [C, r^ C; 0, C]: T exp(xi^) T^-1 = exp((Ad(T) xi)^), BF14 eq. (4).
 Matrix6 adjoint(const Pose& T);
 

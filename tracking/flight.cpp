@@ -20,7 +20,7 @@ constexpr double kSettleTime = 1.5;       // at the goal [s]
 constexpr double kPhotometricTime = 10.;  // at most, for the goal's image [s]
 constexpr double kPhotometricStep =
     0.01;                               // below which, or twice the noise, it is reached [m, rad]
-constexpr int kPhotometricImages = 3;   // in a row
+constexpr int kPhotometricImages = 6;   // in a row
 constexpr double kSearchGrowth = 0.05;  // of the radius searched, per image
 constexpr double kSearchTurn = 0.1;     // standard deviation of the heading searched [rad]
 
@@ -57,7 +57,7 @@ class Flight {
           watch_(options.lost, start_.mean),
           route_(plan, world.T_b_c, options),
           servo_(world.T_b_c, options.servo),
-          goalServo_(*world.map, world.camera, world.T_b_c, route_.cameraAt(plan.back()),
+          goalServo_(*world.map, world.camera, world.T_b_c, plan.back().T_w_b,
                      {.photometric = options.alignment.photometric}),
           timeLimit_(60. + options.timePerMetre * plan.back().distance) {
         result_.leastClearance = kInfinity;
@@ -85,6 +85,10 @@ class Flight {
     }
 
     Pose trueCamera() const { return (mav_.T_w_b() * world_.T_b_c).inverse(); }
+    /// At the last image.
+    Pose believedBody() const {
+        return estimator_.atLastImage().mean.inverse() * world_.T_b_c.inverse();
+    }
     double goalError() const {
         return (mav_.T_w_b().translation() - route_.goal().T_w_b.translation()).norm();
     }
@@ -178,7 +182,7 @@ void Flight::search(const ImageF& image) {
 
 void Flight::approachOnImage(const ImageF& image) {
     if (!options_.photometricGoal || !goalServo_.isInformative()) return;
-    const PhotometricServo::Step step = goalServo_.toward(image);
+    const PhotometricServo::Step step = goalServo_.toward(image, believedBody());
     if (!step.isTrusted) {  // the belief is all there is
         onImage_.reset();
         return;

@@ -4,6 +4,7 @@
 #include "image_pyramid.hpp"
 #include "luminance_feature.hpp"
 #include "mav_task.hpp"
+#include "se3.hpp"
 
 namespace photonav {
 namespace {
@@ -44,34 +45,43 @@ double worstSigma(const View& goal, const Camera& camera, const Pose& T_b_c,
 
 /// At half the size: a quarter of the work, twice the convergence.
 struct PhotometricServo::Impl {
+    const ViewSource& map;
     PhotometricServoOptions options;
     Camera camera;
+    Pose T_b_c, T_w_goal;
     View goal;
-    double sigma = 0.;
+    double sigma;
     PixelDepthLuminance s, sd;
     vpServo task;
 
-    Impl(const ViewSource& map, const Camera& full, const Pose& T_b_c, const Pose& T_goal_w,
+    Impl(const ViewSource& map_, const Camera& full, const Pose& mount, const Pose& goal_,
          const PhotometricServoOptions& o)
-        : options(o), camera(halved(full)) {
-        map.render(camera, T_goal_w, goal);
-        View sharp;
-        map.render(full, T_goal_w, sharp);
-        sigma = worstSigma(sharp, full, T_b_c, options.photometric);
-        sd.buildFrom(goal, camera, options.photometric);
-        s.buildFrom(goal, camera, options.photometric);
+        : map(map_), options(o), camera(halved(full)), T_b_c(mount), T_w_goal(goal_) {
+        map.render(full, (T_w_goal * T_b_c).inverse(), goal);
+        sigma = worstSigma(goal, full, T_b_c, options.photometric);
         setUpMavTask(task, T_b_c, options.gain);
         task.setInteractionMatrixType(vpServo::DESIRED);
+        task.setForceInteractionMatrixComputation(true);
         task.addFeature(s, sd);
     }
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
     ~Impl() { task.kill(); }
+
+    /// Tilt cannot be commanded: the goal as the body would see it that hangs as it does.
+    void aimAt(const Pose& T_w_b) {
+        Pose hanging = T_w_goal;
+        hanging.linear() =
+            Eigen::AngleAxisd(yawOf(T_w_goal) - yawOf(T_w_b), Eigen::Vector3d::UnitZ()) *
+            T_w_b.linear();
+        map.render(camera, (hanging * T_b_c).inverse(), goal);
+        sd.buildFrom(goal, camera, options.photometric);
+    }
 };
 
 PhotometricServo::PhotometricServo(const ViewSource& map, const Camera& camera, const Pose& T_b_c,
-                                   const Pose& T_goal_w, const PhotometricServoOptions& options)
-    : impl_(std::make_unique<Impl>(map, camera, T_b_c, T_goal_w, options)) {}
+                                   const Pose& T_w_goal, const PhotometricServoOptions& options)
+    : impl_(std::make_unique<Impl>(map, camera, T_b_c, T_w_goal, options)) {}
 PhotometricServo::~PhotometricServo() = default;
 PhotometricServo::PhotometricServo(PhotometricServo&&) noexcept = default;
 PhotometricServo& PhotometricServo::operator=(PhotometricServo&&) noexcept = default;
@@ -79,8 +89,9 @@ PhotometricServo& PhotometricServo::operator=(PhotometricServo&&) noexcept = def
 bool PhotometricServo::isInformative() const { return impl_->sigma < impl_->options.maxSigma; }
 double PhotometricServo::sigma() const { return impl_->sigma; }
 
-PhotometricServo::Step PhotometricServo::toward(const ImageF& observed) {
+PhotometricServo::Step PhotometricServo::toward(const ImageF& observed, const Pose& T_w_b) {
     Impl& impl = *impl_;
+    impl.aimAt(T_w_b);
     const ImageF small = halvedAsRendered(observed);
     // Gradients are the goal's: of `s` only the grey values count.
     impl.s.buildFrom({small, impl.goal.depth}, impl.camera, impl.options.photometric);

@@ -22,9 +22,9 @@ struct PhotometricServoOptions {
 class PhotometricServo {
   public:
     /// @param map must outlive the servo
-    /// @param T_goal_w camera pose of the goal
+    /// @param T_w_goal body pose of the goal
     PhotometricServo(const ViewSource& map, const Camera& camera, const Pose& T_b_c,
-                     const Pose& T_goal_w, const PhotometricServoOptions& options);
+                     const Pose& T_w_goal, const PhotometricServoOptions& options);
     ~PhotometricServo();
     PhotometricServo(PhotometricServo&&) noexcept;
     PhotometricServo& operator=(PhotometricServo&&) noexcept;
@@ -40,7 +40,9 @@ class PhotometricServo {
         double unexplained = 1.;    ///< share of the images' variance, see TrustOptions
         bool isTrusted = false;     ///< the goal's view explains the image
     };
-    Step toward(const ImageF& observed);
+    /// @param T_w_b believed pose of the body; of it only the tilt counts, which the four
+    /// velocities cannot mend and which a view that hung otherwise would take for a displacement
+    Step toward(const ImageF& observed, const Pose& T_w_b);
 
   private:
     struct Impl;

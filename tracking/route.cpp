@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "constants.hpp"
+#include "se3.hpp"
 
 namespace photonav {
 
@@ -15,10 +17,7 @@ bool Route::isReached(const UncertainPose& belief) const {
     const Pose T_w_b = belief.mean.inverse() * T_b_c_.inverse();
     const double distance = (T_w_b.translation() - wanted().T_w_b.translation()).norm();
     // Of the headings: tilt cannot be commanded.
-    const Eigen::Vector3d ahead = T_w_b.linear().col(0);
-    const Eigen::Vector3d planned = wanted().T_w_b.linear().col(0);
-    const double turn = std::atan2(ahead.x() * planned.y() - ahead.y() * planned.x(),
-                                   ahead.x() * planned.x() + ahead.y() * planned.y());
+    const double turn = std::remainder(yawOf(T_w_b) - yawOf(wanted().T_w_b), 2. * std::numbers::pi);
     return distance < tolerance && std::abs(turn) < options_.yawTolerance;
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "fixture.hpp"
+#include "se3.hpp"
 
 namespace photonav::test {
 namespace {

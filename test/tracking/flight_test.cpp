@@ -58,6 +58,22 @@ TEST_F(Flight, ArrivesByItsImagesAlone) {
     }
 }
 
+/// Tilt cannot be commanded, and a tilted view of the goal looks like one from beside it.
+TEST_F(Flight, TheGoalsImageDoesNotLeadABodyAstrayThatHangsAskew) {
+    Vector6 motion = options.mav.odometryNoise.diagonal();
+    motion.segment<2>(3).setConstant(2e-4);
+    options.mav.odometryNoise = motion.asDiagonal();
+    double byImage = 0., byBelief = 0.;
+    for (options.seed = 1; options.seed <= 6; ++options.seed) {
+        options.photometricGoal = true;
+        byImage += fly(plan, world, options).goalError / 6.;
+        options.photometricGoal = false;
+        byBelief += fly(plan, world, options).goalError / 6.;
+    }
+    EXPECT_LT(byImage, 1.2 * byBelief);
+    EXPECT_LT(byImage, 0.01);
+}
+
 TEST_F(Flight, IsTheSameForTheSameSeed) {
     options.camera.dropRate = 0.2;
     const FlightResult a = fly(plan, world, options);
