@@ -184,6 +184,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     PlanRun run(config, world);
     run.checkPlaces();
     const auto folder = folderFor(options, config.fly.plan);
+    if (!options.record.empty()) prepareFolder(options.record);
 
     std::vector<FlightSet> sets;
     {

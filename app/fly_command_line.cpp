@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "command_line.hpp"
-#include "constants.hpp"
 #include "fly_command.hpp"
 #include "fly_config.hpp"
 #include "replay_calibration.hpp"
@@ -30,6 +31,21 @@ std::string complaintAboutBlackout(const std::string& text) {
     char rest = 0;
     const int read = std::sscanf(text.c_str(), "%lf,%lf%c", &start, &length, &rest);
     return read == 2 && start >= 0. && length >= 0. ? "" : "expected start,length in seconds";
+}
+
+double numberIn(const std::string& text) {
+    double value = 0.;
+    char rest = 0;
+    const bool isNumber = std::sscanf(text.c_str(), "%lf%c", &value, &rest) == 1;
+    return isNumber && std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string complaintUnlessPositive(const std::string& text) {
+    return numberIn(text) > 0. ? "" : "must be a number above 0";
+}
+
+std::string complaintUnlessNotNegative(const std::string& text) {
+    return numberIn(text) >= 0. ? "" : "must be a number, not negative";
 }
 
 void addFlight(CLI::App& parser, FlyConfig& typed) {
@@ -65,32 +81,33 @@ void addFlight(CLI::App& parser, FlyConfig& typed) {
 
 /// What the images are worth, and what they are compared with.
 void addTracking(CLI::App& parser, FlyConfig& typed) {
-    const auto number = [&](const char* name, std::optional<double>& value, const char* what,
-                            double least) {
-        parser.add_option(name, value, what)->check(CLI::Range(least, kInfinity));
-    };
     parser.add_option("--map", typed.map,
                       "track in this textured octree (.ot), mesh or scene file instead of the true "
                       "world");
-    number("--scale", typed.scale,
-           "factor on the information (default: camera.information_scale, a quarter of it with "
-           "--camera real)",
-           1e-12);
-    number("--floor", typed.floorTranslation,
-           "least standard deviation of a position [m] (default: that of the map's cells)", 0.);
-    number("--floor-rotation", typed.floorRotation, "the same of a rotation [rad]", 0.);
+    parser
+        .add_option("--scale", typed.scale,
+                    "factor on the information (default: camera.information_scale, a quarter of it "
+                    "with --camera real)")
+        ->check(complaintUnlessPositive);
+    parser
+        .add_option("--floor", typed.floorTranslation,
+                    "least standard deviation of a position [m] (default: that of the map's cells)")
+        ->check(complaintUnlessNotNegative);
+    parser.add_option("--floor-rotation", typed.floorRotation, "the same of a rotation [rad]")
+        ->check(complaintUnlessNotNegative);
     parser
         .add_option("--calibration",
-                    "these three from the calibration.yaml of a replay --calibrate (each gives way "
-                    "to its own option)")
+                    "these three from the calibration.yaml of a replay --calibrate, the factor by "
+                    "the number of images whose errors are alike (each gives way to its own "
+                    "option)")
         ->type_name("FILE");
 }
 
 /// What was typed goes over the config, as --set would.
 void override(const CLI::App& parser, std::vector<std::string>& overrides) {
     if (parser.count("--calibration") > 0) {
-        const Calibration c = readCalibration(parser["--calibration"]->as<std::string>());
-        overrides.push_back(fmt::format("fly.scale={}", c.scale));
+        const Calibration c = readCalibration(parser["--calibration"]->as<std::string>(), false);
+        overrides.push_back(fmt::format("fly.scale={}", c.scale / c.correlationTime));
         overrides.push_back(fmt::format("fly.floor={}", c.floorTranslation));
         overrides.push_back(fmt::format("fly.floor_rotation={}", c.floorRotation));
     }

@@ -128,6 +128,19 @@ std::vector<NamedFigure> figuresOf(const Config& config, const World& world,
     return figures;
 }
 
+/// Null: images are taken as they are.
+json priorJson(const std::optional<ExposurePrior>& prior) {
+    if (!prior) return nullptr;
+    return {{"gain_sigma", prior->gainSigma}, {"offset_sigma", prior->offsetSigma}};
+}
+
+std::string subtitleOf(const FlyConfig& fly) {
+    std::string text = "Plans flown in closed loop";
+    if (fly.camera == "real") text += " with a real camera's images";
+    if (!fly.map.empty()) text += " by the map " + fs::path(fly.map).filename().string();
+    return text + ": what was predicted against what happened.";
+}
+
 }  // namespace
 
 json flyResult(const Config& config, const std::vector<FlightSet>& sets,
@@ -150,6 +163,9 @@ json flyResult(const Config& config, const std::vector<FlightSet>& sets,
           {"odometry_factor", options.mav.odometryFactor},
           {"body_radius_m", options.bodyRadius},
           {"arrival_tolerance_m", options.arrivalTolerance},
+          {"camera", config.fly.camera},
+          {"exposure_prior", priorJson(options.alignment.exposure)},
+          {"photometric_goal", options.photometricGoal},
           {"map", config.fly.map},
           {"scale", options.alignment.photometric.scale},
           {"floor",
@@ -165,7 +181,7 @@ void writeFlyReport(const fs::path& folder, const Config& config, const World& w
     const Camera camera = config.camera.camera();
     ReportData report;
     report.title = fs::path(config.file).stem().string() + ", flown";
-    report.subtitle = "Plans flown in closed loop: what was predicted against what happened.";
+    report.subtitle = subtitleOf(config.fly);
     report.commandLine = commandLine;
     report.version = PHOTONAV_VERSION;
     report.result = result;

@@ -23,10 +23,10 @@ std::optional<Calibration> calibrationOf(const ReplayRun& run, bool odometry, do
                                          bool floorOnly);
 
 /// For the command line, and as YAML that readCalibration() reads back.
-std::string toYaml(const Calibration& calibration);
+std::string toYaml(const Calibration& calibration, bool odometry);
 
-/// Factor and floor of such a file.
-/// @throws InputError naming file, key and reason
-Calibration readCalibration(const std::string& file);
+/// Factor, floor and correlation time of such a file.
+/// @throws InputError naming file, key and reason, also for a file of the other mode
+Calibration readCalibration(const std::string& file, bool odometry);
 
 }  // namespace photonav

@@ -145,7 +145,7 @@ ReplayTracker makeTracker(const ReplayOptions& options, const ReplaySource& sour
                       static_cast<unsigned>(options.maxWidth.value_or(kWidthInMap)));
 }
 
-json optionsJson(const ReplayOptions& o, const ReplaySource& source) {
+json optionsJson(const ReplayOptions& o, const ReplaySource& source, const ReplayTracker& tracker) {
     return {{"mode", o.odometry ? "odometry" : "map"},
             {"map", o.mapFile},
             {"every", o.every},
@@ -158,8 +158,8 @@ json optionsJson(const ReplayOptions& o, const ReplaySource& source) {
             {"start", o.start},
             {"start_sigma", o.odometry ? json(nullptr) : json(o.startSigma.value_or(kStartSigma))},
             {"sigma", o.sigma},
-            {"scale", orNull(o.scale)},
-            {"floor", {orNull(o.floorTranslation), orNull(o.floorRotation)}},
+            {"scale", tracker.scale},
+            {"floor", {tracker.trust.floorTranslation, tracker.trust.floorRotation}},
             {"min_overlap", o.minOverlap},
             {"max_width", o.maxWidth ? json(*o.maxWidth) : json(nullptr)},
             {"exposure", o.exposure}};
@@ -167,18 +167,11 @@ json optionsJson(const ReplayOptions& o, const ReplaySource& source) {
 
 json datasetJson(const ReplayOptions& options, const ReplaySource& source,
                  const std::optional<double>& depth) {
-    const Camera& c = source.camera;
     return {{"folder", fs::absolute(options.dataset).lexically_normal().string()},
             {"layout", source.layout},
             {"note", source.note},
             {"median_depth_m", orNull(depth)},
-            {"camera",
-             {{"width", c.width},
-              {"height", c.height},
-              {"fx", c.fx()},
-              {"fy", c.fy()},
-              {"cx", c.cx()},
-              {"cy", c.cy()}}}};
+            {"camera", cameraJson(source.camera)}};
 }
 
 void calibrateReplay(const ReplayOptions& options, const ReplayRun& run, double scale,
@@ -188,9 +181,10 @@ void calibrateReplay(const ReplayOptions& options, const ReplayRun& run, double 
     if (!calibration) return;
     result["calibration"] = {{"scale", calibration->scale},
                              {"floor", {calibration->floorTranslation, calibration->floorRotation}},
+                             {"correlation_time", calibration->correlationTime},
                              {"nees_before", calibration->neesBefore},
                              {"nees_after", calibration->neesAfter}};
-    writeFileAtomically(options.out / "calibration.yaml", toYaml(*calibration));
+    writeFileAtomically(options.out / "calibration.yaml", toYaml(*calibration, options.odometry));
 }
 
 }  // namespace
@@ -228,7 +222,7 @@ ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& in
     result["command"] = "replay";
     result["version"] = PHOTONAV_VERSION;
     result["interrupted"] = run.interrupted;
-    result["options"] = optionsJson(options, source);
+    result["options"] = optionsJson(options, source, tracker);
     result["dataset"] = datasetJson(options, source, depth);
     result["time"] = {{"total_s", watch.seconds()},
                       {"load_images_s", run.loadSeconds},

@@ -74,7 +74,7 @@ int run(const CLI::App& parser, ReplayArguments& options, const std::atomic<bool
         readReplayConfig(std::string(options.dataset), options);
     }
     if (!options.calibration.empty()) {
-        const Calibration calibration = readCalibration(options.calibration);
+        const Calibration calibration = readCalibration(options.calibration, options.odometry);
         const auto give = [](std::optional<double>& option, double value) {
             if (!option) option = value;
         };

@@ -31,6 +31,17 @@ std::string relative(const json& rpe) {
                        rpe["pairs"].get<std::size_t>());
 }
 
+std::string calibrationText(const json& c) {
+    std::string text = fmt::format(
+        "--scale {:.3g} --floor {:.3g} --floor-rotation {:.3g} (NEES of single alignments {:.3g}, "
+        "then {:.3g}",
+        c["scale"].get<double>(), c["floor"][0].get<double>(), c["floor"][1].get<double>(),
+        c["nees_before"].get<double>(), c["nees_after"].get<double>());
+    const auto alike = c["correlation_time"].get<double>();
+    if (alike > 1.) text += fmt::format("; errors alike over {:.3g} images", alike);
+    return text + ")";
+}
+
 DrawnPath estimatedPath(const ReplayRun& run) {
     DrawnPath path{"estimate", kPathColor, {}};
     double distance = 0.;
@@ -156,14 +167,9 @@ ReportTable replaySummary(const json& result) {
     };
     if (result.contains("calibration")) {
         const json& c = result["calibration"];
-        table.rows.emplace_back(
-            "calibrated",
-            c.is_null() ? "fewer than 20 alignments with a true pose"
-                        : fmt::format("--scale {:.3g} --floor {:.3g} --floor-rotation {:.3g} "
-                                      "(NEES of single alignments {:.3g}, then {:.3g})",
-                                      c["scale"].get<double>(), c["floor"][0].get<double>(),
-                                      c["floor"][1].get<double>(), c["nees_before"].get<double>(),
-                                      c["nees_after"].get<double>()));
+        table.rows.emplace_back("calibrated", c.is_null()
+                                                  ? "fewer than 20 alignments with a true pose"
+                                                  : calibrationText(c));
     }
     return table;
 }

@@ -9,22 +9,46 @@
 #include "constants.hpp"
 
 namespace photonav {
-
 namespace {
+
+Matrix6 covarianceOf(const AlignmentError& error, double scale, double floorTranslation,
+                     double floorRotation) {
+    return withFloor((scale * error.information).inverse(), floorTranslation, floorRotation);
+}
 
 /// Mean of -2 log likelihood per degree of freedom, without the constant.
 double misfit(std::span<const AlignmentError> errors, double scale, double translation,
               double rotation) {
     double sum = 0.;
     for (const AlignmentError& e : errors) {
-        const Matrix6 covariance =
-            withFloor((scale * e.information).inverse(), translation, rotation);
+        const Matrix6 covariance = covarianceOf(e, scale, translation, rotation);
         const Eigen::LLT<Matrix6> factor(covariance);
         if (factor.info() != Eigen::Success) return kInfinity;
         const Matrix6 L = factor.matrixL();
         sum += factor.matrixL().solve(e.xi).squaredNorm() + 2. * L.diagonal().array().log().sum();
     }
     return sum / (6. * static_cast<double>(errors.size()));
+}
+
+/// 1 + 2 sum of the autocorrelation, summed until it is no longer positive: the number of images
+/// that tell as much about a mean as one would if errors did not repeat.
+double correlationTime(std::span<const AlignmentError> errors, const Calibration& c) {
+    std::vector<Vector6> white;
+    for (const AlignmentError& e : errors) {
+        const Matrix6 covariance = covarianceOf(e, c.scale, c.floorTranslation, c.floorRotation);
+        white.push_back(covariance.llt().matrixL().solve(e.xi));
+    }
+    double time = 1.;
+    for (std::size_t lag = 1; lag < white.size() / 2; ++lag) {
+        double product = 0., square = 0.;
+        for (std::size_t i = 0; i + lag < white.size(); ++i) {
+            product += white[i].dot(white[i + lag]);
+            square += white[i].squaredNorm();
+        }
+        if (product <= 0.) break;
+        time += 2. * product / square;
+    }
+    return time;
 }
 
 /// Coordinate descent over logarithms, each step halved until a percent or so.
@@ -68,8 +92,7 @@ double neesPerDof(std::span<const AlignmentError> errors, double scale, double f
                   double floorRotation) {
     double sum = 0.;
     for (const AlignmentError& e : errors) {
-        const Matrix6 covariance =
-            withFloor((scale * e.information).inverse(), floorTranslation, floorRotation);
+        const Matrix6 covariance = covarianceOf(e, scale, floorTranslation, floorRotation);
         sum += e.xi.dot(covariance.ldlt().solve(e.xi)) / 6.;
     }
     return sum / static_cast<double>(errors.size());
@@ -90,6 +113,7 @@ Calibration calibrate(std::span<const AlignmentError> errors) {
         result.floorTranslation = withFloors[1];
         result.floorRotation = withFloors[2];
     }
+    result.correlationTime = correlationTime(errors, result);
     result.neesAfter =
         neesPerDof(errors, result.scale, result.floorTranslation, result.floorRotation);
     return result;

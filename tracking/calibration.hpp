@@ -24,13 +24,18 @@ struct Calibration {
     double scale = 1.;             ///< for PhotometricOptions::scale
     double floorTranslation = 0.;  ///< for TrustOptions [m]; 0 when the errors ask for none
     double floorRotation = 0.;     ///< [rad]
-    double neesBefore = 0.;        ///< per degree of freedom, without floor and with scale 1
-                                   ///< (calibrateFloor: the scale)
+    /// Over how many images errors stay alike: the integrated autocorrelation of the whitened
+    /// errors, 1 when every image errs in its own way. A filter that averages images must divide
+    /// the factor by it. (calibrateFloor does not measure it.)
+    double correlationTime = 1.;
+    double neesBefore = 0.;  ///< per degree of freedom, without floor and with scale 1
+                             ///< (calibrateFloor: the scale)
     double neesAfter = 0.;
 };
 
 /// The factor and the floor under which the errors are most likely (Gaussian). When a factor alone
 /// is nearly as likely, there is no floor.
+/// @param errors in the order of the images
 /// @throws std::invalid_argument below 20 samples
 Calibration calibrate(std::span<const AlignmentError> errors);
 

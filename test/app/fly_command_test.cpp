@@ -106,7 +106,7 @@ TEST_F(FlyCommand, FliesThePlanOfAResultFolder) {
 
 TEST_F(FlyCommand, ItsConfigRepeatsTheRun) {
     std::ofstream(folder_ / "calibration.yaml")
-        << "scale: 0.05\nfloor: 0.01\nfloor_rotation: 0.001\n";
+        << "scale: 0.2\nfloor: 0.01\nfloor_rotation: 0.001\ncorrelation_time: 4\n";
     ASSERT_NE(fly("a",
                   "--flights 2 --seed 3 --camera real --odometry 4 --latency 0.1 --rate 5"
                   " --blackout 3,0.2 --drop 0.1 --speed 0.8 --no-photometric-goal"
@@ -122,7 +122,10 @@ TEST_F(FlyCommand, ItsConfigRepeatsTheRun) {
     ASSERT_NE(run.exitCode, 2) << run.output;
     EXPECT_EQ(result("a")["planners"], result("b")["planners"]);
     EXPECT_EQ(result("a")["flight"], result("b")["flight"]);
-    EXPECT_EQ(result("a")["flight"]["scale"], 0.05);
+    EXPECT_EQ(result("a")["flight"]["scale"], 0.05);  // 0.2 over 4 images
+    EXPECT_EQ(result("a")["flight"]["camera"], "real");
+    EXPECT_EQ(result("a")["flight"]["exposure_prior"]["gain_sigma"], 0.1);
+    EXPECT_EQ(result("a")["flight"]["photometric_goal"], false);
     EXPECT_EQ(result("a")["flight"]["floor"], json({0.01, 0.004}));
     EXPECT_EQ(test::contentOf(folder_ / "a/config.yaml"),
               test::contentOf(folder_ / "b/config.yaml"));
@@ -197,6 +200,9 @@ TEST_F(FlyCommand, RejectsBadInput) {
     };
     expect(fly("x", "--blackout 3"), "expected start,length");
     expect(fly("x", "--flights 0"), "--flights");
+    expect(fly("x", "--scale 0"), "--scale: must be a number above 0");
+    expect(fly("x", "--floor -1"), "--floor: must be a number, not negative");
+    expect(fly("x", "--record /proc/x"), "/proc/x: cannot be made");
     expect(fly("x", "--seed abc"), "--seed");
     expect(fly("x", "--map " + at("gone.ot")), "gone.ot");
     const auto calibration = [&](const std::string& text) {
@@ -208,6 +214,10 @@ TEST_F(FlyCommand, RejectsBadInput) {
     expect(calibration("scale: 1\nfloor_rotation: 0\nfloor: [0.01, 0.005]\n"),
            "calibration.yaml: floor: ");
     expect(calibration("scale: [\n"), "calibration.yaml");
+    expect(calibration("scale: 1\nfloor: 0\nfloor_rotation: 0\nmode: odometry\n"),
+           "calibration.yaml: mode: is odometry");
+    expect(calibration("scale: 1\nfloor: 0\nfloor_rotation: 0\ncorrelation_time: 0.5\n"),
+           "calibration.yaml: correlation_time: ");
     expect(photonav("fly " + at("")), "not a result of photonav plan");
     fs::create_directories(folder_ / "no");
     fs::copy(config("two_textures"), folder_ / "no" / "config.yaml");

@@ -202,14 +202,32 @@ TEST_F(ReplayCommand, LocalisesWithoutDepthImages) {
     expectRejected({"--depth-scale", "no depth images"});
 }
 
+/// The sample flights in the scenes they were flown in, hovering at the goal included.
+TEST_F(ReplayCommand, TheSampleFlightsAreTrackedToACentimetre) {
+    const std::string source = PHOTONAV_SOURCE_DIR;
+    options.odometry = false;
+    for (const auto& [name, scene] :
+         {std::pair("flight_down", "two_textures"), std::pair("flight_front45", "room")}) {
+        options.dataset = source + "/data/" + name;
+        options.mapFile = source + "/config/scenes/" + scene + ".yaml";
+        const json result = run().result;
+        EXPECT_EQ(result["lost"], 0) << name;
+        EXPECT_LT(result["ate_rmse_m"], 0.01) << name;
+        EXPECT_NEAR(result["nees_per_dof"].get<double>(), 1., 0.35) << name;
+    }
+}
+
 TEST_F(ReplayCommand, CalibrationMakesCovariancesTrue) {
     Flight longer{.frames = 30, .speed = 0.02};
     longer.write(data);
     useMap();
     options.calibrate = true;
-    const json fitted = run().result["calibration"];
+    const json result = run().result;
+    EXPECT_GT(result["options"]["scale"], 0.);
+    const json fitted = result["calibration"];
+    EXPECT_GE(fitted["correlation_time"], 1.);
     EXPECT_NEAR(fitted["nees_after"].get<double>(), 1., 0.3);
-    const Calibration read = readCalibration((options.out / "calibration.yaml").string());
+    const Calibration read = readCalibration((options.out / "calibration.yaml").string(), false);
     EXPECT_NEAR(read.scale, fitted["scale"].get<double>(), 0.01 * read.scale);
     EXPECT_NEAR(read.floorTranslation, fitted["floor"][0].get<double>(), 1e-4);
     EXPECT_NEAR(read.floorRotation, fitted["floor"][1].get<double>(), 1e-4);

@@ -54,6 +54,29 @@ TEST(Calibration, FindsAFactorAndAFloor) {
     EXPECT_NEAR(c.neesAfter, 1., 0.1);
 }
 
+TEST(Calibration, FindsOverHowManyImagesErrorsAreAlike) {
+    EXPECT_NEAR(calibrate(sampled(1., 0., 0., 1000)).correlationTime, 1., 0.3);
+    std::vector<AlignmentError> errors = sampled(1., 0., 0., 4000);
+    constexpr double kRho = 0.8;  // AR(1): (1 + rho) / (1 - rho) = 9
+    for (std::size_t i = 1; i < errors.size(); ++i) {
+        errors[i].xi = kRho * errors[i - 1].xi + std::sqrt(1. - kRho * kRho) * errors[i].xi;
+    }
+    const Calibration c = calibrate(errors);
+    EXPECT_NEAR(c.correlationTime, 9., 1.5);
+    EXPECT_NEAR(c.scale, 1., 0.1);
+}
+
+TEST(Calibration, OfAFloorAloneKeepsTheFactor) {
+    const Calibration c = calibrateFloor(sampled(0.5, 0.01, 0.004, 400), 0.5);
+    EXPECT_EQ(c.scale, 0.5);
+    EXPECT_NEAR(c.floorTranslation, 0.01, 0.001);
+    EXPECT_NEAR(c.floorRotation, 0.004, 0.0004);
+    EXPECT_EQ(c.correlationTime, 1.);
+    EXPECT_GT(c.neesBefore, 3.);
+    EXPECT_NEAR(c.neesAfter, 1., 0.1);
+    EXPECT_THROW(calibrateFloor(sampled(1., 0., 0., 10), 1.), std::invalid_argument);
+}
+
 TEST(Calibration, WantsEnoughErrors) {
     EXPECT_THROW(calibrate(sampled(1., 0., 0., 10)), std::invalid_argument);
 }
