@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tracking_map.hpp"
 
-#include <filesystem>
-
 #include "mesh_renderer.hpp"
 #include "octree_file.hpp"
 #include "scene.hpp"
@@ -12,8 +10,7 @@ namespace photonav {
 
 TrackingMap loadTrackingMap(const std::string& file) {
     TrackingMap map;
-    const std::string extension = std::filesystem::path(file).extension().string();
-    if (extension == ".ot" || extension == ".bt") {
+    if (isOcTreeFile(file)) {
         map.octree = loadTexturedOcTree(file);
         map.views = std::make_unique<VoxelRenderer>(*map.octree, UnknownPolicy::free);
         map.describe = [octree = map.octree](ReportData& report) {

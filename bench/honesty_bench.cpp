@@ -216,18 +216,6 @@ int main(int argc, char** argv) {
             picture, count);
         flights(fmt::format("flights, real camera, map of {} m", resolution), room, voxels,
                 realCameraOptions(resolution), picture, count);
-        if (std::getenv("GRID")) {
-            for (const double scale : {0.25, 0.01, 0.002, 0.0003}) {
-                for (const double share : {0., 0.1, 0.2, 0.4}) {
-                    AlignmentOptions o = realCameraOptions(resolution);
-                    o.photometric.scale = scale;
-                    o.trust.floorTranslation = share * resolution;
-                    o.trust.floorRotation = 0.5 * share * resolution;
-                    flights(fmt::format("scale {} floor {}", scale, share), room, voxels, o,
-                            picture, count);
-                }
-            }
-        }
     }
     keyframeRow("keyframe at full size, independent noise", room, 0, count);
     keyframeRow("keyframe at half size, independent noise", room, 1, count);

@@ -17,7 +17,7 @@ constexpr double kReach = 2.5;       // that they cover [standard deviations]
 constexpr double kMostPlaces = 4e3;  // of these views: beyond, they lie wider apart
 constexpr std::size_t kStarts = 8;   // of alignments, at most
 constexpr double kNoiseSlack = 1.1;  // of the image noise's variance
-constexpr double kMisfit = 0.05;     // of the images' variance, beyond noise, at the right place
+constexpr double kMisfit = 0.02;     // of the images' variance, beyond noise, at the right place
 constexpr double kAmbiguous = 12.;   // difference of -2 log likelihood that decides
 constexpr double kElsewhere = 30.;   // squared Mahalanobis distance of another place
 
@@ -105,6 +105,12 @@ double variance(const ImageF& image) {
     }
     const double n = image.getSize();
     return squares / n - sum * sum / (n * n);
+}
+
+/// What an image tells of what the prior leaves open: the largest eigenvalue of the prior's
+/// covariance times Lambda. Below one, nothing that could be wrong.
+double share(const Alignment& a, const UncertainPose& prior) {
+    return (prior.covariance * a.information).eigenvalues().real().maxCoeff();
 }
 
 Camera quartered(const Camera& camera) { return halved(halved(camera)); }
@@ -195,9 +201,7 @@ const Alignment* WideAligner::rivalOf(const Alignment& best, const std::vector<A
 
 Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior) {
     const Alignment first = aligner_.align(observed, prior);
-    const double open = aligner_.options().trust.openSigma;
-    const bool tellsNothing = first.eigenvalues[5] * open * open < 1.;
-    if (tellsNothing && fits(first)) return first;
+    if (share(first, prior) < 1. && fits(first)) return first;
     View expected;
     model_.render(quartered(aligner_.camera()), prior.mean, expected);
     const double depth = meanDepth(expected);
