@@ -18,6 +18,7 @@
 #include "plan_command.hpp"
 #include "reference_command.hpp"
 #include "report.hpp"
+#include "stopwatch.hpp"
 #include "sweep_command.hpp"
 #include "yaml_reader.hpp"
 
@@ -26,11 +27,22 @@ namespace {
 using namespace photonav;
 
 std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
+std::atomic<double> interruptedAt{0.};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
+const Stopwatch running;
 
-/// The first Ctrl-C asks politely, the second one does not.
+constexpr double kSameInterrupt = 0.2;  // [s]
+
+/// The first Ctrl-C asks politely, the second one does not. timeout(1) sends its signal twice, to
+/// the process and to its group: that is one.
 void onInterrupt(int) {
-    if (interrupted.exchange(true)) std::_Exit(kInterrupted);
+    const double now = running.seconds();
+    double first = 0.;
+    if (interruptedAt.compare_exchange_strong(first, now)) {
+        interrupted = true;
+    } else if (now - first > kSameInterrupt) {
+        std::_Exit(kInterrupted);
+    }
 }
 
 Command planCommand(CLI::App& app, const Invocation& invocation) {
