@@ -231,6 +231,8 @@ std::string verdictOf(const ReplayRun& run, bool inMap) {
     if (lost > 0) text += fmt::format(", lost {}", lost);
     const std::size_t black = countBlack(run);
     if (black > 0) text += fmt::format(" ({} of them black)", black);
+    const std::size_t unreadable = count(run, FrameStatus::unreadable);
+    if (unreadable > 0) text += fmt::format(", unreadable {}", unreadable);
     if (isLostForGood(run) && lost > 0) {
         text += fmt::format(", and for good from {:.3f} s on", lostIntervals(run).back().first);
         const auto last = std::find_if(run.frames.rbegin(), run.frames.rend(), isLostFrame);

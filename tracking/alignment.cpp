@@ -28,7 +28,9 @@ ResidualStatistics statisticsOf(const NormalEquations& e, const Exposure& exposu
     const double varianceI = e.sumPredictedSquares / n - meanI * meanI;
     const double varianceR = e.sumSquares / n - s.mean * s.mean;
     const double covariance = e.sumPredictedTimesR / n - meanI * s.mean;
-    const double both = varianceR + 2. * g * covariance + 2. * g * g * varianceI;
+    const double variance = varianceR + 2. * g * covariance + g * g * varianceI;  // of the image
+    const double both = variance + g * g * varianceI;
+    s.explained = variance - e.sumSquares / n;
     // Images of one grey value each are the same one or have nothing to do with each other.
     const double without = e.sumSquares > 0. ? 1. : 0.;
     s.unexplained = both > 0. ? std::min(1., e.sumSquares / n / both) : without;

@@ -74,6 +74,7 @@ struct ResidualStatistics {
     double rms = 0.;
     double robustSigma = 0.;  ///< 1.4826 times the median of the absolute value
     double unexplained = 0.;  ///< share of the variance, see TrustOptions
+    double explained = 0.;    ///< variance of the observed image less the mean square residual
 };
 
 struct Alignment {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "image_pyramid.hpp"
 #include "se3.hpp"
@@ -13,45 +12,49 @@ namespace {
 
 constexpr double kPlay = 6.;         // standard deviation that one start can find from [pixels]
 constexpr double kSpacing = 8.;      // of the views compared [pixels of play]
-constexpr double kReach = 2.5;       // that they cover [standard deviations]
+constexpr double kReach = 3.;        // that they cover [standard deviations]
 constexpr double kMostPlaces = 4e3;  // of these views: beyond, they lie wider apart
-constexpr std::size_t kStarts = 8;   // of alignments, at most
+constexpr std::size_t kTried = 64;   // of them, the most alike: aligned as they are
+constexpr std::size_t kStarts = 8;   // of full alignments, at most
 constexpr double kNoiseSlack = 1.1;  // of the image noise's variance
 constexpr double kMisfit = 0.02;     // of the images' variance, beyond noise, at the right place
 constexpr double kAmbiguous = 12.;   // difference of -2 log likelihood that decides
 constexpr double kElsewhere = 30.;   // squared Mahalanobis distance of another place
 
-/// Play that a prior's translation leaves to the image's content: principal axes [m per pixel] and
-/// standard deviations [pixels].
+/// Play that a prior leaves to the image's content: principal axes [twist per pixel] and standard
+/// deviations [pixels].
 struct Play {
-    Eigen::Matrix3d axes;
-    Eigen::Vector3d sigmas;
+    Matrix6 axes;
+    Vector6 sigmas;
 };
 
 Play playOf(const Matrix6& covariance, const Camera& camera, double depth) {
-    // A step along the optical axis moves the content at the image's side by that share of it.
-    const Eigen::Vector3d pixelsPerMetre =
-        Eigen::Vector3d(camera.fx(), camera.fy(), 0.5 * camera.width) / depth;
-    const auto toPixels = pixelsPerMetre.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
-        toPixels * covariance.topLeftCorner<3, 3>() * toPixels);
-    return {pixelsPerMetre.cwiseInverse().asDiagonal() * solver.eigenvectors(),
+    // A step along the optical axis moves the content at the image's side by that share of it, a
+    // turn about it as much as it turns.
+    const double side = 0.5 * camera.width;
+    Vector6 pixels;
+    pixels << camera.fx() / depth, camera.fy() / depth, side / depth, camera.fy(), camera.fx(),
+        side;
+    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(pixels.asDiagonal() * covariance *
+                                                        pixels.asDiagonal());
+    return {pixels.cwiseInverse().asDiagonal() * solver.eigenvectors(),
             solver.eigenvalues().cwiseMax(0.).cwiseSqrt()};
 }
 
 /// Points of a grid within an ellipsoid, its middle included [pixels].
-std::vector<Eigen::Vector3d> placesWithin(const Eigen::Vector3d& sigmas) {
-    const Eigen::Vector3d radii = kReach * sigmas;
+std::vector<Vector6> placesWithin(const Vector6& sigmas) {
+    const Vector6 radii = kReach * sigmas;
     const double volume = (2. * radii / kSpacing).cwiseMax(1.).prod();
     const double spacing = kSpacing * std::cbrt(std::max(1., volume / kMostPlaces));
-    const Eigen::Vector3i reach = (radii / spacing).array().floor().cast<int>();
-    std::vector<Eigen::Vector3d> places;
-    for (int i = -reach[0]; i <= reach[0]; ++i) {
-        for (int j = -reach[1]; j <= reach[1]; ++j) {
-            for (int k = -reach[2]; k <= reach[2]; ++k) {
-                const Eigen::Vector3d place = spacing * Eigen::Vector3d(i, j, k);
-                const Eigen::Vector3d share = place.cwiseQuotient(radii.cwiseMax(spacing));
-                if (share.squaredNorm() <= 1.) places.push_back(place);
+    std::vector<Vector6> places{Vector6::Zero()};
+    for (int axis = 0; axis < 6; ++axis) {
+        const int reach = static_cast<int>(radii[axis] / spacing);
+        for (std::size_t k = places.size(); k-- > 0;) {
+            for (int i = -reach; i <= reach; ++i) {
+                Vector6 place = places[k];
+                place[axis] = spacing * i;
+                const Vector6 share = place.cwiseQuotient(radii.cwiseMax(spacing));
+                if (i != 0 && share.squaredNorm() <= 1.) places.push_back(place);
             }
         }
     }
@@ -95,18 +98,6 @@ double misfit(const ImageF& observed, const View& predicted, double weight,
     return weight * sum / count - Atr.dot(AtA.inverse() * Atr);
 }
 
-double variance(const ImageF& image) {
-    double sum = 0.;
-    double squares = 0.;
-    for (unsigned i = 0; i < image.getSize(); ++i) {
-        const double value = image.bitmap[i];
-        sum += value;
-        squares += value * value;
-    }
-    const double n = image.getSize();
-    return squares / n - sum * sum / (n * n);
-}
-
 /// What an image tells of what the prior leaves open: the largest eigenvalue of the prior's
 /// covariance times Lambda. Below one, nothing that could be wrong.
 double share(const Alignment& a, const UncertainPose& prior) {
@@ -114,6 +105,21 @@ double share(const Alignment& a, const UncertainPose& prior) {
 }
 
 Camera quartered(const Camera& camera) { return halved(halved(camera)); }
+
+/// A quarter of the size, worth as much as the whole image.
+AlignmentOptions forSmall(AlignmentOptions options) {
+    options.levels = 1;
+    options.maxIterations = 10;
+    options.photometric.scale *= 16.;
+    return options;
+}
+
+/// Coarser levels would lead all starts to the same place: beside white they average a strip of
+/// texture away.
+AlignmentOptions forNear(AlignmentOptions options) {
+    options.levels = 2;
+    return options;
+}
 
 Alignment undecided(Alignment a, const UncertainPose& prior, Verdict verdict) {
     a.T_c_w = prior.mean;
@@ -123,42 +129,62 @@ Alignment undecided(Alignment a, const UncertainPose& prior, Verdict verdict) {
     return a;
 }
 
+struct Start {
+    Pose T_c_w;
+    double cost;  ///< -2 log likelihood
+};
+
+void sortByCost(std::vector<Start>& starts) {
+    std::sort(starts.begin(), starts.end(),
+              [](const Start& a, const Start& b) { return a.cost < b.cost; });
+}
+
+/// The first `most`, without those closer than `distance` [m] to one before.
+std::vector<Pose> distinct(const std::vector<Start>& starts, double distance, std::size_t most) {
+    std::vector<Pose> chosen;
+    for (const Start& start : starts) {
+        const auto isNear = [&](const Pose& T_c_w) {
+            return (start.T_c_w * T_c_w.inverse()).translation().norm() < distance;
+        };
+        if (chosen.size() < most && std::none_of(chosen.begin(), chosen.end(), isNear)) {
+            chosen.push_back(start.T_c_w);
+        }
+    }
+    return chosen;
+}
+
 }  // namespace
+
+WideAligner::WideAligner(const ViewSource& model, const Camera& camera,
+                         const AlignmentOptions& options)
+    : model_(model),
+      aligner_(model, camera, options),
+      small_(model, quartered(camera), forSmall(options)),
+      near_(model, camera, forNear(options)) {}
 
 /// Where in the prior views of a quarter of the size are most like the image.
 std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const UncertainPose& prior,
-                                            double depth) const {
-    const ImageF small = halvedAsRendered(halvedAsRendered(observed));
-    const Camera camera = quartered(aligner_.camera());
+                                            double depth) {
+    const ImageF image = halvedAsRendered(halvedAsRendered(observed));
     const Play play = playOf(prior.covariance, aligner_.camera(), depth);
-    const std::vector<Eigen::Vector3d> places = placesWithin(play.sigmas);
-    std::vector<Pose> poses;
-    std::vector<double> costs;
+    std::vector<Start> starts;
     View view;
-    for (const Eigen::Vector3d& place : places) {
-        Vector6 offset = Vector6::Zero();
-        offset.head<3>() = play.axes * place;
-        poses.push_back(expSE3(offset) * prior.mean);
-        model_.render(camera, poses.back(), view);
-        costs.push_back(misfit(small, view, weight(), aligner_.options().exposure) +
-                        place.cwiseQuotient(play.sigmas.cwiseMax(1e-3)).squaredNorm());
+    for (const Vector6& place : placesWithin(play.sigmas)) {
+        const Pose T_c_w = expSE3(play.axes * place) * prior.mean;
+        model_.render(small_.camera(), T_c_w, view);
+        starts.push_back(
+            {T_c_w, misfit(image, view, weight(), aligner_.options().exposure) +
+                        place.cwiseQuotient(play.sigmas.cwiseMax(1e-3)).squaredNorm()});
     }
-    std::vector<std::size_t> order(places.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
-    std::vector<std::size_t> chosen;
-    for (const std::size_t i : order) {
-        const auto isNear = [&](std::size_t j) {
-            return (places[i] - places[j]).norm() < 2. * kSpacing;
-        };
-        if (std::none_of(chosen.begin(), chosen.end(), isNear)) chosen.push_back(i);
-        if (chosen.size() == kStarts) break;
+    sortByCost(starts);
+    if (starts.size() > kTried) starts.resize(kTried);
+    for (Start& start : starts) {
+        const Alignment a = small_.align(image, prior, start.T_c_w);
+        const bool seesNothing = a.verdict == Verdict::lostOverlap;
+        start = {a.T_c_w, seesNothing ? kInfinity : costOf(a, prior)};
     }
-    std::vector<Pose> starts;
-    starts.reserve(chosen.size());
-    for (const std::size_t i : chosen) starts.push_back(poses[i]);
-    return starts;
+    sortByCost(starts);
+    return distinct(starts, 0.5 * kSpacing * depth / aligner_.camera().fx(), kStarts);
 }
 
 /// That makes mean square residuals -2 log likelihoods.
@@ -203,13 +229,13 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
     const Alignment first = aligner_.align(observed, prior);
     if (share(first, prior) < 1. && fits(first)) return first;
     View expected;
-    model_.render(quartered(aligner_.camera()), prior.mean, expected);
+    model_.render(small_.camera(), prior.mean, expected);
     const double depth = meanDepth(expected);
     if (playOf(prior.covariance, aligner_.camera(), depth).sigmas.maxCoeff() < kPlay) return first;
 
     std::vector<Alignment> found{first};
     for (const Pose& T_start_w : likelyStarts(observed, prior, depth)) {
-        found.push_back(aligner_.align(observed, prior, T_start_w));
+        found.push_back(near_.align(observed, prior, T_start_w));
     }
     std::erase_if(found, [](const Alignment& a) { return isLost(a.verdict); });
     if (found.empty()) return first;
@@ -220,8 +246,7 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
     if (!fits(best)) return undecided(best, prior, Verdict::lostResidual);
     // Where the view expected shows something and the image nothing, no place is found: all places
     // that would show nothing are as likely, and the information of the view expected is not there.
-    const double explained = variance(observed) - best.residual.rms * best.residual.rms;
-    if (weight() * explained < kAmbiguous || rivalOf(best, found, prior)) {
+    if (weight() * best.residual.explained < kAmbiguous || rivalOf(best, found, prior)) {
         return undecided(best, prior, Verdict::degenerate);
     }
     return best;

@@ -8,23 +8,23 @@ namespace photonav {
 
 /// The pose most likely given an image and a prior. Where the prior leaves the image's content more
 /// than a few pixels of play, texture looks alike in several places: small views from all over the
-/// prior are compared with the image, and an alignment begins at the most alike of them. The best
-/// is the answer, if it explains the image down to the noise and nothing else explains it almost as
-/// well. Otherwise the result is the prior, and the verdict `degenerate` along all axes (the image
-/// does not say which place it is) or lost (it is none of them).
+/// prior are compared with the image and the most alike of them aligned; full alignments begin
+/// where the best of these end. The best is the answer, if it explains the image down to the noise
+/// and nothing else explains it almost as well. Otherwise the result is the prior, and the verdict
+/// `degenerate` along all axes (the image does not say which place it is) or lost (it is none of
+/// them).
 class WideAligner {
   public:
     /// @param model must outlive the aligner
     /// @throws std::invalid_argument as DenseAligner does
-    WideAligner(const ViewSource& model, const Camera& camera, const AlignmentOptions& options)
-        : model_(model), aligner_(model, camera, options) {}
+    WideAligner(const ViewSource& model, const Camera& camera, const AlignmentOptions& options);
 
     /// @param observed of the camera's size @throws std::invalid_argument otherwise
     Alignment align(const ImageF& observed, const UncertainPose& prior);
 
   private:
     std::vector<Pose> likelyStarts(const ImageF& observed, const UncertainPose& prior,
-                                   double depth) const;
+                                   double depth);
     double weight() const;
     double costOf(const Alignment& alignment, const UncertainPose& prior) const;
     bool fits(const Alignment& alignment) const;
@@ -33,6 +33,8 @@ class WideAligner {
 
     const ViewSource& model_;
     DenseAligner aligner_;
+    DenseAligner small_;  ///< images of a quarter of the size
+    DenseAligner near_;   ///< from where small images agree
 };
 
 }  // namespace photonav

@@ -337,9 +337,9 @@ TEST_F(ReplayCommand, DamagedMissingAndBlackImagesAreSurvived) {
         EXPECT_EQ(report.result["tracked"], 10 - unreadable);
         EXPECT_EQ(report.result["unreadable"], unreadable);
         EXPECT_EQ(report.result["lost"], 2);
-        EXPECT_EQ(
-            report.result["verdict"],
-            fmt::format("tracked {} of 12 frames, lost 2 (2 of them black)", 10 - unreadable));
+        EXPECT_EQ(report.result["verdict"],
+                  fmt::format("tracked {} of 12 frames, lost 2 (2 of them black), unreadable {}",
+                              10 - unreadable, unreadable));
         ASSERT_EQ(report.result["lost_intervals"].size(), 1U);
         EXPECT_NEAR(report.result["lost_intervals"][0][0].get<double>(), Flight::time(7), 1e-9);
         EXPECT_NEAR(report.result["lost_intervals"][0][1].get<double>(), Flight::time(8), 1e-9);

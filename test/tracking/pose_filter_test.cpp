@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "rooms.hpp"
+#include "simulated_mav.hpp"
 
 namespace photonav {
 namespace {
@@ -14,13 +15,6 @@ using test::kOblique;
 const Camera& filterCamera() {
     static const Camera small = makeCamera(94, 60, 1.2);
     return small;
-}
-
-Vector6 draw(const Matrix6& covariance, std::mt19937_64& random) {
-    std::normal_distribution<double> normal;
-    Vector6 z;
-    for (double& component : z) component = normal(random);
-    return covariance.llt().matrixL() * z;
 }
 
 /// Motion forward of 10 cm with a turn, and its noise.
@@ -66,9 +60,9 @@ TEST(PoseFilter, IsHonestAlongFlights) {
     const int flights = 60;
     for (int flight = 0; flight < flights; ++flight) {
         Pose truth = cameraAt({0.1 * flight - 3., 1., 1.5}, 1.1, 0.2 * flight);
-        PoseFilter filter({expSE3(draw(startCovariance, random)) * truth, startCovariance});
+        PoseFilter filter({expSE3(draw(rootOf(startCovariance), random)) * truth, startCovariance});
         for (int step = 0; step < 5; ++step) {
-            truth = expSE3(draw(motion().covariance, random)) * motion().mean * truth;
+            truth = expSE3(draw(rootOf(motion().covariance), random)) * motion().mean * truth;
             filter.propagate(motion());
             odometry += filter.belief().covariance.trace();
             View view;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "rooms.hpp"
+#include "simulated_mav.hpp"
 
 namespace photonav {
 namespace {
@@ -86,6 +87,36 @@ TEST_F(WideAlignerTest, NothingInViewIsNoPlaceFound) {
         EXPECT_EQ(a.verdict, Verdict::degenerate);
         EXPECT_TRUE(a.covariance.isApprox(belief.covariance, 1e-3)) << x;
     }
+}
+
+/// Some columns of texture beside white: coarse views of them are white, and lead all starts to one
+/// place.
+TEST_F(WideAlignerTest, AStripOfTextureIsFoundWhereItIs) {
+    const Texture noise = valueNoise({.size = {20., 20.}, .amplitudes = {0.2, 0.14, 0.08}});
+    const Patch half{{10., 0.}, {20., 20.}, &noise};
+    const MeshRenderer floor(
+        test::floorOf(patchedTexture(uniformTexture(0.9F), {half}, {20., 20.})));
+    camera = makeCamera(188, 120, 1.2);
+    WideAligner wide(floor, camera, options);
+    UncertainPose belief = prior(cameraAt({-1.3, 0., 2.}, kDown, kDown), 0.34);  // x to the right
+    belief.covariance(2, 2) = 0.2 * 0.2;
+    belief.covariance(5, 5) = 0.02 * 0.02;
+    const Matrix6 root = rootOf(belief.covariance);
+    int found = 0;
+    int wrong = 0;
+    for (int flown = 0; flown < 60;) {
+        const Pose truth = expSE3(draw(root, random)) * belief.mean;
+        const Eigen::Vector3d p = truth.inverse().translation();
+        const double strip = p.x() + 0.5 * camera.width / camera.fx() * p.z();  // in view [m]
+        if (strip < 0.03 || strip > 0.15) continue;
+        ++flown;
+        const Alignment a = wide.align(seen(floor, truth), belief);
+        if (isLost(a.verdict) || a.covariance == belief.covariance) continue;
+        ++found;
+        if (squaredDistance(logSE3(truth * a.T_c_w.inverse()), a.covariance) > 60.) ++wrong;
+    }
+    EXPECT_GE(found, 40);
+    EXPECT_LE(wrong, 1);  // two columns may well be found in two places
 }
 
 TEST_F(WideAlignerTest, StripesDoNotSayWhichOfThemItIs) {
