@@ -112,7 +112,9 @@ void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const Flight
                                   set.path.planner, flown, all, arrived,
                                   each * (all - static_cast<double>(flown))));
         };
-        set.flights = flyMany(set.plan, world, flight, count, options.jobs, interrupted, onFlight,
+        FlightOptions own = flight;
+        own.initialCovariance = set.path.points.front().covariance;
+        set.flights = flyMany(set.plan, world, own, count, options.jobs, interrupted, onFlight,
                               &set == &sets.front() ? record : OnExposure{});
     }
     if (recorder) recorder->finish();

@@ -38,6 +38,7 @@ json jsonOf(const FlightSet& set) {
                 {"out_of_time", s.outOfTime},
                 {"position_rmse_m", finiteOrNull(s.positionRmse)},
                 {"predicted_sigma_m", finiteOrNull(s.predictedSigma)},
+                {"within_predicted_3_sigma", finiteOrNull(s.within3Sigma)},
                 {"believed_sigma_m", finiteOrNull(s.believedSigma)},
                 {"nees_per_dof", finiteOrNull(s.nees)},
                 {"nees_at_goal_per_dof", finiteOrNull(s.neesAtGoal)},
@@ -68,6 +69,7 @@ ReportTable tableOf(const FlightSet& set) {
                   {"gave up lost / out of time", fmt::format("{} / {}", s.lost, s.outOfTime)},
                   {"position error, root mean square", metres(s.positionRmse)},
                   {"predicted by the plan", metres(s.predictedSigma)},
+                  {"errors within 3 predicted sigma", fmt::format("{:.1f} %", 100. * s.within3Sigma)},
                   {"believed in flight", metres(s.believedSigma)},
                   {"NEES per degree of freedom (1: honest)", fmt::format("{:.2f}", s.nees)},
                   {"the same at the goal (95 % of honest cases)",
@@ -113,7 +115,7 @@ std::vector<NamedFigure> figuresOf(const Config& config, const World& world,
     std::vector<NamedFigure> figures;
     if (!sets.empty()) {
         figures.push_back({"errors.png",
-                           {"Error of the believed position along the way, against what the plan "
+                           {"Error of the position believed by each image, against what the plan "
                             "predicted.",
                             drawErrorBands(sets)}});
     }

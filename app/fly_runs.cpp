@@ -42,7 +42,7 @@ void countEnds(const std::vector<FlightResult>& flights, FlightSummary& s) {
 
 /// Errors against what was predicted and believed, over all exposures.
 void judgeExposures(const FlightSet& set, FlightSummary& s) {
-    double error = 0., predicted = 0., believed = 0., nees = 0., n = 0.;
+    double error = 0., predicted = 0., believed = 0., nees = 0., within = 0., n = 0.;
     for (const FlightResult& flight : set.flights) {
         for (const FlightSample& sample : flight.samples) {
             const PositionError e = positionError(sample, set.plan);
@@ -50,12 +50,14 @@ void judgeExposures(const FlightSet& set, FlightSummary& s) {
             predicted += e.predicted * e.predicted;
             believed += e.believed * e.believed;
             nees += neesPerDof(sample);
+            within += e.error <= 3. * e.predicted;
             ++n;
         }
     }
     s.positionRmse = std::sqrt(error / n);
     s.predictedSigma = std::sqrt(predicted / n);
     s.believedSigma = std::sqrt(believed / n);
+    s.within3Sigma = within / n;
     s.nees = nees / n;
 }
 
@@ -66,18 +68,24 @@ std::vector<PlannedView> plannedViews(const JudgedPath& path) {
     for (const BeliefPoint& point : path.points) {
         plan.push_back({point.T_w_b, point.covariance, point.length, point.isWaypoint});
     }
+    const BeliefPoint& start = path.points.front();
+    plan.front().covariance = updateCovariance(start.covariance, start.information);
     return plan;
 }
 
-double predictedSigma(const std::vector<PlannedView>& plan, double distance) {
+Matrix6 predictedCovariance(const std::vector<PlannedView>& plan, double distance) {
     const auto next =
         std::upper_bound(plan.begin(), plan.end(), distance,
                          [](double d, const PlannedView& view) { return d < view.distance; });
-    if (next == plan.begin()) return positionSigma(plan.front().covariance);
-    if (next == plan.end()) return positionSigma(plan.back().covariance);
+    if (next == plan.begin()) return plan.front().covariance;
+    if (next == plan.end()) return plan.back().covariance;
     const auto last = next - 1;
     const double t = (distance - last->distance) / (next->distance - last->distance);
-    return (1. - t) * positionSigma(last->covariance) + t * positionSigma(next->covariance);
+    return (1. - t) * last->covariance + t * next->covariance;
+}
+
+double predictedSigma(const std::vector<PlannedView>& plan, double distance) {
+    return positionSigma(predictedCovariance(plan, distance));
 }
 
 PositionError positionError(const FlightSample& sample, const std::vector<PlannedView>& plan) {

@@ -11,11 +11,14 @@
 
 namespace photonav {
 
-/// The plan as the flight needs it.
+/// The plan as the flight needs it. The first image is taken at the start, which plans do not count:
+/// here it does.
 std::vector<PlannedView> plannedViews(const JudgedPath& path);
 
-/// Standard deviation of the position (root of the trace of its covariance) predicted at a way
-/// along the plan, interpolated [m].
+/// Covariance predicted at a way along the plan, interpolated (as PlannedView::covariance).
+Matrix6 predictedCovariance(const std::vector<PlannedView>& plan, double distance);
+
+/// Its standard deviation of the position, root of the trace [m].
 double predictedSigma(const std::vector<PlannedView>& plan, double distance);
 
 /// The flights of one plan.
@@ -44,6 +47,7 @@ struct FlightSummary {
     std::size_t flights = 0, arrived = 0, astray = 0, collisions = 0, lost = 0, outOfTime = 0;
     double positionRmse = kNone;    ///< of the believed position, over all exposures [m]
     double predictedSigma = kNone;  ///< root mean square over the same [m]
+    double within3Sigma = kNone;    ///< share of the exposures with an error within 3 predicted ones
     double believedSigma = kNone;   ///< root mean square over the same [m]
     double nees = kNone;            ///< per degree of freedom, mean over all exposures
     double neesAtGoal = kNone;      ///< per degree of freedom, mean over the flights' ends

@@ -24,7 +24,8 @@ std::string number(const json& value, double factor, const char* format,
     return fmt::format(fmt::runtime(format), factor * value.get<double>());
 }
 
-std::string relative(const json& rpe) {
+std::string relative(const json& rpe, bool isJudged) {
+    if (!isJudged) return "not known";
     if (!rpe.is_object()) return "recording too short";
     return fmt::format("{:.2f} mm, {:.3f} deg (rms of {})",
                        1e3 * rpe["translation_m"].get<double>(), rpe["rotation_deg"].get<double>(),
@@ -113,7 +114,7 @@ std::vector<NamedFigure> figuresOf(bool odometry, const ReplayRun& run, const Re
     if (!paths.empty()) {
         const char* caption =
             odometry && errors.judged.size() > 1
-                ? "From above: the estimate begins at the first true pose and is not aligned."
+                ? "From above: the estimate is laid on the truth where it begins, not aligned."
                 : "From above.";
         figures.push_back({"top_view.png", {caption, topView(paths, name)}});
     }
@@ -142,6 +143,8 @@ std::vector<NamedFigure> figuresOf(bool odometry, const ReplayRun& run, const Re
 
 ReportTable replaySummary(const json& result) {
     const auto& rpe = result["rpe"];
+    const bool isJudged = result["judged"] > 0;
+    const bool isLaidLater = isJudged && result["nees_per_dof"].is_null();
     const std::string aligned = result["ate_alignment"] == "none" ? "not aligned" : "SE(3) aligned";
     ReportTable table{"Replay", {}};
     table.rows = {
@@ -156,10 +159,11 @@ ReportTable replaySummary(const json& result) {
         {"the same, largest", number(result["ate_max_m"], 1e3, "{:.2f} mm")},
         {"absolute error of orientation, rms",
          number(result["ate_rotation_rmse_deg"], 1., "{:.3f} deg")},
-        {"relative error over a frame", relative(rpe["frame"])},
-        {"relative error over a second", relative(rpe["second"])},
-        {"relative error over a metre", relative(rpe["metre"])},
-        {"NEES per degree of freedom (honest: 1)", number(result["nees_per_dof"], 1., "{:.3g}")},
+        {"relative error over a frame", relative(rpe["frame"], isJudged)},
+        {"relative error over a second", relative(rpe["second"], isJudged)},
+        {"relative error over a metre", relative(rpe["metre"], isJudged)},
+        {"NEES per degree of freedom (honest: 1)", number(result["nees_per_dof"], 1., "{:.3g}",
+                isLaidLater ? "not known: no true pose where it begins (--frames)" : "not known")},
         {result["dataset"]["layout"] == "EuRoC" ? "pixels with depth from stereo"
                                                 : "pixels with recorded depth",
          number(result["depth_density"], 100., "{:.1f} %", "none")},

@@ -23,7 +23,7 @@ std::size_t count(const ReplayRun& run, FrameStatus status) {
                       [status](const ReplayedFrame& f) { return f.status == status; }));
 }
 
-JudgedFrame judgeFrame(const ReplayRun& run, std::size_t i) {
+JudgedFrame judgeFrame(const ReplayRun& run, std::size_t i, bool beginsTrue) {
     const ReplayedFrame& frame = run.frames[i];
     const UncertainPose& belief = frame.tracked.T_c_w;
     JudgedFrame result;
@@ -34,7 +34,7 @@ JudgedFrame judgeFrame(const ReplayRun& run, std::size_t i) {
     result.rotationError = errors.rotation[0];
     result.positionSigma = std::sqrt(belief.covariance.diagonal().head<3>().sum());
     result.rotationSigma = std::sqrt(belief.covariance.diagonal().tail<3>().sum());
-    result.nees = squaredNormalisedError(belief, *frame.truth_c_w);
+    if (beginsTrue) result.nees = squaredNormalisedError(belief, *frame.truth_c_w);
     if (result.nees) *result.nees /= 6.;
     return result;
 }
@@ -120,12 +120,12 @@ std::size_t countBlack(const ReplayRun& run) {
 }
 
 std::string whyLostAtOnce(const ReplayRun& run, std::size_t lost, bool inMap) {
-    const bool isStopped = !run.stopped.empty();
-    if (countBlack(run) == lost) {
-        return fmt::format("all {}{} images are black", isStopped ? "of the first " : "", lost);
-    }
-    const auto first = std::find_if(run.frames.begin(), run.frames.end(), isLostFrame);
-    std::string text = isStopped ? run.stopped + "; first image: " : "first image: ";
+    if (countBlack(run) == lost) return fmt::format("all {} images are black", lost);
+    const auto first =
+        std::find_if(run.frames.begin(), run.frames.end(),
+                     [](const ReplayedFrame& f) { return isLostFrame(f) && !f.isBlack; });
+    std::string text = run.stopped.empty() ? "" : run.stopped + "; ";
+    text += first == run.frames.begin() ? "first image: " : fmt::format("image {}: ", first->index);
     text += first->words;
     if (isShortOfOverlap(*first)) text += kOverlapHint;
     if (inMap) text += "; poses and map must share a world (--up, --start)";
@@ -163,17 +163,19 @@ std::string row(const ReplayedFrame& frame, const JudgedFrame* judged) {
 
 }  // namespace
 
-ReplayErrors judge(const ReplayRun& run, bool align) {
+ReplayErrors judge(const ReplayRun& run, bool odometry) {
     ReplayErrors errors;
+    const auto first = firstRead(run);
+    const bool beginsTrue = !odometry || (first != run.frames.end() && first->truth_c_w);
     std::vector<PosePair> pairs;
     for (std::size_t i = 0; i < run.frames.size(); ++i) {
         const ReplayedFrame& frame = run.frames[i];
         if (frame.status != FrameStatus::tracked || !frame.truth_c_w) continue;
-        errors.judged.push_back(judgeFrame(run, i));
+        errors.judged.push_back(judgeFrame(run, i, beginsTrue));
         pairs.push_back(errors.judged.back().pair);
     }
     if (pairs.empty()) return errors;
-    if (align) {
+    if (odometry) {
         errors.absolute.translation = absoluteErrors(pairs, positionAlignment(pairs)).translation;
         errors.absolute.rotation = absoluteErrors(pairs, alignmentOf(pairs)).rotation;
     } else {

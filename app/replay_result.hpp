@@ -21,7 +21,9 @@ struct JudgedFrame {
     double rotationError = 0.;   ///< [rad]
     double positionSigma = 0.;   ///< root of the trace of the position's covariance [m]
     double rotationSigma = 0.;   ///< the same of the rotation's [rad]
-    std::optional<double> nees;  ///< per degree of freedom
+    /// Per degree of freedom. None where odometry did not begin at a true pose: what its errors
+    /// are relative to is not where its covariances began.
+    std::optional<double> nees;
 };
 
 /// Errors of a run. Odometry is judged after a rigid alignment of its positions to the true ones
@@ -30,7 +32,7 @@ struct ReplayErrors {
     std::vector<JudgedFrame> judged;
     PoseErrors absolute, perFrame, perSecond, perMetre;
 };
-ReplayErrors judge(const ReplayRun& run, bool align);
+ReplayErrors judge(const ReplayRun& run, bool odometry);
 
 using TimeInterval = std::pair<double, double>;  ///< [s]
 std::vector<TimeInterval> lostIntervals(const ReplayRun& run);

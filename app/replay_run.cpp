@@ -201,6 +201,7 @@ ReplayRun replay(const ReplaySource& source, const ReplayTracker& tracker,
     Stopwatch watch;
     std::size_t tracked = 0;
     std::size_t lost = 0;
+    std::size_t notFound = 0;  // though there was something to be seen
     for (std::size_t i = 0; i < source.frames.size(); ++i) {
         if (interrupted) {
             run.interrupted = true;
@@ -223,16 +224,38 @@ ReplayRun replay(const ReplaySource& source, const ReplayTracker& tracker,
                     {fmt::format("frame {}: {}", i, frame.words), *view, std::move(predicted)});
             }
             ++(frame.tracked.lost ? lost : tracked);
+            notFound += frame.tracked.lost && !frame.isBlack;
         }
         run.frames.push_back(std::move(frame));
         checkReadable(run.frames, source);
         if (progress) progress(run.frames.size());
-        if (tracked == 0 && lost > 0 && lost == tracker.patience) {
+        if (tracked == 0 && notFound > 0 && notFound == tracker.patience) {
             run.stopped = fmt::format("none of the first {} images could be found", lost);
             break;
         }
     }
     return run;
+}
+
+std::vector<ReplayedFrame>::const_iterator firstRead(const ReplayRun& run) {
+    return std::find_if(run.frames.begin(), run.frames.end(), [](const ReplayedFrame& frame) {
+        return frame.status != FrameStatus::unreadable;
+    });
+}
+
+void layOnTruth(ReplayRun& run) {
+    auto tie = firstRead(run);
+    if (tie == run.frames.end()) return;
+    if (!tie->truth_c_w) {
+        tie = std::find_if(tie, run.frames.cend(), [](const ReplayedFrame& frame) {
+            return frame.status == FrameStatus::tracked && frame.truth_c_w;
+        });
+        if (tie == run.frames.end()) return;
+    }
+    const Pose T_estimate_truth = tie->tracked.T_c_w.mean.inverse() * *tie->truth_c_w;
+    for (ReplayedFrame& frame : run.frames) {
+        frame.tracked.T_c_w.mean = frame.tracked.T_c_w.mean * T_estimate_truth;
+    }
 }
 
 std::optional<double> medianDepth(const ReplaySource& source) {

@@ -55,7 +55,8 @@ struct ReplayTracker {
     TrustOptions trust;        ///< of its alignments, to put them in words
     Camera camera;             ///< of the views to be given to it
     int halvings = 0;          ///< of the recorded views
-    std::size_t patience = 0;  ///< images lost from the first one on before giving up; 0: all
+    /// Images lost from the first one on before giving up, not counting black ones; 0: all.
+    std::size_t patience = 0;
 };
 
 /// Odometry from `start`.
@@ -73,6 +74,13 @@ ReplayTracker mapTracker(const ViewSource& map, const Camera& camera, const Unce
 ReplayRun replay(const ReplaySource& source, const ReplayTracker& tracker,
                  const std::atomic<bool>& interrupted,
                  const std::function<void(std::size_t)>& progress);
+
+/// The first frame whose images could be used; the end when there is none.
+std::vector<ReplayedFrame>::const_iterator firstRead(const ReplayRun& run);
+
+/// Odometry knows motions only: moves all of its poses so that they begin at the truth, or, where
+/// the first image has no true pose, agree with it at the first image tracked that has one.
+void layOnTruth(ReplayRun& run);
 
 /// The median of all depths in a few images spread over the recording [m]; 0 when there are none,
 /// nothing when none of these images can be used.

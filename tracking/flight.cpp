@@ -49,7 +49,7 @@ class Flight {
         : world_(world),
           options_(options),
           onExposure_(onExposure),
-          start_{(plan.front().T_w_b * world.T_b_c).inverse(), plan.front().covariance},
+          start_{(plan.front().T_w_b * world.T_b_c).inverse(), options.initialCovariance},
           mav_(trueStart(), options.mav, seedOf(options.seed, 1)),
           camera_(*world.truth, world.camera, world.noise, options.camera, seedOf(options.seed, 2)),
           aligner_(*world.map, world.camera, options.alignment),
@@ -95,6 +95,7 @@ class Flight {
 
     void move();
     void look();
+    void receiveAll();
     void receive(const TakenImage& taken);
     void search(const ImageF& image);
     void approachOnImage(const ImageF& image);
@@ -138,19 +139,22 @@ void Flight::move() {
 }
 
 void Flight::look() {
-    const bool isExposed = camera_.expose(time_, trueCamera());
-    if (isExposed) {
+    receiveAll();
+    if (camera_.expose(time_, trueCamera())) {
         estimator_.expose(time_);
         if (onExposure_) {
             onExposure_(time_, trueCamera(), camera_.lastImage(), camera_.lastView().depth);
         }
+        const UncertainPose belief = estimator_.belief();
+        result_.samples.push_back({time_, route_.progress(belief.mean.inverse().translation()),
+                                   trueCamera(), belief, watch_.isLostNow()});
+        receiveAll();  // of a camera without latency
     }
-    while (const auto taken = camera_.receive(time_)) receive(*taken);
     watch_.onTime(time_);
-    if (!isExposed) return;
-    const UncertainPose belief = estimator_.belief();
-    result_.samples.push_back({time_, route_.progress(belief.mean.inverse().translation()),
-                               trueCamera(), belief, watch_.isLostNow()});
+}
+
+void Flight::receiveAll() {
+    while (const auto taken = camera_.receive(time_)) receive(*taken);
 }
 
 void Flight::receive(const TakenImage& taken) {
@@ -164,6 +168,11 @@ void Flight::receive(const TakenImage& taken) {
         approachOnImage(isLost(alignment.verdict) ? taken.image
                                                   : asModelled(taken.image, alignment.exposure));
     }
+    const auto sample =
+        std::find_if(result_.samples.rbegin(), result_.samples.rend(),
+                     [&](const FlightSample& s) { return s.time == taken.time; });
+    sample->belief = estimator_.atLastImage();
+    sample->isLost = watch_.isLostNow();
 }
 
 /// Perhaps it is not the image but the estimate that is bad: the same image with a wider prior, the
@@ -172,7 +181,9 @@ void Flight::search(const ImageF& image) {
     UncertainPose wide = estimator_.atLastImage();
     const double radius = options_.lost.searchRadius * (1. + kSearchGrowth * searched_++);
     wide.covariance.diagonal().head<3>().array() += radius * radius;
-    wide.covariance(5, 5) += kSearchTurn * kSearchTurn;
+    const Eigen::Vector3d up_c = wide.mean.linear().col(2);
+    wide.covariance.bottomRightCorner<3, 3>() +=
+        kSearchTurn * kSearchTurn * up_c * up_c.transpose();
     const Alignment found = aligner_.align(image, wide);
     if (found.verdict != Verdict::converged) return;
     estimator_.reset({found.T_c_w, found.covariance});

@@ -15,7 +15,8 @@ namespace photonav {
 /// A step of the plan: where to be, and what will be known there.
 struct PlannedView {
     Pose T_w_b = Pose::Identity();
-    Matrix6 covariance = Matrix6::Zero();  ///< predicted, of T_c_w (camera frame, left)
+    /// Predicted, of T_c_w (camera frame, left), with the image taken here.
+    Matrix6 covariance = Matrix6::Zero();
     double distance = 0.;                  ///< way of the position so far [m]
     bool isWaypoint = false;               ///< to be reached, not only passed near
 };
@@ -30,6 +31,8 @@ struct LostOptions {
 };
 
 struct FlightOptions {
+    /// Of T_c_w at take-off, before any image (camera frame, left): the true start is drawn from it.
+    Matrix6 initialCovariance = Matrix6::Zero();
     double timeStep = 0.02;  ///< of control and odometry [s]
     MavOptions mav;
     SimulatedCameraOptions camera;
@@ -70,7 +73,7 @@ enum class FlightEnd {
 };
 std::string nameOf(FlightEnd end);
 
-/// How it stood at one exposure, after the images that had arrived by then.
+/// How it stood at one exposure, by its image; by what was known before it, if it never arrived.
 struct FlightSample {
     double time = 0.;               ///< [s]
     double distance = 0.;           ///< along the plan, of the view that was next [m]
@@ -98,8 +101,8 @@ struct FlightResult {
 using OnExposure =
     std::function<void(double time, const Pose& T_c_w, const ImageF& image, const ImageF& depth)>;
 
-/// Flies a plan: true pose -> image -> filter -> servo -> MAV. The true start is drawn from the
-/// plan's first covariance; everything random follows from options.seed.
+/// Flies a plan: true pose -> image -> filter -> servo -> MAV. Everything random follows from
+/// options.seed.
 /// @param plan at least two views @throws std::invalid_argument otherwise
 /// @param isStopped asked now and then
 FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,

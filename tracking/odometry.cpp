@@ -20,17 +20,18 @@ Odometry::Odometry(const Camera& camera, const UncertainPose& start, const Odome
     : camera_(camera), options_(options), motion_(options.motion), belief_(start) {}
 
 TrackedFrame Odometry::track(const View& view, double timestamp) {
-    const double elapsed = timestamp - lastTime_;
+    const double elapsed = lastTime_ ? timestamp - *lastTime_ : 0.;
     lastTime_ = timestamp;
     TrackedFrame frame;
+    const UncertainPose motion = motion_.predict(elapsed);
     if (keyframes_.empty()) {
+        belief_.covariance = compound(motion, belief_).covariance;
         frame.lost = !beginWith(view);
         frame.isKeyframe = !frame.lost;
         if (!frame.lost) frame.alignment.verdict = Verdict::converged;
         frame.T_c_w = belief_;
         return frame;
     }
-    const UncertainPose motion = motion_.predict(elapsed);
     sinceTracked_ = compound(motion, {Pose::Identity(), sinceTracked_}).covariance;
     frame.alignment = search(view, {motion.mean * belief_.mean, sinceTracked_});
     frame.lost = knowsNothing(frame.alignment);

@@ -34,7 +34,8 @@ class Odometry {
   public:
     Odometry(const Camera& camera, const UncertainPose& start, const OdometryOptions& options = {});
 
-    /// The next image. The first one that shows anything becomes the first keyframe, at the start.
+    /// The next image. The first one that shows anything becomes the first keyframe: at the start,
+    /// and, when there were images before it, as uncertain as the camera may have moved since.
     /// @param view of the camera's size; depth 0: not measured @throws std::invalid_argument
     /// @param timestamp [s] larger than the one before
     TrackedFrame track(const View& view, double timestamp);
@@ -58,7 +59,7 @@ class Odometry {
     OdometryOptions options_;
     MotionModel motion_;
     UncertainPose belief_;  ///< of the camera at the last image
-    double lastTime_ = 0.;
+    std::optional<double> lastTime_;
     std::deque<Keyframe> keyframes_;   ///< the one in use is the last
     std::optional<View> lastTracked_;  ///< unless it is a keyframe
     UncertainPose lastTrackedPose_;

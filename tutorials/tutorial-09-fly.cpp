@@ -96,6 +96,7 @@ int main() {
         options.mav.odometryNoise = beliefs().motionNoise;
         options.alignment.photometric = photometric;
         const std::vector<PlannedView> views = plan(floor, camera, world.T_b_c, photometric);
+        options.initialCovariance = views.front().covariance;
         std::vector<FlightResult> flights;
         for (options.seed = 1; options.seed <= kFlights; ++options.seed) {
             flights.push_back(fly(views, world, options));

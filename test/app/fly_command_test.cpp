@@ -229,7 +229,7 @@ TEST_F(FlyCommand, RejectsBadInput) {
     EXPECT_FALSE(fs::exists(folder_ / "x" / "result.json"));
 }
 
-/// Believed positions known to be off by 3 sigma in one direction, of which one in six counts.
+/// Believed positions known to be off by 3 and 9 sigma in one direction, of which one in six counts.
 TEST(FlySummary, ComparesErrorsWithWhatWasPredicted) {
     FlightSet set;
     PlannedView from, to;
@@ -243,15 +243,31 @@ TEST(FlySummary, ComparesErrorsWithWhatWasPredicted) {
     sample.distance = 1.;
     sample.belief.covariance = 0.01 * Matrix6::Identity();
     sample.T_c_w.translation().x() = 0.3;
-    flight.samples = {sample, sample};
+    FlightSample worse = sample;
+    worse.T_c_w.translation().x() = 0.9;
+    flight.samples = {sample, worse};
     set.flights = {flight};
     const FlightSummary s = summarise(set);
     EXPECT_EQ(s.arrived, 1U);
-    EXPECT_NEAR(s.positionRmse, 0.3, 1e-12);
+    EXPECT_NEAR(s.positionRmse, std::sqrt(0.45), 1e-12);
     EXPECT_NEAR(s.believedSigma, std::sqrt(0.03), 1e-12);
-    EXPECT_NEAR(s.predictedSigma, 0.5 * (std::sqrt(0.03) + std::sqrt(0.12)), 1e-12);
-    EXPECT_NEAR(s.nees, 9. / 6., 1e-12);
+    EXPECT_NEAR(s.predictedSigma, std::sqrt(0.075), 1e-12);
+    EXPECT_NEAR(s.nees, 0.5 * (9. + 81.) / 6., 1e-12);
+    EXPECT_EQ(s.within3Sigma, 0.5);
     EXPECT_NEAR(chiSquareQuantile(600., 1.96), 669.8, 0.5);  // tables: 669.77
+}
+
+/// A flight sees something at the start, too.
+TEST(FlySummary, ThePlanIsAskedForWhatIsKnownWithTheView) {
+    JudgedPath path;
+    path.points.resize(2);
+    path.points[0].covariance = 0.04 * Matrix6::Identity();
+    path.points[0].information = 75. * Matrix6::Identity();
+    path.points[1].covariance = 0.02 * Matrix6::Identity();
+    path.points[1].information = 75. * Matrix6::Identity();
+    const std::vector<PlannedView> plan = plannedViews(path);
+    EXPECT_TRUE(plan[0].covariance.isApprox(0.01 * Matrix6::Identity(), 1e-12));
+    EXPECT_EQ(plan[1].covariance, path.points[1].covariance);
 }
 
 }  // namespace

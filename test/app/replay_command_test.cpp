@@ -370,7 +370,45 @@ TEST_F(ReplayCommand, ABlackRecordingIsLost) {
     report = run();
     EXPECT_EQ(report.exitCode, 1);
     EXPECT_EQ(report.result["tracked"], 0);
-    EXPECT_EQ(report.result["verdict"], "lost at once: all of the first 10 images are black");
+    EXPECT_EQ(report.result["verdict"], "lost at once: all 12 images are black");
+}
+
+TEST_F(ReplayCommand, AMapIsNotGivenUpForBlackImages) {
+    flight.frames = 24;
+    flight.speed = 0.005;
+    flight.write(data);
+    for (int i = 0; i < 12; ++i) blacken(i);
+    useMap();
+    const ReplayReport report = run();
+    EXPECT_EQ(report.exitCode, 0);
+    EXPECT_EQ(report.result["tracked"], 12) << report.result["verdict"];
+}
+
+/// What it begins with is nowhere near the truth, and must not count.
+TEST_F(ReplayCommand, OdometryIsLaidOnTheTruthWhereItBegins) {
+    const std::string poses = test::contentOf(data / "groundtruth.txt");
+    const json all = run().result;
+    EXPECT_TRUE(all["nees_per_dof"].is_number());
+    test::fs::remove(data / "depth/0.png");  // the first image cannot be used
+    const json second = run().result;
+    EXPECT_EQ(second["unreadable"], 1);
+    EXPECT_NEAR(second["nees_per_dof"].get<double>(), all["nees_per_dof"].get<double>(), 0.5);
+    flight.write(data);
+    const auto firstLines = [&](int n) {
+        std::size_t end = 0;
+        while (n-- > 0) end = poses.find('\n', end) + 1;
+        return end;
+    };
+    writeText(data / "groundtruth.txt", poses.substr(firstLines(3)));
+    const ReplayReport late = run();
+    EXPECT_EQ(late.result["judged"], 9);
+    EXPECT_TRUE(late.result["nees_per_dof"].is_null());
+    EXPECT_LT(late.result["ate_rmse_m"].get<double>(), 3e-3);
+    const Trajectory estimate = readTrajectory((options.out / "trajectory.tum").string());
+    EXPECT_TRUE(estimate[3].T_w_c.isApprox(flight.T_w_c(3), 1e-6));
+    EXPECT_TRUE(estimate[0].T_w_c.isApprox(flight.T_w_c(0), 5e-3));
+    options.start = "1,2,3,0,0,0,1";
+    expectRejected({"--start", "with ground truth"});
 }
 
 TEST_F(ReplayCommand, EndingLostIsNoAnswer) {

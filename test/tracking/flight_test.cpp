@@ -26,12 +26,13 @@ class Flight : public ::testing::Test {
         motion << 1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-4;
         options.mav.odometryNoise = motion.asDiagonal();
         const Matrix6 toCamera = adjoint(world.T_b_c.inverse());
+        options.initialCovariance =
+            toCamera * Matrix6(initial.asDiagonal()) * toCamera.transpose();
         for (int i = 0; i <= 10; ++i) {
             PlannedView view;
             view.T_w_b.translation() << 0.2 * i, 0., 2.;
             view.T_w_b.linear() =
                 Eigen::AngleAxisd(0.05 * i, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-            view.covariance = toCamera * Matrix6(initial.asDiagonal()) * toCamera.transpose();
             view.distance = 0.2 * i;
             view.isWaypoint = i == 0 || i == 5 || i == 10;
             plan.push_back(view);
@@ -85,6 +86,19 @@ TEST_F(Flight, IsTheSameForTheSameSeed) {
     EXPECT_NE(fly(plan, world, options).samples[0].T_c_w.matrix(), a.samples[0].T_c_w.matrix());
 }
 
+/// A sample is of its own image, however late that arrives.
+TEST_F(Flight, SamplesAreOfTheImagesTakenThen) {
+    const FlightSample atOnce = fly(plan, world, options).samples.front();
+    EXPECT_LT(atOnce.belief.covariance.trace(), 0.1 * options.initialCovariance.trace());
+    options.camera.latency = 0.3;  // more than a period
+    const FlightSample late = fly(plan, world, options).samples.front();
+    EXPECT_TRUE(late.belief.covariance.isApprox(atOnce.belief.covariance, 1e-6));
+    EXPECT_TRUE(late.belief.mean.isApprox(atOnce.belief.mean, 1e-6));
+    options.camera.dropRate = 1.;
+    const FlightSample dropped = fly(plan, world, options).samples.front();
+    EXPECT_EQ(dropped.belief.covariance, options.initialCovariance);
+}
+
 TEST_F(Flight, KeepsTrackOfLateAndDroppedImages) {
     options.camera.latency = 0.3;  // more than a period
     options.camera.dropRate = 0.3;
@@ -120,19 +134,39 @@ TEST_F(Flight, GivesUpInTheDark) {
     EXPECT_LT(flight.way, 1.5) << "it must not go on blindly";
 }
 
+/// A world that is seen as from T T_c_w.
+struct Shifted : ViewSource {
+    const ViewSource& world;
+    Pose T;
+    Shifted(const ViewSource& w, const Pose& t) : world(w), T(t) {}
+    void render(const Camera& camera, const Pose& T_c_w, View& view) const override {
+        world.render(camera, T * T_c_w, view);
+    }
+};
+
+TEST_F(Flight, IsFoundAgainWhereTheHeadingIsWrong) {
+    options.initialCovariance = 1e-6 * Matrix6::Identity();
+    world.T_b_c = cameraMount(test::kOblique);
+    const Eigen::Vector3d up_c = world.T_b_c.linear().row(2).transpose();
+    const Vector6 turn = (Vector6() << Eigen::Vector3d::Zero(), 0.28 * up_c).finished();
+    const Shifted shifted{floor, expSE3(turn)};
+    world.truth = &shifted;
+    options.photometricGoal = false;
+    const FlightResult flight = fly(plan, world, options);
+    const FlightSample& last = flight.samples.back();
+    const Pose T_seen = expSE3(turn) * last.T_c_w;
+    EXPECT_LT((last.belief.mean.inverse().translation() - T_seen.inverse().translation()).norm(),
+              0.05)
+        << nameOf(flight.end);
+    EXPECT_EQ(flight.timesLost, 1);
+    EXPECT_LT(flight.lost, 1.);
+}
+
 TEST_F(Flight, IsFoundAgainWhereTheEstimateIsWrong) {
     // The true start is far outside of what is believed.
-    for (PlannedView& view : plan) view.covariance = 1e-6 * Matrix6::Identity();
+    options.initialCovariance = 1e-6 * Matrix6::Identity();
     const Vector6 shift = (Vector6() << 0.25, 0.2, 0., 0., 0., 0.1).finished();
-    MeshRenderer& truth = floor;
-    struct Shifted : ViewSource {
-        const ViewSource& world;
-        Pose T;
-        Shifted(const ViewSource& w, const Pose& t) : world(w), T(t) {}
-        void render(const Camera& camera, const Pose& T_c_w, View& view) const override {
-            world.render(camera, T * T_c_w, view);
-        }
-    } shifted{truth, expSE3(shift)};
+    const Shifted shifted{floor, expSE3(shift)};
     world.truth = &shifted;
     options.photometricGoal = false;
     const FlightResult flight = fly(plan, world, options);

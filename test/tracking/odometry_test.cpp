@@ -126,12 +126,17 @@ TEST(Odometry, LostForLongItBeginsAnewAsUncertainAsItIs) {
 
 TEST(Odometry, BlackFromTheBeginningIsLostUntilSomethingIsSeen) {
     Odometry odometry(flightCamera(), start());
-    EXPECT_TRUE(odometry.track(black(), 0.).lost);
-    EXPECT_TRUE(odometry.track(black(), 0.1).lost);
-    const TrackedFrame frame = odometry.track(viewFrom(flight(0)), 0.2);
+    EXPECT_TRUE(odometry.track(black(), 1e9).lost);
+    EXPECT_EQ(odometry.belief().covariance, start().covariance);
+    EXPECT_TRUE(odometry.track(black(), 1e9 + 0.1).lost);
+    const TrackedFrame frame = odometry.track(viewFrom(flight(0)), 1e9 + 0.2);
     EXPECT_FALSE(frame.lost);
     EXPECT_TRUE(frame.isKeyframe);
     EXPECT_TRUE(frame.T_c_w.mean.isApprox(flight(0)));
+    // It may have moved in the dark.
+    const Matrix6 grown = frame.T_c_w.covariance - start().covariance;
+    EXPECT_NEAR(grown(0, 0), 2. * 0.05 * 0.05, 1e-4);  // half a metre per second
+    EXPECT_NEAR(grown(5, 5), 2. * 0.1 * 0.1, 1e-4);
 }
 
 UncertainPose roughStart(int i) {
