@@ -132,8 +132,8 @@ Vector6 imageStep(const Spectrum& spectrum, const Vector6& right, double least, 
 /// Step toward the most likely pose given the image and the prior. It solves
 /// (Lambda + damping + P^-1) xi = b - P^-1 e as (1 + P (Lambda + damping)) xi = P b - e, which
 /// holds for a singular P as well.
-/// @param e logSE3(T T_prior^-1)
-/// @param P covariance of the prior, transported with the left Jacobian of e
+/// @param e deviation(T, T_prior)
+/// @param P covariance of the prior, transported() by e
 Vector6 mapStep(const Spectrum& spectrum, const PoseEquations& equations, const Vector6& e,
                 const Matrix6& P, double damping);
 
@@ -147,6 +147,15 @@ void conclude(Alignment& alignment, const NormalEquations& equations, std::size_
 /// The covariance raised where it is below floor (eigenvalues relative to the floor, clipped at 1).
 /// A floor of 0 is none.
 Matrix6 withFloor(const Matrix6& covariance, double translation, double rotation);
+
+/// How far a pose is from a prior's mean: translation and rotation vector of T_c_w T_prior_w^-1.
+Vector6 deviation(const Pose& T_c_w, const Pose& T_prior_w);
+
+/// A prior's covariance in the camera frame of a pose that deviates by e from its mean. Rotations
+/// go through the left Jacobian. Positions turn with the camera by all of the rotation, not half of
+/// it as the Jacobian of SE(3) would have it: what they are known by, the map, does not turn. (A
+/// metre along a known wall, turned by half of 3 mrad, would contradict the wall by 1.5 mm.)
+Matrix6 transported(const Matrix6& covariance, const Vector6& e);
 
 /// Squared Mahalanobis distance e^T covariance^-1 e; directions without variance count by a
 /// millionth of the largest.

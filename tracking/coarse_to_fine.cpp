@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "constants.hpp"
+#include "jacobian_check.hpp"
 #include "se3.hpp"
 
 namespace photonav {
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kLeastDamping = 1e-3;
 constexpr double kMostDamping = 1e4;
+constexpr int kVerifications = 3;
 /// Which pixels count changes from pose to pose, and with it the cost by more than small steps do.
 constexpr double kCostNoise = 1e-3;
 
@@ -22,9 +24,17 @@ struct Iterate {
     Pose T_c_w = Pose::Identity();
     Exposure exposure;
     NormalEquations equations;
-    Vector6 fromPrior = Vector6::Zero();  ///< log(T_c_w T_prior^-1)
+    Vector6 fromPrior = Vector6::Zero();  ///< deviation() from its mean
     double priorTerm = 0.;                ///< squared distance from the prior
 };
+
+/// The equations of J M instead of J.
+void confine(NormalEquations& e, const Matrix6& M) {
+    e.AtA.topLeftCorner<6, 6>() = M.transpose() * e.AtA.topLeftCorner<6, 6>() * M;
+    e.AtA.topRightCorner<6, 2>() = M.transpose() * e.AtA.topRightCorner<6, 2>();
+    e.AtA.bottomLeftCorner<2, 6>() = e.AtA.bottomLeftCorner<2, 6>() * M;
+    e.Atr.head<6>() = M.transpose() * e.Atr.head<6>();
+}
 
 class Search {
   public:
@@ -35,13 +45,14 @@ class Search {
 
   private:
     bool descend();
+    bool verify();
     bool improve(double& damping);
     Iterate evaluate(const Pose& T_c_w, const Exposure& exposure);
     void adaptLoss(double below);
     double cost(const Iterate& at, double pixels) const;
     Vector6 step(const PoseEquations& equations, double damping) const;
     bool isSmall(const Vector6& xi, const Matrix6& information, double patience) const;
-    Matrix6 transportedPrior() const;
+    Matrix6 transportedPrior() const { return transported(prior_->covariance, at_.fromPrior); }
     double scale() const { return std::ldexp(1., static_cast<int>(level_)); }
 
     Comparison& comparison_;
@@ -49,6 +60,7 @@ class Search {
     const UncertainPose* prior_;
     std::size_t level_ = 0;
     Loss loss_;
+    Matrix6 verified_ = Matrix6::Identity();  ///< M: J M is what J truly says
     Iterate at_;
     int iterations_ = 0;
     int levelBegan_ = 0;  ///< value of iterations_ then
@@ -58,9 +70,10 @@ class Search {
 Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
     Iterate at{T_c_w, exposure, comparison_.compare(level_, T_c_w, exposure, loss_)};
     ++iterations_;
+    confine(at.equations, verified_);
     if (prior_) {
-        at.fromPrior = logSE3(T_c_w * prior_->mean.inverse());
-        at.priorTerm = squaredDistance(at.fromPrior, prior_->covariance);
+        at.fromPrior = deviation(T_c_w, prior_->mean);
+        at.priorTerm = squaredDistance(at.fromPrior, transported(prior_->covariance, at.fromPrior));
     }
     return at;
 }
@@ -74,13 +87,6 @@ double Search::cost(const Iterate& at, double pixels) const {
         options_.exposure ? options_.exposure->squaredDistance(at.exposure) : 0.;
     return p.scale / (p.sigma * p.sigma) * at.equations.loss * pixels / at.equations.count +
            at.priorTerm + exposureTerm;
-}
-
-/// The prior's covariance at the iterate: with T = exp(e^) T_prior, a perturbation of the prior on
-/// the left reaches T through the left Jacobian of e.
-Matrix6 Search::transportedPrior() const {
-    const Matrix6 J = leftJacobian(at_.fromPrior);
-    return J * prior_->covariance * J.transpose();
 }
 
 Vector6 Search::step(const PoseEquations& equations, double damping) const {
@@ -157,12 +163,41 @@ bool Search::descend() {
     return false;
 }
 
+/// Finds out which directions J is true about; whether it is about all of them.
+bool Search::verify() {
+    verified_.setIdentity();
+    at_ = evaluate(at_.T_c_w, at_.exposure);
+    const NormalEquations& here = at_.equations;
+    const auto walk = comparison_.predictionAsImage(level_, at_.T_c_w);
+    if (!walk || here.count < 1.) return true;
+    const double depth = 1. / here.meanInverseDepth;
+    Vector6 unit;
+    unit << Eigen::Vector3d::Constant(depth), Eigen::Vector3d::Ones();
+    const Matrix6 prior = prior_ ? transportedPrior() : Matrix6(unit.cwiseAbs2().asDiagonal());
+    const PhotometricOptions& p = options_.photometric;
+    const double weight = p.scale / (p.sigma * p.sigma);
+    verified_ = verifiedDirections(weight * here.AtA.topLeftCorner<6, 6>(), prior, depth,
+                                   [&](const Pose& T_away_here) {
+                                       ++iterations_;
+                                       NormalEquations e = walk(T_away_here * at_.T_c_w);
+                                       e.Atr *= weight;
+                                       e.loss *= weight;
+                                       return e;
+                                   });
+    return verified_.isIdentity(0.);
+}
+
 Alignment Search::run(const Pose& T_start) {
     at_.T_c_w = T_start;
     bool converged = false;
     for (level_ = comparison_.levels(); level_-- > 0;) {
         converged = descend();
         if (level_ == 0) break;
+    }
+    // Without what is not true the minimum is elsewhere, and J may be wrong there about others.
+    for (int i = 0; i < kVerifications && converged && options_.verifyJacobian; ++i) {
+        if (verify()) break;
+        converged = descend();
     }
     Alignment result;
     result.T_c_w = at_.T_c_w;

@@ -2,6 +2,8 @@
 // The search that every alignment shares, whatever the image is compared with.
 #pragma once
 
+#include <functional>
+
 #include "alignment.hpp"
 
 namespace photonav {
@@ -20,6 +22,7 @@ struct AlignmentOptions {
     /// The finest is done below this step [standard deviations, given the residuals seen]. Where
     /// surfaces end, visibility jumps from pixel to pixel and keeps steps at about 0.3.
     double fineStep = 0.3;
+    bool verifyJacobian = true;  ///< where a model can be rendered (jacobian_check.hpp)
 };
 
 /// An image and a model of what it shows, at several sizes: level 0 is the finest.
@@ -39,6 +42,10 @@ class Comparison {
                                     const Loss& loss) = 0;
     /// Of the residuals of the last comparison.
     virtual double robustSigma() const = 0;
+    /// A function that compares what is predicted at a pose, as if it were the image, with what is
+    /// predicted at others; empty where the model cannot be seen from elsewhere.
+    using AgainstPrediction = std::function<NormalEquations(const Pose& T_c_w)>;
+    virtual AgainstPrediction predictionAsImage(std::size_t, const Pose&) { return {}; }
 };
 
 /// Coarse to fine, Gauss-Newton with Levenberg's damping, from a pose or from a prior's mean.

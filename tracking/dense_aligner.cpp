@@ -46,6 +46,15 @@ class DenseAligner::RenderedModel : public Comparison {
         return at.compare(predicted_, at.observed, exposure, loss);
     }
 
+    AgainstPrediction predictionAsImage(std::size_t level, const Pose& T_image_w) override {
+        model_.render(levels_[level].camera, T_image_w, asImage_);
+        return [this, level](const Pose& T_c_w) {
+            Level& at = levels_[level];
+            model_.render(at.camera, T_c_w, predicted_);
+            return at.compare(predicted_, asImage_.intensity, Exposure{}, Loss{});
+        };
+    }
+
   private:
     struct Level {
         Camera camera;
@@ -57,7 +66,7 @@ class DenseAligner::RenderedModel : public Comparison {
     const ViewSource& model_;
     std::vector<Level> levels_;
     std::size_t last_ = 0;  ///< level compared last
-    View predicted_;
+    View predicted_, asImage_;
 };
 
 DenseAligner::DenseAligner(const ViewSource& model, const Camera& camera,

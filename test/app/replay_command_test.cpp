@@ -408,6 +408,7 @@ TEST_F(ReplayCommand, OdometryIsLaidOnTheTruthWhereItBegins) {
     EXPECT_TRUE(estimate[3].T_w_c.isApprox(flight.T_w_c(3), 1e-6));
     EXPECT_TRUE(estimate[0].T_w_c.isApprox(flight.T_w_c(0), 5e-3));
     options.start = "1,2,3,0,0,0,1";
+    options.out = folder.path() / "refused";
     expectRejected({"--start", "with ground truth"});
 }
 

@@ -112,6 +112,28 @@ TEST(DenseAligner, WeighsImageAgainstPrior) {
     EXPECT_LT((logSE3(a.T_c_w * prior.mean.inverse()) - expected).norm(), 0.05 * offset.norm());
 }
 
+/// Bars along world y, 0.5 m wide with soft edges, seen askew.
+TEST(DenseAligner, EdgesSayNothingAlongThemselves) {
+    const MeshRenderer bars(test::floorOf(stripes({.width = 0.5, .softEdge = 0.05})));
+    AlignmentOptions options;
+    options.photometric.scale = 0.08;
+    DenseAligner aligner(bars, makeCamera(188, 120, 1.2217), options);
+    for (const double askew : {0., 0.01, 0.03, 0.1}) {
+        UncertainPose prior;
+        prior.mean = cameraAt({0.13, 0.2, 2.}, kDown, kDown + askew);
+        Vector6 sigmas;
+        sigmas << 0.02, 0.5, 0.05, 0.005, 0.005, 0.01;
+        prior.covariance = sigmas.cwiseAbs2().asDiagonal();
+        View view;
+        bars.render(aligner.camera(), prior.mean, view);
+        const Alignment a = aligner.align(view.intensity, prior);
+        EXPECT_EQ(describe(a), "degenerate along y");
+        const Eigen::Vector3d y_c = prior.mean.linear().col(1);
+        const double told = y_c.dot(a.information.topLeftCorner<3, 3>() * y_c);
+        EXPECT_LT(told, 0.05 / (0.5 * 0.5)) << askew;
+    }
+}
+
 TEST(DenseAligner, NoPriorVarianceNoMotion) {
     DenseAligner aligner(room(), camera());
     std::mt19937_64 random(5);

@@ -83,5 +83,36 @@ TEST(PoseFilter, IsHonestAlongFlights) {
     EXPECT_GT(final, 0.1 * odometry);
 }
 
+/// Hovering over bars along y: neither what central differences say along an edge that is askew,
+/// nor a prior turned by half of a correction may ever tell y.
+TEST(PoseFilter, BarsNeverTellTheWayAlongThem) {
+    const MeshRenderer bars(test::floorOf(stripes({.width = 0.5, .softEdge = 0.05})));
+    AlignmentOptions options;
+    options.photometric.scale = 0.1;
+    DenseAligner aligner(bars, filterCamera(), options);
+    std::mt19937_64 random(5);
+    Vector6 sigmas;
+    sigmas << 0.02, 0.5, 0.02, 0.005, 0.005, 0.03;
+    const Matrix6 before = sigmas.cwiseAbs2().asDiagonal();
+    sigmas << 0.002, 0.002, 0.002, 0.002, 0.002, 0.01;
+    const UncertainPose hover{Pose::Identity(), sigmas.cwiseAbs2().asDiagonal()};
+    Pose truth = cameraAt({0.1, 0., 2.}, test::kDown, test::kDown);
+    PoseFilter filter({expSE3(draw(rootOf(before), random)) * truth, before});
+    for (int image = 0; image < 40; ++image) {
+        truth = expSE3(draw(rootOf(hover.covariance), random)) * truth;
+        filter.propagate(hover);
+        View view;
+        bars.render(filterCamera(), truth, view);
+        filter.update(aligner, test::noisy(view.intensity, 0.02, random));
+    }
+    const auto sigmaAlong = [&](int axis) {
+        const Eigen::Vector3d axis_c = filter.belief().mean.linear().col(axis);
+        const Matrix6& covariance = filter.belief().covariance;
+        return std::sqrt(axis_c.dot(covariance.topLeftCorner<3, 3>() * axis_c));
+    };
+    EXPECT_LT(sigmaAlong(0), 0.02);
+    EXPECT_GT(sigmaAlong(1), 0.3);  // without the one 0.005 m are left, without the other 0.12 m
+}
+
 }  // namespace
 }  // namespace photonav

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "jacobian_check.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "se3.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr double kRelevant = 0.02;    // information, in units of the prior's: less changes nothing
+constexpr double kSuspicious = 1e-3;  // share of the largest eigenvalue that J may be wrong by
+constexpr double kLongest = 0.1;      // walk [mean depths, rad]
+constexpr double kAside = 0.02;       // share of a claim that others need to be walked along
+constexpr int kTurns = 5;             // walks along a direction, each from where the last one led
+constexpr double kLeastChange = 0.5;  // of what was told; true claims are at 0.9 to 1.2
+constexpr double kNothing = 1e-4;     // of the same
+
+/// What J claims to tell, in coordinates w of the pose, xi = L w, in which the prior is 1.
+class Claims {
+  public:
+    Claims(const Matrix6& AtA, const Matrix6& prior, double depth) {
+        unit_ << Eigen::Vector3d::Constant(depth), Eigen::Vector3d::Ones();
+        const Matrix6 scaled = unit_.asDiagonal() * AtA * unit_.asDiagonal();
+        most_ = scaled.selfadjointView<Eigen::Upper>().eigenvalues().maxCoeff();
+        // A prior may be certain of some directions: by as little as does not matter, it is not.
+        const Matrix6 regular = prior + 1e-10 * Matrix6(unit_.cwiseAbs2().asDiagonal());
+        L_ = regular.llt().matrixL();
+        const Eigen::SelfAdjointEigenSolver<Matrix6> solver(L_.transpose() * AtA * L_);
+        told_ = solver.eigenvalues();
+        directions_ = L_ * solver.eigenvectors();
+    }
+
+    bool isSuspicious(int i) const {
+        return told_[i] > kRelevant && told_[i] < kSuspicious * most_ * square(length(i));
+    }
+
+    /// Displacement along direction i: one standard deviation by the claim, but not too far.
+    double step(int i) const { return std::min(1. / std::sqrt(told_[i]), kLongest / length(i)); }
+    Vector6 along(int i) const { return directions_.col(i); }
+    double told(int i) const { return told_[i]; }
+
+    /// What brings the image back, along other directions that are told at least about as loudly.
+    Vector6 aside(int i, const Vector6& right) const {
+        Vector6 w = directions_.transpose() * right;
+        for (int k = 0; k < 6; ++k) {
+            w[k] = k != i && told_[k] > kAside * told_[i] ? w[k] / told_[k] : 0.;
+        }
+        return directions_ * w;
+    }
+
+    /// 1 - n n^T in the coordinates of the prior, for the direction n of a displacement.
+    Matrix6 without(const Vector6& xi) const {
+        const Vector6 n = L_.triangularView<Eigen::Lower>().solve(xi).normalized();
+        return Matrix6::Identity() -
+               (L_ * n) * L_.transpose().triangularView<Eigen::Upper>().solve(n).transpose();
+    }
+
+  private:
+    static double square(double x) { return x * x; }
+    double length(int i) const { return directions_.col(i).cwiseQuotient(unit_).norm(); }
+
+    Vector6 unit_;  // (depth x 3, 1 x 3)
+    double most_;   // eigenvalue, in those units
+    Matrix6 L_;
+    Vector6 told_;
+    Matrix6 directions_;
+};
+
+using Walk = std::function<NormalEquations(const Pose& T_away_here)>;
+
+/// Where a walk along direction i ends, if what is seen there is not what was told.
+std::optional<Vector6> findFalse(const Claims& claims, int i, const Walk& walk) {
+    const double step = claims.step(i);
+    const double told = claims.told(i) * step * step;
+    Pose T_away_here = expSE3(step * claims.along(i));
+    NormalEquations seen = walk(T_away_here);
+    for (int turn = 1; turn < kTurns && seen.loss > kNothing * told; ++turn) {
+        T_away_here = expSE3(claims.aside(i, seen.Atr.head<6>())) * T_away_here;
+        seen = walk(T_away_here);
+    }
+    if (seen.loss >= kLeastChange * told) return {};
+    return logSE3(T_away_here);
+}
+
+/// The loudest first: the others are mixed with it where they are told about as loudly.
+std::optional<Vector6> findFalse(const Claims& claims, const Walk& walk) {
+    for (int i = 6; i-- > 0;) {
+        if (!claims.isSuspicious(i)) continue;
+        if (const auto xi = findFalse(claims, i, walk)) return xi;
+    }
+    return {};
+}
+
+}  // namespace
+
+Matrix6 verifiedDirections(const Matrix6& AtA, const Matrix6& prior, double depth,
+                           const Walk& walk) {
+    Matrix6 M = Matrix6::Identity();
+    for (int k = 0; k < 6; ++k) {
+        const Claims claims(M.transpose() * AtA * M, prior, depth);
+        const auto xi = findFalse(claims, walk);
+        if (!xi) break;
+        M = M * claims.without(*xi);
+    }
+    return M;
+}
+
+}  // namespace photonav
