@@ -87,7 +87,7 @@ ReplaySource openEuroc(const ReplaySourceOptions& options) {
     source.note = noteOn(*sequence);
     source.camera = stereo->camera();
     source.skipped = sequence->skipped;
-    source.recorded = sequence->frames.size() + sequence->skipped.size();
+    source.recorded = sequence->recorded;
     const auto [first, end] = parseFrames(options.frames, sequence->frames.size());
     std::vector<std::size_t> indices;
     for (std::size_t i = first; i < end; i += std::size_t(options.every)) {

@@ -12,7 +12,14 @@ class InputError : public std::runtime_error {
   public:
     InputError(const std::string& file, const std::string& key, const std::string& reason)
         : std::runtime_error(key.empty() ? file + ": " + reason
-                                         : file + ": " + key + ": " + reason) {}
+                                         : file + ": " + key + ": " + reason),
+          reason_(key.empty() ? reason : key + ": " + reason) {}
+
+    /// what() without the file.
+    const std::string& reason() const { return reason_; }
+
+  private:
+    std::string reason_;
 };
 
 }  // namespace photonav

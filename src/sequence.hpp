@@ -41,6 +41,7 @@ struct Sequence {
     /// Factor on the photometric information that the noise of these images asks for, if known.
     std::optional<double> informationScale;
     std::vector<Entry> frames;  ///< in order of time
+    std::size_t recorded = 0;   ///< images that the dataset lists
     std::vector<Skipped> skipped;
 
     bool hasDepth() const {

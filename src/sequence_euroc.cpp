@@ -143,30 +143,25 @@ Pose groundtruthFrame(const fs::path& folder, StereoSequence& sequence) {
     return Pose::Identity();
 }
 
-Trajectory readGroundtruth(const std::string& file) {
-    Trajectory trajectory;
-    for (const TextRow& row : readCsv(file, 8)) {
-        StampedPose pose;
-        pose.timestamp = kNanosecond * row.number(0);
-        pose.T_w_c.translation() << row.number(1), row.number(2), row.number(3);
-        const Eigen::Quaterniond q(row.number(4), row.number(5), row.number(6), row.number(7));
-        if (std::abs(q.norm() - 1.) > 0.1) {
-            row.fail(fmt::format("quaternion of norm {:.3g}, expected 1", q.norm()));
-        }
-        pose.T_w_c.linear() = q.normalized().toRotationMatrix();
-        if (!trajectory.empty() && pose.timestamp < trajectory.back().timestamp) {
-            row.fail("timestamp is smaller than the one before");
-        }
-        trajectory.push_back(pose);
+StampedPose parsePose(const TextRow& row) {
+    StampedPose pose;
+    pose.timestamp = kNanosecond * row.number(0);
+    pose.T_w_c.translation() << row.number(1), row.number(2), row.number(3);
+    const Eigen::Quaterniond q(row.number(4), row.number(5), row.number(6), row.number(7));
+    if (std::abs(q.norm() - 1.) > 0.1) {
+        row.fail(fmt::format("quaternion of norm {:.3g}, expected 1", q.norm()));
     }
-    if (trajectory.empty()) throw InputError(file, "", "no poses");
-    return trajectory;
+    pose.T_w_c.linear() = q.normalized().toRotationMatrix();
+    return pose;
 }
 
 void addPoses(const fs::path& folder, const EurocOptions& options, StereoSequence& sequence) {
     const std::string file = (folder / "data.csv").string();
     if (!fs::exists(file)) return;
-    const Trajectory trajectory = readGroundtruth(file);
+    std::vector<InputError> badRows;
+    const Trajectory trajectory =
+        trajectoryOf(file, readCsv(file, 8, &badRows), parsePose, &badRows);
+    for (const InputError& row : badRows) sequence.skipped.push_back({file, row.reason()});
     const Pose T_s_c = groundtruthFrame(folder, sequence);
     bool anyPose = false;
     for (auto& frame : sequence.frames) {
@@ -205,6 +200,7 @@ StereoSequence readEurocSequence(const std::string& folder, const EurocOptions& 
     sequence.right = readCamera(mav / "cam1");
     checkSameSize(sequence.left, sequence.right);
     const auto left = readImageList(mav / "cam0", sequence);
+    sequence.recorded = left.size() + sequence.skipped.size();
     const auto right = readImageList(mav / "cam1", sequence);
     pairImages(left, right, options.stereoTolerance, sequence);
     if (sequence.frames.empty()) {

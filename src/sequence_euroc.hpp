@@ -29,6 +29,7 @@ struct StereoSequence {
 
     DistortedCamera left, right;
     std::vector<Entry> frames;  ///< in order of time
+    std::size_t recorded = 0;   ///< left images that the dataset lists
     std::vector<Sequence::Skipped> skipped;
     std::string groundtruthOf;  ///< "body" or "cam0": whose poses are recorded; "": none are
 };

@@ -111,9 +111,13 @@ std::vector<Pair> readPairs(const fs::path& folder, const TumOptions& options, S
     Sequence* forgiven = options.forgiving ? &sequence : nullptr;
     const double tolerance = options.tolerance;
     for (const char* name : {"assoc.txt", "associations.txt"}) {
-        if (fs::exists(folder / name)) return readAssociation(folder, name, forgiven);
+        if (!fs::exists(folder / name)) continue;
+        auto pairs = readAssociation(folder, name, forgiven);
+        sequence.recorded = pairs.size() + sequence.skipped.size();
+        return pairs;
     }
     const auto colour = readFileList(folder, "rgb.txt", forgiven);
+    sequence.recorded = colour.size() + sequence.skipped.size();
     std::vector<StampedFile> depth;
     if (options.needsDepth || fs::exists(folder / "depth.txt")) {
         depth = readFileList(folder, "depth.txt", forgiven);
@@ -213,7 +217,11 @@ void loadDepth(const Sequence& sequence, const std::string& file, const std::str
 void addPoses(const std::string& groundtruth, const std::vector<Pair>& pairs,
               const TumOptions& options, Sequence& sequence) {
     Trajectory trajectory;
-    if (!options.forgiving || fs::exists(groundtruth)) trajectory = readTrajectory(groundtruth);
+    std::vector<InputError> badRows;
+    if (!options.forgiving || fs::exists(groundtruth)) {
+        trajectory = readTrajectory(groundtruth, options.forgiving ? &badRows : nullptr);
+    }
+    for (const InputError& row : badRows) sequence.skipped.push_back({groundtruth, row.reason()});
     bool anyPose = false;
     for (const auto& [colour, depth] : pairs) {
         const auto T_w_c =

@@ -50,7 +50,7 @@ std::vector<std::string> splitAtCommas(const std::string& text) {
 
 template <class Split>
 std::vector<TextRow> readRows(const std::string& file, const Split& split, std::size_t least,
-                              std::size_t most) {
+                              std::size_t most, std::vector<InputError>* badRows) {
     std::ifstream in(file);
     if (!in) throw InputError(file, "", "no such file");
     std::vector<TextRow> rows;
@@ -59,9 +59,15 @@ std::vector<TextRow> readRows(const std::string& file, const Split& split, std::
         std::vector<std::string> fields = split(text);
         if (fields.empty() || fields[0].starts_with('#')) continue;
         const std::size_t found = fields.size();
-        rows.emplace_back(file, line, std::move(fields));
-        if (found < least || found > most) {
-            rows.back().fail(fmt::format("expected {} fields, found {}", least, found));
+        const TextRow row(file, line, std::move(fields));
+        try {
+            if (found < least || found > most) {
+                row.fail(fmt::format("expected {} fields, found {}", least, found));
+            }
+            rows.push_back(row);
+        } catch (const InputError& error) {
+            if (!badRows) throw;
+            badRows->push_back(error);
         }
     }
     return rows;
@@ -69,12 +75,14 @@ std::vector<TextRow> readRows(const std::string& file, const Split& split, std::
 
 }  // namespace
 
-std::vector<TextRow> readTable(const std::string& file, std::size_t columns) {
-    return readRows(file, splitAtBlanks, columns, columns);
+std::vector<TextRow> readTable(const std::string& file, std::size_t columns,
+                               std::vector<InputError>* badRows) {
+    return readRows(file, splitAtBlanks, columns, columns, badRows);
 }
 
-std::vector<TextRow> readCsv(const std::string& file, std::size_t leastColumns) {
-    return readRows(file, splitAtCommas, leastColumns, std::string::npos);
+std::vector<TextRow> readCsv(const std::string& file, std::size_t leastColumns,
+                             std::vector<InputError>* badRows) {
+    return readRows(file, splitAtCommas, leastColumns, std::string::npos, badRows);
 }
 
 }  // namespace photonav

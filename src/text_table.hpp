@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "error.hpp"
+
 namespace photonav {
 
 /// One line of a table; complains with its file and line.
@@ -15,6 +17,7 @@ class TextRow {
         : file_(std::move(file)), line_(line), fields_(std::move(fields)) {}
 
     const std::string& text(std::size_t column) const { return fields_[column]; }
+    std::size_t size() const { return fields_.size(); }
 
     /// @throws InputError unless the whole field is a finite number
     double number(std::size_t column) const;
@@ -29,11 +32,14 @@ class TextRow {
 };
 
 /// All rows of a file but blank lines and those that start with '#'.
-/// @throws InputError for a missing file and for a row that does not have `columns` fields
-std::vector<TextRow> readTable(const std::string& file, std::size_t columns);
+/// @throws InputError for a missing file and, without `badRows`, for a row that does not have
+///         `columns` fields
+std::vector<TextRow> readTable(const std::string& file, std::size_t columns,
+                               std::vector<InputError>* badRows = nullptr);
 
 /// The same for fields with commas between them, as EuRoC's files have; blanks around a field do
 /// not count, and a row may have more fields than `leastColumns`.
-std::vector<TextRow> readCsv(const std::string& file, std::size_t leastColumns);
+std::vector<TextRow> readCsv(const std::string& file, std::size_t leastColumns,
+                             std::vector<InputError>* badRows = nullptr);
 
 }  // namespace photonav

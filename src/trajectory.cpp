@@ -10,7 +10,6 @@
 #include <stdexcept>
 
 #include "error.hpp"
-#include "text_table.hpp"
 
 namespace photonav {
 namespace {
@@ -47,17 +46,29 @@ Pose interpolate(const Pose& a, const Pose& b, double s) {
 
 }  // namespace
 
-Trajectory readTrajectory(const std::string& file) {
+Trajectory readTrajectory(const std::string& file, std::vector<InputError>* badRows) {
+    return trajectoryOf(file, readTable(file, 8, badRows), parsePose, badRows);
+}
+
+Trajectory trajectoryOf(const std::string& file, const std::vector<TextRow>& rows,
+                        const std::function<StampedPose(const TextRow&)>& parse,
+                        std::vector<InputError>* badRows) {
     Trajectory trajectory;
-    for (const TextRow& row : readTable(file, 8)) {
-        trajectory.push_back(parsePose(row));
-        const std::size_t n = trajectory.size();
-        if (n > 1 && trajectory[n - 1].timestamp < trajectory[n - 2].timestamp) {
-            row.fail("timestamp is smaller than the one before");
+    for (const TextRow& row : rows) {
+        try {
+            const StampedPose pose = parse(row);
+            if (!trajectory.empty() && pose.timestamp < trajectory.back().timestamp) {
+                row.fail("timestamp is smaller than the one before");
+            }
+            trajectory.push_back(pose);
+        } catch (const InputError& error) {
+            if (!badRows) throw;
+            badRows->push_back(error);
         }
     }
-    if (trajectory.empty()) throw InputError(file, "", "no poses");
-    return trajectory;
+    if (!trajectory.empty()) return trajectory;
+    if (badRows && !badRows->empty()) throw badRows->front();
+    throw InputError(file, "", "no poses");
 }
 
 void writeTrajectory(const std::string& file, const Trajectory& trajectory) {

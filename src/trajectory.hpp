@@ -2,11 +2,13 @@
 // Camera trajectories and their files (TUM format, which evo reads).
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "text_table.hpp"
 #include "types.hpp"
 
 namespace photonav {
@@ -24,7 +26,15 @@ using Trajectory = std::vector<StampedPose>;  ///< timestamps never decrease
 ///         number, a position beyond 1e8 m, a quaternion whose norm is not within 0.1 of 1, or a
 ///         decreasing timestamp;
 ///         also for a missing file and one without poses
-Trajectory readTrajectory(const std::string& file);
+/// @param badRows where there is one it gets such lines, which are passed over; the first of them
+/// is
+///        thrown when no pose is left
+Trajectory readTrajectory(const std::string& file, std::vector<InputError>* badRows = nullptr);
+
+/// The same of the rows of any table.
+Trajectory trajectoryOf(const std::string& file, const std::vector<TextRow>& rows,
+                        const std::function<StampedPose(const TextRow&)>& parse,
+                        std::vector<InputError>* badRows);
 
 /// Writes what readTrajectory reads; translations and quaternions with 9 digits.
 /// @throws InputError when the file cannot be written

@@ -2,6 +2,7 @@
 // Where was this image taken? Render the model where the camera is thought to be, compare pixel by
 // pixel, take a Gauss-Newton step, render again: watch it converge, in a window when there is a
 // screen, as PNG in any case.
+#include <visp3/core/vpDisplayException.h>
 #include <visp3/core/vpImageConvert.h>
 #include <visp3/gui/vpDisplayX.h>
 
@@ -56,15 +57,21 @@ ImageF residual(const ImageF& observed, const ImageF& predicted) {
 class Window {
   public:
     void show(const cv::Mat& picture) {
-        if (std::getenv("DISPLAY") == nullptr) return;
+        if (!hasScreen_) return;
         vpImageConvert::convert(picture, image_);
-        if (!display_) display_ = std::make_unique<vpDisplayX>(image_, 40, 40, "alignment");
+        try {
+            if (!display_) display_ = std::make_unique<vpDisplayX>(image_, 40, 40, "alignment");
+        } catch (const vpDisplayException&) {
+            hasScreen_ = false;
+            return;
+        }
         vpDisplay::display(image_);
         vpDisplay::flush(image_);
         vpTime::wait(500.);  // [ms]
     }
 
   private:
+    bool hasScreen_ = std::getenv("DISPLAY") != nullptr;
     vpImage<unsigned char> image_;
     std::unique_ptr<vpDisplayX> display_;
 };

@@ -358,6 +358,29 @@ TEST_F(ReplayCommand, TimestampsThatRepeatOrGoBackAreReported) {
     EXPECT_EQ(report.result["skipped"].size(), 2U);
     ASSERT_EQ(report.result["gaps"].size(), 1U);
     EXPECT_NEAR(report.result["gaps"][0][1].get<double>(), 50.9, 1e-9);
+    EXPECT_EQ(report.result["recorded"], 8);
+}
+
+TEST_F(ReplayCommand, RowsOfTheGroundTruthThatCannotBeUsedArePassedOver) {
+    std::string poses = test::contentOf(data / "groundtruth.txt");
+    const auto third = poses.find("50.3");
+    poses.insert(third, "50.1 0 0 0 0 0 0 1\n50.25 0 0 nan 0 0 0 1\n");
+    writeText(data / "groundtruth.txt", poses + "51.2 0.3 0");  // cut off
+    const ReplayReport report = run();
+    EXPECT_EQ(report.exitCode, 0);
+    EXPECT_EQ(report.result["judged"], 12);
+    EXPECT_EQ(report.result["recorded"], 12);
+    ASSERT_EQ(report.result["skipped"].size(), 3U);
+    std::string reasons;
+    for (const json& row : report.result["skipped"]) reasons += row["reason"].get<std::string>();
+    for (const char* part :
+         {"line 4: timestamp is smaller", "line 5: 'nan'", "line 15: expected 8 fields, found 3"}) {
+        EXPECT_NE(reasons.find(part), std::string::npos) << reasons;
+    }
+    EXPECT_LT(report.result["ate_rmse_m"].get<double>(), 3e-3);
+    writeText(data / "groundtruth.txt", "50 0 0 x 0 0 0 1\n");
+    options.out = folder.path() / "refused";
+    expectRejected({"groundtruth.txt: line 1: 'x' is not a number"});
 }
 
 TEST_F(ReplayCommand, ABlackRecordingIsLost) {
