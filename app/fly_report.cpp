@@ -63,20 +63,21 @@ ReportTable tableOf(const FlightSet& set) {
         table.rows = {{"flown", "not once"}};
         return table;
     }
-    table.rows = {{"arrived", fmt::format("{} of {}", s.arrived, s.flights)},
-                  {"believed to be there, but elsewhere", fmt::format("{}", s.astray)},
-                  {"collisions", fmt::format("{}", s.collisions)},
-                  {"gave up lost / out of time", fmt::format("{} / {}", s.lost, s.outOfTime)},
-                  {"position error, root mean square", metres(s.positionRmse)},
-                  {"predicted by the plan", metres(s.predictedSigma)},
-                  {"errors within 3 predicted sigma", fmt::format("{:.1f} %", 100. * s.within3Sigma)},
-                  {"believed in flight", metres(s.believedSigma)},
-                  {"NEES per degree of freedom (1: honest)", fmt::format("{:.2f}", s.nees)},
-                  {"the same at the goal (95 % of honest cases)",
-                   fmt::format("{:.2f} ({:.2f} to {:.2f})", s.neesAtGoal, s.neesLow, s.neesHigh)},
-                  {"true distance to the goal at the end, median", metres(s.goalError)},
-                  {"time without tracking, all flights", fmt::format("{:.1f} s", s.lostTime)},
-                  {"duration, mean", fmt::format("{:.1f} s", s.duration)}};
+    table.rows = {
+        {"arrived", fmt::format("{} of {}", s.arrived, s.flights)},
+        {"believed to be there, but elsewhere", fmt::format("{}", s.astray)},
+        {"collisions", fmt::format("{}", s.collisions)},
+        {"gave up lost / out of time", fmt::format("{} / {}", s.lost, s.outOfTime)},
+        {"position error, root mean square", metres(s.positionRmse)},
+        {"predicted by the plan", metres(s.predictedSigma)},
+        {"errors within 3 predicted sigma", fmt::format("{:.1f} %", 100. * s.within3Sigma)},
+        {"believed in flight", metres(s.believedSigma)},
+        {"NEES per degree of freedom (1: honest)", fmt::format("{:.2f}", s.nees)},
+        {"the same at the goal (95 % of honest cases)",
+         fmt::format("{:.2f} ({:.2f} to {:.2f})", s.neesAtGoal, s.neesLow, s.neesHigh)},
+        {"true distance to the goal at the end, median", metres(s.goalError)},
+        {"time without tracking, all flights", fmt::format("{:.1f} s", s.lostTime)},
+        {"duration, mean", fmt::format("{:.1f} s", s.duration)}};
     if (s.photometric > 0) {
         table.rows.emplace_back("last centimetres on the goal's image",
                                 fmt::format("{} flights, {:.3f} to {:.3f} m", s.photometric,

@@ -11,8 +11,8 @@
 
 namespace photonav {
 
-/// The plan as the flight needs it. The first image is taken at the start, which plans do not count:
-/// here it does.
+/// The plan as the flight needs it. The first image is taken at the start, which plans do not
+/// count: here it does.
 std::vector<PlannedView> plannedViews(const JudgedPath& path);
 
 /// Covariance predicted at a way along the plan, interpolated (as PlannedView::covariance).
@@ -47,10 +47,10 @@ struct FlightSummary {
     std::size_t flights = 0, arrived = 0, astray = 0, collisions = 0, lost = 0, outOfTime = 0;
     double positionRmse = kNone;    ///< of the believed position, over all exposures [m]
     double predictedSigma = kNone;  ///< root mean square over the same [m]
-    double within3Sigma = kNone;    ///< share of the exposures with an error within 3 predicted ones
-    double believedSigma = kNone;   ///< root mean square over the same [m]
-    double nees = kNone;            ///< per degree of freedom, mean over all exposures
-    double neesAtGoal = kNone;      ///< per degree of freedom, mean over the flights' ends
+    double within3Sigma = kNone;   ///< share of the exposures with an error within 3 predicted ones
+    double believedSigma = kNone;  ///< root mean square over the same [m]
+    double nees = kNone;           ///< per degree of freedom, mean over all exposures
+    double neesAtGoal = kNone;     ///< per degree of freedom, mean over the flights' ends
     /// Within which neesAtGoal lies in 95 % of honest cases: chi-square with 6 degrees of freedom
     /// for every flight.
     double neesLow = kNone, neesHigh = kNone;

@@ -162,7 +162,8 @@ ReportTable replaySummary(const json& result) {
         {"relative error over a frame", relative(rpe["frame"], isJudged)},
         {"relative error over a second", relative(rpe["second"], isJudged)},
         {"relative error over a metre", relative(rpe["metre"], isJudged)},
-        {"NEES per degree of freedom (honest: 1)", number(result["nees_per_dof"], 1., "{:.3g}",
+        {"NEES per degree of freedom (honest: 1)",
+         number(result["nees_per_dof"], 1., "{:.3g}",
                 isLaidLater ? "not known: no true pose where it begins (--frames)" : "not known")},
         {result["dataset"]["layout"] == "EuRoC" ? "pixels with depth from stereo"
                                                 : "pixels with recorded depth",

@@ -17,10 +17,10 @@ namespace photonav {
 struct JudgedFrame {
     std::size_t frame = 0;  ///< index into ReplayRun::frames
     PosePair pair;
-    double positionError = 0.;   ///< distance of the camera centres, not aligned [m]
-    double rotationError = 0.;   ///< [rad]
-    double positionSigma = 0.;   ///< root of the trace of the position's covariance [m]
-    double rotationSigma = 0.;   ///< the same of the rotation's [rad]
+    double positionError = 0.;  ///< distance of the camera centres, not aligned [m]
+    double rotationError = 0.;  ///< [rad]
+    double positionSigma = 0.;  ///< root of the trace of the position's covariance [m]
+    double rotationSigma = 0.;  ///< the same of the rotation's [rad]
     /// Per degree of freedom. None where odometry did not begin at a true pose: what its errors
     /// are relative to is not where its covariances began.
     std::optional<double> nees;

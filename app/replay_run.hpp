@@ -51,10 +51,10 @@ struct ReplayTracker {
     std::function<TrackedFrame(const View& view, double timestamp)> track;
     /// The view of a frame as the model predicts it at the believed pose; depth 0: nothing there.
     std::function<View(const View& observed, const TrackedFrame& frame)> predict;
-    double scale = 1.;         ///< factor on the information of its alignments
-    TrustOptions trust;        ///< of its alignments, to put them in words
-    Camera camera;             ///< of the views to be given to it
-    int halvings = 0;          ///< of the recorded views
+    double scale = 1.;   ///< factor on the information of its alignments
+    TrustOptions trust;  ///< of its alignments, to put them in words
+    Camera camera;       ///< of the views to be given to it
+    int halvings = 0;    ///< of the recorded views
     /// Images lost from the first one on before giving up, not counting black ones; 0: all.
     std::size_t patience = 0;
 };

@@ -168,9 +168,8 @@ void Flight::receive(const TakenImage& taken) {
         approachOnImage(isLost(alignment.verdict) ? taken.image
                                                   : asModelled(taken.image, alignment.exposure));
     }
-    const auto sample =
-        std::find_if(result_.samples.rbegin(), result_.samples.rend(),
-                     [&](const FlightSample& s) { return s.time == taken.time; });
+    const auto sample = std::find_if(result_.samples.rbegin(), result_.samples.rend(),
+                                     [&](const FlightSample& s) { return s.time == taken.time; });
     sample->belief = estimator_.atLastImage();
     sample->isLost = watch_.isLostNow();
 }

@@ -17,8 +17,8 @@ struct PlannedView {
     Pose T_w_b = Pose::Identity();
     /// Predicted, of T_c_w (camera frame, left), with the image taken here.
     Matrix6 covariance = Matrix6::Zero();
-    double distance = 0.;                  ///< way of the position so far [m]
-    bool isWaypoint = false;               ///< to be reached, not only passed near
+    double distance = 0.;     ///< way of the position so far [m]
+    bool isWaypoint = false;  ///< to be reached, not only passed near
 };
 
 struct LostOptions {
@@ -31,7 +31,8 @@ struct LostOptions {
 };
 
 struct FlightOptions {
-    /// Of T_c_w at take-off, before any image (camera frame, left): the true start is drawn from it.
+    /// Of T_c_w at take-off, before any image (camera frame, left): the true start is drawn from
+    /// it.
     Matrix6 initialCovariance = Matrix6::Zero();
     double timeStep = 0.02;  ///< of control and odometry [s]
     MavOptions mav;

@@ -229,7 +229,8 @@ TEST_F(FlyCommand, RejectsBadInput) {
     EXPECT_FALSE(fs::exists(folder_ / "x" / "result.json"));
 }
 
-/// Believed positions known to be off by 3 and 9 sigma in one direction, of which one in six counts.
+/// Believed positions known to be off by 3 and 9 sigma in one direction, of which one in six
+/// counts.
 TEST(FlySummary, ComparesErrorsWithWhatWasPredicted) {
     FlightSet set;
     PlannedView from, to;

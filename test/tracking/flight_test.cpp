@@ -26,8 +26,7 @@ class Flight : public ::testing::Test {
         motion << 1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-4;
         options.mav.odometryNoise = motion.asDiagonal();
         const Matrix6 toCamera = adjoint(world.T_b_c.inverse());
-        options.initialCovariance =
-            toCamera * Matrix6(initial.asDiagonal()) * toCamera.transpose();
+        options.initialCovariance = toCamera * Matrix6(initial.asDiagonal()) * toCamera.transpose();
         for (int i = 0; i <= 10; ++i) {
             PlannedView view;
             view.T_w_b.translation() << 0.2 * i, 0., 2.;
