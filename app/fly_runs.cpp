@@ -17,6 +17,17 @@ double positionSigma(const Matrix6& covariance) {
     return std::sqrt(covariance.topLeftCorner<3, 3>().trace());
 }
 
+Matrix6 predictedCovariance(const std::vector<PlannedView>& plan, double distance) {
+    const auto next =
+        std::upper_bound(plan.begin(), plan.end(), distance,
+                         [](double d, const PlannedView& view) { return d < view.distance; });
+    if (next == plan.begin()) return plan.front().covariance;
+    if (next == plan.end()) return plan.back().covariance;
+    const auto last = next - 1;
+    const double t = (distance - last->distance) / (next->distance - last->distance);
+    return (1. - t) * last->covariance + t * next->covariance;
+}
+
 void countEnds(const std::vector<FlightResult>& flights, FlightSummary& s) {
     const auto n = static_cast<double>(flights.size());
     std::vector<double> errors, before, after;
@@ -71,17 +82,6 @@ std::vector<PlannedView> plannedViews(const JudgedPath& path) {
     const BeliefPoint& start = path.points.front();
     plan.front().covariance = updateCovariance(start.covariance, start.information);
     return plan;
-}
-
-Matrix6 predictedCovariance(const std::vector<PlannedView>& plan, double distance) {
-    const auto next =
-        std::upper_bound(plan.begin(), plan.end(), distance,
-                         [](double d, const PlannedView& view) { return d < view.distance; });
-    if (next == plan.begin()) return plan.front().covariance;
-    if (next == plan.end()) return plan.back().covariance;
-    const auto last = next - 1;
-    const double t = (distance - last->distance) / (next->distance - last->distance);
-    return (1. - t) * last->covariance + t * next->covariance;
 }
 
 double predictedSigma(const std::vector<PlannedView>& plan, double distance) {

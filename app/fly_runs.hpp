@@ -11,14 +11,12 @@
 
 namespace photonav {
 
-/// The plan as the flight needs it. The first image is taken at the start, which plans do not
-/// count: here it does.
+/// The plan as the flight needs it. A flight looks around at the start, which plans do not count:
+/// for the start, and for it alone, the covariance here is that with an image.
 std::vector<PlannedView> plannedViews(const JudgedPath& path);
 
-/// Covariance predicted at a way along the plan, interpolated (as PlannedView::covariance).
-Matrix6 predictedCovariance(const std::vector<PlannedView>& plan, double distance);
-
-/// Its standard deviation of the position, root of the trace [m].
+/// Standard deviation of the position (root of the trace of its covariance) predicted at a way
+/// along the plan, interpolated [m].
 double predictedSigma(const std::vector<PlannedView>& plan, double distance);
 
 /// The flights of one plan.

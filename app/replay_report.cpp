@@ -112,10 +112,12 @@ std::vector<NamedFigure> figuresOf(bool odometry, const ReplayRun& run, const Re
                                    const std::vector<DrawnPath>& paths, const std::string& name) {
     std::vector<NamedFigure> figures;
     if (!paths.empty()) {
-        const char* caption =
-            odometry && errors.judged.size() > 1
-                ? "From above: the estimate is laid on the truth where it begins, not aligned."
-                : "From above.";
+        const std::string caption =
+            run.laidOn ? fmt::format(
+                             "From above: the estimate is laid on the truth at image {}, not "
+                             "aligned.",
+                             *run.laidOn)
+                       : "From above.";
         figures.push_back({"top_view.png", {caption, topView(paths, name)}});
     }
     if (!run.frames.empty()) {
@@ -144,7 +146,8 @@ std::vector<NamedFigure> figuresOf(bool odometry, const ReplayRun& run, const Re
 ReportTable replaySummary(const json& result) {
     const auto& rpe = result["rpe"];
     const bool isJudged = result["judged"] > 0;
-    const bool isLaidLater = isJudged && result["nees_per_dof"].is_null();
+    const bool isLaidLater = result["nees_per_dof"].is_null() &&
+                             result["laid_on_frame"].is_number() && result["laid_on_frame"] > 0;
     const std::string aligned = result["ate_alignment"] == "none" ? "not aligned" : "SE(3) aligned";
     ReportTable table{"Replay", {}};
     table.rows = {

@@ -120,7 +120,9 @@ std::size_t countBlack(const ReplayRun& run) {
 }
 
 std::string whyLostAtOnce(const ReplayRun& run, std::size_t lost, bool inMap) {
-    if (countBlack(run) == lost) return fmt::format("all {} images are black", lost);
+    if (countBlack(run) == lost) {
+        return fmt::format("all {} images{} are black", lost, run.interrupted ? " so far" : "");
+    }
     const auto first =
         std::find_if(run.frames.begin(), run.frames.end(),
                      [](const ReplayedFrame& f) { return isLostFrame(f) && !f.isBlack; });
@@ -270,6 +272,7 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
             {"lost_intervals", intervalsJson(lostIntervals(run))},
             {"gaps", intervalsJson(gaps(source))},
             {"judged", errors.judged.size()},
+            {"laid_on_frame", run.laidOn ? json(*run.laidOn) : json(nullptr)},
             {"ate_rmse_m", judged ? json(absolute.rmse) : json(nullptr)},
             {"ate_max_m", judged ? json(absolute.max) : json(nullptr)},
             {"ate_median_m", judged ? json(absolute.median) : json(nullptr)},

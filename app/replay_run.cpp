@@ -230,7 +230,8 @@ ReplayRun replay(const ReplaySource& source, const ReplayTracker& tracker,
         checkReadable(run.frames, source);
         if (progress) progress(run.frames.size());
         if (tracked == 0 && notFound > 0 && notFound == tracker.patience) {
-            run.stopped = fmt::format("none of the first {} images could be found", lost);
+            run.stopped =
+                fmt::format("none of {} images that show something could be found", notFound);
             break;
         }
     }
@@ -252,6 +253,7 @@ void layOnTruth(ReplayRun& run) {
         });
         if (tie == run.frames.end()) return;
     }
+    run.laidOn = tie->index;
     const Pose T_estimate_truth = tie->tracked.T_c_w.mean.inverse() * *tie->truth_c_w;
     for (ReplayedFrame& frame : run.frames) {
         frame.tracked.T_c_w.mean = frame.tracked.T_c_w.mean * T_estimate_truth;

@@ -40,7 +40,8 @@ struct ReplayStrip {
 struct ReplayRun {
     std::vector<ReplayedFrame> frames;
     std::vector<ReplayStrip> strips;
-    std::string stopped;  ///< why it ended before the last frame; empty: it did not
+    std::optional<std::size_t> laidOn;  ///< frame at which layOnTruth() made estimate and truth one
+    std::string stopped;                ///< why it ended before the last frame; empty: it did not
     bool interrupted = false;
     double loadSeconds = 0.;   ///< images, and depth from stereo
     double trackSeconds = 0.;  ///< everything else

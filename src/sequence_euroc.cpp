@@ -143,7 +143,7 @@ Pose groundtruthFrame(const fs::path& folder, StereoSequence& sequence) {
     return Pose::Identity();
 }
 
-StampedPose parsePose(const TextRow& row) {
+StampedPose parseGroundtruth(const TextRow& row) {
     StampedPose pose;
     pose.timestamp = kNanosecond * row.number(0);
     pose.T_w_c.translation() << row.number(1), row.number(2), row.number(3);
@@ -160,7 +160,7 @@ void addPoses(const fs::path& folder, const EurocOptions& options, StereoSequenc
     if (!fs::exists(file)) return;
     std::vector<InputError> badRows;
     const Trajectory trajectory =
-        trajectoryOf(file, readCsv(file, 8, &badRows), parsePose, &badRows);
+        trajectoryOf(file, readCsv(file, 8, &badRows), parseGroundtruth, &badRows);
     for (const InputError& row : badRows) sequence.skipped.push_back({file, row.reason()});
     const Pose T_s_c = groundtruthFrame(folder, sequence);
     bool anyPose = false;

@@ -17,7 +17,6 @@ class TextRow {
         : file_(std::move(file)), line_(line), fields_(std::move(fields)) {}
 
     const std::string& text(std::size_t column) const { return fields_[column]; }
-    std::size_t size() const { return fields_.size(); }
 
     /// @throws InputError unless the whole field is a finite number
     double number(std::size_t column) const;

@@ -66,8 +66,8 @@ Trajectory trajectoryOf(const std::string& file, const std::vector<TextRow>& row
             badRows->push_back(error);
         }
     }
+    if (badRows && badRows->size() > trajectory.size()) throw badRows->front();
     if (!trajectory.empty()) return trajectory;
-    if (badRows && !badRows->empty()) throw badRows->front();
     throw InputError(file, "", "no poses");
 }
 

@@ -24,11 +24,10 @@ using Trajectory = std::vector<StampedPose>;  ///< timestamps never decrease
 /// are skipped, quaternions are normalised.
 /// @throws InputError naming the line for a wrong number of fields, a value that is not a finite
 ///         number, a position beyond 1e8 m, a quaternion whose norm is not within 0.1 of 1, or a
-///         decreasing timestamp;
-///         also for a missing file and one without poses
+///         decreasing timestamp; also for a missing file and one without poses
 /// @param badRows where there is one it gets such lines, which are passed over; the first of them
 /// is
-///        thrown when no pose is left
+///        thrown when there are more of them than poses
 Trajectory readTrajectory(const std::string& file, std::vector<InputError>* badRows = nullptr);
 
 /// The same of the rows of any table.

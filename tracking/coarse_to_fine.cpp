@@ -16,6 +16,7 @@ namespace {
 constexpr double kLeastDamping = 1e-3;
 constexpr double kMostDamping = 1e4;
 constexpr int kVerifications = 3;
+constexpr double kSameDirections = 0.02;  // difference of projections
 /// Which pixels count changes from pose to pose, and with it the cost by more than small steps do.
 constexpr double kCostNoise = 1e-3;
 
@@ -29,11 +30,19 @@ struct Iterate {
 };
 
 /// The equations of J M instead of J.
-void confine(NormalEquations& e, const Matrix6& M) {
+NormalEquations confined(NormalEquations e, const Matrix6& M) {
     e.AtA.topLeftCorner<6, 6>() = M.transpose() * e.AtA.topLeftCorner<6, 6>() * M;
     e.AtA.topRightCorner<6, 2>() = M.transpose() * e.AtA.topRightCorner<6, 2>();
     e.AtA.bottomLeftCorner<2, 6>() = e.AtA.bottomLeftCorner<2, 6>() * M;
     e.Atr.head<6>() = M.transpose() * e.Atr.head<6>();
+    return e;
+}
+
+NormalEquations scaled(NormalEquations e, double weight) {
+    e.AtA *= weight;
+    e.Atr *= weight;
+    e.loss *= weight;
+    return e;
 }
 
 class Search {
@@ -70,7 +79,6 @@ class Search {
 Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
     Iterate at{T_c_w, exposure, comparison_.compare(level_, T_c_w, exposure, loss_)};
     ++iterations_;
-    confine(at.equations, verified_);
     if (prior_) {
         at.fromPrior = deviation(T_c_w, prior_->mean);
         at.priorTerm = squaredDistance(at.fromPrior, transported(prior_->covariance, at.fromPrior));
@@ -124,8 +132,8 @@ void Search::adaptLoss(double below) {
 
 /// One step that lowers the cost, raising the damping until it does; false when there is none.
 bool Search::improve(double& damping) {
-    const PoseEquations equations =
-        poseEquations(at_.equations, options_.photometric, options_.exposure, at_.exposure);
+    const PoseEquations equations = poseEquations(
+        confined(at_.equations, verified_), options_.photometric, options_.exposure, at_.exposure);
     for (;;) {
         const Vector6 xi = step(equations, damping);
         const Eigen::Vector2d change = equations.exposureRight - equations.exposureOfPose * xi;
@@ -163,28 +171,24 @@ bool Search::descend() {
     return false;
 }
 
-/// Finds out which directions J is true about; whether it is about all of them.
+/// Finds out which directions J is true about; whether that is news.
 bool Search::verify() {
-    verified_.setIdentity();
-    at_ = evaluate(at_.T_c_w, at_.exposure);
     const NormalEquations& here = at_.equations;
     const auto walk = comparison_.predictionAsImage(level_, at_.T_c_w);
-    if (!walk || here.count < 1.) return true;
-    const double depth = 1. / here.meanInverseDepth;
+    if (!walk || here.count < 1.) return false;
     Vector6 unit;
-    unit << Eigen::Vector3d::Constant(depth), Eigen::Vector3d::Ones();
+    unit << Eigen::Vector3d::Constant(1. / here.meanInverseDepth), Eigen::Vector3d::Ones();
     const Matrix6 prior = prior_ ? transportedPrior() : Matrix6(unit.cwiseAbs2().asDiagonal());
     const PhotometricOptions& p = options_.photometric;
     const double weight = p.scale / (p.sigma * p.sigma);
-    verified_ = verifiedDirections(weight * here.AtA.topLeftCorner<6, 6>(), prior, depth,
-                                   [&](const Pose& T_away_here) {
-                                       ++iterations_;
-                                       NormalEquations e = walk(T_away_here * at_.T_c_w);
-                                       e.Atr *= weight;
-                                       e.loss *= weight;
-                                       return e;
-                                   });
-    return verified_.isIdentity(0.);
+    const double gain = at_.exposure.gain;  // of what is here, not of predictions among themselves
+    const Matrix6 M = verifiedDirections(scaled(here, weight), prior, [&](const Pose& T_away_here) {
+        ++iterations_;
+        return scaled(walk(T_away_here * at_.T_c_w), weight * gain * gain);
+    });
+    if ((M - verified_).norm() < kSameDirections) return false;
+    verified_ = M;
+    return true;
 }
 
 Alignment Search::run(const Pose& T_start) {
@@ -196,7 +200,7 @@ Alignment Search::run(const Pose& T_start) {
     }
     // Without what is not true the minimum is elsewhere, and J may be wrong there about others.
     for (int i = 0; i < kVerifications && converged && options_.verifyJacobian; ++i) {
-        if (verify()) break;
+        if (!verify()) break;
         converged = descend();
     }
     Alignment result;
@@ -209,8 +213,8 @@ Alignment Search::run(const Pose& T_start) {
         prior = transportedPrior();
         if (at_.priorTerm > options_.trust.maxSurprise) result.verdict = Verdict::lostImplausible;
     }
-    conclude(result, at_.equations, comparison_.pixels(), options_.photometric, options_.exposure,
-             prior, options_.trust);
+    conclude(result, confined(at_.equations, verified_), comparison_.pixels(), options_.photometric,
+             options_.exposure, prior, options_.trust);
     result.residual.robustSigma = comparison_.robustSigma();
     return result;
 }

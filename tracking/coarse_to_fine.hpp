@@ -17,7 +17,7 @@ struct AlignmentOptions {
     /// Estimate gain and offset of the observed image as well, with this prior (by default: none).
     std::optional<ExposurePrior> exposure;
     int levels = 4;           ///< of the pyramid, each half the size; fewer when images are small
-    int maxIterations = 25;   ///< views rendered per level
+    int maxIterations = 25;   ///< views rendered per level and descent
     double coarseStep = 0.3;  ///< a level but the finest is done below this step [its pixels]
     /// The finest is done below this step [standard deviations, given the residuals seen]. Where
     /// surfaces end, visibility jumps from pixel to pixel and keeps steps at about 0.3.

@@ -16,7 +16,8 @@ class DenseAligner::RenderedModel : public Comparison {
         : options_(options), model_(model) {
         Camera c = full;
         for (int l = 0; l < std::max(1, options.levels); ++l) {
-            levels_.push_back({c, ViewComparison(c, options.photometric), {}});
+            const ViewComparison compare(c, options.photometric);
+            levels_.push_back({c, compare, compare, {}});
             c = halved(c);
             if (std::min(c.width, c.height) < kLeastSide) break;
         }
@@ -47,18 +48,19 @@ class DenseAligner::RenderedModel : public Comparison {
     }
 
     AgainstPrediction predictionAsImage(std::size_t level, const Pose& T_image_w) override {
-        model_.render(levels_[level].camera, T_image_w, asImage_);
-        return [this, level](const Pose& T_c_w) {
+        return [this, level, T_image_w, isRendered = false](const Pose& T_c_w) mutable {
             Level& at = levels_[level];
+            if (!isRendered) model_.render(at.camera, T_image_w, asImage_);
+            isRendered = true;
             model_.render(at.camera, T_c_w, predicted_);
-            return at.compare(predicted_, asImage_.intensity, Exposure{}, Loss{});
+            return at.comparePredictions(predicted_, asImage_.intensity, Exposure{}, Loss{});
         };
     }
 
   private:
     struct Level {
         Camera camera;
-        ViewComparison compare;
+        ViewComparison compare, comparePredictions;
         ImageF observed;
     };
 

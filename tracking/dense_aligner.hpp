@@ -32,8 +32,7 @@ class DenseAligner {
     Alignment align(const ImageF& observed, const Pose& T_start);
 
     /// The pose most likely given the image and a prior, beginning at its mean. The covariance is
-    /// (Lambda + P^-1)^-1, P the prior's covariance transported to the result with the left
-    /// Jacobian of the correction.
+    /// (Lambda + P^-1)^-1, P the prior's covariance transported() to the result.
     Alignment align(const ImageF& observed, const UncertainPose& prior);
 
     /// The same, beginning elsewhere.

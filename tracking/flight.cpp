@@ -171,6 +171,7 @@ void Flight::receive(const TakenImage& taken) {
     const auto sample = std::find_if(result_.samples.rbegin(), result_.samples.rend(),
                                      [&](const FlightSample& s) { return s.time == taken.time; });
     sample->belief = estimator_.atLastImage();
+    sample->distance = route_.progress(sample->belief.mean.inverse().translation());
     sample->isLost = watch_.isLostNow();
 }
 

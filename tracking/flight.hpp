@@ -77,7 +77,7 @@ std::string nameOf(FlightEnd end);
 /// How it stood at one exposure, by its image; by what was known before it, if it never arrived.
 struct FlightSample {
     double time = 0.;               ///< [s]
-    double distance = 0.;           ///< along the plan, of the view that was next [m]
+    double distance = 0.;           ///< along the plan, of its nearest point [m]
     Pose T_c_w = Pose::Identity();  ///< true
     UncertainPose belief;           ///< of T_c_w
     bool isLost = false;

@@ -18,6 +18,7 @@ constexpr double kAside = 0.02;       // share of a claim that others need to be
 constexpr int kTurns = 5;             // walks along a direction, each from where the last one led
 constexpr double kLeastChange = 0.5;  // of what was told; true claims are at 0.9 to 1.2
 constexpr double kNothing = 1e-4;     // of the same
+constexpr double kLeastSeen = 0.8;    // of the pixels: what is no longer in view is not the same
 
 /// What J claims to tell, in coordinates w of the pose, xi = L w, in which the prior is 1.
 class Claims {
@@ -35,13 +36,18 @@ class Claims {
     }
 
     bool isSuspicious(int i) const {
-        return told_[i] > kRelevant && told_[i] < kSuspicious * most_ * square(length(i));
+        return told_[i] > kRelevant &&
+               told_[i] < kSuspicious * most_ * std::pow(length(along(i)), 2);
     }
 
     /// Displacement along direction i: one standard deviation by the claim, but not too far.
-    double step(int i) const { return std::min(1. / std::sqrt(told_[i]), kLongest / length(i)); }
+    double step(int i) const {
+        return std::min(1. / std::sqrt(told_[i]), kLongest / length(along(i)));
+    }
     Vector6 along(int i) const { return directions_.col(i); }
     double told(int i) const { return told_[i]; }
+    /// [mean depths, rad]
+    double length(const Vector6& xi) const { return xi.cwiseQuotient(unit_).norm(); }
 
     /// What brings the image back, along other directions that are told at least about as loudly.
     Vector6 aside(int i, const Vector6& right) const {
@@ -60,9 +66,6 @@ class Claims {
     }
 
   private:
-    static double square(double x) { return x * x; }
-    double length(int i) const { return directions_.col(i).cwiseQuotient(unit_).norm(); }
-
     Vector6 unit_;  // (depth x 3, 1 x 3)
     double most_;   // eigenvalue, in those units
     Matrix6 L_;
@@ -72,37 +75,40 @@ class Claims {
 
 using Walk = std::function<NormalEquations(const Pose& T_away_here)>;
 
-/// Where a walk along direction i ends, if what is seen there is not what was told.
-std::optional<Vector6> findFalse(const Claims& claims, int i, const Walk& walk) {
-    const double step = claims.step(i);
-    const double told = claims.told(i) * step * step;
-    Pose T_away_here = expSE3(step * claims.along(i));
+/// Where a walk along direction i ends, if what is seen there is the same, and not less.
+std::optional<Vector6> findSame(const Claims& claims, int i, double side, double count,
+                                const Walk& walk) {
+    const double told = std::pow(claims.step(i), 2) * claims.told(i);
+    Pose T_away_here = expSE3(side * claims.step(i) * claims.along(i));
     NormalEquations seen = walk(T_away_here);
     for (int turn = 1; turn < kTurns && seen.loss > kNothing * told; ++turn) {
         T_away_here = expSE3(claims.aside(i, seen.Atr.head<6>())) * T_away_here;
         seen = walk(T_away_here);
     }
-    if (seen.loss >= kLeastChange * told) return {};
+    const bool isSame = seen.loss < kLeastChange * told && seen.count > kLeastSeen * count;
+    if (!isSame) return {};
     return logSE3(T_away_here);
 }
 
-/// The loudest first: the others are mixed with it where they are told about as loudly.
-std::optional<Vector6> findFalse(const Claims& claims, const Walk& walk) {
+/// A direction along which nothing changes, though it should. The loudest first: the others are
+/// mixed with it where they are told about as loudly.
+std::optional<Vector6> findFalse(const Claims& claims, double count, const Walk& walk) {
     for (int i = 6; i-- > 0;) {
         if (!claims.isSuspicious(i)) continue;
-        if (const auto xi = findFalse(claims, i, walk)) return xi;
+        const auto ahead = findSame(claims, i, 1., count, walk);
+        if (ahead && findSame(claims, i, -1., count, walk)) return ahead;
     }
     return {};
 }
 
 }  // namespace
 
-Matrix6 verifiedDirections(const Matrix6& AtA, const Matrix6& prior, double depth,
-                           const Walk& walk) {
+Matrix6 verifiedDirections(const NormalEquations& here, const Matrix6& prior, const Walk& walk) {
+    const Matrix6 AtA = here.AtA.topLeftCorner<6, 6>();
     Matrix6 M = Matrix6::Identity();
     for (int k = 0; k < 6; ++k) {
-        const Claims claims(M.transpose() * AtA * M, prior, depth);
-        const auto xi = findFalse(claims, walk);
+        const Claims claims(M.transpose() * AtA * M, prior, 1. / here.meanInverseDepth);
+        const auto xi = findFalse(claims, here.count, walk);
         if (!xi) break;
         M = M * claims.without(*xi);
     }

@@ -134,6 +134,58 @@ TEST(DenseAligner, EdgesSayNothingAlongThemselves) {
     }
 }
 
+/// What is told faintly but truly is kept, whatever the exposure: bars, and beside them texture of
+/// next to no contrast.
+TEST(DenseAligner, FaintTextureStillCounts) {
+    Scene scene;
+    const auto bars = addTexture(scene, stripes({.width = 0.5, .softEdge = 0.05}));
+    const auto faint = addTexture(
+        scene, valueNoise({.size = {4., 4.}, .amplitudes = {0.003, 0.002, 0.001}, .seed = 3}));
+    addPlane(scene, {-10., -10., 0.}, {20., 0., 0.}, {0., 10., 0.}, bars);
+    addPlane(scene, {-10., 0., 0.}, {20., 0., 0.}, {0., 10., 0.}, faint);
+    const MeshRenderer floor(std::move(scene));
+    UncertainPose prior;
+    prior.mean = cameraAt({0.13, 0., 2.}, kDown, kDown + 0.03);
+    Vector6 sigmas;
+    sigmas << 0.05, 0.5, 0.05, 0.005, 0.005, 0.01;
+    prior.covariance = sigmas.cwiseAbs2().asDiagonal();
+    std::mt19937_64 random(2);
+    for (const double gain : {1., 1.8}) {
+        AlignmentOptions options;
+        options.exposure = ExposurePrior{};
+        options.verifyJacobian = false;
+        DenseAligner trusting(floor, makeCamera(188, 120, 1.2217), options);
+        options.verifyJacobian = true;
+        DenseAligner verifying(floor, makeCamera(188, 120, 1.2217), options);
+        View view;
+        floor.render(trusting.camera(), prior.mean, view);
+        ImageF image = test::noisy(view.intensity, 0.02, random);
+        for (unsigned i = 0; i < image.getSize(); ++i) {
+            image.bitmap[i] = static_cast<float>(gain * image.bitmap[i]);
+        }
+        const Alignment a = trusting.align(image, prior);
+        const Alignment b = verifying.align(image, prior);
+        EXPECT_GT(b.iterations, a.iterations) << "nothing was tried out";
+        EXPECT_LT(a.eigenvalues[0], 1e-3 * a.eigenvalues[5]);
+        EXPECT_GT(b.eigenvalues[0], 0.8 * a.eigenvalues[0]);
+        EXPECT_NEAR(b.residual.robustSigma, a.residual.robustSigma, 0.1 * a.residual.robustSigma);
+    }
+}
+
+/// Half a metre along a known line stays along that line when the heading is corrected.
+TEST(Alignment, PositionsOfAPriorKeepToTheMap) {
+    const Pose T_prior_w = cameraAt({1., 2., 1.5}, kDown);
+    const Vector6 turn = (Vector6() << 0., 0., 0., 0., 0., 0.2).finished();
+    const Pose T_c_w = expSE3(turn) * T_prior_w;
+    const auto lineIn = [](const Pose& T) { return Eigen::Vector3d(T.linear().col(1)); };
+    Matrix6 P = 1e-8 * Matrix6::Identity();
+    P.topLeftCorner<3, 3>() += 0.25 * lineIn(T_prior_w) * lineIn(T_prior_w).transpose();
+    const Matrix6 moved = transported(P, deviation(T_c_w, T_prior_w));
+    const Eigen::Vector3d across = T_c_w.linear().col(0);
+    EXPECT_NEAR(across.dot(moved.topLeftCorner<3, 3>() * across), 1e-8, 1e-10);
+    EXPECT_NEAR(lineIn(T_c_w).dot(moved.topLeftCorner<3, 3>() * lineIn(T_c_w)), 0.25, 1e-6);
+}
+
 TEST(DenseAligner, NoPriorVarianceNoMotion) {
     DenseAligner aligner(room(), camera());
     std::mt19937_64 random(5);
