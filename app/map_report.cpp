@@ -61,7 +61,7 @@ json framesJson(const MapOptions& options, const Recording& recording, std::size
     for (const auto& [file, reason] : recording.sequence.skipped) {
         skipped.push_back({{"file", file}, {"reason", reason}});
     }
-    return {{"recorded", recording.recorded},
+    return {{"recorded", recording.sequence.recorded},
             {"used", used},
             {"every", options.every},
             {"range", options.frames},

@@ -156,7 +156,6 @@ Recording readRecording(const RecordingOptions& options) {
         throw InputError("--depth-scale", "", "the recording has no depth images");
     }
     auto& frames = recording.sequence.frames;
-    recording.recorded = recording.sequence.recorded;
     recording.up = given ? *given : upByFloor(recording.sequence);
     Pose T_recorded_w = Pose::Identity();
     T_recorded_w.linear() = worldUpRotation(recording.up).transpose();

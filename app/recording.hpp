@@ -27,8 +27,7 @@ struct RecordingOptions {
 };
 
 struct Recording {
-    Sequence sequence;         ///< the frames to use, in the world of the map (z up)
-    std::size_t recorded = 0;  ///< frames of the dataset
+    Sequence sequence;  ///< the frames to use, in the world of the map (z up)
     Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< in the recorded world
 };
 

@@ -75,26 +75,26 @@ Pose parsePose(const std::string& text) {
 
 UncertainPose startOf(const ReplayOptions& options, const ReplaySource& source) {
     UncertainPose start;
-    if (!options.start.empty()) start.mean = parsePose(options.start).inverse();
-    if (options.odometry) {
-        if (!options.start.empty() && source.hasGroundtruth()) {
+    if (!options.odometry) {
+        const double sigma = options.startSigma.value_or(kStartSigma);
+        start.covariance = sigma * sigma * Matrix6::Identity();
+    }
+    if (!options.start.empty()) {
+        start.mean = parsePose(options.start).inverse();
+        if (options.odometry && source.hasGroundtruth()) {
             throw InputError("--start", "",
                              "not with --odometry of a recording with ground truth: it is laid on "
                              "that where it begins");
         }
-        return start;
-    }
-    const double sigma = options.startSigma.value_or(kStartSigma);
-    start.covariance = sigma * sigma * Matrix6::Identity();
-    if (!options.start.empty()) return start;
-    if (source.frames[0].T_c_w) {
+    } else if (!options.odometry) {
+        if (!source.frames[0].T_c_w) {
+            throw InputError(
+                "--start", "",
+                source.hasGroundtruth()
+                    ? "needed: the first frame has no true pose (or begin later with --frames)"
+                    : "needed: the recording has no ground truth to begin from");
+        }
         start.mean = *source.frames[0].T_c_w;
-    } else {
-        throw InputError(
-            "--start", "",
-            source.hasGroundtruth()
-                ? "needed: the first frame has no true pose (or begin later with --frames)"
-                : "needed: the recording has no ground truth to begin from");
     }
     return start;
 }

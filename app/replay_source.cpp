@@ -31,7 +31,7 @@ ReplaySource openTum(const ReplaySourceOptions& options) {
     source.cameraFile = sequence.cameraFile;
     source.informationScale = sequence.informationScale;
     source.skipped = sequence.skipped;
-    source.recorded = recording->recorded;
+    source.recorded = sequence.recorded;
     for (const auto& entry : sequence.frames) {
         source.frames.push_back({entry.timestamp, {}, entry.colourFile});
         if (entry.hasPose) source.frames.back().T_c_w = entry.T_c_w;

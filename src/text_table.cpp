@@ -24,8 +24,8 @@ double TextRow::number(std::size_t column) const {
     return value;
 }
 
-void TextRow::fail(const std::string& reason) const {
-    throw InputError(file_, fmt::format("line {}", line_), reason);
+InputError TextRow::error(const std::string& reason) const {
+    return {file_, fmt::format("line {}", line_), reason};
 }
 
 namespace {
@@ -59,16 +59,13 @@ std::vector<TextRow> readRows(const std::string& file, const Split& split, std::
         std::vector<std::string> fields = split(text);
         if (fields.empty() || fields[0].starts_with('#')) continue;
         const std::size_t found = fields.size();
-        const TextRow row(file, line, std::move(fields));
-        try {
-            if (found < least || found > most) {
-                row.fail(fmt::format("expected {} fields, found {}", least, found));
-            }
-            rows.push_back(row);
-        } catch (const InputError& error) {
-            if (!badRows) throw;
-            badRows->push_back(error);
-        }
+        rows.emplace_back(file, line, std::move(fields));
+        if (found >= least && found <= most) continue;
+        const InputError error =
+            rows.back().error(fmt::format("expected {} fields, found {}", least, found));
+        if (!badRows) throw error;
+        badRows->push_back(error);
+        rows.pop_back();
     }
     return rows;
 }

@@ -21,8 +21,10 @@ class TextRow {
     /// @throws InputError unless the whole field is a finite number
     double number(std::size_t column) const;
 
-    /// @throws InputError "FILE: line N: reason"
-    [[noreturn]] void fail(const std::string& reason) const;
+    /// "FILE: line N: reason"
+    InputError error(const std::string& reason) const;
+    /// @throws InputError error(reason)
+    [[noreturn]] void fail(const std::string& reason) const { throw error(reason); }
 
   private:
     std::string file_;

@@ -25,9 +25,8 @@ using Trajectory = std::vector<StampedPose>;  ///< timestamps never decrease
 /// @throws InputError naming the line for a wrong number of fields, a value that is not a finite
 ///         number, a position beyond 1e8 m, a quaternion whose norm is not within 0.1 of 1, or a
 ///         decreasing timestamp; also for a missing file and one without poses
-/// @param badRows where there is one it gets such lines, which are passed over; the first of them
-/// is
-///        thrown when there are more of them than poses
+/// @param badRows where there is one it gets such lines, which are passed over; when there are more
+///        of them than poses the first is thrown
 Trajectory readTrajectory(const std::string& file, std::vector<InputError>* badRows = nullptr);
 
 /// The same of the rows of any table.

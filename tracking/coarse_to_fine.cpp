@@ -61,7 +61,12 @@ class Search {
     double cost(const Iterate& at, double pixels) const;
     Vector6 step(const PoseEquations& equations, double damping) const;
     bool isSmall(const Vector6& xi, const Matrix6& information, double patience) const;
-    Matrix6 transportedPrior() const { return transported(prior_->covariance, at_.fromPrior); }
+    std::optional<Matrix6> transportedPrior() const;
+    /// That makes sums of squares -2 log likelihoods.
+    double weight() const {
+        const PhotometricOptions& p = options_.photometric;
+        return p.scale / (p.sigma * p.sigma);
+    }
     double scale() const { return std::ldexp(1., static_cast<int>(level_)); }
 
     Comparison& comparison_;
@@ -90,17 +95,22 @@ Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
 /// numbers of them.
 double Search::cost(const Iterate& at, double pixels) const {
     if (at.equations.count < 1.) return kInfinity;
-    const PhotometricOptions& p = options_.photometric;
     const double exposureTerm =
         options_.exposure ? options_.exposure->squaredDistance(at.exposure) : 0.;
-    return p.scale / (p.sigma * p.sigma) * at.equations.loss * pixels / at.equations.count +
-           at.priorTerm + exposureTerm;
+    return weight() * at.equations.loss * pixels / at.equations.count + at.priorTerm + exposureTerm;
+}
+
+std::optional<Matrix6> Search::transportedPrior() const {
+    if (!prior_) return {};
+    return transported(prior_->covariance, at_.fromPrior);
 }
 
 Vector6 Search::step(const PoseEquations& equations, double damping) const {
     const double inverseDepth = at_.equations.meanInverseDepth;
     const Spectrum s = spectrum(equations.information, inverseDepth > 0. ? 1. / inverseDepth : 1.);
-    if (prior_) return mapStep(s, equations, at_.fromPrior, transportedPrior(), damping);
+    if (const auto prior = transportedPrior()) {
+        return mapStep(s, equations, at_.fromPrior, *prior, damping);
+    }
     // A level of a quarter of the pixels has about a quarter of the information.
     const double sigma = options_.trust.openSigma * scale();
     return imageStep(s, equations.right, 1. / (sigma * sigma), damping);
@@ -176,16 +186,12 @@ bool Search::verify() {
     const NormalEquations& here = at_.equations;
     const auto walk = comparison_.predictionAsImage(level_, at_.T_c_w);
     if (!walk || here.count < 1.) return false;
-    Vector6 unit;
-    unit << Eigen::Vector3d::Constant(1. / here.meanInverseDepth), Eigen::Vector3d::Ones();
-    const Matrix6 prior = prior_ ? transportedPrior() : Matrix6(unit.cwiseAbs2().asDiagonal());
-    const PhotometricOptions& p = options_.photometric;
-    const double weight = p.scale / (p.sigma * p.sigma);
     const double gain = at_.exposure.gain;  // of what is here, not of predictions among themselves
-    const Matrix6 M = verifiedDirections(scaled(here, weight), prior, [&](const Pose& T_away_here) {
+    const auto walkTo = [&](const Pose& T_away_here) {
         ++iterations_;
-        return scaled(walk(T_away_here * at_.T_c_w), weight * gain * gain);
-    });
+        return scaled(walk(T_away_here * at_.T_c_w), weight() * gain * gain);
+    };
+    const Matrix6 M = verifiedDirections(scaled(here, weight()), transportedPrior(), walkTo);
     if ((M - verified_).norm() < kSameDirections) return false;
     verified_ = M;
     return true;
@@ -208,13 +214,11 @@ Alignment Search::run(const Pose& T_start) {
     result.exposure = at_.exposure;
     result.iterations = iterations_;
     result.verdict = converged ? Verdict::converged : Verdict::lostDivergence;
-    std::optional<Matrix6> prior;
-    if (prior_) {
-        prior = transportedPrior();
-        if (at_.priorTerm > options_.trust.maxSurprise) result.verdict = Verdict::lostImplausible;
+    if (prior_ && at_.priorTerm > options_.trust.maxSurprise) {
+        result.verdict = Verdict::lostImplausible;
     }
     conclude(result, confined(at_.equations, verified_), comparison_.pixels(), options_.photometric,
-             options_.exposure, prior, options_.trust);
+             options_.exposure, transportedPrior(), options_.trust);
     result.residual.robustSigma = comparison_.robustSigma();
     return result;
 }

@@ -146,8 +146,8 @@ void Flight::look() {
             onExposure_(time_, trueCamera(), camera_.lastImage(), camera_.lastView().depth);
         }
         const UncertainPose belief = estimator_.belief();
-        result_.samples.push_back({time_, route_.progress(belief.mean.inverse().translation()),
-                                   trueCamera(), belief, watch_.isLostNow()});
+        result_.samples.push_back(
+            {time_, route_.progress(belief.mean.inverse().translation()), trueCamera(), belief});
         receiveAll();  // of a camera without latency
     }
     watch_.onTime(time_);
@@ -172,7 +172,6 @@ void Flight::receive(const TakenImage& taken) {
                                      [&](const FlightSample& s) { return s.time == taken.time; });
     sample->belief = estimator_.atLastImage();
     sample->distance = route_.progress(sample->belief.mean.inverse().translation());
-    sample->isLost = watch_.isLostNow();
 }
 
 /// Perhaps it is not the image but the estimate that is bad: the same image with a wider prior, the

@@ -31,7 +31,7 @@ struct LostOptions {
 };
 
 struct FlightOptions {
-    /// Of T_c_w at take-off, before any image (camera frame, left): the true start is drawn from
+    /// Of T_c_w at take-off, before any image (camera frame, left); the true start is drawn from
     /// it.
     Matrix6 initialCovariance = Matrix6::Zero();
     double timeStep = 0.02;  ///< of control and odometry [s]
@@ -80,7 +80,6 @@ struct FlightSample {
     double distance = 0.;           ///< along the plan, of its nearest point [m]
     Pose T_c_w = Pose::Identity();  ///< true
     UncertainPose belief;           ///< of T_c_w
-    bool isLost = false;
 };
 
 struct FlightResult {

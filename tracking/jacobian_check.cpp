@@ -4,8 +4,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "alignment.hpp"
 #include "se3.hpp"
 
 namespace photonav {
@@ -23,13 +23,14 @@ constexpr double kLeastSeen = 0.8;    // of the pixels: what is no longer in vie
 /// What J claims to tell, in coordinates w of the pose, xi = L w, in which the prior is 1.
 class Claims {
   public:
-    Claims(const Matrix6& AtA, const Matrix6& prior, double depth) {
-        unit_ << Eigen::Vector3d::Constant(depth), Eigen::Vector3d::Ones();
-        const Matrix6 scaled = unit_.asDiagonal() * AtA * unit_.asDiagonal();
-        most_ = scaled.selfadjointView<Eigen::Upper>().eigenvalues().maxCoeff();
+    Claims(const Matrix6& AtA, const std::optional<Matrix6>& prior, double depth) {
+        const Spectrum s = spectrum(AtA, depth);
+        unit_ = s.unit;
+        most_ = s.values[5];
+        Matrix6 P = unit_.cwiseAbs2().asDiagonal();
         // A prior may be certain of some directions: by as little as does not matter, it is not.
-        const Matrix6 regular = prior + 1e-10 * Matrix6(unit_.cwiseAbs2().asDiagonal());
-        L_ = regular.llt().matrixL();
+        if (prior) P = *prior + 1e-10 * P;
+        L_ = P.llt().matrixL();
         const Eigen::SelfAdjointEigenSolver<Matrix6> solver(L_.transpose() * AtA * L_);
         told_ = solver.eigenvalues();
         directions_ = L_ * solver.eigenvectors();
@@ -103,7 +104,8 @@ std::optional<Vector6> findFalse(const Claims& claims, double count, const Walk&
 
 }  // namespace
 
-Matrix6 verifiedDirections(const NormalEquations& here, const Matrix6& prior, const Walk& walk) {
+Matrix6 verifiedDirections(const NormalEquations& here, const std::optional<Matrix6>& prior,
+                           const Walk& walk) {
     const Matrix6 AtA = here.AtA.topLeftCorner<6, 6>();
     Matrix6 M = Matrix6::Identity();
     for (int k = 0; k < 6; ++k) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "normal_equations.hpp"
 
@@ -16,11 +17,11 @@ namespace photonav {
 /// back. What hardly changed the image then cannot have been told by it.
 /// @param here an image compared with itself, divided by the noise's variance: AtA (of the pose),
 ///        count and mean inverse depth are used
-/// @param prior covariance of the pose, the same frame
+/// @param prior covariance of the pose, the same frame; none: one mean depth and one radian
 /// @param walk what the image says to a camera displaced by exp(xi^), divided likewise; its loss is
 ///        that of the displacement
 /// @return M, so that J M is without what is not true; exactly the identity where all of J is
-Matrix6 verifiedDirections(const NormalEquations& here, const Matrix6& prior,
+Matrix6 verifiedDirections(const NormalEquations& here, const std::optional<Matrix6>& prior,
                            const std::function<NormalEquations(const Pose& T_away_here)>& walk);
 
 }  // namespace photonav
