@@ -97,8 +97,8 @@ PositionError positionError(const FlightSample& sample, const std::vector<Planne
 }
 
 double neesPerDof(const FlightSample& sample) {
-    const Vector6 xi = logSE3(sample.T_c_w * sample.belief.mean.inverse());
-    return xi.dot(sample.belief.covariance.ldlt().solve(xi)) / 6.;
+    const Vector6 e = deviation(sample.T_c_w, sample.belief.mean);
+    return e.dot(transported(sample.belief.covariance, e).ldlt().solve(e)) / 6.;
 }
 
 double chiSquareQuantile(double degrees, double z) {

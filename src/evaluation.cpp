@@ -171,10 +171,10 @@ PoseErrors relativeErrors(const std::vector<PosePair>& pairs, Spacing spacing, d
 }
 
 std::optional<double> squaredNormalisedError(const UncertainPose& T_c_w, const Pose& T_c_w_truth) {
-    const Eigen::LLT<Matrix6> llt(T_c_w.covariance);
+    const Vector6 e = deviation(T_c_w_truth, T_c_w.mean);
+    const Eigen::LLT<Matrix6> llt(transported(T_c_w.covariance, e));
     if (llt.info() != Eigen::Success) return {};
-    const Vector6 xi = logSE3(T_c_w_truth * T_c_w.mean.inverse());
-    return xi.dot(llt.solve(xi));
+    return e.dot(llt.solve(e));
 }
 
 }  // namespace photonav

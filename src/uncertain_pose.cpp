@@ -174,6 +174,21 @@ Matrix6 updateCovariance(const Matrix6& covariance, const Matrix6& information) 
     return 0.5 * (x + x.transpose());
 }
 
+Vector6 deviation(const Pose& T_c_w, const Pose& T_mean_w) {
+    const Pose T_c_mean = T_c_w * T_mean_w.inverse();
+    Vector6 e = logSE3(T_c_mean);
+    e.head<3>() = T_c_mean.translation();
+    return e;
+}
+
+Matrix6 transported(const Matrix6& covariance, const Vector6& e) {
+    Vector6 turn = Vector6::Zero();
+    turn.tail<3>() = e.tail<3>();
+    Matrix6 J = leftJacobian(turn);
+    J.topLeftCorner<3, 3>() = expSE3(turn).linear();
+    return J * covariance * J.transpose();
+}
+
 bool isCovariance(const Matrix6& matrix) {
     if (!matrix.allFinite()) return false;
     const double scale = matrix.cwiseAbs().maxCoeff();

@@ -56,6 +56,15 @@ UncertainPose inverse(const UncertainPose& T_b_a);
 /// holds for singular (also zero) covariance and information. The result is symmetric.
 Matrix6 updateCovariance(const Matrix6& covariance, const Matrix6& information);
 
+/// How far a pose is from a belief's mean: translation and rotation vector of T_c_w T_mean_w^-1.
+Vector6 deviation(const Pose& T_c_w, const Pose& T_mean_w);
+
+/// A belief's covariance in the camera frame of a pose that deviates by e from its mean. Rotations
+/// go through the left Jacobian. Positions turn with the camera by all of the rotation, not half of
+/// it as the Jacobian of SE(3) would have it: what they are known by, the map, does not turn. (A
+/// metre along a known wall, turned by half of 3 mrad, would contradict the wall by 1.5 mm.)
+Matrix6 transported(const Matrix6& covariance, const Vector6& e);
+
 /// Whether a matrix can be a covariance: finite, symmetric and positive semi-definite, both to
 /// 1e-12 of its scale. For boundaries; the functions above take it for granted.
 bool isCovariance(const Matrix6& matrix);

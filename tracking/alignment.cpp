@@ -182,21 +182,6 @@ Matrix6 withFloor(const Matrix6& covariance, double translation, double rotation
     return V * solver.eigenvalues().cwiseMax(1.).asDiagonal() * V.transpose();
 }
 
-Vector6 deviation(const Pose& T_c_w, const Pose& T_prior_w) {
-    const Pose T_c_prior = T_c_w * T_prior_w.inverse();
-    Vector6 e = logSE3(T_c_prior);
-    e.head<3>() = T_c_prior.translation();
-    return e;
-}
-
-Matrix6 transported(const Matrix6& covariance, const Vector6& e) {
-    Vector6 turn = Vector6::Zero();
-    turn.tail<3>() = e.tail<3>();
-    Matrix6 J = leftJacobian(turn);
-    J.topLeftCorner<3, 3>() = expSE3(turn).linear();
-    return J * covariance * J.transpose();
-}
-
 double squaredDistance(const Vector6& e, const Matrix6& covariance) {
     Matrix6 raised = covariance;
     for (int block = 0; block < 6; block += 3) {  // m^2 and rad^2 do not mix

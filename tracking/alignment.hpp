@@ -149,15 +149,6 @@ void conclude(Alignment& alignment, const NormalEquations& equations, std::size_
 /// A floor of 0 is none.
 Matrix6 withFloor(const Matrix6& covariance, double translation, double rotation);
 
-/// How far a pose is from a prior's mean: translation and rotation vector of T_c_w T_prior_w^-1.
-Vector6 deviation(const Pose& T_c_w, const Pose& T_prior_w);
-
-/// A prior's covariance in the camera frame of a pose that deviates by e from its mean. Rotations
-/// go through the left Jacobian. Positions turn with the camera by all of the rotation, not half of
-/// it as the Jacobian of SE(3) would have it: what they are known by, the map, does not turn. (A
-/// metre along a known wall, turned by half of 3 mrad, would contradict the wall by 1.5 mm.)
-Matrix6 transported(const Matrix6& covariance, const Vector6& e);
-
 /// Squared Mahalanobis distance e^T covariance^-1 e; directions without variance count by a
 /// millionth of the largest.
 double squaredDistance(const Vector6& e, const Matrix6& covariance);
