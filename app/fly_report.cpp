@@ -23,7 +23,8 @@ json jsonOf(const FlightResult& flight) {
             {"bad_images", flight.badImages},
             {"times_lost", flight.timesLost},
             {"lost_s", flight.lost},
-            {"photometric_goal", flight.photometric}};
+            {"photometric_goal", flight.photometric},
+            {"nees_per_dof", finiteOrNull(neesPerDof(flight))}};
 }
 
 json jsonOf(const FlightSet& set) {

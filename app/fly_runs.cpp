@@ -101,6 +101,12 @@ double neesPerDof(const FlightSample& sample) {
     return e.dot(transported(sample.belief.covariance, e).ldlt().solve(e)) / 6.;
 }
 
+double neesPerDof(const FlightResult& flight) {
+    double sum = 0.;
+    for (const FlightSample& sample : flight.samples) sum += neesPerDof(sample);
+    return sum / static_cast<double>(flight.samples.size());
+}
+
 double chiSquareQuantile(double degrees, double z) {
     const double a = 2. / (9. * degrees);
     return degrees * std::pow(1. - a + z * std::sqrt(a), 3);

@@ -35,8 +35,11 @@ struct PositionError {
 };
 PositionError positionError(const FlightSample& sample, const std::vector<PlannedView>& plan);
 
-/// xi^T covariance^-1 xi / 6 of the believed against the true pose: 1 on average when honest.
+/// Squared normalised error (evaluation.hpp) / 6 of the believed against the true pose: 1 on
+/// average when honest.
 double neesPerDof(const FlightSample& sample);
+/// Mean over its exposures; one that was misled shows.
+double neesPerDof(const FlightResult& flight);
 
 /// Numbers are NaN where no flight gave one.
 struct FlightSummary {

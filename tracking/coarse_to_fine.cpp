@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "constants.hpp"
-#include "jacobian_check.hpp"
+#include "measured_slope.hpp"
 #include "se3.hpp"
 
 namespace photonav {
@@ -15,8 +15,7 @@ namespace {
 
 constexpr double kLeastDamping = 1e-3;
 constexpr double kMostDamping = 1e4;
-constexpr int kVerifications = 3;
-constexpr double kSameDirections = 0.02;  // difference of projections
+constexpr int kMeasurements = 3;  // of the slope, each where the last one led
 /// Which pixels count changes from pose to pose, and with it the cost by more than small steps do.
 constexpr double kCostNoise = 1e-3;
 
@@ -54,11 +53,15 @@ class Search {
 
   private:
     bool descend();
-    bool verify();
+    bool measureSlope();
     bool improve(double& damping);
     Iterate evaluate(const Pose& T_c_w, const Exposure& exposure);
     void adaptLoss(double below);
     double cost(const Iterate& at, double pixels) const;
+    PoseEquations equations() const {
+        return poseEquations(confined(at_.equations, slope_), options_.photometric,
+                             options_.exposure, at_.exposure);
+    }
     Vector6 step(const PoseEquations& equations, double damping) const;
     bool isSmall(const Vector6& xi, const Matrix6& information, double patience) const;
     std::optional<Matrix6> transportedPrior() const;
@@ -74,7 +77,7 @@ class Search {
     const UncertainPose* prior_;
     std::size_t level_ = 0;
     Loss loss_;
-    Matrix6 verified_ = Matrix6::Identity();  ///< M: J M is what J truly says
+    Matrix6 slope_ = Matrix6::Identity();  ///< M: J M is what J truly says
     Iterate at_;
     int iterations_ = 0;
     int levelBegan_ = 0;  ///< value of iterations_ then
@@ -142,8 +145,7 @@ void Search::adaptLoss(double below) {
 
 /// One step that lowers the cost, raising the damping until it does; false when there is none.
 bool Search::improve(double& damping) {
-    const PoseEquations equations = poseEquations(
-        confined(at_.equations, verified_), options_.photometric, options_.exposure, at_.exposure);
+    const PoseEquations equations = this->equations();
     for (;;) {
         const Vector6 xi = step(equations, damping);
         const Eigen::Vector2d change = equations.exposureRight - equations.exposureOfPose * xi;
@@ -181,19 +183,14 @@ bool Search::descend() {
     return false;
 }
 
-/// Finds out which directions J is true about; whether that is news.
-bool Search::verify() {
-    const NormalEquations& here = at_.equations;
+/// J as it is over the distances that the pose is uncertain by.
+bool Search::measureSlope() {
     const auto walk = comparison_.predictionAsImage(level_, at_.T_c_w);
-    if (!walk || here.count < 1.) return false;
-    const double gain = at_.exposure.gain;  // of what is here, not of predictions among themselves
-    const auto walkTo = [&](const Pose& T_away_here) {
+    if (!walk) return false;
+    slope_ = measuredSlope(transportedPrior(), options_.trust, [&](const Pose& T_away_here) {
         ++iterations_;
-        return scaled(walk(T_away_here * at_.T_c_w), weight() * gain * gain);
-    };
-    const Matrix6 M = verifiedDirections(scaled(here, weight()), transportedPrior(), walkTo);
-    if ((M - verified_).norm() < kSameDirections) return false;
-    verified_ = M;
+        return scaled(walk(T_away_here * at_.T_c_w), weight());
+    });
     return true;
 }
 
@@ -204,10 +201,11 @@ Alignment Search::run(const Pose& T_start) {
         converged = descend();
         if (level_ == 0) break;
     }
-    // Without what is not true the minimum is elsewhere, and J may be wrong there about others.
-    for (int i = 0; i < kVerifications && converged && options_.verifyJacobian; ++i) {
-        if (!verify()) break;
+    for (int i = 0; i < kMeasurements && converged && options_.measureSlope; ++i) {
+        const Pose before = at_.T_c_w;
+        if (!measureSlope()) break;
         converged = descend();
+        if (isSmall(logSE3(at_.T_c_w * before.inverse()), equations().information, 1.)) break;
     }
     Alignment result;
     result.T_c_w = at_.T_c_w;
@@ -217,7 +215,7 @@ Alignment Search::run(const Pose& T_start) {
     if (prior_ && at_.priorTerm > options_.trust.maxSurprise) {
         result.verdict = Verdict::lostImplausible;
     }
-    conclude(result, confined(at_.equations, verified_), comparison_.pixels(), options_.photometric,
+    conclude(result, confined(at_.equations, slope_), comparison_.pixels(), options_.photometric,
              options_.exposure, transportedPrior(), options_.trust);
     result.residual.robustSigma = comparison_.robustSigma();
     return result;

@@ -22,7 +22,7 @@ struct AlignmentOptions {
     /// The finest is done below this step [standard deviations, given the residuals seen]. Where
     /// surfaces end, visibility jumps from pixel to pixel and keeps steps at about 0.3.
     double fineStep = 0.3;
-    bool verifyJacobian = true;  ///< where a model can be rendered (jacobian_check.hpp)
+    bool measureSlope = true;  ///< where a model can be rendered (measured_slope.hpp)
 };
 
 /// An image and a model of what it shows, at several sizes: level 0 is the finest.

@@ -16,9 +16,13 @@ constexpr double kReach = 3.;        // that they cover [standard deviations]
 constexpr double kMostPlaces = 4e3;  // of these views: beyond, they lie wider apart
 constexpr std::size_t kTried = 64;   // of them, the most alike: aligned as they are
 constexpr std::size_t kStarts = 8;   // of full alignments, at most
+constexpr double kJitter = 1.5;      // of starts where hard edges may keep alignments [pixels]
 constexpr double kNoiseSlack = 1.1;  // of the image noise's variance
 constexpr double kMisfit = 0.02;     // of the images' variance, beyond noise, at the right place
-constexpr double kAmbiguous = 12.;   // difference of -2 log likelihood that decides
+constexpr double kAmbiguous = 12.;   // difference of -2 log likelihood that decides at least
+constexpr double kLeastShown = 3e3;  // that the image's content is worth: less of it fits anywhere
+constexpr double kStuck = 0.3;       // share of what the best explains that decides at least, too:
+                                     // hard edges keep alignments a pixel from the right place
 constexpr double kElsewhere = 30.;   // squared Mahalanobis distance of another place
 
 /// Play that a prior leaves to the image's content: principal axes [twist per pixel] and standard
@@ -110,15 +114,16 @@ Camera quartered(const Camera& camera) { return halved(halved(camera)); }
 AlignmentOptions forSmall(AlignmentOptions options) {
     options.levels = 1;
     options.maxIterations = 10;
-    options.verifyJacobian = false;  // to find where to begin
+    options.measureSlope = false;  // to find where to begin
     options.photometric.scale *= 16.;
     return options;
 }
 
 /// Coarser levels would lead all starts to the same place: beside white they average a strip of
 /// texture away.
-AlignmentOptions forNear(AlignmentOptions options) {
+AlignmentOptions forNear(AlignmentOptions options, bool measureSlope) {
     options.levels = 2;
+    options.measureSlope = measureSlope;
     return options;
 }
 
@@ -161,7 +166,8 @@ WideAligner::WideAligner(const ViewSource& model, const Camera& camera,
     : model_(model),
       aligner_(model, camera, options),
       small_(model, quartered(camera), forSmall(options)),
-      near_(model, camera, forNear(options)) {}
+      near_(model, camera, forNear(options, false)),
+      final_(model, camera, forNear(options, options.measureSlope)) {}
 
 /// Where in the prior views of a quarter of the size are most like the image.
 std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const UncertainPose& prior,
@@ -213,18 +219,65 @@ bool WideAligner::fits(const Alignment& a) const {
     return square <= noise || a.residual.unexplained * (1. - noise / square) < kMisfit;
 }
 
+/// Of the surfaces in view [m].
+double WideAligner::pixel(const Alignment& a) const { return a.meanDepth / aligner_.camera().fx(); }
+
+bool WideAligner::isElsewhere(const Alignment& a, const Alignment& best) const {
+    const Vector6 apart = deviation(a.T_c_w, best.T_c_w);
+    return apart.head<3>().norm() > kSpacing * pixel(best) &&
+           squaredDistance(apart, best.covariance) > kElsewhere;
+}
+
+/// The best, moved along axes of much play to where others ended that explain the image worse: what
+/// looks alike there does so when the rest is as it is at the best, and alignments from elsewhere
+/// may have got stuck.
+std::vector<Pose> WideAligner::likenesses(const Alignment& best,
+                                          const std::vector<Alignment>& found,
+                                          const UncertainPose& prior) const {
+    const Play play = playOf(prior.covariance, aligner_.camera(), best.meanDepth);
+    const Vector6 isWide = (play.sigmas.array() >= kPlay).cast<double>();
+    const Matrix6 alongWide = play.axes * isWide.asDiagonal() * play.axes.inverse();
+    std::vector<Start> starts;
+    const double least = costOf(best, prior);
+    for (const Alignment& a : found) {
+        const double cost = costOf(a, prior);
+        if (!isElsewhere(a, best) || cost < least + kAmbiguous) continue;
+        const Vector6 apart = logSE3(a.T_c_w * best.T_c_w.inverse());
+        starts.push_back({expSE3(alongWide * apart) * best.T_c_w, cost});
+    }
+    sortByCost(starts);
+    std::vector<Pose> around;
+    for (const Pose& T_c_w : distinct(starts, 0.5 * kSpacing * pixel(best), kStarts)) {
+        for (const double pixels : {0., -kJitter, kJitter}) {
+            around.push_back(expSE3(pixels * play.axes.col(5)) * T_c_w);
+        }
+    }
+    return around;
+}
+
 /// An alignment that explains the image almost as well, from elsewhere.
 const Alignment* WideAligner::rivalOf(const Alignment& best, const std::vector<Alignment>& found,
                                       const UncertainPose& prior) const {
-    const double pixel = best.meanDepth / aligner_.camera().fx();  // on the surfaces in view [m]
+    const Play play = playOf(prior.covariance, aligner_.camera(), best.meanDepth);
+    const double stuck = play.sigmas[4] < kPlay ? kStuck * weight() * best.residual.explained : 0.;
+    const double decides = std::max(kAmbiguous, stuck);
     const double least = costOf(best, prior);
     for (const Alignment& a : found) {
-        const Vector6 apart = logSE3(a.T_c_w * best.T_c_w.inverse());
-        const bool isElsewhere = apart.head<3>().norm() > kSpacing * pixel &&
-                                 squaredDistance(apart, best.covariance) > kElsewhere;
-        if (isElsewhere && costOf(a, prior) < least + kAmbiguous) return &a;
+        if (isElsewhere(a, best) && costOf(a, prior) < least + decides) return &a;
     }
     return nullptr;
+}
+
+/// Full alignments from the likeliest starts, that are not lost.
+std::vector<Alignment> WideAligner::alignFrom(const std::vector<Pose>& starts,
+                                              DenseAligner& aligner, const ImageF& observed,
+                                              const UncertainPose& prior) {
+    std::vector<Alignment> found;
+    for (const Pose& T_start_w : starts) {
+        const Alignment a = aligner.align(observed, prior, T_start_w);
+        if (!isLost(a.verdict)) found.push_back(a);
+    }
+    return found;
 }
 
 Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior) {
@@ -235,20 +288,23 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
     const double depth = meanDepth(expected);
     if (playOf(prior.covariance, aligner_.camera(), depth).sigmas.maxCoeff() < kPlay) return first;
 
-    std::vector<Alignment> found{first};
-    for (const Pose& T_start_w : likelyStarts(observed, prior, depth)) {
-        found.push_back(near_.align(observed, prior, T_start_w));
-    }
-    std::erase_if(found, [](const Alignment& a) { return isLost(a.verdict); });
+    const auto isLikelier = [&](const Alignment& a, const Alignment& b) {
+        return costOf(a, prior) < costOf(b, prior);
+    };
+    auto found = alignFrom(likelyStarts(observed, prior, depth), near_, observed, prior);
+    if (!isLost(first.verdict)) found.push_back(first);
     if (found.empty()) return first;
-    const Alignment& best =
-        *std::min_element(found.begin(), found.end(), [&](const Alignment& a, const Alignment& b) {
-            return costOf(a, prior) < costOf(b, prior);
-        });
+    const Pose T_best_w = std::min_element(found.begin(), found.end(), isLikelier)->T_c_w;
+    Alignment best = final_.align(observed, prior, T_best_w);
+    if (isLost(best.verdict)) return undecided(best, prior, best.verdict);
+    for (Alignment& a : alignFrom(likenesses(best, found, prior), final_, observed, prior)) {
+        if (isLikelier(a, best)) std::swap(a, best);
+        found.push_back(a);
+    }
     if (!fits(best)) return undecided(best, prior, Verdict::lostResidual);
     // Where the view expected shows something and the image nothing, no place is found: all places
     // that would show nothing are as likely, and the information of the view expected is not there.
-    if (weight() * best.residual.explained < kAmbiguous || rivalOf(best, found, prior)) {
+    if (weight() * best.residual.explained < kLeastShown || rivalOf(best, found, prior)) {
         return undecided(best, prior, Verdict::degenerate);
     }
     return best;

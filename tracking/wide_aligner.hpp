@@ -9,10 +9,11 @@ namespace photonav {
 /// The pose most likely given an image and a prior. Where the prior leaves the image's content more
 /// than a few pixels of play, texture looks alike in several places: small views from all over the
 /// prior are compared with the image and the most alike of them aligned; full alignments begin
-/// where the best of these end. The best is the answer, if it explains the image down to the noise
-/// and nothing else explains it almost as well. Otherwise the result is the prior, and the verdict
-/// `degenerate` along all axes (the image does not say which place it is) or lost (it is none of
-/// them).
+/// where the best of these end. The best is tried again where others ended, moved there as it is:
+/// that finds the other bars of a grating. It is the answer, if it explains the image down to the
+/// noise, the image shows enough, and nothing else explains it almost as well. Otherwise the result
+/// is the prior, and the verdict `degenerate` along all axes (the image does not say which place it
+/// is) or lost (it is none of them).
 class WideAligner {
   public:
     /// @param model must outlive the aligner
@@ -25,9 +26,15 @@ class WideAligner {
   private:
     std::vector<Pose> likelyStarts(const ImageF& observed, const UncertainPose& prior,
                                    double depth);
+    static std::vector<Alignment> alignFrom(const std::vector<Pose>& starts, DenseAligner& aligner,
+                                            const ImageF& observed, const UncertainPose& prior);
     double weight() const;
     double costOf(const Alignment& alignment, const UncertainPose& prior) const;
     bool fits(const Alignment& alignment) const;
+    double pixel(const Alignment& alignment) const;
+    bool isElsewhere(const Alignment& alignment, const Alignment& best) const;
+    std::vector<Pose> likenesses(const Alignment& best, const std::vector<Alignment>& found,
+                                 const UncertainPose& prior) const;
     const Alignment* rivalOf(const Alignment& best, const std::vector<Alignment>& found,
                              const UncertainPose& prior) const;
 
@@ -35,6 +42,7 @@ class WideAligner {
     DenseAligner aligner_;
     DenseAligner small_;  ///< images of a quarter of the size
     DenseAligner near_;   ///< from where small images agree
+    DenseAligner final_;  ///< and once more, with the slope measured
 };
 
 }  // namespace photonav

@@ -44,8 +44,11 @@ TEST(DenseAligner, FindsTheExactPoseWithoutNoise) {
     }
 }
 
+/// But for the slope measured in the model.
 TEST(DenseAligner, CovarianceIsThePlannersInverse) {
-    DenseAligner aligner(room(), camera());
+    AlignmentOptions options;
+    options.measureSlope = false;
+    DenseAligner aligner(room(), camera(), options);
     const Alignment a = aligner.align(observe(room(), kPose), kPose);
     View view;
     room().render(camera(), a.T_c_w, view);
@@ -130,7 +133,7 @@ TEST(DenseAligner, EdgesSayNothingAlongThemselves) {
         EXPECT_EQ(describe(a), "degenerate along y");
         const Eigen::Vector3d y_c = prior.mean.linear().col(1);
         const double told = y_c.dot(a.information.topLeftCorner<3, 3>() * y_c);
-        EXPECT_LT(told, 0.05 / (0.5 * 0.5)) << askew;
+        EXPECT_LT(told, 0.15 / (0.5 * 0.5)) << askew;
     }
 }
 
@@ -153,10 +156,10 @@ TEST(DenseAligner, FaintTextureStillCounts) {
     for (const double gain : {1., 1.8}) {
         AlignmentOptions options;
         options.exposure = ExposurePrior{};
-        options.verifyJacobian = false;
+        options.measureSlope = false;
         DenseAligner trusting(floor, makeCamera(188, 120, 1.2217), options);
-        options.verifyJacobian = true;
-        DenseAligner verifying(floor, makeCamera(188, 120, 1.2217), options);
+        options.measureSlope = true;
+        DenseAligner measuring(floor, makeCamera(188, 120, 1.2217), options);
         View view;
         floor.render(trusting.camera(), prior.mean, view);
         ImageF image = test::noisy(view.intensity, 0.02, random);
@@ -164,7 +167,7 @@ TEST(DenseAligner, FaintTextureStillCounts) {
             image.bitmap[i] = static_cast<float>(gain * image.bitmap[i]);
         }
         const Alignment a = trusting.align(image, prior);
-        const Alignment b = verifying.align(image, prior);
+        const Alignment b = measuring.align(image, prior);
         EXPECT_GT(b.iterations, a.iterations) << "nothing was tried out";
         EXPECT_LT(a.eigenvalues[0], 1e-3 * a.eigenvalues[5]);
         EXPECT_GT(b.eigenvalues[0], 0.8 * a.eigenvalues[0]);

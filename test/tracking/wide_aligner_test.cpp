@@ -85,7 +85,7 @@ TEST_F(WideAlignerTest, NothingInViewIsNoPlaceFound) {
         const UncertainPose belief = prior(cameraAt({x, 0., 2.}, kDown), 0.3);
         const Alignment a = wide.align(image, belief);
         EXPECT_EQ(a.verdict, Verdict::degenerate);
-        EXPECT_TRUE(a.covariance.isApprox(belief.covariance, 1e-3)) << x;
+        EXPECT_TRUE(a.covariance.isApprox(belief.covariance, 0.1)) << x;
     }
 }
 
@@ -102,21 +102,23 @@ TEST_F(WideAlignerTest, AStripOfTextureIsFoundWhereItIs) {
     belief.covariance(2, 2) = 0.2 * 0.2;
     belief.covariance(5, 5) = 0.02 * 0.02;
     const Matrix6 root = rootOf(belief.covariance);
+    int shown = 0;  // enough of it: two columns may well be found in two places
     int found = 0;
     int wrong = 0;
     for (int flown = 0; flown < 60;) {
         const Pose truth = expSE3(draw(root, random)) * belief.mean;
         const Eigen::Vector3d p = truth.inverse().translation();
         const double strip = p.x() + 0.5 * camera.width / camera.fx() * p.z();  // in view [m]
-        if (strip < 0.03 || strip > 0.15) continue;
+        if (strip < 0.03 || strip > 0.3) continue;
         ++flown;
+        shown += strip > 0.15;
         const Alignment a = wide.align(seen(floor, truth), belief);
         if (isLost(a.verdict) || a.covariance == belief.covariance) continue;
-        ++found;
+        found += strip > 0.15;
         if (squaredDistance(logSE3(truth * a.T_c_w.inverse()), a.covariance) > 60.) ++wrong;
     }
-    EXPECT_GE(found, 40);
-    EXPECT_LE(wrong, 1);  // two columns may well be found in two places
+    EXPECT_GE(found, 0.8 * shown);
+    EXPECT_EQ(wrong, 0);
 }
 
 TEST_F(WideAlignerTest, StripesDoNotSayWhichOfThemItIs) {

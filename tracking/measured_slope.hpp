@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How much of what J says is true of the images that a model gives.
+#pragma once
+
+#include <functional>
+
+#include "alignment.hpp"
+
+namespace photonav {
+
+/// What an image seen from here, as the model predicts it, says to a camera at exp(xi^) from here,
+/// divided by the noise's variance.
+using Walk = std::function<NormalEquations(const Pose& T_away_here)>;
+
+/// J is a slope by central differences over two pixels. Predicted images are not that smooth: edges
+/// of surfaces and of sharp textures jump from pixel to pixel, and across an edge that is askew J
+/// says something along it, where nothing changes. So the camera walks, in the model, one standard
+/// deviation to either side along each of six directions, which gives the slope D of the image over
+/// as far as it is uncertain. An estimate that compares images by J has the information
+///     D^T J (J^T J)^-1 J^T D / sigma^2 = (J M)^T (J M) / sigma^2,   M = (J^T J)^-1 J^T D
+/// ("sandwich": Godambe 1960, Huber 1967). Where D happens to be steeper, J is believed.
+/// @param prior covariance of the pose, left, camera frame; none: one mean depth and one radian.
+///        Directions that the image tells much less of are left as they are
+/// @param floors least standard deviations of the result: directions that they decide are left, too
+/// @return M
+Matrix6 measuredSlope(const std::optional<Matrix6>& prior, const TrustOptions& floors,
+                      const Walk& walk);
+
+}  // namespace photonav
