@@ -14,6 +14,7 @@
 #include <opencv2/rgbd/depth.hpp>
 #include <random>
 
+#include "calibration.hpp"
 #include "dense_aligner.hpp"
 #include "keyframe_model.hpp"
 #include "map_fusion.hpp"
@@ -183,9 +184,9 @@ TexturedOcTree mapOf(const MeshRenderer& mesh) {
 /// Images of the mesh, tracked in `model` from starts 2 cm and 1 degree off (standard deviations
 /// per axis, the prior's).
 void track(const std::string& name, const MeshRenderer& world, const ViewSource& model,
-           double belowHorizon) {
+           const AlignmentOptions& options, double belowHorizon) {
     const Camera camera = trackingCamera();
-    DenseAligner aligner(model, camera);
+    DenseAligner aligner(model, camera, options);
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal;
     Vector6 sigmas;
@@ -217,11 +218,13 @@ void trackInMaps() {
     const MeshRenderer mesh(furnishedHall());
     const TexturedOcTree map = mapOf(mesh);
     const VoxelRenderer voxels(map, UnknownPolicy::occupied);
+    AlignmentOptions inCells;
+    inCells.trust = realCameraOptions(map.getResolution()).trust;
     fmt::print("188x120 images in a map, starts 2 cm and 1 degree off: median and p90 of 100\n");
     for (const auto& [name, angle] : {std::pair{"45 degrees", 0.25}, {"down", 0.5}}) {
         const double belowHorizon = angle * std::numbers::pi;
-        track(fmt::format("mesh, {}", name), mesh, mesh, belowHorizon);
-        track(fmt::format("voxels, {}", name), mesh, voxels, belowHorizon);
+        track(fmt::format("mesh, {}", name), mesh, mesh, {}, belowHorizon);
+        track(fmt::format("voxels, {}", name), mesh, voxels, inCells, belowHorizon);
     }
 }
 

@@ -168,8 +168,6 @@ bool Search::improve(double& damping) {
 
 /// One level; false when no minimum was found.
 bool Search::descend() {
-    loss_ = {RobustWeight::none, std::numeric_limits<double>::max()};
-    at_ = evaluate(at_.T_c_w, at_.exposure);
     adaptLoss(1.);
     levelBegan_ = iterations_;
     const int last = iterations_ + options_.maxIterations;
@@ -198,6 +196,8 @@ Alignment Search::run(const Pose& T_start) {
     at_.T_c_w = T_start;
     bool converged = false;
     for (level_ = comparison_.levels(); level_-- > 0;) {
+        loss_ = {RobustWeight::none, std::numeric_limits<double>::max()};
+        at_ = evaluate(at_.T_c_w, at_.exposure);
         converged = descend();
         if (level_ == 0) break;
     }

@@ -52,8 +52,10 @@ class DenseAligner::RenderedModel : public Comparison {
             Level& at = levels_[level];
             if (!isRendered) model_.render(at.camera, T_image_w, asImage_);
             isRendered = true;
-            model_.render(at.camera, T_c_w, predicted_);
-            return at.comparePredictions(predicted_, asImage_.intensity, Exposure{}, Loss{});
+            const bool isHere = T_c_w.matrix() == T_image_w.matrix();
+            if (!isHere) model_.render(at.camera, T_c_w, predicted_);
+            return at.comparePredictions(isHere ? asImage_ : predicted_, asImage_.intensity,
+                                         Exposure{}, Loss{});
         };
     }
 
