@@ -63,8 +63,9 @@ enum class Spacing {
 /// evo's all_pairs.
 PoseErrors relativeErrors(const std::vector<PosePair>& pairs, Spacing spacing, double delta);
 
-/// e^T C^-1 e for the error e = deviation(T_c_w_truth, mean) and the covariance transported() to the
-/// truth, 6 on average when the covariance is right. Nothing for a covariance that is not positive definite.
+/// e^T C^-1 e for the error e = deviation(T_c_w_truth, mean) and the covariance transported() to
+/// the truth, 6 on average when the covariance is right. Nothing for a covariance that is not
+/// positive definite.
 std::optional<double> squaredNormalisedError(const UncertainPose& T_c_w, const Pose& T_c_w_truth);
 
 }  // namespace photonav
