@@ -83,7 +83,7 @@ struct Alignment {
     /// Left perturbation, camera frame, (rho, phi). Open directions without a prior get one mean
     /// depth and one radian of standard deviation.
     Matrix6 covariance = Matrix6::Zero();
-    /// Lambda of the image alone, same frame, without directions that J is wrong about.
+    /// Lambda of the image alone, same frame; where a model can be rendered, by measuredSlope().
     Matrix6 information = Matrix6::Zero();
     Exposure exposure;
     int iterations = 0;  ///< views compared, over all levels

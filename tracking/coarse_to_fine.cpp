@@ -204,7 +204,7 @@ Alignment Search::run(const Pose& T_start) {
     for (int i = 0; i < kMeasurements && converged && options_.measureSlope; ++i) {
         const Pose before = at_.T_c_w;
         if (!measureSlope()) break;
-        converged = descend();
+        if (!descend()) break;  // it had converged
         if (isSmall(logSE3(at_.T_c_w * before.inverse()), equations().information, 1.)) break;
     }
     Alignment result;

@@ -20,8 +20,10 @@ constexpr double kJitter = 1.5;      // of starts where hard edges may keep alig
 constexpr double kNoiseSlack = 1.1;  // of the image noise's variance
 constexpr double kMisfit = 0.02;     // of the images' variance, beyond noise, at the right place
 constexpr double kAmbiguous = 12.;   // difference of -2 log likelihood that decides at least
-constexpr double kLeastShown = 3e3;  // that the image's content is worth: less of it fits anywhere
-constexpr double kStuck = 0.3;       // share of what the best explains that decides at least, too:
+constexpr double kNarrow = 0.1;      // share of the pixels that show something in a strip
+constexpr double kLeastShown = 3e3;  // that a strip is worth: what shows less fits anywhere
+constexpr double kStuck = 0.3;       // share of what the best explains that decides at least along
+                                     // a single wide axis, where all that repeats has been tried:
                                      // hard edges keep alignments a pixel from the right place
 constexpr double kElsewhere = 30.;   // squared Mahalanobis distance of another place
 
@@ -75,6 +77,14 @@ double meanDepth(const View& view) {
         ++count;
     }
     return count > 0. ? count / sum : 1.;
+}
+
+/// Share of the pixels that an image's contrast is in: the participation ratio of its squares.
+double spread(const ImageF& image) {
+    const auto pixels = Eigen::Map<const Eigen::ArrayXf>(image.bitmap, image.getSize());
+    const Eigen::ArrayXd squares = (pixels - pixels.mean()).cast<double>().square();
+    const double fourth = squares.square().sum();
+    return fourth > 0. ? squares.sum() * squares.sum() / (fourth * double(squares.size())) : 0.;
 }
 
 /// -2 log likelihood of an image where there is a surface, in its likeliest exposure.
@@ -304,7 +314,9 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
     if (!fits(best)) return undecided(best, prior, Verdict::lostResidual);
     // Where the view expected shows something and the image nothing, no place is found: all places
     // that would show nothing are as likely, and the information of the view expected is not there.
-    if (weight() * best.residual.explained < kLeastShown || rivalOf(best, found, prior)) {
+    model_.render(small_.camera(), best.T_c_w, expected);
+    const double least = spread(expected.intensity) < kNarrow ? kLeastShown : kAmbiguous;
+    if (weight() * best.residual.explained < least || rivalOf(best, found, prior)) {
         return undecided(best, prior, Verdict::degenerate);
     }
     return best;

@@ -121,6 +121,20 @@ TEST_F(WideAlignerTest, AStripOfTextureIsFoundWhereItIs) {
     EXPECT_EQ(wrong, 0);
 }
 
+/// A strip of so little contrast is not believed. All over the image it is.
+TEST_F(WideAlignerTest, PaleTextureIsAPlace) {
+    const MeshRenderer floor(test::floorOf(
+        valueNoise({.size = {20., 20.}, .amplitudes = {0.004, 0.003, 0.002}, .seed = 1})));
+    camera = makeCamera(188, 120, 1.2);
+    WideAligner wide(floor, camera, options);
+    const UncertainPose belief = prior(cameraAt({0., 0., 1.6}, kDown), 0.1);
+    const Pose truth = cameraAt({0.11, -0.07, 1.63}, kDown);
+    const Alignment a = wide.align(seen(floor, truth), belief);
+    EXPECT_FALSE(isLost(a.verdict)) << describe(a);
+    EXPECT_LT(a.covariance.trace(), 0.5 * belief.covariance.trace());
+    EXPECT_LT(squaredDistance(logSE3(truth * a.T_c_w.inverse()), a.covariance), 25.);
+}
+
 TEST_F(WideAlignerTest, StripesDoNotSayWhichOfThemItIs) {
     const MeshRenderer floor(test::floorOf(stripes({.width = 0.2, .softEdge = 0.05})));
     WideAligner wide(floor, camera, options);
