@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "median.hpp"
-#include "se3.hpp"
 
 namespace photonav {
 namespace {

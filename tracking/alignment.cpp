@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "se3.hpp"
-
 namespace photonav {
 
 namespace {

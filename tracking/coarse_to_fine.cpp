@@ -40,7 +40,6 @@ NormalEquations confined(NormalEquations e, const Matrix6& M) {
 NormalEquations scaled(NormalEquations e, double weight) {
     e.AtA *= weight;
     e.Atr *= weight;
-    e.loss *= weight;
     return e;
 }
 

@@ -23,7 +23,8 @@ struct Claims {
 
 Claims claimsOf(const NormalEquations& here, const std::optional<Matrix6>& prior) {
     const Matrix6 JtJ = here.AtA.topLeftCorner<6, 6>();
-    const Vector6 unit = spectrum(JtJ, 1. / here.meanInverseDepth).unit;
+    Vector6 unit;
+    unit << Eigen::Vector3d::Constant(1. / here.meanInverseDepth), Eigen::Vector3d::Ones();
     Matrix6 P = unit.cwiseAbs2().asDiagonal();
     // A prior may be certain of some directions: by as little as does not matter, it is not.
     if (prior) P = *prior + 1e-10 * P;

@@ -9,7 +9,7 @@
 namespace photonav {
 
 /// What an image seen from here, as the model predicts it, says to a camera at exp(xi^) from here,
-/// divided by the noise's variance.
+/// weighted so that squares are -2 log likelihoods (AtA, Atr).
 using Walk = std::function<NormalEquations(const Pose& T_away_here)>;
 
 /// J is a slope by central differences over two pixels. Predicted images are not that smooth: edges

@@ -278,7 +278,7 @@ const Alignment* WideAligner::rivalOf(const Alignment& best, const std::vector<A
     return nullptr;
 }
 
-/// Full alignments from the likeliest starts, that are not lost.
+/// The alignments from these starts that are not lost.
 std::vector<Alignment> WideAligner::alignFrom(const std::vector<Pose>& starts,
                                               DenseAligner& aligner, const ImageF& observed,
                                               const UncertainPose& prior) {
