@@ -8,6 +8,7 @@
 #include "atomic_file.hpp"
 #include "calibration.hpp"
 #include "camera_noise.hpp"
+#include "error.hpp"
 #include "flight_recorder.hpp"
 #include "fly_plan.hpp"
 #include "fly_report.hpp"
@@ -84,6 +85,15 @@ std::vector<FlightSet> planAll(const Config& config, PlanRun& run, ProgressLine&
     const bool isCompared = config.compareWithRrtStar && config.planner != "rrt_star";
     if (!sets.empty() && isCompared && !interrupted) solve("rrt_star");
     return sets;
+}
+
+/// Of an earlier recording images would be left over, and it may be one that cannot be had again.
+void prepareRecordFolder(const std::filesystem::path& folder) {
+    for (const char* list : {"rgb.txt", "assoc.txt", "rgb"}) {
+        if (!std::filesystem::exists(folder / list)) continue;
+        throw InputError(folder.string(), "", "holds a recording already: remove it first");
+    }
+    prepareFolder(folder);
 }
 
 void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const FlightOptions& flight,
@@ -186,7 +196,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     PlanRun run(config, world);
     run.checkPlaces();
     const auto folder = folderFor(options, config.fly.plan);
-    if (!options.record.empty()) prepareFolder(options.record);
+    if (!options.record.empty()) prepareRecordFolder(options.record);
 
     std::vector<FlightSet> sets;
     {

@@ -93,11 +93,7 @@ MapRun fuseFrames(const MapOptions& options, const Sequence& sequence,
     std::optional<MonocularFusion> monocular;
     bool isDepthChecked = false;
     if (options.depth == "monocular") monocular.emplace(map, sequence.camera, options.fusion);
-    while (run.frames < sequence.frames.size() && !interrupted) {
-        const RecordedFrame frame = loadFrame(sequence, run.frames);
-        run.loadSeconds += watch.lap();
-        checkPosition(options, frame);
-        if (!isDepthChecked) isDepthChecked = checkDepths(options, sequence, frame.view);
+    const auto add = [&](const RecordedFrame& frame) {
         try {
             if (monocular) {
                 monocular->add(frame);
@@ -106,6 +102,17 @@ MapRun fuseFrames(const MapOptions& options, const Sequence& sequence,
             }
         } catch (const std::invalid_argument& error) {  // sizes are checked: cells are too small
             throw InputError("--resolution", "", error.what());
+        }
+    };
+    while (run.frames < sequence.frames.size() && !interrupted) {
+        const RecordedFrame frame = loadFrame(sequence, run.frames);
+        run.loadSeconds += watch.lap();
+        checkPosition(options, frame);
+        if (!isDepthChecked) isDepthChecked = checkDepths(options, sequence, frame.view);
+        if (isBlack(frame.view.intensity)) {
+            run.black.push_back({sequence.frames[run.frames].colourFile, "black"});
+        } else {
+            add(frame);
         }
         run.fuseSeconds += watch.lap();
         ++run.frames;
@@ -142,6 +149,7 @@ void compareFrames(const MapOptions& options, const Sequence& sequence, const Te
     View predicted;
     for (std::size_t k = 0; k < count && !interrupted; ++k) {
         const RecordedFrame frame = loadFrame(sequence, k * step);
+        if (isBlack(frame.view.intensity)) continue;
         renderer.render(sequence.camera, frame.T_c_w, predicted);
         const ViewDifference d = compareViews(frame.view, predicted);
         run.compared.push_back({{"timestamp", frame.timestamp},

@@ -56,13 +56,16 @@ json datasetJson(const MapOptions& options, const Recording& recording) {
              {vectorJson(R.row(0)), vectorJson(R.row(1)), vectorJson(R.row(2))}}};
 }
 
-json framesJson(const MapOptions& options, const Recording& recording, std::size_t used) {
+json framesJson(const MapOptions& options, const Recording& recording, const MapRun& run) {
     json skipped = json::array();
-    for (const auto& [file, reason] : recording.sequence.skipped) {
-        skipped.push_back({{"file", file}, {"reason", reason}});
+    for (const auto& list : {recording.sequence.skipped, run.black}) {
+        for (const auto& [file, reason] : list) {
+            skipped.push_back({{"file", file}, {"reason", reason}});
+        }
     }
     return {{"recorded", recording.sequence.recorded},
-            {"used", used},
+            {"used", run.frames - run.black.size()},
+            {"black", run.black.size()},
             {"every", options.every},
             {"range", options.frames},
             {"skipped", skipped}};
@@ -95,6 +98,15 @@ TableRows depthRows(const json& mono) {
     return rows;
 }
 
+const char* whyEmpty(const json& result) {
+    const std::size_t used = result["frames"]["used"];
+    if (used == 0 && result["frames"]["black"] > 0) return "all images are black";
+    if (used == 1 && result["depth"] == "monocular") {
+        return "depth is measured from image to image, and there is only one";
+    }
+    return "no surface was found";
+}
+
 DrawnPath flown(const Trajectory& trajectory) {
     DrawnPath path;
     path.name = "camera";
@@ -119,7 +131,7 @@ nlohmann::json mapResult(const MapOptions& options, const Recording& recording, 
             {"version", PHOTONAV_VERSION},
             {"interrupted", run.interrupted},
             {"dataset", datasetJson(options, recording)},
-            {"frames", framesJson(options, recording, run.frames)},
+            {"frames", framesJson(options, recording, run)},
             {"depth", options.depth},
             {"monocular", run.monocular},
             {"resolution", options.resolution},
@@ -182,7 +194,8 @@ ReportTable mapSummary(const json& result) {
          {"fusion of one frame",
           fmt::format("{:.1f} ms", result["time"]["fuse_per_frame_s"].get<double>() * 1e3)}}};
     if (result["voxels"]["occupied"] == 0) {
-        table.rows.emplace(table.rows.begin(), "verdict", "the map is empty: no surface was found");
+        table.rows.emplace(table.rows.begin(), "verdict",
+                           fmt::format("the map is empty: {}", whyEmpty(result)));
     }
     for (auto& row : depthRows(result["monocular"])) table.rows.push_back(std::move(row));
     return table;

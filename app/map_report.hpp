@@ -14,8 +14,9 @@ namespace photonav {
 
 /// What is known of a map besides its cells.
 struct MapRun {
-    std::size_t frames = 0;    ///< fused: less than all when interrupted
-    Trajectory trajectory;     ///< of these
+    std::size_t frames = 0;                ///< looked at: less than all when interrupted
+    std::vector<Sequence::Skipped> black;  ///< of these, not fused
+    Trajectory trajectory;                 ///< of all of these
     nlohmann::json monocular;  ///< how good its depths are, null when they were recorded
     nlohmann::json compared = nlohmann::json::array();  ///< frames and their predictions
     std::vector<NamedFigure> figures;

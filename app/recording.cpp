@@ -75,7 +75,11 @@ Eigen::Vector3d upByFloor(const Sequence& sequence) {
         options.tolerance = 0.01 * *middle;
         up = floorNormal(seen.points, roughUp.normalized(), options);
     }
-    if (!up) throw InputError("--up", "floor", "no floor to be seen below the cameras");
+    if (!up) {
+        throw InputError("--up", "floor",
+                         "no floor to be seen toward the lower edge of the images; of a camera "
+                         "that looks straight down give the direction x,y,z");
+    }
     return *up;
 }
 

@@ -106,7 +106,8 @@ std::optional<double> checkDepths(const ReplayOptions& options, const ReplaySour
         requirePlausibleDepth(*depth, options, source.cameraFile);
         return depth;
     }
-    if (options.odometry) {
+    // Black images have no depth from stereo, and replaying them says what they are.
+    if (options.odometry && source.stereo.empty()) {
         throw InputError(options.dataset, "", "no depth in any of the images looked at");
     }
     return {};

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -95,12 +94,6 @@ void checkReadable(const std::vector<ReplayedFrame>& frames, const ReplaySource&
         return f.status != FrameStatus::unreadable;
     });
     if (!anyRead) source.load(0);  // throws
-}
-
-/// Mean grey value below 5 of 255: the noise of a covered lens.
-bool isBlack(const ImageF& image) {
-    const double sum = std::accumulate(image.bitmap, image.bitmap + image.getSize(), 0.);
-    return sum < 0.02 * image.getSize();
 }
 
 /// Share of the pixels with depth.

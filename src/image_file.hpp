@@ -11,7 +11,7 @@ namespace photonav {
 
 /// An image of a recording's list.
 struct StampedFile {
-    double timestamp;  ///< [s]
+    double timestamp = 0.;  ///< [s]
     std::string file;
 };
 

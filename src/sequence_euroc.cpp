@@ -10,6 +10,7 @@
 #include "constants.hpp"
 #include "image_file.hpp"
 #include "text_table.hpp"
+#include "time_order.hpp"
 #include "trajectory.hpp"
 #include "yaml_reader.hpp"
 
@@ -97,19 +98,15 @@ void checkSameSize(const DistortedCamera& left, const DistortedCamera& right) {
 
 std::vector<StampedFile> readImageList(const fs::path& folder, StereoSequence& sequence) {
     const std::string file = (folder / "data.csv").string();
-    std::vector<StampedFile> list;
-    double last = -kInfinity;
-    for (const TextRow& row : readCsv(file, 2)) {
-        StampedFile image{kNanosecond * row.number(0), (folder / "data" / row.text(1)).string()};
-        if (image.timestamp > last) {
-            last = image.timestamp;
-            list.push_back(std::move(image));
-        } else {
-            sequence.skipped.push_back(
-                {image.file, image.timestamp == last ? "timestamp repeats the one before"
-                                                     : "timestamp is smaller than the one before"});
-        }
-    }
+    std::vector<InputError> badRows;
+    auto list = parseInOrderOfTime<StampedFile>(
+        readCsv(file, 2, &badRows),
+        [&](const TextRow& row) {
+            return StampedFile{kNanosecond * row.number(0),
+                               (folder / "data" / row.text(1)).string()};
+        },
+        Repeats::skipped, &badRows);
+    for (const InputError& row : badRows) sequence.skipped.push_back({file, row.reason()});
     if (list.empty()) throw InputError(file, "", "no images");
     return list;
 }

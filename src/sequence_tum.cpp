@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 
 #include "constants.hpp"
 #include "image_file.hpp"
 #include "text_table.hpp"
+#include "time_order.hpp"
 #include "trajectory.hpp"
 #include "yaml_reader.hpp"
 
@@ -19,60 +21,44 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Pair {
-    StampedFile colour;
+    double timestamp = 0.;  ///< of the colour image [s]
+    std::string colour;
     StampedFile depth;
 };
 
-/// Says what is wrong with a timestamp, or skips the image it belongs to.
-class TimeOrder {
-  public:
-    explicit TimeOrder(Sequence* forgiven) : forgiven_(forgiven) {}
-
-    /// @throws InputError for a decreasing timestamp, unless it is to be forgiven
-    bool accepts(const TextRow& row, double timestamp, const std::string& file) {
-        const bool repeats = timestamp == last_;
-        if (timestamp > last_ || (repeats && !forgiven_)) {
-            last_ = timestamp;
-            return true;
-        }
-        const std::string reason = repeats ? "timestamp repeats the one before"
-                                           : "timestamp is smaller than the one before";
-        if (!forgiven_) row.fail(reason);
-        forgiven_->skipped.push_back({file, reason});
-        return false;
-    }
-
-  private:
-    Sequence* forgiven_;
-    double last_ = -kInfinity;
-};
-
-std::vector<StampedFile> readFileList(const fs::path& folder, const std::string& name,
-                                      Sequence* forgiven) {
-    std::vector<StampedFile> list;
-    TimeOrder order(forgiven);
-    for (const TextRow& row : readTable((folder / name).string(), 2)) {
-        StampedFile image{row.number(0), (folder / row.text(1)).string()};
-        if (order.accepts(row, image.timestamp, image.file)) list.push_back(std::move(image));
-    }
-    if (list.empty()) throw InputError((folder / name).string(), "", "no images");
+/// Rows that cannot be used are skipped where that is asked for.
+template <typename Item>
+std::vector<Item> readList(const std::string& file, std::size_t columns,
+                           const std::function<Item(const TextRow&)>& parse, bool forgiving,
+                           Sequence& sequence) {
+    std::vector<InputError> badRows;
+    std::vector<InputError>* bad = forgiving ? &badRows : nullptr;
+    auto list = parseInOrderOfTime(readTable(file, columns, bad), parse, Repeats::skipped, bad);
+    for (const InputError& row : badRows) sequence.skipped.push_back({file, row.reason()});
+    if (list.empty()) throw InputError(file, "", "no images");
     return list;
 }
 
-std::vector<Pair> readAssociation(const fs::path& folder, const std::string& name,
-                                  Sequence* forgiven) {
-    std::vector<Pair> pairs;
-    TimeOrder order(forgiven);
-    for (const TextRow& row : readTable((folder / name).string(), 4)) {
-        Pair pair{{row.number(0), (folder / row.text(1)).string()},
-                  {row.number(2), (folder / row.text(3)).string()}};
-        if (row.text(1).starts_with("depth")) std::swap(pair.colour, pair.depth);
-        if (order.accepts(row, pair.colour.timestamp, pair.colour.file)) {
-            pairs.push_back(std::move(pair));
-        }
-    }
-    if (pairs.empty()) throw InputError((folder / name).string(), "", "no images");
-    return pairs;
+std::vector<StampedFile> readFileList(const fs::path& folder, const std::string& name,
+                                      bool forgiving, Sequence& sequence) {
+    return readList<StampedFile>(
+        (folder / name).string(), 2,
+        [&](const TextRow& row) {
+            return StampedFile{row.number(0), (folder / row.text(1)).string()};
+        },
+        forgiving, sequence);
+}
+
+std::vector<Pair> readAssociation(const fs::path& folder, const std::string& name, bool forgiving,
+                                  Sequence& sequence) {
+    return readList<Pair>((folder / name).string(), 4,
+                          [&](const TextRow& row) {
+                              StampedFile colour{row.number(0), (folder / row.text(1)).string()};
+                              StampedFile depth{row.number(2), (folder / row.text(3)).string()};
+                              if (row.text(1).starts_with("depth")) std::swap(colour, depth);
+                              return Pair{colour.timestamp, colour.file, depth};
+                          },
+                          forgiving, sequence);
 }
 
 /// Index of the depth image of every colour image, or -1: closest pairs first, as the benchmark's
@@ -108,27 +94,26 @@ std::vector<int> associate(const std::vector<StampedFile>& colour,
 }
 
 std::vector<Pair> readPairs(const fs::path& folder, const TumOptions& options, Sequence& sequence) {
-    Sequence* forgiven = options.forgiving ? &sequence : nullptr;
     const double tolerance = options.tolerance;
     for (const char* name : {"assoc.txt", "associations.txt"}) {
         if (!fs::exists(folder / name)) continue;
-        auto pairs = readAssociation(folder, name, forgiven);
+        auto pairs = readAssociation(folder, name, options.forgiving, sequence);
         sequence.recorded = pairs.size() + sequence.skipped.size();
         return pairs;
     }
-    const auto colour = readFileList(folder, "rgb.txt", forgiven);
+    const auto colour = readFileList(folder, "rgb.txt", options.forgiving, sequence);
     sequence.recorded = colour.size() + sequence.skipped.size();
     std::vector<StampedFile> depth;
     if (options.needsDepth || fs::exists(folder / "depth.txt")) {
-        depth = readFileList(folder, "depth.txt", forgiven);
+        depth = readFileList(folder, "depth.txt", options.forgiving, sequence);
     }
     const auto partner = associate(colour, depth, tolerance);
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < colour.size(); ++i) {
         if (partner[i] >= 0) {
-            pairs.push_back({colour[i], depth[partner[i]]});
+            pairs.push_back({colour[i].timestamp, colour[i].file, depth[partner[i]]});
         } else if (!options.needsDepth) {
-            pairs.push_back({colour[i], {}});
+            pairs.push_back({colour[i].timestamp, colour[i].file, {}});
         } else {
             sequence.skipped.push_back(
                 {colour[i].file, fmt::format("no depth image within {} s", tolerance)});
@@ -142,8 +127,8 @@ std::vector<Pair> readPairs(const fs::path& folder, const TumOptions& options, S
 }
 
 void forgetMissingDepth(std::vector<Pair>& pairs) {
-    for (auto& [colour, depth] : pairs) {
-        if (!fs::exists(depth.file)) depth.file.clear();
+    for (Pair& pair : pairs) {
+        if (!fs::exists(pair.depth.file)) pair.depth.file.clear();
     }
 }
 
@@ -223,17 +208,15 @@ void addPoses(const std::string& groundtruth, const std::vector<Pair>& pairs,
     }
     for (const InputError& row : badRows) sequence.skipped.push_back({groundtruth, row.reason()});
     bool anyPose = false;
-    for (const auto& [colour, depth] : pairs) {
-        const auto T_w_c =
-            poseAt(trajectory, colour.timestamp, options.tolerance, options.maxPoseGap);
+    for (const auto& [timestamp, colour, depth] : pairs) {
+        const auto T_w_c = poseAt(trajectory, timestamp, options.tolerance, options.maxPoseGap);
         anyPose = anyPose || T_w_c;
         if (T_w_c || options.forgiving) {
-            sequence.frames.push_back({colour.timestamp,
-                                       T_w_c ? T_w_c->inverse() : Pose::Identity(),
-                                       T_w_c.has_value(), colour.file, depth.file});
+            sequence.frames.push_back({timestamp, T_w_c ? T_w_c->inverse() : Pose::Identity(),
+                                       T_w_c.has_value(), colour, depth.file});
         } else {
             sequence.skipped.push_back(
-                {colour.file, fmt::format("no pose within {} s", options.tolerance)});
+                {colour, fmt::format("no pose within {} s", options.tolerance)});
         }
     }
     if (!anyPose && !trajectory.empty()) {
@@ -242,8 +225,8 @@ void addPoses(const std::string& groundtruth, const std::vector<Pair>& pairs,
             fmt::format("no pose within {} s of any image: poses from {:.3f} to {:.3f} s, images "
                         "from {:.3f} to {:.3f} s",
                         options.tolerance, trajectory.front().timestamp,
-                        trajectory.back().timestamp, pairs.front().colour.timestamp,
-                        pairs.back().colour.timestamp));
+                        trajectory.back().timestamp, pairs.front().timestamp,
+                        pairs.back().timestamp));
     }
 }
 

@@ -14,8 +14,8 @@ struct TumOptions {
     double maxPoseGap = 0.1;  ///< interpolate between poses at most this far apart [s]
     std::optional<double> depthScale = {};  ///< overrides what the dataset says
     std::string cameraFile = {};            ///< instead of the dataset's camera.yaml
-    /// For trackers: frames without pose are kept, groundtruth.txt need not be there, and images
-    /// whose timestamps repeat or go back are skipped.
+    /// For trackers: frames without pose are kept, groundtruth.txt need not be there, and rows that
+    /// cannot be read or whose timestamps repeat or are out of order are skipped.
     bool forgiving = false;
     /// Otherwise colour images without a depth image are kept, too, and `depth.txt` and the files
     /// it names need not be there.

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "error.hpp"
+#include "time_order.hpp"
 
 namespace photonav {
 namespace {
@@ -53,20 +54,7 @@ Trajectory readTrajectory(const std::string& file, std::vector<InputError>* badR
 Trajectory trajectoryOf(const std::string& file, const std::vector<TextRow>& rows,
                         const std::function<StampedPose(const TextRow&)>& parse,
                         std::vector<InputError>* badRows) {
-    Trajectory trajectory;
-    for (const TextRow& row : rows) {
-        try {
-            const StampedPose pose = parse(row);
-            if (!trajectory.empty() && pose.timestamp < trajectory.back().timestamp) {
-                row.fail("timestamp is smaller than the one before");
-            }
-            trajectory.push_back(pose);
-        } catch (const InputError& error) {
-            if (!badRows) throw;
-            badRows->push_back(error);
-        }
-    }
-    if (badRows && badRows->size() > trajectory.size()) throw badRows->front();
+    Trajectory trajectory = parseInOrderOfTime(rows, parse, Repeats::kept, badRows);
     if (!trajectory.empty()) return trajectory;
     throw InputError(file, "", "no poses");
 }

@@ -2,6 +2,7 @@
 #include "view.hpp"
 
 #include <array>
+#include <numeric>
 #include <stdexcept>
 
 namespace photonav {
@@ -29,6 +30,11 @@ struct FilteredRow {
 };
 
 }  // namespace
+
+bool isBlack(const ImageF& image) {
+    const double sum = std::accumulate(image.bitmap, image.bitmap + image.getSize(), 0.);
+    return sum < 0.02 * image.getSize();
+}
 
 void applyPointSpread(View& view) {
     const unsigned width = view.intensity.getWidth();

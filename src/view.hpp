@@ -23,6 +23,9 @@ class ViewSource {
     virtual void render(const Camera& camera, const Pose& T_c_w, View& view) const = 0;
 };
 
+/// Whether a recorded image is that of a covered lens: a mean grey value below 5 of 255.
+bool isBlack(const ImageF& image);
+
 /// The camera's point spread, applied by every renderer as its last step: a 3x3 binomial filter of
 /// the intensity, so that edges are about three pixels wide and their gradients mean something.
 /// Pixels with an invalid neighbour (depth 0) keep their value, beyond the border the image goes on

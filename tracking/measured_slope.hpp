@@ -18,8 +18,8 @@ using Walk = std::function<NormalEquations(const Pose& T_away_here)>;
 /// deviation to either side along each of six directions, which gives the slope D of the image over
 /// as far as it is uncertain. An estimate that compares images by J has the information
 ///     D^T J (J^T J)^-1 J^T D / sigma^2 = (J M)^T (J M) / sigma^2,   M = (J^T J)^-1 J^T D
-/// ("sandwich": Godambe 1960, Huber 1967), along each direction at most what J says: where D is
-/// steeper, an edge happens to cross the middle of a pixel.
+/// ("sandwich": Godambe 1960, Huber 1967), in no direction more than J says: where D is steeper, an
+/// edge happens to cross the middle of a pixel.
 /// @param prior covariance of the pose, left, camera frame; none: one mean depth and one radian.
 ///        Directions that the image tells much less of are left as they are
 /// @param floors least standard deviations of the result: directions that they decide are left, too

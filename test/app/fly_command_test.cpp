@@ -203,6 +203,8 @@ TEST_F(FlyCommand, RejectsBadInput) {
     expect(fly("x", "--scale 0"), "--scale: must be a number above 0");
     expect(fly("x", "--floor -1"), "--floor: must be a number, not negative");
     expect(fly("x", "--record /proc/x"), "/proc/x: cannot be made");
+    fs::create_directories(folder_ / "old" / "rgb");
+    expect(fly("x", "--record " + at("old")), "old: holds a recording already");
     expect(fly("x", "--seed abc"), "--seed");
     expect(fly("x", "--map " + at("gone.ot")), "gone.ot");
     const auto calibration = [&](const std::string& text) {

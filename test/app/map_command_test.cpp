@@ -214,6 +214,35 @@ TEST_F(MapCommand, WithoutDepthImages) {
     EXPECT_FALSE(test::fs::exists(options.out / "comparison_0.png"));
 }
 
+TEST_F(MapCommand, DepthOfOneImageCannotBeHad) {
+    options.depth = "monocular";
+    options.frames = ":1";
+    const MapReport report = runMap(options, running);
+    EXPECT_EQ(report.exitCode, 1);
+    EXPECT_EQ(report.summary.rows[0].second,
+              "the map is empty: depth is measured from image to image, and there is only one");
+}
+
+TEST_F(MapCommand, BlackImagesTellNothingOfAMap) {
+    const auto blacken = [&](int i) {
+        cv::imwrite((data / fmt::format("rgb/{}.png", i)).string(),
+                    cv::Mat(60, 80, CV_8UC1, cv::Scalar(0)));
+    };
+    const auto full = runMap(options, running).result;
+    blacken(2);
+    const MapReport some = runMap(options, running);
+    EXPECT_EQ(some.result["frames"]["used"], 5);
+    EXPECT_EQ(some.result["frames"]["black"], 1);
+    EXPECT_EQ(some.result["frames"]["skipped"][0]["reason"], "black");
+    EXPECT_EQ(some.result["comparison"]["frames"].size(), 2U);
+    EXPECT_NEAR(some.result["comparison"]["mean"]["mean_abs_intensity"].get<double>(),
+                full["comparison"]["mean"]["mean_abs_intensity"].get<double>(), 0.01);
+    for (int i = 0; i < dataset.frames; ++i) blacken(i);
+    const MapReport none = runMap(options, running);
+    EXPECT_EQ(none.exitCode, 1);
+    EXPECT_EQ(none.summary.rows[0].second, "the map is empty: all images are black");
+}
+
 TEST_F(MapCommand, InfoSaysWhatAMapHolds) {
     const auto voxels = runMap(options, running).result["voxels"];
     const auto map = (options.out / "map.ot").string();

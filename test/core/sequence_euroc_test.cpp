@@ -73,16 +73,17 @@ TEST_F(EurocSequence, TheGroundTruthMayBeOfTheLeftCameraOrAnySensor) {
 }
 
 TEST_F(EurocSequence, SkipsWhatHasNoPartnerOrGoesBackInTime) {
-    writeText(mav / "cam0/data.csv", line(0) + line(2) + line(1) + line(2) + line(3) + line(4));
+    writeText(mav / "cam0/data.csv",
+              line(0) + line(2) + line(1) + line(2) + line(3) + line(4) + line(4));
     writeText(mav / "cam1/data.csv", line(0) + line(1) + line(2) + line(4));
     const StereoSequence sequence = read();
-    ASSERT_EQ(sequence.frames.size(), 3U);
-    EXPECT_NEAR(sequence.frames[1].timestamp, dataset.time(2), 1e-6);
+    ASSERT_EQ(sequence.frames.size(), 4U);
+    EXPECT_NEAR(sequence.frames[1].timestamp, dataset.time(1), 1e-6);
     EXPECT_EQ(sequence.frames[1].leftFile.substr(sequence.frames[1].leftFile.size() - 10),
               sequence.frames[1].rightFile.substr(sequence.frames[1].rightFile.size() - 10));
     ASSERT_EQ(sequence.skipped.size(), 3U);
-    EXPECT_EQ(sequence.skipped[0].reason, "timestamp is smaller than the one before");
-    EXPECT_EQ(sequence.skipped[1].reason, "timestamp repeats the one before");
+    EXPECT_EQ(sequence.skipped[0].reason, "line 2: timestamp is larger than the one after");
+    EXPECT_EQ(sequence.skipped[1].reason, "line 7: timestamp repeats the one before");
     EXPECT_EQ(sequence.skipped[2].reason, "no image of cam1 within 0.002 s");
 }
 

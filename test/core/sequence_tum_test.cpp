@@ -216,18 +216,23 @@ TEST_F(TumSequence, ReadsARealRecording) {
 
 TEST_F(TumSequence, ForgivingItKeepsFramesWithoutPose) {
     std::ofstream(path / "rgb.txt") << "100.0 rgb/0.png\n100.2 rgb/2.png\n100.1 rgb/1.png\n"
-                                       "100.2 rgb/2.png\n100.3 rgb/3.png\n";
+                                       "100.2 rgb/2.png\n1x0.3 rgb/3.png\n1000.3 rgb/3.png\n"
+                                       "100.3 rgb/3.png\n100.3 rgb/3.png\n100.4 rgb/4.png\n";
     writeText(path / "groundtruth.txt", "100.0 0 0 1 0 0 0 1\n");
     const Sequence sequence = read({.forgiving = true});
-    ASSERT_EQ(sequence.frames.size(), 3U);
+    ASSERT_EQ(sequence.frames.size(), 5U);
     EXPECT_TRUE(sequence.frames[0].hasPose);
     EXPECT_FALSE(sequence.frames[1].hasPose);
-    ASSERT_EQ(sequence.skipped.size(), 2U);
-    EXPECT_EQ(sequence.skipped[0].reason, "timestamp is smaller than the one before");
-    EXPECT_EQ(sequence.skipped[1].reason, "timestamp repeats the one before");
+    EXPECT_EQ(sequence.recorded, 9U);
+    ASSERT_EQ(sequence.skipped.size(), 4U);
+    EXPECT_EQ(sequence.skipped[0].file, (path / "rgb.txt").string());
+    EXPECT_NE(sequence.skipped[0].reason.find("line 5"), std::string::npos);
+    EXPECT_EQ(sequence.skipped[1].reason, "line 2: timestamp is larger than the one after");
+    EXPECT_EQ(sequence.skipped[2].reason, "line 6: timestamp is larger than the one after");
+    EXPECT_EQ(sequence.skipped[3].reason, "line 8: timestamp repeats the one before");
     test::fs::remove(path / "groundtruth.txt");
-    EXPECT_EQ(read({.forgiving = true}).frames.size(), 3U);
-    expectInputError([&] { read(); }, {"rgb.txt", "line 3", "smaller than the one before"});
+    EXPECT_EQ(read({.forgiving = true}).frames.size(), 5U);
+    expectInputError([&] { read(); }, {"rgb.txt", "line 5", "not a number"});
 }
 
 TEST_F(TumSequence, ForgivingItRejectsPosesOfAnotherTime) {

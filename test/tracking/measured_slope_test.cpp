@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <random>
 
 #include "se3.hpp"
@@ -56,13 +57,24 @@ TEST_F(MeasuredSlope, IsTheSandwich) {
     expectClose(informationOf(D), JtD.transpose() * (J.transpose() * J).inverse() * JtD);
 }
 
-/// J says something along n, where nothing changes.
+/// J says something along n, where nothing changes; what it says aside is true.
 TEST_F(MeasuredSlope, TellsNothingWhereNothingChanges) {
     const Vector6 n = (Vector6() << 1., -0.5, 0.3, 0.2, 0.1, -0.7).finished().normalized();
-    const Slope D = J * (Matrix6::Identity() - n * n.transpose());
+    const Vector6 Jn = J.transpose() * (J * n);
+    const Slope D = J * (Matrix6::Identity() - n * Jn.transpose() / n.dot(Jn));
     const Matrix6 told = informationOf(D);
-    EXPECT_LT(n.dot(told * n), 0.01 * n.dot(J.transpose() * (J * n)));
+    EXPECT_LT(n.dot(told * n), 0.01 * n.dot(Jn));
     expectClose(told, D.transpose() * D);
+}
+
+/// Two claims may be steeper together than each alone.
+TEST_F(MeasuredSlope, TellsInNoDirectionMoreThanJ) {
+    Slope D = J;
+    for (double& value : D.reshaped()) value += std::normal_distribution<double>(0., 60.)(random);
+    const Matrix6 told = informationOf(D);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(told, J.transpose() * J);
+    EXPECT_LT(solver.eigenvalues().maxCoeff(), 1. + 1e-9);
+    EXPECT_GT(solver.eigenvalues().minCoeff(), 0.1);
 }
 
 TEST_F(MeasuredSlope, StopsAtWhatJSays) { expectClose(informationOf(2. * J), J.transpose() * J); }
