@@ -140,9 +140,9 @@ void printFailure(const FlightSet& set) {
 void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::path& folder) {
     if (sets.empty()) fmt::print("no path found\n");
     if (!sets.empty()) {
-        fmt::print("{:<16} {:>9} {:>10} {:>11} {:>10} {:>10} {:>6} {:>12} {:>7} {:>11}\n",
+        fmt::print("{:<16} {:>10} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12} {:>10} {:>10}\n",
                    "planner", "arrived", "collisions", "error (rms)", "predicted", "believed",
-                   "NEES", "NEES at goal", "lost", "goal error");
+                   "NEES (median)", "NEES at goal", "lost (sum)", "goal error");
     }
     for (const FlightSet& set : sets) {
         const FlightSummary s = summarise(set);
@@ -150,12 +150,17 @@ void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::pat
             fmt::print("{:<16} {:>9}\n", set.path.planner, "not flown");
             continue;
         }
-        fmt::print(
-            "{:<16} {:>9} {:>10} {:>9.3f} m {:>8.3f} m {:>8.3f} m {:>6.2f} {:>12.2f} {:>5.1f} s "
-            "{:>9.3f} m\n",
-            set.path.planner, fmt::format("{} of {}", s.arrived, s.flights), s.collisions,
-            s.positionRmse, s.predictedSigma, s.believedSigma, s.nees, s.neesAtGoal, s.lostTime,
-            s.goalError);
+        fmt::print("{:<16} {:>10} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12.2f} {:>8.1f} s {:>10}\n",
+                   set.path.planner, fmt::format("{} of {}", s.arrived, s.flights), s.collisions,
+                   lengthText(s.positionRmse), lengthText(s.predictedSigma),
+                   lengthText(s.believedSigma),
+                   fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian), s.neesAtGoal, s.lostTime,
+                   lengthText(s.goalError));
+    }
+    if (!sets.empty() && !sets.front().flights.empty()) {
+        const FlightSummary s = summarise(sets.front());
+        fmt::print("honest at the goal: {:.2f} to {:.2f} (95 % of chi-square)\n", s.neesLow,
+                   s.neesHigh);
     }
     if (!sets.empty()) printFailure(sets.front());
     fmt::print("report: {}\n", (folder / "report.html").string());

@@ -128,6 +128,20 @@ void drawErrorLegend(Canvas& canvas, const Frame& frame, const std::string& name
     words("their rms");
 }
 
+/// Where 95 % of honest means lie, one sample of every flight to a bin.
+void drawHonestBand(const Plot& plot, const std::vector<FlightSet>& sets) {
+    const double degrees = 6. * static_cast<double>(sets.front().flights.size());
+    if (degrees < 1.) return;
+    const auto clipped = plot.canvas.clip(plot.frame);
+    const double low = chiSquareQuantile(degrees, -1.96) / degrees;
+    const double high = chiSquareQuantile(degrees, 1.96) / degrees;
+    plot.canvas.translucent(0.2, [&] {
+        plot.canvas.fill({plot.at(0., low), plot.at(plot.x.max, low), plot.at(plot.x.max, high),
+                          plot.at(0., high)},
+                         kAxisColor);
+    });
+}
+
 }  // namespace
 
 Png drawErrorBands(const std::vector<FlightSet>& sets) {
@@ -166,6 +180,7 @@ Png drawNees(const std::vector<FlightSet>& sets) {
                     {0., longest(sets), false, "way along the plan [m]"},
                     {least / 1.2, most * 1.2, true, "NEES per degree of freedom"}};
     plot.drawGrid();
+    drawHonestBand(plot, sets);
     canvas.line(plot.at(0., 1.), plot.at(plot.x.max, 1.), kAxisColor, 2.);
     {
         const auto clipped = canvas.clip(frame);
@@ -180,11 +195,13 @@ Png drawNees(const std::vector<FlightSet>& sets) {
         canvas.text(name, at + Canvas::Point(42., 0.), Align::left, kInk);
         at.x() += 80. + Canvas::textWidth(name);
     }
+    drawSwatch(canvas, at, 0.2, kAxisColor);
+    canvas.text("95 % of honest means", at + Canvas::Point(42., 0.), Align::left, kInk);
     return canvas.png();
 }
 
 DrawnTree drawnFlights(const FlightSet& set, const Color& color) {
-    const auto darker = [](std::uint8_t level) { return static_cast<std::uint8_t>(level * 2 / 5); };
+    const auto darker = [](std::uint8_t level) { return static_cast<std::uint8_t>(level * 3 / 5); };
     const Color dark{darker(color.red), darker(color.green), darker(color.blue)};
     DrawnTree lines{"flights, " + set.path.planner, dark, {}, true};
     for (const FlightResult& flight : set.flights) {

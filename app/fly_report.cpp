@@ -42,6 +42,7 @@ json jsonOf(const FlightSet& set) {
                 {"within_predicted_3_sigma", finiteOrNull(s.within3Sigma)},
                 {"believed_sigma_m", finiteOrNull(s.believedSigma)},
                 {"nees_per_dof", finiteOrNull(s.nees)},
+                {"nees_median_flight_per_dof", finiteOrNull(s.neesMedian)},
                 {"nees_at_goal_per_dof", finiteOrNull(s.neesAtGoal)},
                 {"nees_at_goal_bounds", {finiteOrNull(s.neesLow), finiteOrNull(s.neesHigh)}},
                 {"lost_s", s.lostTime},
@@ -58,7 +59,6 @@ json jsonOf(const FlightSet& set) {
 
 ReportTable tableOf(const FlightSet& set) {
     const FlightSummary s = summarise(set);
-    const auto metres = [](double value) { return fmt::format("{:.3f} m", value); };
     ReportTable table{"Flights of " + set.path.planner, {}};
     if (s.flights == 0) {
         table.rows = {{"flown", "not once"}};
@@ -69,20 +69,22 @@ ReportTable tableOf(const FlightSet& set) {
         {"believed to be there, but elsewhere", fmt::format("{}", s.astray)},
         {"collisions", fmt::format("{}", s.collisions)},
         {"gave up lost / out of time", fmt::format("{} / {}", s.lost, s.outOfTime)},
-        {"position error, root mean square", metres(s.positionRmse)},
-        {"predicted by the plan", metres(s.predictedSigma)},
+        {"position error, root mean square", lengthText(s.positionRmse)},
+        {"predicted by the plan", lengthText(s.predictedSigma)},
         {"errors within 3 predicted sigma", fmt::format("{:.1f} %", 100. * s.within3Sigma)},
-        {"believed in flight", metres(s.believedSigma)},
-        {"NEES per degree of freedom (1: honest)", fmt::format("{:.2f}", s.nees)},
+        {"believed in flight", lengthText(s.believedSigma)},
+        {"NEES per degree of freedom (1: honest), mean and median flight",
+         fmt::format("{:.2f}, {:.2f}", s.nees, s.neesMedian)},
         {"the same at the goal (95 % of honest cases)",
          fmt::format("{:.2f} ({:.2f} to {:.2f})", s.neesAtGoal, s.neesLow, s.neesHigh)},
-        {"true distance to the goal at the end, median", metres(s.goalError)},
+        {"true distance to the goal at the end, median", lengthText(s.goalError)},
         {"time without tracking, all flights", fmt::format("{:.1f} s", s.lostTime)},
         {"duration, mean", fmt::format("{:.1f} s", s.duration)}};
     if (s.photometric > 0) {
-        table.rows.emplace_back("last centimetres on the goal's image",
-                                fmt::format("{} flights, {:.3f} to {:.3f} m", s.photometric,
-                                            s.photometricBefore, s.photometricAfter));
+        table.rows.emplace_back(
+            "last centimetres on the goal's image",
+            fmt::format("{} flights, {} to {}", s.photometric, lengthText(s.photometricBefore),
+                        lengthText(s.photometricAfter)));
     }
     return table;
 }

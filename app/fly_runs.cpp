@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fly_runs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -95,6 +97,11 @@ PositionError positionError(const FlightSample& sample, const std::vector<Planne
             .predicted = predictedSigma(plan, sample.distance)};
 }
 
+std::string lengthText(double metres) {
+    return std::abs(metres) < 0.1 ? fmt::format("{:.3g} mm", 1e3 * metres)
+                                  : fmt::format("{:.3f} m", metres);
+}
+
 double neesPerDof(const FlightSample& sample) {
     const Vector6 e = deviation(sample.T_c_w, sample.belief.mean);
     return e.dot(transported(sample.belief.covariance, e).ldlt().solve(e)) / 6.;
@@ -118,9 +125,12 @@ FlightSummary summarise(const FlightSet& set) {
     countEnds(set.flights, s);
     judgeExposures(set, s);
     s.neesAtGoal = 0.;
+    std::vector<double> nees;
     for (const FlightResult& flight : set.flights) {
+        nees.push_back(neesPerDof(flight));
         s.neesAtGoal += neesPerDof(flight.samples.back()) / static_cast<double>(s.flights);
     }
+    s.neesMedian = median(nees, FlightSummary::kNone);
     const double degrees = 6. * static_cast<double>(s.flights);
     s.neesLow = chiSquareQuantile(degrees, -1.96) / degrees;
     s.neesHigh = chiSquareQuantile(degrees, 1.96) / degrees;

@@ -27,6 +27,9 @@ struct FlightSet {
 };
 
 /// Error of a believed position and what was predicted and believed of it.
+/// "0.537 m", "3.75 mm".
+std::string lengthText(double metres);
+
 struct PositionError {
     double distance = 0.;   ///< along the plan [m]
     double error = 0.;      ///< of the believed against the true position [m]
@@ -51,6 +54,7 @@ struct FlightSummary {
     double within3Sigma = kNone;   ///< share of the exposures with an error within 3 predicted ones
     double believedSigma = kNone;  ///< root mean square over the same [m]
     double nees = kNone;           ///< per degree of freedom, mean over all exposures
+    double neesMedian = kNone;     ///< the median flight's: a mean may be that of one misled flight
     double neesAtGoal = kNone;     ///< per degree of freedom, mean over the flights' ends
     /// Within which neesAtGoal lies in 95 % of honest cases: chi-square with 6 degrees of freedom
     /// for every flight.

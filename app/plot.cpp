@@ -38,18 +38,23 @@ std::vector<Tick> shortLogTicks(const Axis& axis, int wanted) {
     return ticks;
 }
 
+std::string logLabel(int digit, int decade, bool isPlain) {
+    if (isPlain) return fmt::format("{:g}", digit * std::pow(10.0, decade));
+    return digit == 1 ? fmt::format("10^{}", decade) : fmt::format("{}x10^{}", digit, decade);
+}
+
 std::vector<Tick> logTicks(const Axis& axis, int wanted) {
     const int first = static_cast<int>(std::floor(std::log10(axis.min) + 1e-9));
     const int last = static_cast<int>(std::floor(std::log10(axis.max) + 1e-9));
     const int stride = 1 + (last - first) / 9;
+    const bool isPlain = first >= -2 && last <= 2;
     std::vector<Tick> ticks;
     for (int decade = first; decade <= last; decade += stride)
         for (const int digit : {1, 2, 5}) {
             const double value = digit * std::pow(10.0, decade);
             const bool crowded = digit > 1 && last - first > 2;
             if (crowded || value < axis.min * 0.999 || value > axis.max * 1.001) continue;
-            ticks.push_back({value, digit == 1 ? fmt::format("10^{}", decade)
-                                               : fmt::format("{}x10^{}", digit, decade)});
+            ticks.push_back({value, logLabel(digit, decade, isPlain)});
         }
     return ticks.size() < 2 ? shortLogTicks(axis, wanted) : ticks;
 }

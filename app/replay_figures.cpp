@@ -192,17 +192,23 @@ Png drawReplayErrors(const std::string& title, const ReplayRun& run, const Repla
 
 Png drawStrips(const std::vector<ReplayStrip>& strips) {
     if (strips.empty()) throw std::invalid_argument("drawStrips: no strips");
-    constexpr double kPicture = 320., kGap = 8., kHead = 30.;
+    constexpr double kPicture = 320., kGap = 8., kHead = 30., kTitles = 26.;
     constexpr double kFullResidual = 0.25;  // grey values
     const ImageF& shape = strips[0].observed.intensity;
     const double height = kPicture * shape.getHeight() / shape.getWidth();
-    Canvas canvas(3. * kPicture + 4. * kGap, double(strips.size()) * (height + kHead) + kGap);
+    Canvas canvas(3. * kPicture + 4. * kGap,
+                  kTitles + double(strips.size()) * (height + kHead) + kGap);
     const auto grey = [](float value) {
         const auto g = static_cast<std::uint8_t>(std::lround(255. * std::clamp(value, 0.F, 1.F)));
         return Color{g, g, g};
     };
     const auto colors = viridis();
-    double y = 0.;
+    double titleX = kGap;
+    for (const char* title : {"observed", "predicted", "difference"}) {
+        canvas.text(title, {titleX, kTitles - 6.}, Align::left, kInk, 18.);
+        titleX += kPicture + kGap;
+    }
+    double y = kTitles;
     for (const auto& [caption, observed, predicted] : strips) {
         const unsigned size = observed.intensity.getSize();
         std::vector<Color> left(size), middle(size, kNoColor), right(size, kNoColor);

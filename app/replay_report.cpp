@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "figures.hpp"
 #include "plan_report.hpp"
@@ -24,8 +26,7 @@ std::string number(const json& value, double factor, const char* format,
     return fmt::format(fmt::runtime(format), factor * value.get<double>());
 }
 
-std::string relative(const json& rpe, bool isJudged) {
-    if (!isJudged) return "not known";
+std::string relative(const json& rpe) {
     if (!rpe.is_object()) return "recording too short";
     return fmt::format("{:.2f} mm, {:.3f} deg (rms of {})",
                        1e3 * rpe["translation_m"].get<double>(), rpe["rotation_deg"].get<double>(),
@@ -141,14 +142,34 @@ std::vector<NamedFigure> figuresOf(bool odometry, const ReplayRun& run, const Re
     return figures;
 }
 
+using TableRows = std::vector<std::pair<std::string, std::string>>;
+
+TableRows errorRows(const json& result) {
+    if (result["judged"] == 0) return {{"errors", "not known: no tracked image has a true pose"}};
+    const auto& rpe = result["rpe"];
+    const bool isLaidLater = result["laid_on_frame"].is_number() && result["laid_on_frame"] > 0;
+    const std::string nees =
+        result["nees_per_dof"].is_number()
+            ? fmt::format("{:.3g}, {:.3g}", result["nees_per_dof"].get<double>(),
+                          result["nees_median_per_dof"].get<double>())
+        : isLaidLater ? "not known: no true pose where it begins (--frames)"
+                      : "not known";
+    const std::string aligned = result["ate_alignment"] == "none" ? "not aligned" : "SE(3) aligned";
+    return {{fmt::format("absolute error ({}), rms", aligned),
+             number(result["ate_rmse_m"], 1e3, "{:.2f} mm")},
+            {"the same, largest", number(result["ate_max_m"], 1e3, "{:.2f} mm")},
+            {"absolute error of orientation, rms",
+             number(result["ate_rotation_rmse_deg"], 1., "{:.3f} deg")},
+            {"relative error over a frame", relative(rpe["frame"])},
+            {"relative error over a second", relative(rpe["second"])},
+            {"relative error over a metre", relative(rpe["metre"])},
+            {"NEES per dof (1: honest), mean, median", nees}};
+}
+
 }  // namespace
 
 ReportTable replaySummary(const json& result) {
-    const auto& rpe = result["rpe"];
-    const bool isJudged = result["judged"] > 0;
-    const bool isLaidLater = result["nees_per_dof"].is_null() &&
-                             result["laid_on_frame"].is_number() && result["laid_on_frame"] > 0;
-    const std::string aligned = result["ate_alignment"] == "none" ? "not aligned" : "SE(3) aligned";
+    const bool isStereo = result["dataset"]["layout"] == "EuRoC";
     ReportTable table{"Replay", {}};
     table.rows = {
         {"verdict", result["verdict"].get<std::string>()},
@@ -157,22 +178,15 @@ ReportTable replaySummary(const json& result) {
                      result["unreadable"].dump())},
         {"skipped, gaps in time",
          fmt::format("{}, {}", result["skipped"].size(), result["gaps"].size())},
-        {fmt::format("absolute error ({}), rms", aligned),
-         number(result["ate_rmse_m"], 1e3, "{:.2f} mm")},
-        {"the same, largest", number(result["ate_max_m"], 1e3, "{:.2f} mm")},
-        {"absolute error of orientation, rms",
-         number(result["ate_rotation_rmse_deg"], 1., "{:.3f} deg")},
-        {"relative error over a frame", relative(rpe["frame"], isJudged)},
-        {"relative error over a second", relative(rpe["second"], isJudged)},
-        {"relative error over a metre", relative(rpe["metre"], isJudged)},
-        {"NEES per degree of freedom (honest: 1)",
-         number(result["nees_per_dof"], 1., "{:.3g}",
-                isLaidLater ? "not known: no true pose where it begins (--frames)" : "not known")},
-        {result["dataset"]["layout"] == "EuRoC" ? "pixels with depth from stereo"
-                                                : "pixels with recorded depth",
-         number(result["depth_density"], 100., "{:.1f} %", "none")},
-        {"tracking", number(result["fps"], 1., "{:.0f} frames/s", "nothing tracked")},
     };
+    for (auto& row : errorRows(result)) table.rows.push_back(std::move(row));
+    table.rows.emplace_back(
+        isStereo ? "pixels with depth from stereo" : "pixels with recorded depth",
+        number(result["depth_density"], 100., "{:.1f} %", "none"));
+    table.rows.emplace_back(
+        isStereo ? "tracking; with reading images and stereo" : "tracking; with reading images",
+        number(result["fps"], 1., "{:.0f} frames/s; ", "nothing tracked; ") +
+            number(result["fps_with_reading"], 1., "{:.0f} frames/s", "none"));
     if (result.contains("calibration")) {
         const json& c = result["calibration"];
         table.rows.emplace_back("calibrated", c.is_null()

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "atomic_file.hpp"
 #include "command_io.hpp"
+#include "median.hpp"
 
 namespace photonav {
 namespace {
@@ -52,15 +55,20 @@ json summaryJson(const PoseErrors& errors) {
             {"p90_rotation_deg", kDegrees * r.p90}};
 }
 
-json neesJson(const ReplayErrors& errors) {
-    double sum = 0.;
-    double n = 0.;
+std::vector<double> neesOf(const ReplayErrors& errors) {
+    std::vector<double> all;
     for (const JudgedFrame& frame : errors.judged) {
-        if (!frame.nees) continue;
-        sum += *frame.nees;
-        ++n;
+        if (frame.nees) all.push_back(*frame.nees);
     }
-    return n > 0. ? finiteOrNull(sum / n) : json(nullptr);
+    return all;
+}
+
+double meanOf(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
+}
+
+json framesPerSecond(double frames, double seconds) {
+    return seconds > 0. ? json(frames / seconds) : json(nullptr);
 }
 
 /// Mean share of the pixels with depth, of the images that could be read.
@@ -260,6 +268,7 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
     const auto lost = count(run, FrameStatus::lost);
     const ErrorSummary absolute = summarise(errors.absolute.translation);
     const bool judged = !errors.judged.empty();
+    const std::vector<double> nees = neesOf(errors);
     const auto keyframes = std::count_if(run.frames.begin(), run.frames.end(),
                                          [](const auto& f) { return f.tracked.isKeyframe; });
     return {{"verdict", verdictOf(run, !aligned)},
@@ -283,9 +292,12 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
              {{"frame", summaryJson(errors.perFrame)},
               {"second", summaryJson(errors.perSecond)},
               {"metre", summaryJson(errors.perMetre)}}},
-            {"nees_per_dof", neesJson(errors)},
-            {"fps", run.trackSeconds > 0. ? json(double(tracked + lost) / run.trackSeconds)
-                                          : json(nullptr)},
+            {"nees_per_dof", finiteOrNull(meanOf(nees))},
+            {"nees_median_per_dof",
+             finiteOrNull(median(nees, std::numeric_limits<double>::quiet_NaN()))},
+            {"fps", framesPerSecond(double(tracked + lost), run.trackSeconds)},
+            {"fps_with_reading",
+             framesPerSecond(double(tracked + lost), run.trackSeconds + run.loadSeconds)},
             {"depth_density", densityJson(run)},
             {"skipped", skippedJson(source, run)},
             {"covariance_frame",
