@@ -20,6 +20,7 @@ namespace {
 
 /// A real camera's images are worth less than planned with: what vignetting does to them is alike
 /// in all images of a place (docs/fly.md).
+constexpr std::uint64_t kSeedInMaps = 1'000'003;
 constexpr double kRealCamera = 0.25;  // of camera.information_scale
 
 /// How images are aligned: as they were planned with, or as those of a real camera.
@@ -35,6 +36,7 @@ AlignmentOptions flightAlignment(const Config& config, double resolution) {
         fly.scale.value_or((isReal ? kRealCamera : 1.) * config.photometric.scale);
     alignment.trust.floorTranslation = fly.floorTranslation.value_or(real.trust.floorTranslation);
     alignment.trust.floorRotation = fly.floorRotation.value_or(real.trust.floorRotation);
+    alignment.modelNoise = real.modelNoise;
     if (isReal) alignment.exposure = real.exposure;
     return alignment;
 }
@@ -57,7 +59,8 @@ FlightOptions flightOptions(const Config& config, double resolution) {
     flight.photometricGoal = fly.photometricGoal;
     flight.bodyRadius = fly.bodyRadius > 0. ? fly.bodyRadius : 0.5 * config.robotRadius;
     flight.arrivalTolerance = std::max(config.robotRadius, 0.1);
-    flight.seed = config.seed;
+    // A map may be made of flight 0: its noise must not be that of the images flown by it.
+    flight.seed = config.seed + (fly.map.empty() ? 0 : kSeedInMaps);
     return flight;
 }
 

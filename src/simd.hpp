@@ -46,6 +46,13 @@ inline Float ramp() {
     return lanes;
 }
 
+/// Over the lanes, in double precision.
+inline double sum(const Float& a) {
+    double total = 0.;
+    for (int i = 0; i < kWidth; ++i) total += a[i];
+    return total;
+}
+
 /// For |a| < 2^31; any number else (lanes that do not count may hold anything).
 inline Int floor(const Float& a) {
     using Unsigned [[gnu::vector_size(kWidth * 4)]] = std::uint32_t;  // wraps

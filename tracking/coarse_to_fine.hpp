@@ -13,6 +13,7 @@ struct AlignmentOptions {
     /// `stride` must be 1.
     PhotometricOptions photometric;
     TrustOptions trust;
+    ModelNoise modelNoise = ModelNoise::none;  ///< of a model that can be rendered
     RobustWeight robust = RobustWeight::none;
     /// Estimate gain and offset of the observed image as well, with this prior (by default: none).
     std::optional<ExposurePrior> exposure;

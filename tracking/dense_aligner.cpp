@@ -16,8 +16,10 @@ class DenseAligner::RenderedModel : public Comparison {
         : options_(options), model_(model) {
         Camera c = full;
         for (int l = 0; l < std::max(1, options.levels); ++l) {
-            const ViewComparison compare(c, options.photometric);
-            levels_.push_back({c, compare, compare, {}});
+            levels_.push_back({c,
+                               ViewComparison(c, options.photometric, options.modelNoise),
+                               ViewComparison(c, options.photometric),
+                               {}});
             c = halved(c);
             if (std::min(c.width, c.height) < kLeastSide) break;
         }

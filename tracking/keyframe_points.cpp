@@ -19,8 +19,6 @@ using simd::kWidth;
 constexpr std::size_t kChunk = 32;       ///< vectors whose products are summed together
 constexpr std::size_t kSampleEvery = 4;  ///< chunks per chunk of residuals kept
 constexpr std::size_t kNoiseEvery = 16;  ///< points per point that the noise is reckoned from
-constexpr double kLeastNoise = 1e-8;     ///< of a gradient's variance, to divide by
-constexpr double kNoiseMargin = 1.2;     ///< for its chance, that pure noise says nothing at all
 
 double square(double x) { return x * x; }
 
@@ -111,22 +109,6 @@ ImageF halvedDepth(const ImageF& depth, float spread) {
     return half;
 }
 
-/// Takes what the keyframe's noise adds out of the equations. With gradients g + n, b = A^T r is
-/// about (A - N) xi, and its covariance is A: of the estimate (A - N)^-1 b the information is
-/// (A - N) A^-1 (A - N). In the basis where N = 1 and A = diag(mu) this scales both equations by
-/// 1 - 1/mu; directions with mu < 1 say nothing.
-void takeOutNoise(NormalEquations& e, const Matrix6& noise) {
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(e.AtA.topLeftCorner<6, 6>(),
-                                                                   noise);
-    const Vector6 kept = 1. - solver.eigenvalues().array().max(1.).inverse();
-    if (!kept.allFinite()) return;  // fewer points than unknowns
-    Matrix8 D = Matrix8::Identity();
-    D.topLeftCorner<6, 6>() =
-        solver.eigenvectors() * kept.asDiagonal() * solver.eigenvectors().transpose() * noise;
-    e.AtA = D.transpose() * e.AtA * D;
-    e.Atr = D.transpose() * e.Atr;
-}
-
 /// What is known of an image row before the choice is made; column u at index u.
 struct PointSet::Row {
     std::vector<float> inverseDepth, gx, gy;
@@ -188,7 +170,7 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
     for (auto* field : {&x_, &y_, &w_, &intensity_, &gx_, &gy_}) field->resize(padded);
     std::fill(x_.begin() + static_cast<std::ptrdiff_t>(size_), x_.end(), 1e6F);
     std::fill(w_.begin() + static_cast<std::ptrdiff_t>(size_), w_.end(), 0.F);
-    averageMotion();
+    for (std::size_t i = 0; i < size_; i += kNoiseEvery) noise_.add(x_[i], y_[i], w_[i]);
 }
 
 /// Every pixel is written, and the next goes over it unless it is used: no branch to predict.
@@ -206,29 +188,6 @@ void PointSet::append(const Row& row, unsigned width) {
         n += static_cast<std::size_t>(row.used[u]);
     }
     size_ = n;
-}
-
-/// With (du, dv) = D xi the motion of a point in the image, in units of the focal length and with
-/// the signs of compare(): the means of D's rows squared. Times the variance of a gradient, this is
-/// its noise's share of AtA.
-void PointSet::averageMotion() {
-    double points = 0.;
-    for (std::size_t i = 0; i < size_; i += kNoiseEvery, ++points) {
-        const double x = x_[i], y = y_[i], w = w_[i];
-        const Vector6 du{{w, 0., x * w, x * y, x * x + 1., -y}};
-        const Vector6 dv{{0., w, y * w, y * y + 1., x * y, x}};
-        meanOfX_ += du * du.transpose();
-        meanOfY_ += dv * dv.transpose();
-    }
-    meanOfX_ /= std::max(1., points);
-    meanOfY_ /= std::max(1., points);
-}
-
-/// Of the noise of one component of the gradients, from sums over the points.
-double PointSet::variance(const Float& notShared, double count) const {
-    double sum = 0.;
-    for (int i = 0; i < kWidth; ++i) sum += notShared[i];
-    return kNoiseMargin * std::clamp(sum / count, kLeastNoise, mostNoise_);
 }
 
 NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
@@ -286,12 +245,7 @@ NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
     unit.head<6>() *= -exposure.gain * 0.5 * camera_.fx();
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
-    if (equations.count > 0.) {
-        const auto scale = unit.head<6>().asDiagonal();
-        const Matrix6 perPoint = variance(noiseX, equations.count) * meanOfX_ +
-                                 variance(noiseY, equations.count) * meanOfY_;
-        takeOutNoise(equations, equations.AtA(7, 7) * (scale * perPoint * scale));
-    }
+    noise_.takeOut(equations, {simd::sum(noiseX), simd::sum(noiseY)}, mostNoise_, unit.head<6>());
     return equations;
 }
 

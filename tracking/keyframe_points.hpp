@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "gradient_noise.hpp"
 #include "keyframe_model.hpp"
 #include "simd.hpp"
 
@@ -38,14 +39,12 @@ class PointSet {
   private:
     struct Row;
     void append(const Row& row, unsigned width);
-    void averageMotion();
-    double variance(const simd::Float& notShared, double count) const;
 
     Camera camera_;
     std::size_t size_ = 0;
     double meanInverseDepth_ = 0.;
     double mostNoise_;  ///< variance of gx and of gy, if they were of white noise
-    Matrix6 meanOfX_ = Matrix6::Zero(), meanOfY_ = Matrix6::Zero();
+    GradientNoise noise_;
     /// Structure of arrays, padded to whole vectors with points that are never in view: normalised
     /// coordinates, inverse depth [1/m], grey value, gradient as J has it (per pixel / 2).
     std::vector<float> x_, y_, w_, intensity_, gx_, gy_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "gradient_noise.hpp"
 #include "product_sums.hpp"
 #include "simd.hpp"
 
@@ -63,8 +64,9 @@ double robustSigmaOf(const std::vector<float>& residuals) {
     return 1.4826 * (static_cast<double>(bin) + inBin) * 2. / kBins;
 }
 
-ViewComparison::ViewComparison(const Camera& camera, const PhotometricOptions& photometric)
-    : camera_(camera), photometric_(photometric) {
+ViewComparison::ViewComparison(const Camera& camera, const PhotometricOptions& photometric,
+                               ModelNoise noise)
+    : camera_(camera), photometric_(photometric), noise_(noise) {
     if (photometric.stride != 1) {
         throw std::invalid_argument("alignment: uses every pixel, stride must be 1");
     }
@@ -108,6 +110,20 @@ void ViewComparison::load(const View& predicted, const ImageF& observed) {
     meanInverseDepth_ = surfaces > 0 ? sum / static_cast<double>(surfaces) : 0.;
 }
 
+/// Of the pixels that counted in the last comparison, a sixteenth.
+GradientNoise ViewComparison::pointsSeen() const {
+    GradientNoise noise;
+    for (unsigned v = 1; v + 1 < camera_.height; v += 4) {
+        for (unsigned u = 1; u + 1 < camera_.width; u += 4) {
+            const std::size_t i = v * pitch_ + u;
+            if (residual_[i] == kUnused) continue;
+            noise.add((u - camera_.cx()) / camera_.fx(), (v - camera_.cy()) / camera_.fy(),
+                      inverseDepth_[i]);
+        }
+    }
+    return noise;
+}
+
 NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& observed,
                                            const Exposure& exposure, const Loss& loss) {
     load(predicted, observed);
@@ -120,6 +136,8 @@ NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& 
     const float perColumn = static_cast<float>(1. / camera_.fx());
 
     ProductSums sums(loss, pitch_ / kWidth);
+    Float notSharedX{}, notSharedY{};
+    const bool isNoisy = noise_ == ModelNoise::measured;
     for (unsigned v = 1; v + 1 < camera_.height; ++v) {
         const auto y = static_cast<float>((v - camera_.cy()) / camera_.fy());
         sums.beginRow();
@@ -136,6 +154,12 @@ NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& 
                      : simd::splat(0.F);
             const Float x = (simd::ramp() + (static_cast<float>(u - camera_.cx()))) * perColumn;
             const Float s = x * gx + y * gy;
+            if (isNoisy) {
+                const Float du = at(observed_, i + 1) - at(observed_, i - 1);
+                const Float dv = at(observed_, i + pitch_) - at(observed_, i - pitch_);
+                notSharedX += gx * (gx - du / gain);
+                notSharedY += gy * (gy - aspect * dv / gain);
+            }
             simd::store(&residual_[i], used ? r : simd::splat(kUnused));
             sums.add({gx * w, gy * w, s * w, y * s + gy, x * s + gx, x * gy - y * gx, I}, r, used);
         }
@@ -147,6 +171,11 @@ NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& 
     unit.head<6>() *= -exposure.gain * 0.5 * camera_.fx();
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
+    if (isNoisy) {
+        const double most = 2. * photometric_.sigma * photometric_.sigma;
+        pointsSeen().takeOut(equations, {simd::sum(notSharedX), simd::sum(notSharedY)}, most,
+                             unit.head<6>());
+    }
     return equations;
 }
 

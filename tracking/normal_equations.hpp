@@ -43,13 +43,20 @@ struct NormalEquations {
     double meanInverseDepth = 0.;  ///< over the surfaces in view [1/m]; 0: none
 };
 
+class GradientNoise;
+
+/// Whether the prediction has noise of its own, whose gradients are to be taken out
+/// (GradientNoise).
+enum class ModelNoise { none, measured };
+
 /// Compares a predicted view with an observed image, pixel by pixel at the same place. The gradient
-/// is that of the noise-free prediction; which pixels count is decided by the prediction alone, by
+/// is that of the prediction; which pixels count is decided by the prediction alone, by
 /// the rules of photometricInformation(), whose Lambda this is (times sigma^2, without weights).
 /// `photometric.stride` must be 1.
 class ViewComparison {
   public:
-    ViewComparison(const Camera& camera, const PhotometricOptions& photometric);
+    ViewComparison(const Camera& camera, const PhotometricOptions& photometric,
+                   ModelNoise noise = ModelNoise::none);
 
     /// @throws std::invalid_argument when the images and the camera differ in size
     NormalEquations operator()(const View& predicted, const ImageF& observed,
@@ -60,9 +67,11 @@ class ViewComparison {
 
   private:
     void load(const View& predicted, const ImageF& observed);
+    GradientNoise pointsSeen() const;
 
     Camera camera_;
     PhotometricOptions photometric_;
+    ModelNoise noise_;
     std::size_t pitch_;  ///< of the padded copies: a column before and whole vectors after
     std::vector<float> intensity_, inverseDepth_, observed_;
     std::vector<float> residual_;  ///< kUnused where a pixel does not count
