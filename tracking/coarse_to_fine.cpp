@@ -16,7 +16,8 @@ namespace {
 constexpr double kLeastDamping = 1e-3;
 constexpr double kMostDamping = 1e4;
 constexpr int kMeasurements = 3;  // of the slope, each where the last one led
-/// Which pixels count changes from pose to pose, and with it the cost by more than small steps do.
+/// Which pixels count changes from pose to pose, and with it the cost by more than small steps do,
+/// those by J M, which do not quite follow its gradient, included.
 constexpr double kCostNoise = 1e-3;
 
 /// A pose on trial, and what the image says there.
