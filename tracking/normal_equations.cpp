@@ -14,6 +14,8 @@ namespace photonav {
 
 namespace {
 
+constexpr double kMostNoise = 0.25;  // variance of a gradient of noise [that of the image's noise]
+
 using simd::Float;
 using simd::Int;
 using simd::kWidth;
@@ -172,7 +174,9 @@ NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& 
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
     if (isNoisy) {
-        const double most = 2. * photometric_.sigma * photometric_.sigma;
+        // A map's grey values are means of many; where map and image do not fit for other reasons,
+        // as cells do not, that must not pass for noise.
+        const double most = kMostNoise * photometric_.sigma * photometric_.sigma;
         pointsSeen().takeOut(equations, {simd::sum(notSharedX), simd::sum(notSharedY)}, most,
                              unit.head<6>());
     }

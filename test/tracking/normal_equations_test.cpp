@@ -79,7 +79,7 @@ TEST(NormalEquations, NoiseOfAModelTellsNothing) {
     View wall = viewAt(kViewpoint);
     wall.intensity = ImageF(tinyCamera().height, tinyCamera().width, 0.5F);
     const ImageF observed = test::noisy(wall.intensity, 0.02, random);
-    const View model = asMapped(wall, 0.01, random);
+    const View model = asMapped(wall, 0.005, random);
     const double exact = traceOf(model, observed, ModelNoise::none);
     EXPECT_LT(traceOf(model, observed, ModelNoise::measured), 0.02 * exact);
     // The same noise in both cannot be told from texture: maps and images must not share it.
@@ -91,9 +91,9 @@ TEST(NormalEquations, TextureOfANoisyModelTellsWhatItWould) {
     const View view = viewAt(kViewpoint);
     const ImageF observed = test::noisy(view.intensity, 0.02, random);
     const double clean = traceOf(view, observed, ModelNoise::none);
-    const View model = asMapped(view, 0.02, random);
-    EXPECT_GT(traceOf(model, observed, ModelNoise::none), 1.2 * clean);
-    EXPECT_LT(traceOf(model, observed, ModelNoise::measured), 1.05 * clean);
+    const View model = asMapped(view, 0.006, random);
+    EXPECT_GT(traceOf(model, observed, ModelNoise::none), 1.02 * clean);
+    EXPECT_LT(traceOf(model, observed, ModelNoise::measured), clean);
     EXPECT_GT(traceOf(model, observed, ModelNoise::measured), 0.6 * clean);
 }
 
