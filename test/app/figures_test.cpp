@@ -169,7 +169,7 @@ TEST(Plot, TicksAreRoundAndInside) {
     };
     EXPECT_EQ(labels({0.0, 10.0}, 5), "0 2 4 6 8 10 ");
     EXPECT_EQ(labels({-0.05, 0.17}, 4), "-0.05 0.00 0.05 0.10 0.15 ");
-    EXPECT_EQ(labels({0.02, 3.0, true}, 5), "2x10^-2 5x10^-2 10^-1 2x10^-1 5x10^-1 10^0 2x10^0 ");
+    EXPECT_EQ(labels({0.02, 3.0, true}, 5), "0.02 0.05 0.1 0.2 0.5 1 2 ");
     EXPECT_EQ(labels({1e-6, 1.0, true}, 5), "10^-6 10^-5 10^-4 10^-3 10^-2 10^-1 10^0 ");
     EXPECT_EQ(labels({3.1e-4, 4.2e-4, true}, 3), "3.5x10^-4 4x10^-4 ");
     EXPECT_EQ(labels({0.21, 0.42, true}, 4), "0.25 0.30 0.35 0.40 ");
