@@ -36,7 +36,8 @@ AlignmentOptions flightAlignment(const Config& config, double resolution) {
         fly.scale.value_or((isReal ? kRealCamera : 1.) * config.photometric.scale);
     alignment.trust.floorTranslation = fly.floorTranslation.value_or(real.trust.floorTranslation);
     alignment.trust.floorRotation = fly.floorRotation.value_or(real.trust.floorRotation);
-    alignment.modelNoise = real.modelNoise;
+    // Odometry carries what the map's noise leaves open; replays without it would drift there.
+    if (resolution > 0.) alignment.modelNoise = ModelNoise::measured;
     if (isReal) alignment.exposure = real.exposure;
     return alignment;
 }

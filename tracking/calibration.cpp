@@ -137,7 +137,6 @@ AlignmentOptions realCameraOptions(double resolution) {
     const double floor = 0.015 * std::pow(resolution / 0.05, 1.3);
     options.trust.floorTranslation = floor;
     options.trust.floorRotation = 0.5 * floor;
-    if (resolution > 0.) options.modelNoise = ModelNoise::measured;
     return options;
 }
 
