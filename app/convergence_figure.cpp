@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "median.hpp"
+#include "averages.hpp"
 
 namespace photonav {
 namespace {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "atomic_file.hpp"
+#include "averages.hpp"
 #include "command_io.hpp"
 #include "error.hpp"
 #include "map_comparison.hpp"
 #include "map_report.hpp"
-#include "median.hpp"
 #include "monocular_fusion.hpp"
 #include "octree_file.hpp"
 #include "sequence_euroc.hpp"

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "averages.hpp"
 #include "canvas.hpp"
-#include "median.hpp"
 
 namespace photonav {
 namespace {

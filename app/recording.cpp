@@ -9,6 +9,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "averages.hpp"
 #include "error.hpp"
 #include "floor_plane.hpp"
 #include "sequence_tum.hpp"
@@ -66,13 +67,11 @@ Eigen::Vector3d upByFloor(const Sequence& sequence) {
     for (const auto& frame : sequence.frames) {
         roughUp -= frame.T_c_w.linear().row(1).transpose();
     }
-    Seen seen = pointsBelow(sequence, roughUp.normalized());
+    const Seen seen = pointsBelow(sequence, roughUp.normalized());
     std::optional<Eigen::Vector3d> up;
     if (!seen.points.empty() && roughUp.norm() > 1e-9) {
-        const auto middle = seen.depths.begin() + std::ssize(seen.depths) / 2;
-        std::nth_element(seen.depths.begin(), middle, seen.depths.end());
         FloorOptions options;
-        options.tolerance = 0.01 * *middle;
+        options.tolerance = 0.01 * median(seen.depths, 0.);
         up = floorNormal(seen.points, roughUp.normalized(), options);
     }
     if (!up) {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
 
+#include "atomic_file.hpp"
 #include "error.hpp"
 #include "time_order.hpp"
 
@@ -60,16 +60,14 @@ Trajectory trajectoryOf(const std::string& file, const std::vector<TextRow>& row
 }
 
 void writeTrajectory(const std::string& file, const Trajectory& trajectory) {
-    std::ofstream out(file);
-    out << "# timestamp tx ty tz qx qy qz qw (camera to world)\n";
+    std::string text = "# timestamp tx ty tz qx qy qz qw (camera to world)\n";
     for (const auto& [timestamp, T_w_c] : trajectory) {
         const Eigen::Vector3d& t = T_w_c.translation();
         const Eigen::Quaterniond q(T_w_c.linear());
-        out << fmt::format("{:.6f} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", timestamp,
-                           t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+        text += fmt::format("{:.6f} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", timestamp,
+                            t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
     }
-    out.close();
-    if (!out) throw InputError(file, "", "cannot be written");
+    writeFileAtomically(file, text);
 }
 
 std::optional<Pose> poseAt(const Trajectory& trajectory, double timestamp, double tolerance,

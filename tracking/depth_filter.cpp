@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "averages.hpp"
 #include "epipolar_search.hpp"
 
 namespace photonav {
@@ -123,9 +124,7 @@ std::optional<double> DepthFilter::medianDepth() const {
         if (seed.state == DepthState::converged) inverse.push_back(seed.mean);
     }
     if (inverse.empty()) return {};
-    const auto middle = inverse.begin() + std::ssize(inverse) / 2;
-    std::nth_element(inverse.begin(), middle, inverse.end());
-    return 1. / *middle;
+    return 1. / median(std::move(inverse), 0.);
 }
 
 }  // namespace photonav

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What lists of numbers are on average.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace photonav {
+
+/// The arithmetic mean; `ofNothing` of an empty list.
+inline double mean(const std::vector<double>& values, double ofNothing) {
+    if (values.empty()) return ofNothing;
+    return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
+}
 
 /// The upper median; `ofNothing` of an empty list.
 template <class T>
