@@ -18,21 +18,22 @@ const std::string& modeOf(bool odometry) { return kModes[odometry ? 0 : 1]; }
 
 std::vector<AlignmentError> alignmentErrors(const ReplayRun& run, bool odometry, double scale) {
     std::vector<AlignmentError> errors;
-    const ReplayedFrame* keyframe = nullptr;  // that images are aligned to
     for (const ReplayedFrame& frame : run.frames) {
-        const bool isKnown = frame.status == FrameStatus::tracked && frame.truth_c_w;
         const Alignment& alignment = frame.tracked.alignment;
-        if (isKnown && alignment.verdict == Verdict::converged && (!odometry || keyframe) &&
-            alignment.information.diagonal().minCoeff() > 0.) {
-            Pose truth = *frame.truth_c_w;
-            Pose estimate = frame.tracked.T_c_w.mean;
-            if (odometry) {
-                truth = truth * keyframe->truth_c_w->inverse();
-                estimate = estimate * keyframe->tracked.T_c_w.mean.inverse();
-            }
-            errors.push_back({logSE3(truth * estimate.inverse()), alignment.information / scale});
+        if (frame.status != FrameStatus::tracked || !frame.truth_c_w ||
+            alignment.verdict != Verdict::converged ||
+            alignment.information.diagonal().minCoeff() <= 0.) {
+            continue;
         }
-        if (frame.tracked.isKeyframe) keyframe = isKnown ? &frame : nullptr;
+        Pose truth = *frame.truth_c_w;
+        Pose estimate = frame.tracked.T_c_w.mean;
+        if (odometry) {
+            const ReplayedFrame& keyframe = frameAt(run, *frame.tracked.keyframe);
+            if (!keyframe.truth_c_w) continue;
+            truth = truth * keyframe.truth_c_w->inverse();
+            estimate = estimate * keyframe.tracked.T_c_w.mean.inverse();
+        }
+        errors.push_back({deviation(truth, estimate), alignment.information / scale});
     }
     return errors;
 }

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
+#include <set>
 
 #include "atomic_file.hpp"
+#include "averages.hpp"
 #include "command_io.hpp"
-#include "median.hpp"
 
 namespace photonav {
 namespace {
@@ -61,10 +61,6 @@ std::vector<double> neesOf(const ReplayErrors& errors) {
         if (frame.nees) all.push_back(*frame.nees);
     }
     return all;
-}
-
-double meanOf(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
 }
 
 json framesPerSecond(double frames, double seconds) {
@@ -150,8 +146,10 @@ std::string quoted(const std::string& text) {
 }
 
 std::string row(const ReplayedFrame& frame, const JudgedFrame* judged) {
-    std::string line = fmt::format("{},{:.6f},{},{}", frame.index, frame.timestamp,
-                                   nameOf(frame.status), frame.tracked.isKeyframe ? 1 : 0);
+    const std::optional<double>& keyframe = frame.tracked.keyframe;
+    std::string line =
+        fmt::format("{},{:.6f},{},{}", frame.index, frame.timestamp, nameOf(frame.status),
+                    keyframe ? fmt::format("{:.6f}", *keyframe) : "");
     if (frame.status == FrameStatus::unreadable) {
         line += ",,,,,,,";
     } else {
@@ -215,13 +213,10 @@ std::vector<TimeInterval> gaps(const ReplaySource& source) {
     for (std::size_t i = 1; i < source.frames.size(); ++i) {
         steps.push_back(source.frames[i].timestamp - source.frames[i - 1].timestamp);
     }
-    if (steps.empty()) return {};
-    std::vector<double> sorted = steps;
-    const auto middle = sorted.begin() + std::ssize(sorted) / 2;
-    std::nth_element(sorted.begin(), middle, sorted.end());
+    const double usual = median(steps, 0.);
     std::vector<TimeInterval> result;
     for (std::size_t i = 0; i < steps.size(); ++i) {
-        if (steps[i] > 3. * *middle) {
+        if (steps[i] > 3. * usual) {
             result.push_back({source.frames[i].timestamp, source.frames[i + 1].timestamp});
         }
     }
@@ -269,15 +264,18 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
     const ErrorSummary absolute = summarise(errors.absolute.translation);
     const bool judged = !errors.judged.empty();
     const std::vector<double> nees = neesOf(errors);
-    const auto keyframes = std::count_if(run.frames.begin(), run.frames.end(),
-                                         [](const auto& f) { return f.tracked.isKeyframe; });
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    std::set<double> keyframes;
+    for (const ReplayedFrame& frame : run.frames) {
+        if (frame.tracked.keyframe) keyframes.insert(*frame.tracked.keyframe);
+    }
     return {{"verdict", verdictOf(run, !aligned)},
             {"frames", run.frames.size()},
             {"recorded", source.recorded},
             {"tracked", tracked},
             {"lost", lost},
             {"unreadable", count(run, FrameStatus::unreadable)},
-            {"keyframes", keyframes},
+            {"keyframes", keyframes.size()},
             {"lost_intervals", intervalsJson(lostIntervals(run))},
             {"gaps", intervalsJson(gaps(source))},
             {"judged", errors.judged.size()},
@@ -292,9 +290,8 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
              {{"frame", summaryJson(errors.perFrame)},
               {"second", summaryJson(errors.perSecond)},
               {"metre", summaryJson(errors.perMetre)}}},
-            {"nees_per_dof", finiteOrNull(meanOf(nees))},
-            {"nees_median_per_dof",
-             finiteOrNull(median(nees, std::numeric_limits<double>::quiet_NaN()))},
+            {"nees_per_dof", finiteOrNull(mean(nees, none))},
+            {"nees_median_per_dof", finiteOrNull(median(nees, none))},
             {"fps", framesPerSecond(double(tracked + lost), run.trackSeconds)},
             {"fps_with_reading",
              framesPerSecond(double(tracked + lost), run.trackSeconds + run.loadSeconds)},
@@ -308,7 +305,8 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
 void writeReplayTables(const std::filesystem::path& folder, const ReplayRun& run,
                        const ReplayErrors& errors) {
     std::string csv =
-        "frame,timestamp_s,status,keyframe,iterations,overlap,residual_rms,unexplained,gain,offset,"
+        "frame,timestamp_s,status,keyframe_s,iterations,overlap,residual_rms,unexplained,gain,"
+        "offset,"
         "time_ms,position_error_m,rotation_error_deg,position_sigma_m,rotation_sigma_deg,"
         "nees_per_dof,verdict\n";
     auto judged = errors.judged.begin();

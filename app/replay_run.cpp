@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
+#include "averages.hpp"
 #include "error.hpp"
 #include "image_pyramid.hpp"
-#include "median.hpp"
 #include "stopwatch.hpp"
 
 namespace photonav {
@@ -69,6 +69,10 @@ View halvedView(const View& view) {
     return half;
 }
 
+void halve(View& view, int times) {
+    for (int i = 0; i < times; ++i) view = halvedView(view);
+}
+
 bool isStripFrame(std::size_t i, std::size_t count) {
     if (count <= kStrips) return true;
     for (std::size_t k = 0; k < kStrips; ++k) {
@@ -114,7 +118,7 @@ void expose(ImageF& predicted, const Exposure& exposure) {
 void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, ReplayRun& run) {
     frame.density = shareKnown(view.depth);
     Stopwatch watch;
-    for (int h = 0; h < tracker.halvings; ++h) view = halvedView(view);
+    halve(view, tracker.halvings);
     frame.isBlack = isBlack(view.intensity);
     frame.tracked = tracker.track(view, frame.timestamp);
     frame.seconds = watch.lap();
@@ -127,39 +131,43 @@ void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, Repla
                       : describe(alignment, tracker.trust);
 }
 
+/// What was seen, and what the model says of it, that of odometry being an earlier image.
+ReplayStrip stripOf(const ReplaySource& source, const ReplayTracker& tracker, const ReplayRun& run,
+                    View observed) {
+    const ReplayedFrame& frame = run.frames.back();
+    std::optional<TrackedView> keyframe;
+    if (frame.tracked.keyframe) {
+        const ReplayedFrame& earlier = frameAt(run, *frame.tracked.keyframe);
+        keyframe = {source.load(earlier.index), earlier.tracked};
+        halve(keyframe->view, tracker.halvings);
+    }
+    const TrackedView seen{std::move(observed), frame.tracked};
+    View predicted = tracker.predict(seen, keyframe);
+    expose(predicted.intensity, frame.tracked.alignment.exposure);
+    return {fmt::format("frame {}: {}", frame.index, frame.words), seen.view, std::move(predicted)};
+}
+
 }  // namespace
 
 ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
                               const OdometryOptions& options) {
-    struct Keyframe {
-        View view;
-        Pose T_k_w;
-    };
-    struct Keyframes {
-        std::optional<Keyframe> used, next;  // the next one is not used by its own image
-    };
     const auto odometry = std::make_shared<Odometry>(camera, start, options);
-    const auto keyframes = std::make_shared<Keyframes>();
     ReplayTracker tracker;
     tracker.trust = options.keyframe.alignment.trust;
     tracker.scale = options.keyframe.alignment.photometric.scale;
     tracker.camera = camera;
     tracker.track = [=](const View& view, double timestamp) {
-        const TrackedFrame frame = odometry->track(view, timestamp);
-        if (keyframes->next) keyframes->used = std::move(keyframes->next);
-        keyframes->next.reset();
-        if (frame.isKeyframe) keyframes->next = {view, frame.T_c_w.mean};
-        return frame;
+        return odometry->track(view, timestamp);
     };
-    tracker.predict = [=](const View& observed, const TrackedFrame& frame) {
-        const auto& model = keyframes->used ? keyframes->used : keyframes->next;
-        if (!model) {  // nothing was seen yet
-            View nothing = observed;
+    tracker.predict = [camera](const TrackedView& frame,
+                               const std::optional<TrackedView>& keyframe) {
+        if (!keyframe) {  // nothing was seen yet
+            View nothing = frame.view;
             nothing.depth = 0.F;
             return nothing;
         }
-        return seenFrom(model->view, camera, model->T_k_w * frame.T_c_w.mean.inverse(),
-                        observed.depth);
+        const Pose T_k_c = keyframe->tracked.T_c_w.mean * frame.tracked.T_c_w.mean.inverse();
+        return seenFrom(keyframe->view, camera, T_k_c, frame.view.depth);
     };
     return tracker;
 }
@@ -179,9 +187,9 @@ ReplayTracker mapTracker(const ViewSource& map, const Camera& camera, const Unce
     tracker.track = [=](const View& view, double timestamp) {
         return localizer->track(view.intensity, timestamp);
     };
-    tracker.predict = [&map, small = tracker.camera](const View&, const TrackedFrame& frame) {
+    tracker.predict = [&map, small = tracker.camera](const TrackedView& frame, const auto&) {
         View view;
-        map.render(small, frame.T_c_w.mean, view);
+        map.render(small, frame.tracked.T_c_w.mean, view);
         return view;
     };
     return tracker;
@@ -207,19 +215,16 @@ ReplayRun replay(const ReplaySource& source, const ReplayTracker& tracker,
         watch.lap();
         std::optional<View> view = tryToLoad(source, frame);
         run.loadSeconds += watch.lap();
+        if (view) track(tracker, *view, frame, run);
+        run.frames.push_back(frame);
         if (view) {
-            track(tracker, *view, frame, run);
             const bool isFirstLoss = frame.tracked.lost && lost == 0;
             if (isFirstLoss || isStripFrame(i, source.frames.size())) {
-                View predicted = tracker.predict(*view, frame.tracked);
-                expose(predicted.intensity, frame.tracked.alignment.exposure);
-                run.strips.push_back(
-                    {fmt::format("frame {}: {}", i, frame.words), *view, std::move(predicted)});
+                run.strips.push_back(stripOf(source, tracker, run, std::move(*view)));
             }
             ++(frame.tracked.lost ? lost : tracked);
             notFound += frame.tracked.lost && !frame.isBlack;
         }
-        run.frames.push_back(std::move(frame));
         checkReadable(run.frames, source);
         if (progress) progress(run.frames.size());
         if (tracked == 0 && notFound > 0 && notFound == tracker.patience) {
@@ -229,6 +234,12 @@ ReplayRun replay(const ReplaySource& source, const ReplayTracker& tracker,
         }
     }
     return run;
+}
+
+const ReplayedFrame& frameAt(const ReplayRun& run, double timestamp) {
+    return *std::lower_bound(
+        run.frames.begin(), run.frames.end(), timestamp,
+        [](const ReplayedFrame& frame, double time) { return frame.timestamp < time; });
 }
 
 std::vector<ReplayedFrame>::const_iterator firstRead(const ReplayRun& run) {

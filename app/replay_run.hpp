@@ -47,11 +47,19 @@ struct ReplayRun {
     double trackSeconds = 0.;  ///< everything else
 };
 
+/// A frame as it was given to the tracker, and what it made of it.
+struct TrackedView {
+    View view;
+    TrackedFrame tracked;
+};
+
 /// A tracker as a replay sees it.
 struct ReplayTracker {
     std::function<TrackedFrame(const View& view, double timestamp)> track;
     /// The view of a frame as the model predicts it at the believed pose; depth 0: nothing there.
-    std::function<View(const View& observed, const TrackedFrame& frame)> predict;
+    /// @param keyframe that the frame was aligned to, if any
+    std::function<View(const TrackedView& frame, const std::optional<TrackedView>& keyframe)>
+        predict;
     double scale = 1.;   ///< factor on the information of its alignments
     TrustOptions trust;  ///< of its alignments, to put them in words
     Camera camera;       ///< of the views to be given to it
@@ -75,6 +83,9 @@ ReplayTracker mapTracker(const ViewSource& map, const Camera& camera, const Unce
 ReplayRun replay(const ReplaySource& source, const ReplayTracker& tracker,
                  const std::atomic<bool>& interrupted,
                  const std::function<void(std::size_t)>& progress);
+
+/// The frame of this timestamp, which is one of them.
+const ReplayedFrame& frameAt(const ReplayRun& run, double timestamp);
 
 /// The first frame whose images could be used; the end when there is none.
 std::vector<ReplayedFrame>::const_iterator firstRead(const ReplayRun& run);

@@ -11,7 +11,7 @@ namespace photonav {
 
 /// One alignment whose truth is known.
 struct AlignmentError {
-    Vector6 xi = Vector6::Zero();           ///< log(T_true T_estimated^-1), camera frame
+    Vector6 xi = Vector6::Zero();           ///< deviation() of the true pose from the estimated
     Matrix6 information = Matrix6::Zero();  ///< Lambda with scale 1, full rank
 };
 

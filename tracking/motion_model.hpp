@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 #include "alignment.hpp"
 #include "se3.hpp"
@@ -14,7 +15,9 @@ struct TrackedFrame {
     UncertainPose T_c_w;  ///< after the image; only predicted when lost
     Alignment alignment;
     bool lost = false;
-    bool isKeyframe = false;  ///< it became the model of the images after it
+    /// Odometry: timestamp of the keyframe that the alignment is to; an image to begin with is its
+    /// own [s].
+    std::optional<double> keyframe;
 };
 
 struct MotionNoise {

@@ -2,6 +2,7 @@
 #include "odometry.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace photonav {
 namespace {
@@ -26,22 +27,31 @@ TrackedFrame Odometry::track(const View& view, double timestamp) {
     const UncertainPose motion = motion_.predict(elapsed);
     if (keyframes_.empty()) {
         belief_.covariance = compound(motion, belief_).covariance;
-        frame.lost = !beginWith(view);
-        frame.isKeyframe = !frame.lost;
-        if (!frame.lost) frame.alignment.verdict = Verdict::converged;
+        frame.lost = !beginWith(view, timestamp);
+        if (!frame.lost) {
+            frame.alignment.verdict = Verdict::converged;
+            frame.keyframe = timestamp;
+        }
         frame.T_c_w = belief_;
         return frame;
     }
     sinceTracked_ = compound(motion, {Pose::Identity(), sinceTracked_}).covariance;
+    frame.keyframe = keyframes_.back().timestamp;
     frame.alignment = search(view, {motion.mean * belief_.mean, sinceTracked_});
     frame.lost = knowsNothing(frame.alignment);
-    frame.isKeyframe = frame.lost ? miss(view, motion) : take(view, frame.alignment, elapsed);
+    if (frame.lost) {
+        miss(view, timestamp, motion);
+    } else {
+        frame.keyframe = keyframes_.back().timestamp;  // search() may have changed it
+        take(view, frame.alignment, timestamp, elapsed);
+    }
     frame.T_c_w = belief_;
     return frame;
 }
 
-/// The belief after an image that could be aligned; whether the image becomes a keyframe.
-bool Odometry::take(const View& view, const Alignment& alignment, double elapsed) {
+/// The belief after an image that could be aligned.
+void Odometry::take(const View& view, const Alignment& alignment, double timestamp,
+                    double elapsed) {
     const Keyframe& keyframe = keyframes_.back();
     const Pose T_c_w = orthonormal(alignment.T_c_w);
     motion_.observe(T_c_w * belief_.mean.inverse(), elapsed);
@@ -51,36 +61,38 @@ bool Odometry::take(const View& view, const Alignment& alignment, double elapsed
     sinceTracked_.setZero();
     imagesLost_ = 0;
     if (needsKeyframe(alignment)) {
-        addKeyframe(view, belief_);
+        remember(keyframeOf(view, belief_, timestamp));
         lastTracked_.reset();
-        return true;
+    } else {
+        lastTracked_ = {view, belief_, timestamp};
     }
-    lastTracked_ = view;
-    lastTrackedPose_ = belief_;
-    return false;
 }
 
-/// The belief after a lost image; whether the flight is taken up from it.
-bool Odometry::miss(const View& view, const UncertainPose& motion) {
+/// The belief after a lost image. After many, the flight is taken up from it.
+void Odometry::miss(const View& view, double timestamp, const UncertainPose& motion) {
     belief_.covariance = compound(motion, belief_).covariance;
     motion_.forget();
     lastTracked_.reset();
-    if (++imagesLost_ < options_.patience || !beginWith(view)) return false;
+    if (++imagesLost_ < options_.patience || !beginWith(view, timestamp)) return;
     sinceTracked_.setZero();
     imagesLost_ = 0;
-    return true;
 }
 
 /// An image that cannot even be aligned to itself is no keyframe.
-bool Odometry::beginWith(const View& view) {
-    addKeyframe(view, belief_);
-    if (!knowsNothing(keyframes_.back().model.align(view.intensity, belief_.mean))) return true;
-    keyframes_.pop_back();
-    return false;
+bool Odometry::beginWith(const View& view, double timestamp) {
+    Keyframe keyframe = keyframeOf(view, belief_, timestamp);
+    if (knowsNothing(keyframe.model.align(view.intensity, belief_.mean))) return false;
+    remember(std::move(keyframe));
+    return true;
 }
 
-void Odometry::addKeyframe(const View& view, const UncertainPose& T_k_w) {
-    keyframes_.push_back({KeyframeModel(view, camera_, T_k_w.mean, options_.keyframe), T_k_w});
+Odometry::Keyframe Odometry::keyframeOf(const View& view, const UncertainPose& T_k_w,
+                                        double timestamp) const {
+    return {KeyframeModel(view, camera_, T_k_w.mean, options_.keyframe), T_k_w, timestamp};
+}
+
+void Odometry::remember(Keyframe keyframe) {
+    keyframes_.push_back(std::move(keyframe));
     if (keyframes_.size() > options_.keyframes) keyframes_.pop_front();
 }
 
@@ -93,7 +105,7 @@ Alignment Odometry::search(const View& view, const UncertainPose& predicted) {
     Alignment again = keyframes_.back().model.align(image, still);
     if (!knowsNothing(again)) return again;
     if (lastTracked_) {
-        addKeyframe(*lastTracked_, lastTrackedPose_);
+        remember(keyframeOf(lastTracked_->view, lastTracked_->T_c_w, lastTracked_->timestamp));
         again = keyframes_.back().model.align(image, still);
         if (!knowsNothing(again)) return again;
     }

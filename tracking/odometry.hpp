@@ -46,12 +46,19 @@ class Odometry {
     struct Keyframe {
         KeyframeModel model;
         UncertainPose T_k_w;
+        double timestamp;
+    };
+    struct TrackedView {
+        View view;
+        UncertainPose T_c_w;
+        double timestamp;
     };
 
-    bool take(const View& view, const Alignment& alignment, double elapsed);
-    bool miss(const View& view, const UncertainPose& motion);
-    bool beginWith(const View& view);
-    void addKeyframe(const View& view, const UncertainPose& T_k_w);
+    void take(const View& view, const Alignment& alignment, double timestamp, double elapsed);
+    void miss(const View& view, double timestamp, const UncertainPose& motion);
+    bool beginWith(const View& view, double timestamp);
+    Keyframe keyframeOf(const View& view, const UncertainPose& T_k_w, double timestamp) const;
+    void remember(Keyframe keyframe);
     Alignment search(const View& view, const UncertainPose& predicted);
     bool needsKeyframe(const Alignment& alignment) const;
 
@@ -60,9 +67,8 @@ class Odometry {
     MotionModel motion_;
     UncertainPose belief_;  ///< of the camera at the last image
     std::optional<double> lastTime_;
-    std::deque<Keyframe> keyframes_;   ///< the one in use is the last
-    std::optional<View> lastTracked_;  ///< unless it is a keyframe
-    UncertainPose lastTrackedPose_;
+    std::deque<Keyframe> keyframes_;          ///< the one in use is the last
+    std::optional<TrackedView> lastTracked_;  ///< unless it is a keyframe
     Matrix6 sinceTracked_ = Matrix6::Zero();  ///< covariance of the motion since then
     int imagesLost_ = 0;                      ///< in a row
 };

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <random>
+#include <set>
 
 #include "evaluation.hpp"
 #include "localizer.hpp"
@@ -76,11 +77,11 @@ struct Result {
     double nees = 0.;  ///< mean of the squared normalised errors, per degree of freedom
     int judged = 0;
     int lost = 0;
-    int keyframes = 0;
+    std::set<double> keyframes;  // timestamps
 
     void add(const TrackedFrame& tracked, const RecordedFrame& frame, std::size_t i) {
         lost += tracked.lost ? 1 : 0;
-        keyframes += tracked.isKeyframe ? 1 : 0;
+        if (tracked.keyframe) keyframes.insert(*tracked.keyframe);
         if (tracked.lost) return;
         poses.push_back({i, frame.timestamp, tracked.T_c_w.mean.inverse(), frame.T_c_w.inverse()});
         if (const auto squared = squaredNormalisedError(tracked.T_c_w, frame.T_c_w)) {
@@ -123,8 +124,8 @@ void print(const char* name, const Result& result, bool align) {
     const Pose T = align ? alignmentOf(result.poses) : Pose::Identity();
     const ErrorSummary absolute = summarise(absoluteErrors(result.poses, T).translation);
     const PoseErrors second = relativeErrors(result.poses, Spacing::seconds, 1.);
-    std::printf("%-10s %5zu  %4d  %9d  %8.2f %6.2f  %8.2f %6.3f  %7.2f\n", name,
-                result.poses.size(), result.lost, result.keyframes, 1e3 * absolute.rmse,
+    std::printf("%-10s %5zu  %4d  %9zu  %8.2f %6.2f  %8.2f %6.3f  %7.2f\n", name,
+                result.poses.size(), result.lost, result.keyframes.size(), 1e3 * absolute.rmse,
                 1e3 * absolute.max, 1e3 * summarise(second.translation).rmse,
                 summarise(second.rotation).rmse * 180. / std::numbers::pi, result.nees);
 }

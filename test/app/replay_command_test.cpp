@@ -237,6 +237,34 @@ TEST_F(ReplayCommand, CalibrationMakesCovariancesTrue) {
     EXPECT_TRUE(run().result["calibration"].is_null());
 }
 
+ReplayedFrame trackedAt(double timestamp, double x, double trueX, double keyframe) {
+    ReplayedFrame frame;
+    frame.timestamp = timestamp;
+    frame.status = FrameStatus::tracked;
+    frame.tracked.T_c_w.mean.translation().x() = x;
+    frame.tracked.keyframe = keyframe;
+    frame.tracked.alignment.verdict = Verdict::converged;
+    frame.tracked.alignment.information = Matrix6::Identity();
+    frame.truth_c_w = Pose::Identity();
+    frame.truth_c_w->translation().x() = trueX;
+    return frame;
+}
+
+/// Odometry's errors are those of single alignments, to whichever keyframe.
+TEST(AlignmentErrors, AreOfTheKeyframeAlignedTo) {
+    ReplayRun run;
+    run.frames = {trackedAt(1., 0., 0., 1.), trackedAt(2., 1.1, 1., 1.), trackedAt(3., 2.3, 2., 2.),
+                  trackedAt(4., 3., 3., 1.)};
+    run.frames[0].tracked.alignment.information.setZero();  // of its own keyframe
+    const auto errors = alignmentErrors(run, true, 0.5);
+    ASSERT_EQ(errors.size(), 3U);
+    EXPECT_NEAR(errors[0].xi.x(), -0.1, 1e-12);
+    EXPECT_NEAR(errors[1].xi.x(), -0.2, 1e-12);
+    EXPECT_NEAR(errors[2].xi.x(), 0., 1e-12);
+    EXPECT_TRUE(errors[0].information.isApprox(2. * Matrix6::Identity()));
+    EXPECT_NEAR(alignmentErrors(run, false, 1.)[1].xi.x(), -0.3, 1e-12);
+}
+
 TEST_F(ReplayCommand, TheStartCanBeGiven) {
     useMap();
     test::fs::remove(data / "groundtruth.txt");

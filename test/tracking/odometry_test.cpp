@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "localizer.hpp"
 #include "rooms.hpp"
 
@@ -45,22 +47,22 @@ double distance(const Pose& a, const Pose& b) {
 
 TEST(Odometry, FollowsAFlightThroughSeveralKeyframes) {
     Odometry odometry(flightCamera(), start());
-    int keyframes = 0;
+    std::set<double> keyframes;
     double last = 0.;
     for (int i = 0; i < 30; ++i) {
         const TrackedFrame frame = odometry.track(viewFrom(flight(i)), 5. + kInterval * i);
         EXPECT_FALSE(frame.lost) << i << ": " << describe(frame.alignment);
         EXPECT_LT(distance(frame.T_c_w.mean, flight(i)), 0.02) << i;
         const double trace = frame.T_c_w.covariance.trace();
-        if (frame.isKeyframe) {
+        ASSERT_TRUE(frame.keyframe);
+        if (keyframes.insert(*frame.keyframe).second) {
             EXPECT_GE(trace, last);  // what keyframes add is never taken back
             last = trace;
-            ++keyframes;
         }
         EXPECT_TRUE(isCovariance(frame.T_c_w.covariance));
     }
-    EXPECT_GE(keyframes, 3);
-    EXPECT_LE(keyframes, 20);
+    EXPECT_GE(keyframes.size(), 3U);
+    EXPECT_LE(keyframes.size(), 20U);
 }
 
 /// Rounding must not add up: poses are products of poses.
@@ -102,6 +104,26 @@ TEST(Odometry, ComesBackToAnOldKeyframe) {
     const TrackedFrame frame = odometry.track(viewFrom(flight(12)), 3.1);
     EXPECT_FALSE(frame.lost) << describe(frame.alignment);
     EXPECT_LT(distance(frame.T_c_w.mean, flight(12)), 0.03);
+    ASSERT_TRUE(frame.keyframe);
+    EXPECT_NEAR(*frame.keyframe, 1.2, 0.45);
+}
+
+/// Too far from the keyframe, near enough to the image before: that becomes the keyframe.
+TEST(Odometry, NamesTheKeyframeThatItAlignedTo) {
+    OdometryOptions options;
+    options.minOverlap = 0.;
+    options.maxShift = options.maxTurn = 10.;  // no keyframes of its own accord
+    Odometry odometry(flightCamera(), start(), options);
+    double keyframe = 0.;
+    for (int i = 0; i < 60; ++i) {
+        const TrackedFrame frame = odometry.track(viewFrom(flight(i)), kInterval * i);
+        ASSERT_TRUE(frame.keyframe) << i;
+        if (*frame.keyframe == keyframe) continue;
+        EXPECT_FALSE(frame.lost);
+        EXPECT_EQ(*frame.keyframe, kInterval * (i - 1));
+        keyframe = *frame.keyframe;
+    }
+    EXPECT_GT(keyframe, 0.);
 }
 
 TEST(Odometry, LostForLongItBeginsAnewAsUncertainAsItIs) {
@@ -131,7 +153,7 @@ TEST(Odometry, BlackFromTheBeginningIsLostUntilSomethingIsSeen) {
     EXPECT_TRUE(odometry.track(black(), 1e9 + 0.1).lost);
     const TrackedFrame frame = odometry.track(viewFrom(flight(0)), 1e9 + 0.2);
     EXPECT_FALSE(frame.lost);
-    EXPECT_TRUE(frame.isKeyframe);
+    EXPECT_EQ(frame.keyframe, 1e9 + 0.2);
     EXPECT_TRUE(frame.T_c_w.mean.isApprox(flight(0)));
     // It may have moved in the dark.
     const Matrix6 grown = frame.T_c_w.covariance - start().covariance;
