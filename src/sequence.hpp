@@ -38,6 +38,7 @@ struct Sequence {
     std::string cameraFile;      ///< that says so; empty when it is assumed
     bool cameraAssumed = false;  ///< the dataset does not say; this is the format's usual one
     double depthScale = 5000.;   ///< depth image value of one metre
+    bool needsDepth = true;      ///< false: a depth image that cannot be used is as none
     /// Factor on the photometric information that the noise of these images asks for, if known.
     std::optional<double> informationScale;
     std::vector<Entry> frames;  ///< in order of time

@@ -244,6 +244,7 @@ Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
         sequence.camera = {640, 480, vpCameraParameters(525., 525., 319.5, 239.5)};
         sequence.cameraAssumed = true;
     }
+    sequence.needsDepth = options.needsDepth;
     if (options.depthScale) sequence.depthScale = *options.depthScale;
     auto pairs = readPairs(folder, options, sequence);
     if (!options.needsDepth) forgetMissingDepth(pairs);
@@ -263,8 +264,11 @@ RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
     for (unsigned i = 0; i < grey.getSize(); ++i) {
         frame.view.intensity.bitmap[i] = static_cast<float>(grey.bitmap[i]) / 255.F;
     }
-    if (!entry.depthFile.empty()) {
+    if (entry.depthFile.empty()) return frame;
+    try {
         loadDepth(sequence, entry.depthFile, source, frame.view.depth);
+    } catch (const InputError&) {
+        if (sequence.needsDepth) throw;
     }
     return frame;
 }

@@ -18,7 +18,7 @@ struct TumOptions {
     /// cannot be read or whose timestamps repeat or are out of order are skipped.
     bool forgiving = false;
     /// Otherwise colour images without a depth image are kept, too, and `depth.txt` and the files
-    /// it names need not be there.
+    /// it names need not be there, or be usable.
     bool needsDepth = true;
 };
 
@@ -39,7 +39,8 @@ Sequence readTumSequence(const std::string& folder, const TumOptions& options = 
 
 /// Loads the images of frame `index`: 8-bit colour by OpenCV's grey conversion to [0, 1], 16-bit
 /// depth to metres along the optical axis, looked up where the colour camera's pixels lie in it; 0
-/// everywhere in a frame without depth image.
+/// everywhere in a frame without depth image, or, where the sequence needs none, without a usable
+/// one.
 /// @throws InputError for a file that is missing, damaged or of another size than the camera's
 RecordedFrame loadFrame(const Sequence& sequence, std::size_t index);
 

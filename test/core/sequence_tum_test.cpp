@@ -177,6 +177,9 @@ TEST_F(TumSequence, RejectsBadImages) {
     expectFrameRejected({"depth/0.png", "40x30", "80x60"});
     cv::imwrite((path / "depth/0.png").string(), cv::Mat(60, 80, CV_8UC1, cv::Scalar(1)));
     expectFrameRejected({"depth/0.png", "16 bits"});
+    const RecordedFrame frame = loadFrame(read({.needsDepth = false}), 0);
+    EXPECT_EQ(frame.view.depth.getSize(), 4800U);
+    EXPECT_EQ(frame.view.depth.getMaxValue(), 0.F);
     test::fs::copy_file(path / "depth/1.png", path / "depth/0.png", copy);
     test::fs::resize_file(path / "rgb/0.png", test::fs::file_size(path / "rgb/0.png") / 2);
     expectFrameRejected({"rgb/0.png", "damaged"});
