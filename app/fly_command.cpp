@@ -18,9 +18,10 @@
 namespace photonav {
 namespace {
 
+/// A map may be made of flight 0: its noise must not be that of the images flown by it.
+constexpr std::uint64_t kSeedInMaps = 1'000'003;
 /// A real camera's images are worth less than planned with: what vignetting does to them is alike
 /// in all images of a place (docs/fly.md).
-constexpr std::uint64_t kSeedInMaps = 1'000'003;
 constexpr double kRealCamera = 0.25;  // of camera.information_scale
 
 /// How images are aligned: as they were planned with, or as those of a real camera.
@@ -56,11 +57,11 @@ FlightOptions flightOptions(const Config& config, double resolution) {
     flight.camera.blackoutLength = fly.blackout[1];
     flight.servo.maxSpeed = fly.speed;
     flight.alignment = flightAlignment(config, resolution);
-    flight.lost.blindTime = std::max(flight.lost.blindTime, 4. * flight.camera.period);
+    flight.lost.blindTime =
+        fly.latency + std::max(flight.lost.blindTime, 4. * flight.camera.period);
     flight.photometricGoal = fly.photometricGoal;
     flight.bodyRadius = fly.bodyRadius > 0. ? fly.bodyRadius : 0.5 * config.robotRadius;
     flight.arrivalTolerance = std::max(config.robotRadius, 0.1);
-    // A map may be made of flight 0: its noise must not be that of the images flown by it.
     flight.seed = config.seed + (fly.map.empty() ? 0 : kSeedInMaps);
     return flight;
 }
@@ -103,13 +104,13 @@ void prepareRecordFolder(const std::filesystem::path& folder) {
 void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const FlightOptions& flight,
             const FlyOptions& options, unsigned count, ProgressLine& line,
             const std::atomic<bool>& interrupted) {
-    std::optional<FlightRecorder> recorder;
-    if (!options.record.empty()) {
-        recorder.emplace(options.record, world.camera, flight.alignment.photometric.scale);
-    }
+    std::optional<FlightRecorder> recorder;  // from the first image on
     OnExposure record;
-    if (recorder) {
+    if (!options.record.empty()) {
         record = [&](double time, const Pose& T_c_w, const ImageF& image, const ImageF& depth) {
+            if (!recorder) {
+                recorder.emplace(options.record, world.camera, flight.alignment.photometric.scale);
+            }
             recorder->add(time, T_c_w, image, depth);
         };
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "averages.hpp"
 #include "plot.hpp"
 
 namespace photonav {
@@ -13,23 +14,22 @@ constexpr double kFlightLeft = 116., kFlightTop = 62., kFlightWidth = 900., kFli
                  kFlightBetween = 120.;
 constexpr double kBin = 0.5;  // of the way, for means over flights [m]
 
-/// Mean of a value of all samples, by way along the plan; bins without samples are left out.
+/// Mean of a value of all samples that have one, by way along the plan; empty bins are left out.
 template <typename Value>
 std::vector<Canvas::Point> meansAlong(const FlightSet& set, Value value) {
     const auto bins = static_cast<std::size_t>(set.path.length / kBin) + 1;
-    std::vector<double> sums(bins, 0.), counts(bins, 0.);
+    std::vector<std::vector<double>> values(bins);
     for (const FlightResult& flight : set.flights) {
         for (const FlightSample& sample : flight.samples) {
             const std::size_t bin =
                 std::min(bins - 1, static_cast<std::size_t>(sample.distance / kBin));
-            sums[bin] += value(sample);
-            counts[bin] += 1.;
+            if (const std::optional<double> v = value(sample)) values[bin].push_back(*v);
         }
     }
     std::vector<Canvas::Point> means;
     for (std::size_t i = 0; i < bins; ++i) {
-        if (counts[i] > 0.)
-            means.emplace_back((static_cast<double>(i) + 0.5) * kBin, sums[i] / counts[i]);
+        if (!values[i].empty())
+            means.emplace_back((static_cast<double>(i) + 0.5) * kBin, mean(values[i], 0.));
     }
     return means;
 }

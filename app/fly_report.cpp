@@ -14,7 +14,8 @@ using nlohmann::json;
 namespace {
 
 json jsonOf(const FlightResult& flight) {
-    return {{"end", nameOf(flight.end)},
+    return {{"flight", flight.number},
+            {"end", nameOf(flight.end)},
             {"duration_s", flight.duration},
             {"way_m", flight.way},
             {"goal_error_m", flight.goalError},
@@ -202,7 +203,9 @@ void writeFlyReport(const fs::path& folder, const Config& config, const World& w
     report.goal = config.goal.position;
     report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),
                           2. * std::atan(0.5 * camera.height / camera.fy())};
-    if (!sets.empty() && !sets[0].flights.empty()) writeFirstFlight(folder, sets[0].flights[0]);
+    if (!sets.empty() && !sets[0].flights.empty() && sets[0].flights[0].number == 0) {
+        writeFirstFlight(folder, sets[0].flights[0]);
+    }
     writeResultFolder(folder, report, figuresOf(config, world, sets, report.paths));
 }
 

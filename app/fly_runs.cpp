@@ -9,7 +9,8 @@
 #include <mutex>
 #include <thread>
 
-#include "median.hpp"
+#include "averages.hpp"
+#include "evaluation.hpp"
 
 namespace photonav {
 namespace {
@@ -52,16 +53,21 @@ void countEnds(const std::vector<FlightResult>& flights, FlightSummary& s) {
     s.photometricAfter = median(after, FlightSummary::kNone);
 }
 
+void append(const std::optional<double>& value, std::vector<double>& values) {
+    if (value) values.push_back(*value);
+}
+
 /// Errors against what was predicted and believed, over all exposures.
 void judgeExposures(const FlightSet& set, FlightSummary& s) {
-    double error = 0., predicted = 0., believed = 0., nees = 0., within = 0., n = 0.;
+    double error = 0., predicted = 0., believed = 0., within = 0., n = 0.;
+    std::vector<double> nees;
     for (const FlightResult& flight : set.flights) {
         for (const FlightSample& sample : flight.samples) {
             const PositionError e = positionError(sample, set.plan);
             error += e.error * e.error;
             predicted += e.predicted * e.predicted;
             believed += e.believed * e.believed;
-            nees += neesPerDof(sample);
+            append(neesPerDof(sample), nees);
             within += e.error <= 3. * e.predicted;
             ++n;
         }
@@ -70,7 +76,7 @@ void judgeExposures(const FlightSet& set, FlightSummary& s) {
     s.predictedSigma = std::sqrt(predicted / n);
     s.believedSigma = std::sqrt(believed / n);
     s.within3Sigma = within / n;
-    s.nees = nees / n;
+    s.nees = mean(nees, FlightSummary::kNone);
 }
 
 }  // namespace
@@ -102,15 +108,16 @@ std::string lengthText(double metres) {
                                   : fmt::format("{:.3f} m", metres);
 }
 
-double neesPerDof(const FlightSample& sample) {
-    const Vector6 e = deviation(sample.T_c_w, sample.belief.mean);
-    return e.dot(transported(sample.belief.covariance, e).ldlt().solve(e)) / 6.;
+std::optional<double> neesPerDof(const FlightSample& sample) {
+    const auto squared = squaredNormalisedError(sample.belief, sample.T_c_w);
+    if (!squared) return {};
+    return *squared / 6.;
 }
 
 double neesPerDof(const FlightResult& flight) {
-    double sum = 0.;
-    for (const FlightSample& sample : flight.samples) sum += neesPerDof(sample);
-    return sum / static_cast<double>(flight.samples.size());
+    std::vector<double> values;
+    for (const FlightSample& sample : flight.samples) append(neesPerDof(sample), values);
+    return mean(values, FlightSummary::kNone);
 }
 
 double chiSquareQuantile(double degrees, double z) {
@@ -124,12 +131,12 @@ FlightSummary summarise(const FlightSet& set) {
     if (set.flights.empty()) return s;
     countEnds(set.flights, s);
     judgeExposures(set, s);
-    s.neesAtGoal = 0.;
-    std::vector<double> nees;
+    std::vector<double> nees, atGoal;
     for (const FlightResult& flight : set.flights) {
         nees.push_back(neesPerDof(flight));
-        s.neesAtGoal += neesPerDof(flight.samples.back()) / static_cast<double>(s.flights);
+        append(neesPerDof(flight.samples.back()), atGoal);
     }
+    s.neesAtGoal = mean(atGoal, FlightSummary::kNone);
     s.neesMedian = median(nees, FlightSummary::kNone);
     const double degrees = 6. * static_cast<double>(s.flights);
     s.neesLow = chiSquareQuantile(degrees, -1.96) / degrees;
@@ -154,6 +161,7 @@ std::vector<FlightResult> flyMany(const std::vector<PlannedView>& plan, const Fl
                 flights[i] = fly(
                     plan, world, own, [&] { return interrupted.load(); },
                     i == 0 ? onExposure : OnExposure{});
+                flights[i].number = i;
                 const std::lock_guard lock(mutex);
                 if (flights[i].end != FlightEnd::stopped) onFlight(flights[i]);
             }

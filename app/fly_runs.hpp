@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "flight.hpp"
 #include "plan_run.hpp"
@@ -26,10 +27,10 @@ struct FlightSet {
     std::vector<FlightResult> flights;  ///< those that were not stopped, in order of their number
 };
 
-/// Error of a believed position and what was predicted and believed of it.
 /// "0.537 m", "3.75 mm".
 std::string lengthText(double metres);
 
+/// Error of a believed position and what was predicted and believed of it.
 struct PositionError {
     double distance = 0.;   ///< along the plan [m]
     double error = 0.;      ///< of the believed against the true position [m]
@@ -39,8 +40,9 @@ struct PositionError {
 PositionError positionError(const FlightSample& sample, const std::vector<PlannedView>& plan);
 
 /// Squared normalised error (evaluation.hpp) / 6 of the believed against the true pose: 1 on
-/// average when honest.
-double neesPerDof(const FlightSample& sample);
+/// average when honest. Nothing where the belief has no error to compare with, as a start that is
+/// known in some direction.
+std::optional<double> neesPerDof(const FlightSample& sample);
 /// Mean over its exposures; one that was misled shows.
 double neesPerDof(const FlightResult& flight);
 

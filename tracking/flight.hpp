@@ -83,6 +83,7 @@ struct FlightSample {
 };
 
 struct FlightResult {
+    std::size_t number = 0;  ///< of several flights of a plan
     FlightEnd end = FlightEnd::stopped;
     double duration = 0.;  ///< [s]
     double way = 0.;       ///< truly flown [m]

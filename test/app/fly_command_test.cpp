@@ -184,6 +184,20 @@ TEST_F(FlyCommand, WhatWasNeverFlownHasNoErrors) {
     EXPECT_TRUE(std::isnan(summarise(none).goalError));
 }
 
+TEST_F(FlyCommand, RecordsNothingWhereNothingFlies) {
+    const Execution run =
+        photonav(fmt::format("fly {} --set planner.vertices=2 --record {} --out {}", config("room"),
+                             at("recorded"), at("out")));
+    EXPECT_EQ(run.exitCode, 1) << run.output;
+    EXPECT_TRUE(fs::is_empty(at("recorded")));
+}
+
+/// Images that are only late are not missed.
+TEST_F(FlyCommand, LatencyIsNotLoss) {
+    fly("late", "--flights 1 --latency 2 --set planner.compare_with_rrt_star=false");
+    EXPECT_EQ(result("late")["planners"][0]["each"][0]["times_lost"], 0);
+}
+
 TEST_F(FlyCommand, ExitsWithOneWhenNoFlightArrives) {
     const Execution run =
         fly("dark", "--flights 1 --black 1 --set planner.compare_with_rrt_star=false");
@@ -256,8 +270,25 @@ TEST(FlySummary, ComparesErrorsWithWhatWasPredicted) {
     EXPECT_NEAR(s.believedSigma, std::sqrt(0.03), 1e-12);
     EXPECT_NEAR(s.predictedSigma, std::sqrt(0.075), 1e-12);
     EXPECT_NEAR(s.nees, 0.5 * (9. + 81.) / 6., 1e-12);
+    EXPECT_NEAR(s.neesAtGoal, 81. / 6., 1e-12);
+    EXPECT_NEAR(s.neesMedian, s.nees, 1e-12);
     EXPECT_EQ(s.within3Sigma, 0.5);
     EXPECT_NEAR(chiSquareQuantile(600., 1.96), 669.8, 0.5);  // tables: 669.77
+}
+
+/// Where a belief is certain there is nothing to divide an error by.
+TEST(FlySummary, BeliefsWithoutAnErrorDoNotCount) {
+    FlightSample certain, sample;
+    sample.belief.covariance = 0.01 * Matrix6::Identity();
+    sample.T_c_w.translation().x() = 0.3;
+    EXPECT_FALSE(neesPerDof(certain));
+    FlightResult flight;
+    flight.samples = {certain, sample};
+    EXPECT_NEAR(neesPerDof(flight), 1.5, 1e-12);
+    FlightSet set;
+    set.plan = {PlannedView{}};
+    set.flights = {flight};
+    EXPECT_NEAR(summarise(set).nees, 1.5, 1e-12);
 }
 
 /// A flight sees something at the start, too.
