@@ -98,6 +98,7 @@ class Flight {
     void receiveAll();
     void receive(const TakenImage& taken);
     void search(const ImageF& image);
+    void leaveImage();
     void approachOnImage(const ImageF& image);
     BodyVelocity decide();
     bool hasEnded(const std::function<bool()>& isStopped);
@@ -146,8 +147,7 @@ void Flight::look() {
             onExposure_(time_, trueCamera(), camera_.lastImage(), camera_.lastView().depth);
         }
         const UncertainPose belief = estimator_.belief();
-        result_.samples.push_back(
-            {time_, route_.progress(belief.mean.inverse().translation()), trueCamera(), belief});
+        result_.samples.push_back({time_, route_.progress(belief.mean), trueCamera(), belief});
         receiveAll();  // of a camera without latency
     }
     watch_.onTime(time_);
@@ -163,6 +163,7 @@ void Flight::receive(const TakenImage& taken) {
     if (isLost(alignment.verdict)) ++result_.badImages;
     watch_.onAlignment(time_, alignment);
     if (watch_.isLostNow()) {
+        leaveImage();
         search(taken.image);
     } else if (atGoalSince_) {
         approachOnImage(isLost(alignment.verdict) ? taken.image
@@ -171,7 +172,7 @@ void Flight::receive(const TakenImage& taken) {
     const auto sample = std::find_if(result_.samples.rbegin(), result_.samples.rend(),
                                      [&](const FlightSample& s) { return s.time == taken.time; });
     sample->belief = estimator_.atLastImage();
-    sample->distance = route_.progress(sample->belief.mean.inverse().translation());
+    sample->distance = route_.progress(sample->belief.mean);
 }
 
 /// Perhaps it is not the image but the estimate that is bad: the same image with a wider prior, the
@@ -190,13 +191,16 @@ void Flight::search(const ImageF& image) {
     searched_ = 0;
 }
 
+/// The belief is all there is.
+void Flight::leaveImage() {
+    onImage_.reset();
+    smallSteps_ = 0;
+}
+
 void Flight::approachOnImage(const ImageF& image) {
     if (!options_.photometricGoal || !goalServo_.isInformative()) return;
     const PhotometricServo::Step step = goalServo_.toward(image, believedBody());
-    if (!step.isTrusted) {  // the belief is all there is
-        onImage_.reset();
-        return;
-    }
+    if (!step.isTrusted) return leaveImage();
     if (!result_.photometric) result_.goalErrorBefore = goalError();
     result_.photometric = true;
     onImage_ = step.velocity;

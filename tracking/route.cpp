@@ -14,7 +14,7 @@ bool Route::isReached(const UncertainPose& belief) const {
     const double sigma = std::sqrt(belief.covariance.topLeftCorner<3, 3>().trace());
     const double tolerance = std::clamp(options_.toleranceSigmas * sigma, options_.leastTolerance,
                                         options_.mostTolerance);
-    const Pose T_w_b = belief.mean.inverse() * T_b_c_.inverse();
+    const Pose T_w_b = bodyOf(belief.mean);
     const double distance = (T_w_b.translation() - wanted().T_w_b.translation()).norm();
     // Of the headings: tilt cannot be commanded.
     const double turn = std::remainder(yawOf(T_w_b) - yawOf(wanted().T_w_b), 2. * std::numbers::pi);
@@ -22,7 +22,7 @@ bool Route::isReached(const UncertainPose& belief) const {
 }
 
 const PlannedView& Route::advance(const UncertainPose& belief) {
-    const Eigen::Vector3d p_w = belief.mean.inverse().translation();
+    const Eigen::Vector3d p_w = bodyOf(belief.mean).translation();
     for (;;) {
         if (wanted().isWaypoint || wanted_ + 1 == plan_.size()) {
             if (!isReached(belief)) break;
@@ -39,7 +39,8 @@ const PlannedView& Route::advance(const UncertainPose& belief) {
     return wanted();
 }
 
-double Route::progress(const Eigen::Vector3d& p_w) const {
+double Route::progress(const Pose& T_c_w) const {
+    const Eigen::Vector3d p_w = bodyOf(T_c_w).translation();
     double least = kInfinity;
     double distance = wanted().distance;  // at the goal there is no way left
     for (std::size_t i = passed_; i < wanted_; ++i) {

@@ -26,10 +26,11 @@ class Route {
     Pose cameraAt(const PlannedView& view) const { return (view.T_w_b * T_b_c_).inverse(); }
 
     /// Way along the plan of its point nearest to here, among those around the wanted view [m].
-    double progress(const Eigen::Vector3d& p_w) const;
+    double progress(const Pose& T_c_w) const;
 
   private:
     bool isReached(const UncertainPose& belief) const;
+    Pose bodyOf(const Pose& T_c_w) const { return T_c_w.inverse() * T_b_c_.inverse(); }
 
     const std::vector<PlannedView>& plan_;
     Pose T_b_c_;

@@ -3,6 +3,7 @@
 
 #include "photometric_servo.hpp"
 #include "rooms.hpp"
+#include "route.hpp"
 #include "simulated_camera.hpp"
 #include "waypoint_servo.hpp"
 
@@ -31,6 +32,22 @@ TEST(Limited, KeepsDirectionSpeedAndAcceleration) {
     const BodyVelocity turning = limited({{1., 0., 0.}, 5.}, {{0.1, 0., 0.}, 0.5}, options, 0.1);
     EXPECT_NEAR(turning.yawRate, 0.5, 1e-12);
     EXPECT_NEAR(turning.linear.x(), 0.1, 1e-12);  // a tenth of the speed, as of the turn
+}
+
+/// The way is the body's, wherever the camera sits on it.
+TEST(Route, ProgressIsOfTheBody) {
+    std::vector<PlannedView> plan(2);
+    plan[1].T_w_b.translation().x() = 2.;
+    plan[1].distance = 2.;
+    Pose T_b_c = cameraMount(kDown);
+    T_b_c.translation().x() = 0.3;
+    Route route(plan, T_b_c, {});
+    Pose T_w_b = Pose::Identity();
+    T_w_b.translation().x() = 0.5;
+    EXPECT_NEAR(route.progress((T_w_b * T_b_c).inverse()), 0.5, 1e-12);
+    T_w_b.translation().x() = 1.99;
+    route.advance({(T_w_b * T_b_c).inverse(), Matrix6::Zero()});
+    EXPECT_TRUE(route.isAtGoal());
 }
 
 class ServoWithMount : public ::testing::TestWithParam<double> {};
