@@ -23,8 +23,8 @@ InputError outOfOrder(const std::vector<TextRow>& rows, const std::vector<double
 
 /// Parses rows to items that have a `timestamp`.
 /// @param badRows where there is one it gets rows that `parse` throws an InputError for and those
-///        out of order, which are passed over; when there are more of them than items, the first is
-///        thrown. Where there is none, the first bad row is thrown, and timestamps may repeat.
+///        out of order, which are passed over; when there are more of them than items, one of them
+///        is thrown. Where there is none, the first bad row is thrown, and timestamps may repeat.
 template <typename Item>
 std::vector<Item> parseInOrderOfTime(const std::vector<TextRow>& rows,
                                      const std::function<Item(const TextRow&)>& parse,

@@ -60,10 +60,9 @@ struct EpipolarSearch::Line {
             const double d = spacing * along[axis];
             const double low = margin - start[axis];
             const double high = size[axis] - 1.001 - margin - start[axis];
-            if (std::abs(d) < 1e-9) {
-                if (low > 0. || high < 0.) last = -1.;
-                continue;
-            }
+            const bool isNever = low > high || (std::abs(d) < 1e-9 && (low > 0. || high < 0.));
+            if (isNever) last = -1.;
+            if (isNever || std::abs(d) < 1e-9) continue;
             first = std::max(first, std::min(low / d, high / d));
             last = std::min(last, std::max(low / d, high / d));
         }

@@ -22,7 +22,9 @@ class GradientNoise {
     /// with mu < 1 say nothing.
     /// @param notShared sums over the points of g (g - seen g), x and y, in the units of J before
     ///        `unit`
-    /// @param most variance of a component of g, if it were of nothing but noise
+    /// @param most variance of a component of g, if it were of nothing but noise; a little more,
+    /// for
+    ///        its chance, is taken out
     /// @param unit what J's columns are to be multiplied by
     void takeOut(NormalEquations& e, const Eigen::Vector2d& notShared, double most,
                  const Vector6& unit) const;

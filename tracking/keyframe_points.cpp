@@ -240,9 +240,7 @@ NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
         }
         sums.endRow();
     }
-    Vector8 unit;  // half the focal length, the signs of J and -gain: see ViewComparison
-    unit << 1., 1., -1., -1., 1., 1., 1., 1.;
-    unit.head<6>() *= -exposure.gain * 0.5 * camera_.fx();
+    const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
     noise_.takeOut(equations, {simd::sum(noiseX), simd::sum(noiseY)}, mostNoise_, unit.head<6>());

@@ -13,8 +13,9 @@ class LostWatch {
     LostWatch(const LostOptions& options, const Pose& T_start_w)
         : options_(options), T_certain_w_(T_start_w) {}
 
-    /// An image was aligned, or not. One that tells nothing, but agrees with a map that shows
-    /// nothing there, is not lost: plans lead over white floors too.
+    /// An image was aligned, or not. One that tells nothing but agrees with the map, because there
+    /// is nothing to be seen or it looks alike in two places, is not lost: plans lead over white
+    /// floors and along stripes, too.
     void onAlignment(double time, const Alignment& alignment) {
         lastImage_ = time;
         if (isLost(alignment.verdict)) {

@@ -21,8 +21,8 @@ using Walk = std::function<NormalEquations(const Pose& T_away_here)>;
 /// ("sandwich": Godambe 1960, Huber 1967), in no direction more than J says: where D is steeper, an
 /// edge happens to cross the middle of a pixel.
 /// @param prior covariance of the pose, left, camera frame; none: one mean depth and one radian.
-///        Directions that the image tells much less of are left as they are
-/// @param floors least standard deviations of the result: directions that they decide are left, too
+///        There is no walk along directions that the image tells much less of
+/// @param floors least standard deviations of the result: none along directions that they decide
 /// @return M
 Matrix6 measuredSlope(const std::optional<Matrix6>& prior, const TrustOptions& floors,
                       const Walk& walk);

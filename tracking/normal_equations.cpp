@@ -167,10 +167,7 @@ NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& 
         }
         sums.endRow();
     }
-    // What the columns leave out: half the focal length and the signs of J, and A's -gain.
-    Vector8 unit;
-    unit << 1., 1., -1., -1., 1., 1., 1., 1.;
-    unit.head<6>() *= -exposure.gain * 0.5 * camera_.fx();
+    const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
     if (isNoisy) {

@@ -18,6 +18,15 @@ inline constexpr float kNoSurface = -1e30F;
 /// Stands for the residual of what does not count: grey values differ by less.
 inline constexpr float kUnused = 4.F;
 
+/// What kernels leave out of the columns (J, predicted grey value, 1): half the focal length, the
+/// signs of J and -gain.
+inline Vector8 columnUnits(double gain, double focal) {
+    Vector8 unit;
+    unit << 1., 1., -1., -1., 1., 1., 1., 1.;
+    unit.head<6>() *= -0.5 * gain * focal;
+    return unit;
+}
+
 /// Accumulates the upper triangle of sum w c^T c for c = (7 columns, 1, residual), single precision
 /// within a few rows and double across them, with the weights of a robust loss.
 class ProductSums {

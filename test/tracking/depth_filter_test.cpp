@@ -75,6 +75,20 @@ TEST_F(DepthFilterTest, BrightnessDoesNotMatter) {
     EXPECT_GT(shareRight(filter.view(), seen(0), 0.1), 0.95);
 }
 
+/// No place in the image for the patches that are compared.
+TEST_F(DepthFilterTest, ImagesTooSmallTeachNothing) {
+    camera = makeCamera(40, 16, 1.2);
+    DepthFilter filter(seen(0).intensity, camera, pose(0));
+    for (int i = 1; i <= 12; ++i) {
+        const Pose forward =
+            cameraAt(pose(0).inverse() * Eigen::Vector3d(0., 0., 0.05 * i), kOblique, 0.);
+        View view;
+        room().render(camera, forward, view);
+        filter.observe(view.intensity, forward);
+    }
+    EXPECT_EQ(filter.shareConverged(), 0.);
+}
+
 TEST_F(DepthFilterTest, ImagesOfAnotherPlaceTeachNearlyNothing) {
     DepthFilter filter(seen(0).intensity, camera, pose(0));
     for (int i = 1; i <= 12; ++i) {

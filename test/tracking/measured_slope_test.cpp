@@ -26,8 +26,8 @@ class MeasuredSlope : public testing::Test {
             ++walks;
             NormalEquations e;
             e.AtA.topLeftCorner<6, 6>() = J.transpose() * J;
-            e.Atr.head<6>() = -J.transpose() * (D * logSE3(T_away_here));
-            e.count = 40.;
+            e.count = walks == 1 ? 40. : 40. * inView;
+            e.Atr.head<6>() = -(e.count / 40.) * J.transpose() * (D * logSE3(T_away_here));
             e.meanInverseDepth = 0.5;
             return e;
         });
@@ -41,6 +41,7 @@ class MeasuredSlope : public testing::Test {
     std::mt19937_64 random{1};
     Slope J;
     Matrix6 prior = 0.01 * Matrix6::Identity();
+    double inView = 1.;  // after a walk
     int walks = 0;
 };
 
@@ -87,6 +88,16 @@ TEST_F(MeasuredSlope, LeavesWhatThePriorKnowsBetterOrTheFloorDecides) {
     expectClose(informationOf(0.5 * J, {.floorTranslation = 0.1, .floorRotation = 0.1}),
                 J.transpose() * J);
     EXPECT_EQ(walks, 2);
+}
+
+/// What leaves the image on the way has not changed; where too much does, nothing is measured.
+TEST_F(MeasuredSlope, IsOfWhatStaysInView) {
+    inView = 0.9;
+    expectClose(informationOf(0.5 * J), 0.25 * J.transpose() * J);
+    inView = 0.7;
+    walks = 0;
+    expectClose(informationOf(0.5 * J), J.transpose() * J);
+    EXPECT_EQ(walks, 13);
 }
 
 }  // namespace
