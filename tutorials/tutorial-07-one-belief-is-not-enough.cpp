@@ -8,7 +8,7 @@
 #include "mesh_renderer.hpp"
 #include "planning_problem.hpp"
 #include "plot.hpp"
-#include "scene.hpp"
+#include "scene_argument.hpp"
 
 using namespace photonav;
 using namespace planning_problem;
@@ -50,8 +50,7 @@ struct Contender {
 }  // namespace
 
 int main(int argc, char** argv) {
-    const MeshRenderer floor(
-        loadScene(argc > 1 ? argv[1] : PHOTONAV_SOURCE_DIR "/config/scenes/stripes.yaml"));
+    const MeshRenderer floor(sceneArgument(argc, argv, "stripes.yaml"));
     const Problem problem = stripesProblem();
     const BeliefOptions beliefs = beliefsOf();
     const auto field = std::make_shared<InformationField>(

@@ -14,7 +14,7 @@
 #include "mesh_renderer.hpp"
 #include "odometry.hpp"
 #include "plot.hpp"
-#include "scene.hpp"
+#include "scene_argument.hpp"
 #include "sequence_tum.hpp"
 #include "trajectory.hpp"
 
@@ -157,8 +157,7 @@ void draw(const Result& odometry, const Result& inMap) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    const MeshRenderer room(
-        loadScene(argc > 1 ? argv[1] : PHOTONAV_SOURCE_DIR "/config/scenes/room.yaml"));
+    const MeshRenderer room(sceneArgument(argc, argv, "room.yaml"));
     const Camera camera = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
     record(room, camera, "flight");
     const Sequence flight = readTumSequence("flight");

@@ -1,23 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's first scene for tutorials 4 and 5: a floor that is white on the left and textured on
+// The paper's first scene for tutorials 4 to 6: a floor that is white on the left and textured on
 // the right (x > 4.95 m), a robot at a height of 2 m, a camera that looks straight down.
 #pragma once
 
 #include <memory>
 #include <numbers>
-#include <string>
 
 #include "belief.hpp"
 #include "mesh_renderer.hpp"
-#include "scene.hpp"
+#include "scene_argument.hpp"
 
 namespace two_textures {
 
 using namespace photonav;
 
 inline MeshRenderer loadFloor(int argc, char** argv) {
-    return MeshRenderer(
-        loadScene(argc > 1 ? argv[1] : PHOTONAV_SOURCE_DIR "/config/scenes/two_textures.yaml"));
+    return MeshRenderer(sceneArgument(argc, argv, "two_textures.yaml"));
 }
 
 inline FlightSpace flightSpace() {

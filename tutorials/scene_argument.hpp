@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tutorials run in a scene of their own, or in one named on the command line.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "error.hpp"
+#include "scene.hpp"
+
+namespace photonav {
+
+/// The scene of the first argument, else a sample. One that cannot be read ends the program.
+inline Scene sceneArgument(int argc, char** argv, const std::string& sample) {
+    try {
+        return loadScene(argc > 1 ? argv[1] : PHOTONAV_SOURCE_DIR "/config/scenes/" + sample);
+    } catch (const InputError& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        std::exit(2);
+    }
+}
+
+}  // namespace photonav
