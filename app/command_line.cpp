@@ -68,6 +68,8 @@ void addRecording(CLI::App& parser, RecordingOptions& options) {
         ->type_name("A:B");
     parser.add_option("--depth-scale", options.depthScale,
                       "depth image value of one metre (default: the dataset's)");
+    parser.add_option("--stereo", options.stereo,
+                      "bm or sgbm: block matching (default), semi-global; for EuRoC recordings");
     parser.add_option("--tolerance", options.tolerance, "largest difference of timestamps [s]")
         ->capture_default_str();
 }

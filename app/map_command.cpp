@@ -17,8 +17,6 @@
 #include "map_report.hpp"
 #include "monocular_fusion.hpp"
 #include "octree_file.hpp"
-#include "sequence_euroc.hpp"
-#include "sequence_tum.hpp"
 #include "stopwatch.hpp"
 #include "voxel_renderer.hpp"
 
@@ -49,16 +47,13 @@ void checkOptions(const MapOptions& options) {
                 fmt::format("{} is not a positive number", value));
     };
     positive(options.resolution, "--resolution");
-    positive(options.tolerance, "--tolerance");
     positive(options.fusion.maxRange, "--max-range");
     require(options.fusion.minRange < options.fusion.maxRange, "--max-range",
             fmt::format("not above the least range, {} m", options.fusion.minRange));
-    if (options.depthScale) positive(*options.depthScale, "--depth-scale");
     require(options.depth == "recorded" || options.depth == "monocular", "--depth",
             fmt::format("'{}' is not one of recorded, monocular", options.depth));
     require(options.depth == "recorded" || options.fusion.minRange >= kNearest, "--min-range",
             fmt::format("depth from the images begins at {} m or farther", kNearest));
-    require(options.every >= 1, "--every", "must be at least 1");
 }
 
 /// Cells are numbered by 16 bits an axis: far from the origin there are none. Nearer than kNear it
@@ -86,8 +81,9 @@ bool checkDepths(const MapOptions& options, const Sequence& sequence, const View
     return true;
 }
 
-MapRun fuseFrames(const MapOptions& options, const Sequence& sequence,
+MapRun fuseFrames(const MapOptions& options, const Recording& recording,
                   const std::atomic<bool>& interrupted, TexturedOcTree& map) {
+    const Sequence& sequence = recording.sequence;
     MapRun run;
     Stopwatch watch;
     std::optional<MonocularFusion> monocular;
@@ -105,7 +101,7 @@ MapRun fuseFrames(const MapOptions& options, const Sequence& sequence,
         }
     };
     while (run.frames < sequence.frames.size() && !interrupted) {
-        const RecordedFrame frame = loadFrame(sequence, run.frames);
+        const RecordedFrame frame = recording.load(run.frames);
         run.loadSeconds += watch.lap();
         checkPosition(options, frame);
         if (!isDepthChecked) isDepthChecked = checkDepths(options, sequence, frame.view);
@@ -139,16 +135,17 @@ Trajectory trajectoryOf(const Sequence& sequence, std::size_t count) {
 }
 
 /// Predicts every n-th frame and says how well; pictures of a few.
-void compareFrames(const MapOptions& options, const Sequence& sequence, const TexturedOcTree& map,
+void compareFrames(const MapOptions& options, const Recording& recording, const TexturedOcTree& map,
                    const std::atomic<bool>& interrupted, MapRun& run) {
     if (options.compareEvery < 1) return;
+    const Sequence& sequence = recording.sequence;
     const VoxelRenderer renderer(map, UnknownPolicy::occupied);
     const auto step = std::size_t(options.compareEvery);
     const std::size_t count = (sequence.frames.size() + step - 1) / step;
     std::size_t pictures = 0;
     View predicted;
     for (std::size_t k = 0; k < count && !interrupted; ++k) {
-        const RecordedFrame frame = loadFrame(sequence, k * step);
+        const RecordedFrame frame = recording.load(k * step);
         if (isBlack(frame.view.intensity)) continue;
         renderer.render(sequence.camera, frame.T_c_w, predicted);
         const ViewDifference d = compareViews(frame.view, predicted);
@@ -169,18 +166,6 @@ void compareFrames(const MapOptions& options, const Sequence& sequence, const Te
     }
 }
 
-/// A dataset that cannot be fused leaves no new folder behind.
-MapRun fuseOrCleanUp(const MapOptions& options, const Sequence& sequence,
-                     const std::atomic<bool>& interrupted, TexturedOcTree& map) {
-    try {
-        return fuseFrames(options, sequence, interrupted, map);
-    } catch (const InputError&) {
-        std::error_code ignored;
-        fs::remove(options.out, ignored);  // only when there is nothing in it
-        throw;
-    }
-}
-
 void writeMaps(const fs::path& folder, const TexturedOcTree& map, const Trajectory& trajectory) {
     saveTexturedOcTree(map, (folder / "map.ot").string());
     saveColorOcTree(map, (folder / "map_color.ot").string());
@@ -197,19 +182,16 @@ double defaultMinRange(const std::string& depth) {
 MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted) {
     checkOptions(options);
     Stopwatch watch;
-    if (isEurocFolder(options.dataset)) {
-        throw InputError(options.dataset, "",
-                         "a recording in the EuRoC layout; maps are made of the TUM RGB-D layout");
-    }
     const RecordingOptions& given = options;
     RecordingOptions asked = given;
     asked.needsDepth = options.depth == "recorded";
     const Recording recording = readRecording(asked);
     prepareFolder(options.out);
+    const NoEmptyFolder noEmptyFolder(options.out);
     json time{{"read_s", watch.lap()}};
 
     TexturedOcTree map(options.resolution);
-    MapRun run = fuseOrCleanUp(options, recording.sequence, interrupted, map);
+    MapRun run = fuseFrames(options, recording, interrupted, map);
     time["load_images_s"] = run.loadSeconds;
     time["fuse_s"] = run.fuseSeconds;
     time["fuse_per_frame_s"] = run.fuseSeconds / double(std::max<std::size_t>(1, run.frames));
@@ -219,7 +201,7 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
     writeMaps(options.out, map, run.trajectory);
     time["write_s"] = watch.lap();
 
-    compareFrames(options, recording.sequence, map, interrupted, run);
+    compareFrames(options, recording, map, interrupted, run);
     time["compare_s"] = watch.lap();
     run.interrupted = interrupted;
     MapReport report;

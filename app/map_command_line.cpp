@@ -21,15 +21,16 @@ struct MapArguments : MapOptions {
 void addOptions(CLI::App& parser, MapArguments& options) {
     parser
         .add_option("dataset", options.dataset,
-                    "folder in the TUM RGB-D layout; or a coloured point cloud (.ply), or a "
-                    "folder with one per station of the scanner; or the config.yaml of an earlier "
-                    "map")
+                    "folder in the TUM RGB-D or the EuRoC layout; or a coloured point cloud "
+                    "(.ply), or a folder with one per station of the scanner; or the config.yaml "
+                    "of an earlier map")
         ->required();
     parser.add_option("--resolution", options.resolution, "edge of a cell [m]")
         ->capture_default_str();
     parser
         .add_option("--depth", options.depth,
-                    "recorded, or monocular: from the images and their poses alone")
+                    "recorded (of two cameras: stereo), or monocular: from the images of one and "
+                    "their poses alone")
         ->capture_default_str();
     parser.add_option("--min-range", options.fusion.minRange,
                       "nearest depth trusted [m] (0.2, monocular: 0.5)");
@@ -49,7 +50,7 @@ void addOptions(CLI::App& parser, MapArguments& options) {
 /// The options for a laser scan; those that belong to images are errors.
 ScanMapOptions scanOptions(const CLI::App& parser, const MapArguments& options) {
     for (const char* name : {"--camera", "--up", "--every", "--frames", "--min-range",
-                             "--depth-scale", "--tolerance", "--depth"}) {
+                             "--depth-scale", "--tolerance", "--depth", "--stereo"}) {
         if (parser.count(name) > 0) throw InputError(name, "", "is for images, not point clouds");
     }
     ScanMapOptions scan;

@@ -20,6 +20,7 @@ std::string toYaml(const MapOptions& options, const Recording& recording) {
     const RecordingOptions& asked = options;
     RecordingOptions found = asked;
     found.up = upText(recording.up);
+    found.stereo = recording.stereo;
     if (recording.sequence.hasDepth()) found.depthScale = recording.sequence.depthScale;
     return toYaml(found) + fmt::format("depth: {}\nresolution: {}\nmin_range: {}\nmax_range: {}\n",
                                        options.depth, options.resolution, options.fusion.minRange,

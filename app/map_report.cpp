@@ -47,6 +47,9 @@ json datasetJson(const MapOptions& options, const Recording& recording) {
     camera["depth_registered_here"] = sequence.depthIntrinsics.has_value();
     const Eigen::Matrix3d R = worldUpRotation(recording.up);
     return {{"folder", fs::absolute(options.dataset).lexically_normal().string()},
+            {"layout", recording.layout},
+            {"stereo", recording.stereo.empty() ? json(nullptr) : json(recording.stereo)},
+            {"note", recording.note},
             {"camera", camera},
             {"depth_scale", sequence.hasDepth() ? json(sequence.depthScale) : json(nullptr)},
             {"up", options.up},
@@ -101,8 +104,9 @@ TableRows depthRows(const json& mono) {
 const char* whyEmpty(const json& result) {
     const std::size_t used = result["frames"]["used"];
     if (used == 0 && result["frames"]["black"] > 0) return "all images are black";
-    if (used == 1 && result["depth"] == "monocular") {
-        return "depth is measured from image to image, and there is only one";
+    if (result["depth"] == "monocular") {
+        return used == 1 ? "depth is measured from image to image, and there is only one"
+                         : "the camera moves too little to see depth, or there is no texture";
     }
     return "no surface was found";
 }

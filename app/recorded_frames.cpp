@@ -6,7 +6,6 @@
 #include "command_io.hpp"
 #include "constants.hpp"
 #include "map_config.hpp"
-#include "sequence_tum.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -14,7 +13,7 @@ namespace {
 
 constexpr std::size_t kWaypoints = 6;
 
-std::optional<Sequence> recordingOf(const std::string& mapFile) {
+std::optional<Recording> recordingOf(const std::string& mapFile) {
     if (mapFile.empty()) return {};
     const fs::path file = fs::path(mapFile).parent_path() / "config.yaml";
     if (!fs::exists(file) || !isMapConfig(file.string())) return {};
@@ -22,7 +21,7 @@ std::optional<Sequence> recordingOf(const std::string& mapFile) {
     readMapConfig(file.string(), options);
     options.needsDepth = false;  // grey values are compared
     options.depthScale.reset();
-    return readRecording(options).sequence;
+    return readRecording(options);
 }
 
 /// Waypoints of the path, first and last included.
@@ -73,8 +72,9 @@ std::size_t nearestFrame(const Sequence& sequence, const Pose& T_c_w, double dep
 
 std::optional<RecordedComparison> compareWithRecording(const Config& config, const World& world,
                                                        const JudgedPath& path) {
-    const auto sequence = recordingOf(config.mapFile);
-    if (!sequence) return {};
+    const auto recording = recordingOf(config.mapFile);
+    if (!recording) return {};
+    const Sequence& sequence = recording->sequence;
     RecordedComparison comparison;
     std::vector<std::vector<Panel>> rows;
     View there;
@@ -82,12 +82,12 @@ std::optional<RecordedComparison> compareWithRecording(const Config& config, con
     for (const std::size_t point : chosenPoints(path)) {
         const BeliefPoint& waypoint = path.points[point];
         const Pose T_c_w = (waypoint.T_w_b * config.camera.T_b_c()).inverse();
-        world.views().render(sequence->camera, T_c_w, there);
+        world.views().render(sequence.camera, T_c_w, there);
         NearestFrame nearest;
         nearest.point = point;
-        const std::size_t index = nearestFrame(*sequence, T_c_w, typicalDepth(there), nearest);
-        const RecordedFrame frame = loadFrame(*sequence, index);
-        world.views().render(sequence->camera, frame.T_c_w, predicted);
+        const std::size_t index = nearestFrame(sequence, T_c_w, typicalDepth(there), nearest);
+        const RecordedFrame frame = recording->load(index);
+        world.views().render(sequence.camera, frame.T_c_w, predicted);
         nearest.difference = compareViews(frame.view, predicted);
         comparison.frames.push_back(nearest);
         rows.push_back({predictedPanel(

@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <sstream>
 
 #include "averages.hpp"
 #include "error.hpp"
 #include "floor_plane.hpp"
+#include "sequence_euroc.hpp"
 #include "sequence_tum.hpp"
+#include "stereo_recording.hpp"
 #include "trajectory.hpp"
 
 namespace photonav {
@@ -36,13 +39,15 @@ struct Seen {
     std::vector<double> depths;           ///< of the same
 };
 
-Seen pointsBelow(const Sequence& sequence, const Eigen::Vector3d& roughUp) {
+Seen pointsBelow(const Recording& recording, const Eigen::Vector3d& roughUp) {
+    const Sequence& sequence = recording.sequence;
     const Camera& camera = sequence.camera;
     const unsigned stride = std::max(1U, camera.width / kFloorColumns);
     const std::size_t step = 1 + (sequence.frames.size() - 1) / kFloorFrames;
     Seen seen;
     for (std::size_t i = 0; i < sequence.frames.size(); i += step) {
-        const RecordedFrame frame = loadFrame(sequence, i);
+        if (!sequence.frames[i].hasPose) continue;
+        const RecordedFrame frame = recording.load(i);
         const Pose T_w_c = frame.T_c_w.inverse();
         for (unsigned v = stride / 2; v < camera.height; v += stride) {
             for (unsigned u = stride / 2; u < camera.width; u += stride) {
@@ -59,15 +64,16 @@ Seen pointsBelow(const Sequence& sequence, const Eigen::Vector3d& roughUp) {
     return seen;
 }
 
-Eigen::Vector3d upByFloor(const Sequence& sequence) {
-    if (!sequence.hasDepth()) {
+Eigen::Vector3d upByFloor(const Recording& recording) {
+    if (recording.stereo.empty() && !recording.sequence.hasDepth()) {
         throw InputError("--up", "floor", "the recording has no depth images to find it in");
     }
     Eigen::Vector3d roughUp = Eigen::Vector3d::Zero();  // the upper edge of the images
-    for (const auto& frame : sequence.frames) {
+    for (const auto& frame : recording.sequence.frames) {
+        if (!frame.hasPose) continue;
         roughUp -= frame.T_c_w.linear().row(1).transpose();
     }
-    const Seen seen = pointsBelow(sequence, roughUp.normalized());
+    const Seen seen = pointsBelow(recording, roughUp.normalized());
     std::optional<Eigen::Vector3d> up;
     if (!seen.points.empty() && roughUp.norm() > 1e-9) {
         FloorOptions options;
@@ -91,6 +97,66 @@ void checkDepthImages(const RecordingOptions& options) {
     throw InputError((folder / "depth.txt").string(), "",
                      "no such file; without depth images there is `map --depth monocular`, and "
                      "`replay --map`");
+}
+
+void checkOptions(const RecordingOptions& options) {
+    const auto require = [](bool good, const char* option, const std::string& reason) {
+        if (!good) throw InputError(option, "", reason);
+    };
+    require(options.every >= 1, "--every", "must be at least 1");
+    require(options.tolerance > 0., "--tolerance", "must be above 0");
+    require(!options.depthScale || *options.depthScale > 0., "--depth-scale", "must be above 0");
+    require(parseUp(options.up) || options.up == "floor", "--up",
+            fmt::format("'{}' is not one of {}, nor x,y,z, nor floor", options.up,
+                        fmt::join(axisNames(), ", ")));
+    require(options.stereo.empty() || options.stereo == "bm" || options.stereo == "sgbm",
+            "--stereo", fmt::format("'{}' is not one of bm, sgbm", options.stereo));
+}
+
+/// All frames of a dataset with depth images, in the recorded world.
+Recording readDepthRecording(const RecordingOptions& options) {
+    if (!options.stereo.empty()) {
+        throw InputError("--stereo", "", "is for EuRoC recordings: this one has depth images");
+    }
+    checkDepthImages(options);
+    TumOptions tum;
+    tum.tolerance = options.tolerance;
+    tum.depthScale = options.depthScale;
+    tum.cameraFile = options.cameraFile;
+    tum.forgiving = options.forgiving;
+    tum.needsDepth = options.needsDepth;
+    Recording recording;
+    recording.layout = "TUM RGB-D";
+    recording.sequence = readTumSequence(options.dataset, tum);
+    if (recording.sequence.cameraAssumed) recording.note = "the benchmark's Kinect was assumed";
+    if (options.depthScale && !recording.sequence.hasDepth()) {
+        throw InputError("--depth-scale", "", "the recording has no depth images");
+    }
+    recording.view = [all = recording.sequence](std::size_t i) { return loadFrame(all, i).view; };
+    return recording;
+}
+
+/// Only these frames, with their images.
+void keepFrames(Recording& recording, const std::vector<std::size_t>& indices) {
+    std::vector<Sequence::Entry> kept;
+    for (const std::size_t i : indices) kept.push_back(recording.sequence.frames[i]);
+    recording.sequence.frames = std::move(kept);
+    recording.view = [all = recording.view, indices](std::size_t i) { return all(indices.at(i)); };
+}
+
+void skipWithoutPose(const RecordingOptions& options, Recording& recording) {
+    std::vector<std::size_t> posed;
+    const auto& frames = recording.sequence.frames;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (frames[i].hasPose) {
+            posed.push_back(i);
+        } else {
+            recording.sequence.skipped.push_back(
+                {frames[i].colourFile, fmt::format("no pose within {} s", options.tolerance)});
+        }
+    }
+    if (posed.empty()) throw InputError(options.dataset, "", "no poses of the camera");
+    keepFrames(recording, posed);
 }
 
 }  // namespace
@@ -140,35 +206,22 @@ std::pair<std::size_t, std::size_t> parseFrames(const std::string& text, std::si
 }
 
 Recording readRecording(const RecordingOptions& options) {
+    checkOptions(options);
+    Recording recording =
+        isEurocFolder(options.dataset) ? readStereoRecording(options) : readDepthRecording(options);
+    if (!options.forgiving) skipWithoutPose(options, recording);
     const auto given = parseUp(options.up);
-    if (!given && options.up != "floor") {
-        throw InputError("--up", "",
-                         fmt::format("'{}' is not one of {}, nor x,y,z, nor floor", options.up,
-                                     fmt::join(axisNames(), ", ")));
-    }
-    TumOptions tum;
-    tum.tolerance = options.tolerance;
-    tum.depthScale = options.depthScale;
-    tum.cameraFile = options.cameraFile;
-    tum.forgiving = options.forgiving;
-    tum.needsDepth = options.needsDepth;
-    checkDepthImages(options);
-    Recording recording;
-    recording.sequence = readTumSequence(options.dataset, tum);
-    if (options.depthScale && !recording.sequence.hasDepth()) {
-        throw InputError("--depth-scale", "", "the recording has no depth images");
-    }
-    auto& frames = recording.sequence.frames;
-    recording.up = given ? *given : upByFloor(recording.sequence);
+    recording.up = given ? *given : upByFloor(recording);
     Pose T_recorded_w = Pose::Identity();
     T_recorded_w.linear() = worldUpRotation(recording.up).transpose();
-    std::vector<Sequence::Entry> used;
+    auto& frames = recording.sequence.frames;
     const auto [first, end] = parseFrames(options.frames, frames.size());
-    for (std::size_t i = first; i < end; i += std::size_t(options.every)) {
-        used.push_back(frames[i]);
-        used.back().T_c_w = used.back().T_c_w * T_recorded_w;
+    std::vector<std::size_t> used;
+    for (std::size_t i = first; i < end; i += std::size_t(options.every)) used.push_back(i);
+    keepFrames(recording, used);
+    for (Sequence::Entry& frame : frames) {
+        if (frame.hasPose) frame.T_c_w = frame.T_c_w * T_recorded_w;
     }
-    frames = std::move(used);
     return recording;
 }
 

@@ -2,7 +2,7 @@
 // A recorded sequence in the world of the map that was made of it.
 #pragma once
 
-#include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,28 +13,42 @@ namespace photonav {
 
 /// What is mapped, and what a plan in that map is compared with.
 struct RecordingOptions {
-    std::string dataset;      ///< folder in the TUM RGB-D layout
+    std::string dataset;      ///< folder in the TUM RGB-D or the EuRoC layout
     std::string up = "z";     ///< what points up in the recorded world: an axis (x ... -z), a
                               ///< direction "x,y,z", or "floor": found in the depth images
     int every = 1;            ///< use every n-th frame
     std::string frames;       ///< "a:b": only the frames from a on and before b; either may be
                               ///< missing
-    bool forgiving = false;   ///< see TumOptions
+    bool forgiving = false;   ///< frames without pose are kept, see TumOptions
     double tolerance = 0.02;  ///< of timestamps, see TumOptions [s]
     bool needsDepth = true;   ///< see TumOptions
     std::string cameraFile;   ///< instead of the dataset's camera.yaml
     std::optional<double> depthScale;  ///< depth image value of one metre, instead of the dataset's
+    std::string stereo;  ///< EuRoC: "bm" or "sgbm", block matching (the default) or semi-global
 };
 
 struct Recording {
     Sequence sequence;  ///< the frames to use, in the world of the map (z up)
     Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< in the recorded world
+    std::string layout;                             ///< "TUM RGB-D", "EuRoC"
+    std::string stereo;                             ///< how depth is found; empty: it is recorded
+    std::string note;                               ///< what a reader of the poses must know
+
+    /// Images of a frame of the sequence: rectified, with depth. @throws InputError for those that
+    /// cannot be used
+    std::function<View(std::size_t frame)> view;
+
+    RecordedFrame load(std::size_t frame) const {
+        const Sequence::Entry& entry = sequence.frames.at(frame);
+        return {entry.T_c_w, view(frame), entry.timestamp};
+    }
 };
 
 /// Reads the tables of a dataset (and, for "floor", some images) and turns its world upright. The
 /// floor is sought within 50 degrees of the upper edge of the images: a camera that looks straight
 /// down needs an axis or a direction.
-/// @throws InputError for a dataset that cannot be used and for `up` ("--up")
+/// @throws InputError for a dataset that cannot be used and for options: `up` ("--up"), a range
+///         without frames, and those that mean nothing for this recording
 Recording readRecording(const RecordingOptions& options);
 
 /// A depth scale wrong by 1000 is found here, before it looks like bad tracking or an empty map.

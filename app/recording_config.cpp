@@ -27,6 +27,7 @@ std::string toYaml(const RecordingOptions& options) {
     if (!options.frames.empty()) {
         text += fmt::format("frames: {}\n", YAML::Dump(YAML::Node(options.frames)));
     }
+    if (!options.stereo.empty()) text += fmt::format("stereo: {}\n", options.stereo);
     return text;
 }
 
@@ -40,6 +41,7 @@ void readRecordingKeys(YamlMap& yaml, RecordingOptions& options) {
     yaml.read("every", options.every);
     if (options.every < 1) yaml.fail("every", "must be at least 1");
     yaml.read("frames", options.frames);
+    if (yaml.has("stereo")) yaml.readChoice("stereo", options.stereo, {"bm", "sgbm"});
     yaml.readNumber("tolerance", options.tolerance, 1e-9, kInfinity);
     if (yaml.has("depth_scale")) {
         yaml.readNumber("depth_scale", options.depthScale.emplace(), 1e-6, kInfinity);

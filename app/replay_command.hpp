@@ -16,7 +16,7 @@ namespace photonav {
 inline constexpr int kLeastWidth = 24;       ///< of the images that are tracked [pixels]
 inline constexpr double kStartSigma = 0.05;  ///< in a map, when nothing else is said [m], [rad]
 
-struct ReplayOptions : ReplaySourceOptions {
+struct ReplayOptions : RecordingOptions {
     std::filesystem::path out;  ///< folder for the results; made when missing
     std::string mapFile;        ///< localise in this textured octree (.ot), mesh or scene
     bool odometry = false;      ///< instead: no map, from image to image

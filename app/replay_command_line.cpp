@@ -18,8 +18,6 @@ struct ReplayArguments : ReplayOptions {
 };
 
 void addTracking(CLI::App& parser, ReplayArguments& options) {
-    parser.add_option("--stereo", options.stereo,
-                      "bm or sgbm: block matching (default), semi-global; for EuRoC recordings");
     parser.add_option("--sigma", options.sigma, "image noise, grey values in [0, 1]")
         ->capture_default_str();
     parser.add_option(

@@ -19,12 +19,13 @@ void readOptional(YamlMap& yaml, const char* key, std::optional<double>& value, 
 
 std::string toYaml(const ReplayOptions& o, const ReplaySource& source,
                    const ReplayTracker& tracker) {
-    const RecordingOptions& recording = o;
+    const RecordingOptions& given = o;
+    RecordingOptions recording = given;
+    recording.stereo = source.stereo;
     std::string text = toYaml(recording);
     if (!o.mapFile.empty()) text += fmt::format("map: {}\n", absolutePath(o.mapFile));
     text += fmt::format("odometry: {}\n", o.odometry);
     if (!o.odometry) text += fmt::format("start_sigma: {}\n", o.startSigma.value_or(kStartSigma));
-    if (!source.stereo.empty()) text += fmt::format("stereo: {}\n", source.stereo);
     if (!o.start.empty()) text += fmt::format("start: {}\n", YAML::Dump(YAML::Node(o.start)));
     if (o.maxWidth) text += fmt::format("max_width: {}\n", *o.maxWidth);
     return text + fmt::format(
@@ -42,7 +43,6 @@ void readReplayConfig(const std::string& file, ReplayOptions& options) {
     yaml.read("odometry", options.odometry);
     yaml.read("start", options.start);
     readOptional(yaml, "start_sigma", options.startSigma, kLeast);
-    if (yaml.has("stereo")) yaml.readChoice("stereo", options.stereo, {"bm", "sgbm"});
     yaml.readNumber("sigma", options.sigma, kLeast, kInfinity);
     readOptional(yaml, "scale", options.scale, kLeast);
     readOptional(yaml, "floor", options.floorTranslation, 0.);

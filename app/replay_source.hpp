@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Recorded flights of any layout as one sequence of views.
+// A recording as a replay sees it: views, and poses only to judge by.
 #pragma once
 
 #include <functional>
@@ -10,11 +10,6 @@
 #include "recording.hpp"
 
 namespace photonav {
-
-/// Which recording, in the TUM RGB-D or the EuRoC layout, and how to read it.
-struct ReplaySourceOptions : RecordingOptions {
-    std::string stereo;  ///< EuRoC: "bm" or "sgbm", block matching (the default) or semi-global
-};
 
 struct ReplaySource {
     struct Frame {
@@ -40,9 +35,8 @@ struct ReplaySource {
     bool hasGroundtruth() const;
 };
 
-/// Reads the tables of a dataset.
-/// @throws InputError for what cannot be used: dataset, options ("--every"), also those that mean
-///         nothing for this recording, a range without frames
-ReplaySource openReplaySource(const ReplaySourceOptions& options);
+/// readRecording() of all frames that can be read, with a pose or without.
+/// @throws InputError also for `up` without any poses
+ReplaySource openReplaySource(const RecordingOptions& options);
 
 }  // namespace photonav
