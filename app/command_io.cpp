@@ -43,6 +43,11 @@ constexpr std::array kSometimesWritten{
 
 }  // namespace
 
+NoEmptyFolder::~NoEmptyFolder() {
+    std::error_code ignored;
+    if (fs::is_directory(folder_, ignored)) fs::remove(folder_, ignored);  // only when it is empty
+}
+
 void prepareFolder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "camera.hpp"
@@ -26,6 +27,18 @@ struct CommandOptions {
 /// Makes the result folder and checks that files can be written there, before any work is done.
 /// @throws InputError otherwise
 void prepareFolder(const std::filesystem::path& folder);
+
+/// What ends without a result leaves no empty folder behind.
+class NoEmptyFolder {
+  public:
+    explicit NoEmptyFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    ~NoEmptyFolder();
+    NoEmptyFolder(const NoEmptyFolder&) = delete;
+    NoEmptyFolder& operator=(const NoEmptyFolder&) = delete;
+
+  private:
+    std::filesystem::path folder_;
+};
 
 /// The folder of the options, or the default one, prepared: nothing of an earlier run is left that
 /// this one might not write.

@@ -206,6 +206,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     PlanRun run(config, world);
     run.checkPlaces();
     const auto folder = folderFor(options, config.fly.plan);
+    const NoEmptyFolder noEmptyFolder(folder);
     if (!options.record.empty()) prepareRecordFolder(options.record);
 
     std::vector<FlightSet> sets;

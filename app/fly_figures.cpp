@@ -29,7 +29,8 @@ std::vector<Canvas::Point> meansAlong(const FlightSet& set, Value value) {
     std::vector<Canvas::Point> means;
     for (std::size_t i = 0; i < bins; ++i) {
         if (!values[i].empty())
-            means.emplace_back((static_cast<double>(i) + 0.5) * kBin, mean(values[i], 0.));
+            means.emplace_back(std::min((static_cast<double>(i) + 0.5) * kBin, set.path.length),
+                               mean(values[i], 0.));
     }
     return means;
 }

@@ -89,7 +89,7 @@ UncertainPose startOf(const ReplayOptions& options, const ReplaySource& source) 
     } else if (!options.odometry) {
         if (!source.frames[0].T_c_w) {
             throw InputError(
-                "--start", "",
+                options.dataset, "--start",
                 source.hasGroundtruth()
                     ? "needed: the first frame has no true pose (or begin later with --frames)"
                     : "needed: the recording has no ground truth to begin from");
@@ -199,8 +199,8 @@ void calibrateReplay(const ReplayOptions& options, const ReplayRun& run, double 
 ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& interrupted) {
     checkOptions(options);
     const Stopwatch watch;
-    const ReplaySourceOptions& given = options;
-    ReplaySourceOptions asked = given;
+    const RecordingOptions& given = options;
+    RecordingOptions asked = given;
     asked.needsDepth = options.odometry;
     const ReplaySource source = openReplaySource(asked);
     if (options.odometry && source.frames.size() < 2) {
@@ -211,6 +211,7 @@ ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& in
     const ReplayTracker tracker = makeTracker(options, source, map);
     const std::optional<double> depth = checkDepths(options, source);
     prepareFolder(options.out);
+    const NoEmptyFolder noEmptyFolder(options.out);
     for (const char* stale :
          {"result.json", "strips.png", "top_view.png", "groundtruth.tum", "calibration.yaml"}) {
         fs::remove(options.out / stale);

@@ -19,6 +19,8 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
+constexpr double kProud = 3.;  // NEES per degree of freedom that must not go unsaid
+
 /// "0.0123 m", or words when there is no number.
 std::string number(const json& value, double factor, const char* format,
                    const char* none = "not known") {
@@ -144,16 +146,23 @@ std::vector<NamedFigure> figuresOf(bool odometry, const ReplayRun& run, const Re
 
 using TableRows = std::vector<std::pair<std::string, std::string>>;
 
+/// In words where covariances are far from true.
+std::string neesText(const json& result) {
+    const double nees = result["nees_per_dof"];
+    const std::string text =
+        fmt::format("{:.3g}, {:.3g}", nees, result["nees_median_per_dof"].get<double>());
+    if (nees < kProud || result.contains("calibration")) return text;
+    return text + fmt::format(": errors are {:.1f} times what the covariances say (--calibrate)",
+                              std::sqrt(nees));
+}
+
 TableRows errorRows(const json& result) {
     if (result["judged"] == 0) return {{"errors", "not known: no tracked image has a true pose"}};
     const auto& rpe = result["rpe"];
     const bool isLaidLater = result["laid_on_frame"].is_number() && result["laid_on_frame"] > 0;
-    const std::string nees =
-        result["nees_per_dof"].is_number()
-            ? fmt::format("{:.3g}, {:.3g}", result["nees_per_dof"].get<double>(),
-                          result["nees_median_per_dof"].get<double>())
-        : isLaidLater ? "not known: no true pose where it begins (--frames)"
-                      : "not known";
+    const std::string nees = result["nees_per_dof"].is_number() ? neesText(result)
+                             : isLaidLater ? "not known: no true pose where it begins (--frames)"
+                                           : "not known";
     const std::string aligned = result["ate_alignment"] == "none" ? "not aligned" : "SE(3) aligned";
     return {{fmt::format("absolute error ({}), rms", aligned),
              number(result["ate_rmse_m"], 1e3, "{:.2f} mm")},
@@ -166,6 +175,11 @@ TableRows errorRows(const json& result) {
             {"NEES per dof (1: honest), mean, median", nees}};
 }
 
+std::string degenerateText(const json& result) {
+    const int count = result["degenerate"];
+    return count > 0 ? fmt::format(" ({} degenerate)", count) : "";
+}
+
 }  // namespace
 
 ReportTable replaySummary(const json& result) {
@@ -174,8 +188,8 @@ ReportTable replaySummary(const json& result) {
     table.rows = {
         {"verdict", result["verdict"].get<std::string>()},
         {"frames tracked, lost, unreadable",
-         fmt::format("{}, {}, {}", result["tracked"].dump(), result["lost"].dump(),
-                     result["unreadable"].dump())},
+         fmt::format("{}{}, {}, {}", result["tracked"].dump(), degenerateText(result),
+                     result["lost"].dump(), result["unreadable"].dump())},
         {"skipped, gaps in time",
          fmt::format("{}, {}", result["skipped"].size(), result["gaps"].size())},
     };

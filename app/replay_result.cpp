@@ -64,7 +64,7 @@ std::vector<double> neesOf(const ReplayErrors& errors) {
 }
 
 json framesPerSecond(double frames, double seconds) {
-    return seconds > 0. ? json(frames / seconds) : json(nullptr);
+    return frames > 0. && seconds > 0. ? json(frames / seconds) : json(nullptr);
 }
 
 /// Mean share of the pixels with depth, of the images that could be read.
@@ -92,7 +92,10 @@ json skippedJson(const ReplaySource& source, const ReplayRun& run) {
     }
     for (const ReplayedFrame& frame : run.frames) {
         if (frame.status != FrameStatus::unreadable) continue;
-        list.push_back({{"file", source.frames[frame.index].file}, {"reason", frame.words}});
+        const std::string& file = source.frames[frame.index].file;
+        std::string reason = frame.words;
+        if (reason.starts_with(file + ": ")) reason.erase(0, file.size() + 2);
+        list.push_back({{"file", file}, {"reason", reason}});
     }
     return list;
 }
@@ -261,10 +264,15 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
                   bool aligned) {
     const auto tracked = count(run, FrameStatus::tracked);
     const auto lost = count(run, FrameStatus::lost);
+    const double looked = tracked > 0 ? double(tracked + lost) : 0.;
     const ErrorSummary absolute = summarise(errors.absolute.translation);
     const bool judged = !errors.judged.empty();
     const std::vector<double> nees = neesOf(errors);
     const double none = std::numeric_limits<double>::quiet_NaN();
+    const auto degenerate = std::count_if(run.frames.begin(), run.frames.end(), [](const auto& f) {
+        return f.status == FrameStatus::tracked &&
+               f.tracked.alignment.verdict == Verdict::degenerate;
+    });
     std::set<double> keyframes;
     for (const ReplayedFrame& frame : run.frames) {
         if (frame.tracked.keyframe) keyframes.insert(*frame.tracked.keyframe);
@@ -273,6 +281,7 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
             {"frames", run.frames.size()},
             {"recorded", source.recorded},
             {"tracked", tracked},
+            {"degenerate", degenerate},
             {"lost", lost},
             {"unreadable", count(run, FrameStatus::unreadable)},
             {"keyframes", keyframes.size()},
@@ -292,9 +301,8 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
               {"metre", summaryJson(errors.perMetre)}}},
             {"nees_per_dof", finiteOrNull(mean(nees, none))},
             {"nees_median_per_dof", finiteOrNull(median(nees, none))},
-            {"fps", framesPerSecond(double(tracked + lost), run.trackSeconds)},
-            {"fps_with_reading",
-             framesPerSecond(double(tracked + lost), run.trackSeconds + run.loadSeconds)},
+            {"fps", framesPerSecond(looked, run.trackSeconds)},
+            {"fps_with_reading", framesPerSecond(looked, run.trackSeconds + run.loadSeconds)},
             {"depth_density", densityJson(run)},
             {"skipped", skippedJson(source, run)},
             {"covariance_frame",

@@ -6,6 +6,7 @@
 #include "map_command.hpp"
 #include "recorded_flight.hpp"
 #include "replay_calibration.hpp"
+#include "replay_report.hpp"
 #include "trajectory.hpp"
 
 namespace photonav {
@@ -524,6 +525,41 @@ TEST_F(ReplayCommand, RejectsWhatItCannotReplay) {
         {"scaled.yaml: depth_scale: implausible"});
     writeText(data / "groundtruth.txt", "5 0 0 1 0 0 0 1\n");
     expectRejected({"groundtruth.txt", "poses from 5.000", "images from 50.000 to 51.100"});
+    EXPECT_FALSE(test::fs::exists(options.out));
+}
+
+/// Covariances that are far from true do not go unsaid, nor do images that tell only half.
+TEST(ReplaySummary, NamesWhatIsNotRight) {
+    json result = {{"verdict", "tracked 9 of 9 frames"},
+                   {"tracked", 9},
+                   {"degenerate", 2},
+                   {"lost", 0},
+                   {"unreadable", 0},
+                   {"skipped", json::array()},
+                   {"gaps", json::array()},
+                   {"judged", 9},
+                   {"laid_on_frame", 0},
+                   {"ate_rmse_m", 0.01},
+                   {"ate_max_m", 0.02},
+                   {"ate_rotation_rmse_deg", 0.1},
+                   {"ate_alignment", "none"},
+                   {"rpe", {{"frame", nullptr}, {"second", nullptr}, {"metre", nullptr}}},
+                   {"nees_per_dof", 49.},
+                   {"nees_median_per_dof", 40.},
+                   {"depth_density", nullptr},
+                   {"fps", 10.},
+                   {"fps_with_reading", 5.},
+                   {"dataset", {{"layout", "TUM RGB-D"}}}};
+    const auto said = [&](const std::string& words) {
+        const ReportTable table = replaySummary(result);
+        return std::ranges::any_of(table.rows, [&](const auto& row) {
+            return row.second.find(words) != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(said("errors are 7.0 times what the covariances say"));
+    EXPECT_TRUE(said("9 (2 degenerate), 0, 0"));
+    result["nees_per_dof"] = 1.2;
+    EXPECT_FALSE(said("covariances say"));
 }
 
 TEST_F(ReplayCommand, StereoRecordings) {

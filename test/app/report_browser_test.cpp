@@ -190,7 +190,7 @@ TEST_F(ReportBrowserTest, RecordedFlightsHaveFramesAndNeitherGoalNorCost) {
                    {"lost", 1},
                    {"ate_rmse_m", 0.0123},
                    {"nees_per_dof", 1.1},
-                   {"fps", 30.},
+                   {"fps_with_reading", 30.},
                    {"rpe", {{"second", nullptr}, {"frame", nullptr}}}};
     const Outcome outcome = open(data, "#waypoint=2");
     expectNoErrors(outcome);
