@@ -103,7 +103,8 @@ int run(const CLI::App& parser, MapArguments& options, const std::atomic<bool>& 
                                        : mapImages(parser, isConfig, options, line, interrupted);
     line.clear();
     printOutput({options.out, options.quiet, options.json}, report.result, report.summary,
-                {"map.ot", "report.html"});
+                report.exitCode == kNoAnswer ? std::vector<std::string>{"report.html"}
+                                             : std::vector<std::string>{"map.ot", "report.html"});
     return report.exitCode;
 }
 

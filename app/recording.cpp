@@ -99,7 +99,7 @@ void checkDepthImages(const RecordingOptions& options) {
                      "`replay --map`");
 }
 
-void checkOptions(const RecordingOptions& options) {
+void checkReading(const RecordingOptions& options) {
     const auto require = [](bool good, const char* option, const std::string& reason) {
         if (!good) throw InputError(option, "", reason);
     };
@@ -139,6 +139,7 @@ Recording readDepthRecording(const RecordingOptions& options) {
 /// Only these frames, with their images.
 void keepFrames(Recording& recording, const std::vector<std::size_t>& indices) {
     std::vector<Sequence::Entry> kept;
+    kept.reserve(indices.size());
     for (const std::size_t i : indices) kept.push_back(recording.sequence.frames[i]);
     recording.sequence.frames = std::move(kept);
     recording.view = [all = recording.view, indices](std::size_t i) { return all(indices.at(i)); };
@@ -206,7 +207,7 @@ std::pair<std::size_t, std::size_t> parseFrames(const std::string& text, std::si
 }
 
 Recording readRecording(const RecordingOptions& options) {
-    checkOptions(options);
+    checkReading(options);
     Recording recording =
         isEurocFolder(options.dataset) ? readStereoRecording(options) : readDepthRecording(options);
     if (!options.forgiving) skipWithoutPose(options, recording);

@@ -14,7 +14,7 @@ namespace photonav {
 namespace {
 
 /// What EuRoC recordings say themselves or do not have is an error.
-void checkOptions(const RecordingOptions& options) {
+void checkForStereo(const RecordingOptions& options) {
     if (!options.cameraFile.empty()) {
         throw InputError("--camera", "", "EuRoC recordings say themselves what their cameras are");
     }
@@ -44,7 +44,7 @@ std::string noteOn(const StereoSequence& sequence) {
 }  // namespace
 
 Recording readStereoRecording(const RecordingOptions& options) {
-    checkOptions(options);
+    checkForStereo(options);
     EurocOptions euroc;
     euroc.tolerance = options.tolerance;
     const auto images = std::make_shared<StereoSequence>(readEurocSequence(options.dataset, euroc));

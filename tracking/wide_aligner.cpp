@@ -265,17 +265,16 @@ std::vector<Pose> WideAligner::likenesses(const Alignment& best,
     return around;
 }
 
-/// An alignment that explains the image almost as well, from elsewhere.
-const Alignment* WideAligner::rivalOf(const Alignment& best, const std::vector<Alignment>& found,
-                                      const UncertainPose& prior) const {
+/// Whether there is an alignment from elsewhere that explains the image almost as well.
+bool WideAligner::hasRival(const Alignment& best, const std::vector<Alignment>& found,
+                           const UncertainPose& prior) const {
     const Play play = playOf(prior.covariance, aligner_.camera(), best.meanDepth);
     const double stuck = play.sigmas[4] < kPlay ? kStuck * weight() * best.residual.explained : 0.;
     const double decides = std::max(kAmbiguous, stuck);
     const double least = costOf(best, prior);
-    for (const Alignment& a : found) {
-        if (isElsewhere(a, best) && costOf(a, prior) < least + decides) return &a;
-    }
-    return nullptr;
+    return std::any_of(found.begin(), found.end(), [&](const Alignment& a) {
+        return isElsewhere(a, best) && costOf(a, prior) < least + decides;
+    });
 }
 
 /// The alignments from these starts that are not lost.
@@ -316,7 +315,7 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
     // that would show nothing are as likely, and the information of the view expected is not there.
     model_.render(small_.camera(), best.T_c_w, expected);
     const double least = spread(expected.intensity) < kNarrow ? kLeastShown : kAmbiguous;
-    if (weight() * best.residual.explained < least || rivalOf(best, found, prior)) {
+    if (weight() * best.residual.explained < least || hasRival(best, found, prior)) {
         return undecided(best, prior, Verdict::degenerate);
     }
     return best;

@@ -35,8 +35,8 @@ class WideAligner {
     bool isElsewhere(const Alignment& alignment, const Alignment& best) const;
     std::vector<Pose> likenesses(const Alignment& best, const std::vector<Alignment>& found,
                                  const UncertainPose& prior) const;
-    const Alignment* rivalOf(const Alignment& best, const std::vector<Alignment>& found,
-                             const UncertainPose& prior) const;
+    bool hasRival(const Alignment& best, const std::vector<Alignment>& found,
+                  const UncertainPose& prior) const;
 
     const ViewSource& model_;
     DenseAligner aligner_;
