@@ -65,7 +65,7 @@ Seen pointsBelow(const Recording& recording, const Eigen::Vector3d& roughUp) {
 }
 
 Eigen::Vector3d upByFloor(const Recording& recording) {
-    if (recording.stereo.empty() && !recording.sequence.hasDepth()) {
+    if (!recording.sequence.hasDepth()) {
         throw InputError("--up", "floor", "the recording has no depth images to find it in");
     }
     Eigen::Vector3d roughUp = Eigen::Vector3d::Zero();  // the upper edge of the images

@@ -21,6 +21,9 @@ void checkForStereo(const RecordingOptions& options) {
     if (options.depthScale) {
         throw InputError("--depth-scale", "", "EuRoC recordings have no depth images");
     }
+    if (options.up == "floor") {  // depth from stereo is too rough to tell a floor from a mat on it
+        throw InputError("--up", "floor", "is sought in depth images, which EuRoC recordings lack");
+    }
 }
 
 std::shared_ptr<StereoDepth> stereoOf(const StereoSequence& sequence, const std::string& method) {

@@ -581,6 +581,9 @@ TEST_F(ReplayCommand, StereoRecordings) {
     options.depthScale = 1000.;
     expectInputError([&] { run(); }, {"--depth-scale", "EuRoC"});
     options.depthScale.reset();
+    options.up = "floor";
+    expectInputError([&] { run(); }, {"--up: floor", "EuRoC"});
+    options.up = "z";
     wall.width = 300;
     const auto cam1 = folder.path() / "wall/mav0/cam1";
     writeText(cam1 / "sensor.yaml", wall.sensor(1));
