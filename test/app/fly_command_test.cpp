@@ -189,7 +189,7 @@ TEST_F(FlyCommand, RecordsNothingWhereNothingFlies) {
         photonav(fmt::format("fly {} --set planner.vertices=2 --record {} --out {}", config("room"),
                              at("recorded"), at("out")));
     EXPECT_EQ(run.exitCode, 1) << run.output;
-    EXPECT_TRUE(fs::is_empty(at("recorded")));
+    EXPECT_FALSE(fs::exists(at("recorded")));
 }
 
 /// Images that are only late are not missed.
@@ -218,7 +218,11 @@ TEST_F(FlyCommand, RejectsBadInput) {
     expect(fly("x", "--floor -1"), "--floor: must be a number, not negative");
     expect(fly("x", "--record /proc/x"), "/proc/x: cannot be made");
     fs::create_directories(folder_ / "old" / "rgb");
+    fs::create_directories(folder_ / "x");
+    std::ofstream(folder_ / "x" / "result.json") << "{}";  // of an earlier run
     expect(fly("x", "--record " + at("old")), "old: holds a recording already");
+    EXPECT_TRUE(fs::exists(folder_ / "x" / "result.json"));
+    fs::remove_all(folder_ / "x");
     expect(fly("x", "--seed abc"), "--seed");
     expect(fly("x", "--map " + at("gone.ot")), "gone.ot");
     const auto calibration = [&](const std::string& text) {
