@@ -7,6 +7,7 @@
 #include "euroc_dataset.hpp"
 #include "executable.hpp"
 #include "octree_file.hpp"
+#include "stereo_depth.hpp"
 #include "trajectory.hpp"
 #include "tum_dataset.hpp"
 
@@ -280,6 +281,11 @@ TEST_F(MapCommand, MapsWhatTwoCamerasSee) {
     // The wall is where it is in the world, and not where the cameras are.
     const auto bounds = result["voxels"]["bounds"];
     EXPECT_NEAR(0.5 * (bounds[0][0].get<double>() + bounds[1][0].get<double>()), 2., 0.15);
+    // Poses are those of the rectified left camera.
+    const StereoDepth stereo(wall.camera(0), wall.camera(1), {});
+    const Pose T_w_left = wall.T_w_b(2) * wall.camera(0).T_b_c;
+    const Trajectory trajectory = readTrajectory((options.out / "trajectory.tum").string());
+    EXPECT_TRUE(trajectory[2].T_w_c.isApprox(T_w_left * stereo.T_r_c().inverse(), 1e-6));
     MapOptions again;
     readMapConfig((options.out / "config.yaml").string(), again);
     EXPECT_EQ(again.stereo, "bm");
