@@ -43,9 +43,14 @@ constexpr std::array kSometimesWritten{
 
 }  // namespace
 
-NoEmptyFolder::~NoEmptyFolder() {
+NoEmptyFolder::NoEmptyFolder(fs::path folder) : folder_(std::move(folder)) {
     std::error_code ignored;
-    if (fs::is_directory(folder_, ignored)) fs::remove(folder_, ignored);  // only when it is empty
+    isNew_ = fs::symlink_status(folder_, ignored).type() == fs::file_type::not_found;
+}
+
+NoEmptyFolder::~NoEmptyFolder() {
+    std::error_code isNotEmpty;
+    if (isNew_) fs::remove(folder_, isNotEmpty);
 }
 
 void prepareFolder(const fs::path& folder) {

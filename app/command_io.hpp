@@ -28,16 +28,18 @@ struct CommandOptions {
 /// @throws InputError otherwise
 void prepareFolder(const std::filesystem::path& folder);
 
-/// What ends without a result leaves no empty folder behind.
+/// What ends without a result leaves no new, empty folder behind. To be made before the folder is:
+/// one that is there already, or a link to one, stays.
 class NoEmptyFolder {
   public:
-    explicit NoEmptyFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    explicit NoEmptyFolder(std::filesystem::path folder);
     ~NoEmptyFolder();
     NoEmptyFolder(const NoEmptyFolder&) = delete;
     NoEmptyFolder& operator=(const NoEmptyFolder&) = delete;
 
   private:
     std::filesystem::path folder_;
+    bool isNew_;
 };
 
 /// The folder of the options, or the default one, prepared: nothing of an earlier run is left that

@@ -205,10 +205,10 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     const World world(config);
     PlanRun run(config, world);
     run.checkPlaces();
-    if (!options.record.empty()) prepareRecordFolder(options.record);
     const NoEmptyFolder noEmptyRecording(options.record);
+    const NoEmptyFolder noEmptyFolder(options.out);
+    if (!options.record.empty()) prepareRecordFolder(options.record);
     const auto folder = folderFor(options, config.fly.plan);  // an earlier result ends here
-    const NoEmptyFolder noEmptyFolder(folder);
 
     std::vector<FlightSet> sets;
     {

@@ -186,8 +186,8 @@ MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted
     RecordingOptions asked = given;
     asked.needsDepth = options.depth == "recorded";
     const Recording recording = readRecording(asked);
-    prepareFolder(options.out);
     const NoEmptyFolder noEmptyFolder(options.out);
+    prepareFolder(options.out);
     json time{{"read_s", watch.lap()}};
 
     TexturedOcTree map(options.resolution);

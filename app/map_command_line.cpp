@@ -114,7 +114,8 @@ Command mapCommand(CLI::App& app, const Invocation& invocation) {
     auto options = std::make_shared<MapArguments>();
     options->commandLine = invocation.commandLine;
     CLI::App* parser = app.add_subcommand(
-        "map", "Turn a recorded RGB-D sequence or laser scans into a textured OctoMap.");
+        "map",
+        "Turn a recorded RGB-D or stereo recording, or laser scans into a textured OctoMap.");
     addOptions(*parser, *options);
     return {parser, [options, parser, &interrupted = invocation.interrupted] {
                 return run(*parser, *options, interrupted);

@@ -68,6 +68,9 @@ Eigen::Vector3d upByFloor(const Recording& recording) {
     if (!recording.sequence.hasDepth()) {
         throw InputError("--up", "floor", "the recording has no depth images to find it in");
     }
+    if (std::ranges::none_of(recording.sequence.frames, &Sequence::Entry::hasPose)) {
+        throw InputError("--up", "", "the recording has no true poses to turn");
+    }
     Eigen::Vector3d roughUp = Eigen::Vector3d::Zero();  // the upper edge of the images
     for (const auto& frame : recording.sequence.frames) {
         if (!frame.hasPose) continue;
@@ -104,8 +107,9 @@ void checkReading(const RecordingOptions& options) {
         if (!good) throw InputError(option, "", reason);
     };
     require(options.every >= 1, "--every", "must be at least 1");
-    require(options.tolerance > 0., "--tolerance", "must be above 0");
-    require(!options.depthScale || *options.depthScale > 0., "--depth-scale", "must be above 0");
+    const auto isPositive = [](double x) { return std::isfinite(x) && x > 0.; };
+    require(isPositive(options.tolerance), "--tolerance", "must be above 0");
+    require(isPositive(options.depthScale.value_or(1.)), "--depth-scale", "must be above 0");
     require(parseUp(options.up) || options.up == "floor", "--up",
             fmt::format("'{}' is not one of {}, nor x,y,z, nor floor", options.up,
                         fmt::join(axisNames(), ", ")));

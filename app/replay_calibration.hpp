@@ -13,7 +13,7 @@ namespace photonav {
 constexpr std::size_t kLeastForCalibration = 20;  ///< alignments
 
 /// The errors of the alignments that converged, of images whose true pose is known: in the map, or
-/// relative to the keyframe before.
+/// relative to the keyframe aligned to.
 /// @param scale factor on the information that was in use
 std::vector<AlignmentError> alignmentErrors(const ReplayRun& run, bool odometry, double scale);
 

@@ -210,8 +210,8 @@ ReplayReport runReplay(const ReplayOptions& options, const std::atomic<bool>& in
         options.mapFile.empty() ? TrackingMap{} : loadTrackingMap(options.mapFile);
     const ReplayTracker tracker = makeTracker(options, source, map);
     const std::optional<double> depth = checkDepths(options, source);
-    prepareFolder(options.out);
     const NoEmptyFolder noEmptyFolder(options.out);
+    prepareFolder(options.out);
     for (const char* stale :
          {"result.json", "strips.png", "top_view.png", "groundtruth.tum", "calibration.yaml"}) {
         fs::remove(options.out / stale);

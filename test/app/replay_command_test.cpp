@@ -526,6 +526,29 @@ TEST_F(ReplayCommand, RejectsWhatItCannotReplay) {
     writeText(data / "groundtruth.txt", "5 0 0 1 0 0 0 1\n");
     expectRejected({"groundtruth.txt", "poses from 5.000", "images from 50.000 to 51.100"});
     EXPECT_FALSE(test::fs::exists(options.out));
+    test::fs::remove(data / "groundtruth.txt");
+    rejected([&] { options.up = "floor"; }, {"--up", "no true poses"});
+    const double infinite = std::numeric_limits<double>::infinity();
+    rejected([&] { options.depthScale = infinite; }, {"--depth-scale", "above 0"});
+}
+
+/// Folders that were there before, and links to them, are the user's.
+TEST_F(ReplayCommand, LeavesFoldersThatWereThere) {
+    const auto there = folder.path() / "there";
+    test::fs::create_directories(there);
+    test::fs::create_directory_symlink(there, options.out);
+    const auto rgb = data / "rgb";
+    test::fs::rename(rgb, data / "elsewhere");
+    expectInputError([&] { run(); }, {"rgb/0.png"});
+    EXPECT_TRUE(test::fs::is_symlink(options.out));
+    test::fs::rename(data / "elsewhere", rgb);
+    run();
+    EXPECT_TRUE(test::fs::is_symlink(options.out));
+    options.out = folder.path() / "empty";
+    test::fs::create_directories(options.out);
+    test::fs::rename(rgb, data / "elsewhere");
+    expectInputError([&] { run(); }, {"rgb/0.png"});
+    EXPECT_TRUE(test::fs::exists(options.out));
 }
 
 /// Covariances that are far from true do not go unsaid, nor do images that tell only half.
