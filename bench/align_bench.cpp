@@ -14,16 +14,16 @@
 #include <opencv2/rgbd/depth.hpp>
 #include <random>
 
-#include "calibration.hpp"
-#include "dense_aligner.hpp"
-#include "keyframe_model.hpp"
-#include "map_fusion.hpp"
-#include "mesh_renderer.hpp"
-#include "se3.hpp"
-#include "sequence_tum.hpp"
+#include "alignment/dense_aligner.hpp"
+#include "alignment/keyframe_model.hpp"
+#include "estimation/calibration.hpp"
+#include "geometry/se3.hpp"
+#include "map/map_fusion.hpp"
+#include "recording/sequence_tum.hpp"
+#include "render/mesh_renderer.hpp"
+#include "render/voxel_renderer.hpp"
 #include "thread_time.hpp"
 #include "tracking_scenes.hpp"
-#include "voxel_renderer.hpp"
 
 using namespace photonav;
 

@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <random>
 
-#include "dense_aligner.hpp"
-#include "mesh_renderer.hpp"
-#include "se3.hpp"
+#include "alignment/dense_aligner.hpp"
+#include "geometry/se3.hpp"
+#include "render/mesh_renderer.hpp"
 #include "tracking_scenes.hpp"
 
 using namespace photonav;

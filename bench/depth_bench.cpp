@@ -13,13 +13,13 @@
 #include <string>
 #include <vector>
 
-#include "camera_noise.hpp"
-#include "map_fusion.hpp"
-#include "mesh_renderer.hpp"
-#include "monocular_depth.hpp"
-#include "sequence_tum.hpp"
-#include "simulated_camera.hpp"
-#include "stereo_depth.hpp"
+#include "depth/monocular_depth.hpp"
+#include "depth/stereo_depth.hpp"
+#include "map/map_fusion.hpp"
+#include "recording/sequence_tum.hpp"
+#include "render/mesh_renderer.hpp"
+#include "simulation/camera_noise.hpp"
+#include "simulation/simulated_camera.hpp"
 #include "thread_time.hpp"
 #include "tracking_scenes.hpp"
 

@@ -8,15 +8,15 @@
 #include <numbers>
 #include <random>
 
-#include "calibration.hpp"
-#include "camera_noise.hpp"
-#include "keyframe_model.hpp"
-#include "map_fusion.hpp"
-#include "mesh_renderer.hpp"
-#include "pose_filter.hpp"
-#include "se3.hpp"
+#include "alignment/keyframe_model.hpp"
+#include "estimation/calibration.hpp"
+#include "estimation/tracker.hpp"
+#include "geometry/se3.hpp"
+#include "map/map_fusion.hpp"
+#include "render/mesh_renderer.hpp"
+#include "render/voxel_renderer.hpp"
+#include "simulation/camera_noise.hpp"
 #include "tracking_scenes.hpp"
-#include "voxel_renderer.hpp"
 
 using namespace photonav;
 
@@ -146,7 +146,6 @@ void keyframeRow(const std::string& name, const ViewSource& world, int finest, i
 void flights(const std::string& name, const ViewSource& world, const ViewSource& model,
              const AlignmentOptions& options, const Picture& picture, int count) {
     const Camera camera = trackingCamera();
-    DenseAligner aligner(model, camera, options);
     Vector6 sigmas;
     sigmas << Eigen::Vector3d::Constant(0.01), Eigen::Vector3d::Constant(0.005);
     const Matrix6 Q = sigmas.cwiseAbs2().asDiagonal();
@@ -157,17 +156,21 @@ void flights(const std::string& name, const ViewSource& world, const ViewSource&
     for (int flight = 0; flight < count; ++flight) {
         const double begin = 0.1 * flight;
         Pose truth = onCircle(begin, 0.9);
-        PoseFilter filter({expSE3(draw(sigmas, random)) * truth, Q});
+        Tracker tracker({std::shared_ptr<void>(), &model}, camera,
+                        {expSE3(draw(sigmas, random)) * truth, Q}, {.map = options});
         for (int i = 1; i <= 10; ++i, ++images) {
             const Pose next = onCircle(begin + 0.03 * i, 0.9);
             const Pose T_next_now = next * truth.inverse();
             truth = next;
-            filter.propagate({expSE3(draw(sigmas, random)) * T_next_now, Q});
+            Observation observation;
+            observation.time = i;
+            observation.T_next_now = UncertainPose{expSE3(draw(sigmas, random)) * T_next_now, Q};
             world.render(camera, truth, view);
-            lost += isLost(filter.update(aligner, picture(view.intensity, random)).verdict) ? 1 : 0;
+            observation.frames.push_back({observation.time, {picture(view.intensity, random), {}}});
+            lost += tracker.update(observation).front().lost ? 1 : 0;
         }
-        const Vector6 xi = logSE3(truth * filter.belief().mean.inverse());
-        sum += xi.dot(filter.belief().covariance.ldlt().solve(xi)) / 6.;
+        const Vector6 xi = logSE3(truth * tracker.beliefAtLastImage().mean.inverse());
+        sum += xi.dot(tracker.beliefAtLastImage().covariance.ldlt().solve(xi)) / 6.;
         metres += xi.head<3>().squaredNorm() / count;
         radians += xi.tail<3>().squaredNorm() / count;
     }

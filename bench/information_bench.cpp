@@ -5,8 +5,8 @@
 #include <visp3/visual_features/vpFeatureLuminance.h>
 
 #include "least_time.hpp"
-#include "photometric.hpp"
-#include "simd.hpp"
+#include "photometry/photometric.hpp"
+#include "photometry/simd.hpp"
 
 using namespace photonav;
 

@@ -11,9 +11,9 @@
 #include <numbers>
 #include <random>
 
-#include "mesh_renderer.hpp"
-#include "photometric.hpp"
-#include "surface_shader.hpp"
+#include "photometry/photometric.hpp"
+#include "render/mesh_renderer.hpp"
+#include "render/surface_shader.hpp"
 
 using namespace photonav;
 

@@ -18,8 +18,8 @@
 #include <numbers>
 #include <string_view>
 
-#include "belief_rrt_star.hpp"
-#include "perception_rrt_star.hpp"
+#include "planners/belief_rrt_star.hpp"
+#include "planners/perception_rrt_star.hpp"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "odometry.hpp"
-#include "stereo_depth.hpp"
+#include "depth/stereo_depth.hpp"
+#include "estimation/tracker.hpp"
 #include "thread_time.hpp"
 
 using namespace photonav;
@@ -36,7 +36,9 @@ Timed run(const StereoSequence& sequence, const std::vector<StereoImages>& image
     StereoDepth stereo(sequence.left, sequence.right, options);
     const Pose first = stereo.T_r_c() * sequence.frames.front().T_c_w;
     const Pose last = stereo.T_r_c() * sequence.frames.back().T_c_w;
-    Odometry odometry(stereo.camera(), {first, Matrix6::Zero()});
+    TrackerOptions keyframesAlone;
+    keyframesAlone.keyframes.emplace();
+    Tracker odometry(nullptr, stereo.camera(), {first, Matrix6::Zero()}, keyframesAlone);
     std::vector<double> depthTimes, odometryTimes;
     Timed timed;
     View view;
@@ -56,7 +58,8 @@ Timed run(const StereoSequence& sequence, const std::vector<StereoImages>& image
     timed.depth = median(depthTimes);
     timed.odometry = median(odometryTimes);
     timed.drift =
-        (odometry.belief().mean.inverse().translation() - last.inverse().translation()).norm();
+        (odometry.beliefAtLastImage().mean.inverse().translation() - last.inverse().translation())
+            .norm();
     return timed;
 }
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "camera.hpp"
-#include "scene.hpp"
+#include "geometry/camera.hpp"
+#include "scene/scene.hpp"
 
 namespace photonav {
 

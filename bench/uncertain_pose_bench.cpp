@@ -2,9 +2,9 @@
 // Compounding and update of 6x6 covariances against the formulas as printed, in plain Eigen.
 #include <fmt/format.h>
 
+#include "geometry/se3.hpp"
+#include "geometry/uncertain_pose.hpp"
 #include "least_time.hpp"
-#include "se3.hpp"
-#include "uncertain_pose.hpp"
 
 using namespace photonav;
 

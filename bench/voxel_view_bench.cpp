@@ -8,12 +8,12 @@
 
 #include <numbers>
 
-#include "map_fusion.hpp"
-#include "mesh_renderer.hpp"
-#include "photometric.hpp"
+#include "map/map_fusion.hpp"
+#include "photometry/photometric.hpp"
+#include "render/mesh_renderer.hpp"
+#include "render/voxel_renderer.hpp"
 #include "thread_time.hpp"
 #include "tracking_scenes.hpp"
-#include "voxel_renderer.hpp"
 
 using namespace photonav;
 

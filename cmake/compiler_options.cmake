@@ -27,6 +27,20 @@ endif()
 # nonnull-attribute (ViSP's headers copy empty images by memcpy from null) and what costs a third of
 # the build to find no more than the address sanitizer and the processor do: null, alignment,
 # object-size, pointer-overflow, vptr.
+if(PHOTONAV_SANITIZE STREQUAL "address")
+    set(_sanitizers -fsanitize=address,undefined)
+    set(_sanitizer_options
+        -fno-sanitize=nonnull-attribute,null,alignment,object-size,pointer-overflow,vptr
+        -fno-sanitize-recover=undefined)
+elseif(PHOTONAV_SANITIZE STREQUAL "thread")
+    set(_sanitizers -fsanitize=thread)
+elseif(PHOTONAV_SANITIZE)
+    message(FATAL_ERROR "PHOTONAV_SANITIZE is ${PHOTONAV_SANITIZE}; it may be OFF, address or thread")
+endif()
+if(PHOTONAV_SANITIZE)
+    list(APPEND _sanitizer_options -fno-omit-frame-pointer -UNDEBUG -O1)
+endif()
+
 function(photonav_compiler_options target)
     target_compile_features(${target} PUBLIC cxx_std_20)
     if(PHOTONAV_MARCH)
@@ -36,10 +50,8 @@ function(photonav_compiler_options target)
         -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-psabi
         -fno-math-errno -fno-trapping-math -fpch-preprocess
         $<$<BOOL:${PHOTONAV_WERROR}>:-Werror>
-        $<$<BOOL:${PHOTONAV_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize=nonnull-attribute,null,alignment,object-size,pointer-overflow,vptr;-fno-sanitize-recover=undefined;-fno-omit-frame-pointer;-UNDEBUG;-O1>)
-    if(PHOTONAV_SANITIZE)
-        target_link_options(${target} PUBLIC -fsanitize=address,undefined)
-    endif()
+        ${_sanitizers} ${_sanitizer_options})
+    target_link_options(${target} PUBLIC ${_sanitizers})
     if(target STREQUAL photonav_core)
         target_precompile_headers(${target} PRIVATE
             <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <memory>

@@ -1,4 +1,4 @@
-# The report page: app/report_page/ and Debian's three.js and Chart.js inlined into the executable,
+# The report page: app/report/page/ and Debian's three.js and Chart.js inlined into the executable,
 # so that report.html opens anywhere, offline. Included by the project it declares the build step;
 # run as a script (cmake -P) it is the build step.
 
@@ -9,7 +9,7 @@ function(photonav_embed_report target)
     find_file(CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js NO_DEFAULT_PATH REQUIRED)
     mark_as_advanced(THREE_JS ORBIT_CONTROLS_JS CHART_JS)
 
-    set(page ${PROJECT_SOURCE_DIR}/app/report_page)
+    set(page ${PROJECT_SOURCE_DIR}/app/report/page)
     set(parts ${THREE_JS} ${ORBIT_CONTROLS_JS} ${CHART_JS} ${page}/page.css ${page}/data.js
         ${page}/map3d.js ${page}/view3d.js ${page}/charts.js ${page}/sweep.js
         ${page}/page.js)

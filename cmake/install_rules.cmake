@@ -1,5 +1,5 @@
 # `cmake --install` and find_package(photonav): targets photonav::core,
-# photonav::planning and photonav::tracking.
+# photonav::planning, photonav::tracking and photonav::mission.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -7,10 +7,12 @@ set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/photonav)
 set_target_properties(photonav_core PROPERTIES EXPORT_NAME core)
 set_target_properties(photonav_planning PROPERTIES EXPORT_NAME planning)
 set_target_properties(photonav_tracking PROPERTIES EXPORT_NAME tracking)
-install(TARGETS photonav_core photonav_planning photonav_tracking EXPORT photonav_targets)
+set_target_properties(photonav_mission PROPERTIES EXPORT_NAME mission)
+install(TARGETS photonav_core photonav_planning photonav_tracking photonav_mission EXPORT photonav_targets)
 install(TARGETS photonav)
-install(DIRECTORY src/ planning/ tracking/ DESTINATION include/photonav FILES_MATCHING PATTERN "*.hpp"
-    PATTERN "yaml_reader.hpp" EXCLUDE PATTERN "simd.hpp" EXCLUDE
+install(DIRECTORY src/ planning/ tracking/ mission/ DESTINATION include/photonav FILES_MATCHING PATTERN "*.hpp"
+    PATTERN "yaml_reader.hpp" EXCLUDE PATTERN "key_table.hpp" EXCLUDE
+    PATTERN "config_keys.hpp" EXCLUDE PATTERN "recording_config.hpp" EXCLUDE PATTERN "simd.hpp" EXCLUDE
     PATTERN "product_sums.hpp" EXCLUDE PATTERN "keyframe_points.hpp" EXCLUDE)
 install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/photonav/config)
 install(EXPORT photonav_targets NAMESPACE photonav:: DESTINATION ${_config_dir})

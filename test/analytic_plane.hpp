@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "view.hpp"
+#include "photometry/view.hpp"
 
 namespace photonav {
 

@@ -3,7 +3,7 @@
 // wall, in the EuRoC layout.
 #pragma once
 
-#include "sequence_euroc.hpp"
+#include "recording/sequence_euroc.hpp"
 #include "tum_dataset.hpp"
 
 namespace photonav::test {

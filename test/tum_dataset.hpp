@@ -10,8 +10,8 @@
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 
-#include "camera.hpp"
-#include "error.hpp"
+#include "geometry/camera.hpp"
+#include "io/error.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav::test {

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "error.hpp"
-#include "scene.hpp"
+#include "io/error.hpp"
+#include "scene/scene.hpp"
 
 namespace photonav {
 

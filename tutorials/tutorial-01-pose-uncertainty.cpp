@@ -5,9 +5,9 @@
 #include <numbers>
 #include <random>
 
-#include "plot.hpp"
-#include "se3.hpp"
-#include "uncertain_pose.hpp"
+#include "geometry/se3.hpp"
+#include "geometry/uncertain_pose.hpp"
+#include "plot/figure.hpp"
 
 using namespace photonav;
 
@@ -79,19 +79,13 @@ Plot::Points contour(const UncertainPose& belief) {
 }
 //! [contour]
 
-/// What a Gaussian in x and y would draw.
+/// Three standard deviations of a Gaussian in x and y.
 Plot::Points flatEllipse(const Plot::Points& positions) {
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
     Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
     for (const auto& p : positions) mean += p / kSamples;
     for (const auto& p : positions) square += (p - mean) * (p - mean).transpose() / kSamples;
-    const Eigen::Matrix2d root = square.llt().matrixL();
-    Plot::Points points;
-    for (int i = 0; i <= 360; ++i) {
-        const double t = i * std::numbers::pi / 180.;
-        points.push_back(mean + 3. * root * Eigen::Vector2d(std::cos(t), std::sin(t)));
-    }
-    return points;
+    return ellipse(mean, square, 3.);
 }
 
 }  // namespace
@@ -119,16 +113,16 @@ int main() {
 
     Plot::Points positions;
     for (const Pose& T_k_w : samples) positions.push_back(position(T_k_w));
-    Plot plot({Eigen::Vector2d(-1., -9.), Eigen::Vector2d(13., 9.)}, 50.);
-    plot.dots(positions, {70, 130, 180}, 0.35);
-    plot.curve(flatEllipse(positions), {150, 150, 150}, 2, true);
-    plot.curve(contour(fourth), {20, 60, 160}, 2);
-    plot.curve(contour(second), {230, 120, 20}, 2);
-    plot.curve({{0., 0.}, position(fourth.mean)}, {40, 40, 40}, 2);
-    plot.label("10 000 sampled positions", {70, 130, 180});
-    plot.label("Gaussian in x and y, 3 sigma", {150, 150, 150});
-    plot.label("second order on SE(3), 3 sigma", {230, 120, 20});
-    plot.label("fourth order on SE(3), 3 sigma", {20, 60, 160});
-    plot.save("pose_uncertainty.png");
+    Plot plot = Plot::map({Eigen::Vector2d(-1., -9.), Eigen::Vector2d(13., 9.)}, 800.);
+    plot.dots(positions, {.color = {70, 130, 180},
+                          .width = 4.,
+                          .opacity = 0.35,
+                          .name = "10 000 sampled positions"});
+    plot.curve(flatEllipse(positions),
+               {.color = {110, 110, 110}, .name = "Gaussian in x and y, 3σ", .dashed = true});
+    plot.curve(contour(fourth), {.color = {20, 60, 160}, .name = "fourth order on SE(3), 3σ"});
+    plot.curve(contour(second), {.color = {230, 120, 20}, .name = "second order on SE(3), 3σ"});
+    plot.curve({{0., 0.}, position(fourth.mean)}, {.name = "mean motion"});
+    Figure{"Ten uncertain motions of 1 m", {{plot}}}.save("pose_uncertainty.png");
     std::puts("wrote pose_uncertainty.png");
 }

@@ -3,13 +3,12 @@
 // was built by looking at it; and how much of the scene's information survives the cells of a map.
 #include <cstdio>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
 
-#include "map_fusion.hpp"
-#include "mesh_renderer.hpp"
-#include "photometric.hpp"
-#include "picture.hpp"
-#include "voxel_renderer.hpp"
+#include "figures/images.hpp"
+#include "map/map_fusion.hpp"
+#include "photometry/photometric.hpp"
+#include "render/mesh_renderer.hpp"
+#include "render/voxel_renderer.hpp"
 
 using namespace photonav;
 
@@ -82,7 +81,7 @@ int main() {
     const VoxelRenderer fineMap(mapScene(mesh, fine, 0.025), UnknownPolicy::free);
     //! [renderers]
 
-    cv::Mat sheet;
+    std::vector<std::vector<CaptionedImage>> rows;
     for (const auto& [name, belowHorizon] : {std::pair{"downward camera", std::numbers::pi / 2.},
                                              {"45-degree camera", std::numbers::pi / 4.}}) {
         //! [views]
@@ -95,12 +94,11 @@ int main() {
         std::printf("%s, from a pose the map was not made from\n", name);
         compare("cells of 5 cm  ", coarse, truth, camera);
         compare("cells of 2.5 cm", finer, truth, camera);
-        cv::Mat row;
-        cv::hconcat(std::vector{picture(truth.intensity), picture(truth.depth, 0.25),
-                                picture(coarse.intensity), picture(finer.intensity)},
-                    row);
-        sheet.push_back(row);
+        rows.push_back({{std::string(name) + ", mesh", greyPicture(truth.intensity)},
+                        {"its depth", greyPicture(truth.depth, 0.25)},
+                        {"map of 5 cm", predictedPicture(coarse)},
+                        {"map of 2.5 cm", predictedPicture(finer)}});
     }
-    if (!cv::imwrite("view_synthesis.png", sheet)) return 1;
-    std::puts("wrote view_synthesis.png: mesh, its depth, map of 5 cm, map of 2.5 cm");
+    imagesFigure(rows, 376.).save("view_synthesis.png");
+    std::puts("wrote view_synthesis.png");
 }

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an image is worth: from the Jacobian of one pixel to the Fisher information of a view, and
-// to the question which pixels tell which direction of motion.
+// The information of an image: from the Jacobian of one pixel to the Fisher information of a view,
+// and to the question which pixels inform about which direction of motion.
 #include <cstdio>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
 
-#include "luminance_feature.hpp"
-#include "mesh_renderer.hpp"
-#include "photometric.hpp"
-#include "picture.hpp"
-#include "uncertain_pose.hpp"
-#include "visp_bridge.hpp"
+#include "figures/images.hpp"
+#include "geometry/uncertain_pose.hpp"
+#include "geometry/visp_bridge.hpp"
+#include "photometry/luminance_feature.hpp"
+#include "photometry/photometric.hpp"
+#include "render/mesh_renderer.hpp"
 
 using namespace photonav;
 
@@ -86,18 +85,19 @@ void report(const char* name, const View& view, const Camera& camera) {
                 name, sigma[0], sigma[1], sigma[2], sigma[3], sigma[4], sigma[5]);
 }
 
-/// The view, and which of its pixels tell motion along image x, image y and the optical axis.
-cv::Mat pictures(const View& view, const Camera& camera) {
-    std::vector<cv::Mat> row = {picture(view.intensity)};
+/// The view, and which of its pixels inform about motion along image x, image y and the optical
+/// axis.
+std::vector<CaptionedImage> images(const std::string& name, const View& view,
+                                   const Camera& camera) {
+    std::vector<CaptionedImage> row{{name, greyPicture(view.intensity)}};
     //! [contribution]
     for (int axis = 0; axis < 3; ++axis) {
         const ImageF contribution = contributionImage(view, camera, Vector6::Unit(axis));
-        row.push_back(picture(contribution, 1. / 5e4));  // white: 5e4 / m^2 from one pixel
+        row.push_back({std::string("information about ") + "xyz"[axis],
+                       greyPicture(contribution, 1. / 5e4)});  // white: 5e4 / m^2 from one pixel
     }
     //! [contribution]
-    cv::Mat all;
-    cv::hconcat(row, all);
-    return all;
+    return row;
 }
 
 }  // namespace
@@ -112,8 +112,7 @@ int main() {
     report("noise  ", noise, camera);
     report("stripes", bars, camera);
 
-    cv::Mat sheet;
-    cv::vconcat(pictures(noise, camera), pictures(bars, camera), sheet);
-    if (!cv::imwrite("information.png", sheet)) return 1;
-    std::puts("wrote information.png: view; pixels that tell x, y, z");
+    imagesFigure({images("noise", noise, camera), images("stripes", bars, camera)}, 376.)
+        .save("information.png");
+    std::puts("wrote information.png");
 }

@@ -4,9 +4,10 @@
 #include <ompl/base/ScopedState.h>
 
 #include <cstdio>
+#include <limits>
 
-#include "plot.hpp"
-#include "se3.hpp"
+#include "geometry/se3.hpp"
+#include "plot/figure.hpp"
 #include "two_textures.hpp"
 
 using namespace photonav;
@@ -36,12 +37,12 @@ void flyByHand(BeliefModel& model, const ob::State* from, const ob::State* to, U
                                    options.ds * noise};
         T_c_w = compound(motion, T_c_w);
         step.traceBefore = weightedTrace(T_c_w.covariance);
-        // 2. Charge: the way, and the integral of the trace along it.
+        // 2. Charge: the distance, and the integral of the trace along it.
         step.distance += options.ds;
         step.cost += options.alpha * options.ds + (1. - options.alpha) * options.kappa *
                                                       options.ds * 0.5 *
                                                       (traceLast + step.traceBefore);
-        // 3. Look and update.
+        // 3. Update by the view from here.
         T_c_w.covariance = updateCovariance(T_c_w.covariance, model.informationAt(T_w_b));
         step.traceAfter = weightedTrace(T_c_w.covariance);
         steps.push_back(step);
@@ -59,47 +60,48 @@ std::vector<ob::ScopedState<>> statesAt(const FlightSpace& space, const std::vec
     return states;
 }
 
-//! [fly]
+//! [propagate]
 /// Cost of flying through these places, edge by edge, as the planners do it.
 double costThrough(BeliefModel& model, const std::vector<double>& xs) {
     const auto states = statesAt(model.space(), xs);
-    Belief belief = model.root();
+    Belief belief = model.root(states.front().get());
     for (std::size_t i = 1; i < states.size(); ++i) {
         Motion motion = model.motion(states[i - 1].get(), states[i].get());
-        belief = model.fly(belief, motion);
+        belief = model.propagate(belief, motion);
     }
     return belief.cost;
 }
-//! [fly]
+//! [propagate]
 
 void draw(const std::vector<Step>& steps) {
-    Plot plot({Eigen::Vector2d(0., -5.), Eigen::Vector2d(12., 1.)}, {60., 65.}, "way flown [m]",
-              "log10 of the trace [m^2]");
-    Plot::Points saw;
+    Plot plot;
+    plot.x = {.min = 0., .label = "distance flown [m]"};
+    plot.y = {.log = true, .label = "trace [m²]"};
+    Plot::Points traces;
     for (const Step& step : steps) {
-        saw.push_back({step.distance, std::log10(step.traceBefore)});
-        saw.push_back({step.distance, std::log10(step.traceAfter)});
+        traces.emplace_back(step.distance, step.traceBefore);
+        traces.emplace_back(step.distance, step.traceAfter);
     }
+    const double infinity = std::numeric_limits<double>::infinity();
     for (const double border : {3.95, 8.05}) {  // x = 4.95 m, there and back
-        plot.curve({{border, -5.}, {border, 0.}}, {230, 140, 20}, 2);
+        plot.curve({{border, -infinity}, {border, infinity}},
+                   {.color = {230, 140, 20}, .name = "above the border of the texture"});
     }
-    plot.curve(saw, {20, 60, 160}, 2);
-    plot.label("up with every motion, down with every view", {20, 60, 160});
-    plot.label("right above the border of the texture", {230, 140, 20});
-    plot.save("edge_belief.png");
+    plot.curve(traces, {.color = {20, 60, 160}, .name = "up with motions, down with views"});
+    Figure{"Belief along an edge", {{plot}}}.save("edge_belief.png");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const MeshRenderer floor = two_textures::loadFloor(argc, argv);
+    const auto floor = two_textures::loadFloor(argc, argv);
     const auto field = two_textures::views(floor, 0.1);
     BeliefModel model(two_textures::flightSpace(), field, two_textures::beliefs(0.1));
 
     //! [there-and-back]
     const auto way = statesAt(model.space(), {1., 7., 1.});
     const Pose T_w_c = model.space().bodyPose(way[0].get()) * field->mount();
-    UncertainPose T_c_w{T_w_c.inverse(), model.root().covariance};
+    UncertainPose T_c_w{T_w_c.inverse(), model.initialCovariance()};
     const double trace = weightedTrace(T_c_w.covariance);
     std::vector<Step> steps{{0., trace, trace, 0.}};
     flyByHand(model, way[0].get(), way[1].get(), T_c_w, steps);
@@ -116,7 +118,7 @@ int main(int argc, char** argv) {
     const double flown = costThrough(model, {1., 7., 1.});
     const double evaluated = model.evaluate({way[0].get(), way[1].get(), way[2].get()}).back().cost;
     //! [judge]
-    std::printf("cost by hand %.9f, fly() %.9f, evaluate() %.9f\n", byHand, flown, evaluated);
+    std::printf("cost by hand %.9f, propagate() %.9f, evaluate() %.9f\n", byHand, flown, evaluated);
 
     //! [cuts]
     BeliefOptions options = model.options();

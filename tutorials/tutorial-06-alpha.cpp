@@ -3,56 +3,62 @@
 // point on the curve of what one can have, from the shortest path to the most certain one.
 #include <cstdio>
 
-#include "planning_problem.hpp"
-#include "plot.hpp"
-#include "two_textures.hpp"
+#include "figures/images.hpp"
+#include "io/error.hpp"
+#include "plot/figure.hpp"
+#include "problem/planning_problem.hpp"
 
 using namespace photonav;
-using namespace planning_problem;
 
 namespace {
 
-constexpr unsigned kVertices = 800;
-constexpr double kViewPitch = 0.25;  // one view stands for its surroundings [m]
-
 /// Orange for certainty, blue for haste.
-cv::Scalar colourOf(double alpha) { return {230. * (1. - alpha), 100., 40. + 200. * alpha}; }
+Color colorOf(double alpha) {
+    return {static_cast<std::uint8_t>(230. * (1. - alpha)), 100,
+            static_cast<std::uint8_t>(40. + 200. * alpha)};
+}
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    const MeshRenderer floor = two_textures::loadFloor(argc, argv);
-    const Problem problem{two_textures::flightSpace(), {0., 0., 2.}, {2., 9., 2.}};
-    const auto field = two_textures::views(floor, kViewPitch);  // views do not depend on alpha
+int main(int argc, char** argv) try {
+    std::vector<std::string> settings{"planner.vertices=800", "planner.view_pitch=0.25"};
+    if (argc > 1) settings.push_back(std::string("scene.file=") + argv[1]);
+    const Config config = loadConfig(PHOTONAV_SOURCE_DIR "/config/two_textures.yaml", settings);
+    const World world(config);
     const Eigen::AlignedBox2d area(Eigen::Vector2d(-2., -1.5), Eigen::Vector2d(10., 12.));
-    Plot fromAbovePlot(area, 34.);
-    const ImageF picture = fromAbove(floor, area, 34);
-    fromAbovePlot.picture(picture.bitmap, picture.getHeight(), picture.getWidth());
-    Plot tradeOff({Eigen::Vector2d(9., 0.), Eigen::Vector2d(14., 32.)}, {90., 14.}, "length [m]",
-                  "mean trace [0.01 m^2]");
+    Plot paths = Plot::map(area, 460.);
+    paths.picture(greyPicture(world.pictureFromAbove(area, 2., 1. / 34.)), area, true);
+    Plot tradeOff;
+    tradeOff.x.label = "length [m]";
+    tradeOff.y = {.min = 0., .label = "mean trace [0.01 m²]"};
+    tradeOff.width = tradeOff.height = 440.;
 
     //! [sweep]
     std::puts("alpha  length [m]  mean trace  goal trace [0.01 m^2]  new views");
+    const PlanningProblem problem(config, world);
     Plot::Points answers;
+    std::size_t viewsBefore = 0;
     for (int i = 0; i < 10; ++i) {
         const double alpha = 0.05 + 0.1 * i;
-        const std::size_t viewsBefore = field->views();
-        const BeliefOptions beliefs = two_textures::beliefs(alpha);
-        const auto planner = makePlanner("belief_rrt_star", problem, field, beliefs, kVertices);
-        BeliefModel judge(problem.space, field, beliefs);
-        const std::vector<BeliefPoint> path = plan(*planner, judge);
-        answers.emplace_back(path.back().distance, 100. * meanTrace(path));
+        const PlanOutcome outcome = PlanningProblem(problem, alpha).solve("belief_rrt_star");
+        const JudgedPath& path = outcome.path.value();
+        answers.emplace_back(path.length, 100. * path.meanTrace);
         std::printf("%5.2f %10.2f  %10.2f  %10.2f  %19zu\n", alpha, answers.back().x(),
-                    answers.back().y(), 100. * path.back().trace, field->views() - viewsBefore);
+                    answers.back().y(), 100. * path.goalTrace, outcome.views - viewsBefore);
+        viewsBefore = outcome.views;
         //! [sweep]
-        fromAbovePlot.curve(route(path), colourOf(alpha), 3);
-        tradeOff.dots({answers.back()}, colourOf(alpha), 1., 6);
-        if (i % 3 == 0) {
-            fromAbovePlot.label("alpha " + std::to_string(alpha).substr(0, 4), colourOf(alpha));
-        }
+        const std::string name =
+            i % 3 == 0 ? "alpha " + std::to_string(alpha).substr(0, 4) : std::string();
+        paths.curve(path.fromAbove(),
+                    {.color = colorOf(alpha), .width = 3., .name = name, .halo = 1.});
+        tradeOff.dots({answers.back()}, {.color = colorOf(alpha), .width = 12.});
     }
-    tradeOff.curve(answers, {120, 120, 120}, 1);
-    fromAbovePlot.save("alpha_paths.png");
-    tradeOff.save("alpha_trade_off.png");
+    tradeOff.curve(answers, {.color = {120, 120, 120}, .width = 1.});
+    Figure{"Paths for ten values of alpha", {{paths}}, Figure::Legend::right}.save(
+        "alpha_paths.png");
+    Figure{"Length and uncertainty", {{tradeOff}}}.save("alpha_trade_off.png");
     std::puts("wrote alpha_paths.png and alpha_trade_off.png");
+} catch (const InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
 }

@@ -10,15 +10,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <random>
 
-#include "constants.hpp"
-#include "dense_aligner.hpp"
-#include "mesh_renderer.hpp"
-#include "picture.hpp"
-#include "scene.hpp"
-#include "se3.hpp"
+#include "alignment/dense_aligner.hpp"
+#include "figures/images.hpp"
+#include "geometry/constants.hpp"
+#include "geometry/se3.hpp"
+#include "render/mesh_renderer.hpp"
+#include "scene/scene.hpp"
 
 using namespace photonav;
 
@@ -56,9 +55,9 @@ ImageF residual(const ImageF& observed, const ImageF& predicted) {
 /// A window of ViSP for a picture that changes, if there is a screen to show it on.
 class Window {
   public:
-    void show(const cv::Mat& picture) {
+    void show(const ImageF& picture) {
         if (!hasScreen_) return;
-        vpImageConvert::convert(picture, image_);
+        vpImageConvert::convert(picture, image_);  // the largest value white, the smallest black
         try {
             if (!display_) display_ = std::make_unique<vpDisplayX>(image_, 40, 40, "alignment");
         } catch (const vpDisplayException&) {
@@ -98,7 +97,7 @@ void watchItConverge(const ViewSource& model, const Camera& camera, const ImageF
     std::puts("Gauss-Newton at full size, from 4 cm and 1.2 degrees away");
     std::puts("step   residual   error [mm]  [deg]");
     Window window;
-    cv::Mat sheet;
+    std::vector<std::vector<CaptionedImage>> rows;
     View view;
     //! [gauss newton]
     Pose T_c_w = expSE3(offset) * T_true_w;
@@ -109,17 +108,17 @@ void watchItConverge(const ViewSource& model, const Camera& camera, const ImageF
         const auto [metres, degrees] = errorOf(T_c_w, T_true_w);
         std::printf("%4d %10.4f %12.2f %6.3f\n", step, std::sqrt(e.sumSquares / e.count),
                     1000. * metres, degrees);
-        cv::Mat row;
-        cv::hconcat(std::vector{picture(observed), picture(view.intensity),
-                                picture(residual(observed, view.intensity))},
-                    row);
-        window.show(row);
-        if (step <= 2) sheet.push_back(row);
+        const ImageF difference = residual(observed, view.intensity);
+        window.show(difference);
+        rows.push_back({{"observed", greyPicture(observed)},
+                        {"predicted in step " + std::to_string(step), predictedPicture(view)},
+                        {"residual", greyPicture(difference)}});
         const PoseEquations p = poseEquations(e, kPhotometric);
         T_c_w = expSE3(p.information.ldlt().solve(p.right)) * T_c_w;
     }
     //! [gauss newton]
-    cv::imwrite("alignment.png", sheet);
+    rows.resize(3);
+    imagesFigure(rows, 376.).save("alignment.png");
 }
 
 void startFartherAway(const ViewSource& model, const Camera& camera, const ImageF& observed,

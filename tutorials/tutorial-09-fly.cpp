@@ -5,14 +5,14 @@
 
 #include <cmath>
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 
-#include "belief.hpp"
-#include "constants.hpp"
-#include "flight.hpp"
-#include "mesh_renderer.hpp"
-#include "plot.hpp"
-#include "scene.hpp"
+#include "belief/belief.hpp"
+#include "flight/flights.hpp"
+#include "geometry/constants.hpp"
+#include "geometry/se3.hpp"
+#include "plot/figure.hpp"
+#include "render/mesh_renderer.hpp"
+#include "scene/scene.hpp"
 
 using namespace photonav;
 
@@ -39,23 +39,19 @@ BeliefOptions beliefs() {
 }
 
 //! [plan]
-/// A straight plan of 5 m, and what will be known along it.
-std::vector<PlannedView> plan(const ViewSource& map, const Camera& camera, const Pose& T_b_c,
-                              const PhotometricOptions& photometric) {
+/// A straight plan of 5 m, with the beliefs predicted along it.
+std::vector<PlannedView> plan(const std::shared_ptr<const ViewSource>& map, const Camera& camera,
+                              const Pose& T_b_c, const PhotometricOptions& photometric) {
     const FlightSpace space(StateKind::position,
                             {Eigen::Vector3d(-1., -1., 1.), Eigen::Vector3d(6., 1., 2.)});
     const auto field = std::make_shared<InformationField>(
-        photometricModel(map, camera, photometric), T_b_c, InformationField::Options{});
+        map, camera, photometricModel(camera, photometric), T_b_c, InformationField::Options{});
     BeliefModel model(space, field, beliefs());
     ompl::base::ScopedState<> start(space.space());
     ompl::base::ScopedState<> goal(space.space());
     space.setState(start.get(), {0., 0., 1.6}, 0.);
     space.setState(goal.get(), {5., 0., 1.6}, 0.);
-    std::vector<PlannedView> views;
-    for (const BeliefPoint& point : model.evaluate({start.get(), goal.get()})) {
-        views.push_back({point.T_w_b, point.covariance, point.length, point.isWaypoint});
-    }
-    return views;
+    return plannedViews(model.evaluate({start.get(), goal.get()}));
 }
 //! [plan]
 
@@ -71,32 +67,34 @@ double error(const FlightSample& sample) {
 }  // namespace
 
 int main() {
-    const MeshRenderer floor(paleFloor());
+    const auto floor = std::make_shared<MeshRenderer>(paleFloor());
     const Camera camera = makeCamera(188, 120, 70. * kDegree);
     const PhotometricOptions photometric{.sigma = 0.02, .scale = 0.08};
-    Plot figure({Eigen::Vector2d(0., 0.), Eigen::Vector2d(5., 20.)}, {120., 17.},
-                "way along the plan [m]", "position error [cm]");
+    Plot plot;
+    plot.x = {.min = 0., .label = "distance along the plan [m]"};
+    plot.y = {.min = 0., .label = "position error [cm]"};
 
     struct Mount {
         const char* name;
         double belowHorizon;
-        cv::Scalar colour;
+        Color color;
     };
-    for (const auto& [name, belowHorizon, colour] :
+    for (const auto& [name, belowHorizon, color] :
          {Mount{"down", 90. * kDegree, {222, 79, 12}},
           Mount{"45 degrees ahead", 45. * kDegree, {28, 108, 214}}}) {
         //! [fly]
         FlightWorld world;
-        world.truth = world.map = &floor;
+        world.truth = world.map = floor;
         world.clearance = [](const Eigen::Vector3d& p_w) { return p_w.z(); };  // the floor
         world.camera = camera;
         world.T_b_c = cameraMount(belowHorizon);
         world.noise = assumedNoise(photometric);
         FlightOptions options;
-        options.mav.odometryNoise = beliefs().motionNoise;
+        options.robot.body.odometryNoise = beliefs().motionNoise;
         options.alignment.photometric = photometric;
         const std::vector<PlannedView> views = plan(floor, camera, world.T_b_c, photometric);
-        options.initialCovariance = views.front().covariance;
+        const Matrix6 toCamera = adjoint(world.T_b_c.inverse());
+        options.initialCovariance = toCamera * beliefs().initialCovariance * toCamera.transpose();
         std::vector<FlightResult> flights;
         for (options.seed = 1; options.seed <= kFlights; ++options.seed) {
             flights.push_back(fly(views, world, options));
@@ -116,16 +114,17 @@ int main() {
         for (const PlannedView& view : views) {
             predicted.emplace_back(view.distance, 100. * sigma(view.covariance));
         }
-        figure.curve(predicted, colour, 3);
+        plot.curve(predicted,
+                   {.color = color, .width = 4., .name = std::string("predicted σ, ") + name});
         for (const FlightResult& flight : flights) {
             Plot::Points errors;
             for (const FlightSample& s : flight.samples) {
                 errors.emplace_back(s.distance, 100. * error(s));
             }
-            figure.curve(errors, colour, 1);
+            plot.curve(errors,
+                       {.color = color, .width = 1., .name = std::string("flights, ") + name});
         }
-        figure.label(std::string("predicted sigma (bold) and flights, ") + name, colour);
     }
-    figure.save("flights.png");
+    Figure{"Predicted and actual errors", {{plot}}}.save("flights.png");
     std::puts("wrote flights.png");
 }

@@ -2,21 +2,16 @@
 // A recorded flight through two trackers: odometry, which only looks at the flight itself, and
 // localisation in a map. How far off is each, and did it know?
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
-#include <random>
 #include <set>
 
-#include "evaluation.hpp"
-#include "localizer.hpp"
-#include "mesh_renderer.hpp"
-#include "odometry.hpp"
-#include "plot.hpp"
+#include "estimation/tracker.hpp"
+#include "evaluation/evaluation.hpp"
+#include "flight/flight_recorder.hpp"
+#include "plot/figure.hpp"
+#include "recording/sequence_tum.hpp"
+#include "render/mesh_renderer.hpp"
 #include "scene_argument.hpp"
-#include "sequence_tum.hpp"
-#include "trajectory.hpp"
 
 using namespace photonav;
 
@@ -34,44 +29,22 @@ Pose flight(int i) {
     return T_w_b * cameraMount(0.9);
 }
 
-void writePng(const std::string& file, const ImageF& image, int type, double scale) {
-    cv::Mat pixels;
-    cv::Mat(static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_32FC1,
-            image.bitmap)
-        .convertTo(pixels, type, scale);
-    if (!cv::imwrite(file, pixels)) throw std::runtime_error("cannot write " + file);
-}
-
 /// A recording in the layout of the TUM RGB-D benchmark: images, depth, true poses.
 void record(const ViewSource& room, const Camera& camera, const std::string& folder) {
-    std::filesystem::create_directories(folder + "/rgb");
-    std::filesystem::create_directories(folder + "/depth");
-    std::ofstream rgb(folder + "/rgb.txt");
-    std::ofstream depth(folder + "/depth.txt");
-    std::ofstream(folder + "/camera.yaml")
-        << "width: " << camera.width << "\nheight: " << camera.height << "\nfx: " << camera.fx()
-        << "\nfy: " << camera.fy() << "\ncx: " << camera.cx() << "\ncy: " << camera.cy() << '\n';
-    Trajectory truth;
+    FlightRecorder recorder(folder, camera, 1.);
+    const ImageNoise addNoise = assumedNoise({.sigma = kNoise});
     std::mt19937_64 random(1);
-    std::normal_distribution<float> noise(0.F, static_cast<float>(kNoise));
     View view;
     for (int i = 0; i < kFrames; ++i) {
-        const double time = i / 15.;
-        const std::string name = std::to_string(i) + ".png";
-        room.render(camera, flight(i).inverse(), view);
-        for (unsigned k = 0; k < view.intensity.getSize(); ++k) {
-            view.intensity.bitmap[k] += noise(random);
-        }
-        writePng(folder + "/rgb/" + name, view.intensity, CV_8U, 255.);
-        writePng(folder + "/depth/" + name, view.depth, CV_16U, 5000.);
-        rgb << time << " rgb/" << name << '\n';
-        depth << time << " depth/" << name << '\n';
-        truth.push_back({time, flight(i)});
+        const Pose T_c_w = flight(i).inverse();
+        room.render(camera, T_c_w, view);
+        addNoise(view.intensity, random);
+        recorder.add({i / 15., T_c_w, view.intensity, view.depth});
     }
-    writeTrajectory(folder + "/groundtruth.txt", truth);
+    recorder.finish();
 }
 
-/// What a tracker made of the recording.
+/// Beliefs of a tracker against the true poses.
 struct Result {
     std::vector<PosePair> poses;
     double nees = 0.;  ///< mean of the squared normalised errors, per degree of freedom
@@ -91,31 +64,32 @@ struct Result {
     }
 };
 
-//! [odometry]
-Result followByOdometry(const Sequence& flight) {
-    const RecordedFrame first = loadFrame(flight, 0);
-    Odometry odometry(flight.camera, {first.T_c_w, Matrix6::Zero()});
+//! [follow]
+Result follow(const Sequence& flight, Tracker tracker) {
     Result result;
     for (std::size_t i = 0; i < flight.frames.size(); ++i) {
         const RecordedFrame frame = loadFrame(flight, i);
-        result.add(odometry.track(frame.view, frame.timestamp), frame, i);
+        result.add(tracker.track(frame.view, frame.timestamp), frame, i);
     }
     return result;
+}
+//! [follow]
+
+//! [odometry]
+Tracker odometry(const Sequence& flight) {
+    TrackerOptions options;
+    options.keyframes.emplace();  // earlier images, with their depth
+    const UncertainPose start{loadFrame(flight, 0).T_c_w, Matrix6::Zero()};
+    return {nullptr, flight.camera, start, options};
 }
 //! [odometry]
 
 //! [localise]
-Result followInMap(const Sequence& flight, const ViewSource& map) {
-    LocalizerOptions options;
-    options.alignment.photometric.sigma = kNoise;
+Tracker localiser(const Sequence& flight, std::shared_ptr<const ViewSource> map) {
+    TrackerOptions options;
+    options.map.photometric.sigma = kNoise;
     const UncertainPose start{loadFrame(flight, 0).T_c_w, 0.05 * 0.05 * Matrix6::Identity()};
-    Localizer localizer(map, flight.camera, start, options);
-    Result result;
-    for (std::size_t i = 0; i < flight.frames.size(); ++i) {
-        const RecordedFrame frame = loadFrame(flight, i);
-        result.add(localizer.track(frame.view.intensity, frame.timestamp), frame, i);
-    }
-    return result;
+    return {std::move(map), flight.camera, start, options};
 }
 //! [localise]
 
@@ -142,31 +116,28 @@ Plot::Points errorCurve(const Result& result) {
 }
 
 void draw(const Result& odometry, const Result& inMap) {
-    const Plot::Points drift = errorCurve(odometry);
-    double most = 1.;
-    for (const auto& p : drift) most = std::max(most, p.y());
-    Plot plot({Eigen::Vector2d(0., 0.), Eigen::Vector2d(kFrames / 15., 1.15 * most)},
-              {110., 300. / most}, "time [s]", "distance from the truth [mm]");
-    plot.curve(drift, {200, 60, 40}, 3);
-    plot.curve(errorCurve(inMap), {20, 60, 200}, 3);
-    plot.label("odometry", {200, 60, 40});
-    plot.label("localised in the map", {20, 60, 200});
-    plot.save("replay.png");
+    Plot plot;
+    plot.x = {.min = 0., .label = "time [s]"};
+    plot.y = {.min = 0., .label = "position error [mm]"};
+    plot.curve(errorCurve(odometry), {.color = {200, 60, 40}, .width = 3., .name = "odometry"});
+    plot.curve(errorCurve(inMap),
+               {.color = {20, 60, 200}, .width = 3., .name = "localised in the map"});
+    Figure{"Errors of a replay", {{plot}}}.save("replay.png");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const MeshRenderer room(sceneArgument(argc, argv, "room.yaml"));
+    const auto room = std::make_shared<MeshRenderer>(sceneArgument(argc, argv, "room.yaml"));
     const Camera camera = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
-    record(room, camera, "flight");
+    record(*room, camera, "flight");
     const Sequence flight = readTumSequence("flight");
 
-    const Result odometry = followByOdometry(flight);
-    const Result inMap = followInMap(flight, room);
+    const Result byOdometry = follow(flight, odometry(flight));
+    const Result inMap = follow(flight, localiser(flight, room));
     std::puts("           found  lost  keyframes  absolute [mm]  in a second [mm, deg]  NEES / 6");
-    print("odometry", odometry, true);
+    print("odometry", byOdometry, true);
     print("map", inMap, false);
-    draw(odometry, inMap);
+    draw(byOdometry, inMap);
     std::puts("wrote flight (also for photonav replay) and replay.png");
 }

@@ -6,27 +6,28 @@
 #include <memory>
 #include <numbers>
 
-#include "belief.hpp"
-#include "mesh_renderer.hpp"
+#include "belief/belief.hpp"
+#include "render/mesh_renderer.hpp"
 #include "scene_argument.hpp"
 
 namespace two_textures {
 
 using namespace photonav;
 
-inline MeshRenderer loadFloor(int argc, char** argv) {
-    return MeshRenderer(sceneArgument(argc, argv, "two_textures.yaml"));
+inline std::shared_ptr<const ViewSource> loadFloor(int argc, char** argv) {
+    return std::make_shared<MeshRenderer>(sceneArgument(argc, argv, "two_textures.yaml"));
 }
 
 inline FlightSpace flightSpace() {
     return {StateKind::position, {Eigen::Vector3d(-1., -0.5, 2.), Eigen::Vector3d(9., 9.5, 2.)}};
 }
 
-/// What the camera would see over `floor`, remembered by cells of `pitch` metres.
-inline std::shared_ptr<InformationField> views(const ViewSource& floor, double pitch) {
+/// Information of views of `floor`, one per cell of `pitch` metres.
+inline std::shared_ptr<InformationField> views(const std::shared_ptr<const ViewSource>& floor,
+                                               double pitch) {
     const Camera camera = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
     return std::make_shared<InformationField>(
-        photometricModel(floor, camera, {.sigma = 0.02, .scale = 0.08}),
+        floor, camera, photometricModel(camera, {.sigma = 0.02, .scale = 0.08}),
         cameraMount(std::numbers::pi / 2.), InformationField::Options{.positionPitch = pitch});
 }
 

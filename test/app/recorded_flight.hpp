@@ -2,8 +2,8 @@
 // A flight over textured ground, recorded in the TUM layout, and the scene it was flown in.
 #pragma once
 
-#include "mesh_renderer.hpp"
-#include "scene.hpp"
+#include "render/mesh_renderer.hpp"
+#include "scene/scene.hpp"
 #include "tum_dataset.hpp"
 
 namespace photonav::test {

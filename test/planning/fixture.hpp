@@ -8,10 +8,11 @@
 #include <memory>
 #include <numbers>
 
-#include "audit.hpp"
-#include "belief_rrt_star.hpp"
-#include "perception_rrt_star.hpp"
-#include "rrbt.hpp"
+#include "geometry/se3.hpp"
+#include "planners/audit.hpp"
+#include "planners/belief_rrt_star.hpp"
+#include "planners/perception_rrt_star.hpp"
+#include "planners/rrbt.hpp"
 
 namespace photonav::test {
 
@@ -21,18 +22,18 @@ inline Vector6 vector6(double a, double b, double c, double d, double e, double 
     return (Vector6() << a, b, c, d, e, f).finished();
 }
 
-/// A downward camera that sees x for 4 < x < 5 and everything for x > 6 (stripes, then texture).
+/// The camera observes x for 4 < x < 5 and everything for x > 6 (stripes, then texture). What it
+/// observes lies in the world, however the camera is turned.
 inline Matrix6 stripesThenTexture(const Pose& T_c_w) {
     const double x = T_c_w.inverse().translation().x();
-    Matrix6 information = Matrix6::Zero();
+    Matrix6 information = Matrix6::Zero();  // axes of the world
     if (x > 4. && x < 5.) {
-        // world x is image up for the downward camera: camera -y
-        const Vector6 j = vector6(0., 1., 0., 0.5, 0., 0.2);
+        const Vector6 j = vector6(1., 0., 0., 0., 0.5, 0.2);
         information = 400. * j * j.transpose();
     } else if (x > 6.) {
         information = vector6(900., 900., 400., 3e3, 3e3, 2e3).asDiagonal();
     }
-    return information;
+    return inTurnedAxes(information, T_c_w.linear());
 }
 
 inline Eigen::AlignedBox3d box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
@@ -44,7 +45,8 @@ struct Problem {
     Eigen::AlignedBox3d bounds = box({0., 0., 2.}, {10., 10., 2.});
     Eigen::Vector3d start{3., 1., 2.};
     Eigen::Vector3d goal{3., 9., 2.};
-    InformationModel information = stripesThenTexture;
+    InformationFormula information = stripesThenTexture;
+    Pose mount = cameraMount(std::numbers::pi / 2);
     Clearance clearance = [](const Eigen::Vector3d&) { return 1.; };
     BeliefOptions belief = defaultBelief();
     GrowthOptions growth{};
@@ -64,8 +66,7 @@ struct Problem {
     std::shared_ptr<BeliefModel> model() const {
         return std::make_shared<BeliefModel>(
             space(),
-            std::make_shared<InformationField>(information, cameraMount(std::numbers::pi / 2),
-                                               InformationField::Options{}),
+            std::make_shared<InformationField>(information, mount, InformationField::Options{}),
             belief);
     }
     ob::ProblemDefinitionPtr definition(const ob::SpaceInformationPtr& si) const {

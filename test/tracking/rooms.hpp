@@ -5,9 +5,9 @@
 #include <numbers>
 #include <random>
 
-#include "alignment.hpp"
-#include "mesh_renderer.hpp"
-#include "se3.hpp"
+#include "alignment/alignment.hpp"
+#include "geometry/se3.hpp"
+#include "render/mesh_renderer.hpp"
 
 namespace photonav::test {
 

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/benchmark_command.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "commands/result_folder.hpp"
+#include "drawing/sweep_figures.hpp"
+#include "io/atomic_file.hpp"
+#include "io/stopwatch.hpp"
+#include "problem/planning_problem.hpp"
+#include "report/plan_report.hpp"
+#include "report/sweep_report.hpp"
+#include "sweep/planner_benchmark.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+Config loadBenchmarkConfig(const BenchmarkOptions& options) {
+    std::vector<std::string> overrides = options.overrides;
+    if (options.planners) overrides.push_back("sweep.planners=[" + *options.planners + "]");
+    if (options.runs) overrides.push_back(fmt::format("sweep.runs={}", *options.runs));
+    if (options.seed) overrides.push_back("seed=" + *options.seed);
+    Config config = loadConfig(options.config, overrides);
+    checkSeeds(config, config.sweep.runs);
+    config.sweep.alphas = {config.belief.alpha};
+    return config;
+}
+
+std::string statusOf(const BenchmarkOutcome& outcome, bool stopped) {
+    if (stopped) return "interrupted";
+    const bool anySolved = std::any_of(outcome.runs.begin(), outcome.runs.end(),
+                                       [](const SweepRun& run) { return run.isSolved(); });
+    return anySolved ? "done" : "no path";
+}
+
+json benchmarkResult(const Config& config, const BenchmarkOutcome& outcome, bool stopped,
+                     double seconds) {
+    json result{{"schema", 1},
+                {"command", "benchmark"},
+                {"version", PHOTONAV_VERSION},
+                {"status", statusOf(outcome, stopped)},
+                {"planners", config.sweep.planners},
+                {"alpha", config.belief.alpha},
+                {"first_seed", config.seed},
+                {"runs_per_planner", config.sweep.runs},
+                {"time", {{"total_s", seconds}}},
+                {"runs", json::array()},
+                {"summary", json::array()}};
+    for (const SweepRun& run : outcome.runs) result["runs"].push_back(toJson(run));
+    for (const SweepCell& cell : summarize(config.sweep, outcome.runs, {})) {
+        result["summary"].push_back(toJson(cell));
+    }
+    return result;
+}
+
+ReportTable summaryTable(const SweepCell& cell) {
+    const auto value = [&](const char* column) {
+        const Statistic& statistic = cell.columns.at(column);
+        return std::isfinite(statistic.deviation)
+                   ? fmt::format("{:.4g} ± {:.2g}", statistic.mean, statistic.deviation)
+                   : fmt::format("{:.4g}", statistic.mean);
+    };
+    return {cell.planner,
+            {{"runs with a path", fmt::format("{} of {}", cell.solved, cell.runs)},
+             {"cost", value("cost")},
+             {"length [m]", value("length")},
+             {"mean trace [m² + rad²]", value("mean_trace")},
+             {"trace at the goal [m² + rad²]", value("goal_trace")},
+             {"vertices", value("vertices")},
+             {"views", value("views")},
+             {"time [s]", value("seconds")}}};
+}
+
+/// Curves of planners that minimise what their paths are judged by: the others' costs are another
+/// quantity (rrt_star's is the length).
+std::vector<BenchmarkCurve> comparable(const BenchmarkOutcome& outcome) {
+    constexpr double kPrinted = 1e-5;  // of the cost in a sample, relative
+    std::vector<BenchmarkCurve> curves;
+    for (std::size_t i = 0; i < outcome.runs.size(); ++i) {
+        const double cost = outcome.runs[i].cost;
+        const BenchmarkCurve& curve = outcome.curves[i];
+        if (std::abs(curve.cost.back() - cost) < kPrinted * (1. + cost)) curves.push_back(curve);
+    }
+    return curves;
+}
+
+void writeReport(const fs::path& folder, const BenchmarkOptions& options, const Config& config,
+                 const World& world, const BenchmarkOutcome& outcome, const json& result) {
+    ReportData report;
+    report.title = fs::path(options.config).stem().string();
+    report.subtitle =
+        fmt::format("{} runs of {} vertices, alpha {}, {} planners", outcome.runs.size(),
+                    config.vertices, config.belief.alpha, config.sweep.planners.size());
+    report.commandLine = options.commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.config = toYaml(config);
+    report.start = config.start.position;
+    report.goal = config.goal.position;
+    describeWorld(world, report);
+    for (const SweepCell& cell : summarize(config.sweep, outcome.runs, {})) {
+        report.tables.push_back(summaryTable(cell));
+    }
+    writeFileAtomically(folder / "benchmark.log", outcome.log);
+    writeResultFolder(
+        folder, report,
+        {{"progress.png",
+          {"Cost of the best path over time, a line per run of the planners that minimise it.",
+           costOverTimeFigure("Best cost over time", config.sweep.planners, comparable(outcome))
+               .png()}}});
+    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+}
+
+}  // namespace
+
+int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& interrupted) {
+    const Stopwatch watch;
+    const Config config = loadBenchmarkConfig(options);
+    const World world(config);
+    PlanningProblem(config, world).checkPlaces();
+    const fs::path folder = resultFolder(options, "benchmark", {config.sceneFile, config.mapFile});
+
+    BenchmarkOutcome outcome;
+    const std::size_t asked = config.sweep.planners.size() * config.sweep.runs;
+    {
+        ProgressLine line(options.quiet);
+        std::size_t done = 0;
+        outcome = benchmarkPlanners(
+            config, world, {options.interval, options.timeLimit}, interrupted,
+            [&](const SweepItem& item) {
+                const double seconds = watch.seconds();
+                const double rest = seconds / std::max<double>(1., static_cast<double>(done)) *
+                                    static_cast<double>(asked - done);
+                line.show(fmt::format("{} of {} runs, {} seed {}{}", done, asked, item.planner,
+                                      item.seed,
+                                      done > 0 ? fmt::format(", about {:.0f} s left", rest) : ""));
+                ++done;
+            });
+    }
+    const bool stopped = outcome.runs.size() < asked;
+    const double seconds = watch.seconds();
+    const json result = benchmarkResult(config, outcome, stopped, seconds);
+    writeReport(folder, options, config, world, outcome, result);
+    if (options.json) {
+        fmt::print("{}\n", result.dump(2));
+    } else if (!options.quiet) {
+        fmt::print("{}\nlog: {}\nreport: {}\n",
+                   sweepTable(config.sweep, summarize(config.sweep, outcome.runs, {})),
+                   (folder / "benchmark.log").string(), (folder / "report.html").string());
+    }
+    if (stopped) return kInterrupted;
+    return result["status"] == "done" ? kDone : kNoAnswer;
+}
+
+}  // namespace photonav

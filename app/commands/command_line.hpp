@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line of each subcommand, and what they share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <functional>
+#include <string>
+
+#include "commands/command_io.hpp"
+#include "dataset/recording.hpp"
+#include "report/report.hpp"
+
+namespace photonav {
+
+/// A subcommand and what to do when it was chosen.
+struct Command {
+    CLI::App* parser;
+    std::function<int()> run;  ///< returns the exit code; throws InputError
+};
+
+/// What every command needs besides its own options.
+struct Invocation {
+    std::string commandLine;  ///< as typed, for reports
+    const std::atomic<bool>& interrupted;
+};
+
+Command flyCommand(CLI::App& app, const Invocation& invocation);
+Command mapCommand(CLI::App& app, const Invocation& invocation);
+Command replayCommand(CLI::App& app, const Invocation& invocation);
+
+/// What happens to the results of a run.
+struct OutputOptions {
+    std::filesystem::path& out;
+    bool& quiet;
+    bool& json;
+};
+void addOutput(CLI::App& parser, OutputOptions output, const std::string& defaultFolder);
+
+/// result.json as asked for, else the summary and where the `files` of the result folder are.
+void printOutput(const OutputOptions& output, const nlohmann::json& result,
+                 const ReportTable& summary, const std::vector<std::string>& files);
+
+void addOverrides(CLI::App& parser, std::vector<std::string>& overrides);
+
+/// config, --set and the output.
+void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig = true);
+
+/// --seed as text for an override: a number that a config may hold.
+template <typename Text>
+void addSeed(CLI::App& parser, Text& seed, const std::string& what) {
+    parser.add_option("--seed", seed, what + " (overrides the config)")
+        ->check(CLI::Range(1U, 4294967295U));
+}
+
+/// What is read of a recording: camera, up, frames, timestamps.
+void addRecording(CLI::App& parser, RecordingOptions& options);
+
+/// Last part of a path, without a closing slash.
+std::string folderName(const std::string& path);
+
+/// For a complete config: options besides it are errors.
+/// @throws InputError for the first one that was given
+void refuseOptionsBeside(const std::string& config, const CLI::App& parser);
+
+}  // namespace photonav

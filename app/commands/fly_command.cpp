@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/fly_command.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "commands/result_folder.hpp"
+#include "estimation/calibration.hpp"
+#include "flight/flight_recorder.hpp"
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
+#include "io/stopwatch.hpp"
+#include "report/fly_report.hpp"
+#include "runs/fly_plan.hpp"
+#include "runs/tracking_map.hpp"
+
+namespace photonav {
+namespace {
+
+/// A map may be made of flight 0: its noise must not be that of the images flown by it.
+constexpr std::uint64_t kSeedInMaps = 1'000'003;
+/// A real camera's images are worth less than planned with: what vignetting does to them is alike
+/// in all images of a place (docs/fly.md).
+constexpr double kRealCamera = 0.25;  // of camera.information_scale
+
+/// How images are aligned: as they were planned with, or as those of a real camera.
+/// @param resolution of the map [m]; 0: a mesh
+AlignmentOptions flightAlignment(const Config& config, double resolution) {
+    const FlyConfig& fly = config.fly;
+    const bool isReal = fly.camera == "real";
+    const AlignmentOptions real = realCameraOptions(resolution);
+    AlignmentOptions alignment;
+    alignment.photometric = config.photometric;
+    alignment.photometric.stride = 1;
+    alignment.photometric.scale =
+        fly.scale.value_or((isReal ? kRealCamera : 1.) * config.photometric.scale);
+    alignment.trust.floorTranslation = fly.floorTranslation.value_or(real.trust.floorTranslation);
+    alignment.trust.floorRotation = fly.floorRotation.value_or(real.trust.floorRotation);
+    // Odometry carries what the map's noise leaves open; replays without it would drift there.
+    if (resolution > 0.) alignment.modelNoise = ModelNoise::measured;
+    if (isReal) alignment.exposure = real.exposure;
+    return alignment;
+}
+
+FlightOptions flightOptions(const Config& config, double resolution) {
+    const FlyConfig& fly = config.fly;
+    FlightOptions flight;
+    flight.robot.body.odometryNoise = config.belief.motionNoise;
+    flight.robot.body.rotationWeight = config.rotationWeight;
+    flight.robot.body.odometryFactor = fly.odometry;
+    flight.robot.camera.period = fly.rate > 0. ? 1. / fly.rate : config.belief.ds / fly.speed;
+    flight.robot.camera.latency = fly.latency;
+    flight.robot.camera.dropRate = fly.drop;
+    flight.robot.camera.blackRate = fly.black;
+    flight.robot.camera.blackoutStart = fly.blackout[0];
+    flight.robot.camera.blackoutLength = fly.blackout[1];
+    flight.pilot.servo.maxSpeed = fly.speed;
+    flight.alignment = flightAlignment(config, resolution);
+    flight.loss.blindTime =
+        fly.latency + std::max(flight.loss.blindTime, 4. * flight.robot.camera.period);
+    flight.pilot.photometricGoal = fly.photometricGoal;
+    flight.bodyRadius = fly.bodyRadius > 0. ? fly.bodyRadius : 0.5 * config.robotRadius;
+    flight.arrivalTolerance = std::max(config.robotRadius, 0.1);
+    flight.seed = config.seed + (fly.map.empty() ? 0 : kSeedInMaps);
+    return flight;
+}
+
+/// The config's planner first, then RRT* if it is to be compared with.
+std::vector<FlightSet> planAll(const Config& config, PlanningProblem& run, ProgressLine& line,
+                               const std::atomic<bool>& interrupted) {
+    std::vector<FlightSet> sets;
+    const auto add = [&](JudgedPath path) {
+        std::vector<PlannedView> plan = plannedViews(path.points);
+        sets.push_back({std::move(path), std::move(plan), {}});
+    };
+    const auto solve = [&](const std::string& name) {
+        line.show("planning: " + name);
+        auto outcome = run.solve(name, interrupted, [&](const PlanProgress& progress) {
+            line.show(fmt::format("planning: {}, {} of {} vertices", name, progress.vertices,
+                                  config.vertices));
+        });
+        if (outcome.path) add(std::move(*outcome.path));
+    };
+    if (!config.fly.plan.empty()) {
+        add(readPlannedPath(config.fly.plan, run));
+    } else {
+        solve(config.planner);
+    }
+    const bool isCompared = config.compareWithRrtStar && config.planner != "rrt_star";
+    if (!sets.empty() && isCompared && !interrupted) solve("rrt_star");
+    return sets;
+}
+
+/// Of an earlier recording images would be left over, and it may be one that cannot be had again.
+void prepareRecordFolder(const std::filesystem::path& folder) {
+    for (const char* list : {"rgb.txt", "assoc.txt", "rgb"}) {
+        if (!std::filesystem::exists(folder / list)) continue;
+        throw InputError(folder.string(), "", "holds a recording already: remove it first");
+    }
+    prepareFolder(folder);
+}
+
+void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const FlightOptions& flight,
+            const FlyOptions& options, unsigned count, ProgressLine& line,
+            const std::atomic<bool>& interrupted) {
+    std::optional<FlightRecorder> recorder;  // from the first image on
+    OnExposure record;
+    if (!options.record.empty()) {
+        record = [&](const Exposed& exposed) {
+            if (!recorder) {
+                recorder.emplace(options.record, world.camera, flight.alignment.photometric.scale);
+            }
+            recorder->add(exposed);
+        };
+    }
+    const Stopwatch watch;
+    std::size_t flown = 0;
+    std::size_t arrived = 0;
+    for (FlightSet& set : sets) {
+        const auto onFlight = [&](const FlightResult& result) {
+            ++flown;
+            arrived += result.end == FlightEnd::arrived;
+            const double each = watch.seconds() / static_cast<double>(flown);
+            const double all = static_cast<double>(count * sets.size());
+            line.show(fmt::format("{}: {} of {:.0f} flights, {} arrived, about {:.0f} s left",
+                                  set.path.planner, flown, all, arrived,
+                                  each * (all - static_cast<double>(flown))));
+        };
+        set.flights = flyMany(set.plan, world, flight, count, options.jobs, interrupted, onFlight,
+                              &set == &sets.front() ? record : OnExposure{});
+    }
+    if (recorder) recorder->finish();
+}
+
+void printFailure(const FlightSet& set) {
+    const FlightSummary s = summarise(set);
+    if (s.flights == 0 || s.arrived > 0) return;
+    fmt::print("no flight of {} arrived: {} astray, {} collided, {} gave up lost, {} out of time\n",
+               set.path.planner, s.astray, s.collisions, s.lost, s.outOfTime);
+}
+
+void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::path& folder) {
+    if (sets.empty()) fmt::print("no path found\n");
+    if (!sets.empty()) {
+        fmt::print("{:<16} {:>10} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12} {:>10} {:>10}\n",
+                   "planner", "arrived", "collisions", "error (rms)", "predicted", "believed",
+                   "NEES (median)", "NEES at goal", "lost (sum)", "goal error");
+    }
+    for (const FlightSet& set : sets) {
+        const FlightSummary s = summarise(set);
+        if (s.flights == 0) {
+            fmt::print("{:<16} {:>9}\n", set.path.planner, "not flown");
+            continue;
+        }
+        fmt::print("{:<16} {:>10} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12.2f} {:>8.1f} s {:>10}\n",
+                   set.path.planner, fmt::format("{} of {}", s.arrived, s.flights), s.collisions,
+                   lengthText(s.positionRmse), lengthText(s.predictedSigma),
+                   lengthText(s.believedSigma),
+                   fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian), s.neesAtGoal, s.lostTime,
+                   lengthText(s.goalError));
+    }
+    if (!sets.empty() && !sets.front().flights.empty()) {
+        const FlightSummary s = summarise(sets.front());
+        fmt::print("consistent at the goal: {:.2f} to {:.2f} (95 % of chi-square)\n", s.neesLow,
+                   s.neesHigh);
+    }
+    if (!sets.empty()) printFailure(sets.front());
+    fmt::print("report: {}\n", (folder / "report.html").string());
+}
+
+std::filesystem::path folderFor(const FlyOptions& options, const Config& config) {
+    const std::filesystem::path plan = config.fly.plan;
+    const CommandOptions& common = options;
+    CommandOptions named = common;
+    if (!plan.empty()) {  // named as the plan, not as "config"
+        named.config = plan.parent_path().filename().string() + ".";
+    }
+    const auto folder = resultFolder(
+        named, "fly", {options.config, plan, config.sceneFile, config.mapFile, config.fly.map});
+    for (const char* stale :
+         {"trajectory.tum", "trajectory.cov", "trajectory.ov", "groundtruth.tum"}) {
+        std::filesystem::remove(folder / stale);
+    }
+    return folder;
+}
+
+/// The config's own plan is the first one: what it is compared with is no success.
+bool hasArrived(const std::vector<FlightSet>& sets) {
+    return !sets.empty() && summarise(sets.front()).arrived > 0;
+}
+
+}  // namespace
+
+int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
+    const Stopwatch watch;
+    const PlanSource source = findPlan(options.config);
+    Config config = loadConfig(source.configFile, options.overrides);
+    if (!source.resultFile.empty()) {
+        config.fly.plan = std::filesystem::absolute(source.resultFile).lexically_normal().string();
+    }
+    const TrackingMap map =
+        config.fly.map.empty() ? TrackingMap{} : loadTrackingMap(config.fly.map);
+    FlightOptions flight = flightOptions(config, map.resolution());
+    const World world(config);
+    PlanningProblem run(config, world);
+    run.checkPlaces();
+    flight.initialCovariance = run.initialCovariance();
+    const NoEmptyFolder noEmptyRecording(options.record);
+    const NoEmptyFolder noEmptyFolder(options.out);
+    if (!options.record.empty()) prepareRecordFolder(options.record);
+    const auto folder = folderFor(options, config);  // an earlier result ends here
+
+    std::vector<FlightSet> sets;
+    {
+        ProgressLine line(options.quiet);
+        sets = planAll(config, run, line, interrupted);
+        const FlightWorld flightWorld{
+            .truth = world.sharedViews(),
+            .map = map.views ? map.views : world.sharedViews(),
+            .clearance = [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
+            .camera = config.camera.camera(),
+            .T_b_c = config.camera.T_b_c(),
+            .noise = config.fly.camera == "real" ? realNoise() : assumedNoise(config.photometric)};
+        flyAll(sets, flightWorld, flight, options, config.fly.flights, line, interrupted);
+    }
+    const bool stopped = interrupted;
+    nlohmann::json result = flyResult(config, sets, flight, stopped);
+    result["time"]["total_s"] = watch.seconds();
+    writeFlyReport(folder, config, world, sets, options.commandLine, result);
+    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+
+    if (options.json)
+        fmt::print("{}\n", result.dump(2));
+    else if (!options.quiet)
+        printSummary(sets, folder);
+    if (stopped) return kInterrupted;
+    return hasArrived(sets) ? kDone : kNoAnswer;
+}
+
+}  // namespace photonav

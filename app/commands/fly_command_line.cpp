@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "commands/command_line.hpp"
+#include "commands/fly_command.hpp"
+#include "config/config_keys.hpp"
+#include "runs/replay_calibration.hpp"
+
+namespace photonav {
+namespace {
+
+struct FlyArguments : FlyOptions {
+    std::string seed;
+    FlyConfig typed;  ///< the defaults
+    KeyTable keys;    ///< of `typed`
+};
+
+std::string optionOf(const ConfigKey& key) {
+    std::string name = key.words.name;
+    std::replace(name.begin(), name.end(), '_', '-');
+    return "--" + name;
+}
+
+/// Lists are typed without brackets.
+std::string valueOf(const ConfigKey& key, const std::string& text) {
+    return key.allowed.starts_with("`[") ? "[" + text + "]" : text;
+}
+
+std::string complaintAbout(const ConfigKey& key, const std::string& text) {
+    try {
+        key.set(valueOf(key, text));
+    } catch (const InputError& error) {
+        const std::string prefix = key.words.name + ": ";
+        const std::string& reason = error.reason();
+        return reason.starts_with(prefix) ? reason.substr(prefix.size()) : reason;
+    }
+    return "";
+}
+
+/// An option per key of the section `fly`: --body-radius is fly.body_radius.
+void addKeyOptions(CLI::App& parser, const KeyTable& keys) {
+    for (const ConfigKey& key : keys.keys()) {
+        if (key.words.name == "plan") continue;  // the positional argument
+        const std::string option = optionOf(key);
+        const std::string description = key.description();
+        if (key.allowed == "true, false") {
+            parser.add_flag(fmt::format("{0},!--no-{1}", option, option.substr(2)), description);
+        } else {
+            parser.add_option(option, description)
+                ->type_name(key.isFile ? "FILE" : "VALUE")
+                ->check([&key](const std::string& text) { return complaintAbout(key, text); });
+        }
+    }
+}
+
+/// What was typed goes over the config, as --set would.
+void override(const CLI::App& parser, const KeyTable& keys, std::vector<std::string>& overrides) {
+    if (parser.count("--calibration") > 0) {
+        const Calibration c = readCalibration(parser["--calibration"]->as<std::string>(), false);
+        overrides.push_back(fmt::format("fly.scale={}", c.scale / c.correlationTime));
+        overrides.push_back(fmt::format("fly.sigma_floor={}", c.floorTranslation));
+        overrides.push_back(fmt::format("fly.sigma_floor_rotation={}", c.floorRotation));
+    }
+    for (const ConfigKey& key : keys.keys()) {
+        const CLI::Option* option = parser.get_option_no_throw(optionOf(key));
+        if (option == nullptr || option->count() == 0) continue;
+        std::string value = valueOf(key, option->results().back());
+        if (key.isFile) value = std::filesystem::absolute(value).lexically_normal().string();
+        overrides.push_back(fmt::format("{}={}", key.path(), value));
+    }
+}
+
+}  // namespace
+
+Command flyCommand(CLI::App& app, const Invocation& invocation) {
+    auto options = std::make_shared<FlyArguments>();
+    addKeys(options->keys, options->typed);
+    options->commandLine = invocation.commandLine;
+    CLI::App* parser =
+        app.add_subcommand("fly",
+                           "Fly a plan in closed loop, many times, beside RRT*'s. Exit code 0: a "
+                           "flight of the config's planner arrived.");
+    addCommon(*parser, *options);
+    parser->get_option("config")->description("YAML file, or result folder of photonav plan");
+    parser->add_option("--jobs", options->jobs, "threads")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    addSeed(*parser, options->seed, "of all random numbers");
+    addKeyOptions(*parser, options->keys);
+    parser
+        ->add_option("--calibration",
+                     "scale and floors from the calibration.yaml of a replay --calibrate, the "
+                     "factor divided by the number of images with correlated errors; --scale, "
+                     "--sigma-floor and --sigma-floor-rotation override it")
+        ->type_name("FILE");
+    parser
+        ->add_option("--record", options->record, "write the first flight as a TUM RGB-D recording")
+        ->type_name("DIR");
+    return {parser, [options, parser, &interrupted = invocation.interrupted] {
+                if (!options->seed.empty()) options->overrides.push_back("seed=" + options->seed);
+                override(*parser, options->keys, options->overrides);
+                return runFly(*options, interrupted);
+            }};
+}
+
+}  // namespace photonav

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/info_command.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "commands/result_folder.hpp"
+#include "figures/heat_map.hpp"
+#include "figures/images.hpp"
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
+#include "io/stopwatch.hpp"
+#include "recording/image_file.hpp"
+#include "report/plan_report.hpp"
+#include "result/json_values.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+struct Direction {
+    const char* name;
+    const char* what;
+};
+constexpr std::array<Direction, 6> kDirections{
+    {{"right", "motion to the right"},
+     {"down", "motion down in the image"},
+     {"forward", "motion along the optical axis"},
+     {"about_right", "rotation about the image's x axis"},
+     {"about_down", "rotation about the image's y axis"},
+     {"about_forward", "rotation about the optical axis"}}};
+
+/// "x,y,z" or "x,y,z,yaw".
+Place parsePlace(const std::string& text) {
+    std::vector<double> numbers;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        double number = 0.;
+        const auto [last, error] = std::from_chars(text.data() + begin, text.data() + end, number);
+        if (error != std::errc{} || last != text.data() + end || !std::isfinite(number)) break;
+        numbers.push_back(number);
+        begin = end + 1;
+        if (end == text.size() && (numbers.size() == 3 || numbers.size() == 4)) {
+            Place place{Eigen::Vector3d(numbers.data()), std::nullopt};
+            if (numbers.size() == 4) place.yaw = numbers[3];
+            return place;
+        }
+    }
+    throw InputError("--at", text, "expected x,y,z or x,y,z,yaw");
+}
+
+Pose bodyAt(const Place& place) {
+    Pose T_w_b = Pose::Identity();
+    T_w_b.linear() =
+        Eigen::AngleAxisd(place.yaw.value_or(0.), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    T_w_b.translation() = place.position;
+    return T_w_b;
+}
+
+/// The information of a view from each place at one height, and the uncertainty after it.
+struct Grids {
+    Eigen::AlignedBox2d area;
+    double height;
+    Eigen::ArrayXXd information;  ///< trace
+    Eigen::ArrayXXd sigma;        ///< of the position [m]
+};
+
+json resultOf(const Place& place, const Matrix6& Lambda, const Grids& grids) {
+    const Eigen::ArrayXXd& information = grids.information;
+    const Eigen::AlignedBox2d& area = grids.area;
+    json lambda = json::array();
+    for (int i = 0; i < 6; ++i) {
+        for (int j = i; j < 6; ++j) lambda.push_back(Lambda(i, j));
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Lambda, Eigen::EigenvaluesOnly);
+    json rows = json::array();
+    for (int j = 0; j < information.cols(); ++j) {
+        json row = json::array();
+        for (int i = 0; i < information.rows(); ++i) row.push_back(finiteOrNull(information(i, j)));
+        rows.push_back(row);
+    }
+    return {{"schema", 1},
+            {"command", "info"},
+            {"version", PHOTONAV_VERSION},
+            {"view",
+             {{"position", {place.position.x(), place.position.y(), place.position.z()}},
+              {"yaw", place.yaw.value_or(0.)},
+              {"information_frame", "camera, order (rho, phi), upper triangle by rows"},
+              {"information", lambda},
+              {"information_trace", Lambda.trace()},
+              {"min_eigenvalue", std::max(0., eigen.eigenvalues()[0])}}},
+            {"grid",
+             {{"quantity", "trace of the Fisher information of one view"},
+              {"height", grids.height},
+              {"min", {area.min().x(), area.min().y()}},
+              {"max", {area.max().x(), area.max().y()}},
+              {"rows_from_smallest_y", rows}}}};
+}
+
+/// The predicted view and its contribution images, all directions together and one by one.
+std::vector<NamedFigure> viewFigures(const View& view, const Config& config) {
+    const Camera camera = config.camera.camera();
+    const auto contribution = [&](const auto&... direction) {
+        return pngOf(contributionPicture(
+            view.intensity, contributionImage(view, camera, direction..., config.photometric)));
+    };
+    std::vector<NamedFigure> figures{
+        {"view.png", {"The predicted view.", greyPng(view.intensity)}},
+        {"contribution.png",
+         {"The contribution of every pixel to the information, all directions together.",
+          contribution()}}};
+    for (int i = 0; i < 6; ++i) {
+        figures.push_back({fmt::format("contribution_{}.png", kDirections[i].name),
+                           {fmt::format("The pixels that inform about {}.", kDirections[i].what),
+                            contribution(Vector6(Vector6::Unit(i)))}});
+    }
+    return figures;
+}
+
+std::vector<NamedFigure> heatMaps(const Grids& grids, const std::string& place) {
+    const auto heatMap = [&](const char* title, const char* label, const Eigen::ArrayXXd& values) {
+        return heatMapFigure(
+                   {fmt::format("{} at {}", title, place), label, grids.area, values, true})
+            .png();
+    };
+    return {{"information.png",
+             {"Trace of the Fisher information of one view.",
+              heatMap("Information of one view", "trace of the Fisher information",
+                      grids.information)}},
+            {"uncertainty.png",
+             {"Standard deviation of the position after one view.",
+              heatMap("Uncertainty after one view", "standard deviation of the position [m]",
+                      grids.sigma)}}};
+}
+
+/// The view that is asked for, by --at or the config.
+Place placeOf(const InfoOptions& options, const Config& config) {
+    Place place = options.at ? parsePlace(*options.at) : config.start;
+    if (!place.yaw) place.yaw = config.start.yaw;  // the only heading there is in space xyz
+    if (!config.bounds.contains(place.position)) {
+        throw InputError("--at", *options.at, "outside the bounds of the config");
+    }
+    return place;
+}
+
+double heightOf(const InfoOptions& options, const Config& config) {
+    const double height = options.height.value_or(config.start.position.z());
+    if (!(height >= config.bounds.min().z() && height <= config.bounds.max().z())) {
+        throw InputError("--height", fmt::format("{}", height), "outside the bounds of the config");
+    }
+    return height;
+}
+
+Grids lookAround(const InfoOptions& options, const Config& config, double height, double yaw,
+                 PlanningProblem& run) {
+    ProgressLine line(options.quiet);
+    line.show("looking around");
+    const Eigen::AlignedBox2d area(config.bounds.min().head<2>(), config.bounds.max().head<2>());
+    const Matrix6& prior = run.initialCovariance();
+    return {area, height,
+            viewGrid(run, area, height, yaw, options.cells,
+                     [](const Matrix6& gain) { return gain.trace(); }),
+            viewGrid(run, area, height, yaw, options.cells, [&](const Matrix6& gain) {
+                return std::sqrt(updateCovariance(prior, gain).topLeftCorner<3, 3>().trace());
+            })};
+}
+
+ReportData reportOf(const InfoOptions& options, const Config& config, const World& world,
+                    const Place& place, const json& result) {
+    ReportData report;
+    report.title = fs::path(config.file).stem().string();
+    report.subtitle = "The information that the camera gets from a view.";
+    report.commandLine = options.commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.result.erase("grid");
+    report.config = toYaml(config);
+    report.start = place.position;
+    report.goal = config.goal.position;
+    describeWorld(world, report);
+    return report;
+}
+
+}  // namespace
+
+int runInfo(const InfoOptions& options) {
+    const Stopwatch watch;
+    const Config config = loadConfig(options.config, options.overrides);
+    const double height = heightOf(options, config);
+    const Place place = placeOf(options, config);
+    const World world(config);
+    PlanningProblem run(config, world);
+    const auto folder = resultFolder(options, "info", {config.sceneFile, config.mapFile});
+
+    const Grids grids = lookAround(options, config, height, place.yaw.value_or(0.), run);
+    const Camera camera = config.camera.camera();
+    View view;
+    world.views().render(camera, (bodyAt(place) * config.camera.T_b_c()).inverse(), view);
+    const Matrix6 Lambda = photometricInformation(view, camera, config.photometric);
+
+    json result = resultOf(place, Lambda, grids);
+    auto figures = heatMaps(grids, placeText(config, height, place.yaw.value_or(0.)));
+    for (NamedFigure& figure : viewFigures(view, config)) figures.push_back(std::move(figure));
+    ReportData report = reportOf(options, config, world, place, result);
+    writeResultFolder(folder, report, figures);
+    result["time"]["total_s"] = watch.seconds();
+    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+    if (options.json) {
+        fmt::print("{}\n", result.dump(2));
+    } else if (!options.quiet) {
+        fmt::print("information trace {:.4g}, smallest eigenvalue {:.4g}\nreport: {}\n",
+                   Lambda.trace(), result["view"]["min_eigenvalue"].get<double>(),
+                   (folder / "report.html").string());
+    }
+    return kDone;
+}
+
+}  // namespace photonav

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line: subcommands and their options, nothing else. Those with many are in
+// *_command_line.cpp.
+#include <fmt/format.h>
+#include <ompl/util/Console.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+#include "commands/benchmark_command.hpp"
+#include "commands/command_line.hpp"
+#include "commands/compare_command.hpp"
+#include "commands/info_command.hpp"
+#include "commands/map_info.hpp"
+#include "commands/plan_command.hpp"
+#include "commands/reference_command.hpp"
+#include "commands/sweep_command.hpp"
+#include "config/config_keys.hpp"
+#include "io/error.hpp"
+#include "io/stopwatch.hpp"
+#include "io/yaml_reader.hpp"
+#include "map/octree_file.hpp"
+#include "report/report.hpp"
+
+namespace {
+
+using namespace photonav;
+
+std::atomic<bool> interrupted{false};
+std::atomic<double> interruptedAt{0.};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
+const Stopwatch running;
+
+constexpr double kSameInterrupt = 0.2;  // [s]
+
+/// The first Ctrl-C lets the command finish its files, the second one does not. timeout(1) sends
+/// its signal twice, to the process and to its group: that is one.
+void onInterrupt(int) {
+    const double now = running.seconds();
+    double first = 0.;
+    if (interruptedAt.compare_exchange_strong(first, now)) {
+        interrupted = true;
+    } else if (now - first > kSameInterrupt) {
+        std::_Exit(kInterrupted);
+    }
+}
+
+Command planCommand(CLI::App& app, const Invocation& invocation) {
+    auto options = std::make_shared<PlanOptions>();
+    auto seed = std::make_shared<std::string>();
+    options->commandLine = invocation.commandLine;
+    CLI::App* parser =
+        app.add_subcommand("plan", "Plan a perception-aware path in a known scene or map.");
+    addCommon(*parser, *options);
+    addSeed(*parser, *seed, "of all random numbers");
+    parser->add_flag(
+        "--audit", options->audit,
+        "propagate every stored belief again from the start and print the largest error");
+    parser->add_flag("--evolution", options->evolution,
+                     "show how the trees of RRT* and of the planner grow (figure and animation)");
+    return {parser, [options, seed] {
+                if (!seed->empty()) options->overrides.push_back("seed=" + *seed);
+                return runPlan(*options, interrupted);
+            }};
+}
+
+Command compareCommand(CLI::App& app) {
+    auto options = std::make_shared<CompareOptions>();
+    CLI::App* parser = app.add_subcommand(
+        "compare", "Every planner, information model and objective on the same problems.");
+    parser->add_option("configs", options->configs, "YAML files of planning problems")->required();
+    addOverrides(*parser, options->overrides);
+    parser->add_option("--runs", options->runs, "seeds per method, from the config's on")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    parser->add_option("--out", options->out, "result folder")->capture_default_str();
+    parser->add_flag("--quiet", options->quiet, "no progress, no tables");
+    return {parser, [options] { return runCompare(*options, interrupted); }};
+}
+
+int describeMap(const CLI::App& parser, InfoOptions& options) {
+    for (const char* name : {"--height", "--at", "--cells"}) {
+        if (parser.count(name) == 0) continue;
+        throw InputError(name, "", "is for a planning problem, not for a map");
+    }
+    const std::filesystem::path file = options.config;
+    if (options.out.empty()) options.out = "out/info-" + file.stem().string();
+    const MapReport report = runMapInfo(options);
+    printOutput({options.out, options.quiet, options.json}, report.result, report.summary,
+                {"report.html"});
+    return kDone;
+}
+
+Command infoCommand(CLI::App& app, const Invocation& invocation) {
+    auto options = std::make_shared<InfoOptions>();
+    options->commandLine = invocation.commandLine;
+    CLI::App* parser =
+        app.add_subcommand("info", "Map the information of views, and of the pixels of one view.");
+    addCommon(*parser, *options);
+    parser->get_option("config")->description(
+        "YAML file of the planning problem; or a map (.ot, .bt), to see what it holds");
+    parser->add_option("--height", options->height, "of the heat map [m] (default: the start's)");
+    parser->add_option("--at", options->at, "x,y,z[,yaw] of the single view (default: the start)");
+    parser->add_option("--cells", options->cells, "along the longer side of the heat map")
+        ->check(CLI::Range(1, 2000))
+        ->capture_default_str();
+    return {parser, [options, parser] {
+                std::signal(SIGINT, SIG_DFL);  // seconds of work, nothing to keep
+                if (!isOcTreeFile(options->config)) return runInfo(*options);
+                return describeMap(*parser, *options);
+            }};
+}
+
+Command sweepCommand(CLI::App& app, const Invocation& invocation) {
+    auto options = std::make_shared<SweepOptions>();
+    options->commandLine = invocation.commandLine;
+    CLI::App* parser = app.add_subcommand(
+        "sweep", "Compare planners over alpha and seeds: the table of the paper.");
+    addCommon(*parser, *options, false);
+    parser->add_option("--alpha", options->alphas, "first:last:step or a,b,c")->type_name("ALPHAS");
+    parser->add_option("--planners", options->planners, "a,b,c")->type_name("NAMES");
+    parser->add_option("--runs", options->runs, "seeds per planner and alpha");
+    addSeed(*parser, options->seed, "the first seed");
+    parser->add_option("--jobs", options->jobs, "threads")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    parser->add_option("--shard", options->shard, "do only part k of n")->type_name("K/N");
+    parser->add_option("--merge", options->merge, "one table from the folders of all n shards")
+        ->type_name("DIR...");
+    parser->add_flag("--resume", options->resume, "continue the runs of the result folder");
+    return {parser, [options] { return runSweep(*options, interrupted); }};
+}
+
+Command benchmarkCommand(CLI::App& app, const Invocation& invocation) {
+    auto options = std::make_shared<BenchmarkOptions>();
+    options->commandLine = invocation.commandLine;
+    CLI::App* parser =
+        app.add_subcommand("benchmark", "Run planners in OMPL's benchmark, for its tools to read.");
+    addCommon(*parser, *options);
+    parser->add_option("--planners", options->planners, "a,b,c")->type_name("NAMES");
+    parser->add_option("--runs", options->runs, "seeds per planner");
+    addSeed(*parser, options->seed, "the first seed");
+    parser->add_option("--interval", options->interval, "between samples of the progress [s]")
+        ->check(CLI::Range(1e-3, 1e3))
+        ->capture_default_str();
+    parser->add_option("--time-limit", options->timeLimit, "of a run [s]")
+        ->check(CLI::Range(1e-3, 1e6))
+        ->capture_default_str();
+    return {parser, [options] { return runBenchmark(*options, interrupted); }};
+}
+
+Command referenceCommand(CLI::App& app) {
+    auto options = std::make_shared<ReferenceOptions>();
+    CLI::App* parser =
+        app.add_subcommand("reference", "Compute near-optimal reference paths (takes hours).");
+    parser->add_option("config", options->config, "YAML file of the planning problem")->required();
+    addOverrides(*parser, options->overrides);
+    parser->add_option("--alpha", options->alphas, "first:last:step or a,b,c")->type_name("ALPHAS");
+    parser->add_option("--planners", options->planners, "a,b,c")->type_name("NAMES");
+    parser->add_option("--runs", options->runs, "seeds per planner and alpha")
+        ->capture_default_str();
+    parser->add_option("--vertices", options->vertices, "of each run")->capture_default_str();
+    parser->add_option("--labels", options->labels, "per vertex")->capture_default_str();
+    parser->add_option("--moves", options->moves, "tried by the descent from each path")
+        ->capture_default_str();
+    parser->add_option("--file", options->file,
+                       "the table (default: reference/<config>.csv beside the config)");
+    parser->add_flag("--from-scratch", options->fromScratch,
+                     "do not start from the paths of the table");
+    parser->add_flag("--quiet", options->quiet, "no progress, no summary");
+    return {parser, [options] { return runReference(*options, interrupted); }};
+}
+
+Command keysCommand(CLI::App& app) {
+    auto names = std::make_shared<std::vector<std::string>>();
+    CLI::App* parser =
+        app.add_subcommand("keys", "List the keys of a config: values, units, meaning.");
+    parser->add_option("names", *names, "sections or keys (default: all)");
+    return {parser, [names] {
+                Config config;
+                fmt::print("{}", keysOf(config).toMarkdown(*names));
+                return static_cast<int>(kDone);
+            }};
+}
+
+Command reportCommand(CLI::App& app) {
+    auto folder = std::make_shared<std::filesystem::path>();
+    CLI::App* parser = app.add_subcommand("report", "Rebuild report.html of a result folder.");
+    parser->add_option("folder", *folder, "result folder")->required();
+    return {parser, [folder] {
+                writeReport(*folder / "report.html", readReportJson(*folder / "report.json"));
+                fmt::print("report: {}\n", (*folder / "report.html").string());
+                return static_cast<int>(kDone);
+            }};
+}
+
+/// What was typed in place of a command or an option, when that is what is wrong.
+std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
+    const std::vector<std::string> unknown = app.remaining();
+    const bool isCommandMissing = error.get_exit_code() == int(CLI::ExitCodes::RequiredError) &&
+                                  app.get_subcommands().empty();
+    if (!isCommandMissing || unknown.empty()) return error.what();
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    const std::string near = nearestWord(unknown.front(), names);
+    return fmt::format("{}: no such {}{}", unknown.front(),
+                       unknown.front().starts_with('-') ? "option" : "command",
+                       near.empty() ? "" : fmt::format(", did you mean '{}'?", near));
+}
+
+int run(int argc, char** argv) {
+    CLI::App app{
+        "photonav: paths on which the camera sees enough texture to be localised.\n"
+        "Start with: photonav plan config/two_textures.yaml",
+        "photonav"};
+    app.set_version_flag("--version", PHOTONAV_VERSION);
+    app.require_subcommand(1);
+    app.footer(
+        "plan, fly, sweep, benchmark, info, map and replay write result.json, figures,\n"
+        "report.html and config.yaml (complete, re-runnable) into their folder (--out);\n"
+        "compare writes tables, figures and result.json, reference its table alone.\n"
+        "photonav COMMAND --help lists the options of a command, photonav keys those of a config.\n"
+        "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by Ctrl-C.");
+    Invocation invocation{"photonav", interrupted};
+    for (int i = 1; i < argc; ++i) invocation.commandLine += std::string(" ") + argv[i];
+
+    const std::array commands{planCommand(app, invocation),
+                              infoCommand(app, invocation),
+                              flyCommand(app, invocation),
+                              mapCommand(app, invocation),
+                              sweepCommand(app, invocation),
+                              compareCommand(app),
+                              benchmarkCommand(app, invocation),
+                              referenceCommand(app),
+                              replayCommand(app, invocation),
+                              reportCommand(app),
+                              keysCommand(app)};
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);
+        fmt::print(stderr, "photonav: {} (see photonav --help)\n", complaint(app, error));
+        return kBadInput;
+    }
+    for (const Command& command : commands) {
+        if (command.parser->parsed()) return command.run();
+    }
+    return kBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::signal(SIGINT, onInterrupt);
+    ompl::msg::noOutputHandler();
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "photonav: {}\n", error.what());
+        return kBadInput;
+    }
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/map_config.hpp"
+
+#include "dataset/recording_config.hpp"
+#include "geometry/constants.hpp"
+
+namespace photonav {
+namespace {
+
+bool hasKey(const std::string& file, const char* key) {
+    const YAML::Node node = loadYaml(file);
+    return node.IsMap() && node[key].IsDefined();
+}
+
+void addResolution(KeyTable& keys, double& resolution) {
+    keys.number({"resolution", "m", "edge of a cell"}, resolution, {1e-6, kInfinity});
+}
+
+}  // namespace
+
+KeyTable keysOf(MapOptions& options) {
+    KeyTable keys;
+    addKeys(keys, static_cast<RecordingOptions&>(options));
+    keys.text({"depth", "",
+               "`recorded` (also from two cameras), or `monocular`: from the images "
+               "of one camera and their poses"},
+              options.depth);
+    addResolution(keys, options.resolution);
+    keys.add({.words = {"min_range", "m", "nearest depth entered; monocular: 0.5"},
+              .allowed = ">= 0",
+              .read =
+                  [&options](YamlMap& map) {
+                      double& range = options.fusion.minRange;
+                      range = defaultMinRange(options.depth);
+                      map.readNumber("min_range", range, 0., kInfinity);
+                  },
+              .value = [&options] { return yamlNumber(options.fusion.minRange); }});
+    keys.number({"max_range", "m", "farthest surface entered"}, options.fusion.maxRange,
+                {0., kInfinity});
+    return keys;
+}
+
+KeyTable keysOf(ScanMapOptions& options) {
+    KeyTable keys;
+    keys.requiredFile({"scans", "", "point cloud (.ply), or a folder with one per station"},
+                      options.scans);
+    addResolution(keys, options.resolution);
+    keys.number({"max_range", "m", "farthest point entered"}, options.maxRange, {0., kInfinity});
+    keys.add({.words = {"scanner", "m", "position of the scanner, where the file does not have it"},
+              .allowed = "`[x, y, z]`",
+              .read =
+                  [&options](YamlMap& map) {
+                      if (map.has("scanner")) {
+                          map.readVector("scanner", options.scanner.emplace());
+                      }
+                  },
+              .value =
+                  [&options] {
+                      if (!options.scanner) return YAML::Node();
+                      const Eigen::Vector3d& p = *options.scanner;
+                      return yamlList(std::vector<double>(p.data(), p.data() + 3));
+                  }});
+    return keys;
+}
+
+std::string toYaml(const MapOptions& options, const Recording& recording) {
+    MapOptions found = options;
+    found.up = upText(recording.up);
+    found.stereo = recording.stereo;
+    if (recording.sequence.hasDepth()) found.depthScale = recording.sequence.depthScale;
+    return keysOf(found).toYaml();
+}
+
+std::string toYaml(const ScanMapOptions& options) {
+    ScanMapOptions copy = options;
+    return keysOf(copy).toYaml();
+}
+
+bool isMapConfig(const std::string& file) { return hasKey(file, "dataset"); }
+
+bool isScanConfig(const std::string& file) { return hasKey(file, "scans"); }
+
+void readMapConfig(const std::string& file, MapOptions& options) { keysOf(options).read(file); }
+
+void readScanConfig(const std::string& file, ScanMapOptions& options) {
+    keysOf(options).read(file);
+}
+
+}  // namespace photonav

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/plan_command.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "commands/plan_progress.hpp"
+#include "commands/result_folder.hpp"
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
+#include "io/stopwatch.hpp"
+#include "problem/planning_problem.hpp"
+#include "problem/tree_evolution.hpp"
+#include "report/plan_report.hpp"
+
+namespace photonav {
+namespace {
+
+void printSummary(const PlanOutcome& outcome, const std::optional<JudgedPath>& baseline, bool audit,
+                  const std::filesystem::path& folder, double seconds) {
+    const auto row = [](const JudgedPath& path) {
+        fmt::print("{:<16} {:>8.2f} m {:>12.3g} {:>12.3g} {:>10.4g}\n", path.planner, path.length,
+                   path.meanTrace, path.goalTrace, path.cost);
+    };
+    if (!outcome.path) fmt::print("no path found with {} vertices\n", outcome.vertices);
+    if (outcome.path || baseline) {
+        fmt::print("{:<16} {:>10} {:>12} {:>12} {:>10}\n", "planner", "length", "mean trace",
+                   "goal trace", "cost");
+    }
+    if (outcome.path) row(*outcome.path);
+    if (baseline) row(*baseline);
+    if (audit) {
+        fmt::print("audit: {} beliefs replayed, cost error {:.1e}, covariance error {:.1e}\n",
+                   outcome.audit.nodes, outcome.audit.maxCostError,
+                   outcome.audit.maxCovarianceError);
+    }
+    fmt::print("{} vertices, {} views, {:.2f} s\n", outcome.vertices, outcome.views, seconds);
+    fmt::print("report: {}\n", (folder / "report.html").string());
+}
+
+/// Recorded images near the path; a recording that cannot be read is a warning, not an error.
+std::optional<RecordedComparison> compareWithImages(const Config& config, const World& world,
+                                                    const PlanOutcome& outcome) {
+    if (!outcome.path || !world.hasTexture()) return {};
+    try {
+        return compareWithRecording(config, world, *outcome.path);
+    } catch (const InputError& error) {
+        fmt::print(stderr, "photonav: warning: recorded frames not compared: {}\n", error.what());
+        return {};
+    }
+}
+
+/// At every 1, 2 and 5 times a power of ten, up to the number of vertices.
+std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, PlanningProblem& run,
+                                    std::size_t vertices, const std::atomic<bool>& interrupted) {
+    std::vector<std::size_t> stages;
+    for (std::size_t ten = 10; ten < vertices; ten *= 10) {
+        for (const std::size_t k : {1, 2, 5}) {
+            if (k * ten < vertices) stages.push_back(k * ten);
+        }
+    }
+    stages.push_back(vertices);
+    std::vector<TreeEvolution> evolutions;
+    evolutions.reserve(planners.size());
+    for (const std::string& planner : planners) {
+        evolutions.push_back(growInStages(run, planner, stages, interrupted));
+    }
+    return evolutions;
+}
+
+}  // namespace
+
+int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
+    const Stopwatch watch;
+    const Config config = loadConfig(options.config, options.overrides);
+    const World world(config);
+    PlanningProblem run(config, world);
+    run.checkPlaces();
+    const auto folder = resultFolder(options, "plan", {config.sceneFile, config.mapFile});
+    if (!world.hasTexture()) {
+        fmt::print(stderr,
+                   "photonav: warning: {}: no cell of the map has a grey value; planning without "
+                   "views\n",
+                   config.mapFile);
+    }
+
+    PlanOutcome outcome;
+    std::optional<JudgedPath> baseline;
+    {
+        ProgressLine line(options.quiet);
+        RemainingGrowth growth(config.vertices);
+        outcome = run.solve(config.planner, interrupted, [&](const PlanProgress& progress) {
+            growth.add(progress);
+            line.show(progressText(progress, config.vertices, growth));
+        });
+        if (config.compareWithRrtStar && config.planner != "rrt_star" && !interrupted) {
+            line.show("RRT* for comparison");
+            baseline = run.solve("rrt_star", interrupted).path;
+        }
+    }
+    std::vector<TreeEvolution> evolutions;
+    if (options.evolution)
+        evolutions = growthOf({"rrt_star", config.planner}, run, config.vertices, interrupted);
+    const bool stopped = interrupted;
+    nlohmann::json result = planResult(config, outcome, baseline, stopped);
+    const auto recorded = compareWithImages(config, world, outcome);
+    if (recorded) result["recorded_frames"] = toJson(*recorded);
+    result["time"]["total_s"] = watch.seconds();
+    writePlanReport(folder, config, world, run, outcome, baseline, recorded, evolutions,
+                    options.commandLine, result);
+    result["time"]["total_s"] = watch.seconds();
+    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+
+    if (options.json)
+        fmt::print("{}\n", result.dump(2));
+    else if (!options.quiet)
+        printSummary(outcome, baseline, options.audit, folder, watch.seconds());
+    if (stopped) return kInterrupted;
+    return outcome.path ? kDone : kNoAnswer;
+}
+
+}  // namespace photonav

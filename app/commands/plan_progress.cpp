@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/plan_progress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace photonav {
+
+std::optional<double> RemainingGrowth::seconds() const {
+    if (history_.empty()) return {};
+    const PlanProgress& now = history_.back();
+    const auto count = static_cast<double>(now.vertices);
+    if (count >= vertices_) return {};
+    const auto half = std::ranges::find_if(
+        history_, [&](const PlanProgress& p) { return 2 * p.vertices >= now.vertices; });
+    double power = 1.;
+    if (half->vertices < now.vertices && half->seconds > 0.) {
+        power = std::log(now.seconds / half->seconds) /
+                std::log(count / static_cast<double>(half->vertices));
+    }
+    constexpr double kSteepest = 3.;
+    return now.seconds * (std::pow(vertices_ / count, std::clamp(power, 1., kSteepest)) - 1.);
+}
+
+std::string progressText(const PlanProgress& progress, unsigned vertices,
+                         const RemainingGrowth& growth) {
+    const std::string cost = std::isfinite(progress.cost)
+                                 ? fmt::format("best cost {:.3f}", progress.cost)
+                                 : "no path yet";
+    const auto rest = growth.seconds();
+    return fmt::format(
+        "{} of {} vertices, {}, {} views, {}", progress.vertices, vertices, cost, progress.views,
+        rest ? fmt::format("about {:.0f} s to the last search", *rest)
+             : fmt::format("last search and descent, {:.0f} s so far", progress.seconds));
+}
+
+}  // namespace photonav

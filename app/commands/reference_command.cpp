@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/reference_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "commands/command_io.hpp"
+#include "commands/result_folder.hpp"
+#include "problem/planning_problem.hpp"
+#include "sweep/reference_table.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+namespace {
+
+Config loadReferenceConfig(const ReferenceOptions& options) {
+    std::vector<std::string> overrides = options.overrides;
+    if (options.alphas) {
+        overrides.push_back(
+            fmt::format("sweep.alphas=[{}]", fmt::join(parseAlphas(*options.alphas), ", ")));
+    }
+    if (options.planners) overrides.push_back("sweep.planners=[" + *options.planners + "]");
+    overrides.push_back(fmt::format("planner.vertices={}", options.vertices));
+    overrides.push_back(fmt::format("planner.labels={}", options.labels));
+    Config config = loadConfig(options.config, overrides);
+    config.planner = "belief_rrt_star";  // whose cost is the one with the config's alpha
+    return config;
+}
+
+std::vector<Pose> waypointsOf(const JudgedPath& path) {
+    std::vector<Pose> waypoints;
+    for (const BeliefPoint& point : path.points) {
+        if (point.isWaypoint) waypoints.push_back(point.T_w_b);
+    }
+    return waypoints;
+}
+
+/// All that is done for one alpha.
+class Search {
+  public:
+    Search(const ReferenceOptions& options, Config config, const World& world,
+           ReferenceTable& table, const std::atomic<bool>& interrupted)
+        : options_(options),
+          config_(std::move(config)),
+          run_(config_, world),
+          table_(table),
+          interrupted_(interrupted) {
+        run_.checkPlaces();
+    }
+
+    /// The path known so far may be of another problem, or not at its best yet.
+    void refresh() {
+        const ReferencePath* known = table_.at(config_.belief.alpha);
+        if (known == nullptr) return;
+        const ReferencePath path = *known;
+        table_.drop(path.alpha);
+        descend(path.waypoints, path);
+    }
+
+    void plan(const std::string& planner, std::uint32_t seed) {
+        config_.seed = seed;
+        const PlanOutcome outcome = run_.solve(planner, interrupted_, [](const auto&) {});
+        if (!outcome.path) return;
+        descend(waypointsOf(*outcome.path), {.alpha = config_.belief.alpha,
+                                             .planner = planner,
+                                             .vertices = config_.vertices,
+                                             .labels = config_.search.labels,
+                                             .seed = seed});
+    }
+
+  private:
+    void descend(const std::vector<Pose>& waypoints, ReferencePath path) {
+        const DescentOptions descent{.moves = options_.moves, .seed = config_.seed};
+        const auto judged = run_.descend(waypoints, descent, interrupted_);
+        if (!judged) return;
+        path.cost = judged->cost;
+        path.length = judged->length;
+        path.meanTrace = judged->meanTrace;
+        path.goalTrace = judged->goalTrace;
+        path.waypoints = waypointsOf(*judged);
+        table_.offer(path);
+    }
+
+    const ReferenceOptions& options_;
+    Config config_;
+    PlanningProblem run_;
+    ReferenceTable& table_;
+    const std::atomic<bool>& interrupted_;
+};
+
+std::string budgetOf(const ReferenceOptions& options, const Config& config) {
+    return fmt::format(
+        "alpha {}: {}, seeds {} to {}, {} vertices, {} labels, {} changes per descent",
+        fmt::join(config.sweep.alphas, " "), fmt::join(config.sweep.planners, " "), config.seed,
+        config.seed + options.runs - 1, config.vertices, config.search.labels, options.moves);
+}
+
+void print(const ReferenceTable& table) {
+    fmt::print("{:>6} {:>10} {:>9} {:>11} {:>11}  {}\n", "alpha", "cost", "length", "mean trace",
+               "goal trace", "from");
+    for (const double alpha : table.alphas()) {
+        const ReferencePath& row = *table.at(alpha);
+        fmt::print("{:>6} {:>10.6g} {:>7.2f} m {:>11.3g} {:>11.3g}  {}, {} vertices, seed {}\n",
+                   row.alpha, row.cost, row.length, row.meanTrace, row.goalTrace, row.planner,
+                   row.vertices, row.seed);
+    }
+}
+
+}  // namespace
+
+int runReference(const ReferenceOptions& options, const std::atomic<bool>& interrupted) {
+    const Config config = loadReferenceConfig(options);
+    const World world(config);
+    const fs::path source(options.config);
+    const fs::path file = options.file.empty() ? source.parent_path() / "reference" /
+                                                     (source.stem().string() + ".csv")
+                                               : fs::path(options.file);
+    ReferenceTable table(file);
+    if (!options.fromScratch) table.read();
+    prepareFolder(fs::absolute(file).parent_path());
+
+    ProgressLine line(options.quiet);
+    bool isComplete = true;
+    for (const double alpha : config.sweep.alphas) {
+        Config own = config;
+        own.belief.alpha = alpha;
+        Search search(options, own, world, table, interrupted);
+        if (!options.fromScratch) {
+            search.refresh();
+            table.write();
+        }
+        for (std::uint32_t run = 0; run < options.runs && !interrupted; ++run) {
+            for (const std::string& planner : config.sweep.planners) {
+                line.show(fmt::format("alpha {}: {}, run {} of {}", alpha, planner, run + 1,
+                                      options.runs));
+                search.plan(planner, config.seed + run);
+                table.write();
+            }
+        }
+        isComplete = isComplete && table.at(alpha) != nullptr;
+    }
+    line.clear();
+    if (!interrupted && options.runs > 0) {
+        table.addNote(budgetOf(options, config));
+        table.write();
+    }
+    if (!options.quiet) print(table);
+    if (interrupted) return kInterrupted;
+    return isComplete ? kDone : kNoAnswer;
+}
+
+}  // namespace photonav

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/replay_config.hpp"
+
+#include "dataset/recording_config.hpp"
+#include "geometry/constants.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr Range kPositive{1e-12, kInfinity};
+constexpr Range kNotNegative{0., kInfinity};
+
+}  // namespace
+
+KeyTable keysOf(ReplayOptions& o) {
+    KeyTable keys;
+    addKeys(keys, static_cast<RecordingOptions&>(o));
+    keys.file({"map", "", "textured octree (.ot), mesh or scene file to localise in"}, o.mapFile);
+    keys.flag({"odometry", "", "from image to image, without a map"}, o.odometry);
+    keys.text({"start", "m", "\"x,y,z,qx,qy,qz,qw\": camera pose of the first frame"}, o.start);
+    keys.number({"start_sigma", "m, rad", "its standard deviation, in a map"}, o.startSigma,
+                kPositive);
+    keys.number({"sigma", "grey value", "standard deviation of the image noise"}, o.sigma,
+                kPositive);
+    keys.number({"scale", "", "factor on the information of an image"}, o.scale, kPositive);
+    keys.number({"sigma_floor", "m", "least standard deviation of an aligned position"},
+                o.floorTranslation, kNotNegative);
+    keys.number({"sigma_floor_rotation", "rad", "the same of an aligned rotation"}, o.floorRotation,
+                kNotNegative);
+    keys.number({"min_overlap", "", "least share of an image that the model must cover"},
+                o.minOverlap, {1e-12, 1. - 1e-12});
+    keys.count({"max_width", "pixels", "images are halved until they are at most as wide"},
+               o.maxWidth, {1. * kLeastWidth, 1e6});
+    keys.flag({"exposure", "", "estimate gain and offset of every image"}, o.exposure);
+    keys.flag({"calibrate", "", "also fit factor and floor to the errors"}, o.calibrate);
+    return keys;
+}
+
+std::string toYaml(const ReplayOptions& options, const ReplaySource& source,
+                   const ReplayTracker& tracker) {
+    ReplayOptions used = options;
+    used.stereo = source.stereo;
+    used.startSigma = used.startSigma.value_or(kStartSigma);
+    if (used.odometry) used.startSigma.reset();
+    used.scale = tracker.scale;
+    used.floorTranslation = tracker.trust.floorTranslation;
+    used.floorRotation = tracker.trust.floorRotation;
+    return keysOf(used).toYaml();
+}
+
+void readReplayConfig(const std::string& file, ReplayOptions& options) {
+    keysOf(options).read(file);
+}
+
+}  // namespace photonav

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/sweep_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <memory>
+
+#include "commands/result_folder.hpp"
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
+#include "io/stopwatch.hpp"
+#include "problem/planning_problem.hpp"
+#include "report/sweep_report.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+namespace {
+
+/// The config with the command line's wishes. Lists are what `--set` would take.
+Config loadSweepConfig(const SweepOptions& options, const std::string& file) {
+    std::vector<std::string> overrides = options.overrides;
+    if (options.alphas) {
+        overrides.push_back(
+            fmt::format("sweep.alphas=[{}]", fmt::join(parseAlphas(*options.alphas), ", ")));
+    }
+    if (options.planners) overrides.push_back("sweep.planners=[" + *options.planners + "]");
+    if (options.runs) overrides.push_back(fmt::format("sweep.runs={}", *options.runs));
+    if (options.seed) overrides.push_back("seed=" + *options.seed);
+    Config config = loadConfig(file, overrides);
+    checkSeeds(config, config.sweep.runs);
+    return config;
+}
+
+std::string nameOf(const std::string& file) { return fs::path(file).stem().string(); }
+
+/// Remaining time from what each planner's runs took so far.
+class RemainingTime {
+  public:
+    explicit RemainingTime(const std::vector<SweepItem>& open) {
+        for (const SweepItem& item : open) ++open_[item.planner];
+    }
+
+    void count(const SweepRun& run, double wallSeconds) {
+        --open_[run.item.planner];
+        auto& [seconds, runs] = taken_[run.item.planner];
+        seconds += run.seconds;
+        runs += 1.;
+        planned_ += run.seconds;
+        wall_ = wallSeconds;
+    }
+
+    /// Planning time that is left, times what the clock showed per second of planning.
+    double seconds() const {
+        double rest = 0.;
+        for (const auto& [planner, runs] : open_) {
+            const auto known = taken_.find(planner);
+            const auto& [seconds, count] = known != taken_.end() ? known->second : all();
+            rest += runs * seconds / std::max(count, 1.);
+        }
+        return planned_ > 0. ? rest * wall_ / planned_ : 0.;
+    }
+
+  private:
+    std::pair<double, double> all() const {
+        std::pair<double, double> sum{0., 0.};
+        for (const auto& entry : taken_) {
+            sum.first += entry.second.first;
+            sum.second += entry.second.second;
+        }
+        return sum;
+    }
+
+    std::map<std::string, double> open_;                      // runs
+    std::map<std::string, std::pair<double, double>> taken_;  // seconds, runs
+    double planned_ = 0., wall_ = 0.;
+};
+
+std::string durationText(double seconds) {
+    const auto total = std::lround(seconds);
+    if (total < 120) return fmt::format("{} s", total);
+    if (total < 7200) return fmt::format("{} min", (total + 30) / 60);
+    return fmt::format("{:.1f} h", static_cast<double>(total) / 3600.);
+}
+
+void sortRuns(std::vector<SweepRun>& runs, const std::vector<SweepItem>& items) {
+    std::map<SweepItem, std::size_t> order;
+    for (const SweepItem& item : items) order.emplace(item, order.size());
+    std::sort(runs.begin(), runs.end(), [&](const SweepRun& a, const SweepRun& b) {
+        return order.at(a.item) < order.at(b.item);
+    });
+}
+
+/// The last step of every sweep: sort, report, print.
+int conclude(const SweepOptions& options, const Config& config, const World& world,
+             const fs::path& folder, SweepOutcome outcome, const ReferenceCosts& reference,
+             const Stopwatch& watch) {
+    sortRuns(outcome.runs, sweepItems(config));
+    outcome.commandLine = options.commandLine;
+    outcome.seconds = watch.seconds();
+    const nlohmann::json result = sweepResult(config, outcome, reference);
+    writeSweepReport(folder, config, world, outcome, reference, result);
+    if (options.json) {
+        fmt::print("{}\n", result.dump(2));
+    } else if (!options.quiet) {
+        fmt::print("{}\n",
+                   sweepTable(config.sweep, summarize(config.sweep, outcome.runs, reference)));
+        std::map<std::string, int> failures;
+        for (const SweepRun& run : outcome.runs) {
+            if (!run.isSolved()) ++failures[run.item.planner + ": " + run.status];
+        }
+        for (const auto& [reason, runs] : failures) fmt::print("{} ({} runs)\n", reason, runs);
+        fmt::print("{} of {} runs, {}\nreport: {}\n", outcome.runs.size(), outcome.asked,
+                   durationText(outcome.seconds), (folder / "report.html").string());
+    }
+    if (outcome.interrupted) return kInterrupted;
+    return result["status"] == "done" ? kDone : kNoAnswer;
+}
+
+ReferenceCosts referenceOf(const Config& config) {
+    if (config.sweep.reference.empty()) return {};
+    try {
+        return ReferenceCosts(config.sweep.reference);
+    } catch (const InputError& error) {
+        throw InputError(config.file, "sweep.reference", error.what());
+    }
+}
+
+/// The folder's runs so far, or a new file where there are none. Which runs are wanted may have
+/// changed, what they depend on may not.
+SweepJournal openJournal(const SweepOptions& options, const fs::path& folder,
+                         const SweepHeader& header) {
+    if (!options.resume || !fs::exists(folder / SweepJournal::kFileName)) {
+        return SweepJournal::create(folder, header);
+    }
+    SweepJournal journal = SweepJournal::read(folder);
+    const std::string file = journal.file().string();
+    const std::string changed =
+        difference(runIdentity(header.identity), runIdentity(journal.header().identity));
+    if (!changed.empty()) {
+        throw InputError("--resume", file, "the sweep was begun with another config: " + changed);
+    }
+    if (!(journal.header().shard == header.shard)) {
+        throw InputError("--resume", file,
+                         fmt::format("holds shard {}, not {}", toString(journal.header().shard),
+                                     toString(header.shard)));
+    }
+    if (journal.header().config != header.config) journal.replaceHeader(header);
+    return journal;
+}
+
+fs::path sweepFolder(const SweepOptions& options, const std::string& name,
+                     const SweepShard& shard) {
+    fs::path folder = options.out;
+    if (folder.empty()) {
+        folder = fs::path("out") / ("sweep-" + name);
+        if (shard.count > 1) folder += fmt::format("-{}of{}", shard.index, shard.count);
+    }
+    return folder;
+}
+
+/// The folder, prepared; one that is resumed is known by its journal.
+void claimSweepFolder(const SweepOptions& options, const Config& config, const fs::path& folder) {
+    if (options.resume && fs::exists(folder / SweepJournal::kFileName)) return;
+    InputPaths inputs{config.sceneFile, config.mapFile, config.sweep.reference, options.config};
+    inputs.insert(inputs.end(), options.merge.begin(), options.merge.end());
+    claimFolder(folder, inputs);
+}
+
+/// Results of an earlier sweep; the runs are the journal's.
+void removeOldResults(const fs::path& folder) {
+    for (const char* stale : {"result.json", "runs.csv", "summary.csv", "report.html"}) {
+        fs::remove(folder / stale);
+    }
+}
+
+int runAll(const SweepOptions& options, const std::atomic<bool>& interrupted) {
+    const Stopwatch watch;
+    const Config config = loadSweepConfig(options, options.config);
+    const ReferenceCosts reference = referenceOf(config);
+    const SweepShard shard = options.shard ? parseShard(*options.shard) : SweepShard{};
+    const World world(config);
+    PlanningProblem(config, world).checkPlaces();
+    const std::string name = nameOf(options.config);
+    const fs::path folder = sweepFolder(options, name, shard);
+    claimSweepFolder(options, config, folder);
+    const auto items = itemsOf(shard, sweepItems(config));
+    SweepJournal journal =
+        openJournal(options, folder, {name, toYaml(config), sweepIdentity(config), shard});
+    removeOldResults(folder);
+
+    const auto open = journal.missing(items);
+    {
+        ProgressLine line(options.quiet);
+        RemainingTime rest(open);
+        const Stopwatch running;
+        std::size_t done = items.size() - open.size();
+        line.show(fmt::format("{} of {} runs", done, items.size()));
+        runItems(config, world, open, options.jobs, interrupted, [&](const SweepRun& run) {
+            journal.append(run);
+            rest.count(run, running.seconds());
+            line.show(fmt::format("{} of {} runs, {} alpha {} seed {} done, about {} left", ++done,
+                                  items.size(), run.item.planner, run.item.alpha, run.item.seed,
+                                  durationText(rest.seconds())));
+        });
+    }
+    const bool stopped = interrupted && !journal.missing(items).empty();
+    return conclude(options, config, world, folder,
+                    {name, "", shard, journal.runsOf(items), items.size(), stopped, 0.}, reference,
+                    watch);
+}
+
+/// Shards that make one sweep.
+/// @throws InputError naming the folder that does not fit
+std::vector<SweepJournal> readShards(const std::vector<std::string>& folders) {
+    std::vector<SweepJournal> shards;
+    std::map<unsigned, std::string> folderOf;
+    for (const std::string& folder : folders) {
+        SweepJournal& journal = shards.emplace_back(SweepJournal::read(folder));
+        const SweepHeader& first = shards.front().header();
+        const SweepHeader& header = journal.header();
+        const std::string changed = difference(header.identity, first.identity);
+        if (!changed.empty()) {
+            throw InputError("--merge", folder, changed + ", as in " + folders.front());
+        }
+        if (header.shard.count != first.shard.count) {
+            throw InputError("--merge", folder,
+                             fmt::format("is shard {}, {} is shard {}", toString(header.shard),
+                                         folders.front(), toString(first.shard)));
+        }
+        const auto [known, isNew] = folderOf.emplace(header.shard.index, folder);
+        if (!isNew) {
+            throw InputError(
+                "--merge", folder,
+                fmt::format("is shard {}, as is {}", toString(header.shard), known->second));
+        }
+    }
+    const unsigned count = shards.front().header().shard.count;
+    for (unsigned k = 1; k <= count; ++k) {
+        if (folderOf.contains(k)) continue;
+        throw InputError("--merge", fmt::format("shard {}/{}", k, count), "missing");
+    }
+    return shards;
+}
+
+/// The config that the shards keep. Nothing is written to the result's folder yet.
+Config keptConfig(const SweepOptions& options, const SweepJournal& shard) {
+    const fs::path copy =
+        fs::temp_directory_path() / fmt::format("photonav_merge_{}.yaml", getpid());
+    writeFileAtomically(copy, shard.header().config);
+    const std::unique_ptr<const fs::path, void (*)(const fs::path*)> removed(
+        &copy, [](const fs::path* file) { fs::remove(*file); });
+    Config config = loadSweepConfig(options, copy.string());
+    config.file = shard.file().string();
+    return config;
+}
+
+/// The config of the shards: the one given, which must be theirs, or the one they keep.
+Config configOfShards(const SweepOptions& options, const SweepJournal& shard) {
+    const Config config = options.config.empty() ? keptConfig(options, shard)
+                                                 : loadSweepConfig(options, options.config);
+    const std::string changed = difference(shard.header().identity, sweepIdentity(config));
+    if (changed.empty()) return config;
+    throw InputError("--merge", options.merge.front(), changed + ", as in " + config.file);
+}
+
+/// @throws InputError naming the first folder with runs to do
+void checkComplete(const SweepOptions& options, const std::vector<SweepJournal>& shards,
+                   const std::vector<SweepItem>& items) {
+    for (std::size_t i = 0; i < shards.size(); ++i) {
+        const auto open = shards[i].missing(itemsOf(shards[i].header().shard, items));
+        if (open.empty()) continue;
+        throw InputError("--merge", options.merge[i],
+                         fmt::format("{} runs are missing; finish it with --resume", open.size()));
+    }
+}
+
+/// All runs of the shards as one sweep's.
+SweepJournal gather(const std::vector<SweepJournal>& shards, const std::vector<SweepItem>& items,
+                    const fs::path& folder) {
+    SweepHeader header = shards.front().header();
+    header.shard = {};
+    SweepJournal whole = SweepJournal::create(folder, header);
+    for (const SweepJournal& shard : shards) {
+        for (const SweepRun& run : shard.runsOf(items)) whole.append(run);
+    }
+    return whole;
+}
+
+int mergeShards(const SweepOptions& options) {
+    const Stopwatch watch;
+    const auto shards = readShards(options.merge);
+    const std::string name = shards.front().header().name;
+    const fs::path folder = sweepFolder(options, name, {});
+    for (const std::string& shard : options.merge) {
+        std::error_code noFolder;  // none yet: no shard's
+        if (fs::equivalent(shard, folder, noFolder)) {
+            throw InputError("--merge", shard, "the result needs another folder (--out)");
+        }
+    }
+    const Config config = configOfShards(options, shards.front());
+    const ReferenceCosts reference = referenceOf(config);
+    const World world(config);
+    const auto items = sweepItems(config);
+    checkComplete(options, shards, items);
+    claimSweepFolder(
+        options, config,
+        folder);  // an earlier result there stays until nothing can be refused any more
+    removeOldResults(folder);
+    const SweepJournal whole = gather(shards, items, folder);
+    return conclude(options, config, world, folder,
+                    {name, "", {}, whole.runs(), items.size(), false, 0.}, reference, watch);
+}
+
+}  // namespace
+
+int runSweep(const SweepOptions& options, const std::atomic<bool>& interrupted) {
+    if (!options.merge.empty()) {
+        if (options.shard || options.resume) {
+            throw InputError("--merge", "", "goes without --shard and --resume");
+        }
+        return mergeShards(options);
+    }
+    if (options.config.empty()) {
+        throw InputError("sweep", "", "give a CONFIG, or --merge with the folders of its shards");
+    }
+    return runAll(options, interrupted);
+}
+
+}  // namespace photonav

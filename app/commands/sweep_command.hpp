@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `photonav sweep`: many planners, trade-offs and seeds, as one table.
+#pragma once
+
+#include <atomic>
+#include <optional>
+
+#include "commands/command_io.hpp"
+
+namespace photonav {
+
+struct SweepOptions : CommandOptions {
+    std::optional<std::string> alphas;    ///< "first:last:step" or "a,b,c", instead of the config's
+    std::optional<std::string> planners;  ///< "a,b,c", instead of the config's
+    std::optional<unsigned> runs;         ///< seeds, instead of the config's
+    std::optional<std::string> seed;      ///< the first one, instead of the config's
+    unsigned jobs = 1;                    ///< threads
+    std::optional<std::string> shard;     ///< "k/n"
+    std::vector<std::string> merge;       ///< folders of shards: no runs, only the table
+    bool resume = false;                  ///< go on with what the result folder holds, or extend it
+};
+
+/// Runs all combinations and writes runs.jsonl, runs.csv, summary.csv, sweep.png, pareto.png,
+/// paths.png, config.yaml, report.json, report.html and result.json.
+/// @param interrupted when set, the runs in progress are dropped and the rest is reported (130)
+/// @return the exit code; 1 when no run found a path
+/// @throws InputError for bad input, before anything is written
+int runSweep(const SweepOptions& options, const std::atomic<bool>& interrupted);
+
+}  // namespace photonav

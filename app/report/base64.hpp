@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Base64 (RFC 4648, with padding): binary arrays and pictures inside JSON.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace photonav {
+
+std::string base64Encode(std::string_view bytes);
+
+}  // namespace photonav

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The results of flights: numbers, figures, page.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "flight/flight_set.hpp"
+
+namespace photonav {
+
+/// result.json of `photonav fly`; seconds are the caller's to fill.
+nlohmann::json flyResult(const Config& config, const std::vector<FlightSet>& sets,
+                         const FlightOptions& options, bool interrupted);
+
+/// Writes config.yaml, the first flight's trajectory files, errors.png, nees.png, top_view.png,
+/// report.json and report.html.
+void writeFlyReport(const std::filesystem::path& folder, const Config& config, const World& world,
+                    const std::vector<FlightSet>& sets, const std::string& commandLine,
+                    const nlohmann::json& result);
+
+}  // namespace photonav

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/map_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "commands/command_io.hpp"
+#include "commands/map_config.hpp"
+#include "figures/perspective.hpp"
+#include "render/voxel_renderer.hpp"
+#include "result/json_values.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr Color kCameraColor{222, 79, 12};
+
+/// Of the values that are numbers.
+json meansOf(const json& compared) {
+    json means = json::object();
+    std::map<std::string, double> counts;
+    for (const auto& frame : compared) {
+        for (const auto& [key, value] : frame.items()) {
+            if (key != "timestamp" && value.is_number()) ++counts[key];
+        }
+    }
+    for (const auto& frame : compared) {
+        for (const auto& [key, count] : counts) {
+            if (frame[key].is_number()) {
+                means[key] = means.value(key, 0.) + frame[key].get<double>() / count;
+            }
+        }
+    }
+    return means;
+}
+
+json vectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+json datasetJson(const MapOptions& options, const Recording& recording) {
+    const Sequence& sequence = recording.sequence;
+    json camera = cameraJson(sequence.camera);
+    camera["assumed"] = sequence.cameraAssumed;
+    camera["depth_registered_here"] = sequence.depthIntrinsics.has_value();
+    const Eigen::Matrix3d R = worldUpRotation(recording.up);
+    return {{"folder", fs::absolute(options.dataset).lexically_normal().string()},
+            {"layout", recording.layout},
+            {"stereo", recording.stereo.empty() ? json(nullptr) : json(recording.stereo)},
+            {"note", recording.note},
+            {"camera", camera},
+            {"depth_scale", sequence.hasDepth() ? json(sequence.depthScale) : json(nullptr)},
+            {"up", options.up},
+            {"up_direction", vectorJson(recording.up)},
+            {"tilt_degrees", tiltDegrees(recording.up)},
+            {"map_from_recorded_rotation",
+             {vectorJson(R.row(0)), vectorJson(R.row(1)), vectorJson(R.row(2))}}};
+}
+
+json framesJson(const MapOptions& options, const Recording& recording, const MapRun& run) {
+    json skipped = json::array();
+    for (const auto& list : {recording.sequence.skipped, run.black}) {
+        for (const auto& [file, reason] : list) {
+            skipped.push_back({{"file", file}, {"reason", reason}});
+        }
+    }
+    return {{"recorded", recording.sequence.recorded},
+            {"used", run.frames - run.black.size()},
+            {"black", run.black.size()},
+            {"every", options.every},
+            {"range", options.frames},
+            {"skipped", skipped}};
+}
+
+using TableRows = std::vector<std::pair<std::string, std::string>>;
+
+/// Statistics of the depth from one camera; none when depth was recorded.
+TableRows depthRows(const json& mono) {
+    if (!mono.is_object()) return {};
+    const auto percent = [&](const char* key) {
+        return fmt::format("{:.1f} %", 100. * mono[key].get<double>());
+    };
+    TableRows rows{{"reference images with depth from the images",
+                    fmt::format("{}, and {} given up", mono["references"].get<int>(),
+                                mono["references_given_up"].get<int>())}};
+    if (mono["converged"].is_number()) {
+        rows.emplace_back("pixels converged, given up, still open",
+                          fmt::format("{}, {}, {}", percent("converged"), percent("given_up"),
+                                      percent("searching")));
+    }
+    if (mono["completeness"].is_number()) {
+        rows.emplace_back("completeness, of the recorded pixels", percent("completeness"));
+    }
+    if (mono["median_relative_error"].is_number()) {
+        rows.emplace_back(
+            "relative error of depth, median, p90",
+            fmt::format("{}, {}", percent("median_relative_error"), percent("p90_relative_error")));
+    }
+    return rows;
+}
+
+const char* whyEmpty(const json& result) {
+    const std::size_t used = result["frames"]["used"];
+    if (used == 0 && result["frames"]["black"] > 0) return "all images are black";
+    if (result["depth"] == "monocular") {
+        return used == 1 ? "depth is measured from image to image, and there is only one"
+                         : "the camera moves too little to measure depth, or there is no texture";
+    }
+    return "no surface was found";
+}
+
+DrawnPath cameraPath(const Trajectory& trajectory) {
+    DrawnPath path{"camera", kCameraColor};
+    for (const auto& stamped : trajectory)
+        append(path, {.position = stamped.T_w_c.translation(), .T_w_c = stamped.T_w_c});
+    return path;
+}
+
+}  // namespace
+
+nlohmann::json mapResult(const MapOptions& options, const Recording& recording, const MapRun& run) {
+    return {{"schema", 1},
+            {"command", "map"},
+            {"version", PHOTONAV_VERSION},
+            {"interrupted", run.interrupted},
+            {"dataset", datasetJson(options, recording)},
+            {"frames", framesJson(options, recording, run)},
+            {"depth", options.depth},
+            {"monocular", run.monocular},
+            {"resolution", options.resolution},
+            {"min_range", options.fusion.minRange},
+            {"max_range", options.fusion.maxRange},
+            {"comparison", {{"mean", meansOf(run.compared)}, {"frames", run.compared}}}};
+}
+
+json voxelsJson(const TexturedOcTree& map) {
+    std::size_t free = 0;
+    std::size_t occupied = 0;
+    Eigen::AlignedBox3d box;
+    for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+        const std::size_t cells = std::size_t(1) << (3 * (map.getTreeDepth() - leaf.getDepth()));
+        if (!map.isNodeOccupied(*leaf)) {
+            free += cells;
+            continue;
+        }
+        occupied += cells;
+        const Eigen::Vector3d center(leaf.getX(), leaf.getY(), leaf.getZ());
+        const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * leaf.getSize());
+        box.extend(center - half);
+        box.extend(center + half);
+    }
+    json result = {{"occupied", occupied}, {"free", free}};
+    if (!box.isEmpty()) result["bounds"] = {vectorJson(box.min()), vectorJson(box.max())};
+    return result;
+}
+
+NamedFigure overview(const TexturedOcTree& map, const std::string& title) {
+    Eigen::AlignedBox3d box;
+    map.getMetricMin(box.min().x(), box.min().y(), box.min().z());
+    map.getMetricMax(box.max().x(), box.max().y(), box.max().z());
+    return {"overview.png",
+            {"The map in perspective.",
+             perspectiveFigure(VoxelRenderer(map, UnknownPolicy::free), {title, box, {}}).png()}};
+}
+
+ReportTable mapSummary(const json& result) {
+    const auto& means = result["comparison"]["mean"];
+    const auto number = [&](const char* key, double factor, const char* format) {
+        if (!means.contains(key)) return std::string("not compared");
+        return fmt::format(fmt::runtime(format), factor * means[key].get<double>());
+    };
+    const auto& frames = result["frames"];
+    ReportTable table{
+        "Map",
+        {{"frames used", fmt::format("{} of {}", frames["used"].get<std::size_t>(),
+                                     frames["recorded"].get<std::size_t>())},
+         {"upward direction of the recorded world",
+          fmt::format("{}, {:.1f} degrees from an axis", result["dataset"]["up"].get<std::string>(),
+                      result["dataset"]["tilt_degrees"].get<double>())},
+         {"cell", fmt::format("{} m", result["resolution"].get<double>())},
+         {"occupied cells", result["voxels"]["occupied"].dump()},
+         {"free cells", result["voxels"]["free"].dump()},
+         {"predicted pixels", number("predicted", 100., "{:.1f} %")},
+         {"mean absolute difference of grey values", number("mean_abs_intensity", 1., "{:.4f}")},
+         {"mean absolute difference of the best uniform grey", number("contrast", 1., "{:.4f}")},
+         {"mean absolute difference of depth", number("mean_abs_depth", 1., "{:.4f} m")},
+         {"fusion of one frame",
+          fmt::format("{:.1f} ms", result["time"]["fuse_per_frame_s"].get<double>() * 1e3)}}};
+    if (result["voxels"]["occupied"] == 0) {
+        table.rows.emplace(table.rows.begin(), "verdict",
+                           fmt::format("the map is empty: {}", whyEmpty(result)));
+    }
+    for (auto& row : depthRows(result["monocular"])) table.rows.push_back(std::move(row));
+    return table;
+}
+
+void writeMapReport(const MapOptions& options, const json& result, const Recording& recording,
+                    const TexturedOcTree& map, const MapRun& run) {
+    const Camera& camera = recording.sequence.camera;
+    ReportData report;
+    report.title = "Map of " + fs::path(options.dataset).lexically_normal().filename().string();
+    report.subtitle = "A textured OctoMap, and its predictions at the recorded poses.";
+    report.commandLine = options.commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.config = toYaml(options, recording);
+    report.voxels = makeReportVoxels(map);
+    if (!run.trajectory.empty()) {
+        report.paths = {cameraPath(run.trajectory)};
+        report.start = run.trajectory.front().T_w_c.translation();
+        report.goal = run.trajectory.back().T_w_c.translation();
+    }
+    report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),
+                          2. * std::atan(0.5 * camera.height / camera.fy())};
+    report.tables = {mapSummary(result)};
+    writeResultFolder(options.out, report, run.figures);
+}
+
+}  // namespace photonav

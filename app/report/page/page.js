@@ -1,0 +1,370 @@
+// The page around view and charts.
+'use strict';
+
+const element = (id) => document.getElementById(id);
+
+function make(tag, text, attributes = {}) {
+  const node = document.createElement(tag);
+  if (text !== undefined) node.textContent = text;
+  return Object.assign(node, attributes);
+}
+
+// Head --------------------------------------------------------------------------------------------
+function verdict() {
+  if (sweep) return sweepVerdict();
+  if (data.result.command === 'fly') return flyVerdict();
+  if (data.result.verdict) return `${data.result.verdict[0].toUpperCase()}${data.result.verdict.slice(1)}.`;
+  if (!paths.length) return data.result.command === 'plan' ? 'No path was found.' : '';
+  if (!hasBeliefs) return '';
+  const ours = summaries[0], other = summaries[1];
+  if (!other)
+    return `The path is ${say(ours.length, 'm')} long and ends with a predicted position error of ` +
+           `${say(100 * ours.goalSigma, 'cm')} (1σ, worst direction).`;
+  const percent = Math.round(100 * (ours.length / other.length - 1));
+  const length = percent === 0 ? `as long, ${say(ours.length, 'm')}`
+      : `${say(ours.length, 'm')} long instead of ${say(other.length, 'm')} ` +
+        `(${percent > 0 ? '+' : '−'}${Math.abs(percent)} %)`;
+  const goal = `the predicted position error at the goal is ${say(100 * ours.goalSigma, 'cm')} instead of ` +
+      `${say(100 * other.goalSigma, 'cm')} (1σ, worst direction)${factorOf(ours.goalSigma, other.goalSigma)}`;
+  // What the planner lowers is the uncertainty along the path; the one at the goal may be higher.
+  const mean = ours.goalSigma < other.goalSigma ? ''
+      : `, the mean trace along the path is ${say(ours.meanTrace)} instead of ${say(other.meanTrace, 'm² + rad²')}` +
+        factorOf(ours.meanTrace, other.meanTrace);
+  return `Compared with ${paths[1].name}, the path is ${length}${mean}, and ${goal}.`;
+}
+
+function factorOf(ours, other) {
+  const ratio = other / ours;
+  return !(ratio > 0 && isFinite(ratio)) ? ''
+      : ratio >= 1 ? `: ${ratio.toPrecision(2)} times smaller` : `: ${(1 / ratio).toPrecision(2)} times larger`;
+}
+
+/// Actual and predicted errors of the flights.
+function flyVerdict() {
+  const flown = ({planner, flights, arrived, position_rmse_m: error, predicted_sigma_m: predicted,
+                  nees_per_dof: nees}) => !flights ? `${planner} was not flown`
+      : `${planner}: ${arrived} of ${flights} flights arrived, with a position error of ` +
+        `${say(100 * error, 'cm')} rms (predicted ${say(100 * predicted, 'cm')}; NEES ${say(nees)})`;
+  const {planners} = data.result;
+  return planners.length ? `${planners.map(flown).join('; ')}.` : 'No path was found.';
+}
+
+function fillHead() {
+  document.title = `${data.title} – photonav`;
+  element('brand').textContent = ['photonav', data.version, data.result.command].filter(Boolean).join(' · ');
+  element('title').textContent = data.title;
+  element('subtitle').textContent = data.subtitle;
+  element('verdict').textContent = verdict();
+  element('verdict').hidden = !verdict();
+}
+
+function replayTiles({ate_rmse_m: ate, rpe, nees_per_dof: nees, tracked, frames, lost,
+  fps_with_reading: fps}) {
+  const second = rpe.second || rpe.frame || {}, over = rpe.second ? 'a second' : 'a frame';
+  return [
+    ['frames tracked', tracked, `of ${frames}`], ['frames lost', lost, ''],
+    ['absolute error, rms', times(1000, ate), 'mm'],
+    [`position error over ${over}, rms`, 1000 * second.translation_m, 'mm'],
+    [`rotation error over ${over}, rms`, second.rotation_deg, '°'],
+    ['NEES per degree of freedom', nees, ''], ['frames per second, with reading', fps, ''],
+  ];
+}
+
+/// A number times a factor, but null stays null.
+const times = (factor, value) => (value === null ? null : factor * value);
+
+function flyTiles({planners}) {
+  return planners.flatMap((flown) => [
+    [`${flown.planner}: arrived`, flown.arrived, `of ${flown.flights}`],
+    ['position error, rms', times(100, flown.position_rmse_m), 'cm'],
+    ['predicted, 1σ', times(100, flown.predicted_sigma_m), 'cm'],
+    ['NEES per degree of freedom', flown.nees_per_dof, ''],
+  ]);
+}
+
+function fillTiles() {
+  const {result} = data, ours = hasBeliefs ? summaries[0] : {};
+  const seconds = (result.time || {}).total_s;
+  const tiles = sweep ? sweepTiles() : result.command === 'replay' ? replayTiles(result)
+      : result.command === 'fly' ? flyTiles(result) : [
+    ['path length', ours.length ?? result.length, 'm'],
+    ['goal position, 1σ', 100 * ours.goalSigma, 'cm'],
+    ['goal trace', ours.goalTrace ?? result.goal_trace, 'm² + rad²'],
+    ['mean trace', ours.meanTrace ?? result.mean_trace, 'm² + rad²'],
+    ['cost', ours.cost ?? result.cost, ''],
+    ['vertices', result.vertices, ''],
+    ['views predicted', result.views, ''],
+    ['planning time', seconds, 's'],
+  ];
+  for (const [name, value, unit] of tiles) {
+    if (typeof value !== 'number' || !isFinite(value)) continue;
+    const tile = make('div', undefined, {className: 'tile'});
+    const number = make('b', say(value));
+    if (unit) number.append(make('small', unit));
+    tile.append(number, make('span', name));
+    element('tiles').append(tile);
+  }
+}
+
+// Waypoints ---------------------------------------------------------------------------------------
+function rows(table, pairs) {
+  table.replaceChildren(...pairs.map(([name, value]) => {
+    const row = make('tr');
+    row.append(make('th', name), make('td', value));
+    return row;
+  }));
+}
+
+function showWaypoint(index) {
+  const {point, view} = waypoints[index];
+  element('waypoint-name').textContent = `${placeName} ${index} of ${waypoints.length - 1}`;
+  element('waypoint').value = index;
+  for (const kind of ['predicted', 'contribution']) {
+    const uri = view && (kind === 'predicted' ? view.image : view.contribution);
+    element(`${kind}-box`).hidden = !uri;
+    if (uri) element(kind).src = uri;
+  }
+  const place = [
+    ['Distance', say(point.distance, 'm')],
+    ['Position x, y, z', `${point.position.map((x) => x.toFixed(2)).join(', ')}\u00a0m`.replace(/-/g, '−')],
+  ];
+  const sigma = [0, 4, 8].map((i) => say(100 * Math.sqrt(Math.max(0, point.position_covariance[i]))));
+  const belief = [
+    ['1σ in x, y, z', `${sigma.join(', ')}\u00a0cm`],
+    ['1σ, worst direction', say(100 * worstSigma(point.position_covariance), 'cm')],
+    ['Trace', say(point.trace, 'm² + rad²')],
+  ];
+  if (hasCost) belief.push(['Cost so far', say(point.cost)]);
+  rows(element('waypoint-numbers'), hasBeliefs ? [...place, ...belief] : place);
+  document.documentElement.dataset.waypoint = index;
+}
+
+// Tables ------------------------------------------------------------------------------------------
+const kNames = {
+  length: ['Length of the path', 'm'], mean_trace: ['Mean trace', 'm² + rad²'],
+  goal_trace: ['Trace at the goal', 'm² + rad²'],
+  metric_length: ['Length with rotations counted', 'm'],
+  alpha: ['Alpha (1: only length counts)', ''], cost: ['Cost', ''], views: ['Views predicted', ''],
+  cache_hits: ['Views taken from the cache', ''], seed: ['Seed of the random numbers', ''],
+  'time.total_s': ['Time, but for this report', 's'], 'time.views_s': ['Time for views', 's'],
+  'time.beliefs_s': ['Time for beliefs', 's'], 'time.tree_s': ['Time for the tree', 's'],
+  'audit.max_cost_error': ['Audit: largest error of a cost', ''],
+  'audit.max_covariance_error': ['Audit: largest error of a covariance', 'm² + rad²'],
+};
+const kUnits = {_s: 's', _ms: 'ms', _m: 'm', _cm: 'cm', _m2: 'm²', _rad: 'rad', _deg: '°'};
+
+function nameAndUnit(key) {
+  if (kNames[key]) return kNames[key];
+  const suffix = Object.keys(kUnits).filter((end) => key.endsWith(end)).pop();
+  const name = (suffix ? key.slice(0, -suffix.length) : key).replace(/[._]/g, ' ');
+  return [name[0].toUpperCase() + name.slice(1), suffix ? kUnits[suffix] : ''];
+}
+
+/// Short numbers as they are: they were typed by someone.
+const sayExactly = (value, unit) => String(value).length > 6 || Number.isInteger(value) ? say(value, unit)
+    : `${value}${unit && '\u00a0'}${unit}`.replace('-', '−');
+
+function flattened(object, prefix = '') {
+  return Object.entries(object).flatMap(([key, value]) => {
+    const path = prefix + key;
+    if (value === null || ['config', 'schema', 'path'].includes(path)) return [];
+    if (Array.isArray(value))
+      return value.length > 6 || value.some((x) => typeof x === 'object') ? []
+          : [[nameAndUnit(path)[0], value.map((x) => typeof x === 'number' ? say(x) : x).join(', ')]];
+    if (typeof value === 'object') return flattened(value, `${path}.`);
+    const [name, unit] = nameAndUnit(path);
+    return [[name, typeof value === 'number' ? sayExactly(value, unit) : String(value)]];
+  });
+}
+
+function addTable(title, pairs) {
+  if (!pairs.length) return;
+  const box = make('div'), table = make('table', undefined, {className: 'numbers'});
+  rows(table, pairs);
+  box.append(make('h2', title), table);
+  element('tables').append(box);
+}
+
+function addComparison() {
+  if (paths.length < 2 || !hasBeliefs || data.result.command === 'replay') return;
+  const box = make('div', undefined, {className: 'wide'}), table = make('table');
+  const head = make('tr'), body = make('tbody');
+  head.append(...['Path', 'Length', 'Cost', 'Mean trace', 'Trace at the goal', '1σ at the goal'].map((t) => make('th', t)));
+  const thead = make('thead');
+  thead.append(head);
+  paths.forEach((path, i) => {
+    const s = summaries[i], row = make('tr'), name = make('td');
+    const swatch = make('span', undefined, {className: 'swatch'});
+    swatch.style.background = path.color;
+    name.append(swatch, path.name);
+    row.append(name, ...[say(s.length, 'm'), say(s.cost), say(s.meanTrace, 'm² + rad²'), say(s.goalTrace, 'm² + rad²'),
+                         say(100 * s.goalSigma, 'cm')].map((t) => make('td', t)));
+    body.append(row);
+  });
+  table.append(thead, body);
+  box.append(make('h2', 'Paths compared'), table);
+  element('tables').append(box);
+}
+
+/// Pictures one after the other: by hand with the slider, or played.
+function setUpFrames() {
+  const {frames} = data, slider = element('frame-slider'), play = element('play');
+  element('frames').hidden = !frames.length;
+  if (!frames.length) return;
+  const show = (index) => {
+    slider.value = index;
+    element('frame').src = frames[index].image;
+    element('frame-caption').textContent = frames[index].caption;
+  };
+  let timer = 0;
+  const stop = () => {
+    clearInterval(timer);
+    timer = 0;
+    play.textContent = 'Play';
+  };
+  slider.max = frames.length - 1;
+  slider.addEventListener('input', () => { stop(); show(Number(slider.value)); });
+  play.addEventListener('click', () => {
+    if (timer) return stop();
+    let index = 0;
+    play.textContent = 'Stop';
+    show(index);
+    timer = setInterval(() => (++index < frames.length ? show(index) : stop()), 700);
+  });
+  show(frames.length - 1);
+}
+
+function fillRest() {
+  element('characteristic-length').textContent = data.result.characteristic_length ?? 1;
+  addComparison();
+  addTable('All numbers', flattened(data.result));
+  for (const table of data.tables) addTable(table.title, table.rows);
+  for (const figure of data.figures) {
+    const box = make('figure');
+    const image = make('img', undefined, {src: figure.image, alt: figure.caption});
+    image.addEventListener('load', () => box.classList.toggle('wide', image.naturalWidth > 1400));
+    box.append(image, make('figcaption', figure.caption));
+    element('figures').append(box);
+  }
+  setUpFrames();
+  element('config').textContent = data.config;
+  element('config-box').hidden = !data.config;
+  element('command').textContent = data.command_line;
+  element('command-box').hidden = !data.command_line;
+  element('footer').textContent = 'Made by photonav, with three.js and Chart.js (MIT licence). This file is complete: it needs no network.';
+  for (const button of document.querySelectorAll('[data-copy]'))
+    button.addEventListener('click', async () => {
+      await navigator.clipboard.writeText(element(button.dataset.copy).textContent);
+      button.textContent = 'Copied';
+    });
+}
+
+// Everything together -----------------------------------------------------------------------------
+let selected = -1, addressTimer = 0;
+
+function select(index) {
+  if (!(index >= 0 && index < waypoints.length) || index === selected) return;
+  selected = index;
+  showWaypoint(index);
+  if (view3d) view3d.select(index);
+  charts.select(index);
+  clearTimeout(addressTimer);  // browsers forbid many changes of the address in a row
+  addressTimer = setTimeout(() => history.replaceState(null, '', `#waypoint=${index}`), 300);
+}
+
+function addLayerSwitches() {
+  for (const [name, layer] of Object.entries(view3d.layers)) {
+    const box = make('label'), chip = make('i');
+    const input = make('input', undefined, {type: 'checkbox', checked: true});
+    chip.style.setProperty('--chip', layer.color);
+    input.addEventListener('change', () => view3d.show(name, input.checked));
+    box.append(input, chip, layer.label);
+    element('layers').append(box);
+  }
+}
+
+function setUpExaggeration() {
+  const factors = [1, 2, 5, 10, 20, 50, 100], slider = element('exaggeration');
+  element('exaggeration-box').hidden = !hasBeliefs;
+  slider.max = factors.length - 1;
+  const apply = () => {
+    const factor = factors[slider.value];
+    view3d.setExaggeration(factor);
+    element('exaggeration-value').textContent = factor === 1 ? 'true size' : `${factor} × larger`;
+  };
+  slider.value = factors.indexOf(view3d.suggestedExaggeration);
+  slider.addEventListener('input', apply);
+  apply();
+}
+
+/// Ceilings hide what is below: the map is cut above the highest path.
+function setUpCut() {
+  const slider = element('cut'), {min, max} = view3d.mapBox;
+  element('cut-box').hidden = !(max.z - min.z > 0.05);
+  if (element('cut-box').hidden) return;
+  const highest = Math.max(...paths.flatMap((path) => path.points.map((point) => point.position[2])));
+  Object.assign(slider, {min: min.z, max: max.z + 0.01});
+  slider.value = paths.length ? Math.min(max.z + 0.01, highest + 0.3) : max.z + 0.01;
+  const apply = () => {
+    const height = Number(slider.value);
+    view3d.setCut(height);
+    element('cut-value').textContent = height >= max.z ? 'the top' : `z = ${height.toFixed(2)} m`.replace('-', '−');
+  };
+  slider.addEventListener('input', apply);
+  apply();
+}
+
+function setUpView() {
+  if (!view3d) {
+    element('no-webgl').hidden = false;
+    for (const id of ['scene', 'cameras', 'exaggeration-box', 'cut-box']) element(id).hidden = true;
+    return;
+  }
+  addLayerSwitches();
+  setUpExaggeration();
+  setUpCut();
+  element('perspective').addEventListener('click', view3d.views.perspective);
+  element('top').addEventListener('click', view3d.views.top);
+  element('scene-caption').textContent =
+      (hasBeliefs ? `Paths with the 3σ ellipsoids of the ${isRecorded ? 'estimated' : 'predicted'} position` : paths.length ? 'Paths' : 'The map') +
+      `, grid of ${say(view3d.gridStep, 'm')}. Drag to turn, right button or two fingers to move, ` +
+      'wheel to zoom after a click.' +
+      (waypoints.length ? ` Click a white ${placeName.toLowerCase()}, or use ← and →, to see ${data.views.length ? 'through the camera there' : 'its numbers'}.` : '');
+}
+
+function setUpWaypoints() {
+  element('panel').hidden = !waypoints.length;
+  element('stage').classList.toggle('alone', !waypoints.length);
+  if (!waypoints.length) return;
+  element('waypoint').max = waypoints.length - 1;
+  element('waypoint').addEventListener('input', (event) => select(Number(event.target.value)));
+  element('previous').addEventListener('click', () => select(selected - 1));
+  element('next').addEventListener('click', () => select(selected + 1));
+  addEventListener('keydown', (event) => {
+    if (event.target.tagName === 'INPUT' || event.altKey || event.ctrlKey || event.metaKey) return;
+    if (event.key === 'ArrowLeft') select(selected - 1);
+    if (event.key === 'ArrowRight') select(selected + 1);
+  });
+  const fromHash = () => select(Number((location.hash.match(/waypoint=(\d+)/) || [])[1]));
+  addEventListener('hashchange', fromHash);
+  fromHash();
+  if (selected < 0) select(Math.floor(waypoints.length / 2));
+}
+
+fillHead();
+fillTiles();
+fillSweep();
+fillRest();
+element('panel').hidden = !waypoints.length;
+const view3d = createView3d(element('scene'), select);
+const charts = createCharts(select);
+element('trace-log').checked = paths.length > 0;
+element('trace-log').addEventListener('change', () => charts.drawAll(element('trace-log').checked));
+charts.drawAll(element('trace-log').checked);
+setUpView();
+setUpWaypoints();
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+  charts.drawAll(element('trace-log').checked);
+  if (sweepCharts.length) drawSweepCharts();
+  if (view3d) view3d.drawGround();
+});

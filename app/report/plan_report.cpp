@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/plan_report.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "commands/command_io.hpp"
+#include "drawing/tree_evolution_figure.hpp"
+#include "figures/heat_map.hpp"
+#include "figures/images.hpp"
+#include "figures/perspective.hpp"
+#include "figures/trace.hpp"
+#include "geometry/constants.hpp"
+#include "geometry/se3.hpp"
+#include "io/atomic_file.hpp"
+#include "recording/image_file.hpp"
+#include "recording/trajectory.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+constexpr std::size_t kMaxViews = 60;       // pictures in the report
+constexpr double kPicturePixel = 0.025;     // of the top view's background [m]
+constexpr double kMaxPicturePixels = 800.;  // along its longer side
+constexpr int kHeatMapCells = 28;
+
+const char* spaceName(StateKind kind) {
+    return kind == StateKind::position ? "xyz" : kind == StateKind::positionYaw ? "xyz_yaw" : "se3";
+}
+
+json jsonOf(const BeliefPoint& point) {
+    const Eigen::Vector3d p = point.T_w_b.translation();
+    std::vector<double> covariance;
+    for (int i = 0; i < 6; ++i) {
+        for (int j = i; j < 6; ++j) covariance.push_back(point.covariance(i, j));
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(point.information, Eigen::EigenvaluesOnly);
+    return {{"position", {p.x(), p.y(), p.z()}},
+            {"yaw", yawOf(point.T_w_b)},
+            {"waypoint", point.isWaypoint},
+            {"distance", point.length},
+            {"metric_length", point.distance},
+            {"trace", point.trace},
+            {"trace_before_view", point.traceBefore},
+            {"cost", point.cost},
+            {"covariance", covariance},
+            {"information_trace", point.information.trace()},
+            {"min_eigenvalue", std::max(0., eigen.eigenvalues()[0])}};
+}
+
+json jsonOf(const JudgedPath& path) {
+    return {{"planner", path.planner},      {"cost", path.cost},
+            {"length", path.length},        {"metric_length", path.points.back().distance},
+            {"mean_trace", path.meanTrace}, {"goal_trace", path.goalTrace}};
+}
+
+UncertainPose belief(const BeliefPoint& point, const Pose& T_b_c) {
+    return {(point.T_w_b * T_b_c).inverse(), point.covariance};
+}
+
+/// The predicted views at the waypoints, and the contributions of their pixels.
+std::vector<ReportView> waypointViews(const JudgedPath& path, const Config& config,
+                                      const World& world) {
+    std::vector<std::size_t> waypoints;
+    for (std::size_t i = 0; i < path.points.size(); ++i) {
+        if (path.points[i].isWaypoint) waypoints.push_back(i);
+    }
+    const std::size_t stride = 1 + waypoints.size() / kMaxViews;
+    const Camera camera = config.camera.camera();
+    std::vector<ReportView> views;
+    View view;
+    for (std::size_t k = 0; k < waypoints.size(); k += stride) {
+        const std::size_t i = waypoints[k];
+        const Pose T_c_w = (path.points[i].T_w_b * config.camera.T_b_c()).inverse();
+        world.views().render(camera, T_c_w, view);
+        views.push_back(
+            {i, greyPng(view.intensity),
+             pngOf(contributionPicture(view.intensity,
+                                       contributionImage(view, camera, config.photometric)))});
+    }
+    return views;
+}
+
+Eigen::AlignedBox2d areaOf(const Config& config) {
+    Eigen::AlignedBox2d area(config.bounds.min().head<2>(), config.bounds.max().head<2>());
+    area.min().array() -= config.robotRadius;
+    area.max().array() += config.robotRadius;
+    return area;
+}
+
+TopView topView(const Config& config, const World& world, const PlanOutcome& outcome,
+                const std::vector<DrawnPath>& paths) {
+    TopView view = viewFromAbove(config, world, paths);
+    view.title = fmt::format("{}, alpha {}", config.planner, outcome.alpha);
+    view.trees = {{"search tree", kTreeColor, outcome.tree}};
+    return view;
+}
+
+HeatMap heatMap(const Config& config, PlanningProblem& run) {
+    const double height = config.start.position.z();
+    const double yaw = config.start.yaw.value_or(0.);
+    HeatMap map;
+    map.title = "Information of one view at " + placeText(config, height, yaw);
+    map.label = "trace of the Fisher information";
+    map.area = areaOf(config);
+    map.values = viewGrid(run, map.area, height, yaw, kHeatMapCells,
+                          [](const Matrix6& information) { return information.trace(); });
+    map.logScale = true;
+    return map;
+}
+
+/// Where the robot may be, and what stands around that, down to the floor.
+Perspective perspective(const Config& config, const World& world, const PlanOutcome& outcome,
+                        const std::vector<DrawnPath>& paths) {
+    Eigen::AlignedBox3d box = config.bounds;
+    const double margin = 0.1 * box.sizes().maxCoeff();
+    box.min().array() -= margin;
+    box.max().array() += margin;
+    box = box.intersection(world.extent()).merged(config.bounds);
+    box.min().z() = std::min(box.min().z(), world.extent().min().z());
+    return {fmt::format("{}, alpha {}", config.planner, outcome.alpha), box, paths};
+}
+
+void writeTrajectory(const fs::path& file, const JudgedPath& path, const Pose& T_b_c) {
+    Trajectory trajectory;  // one metre per second
+    for (const BeliefPoint& point : path.points) {
+        trajectory.push_back({point.length, point.T_w_b * T_b_c});
+    }
+    writeTrajectory(file.string(), trajectory);
+}
+
+}  // namespace
+
+std::string placeText(const Config& config, double height, double yaw) {
+    if (config.space == StateKind::position) return fmt::format("{:.2f} m", height);
+    return fmt::format("{:.2f} m, heading {:.0f} deg", height, yaw / kDegree);
+}
+
+DrawnPath drawnPath(const JudgedPath& path, const Pose& T_b_c) {
+    DrawnPath result{path.planner, plannerColor(path.planner)};
+    for (const BeliefPoint& point : path.points) {
+        result.points.push_back(
+            makePathPoint(belief(point, T_b_c), point.trace, point.length, point.cost));
+    }
+    return result;
+}
+
+void describeWorld(const World& world, ReportData& report) {
+    if (world.scene() != nullptr) report.mesh = makeReportMesh(*world.scene());
+    if (world.map() != nullptr) report.voxels = makeReportVoxels(*world.map());
+}
+
+TopView viewFromAbove(const Config& config, const World& world,
+                      const std::vector<DrawnPath>& paths) {
+    TopView view;
+    view.area = areaOf(config);
+    const double pixel = std::max(kPicturePixel, view.area.sizes().maxCoeff() / kMaxPicturePixels);
+    view.background = world.pictureFromAbove(view.area, config.bounds.max().z(), pixel);
+    view.paths = paths;
+    view.start = config.start.position;
+    view.goal = config.goal.position;
+    return view;
+}
+
+json planResult(const Config& config, const PlanOutcome& outcome,
+                const std::optional<JudgedPath>& baseline, bool interrupted) {
+    const double tree = outcome.planSeconds - outcome.viewSeconds - outcome.beliefSeconds;
+    json result{{"schema", 1},
+                {"command", "plan"},
+                {"version", PHOTONAV_VERSION},
+                {"status", interrupted    ? "interrupted"
+                           : outcome.path ? "done"
+                                          : "no path"},
+                {"seed", config.seed},
+                {"planner", config.planner},
+                {"information", config.viewModel.name},
+                {"space", spaceName(config.space)},
+                {"alpha", outcome.alpha},
+                {"characteristic_length", config.belief.characteristicLength},
+                {"cost", nullptr},
+                {"planner_cost", nullptr},
+                {"length", nullptr},
+                {"metric_length", nullptr},
+                {"mean_trace", nullptr},
+                {"goal_trace", nullptr},
+                {"vertices", outcome.vertices},
+                {"iterations", outcome.iterations},
+                {"views", outcome.views},
+                {"cache_hits", outcome.cacheHits},
+                {"second_order_fallbacks", outcome.fallbacks},
+                {"time",
+                 {{"total_s", nullptr},
+                  {"views_s", outcome.viewSeconds},
+                  {"beliefs_s", outcome.beliefSeconds},
+                  {"tree_s", tree}}},
+                {"audit",
+                 {{"max_cost_error", outcome.audit.maxCostError},
+                  {"max_covariance_error", outcome.audit.maxCovarianceError},
+                  {"beliefs", outcome.audit.nodes}}},
+                {"covariance_frame",
+                 "camera, left perturbation T_c_w = exp(xi) mean, order (rho, phi), upper triangle "
+                 "by rows"},
+                {"path", json::array()}};
+    if (baseline) result["baseline"] = jsonOf(*baseline);
+    if (!outcome.path) return result;
+    result.update(jsonOf(*outcome.path));
+    result["planner_cost"] = outcome.plannerCost;
+    for (const BeliefPoint& point : outcome.path->points) result["path"].push_back(jsonOf(point));
+    return result;
+}
+
+namespace {
+
+std::vector<NamedFigure> planFigures(const Config& config, const World& world, PlanningProblem& run,
+                                     const PlanOutcome& outcome,
+                                     const std::optional<RecordedComparison>& recorded,
+                                     const std::vector<DrawnPath>& paths) {
+    std::vector<NamedFigure> figures{
+        {"top_view.png",
+         {"From above: search tree, paths and 3σ ellipses of the position.",
+          topViewFigure(topView(config, world, outcome, paths)).png()}}};
+    if (!paths.empty() && world.hasTexture()) {
+        figures.push_back({"information.png",
+                           {config.space == StateKind::position
+                                ? "Trace of the Fisher information of one view, over the area."
+                                : "Trace of the Fisher information of one view, over the area, "
+                                  "with the heading of "
+                                  "the start; along the paths the heading changes.",
+                            heatMapFigure(heatMap(config, run)).png()}});
+    }
+    if (config.bounds.sizes().z() > 0. && world.hasTexture()) {
+        figures.push_back(
+            {"perspective.png",
+             {"In perspective, with the shadows of the paths; paths are thin where they are "
+              "hidden.",
+              perspectiveFigure(world.views(), perspective(config, world, outcome, paths)).png()}});
+    }
+    if (!paths.empty()) {
+        figures.push_back({"trace.png",
+                           {"Trace of the pose covariance along the path.",
+                            traceFigure("Uncertainty along the path", paths, true).png()}});
+    }
+    if (recorded) {
+        const auto mean = meanDifference(*recorded);
+        figures.push_back(
+            {"recorded_frames.png",
+             {"Views along the path and the recorded frames nearest to them" +
+                  (mean ? fmt::format("; the mean absolute difference between the frames and the "
+                                      "predictions at their poses is {:.3f}.",
+                                      *mean)
+                        : "; the map predicts none of their pixels."),
+              recorded->picture}});
+    }
+    return figures;
+}
+
+}  // namespace
+
+void writePlanReport(const fs::path& folder, const Config& config, const World& world,
+                     PlanningProblem& run, const PlanOutcome& outcome,
+                     const std::optional<JudgedPath>& baseline,
+                     const std::optional<RecordedComparison>& recorded,
+                     const std::vector<TreeEvolution>& evolutions, const std::string& commandLine,
+                     const json& result) {
+    const Camera camera = config.camera.camera();
+    const Pose T_b_c = config.camera.T_b_c();
+    ReportData report;
+    report.title = fs::path(config.file).stem().string();
+    report.subtitle = fmt::format("{}, alpha {}, {} vertices, seed {}", config.planner,
+                                  outcome.alpha, outcome.vertices, config.seed);
+    report.commandLine = commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.config = toYaml(config);
+    describeWorld(world, report);
+    report.trees = {{"search tree", kTreeColor, outcome.tree}};
+    if (outcome.path) report.paths.push_back(drawnPath(*outcome.path, T_b_c));
+    if (baseline) report.paths.push_back(drawnPath(*baseline, T_b_c));
+    report.start = config.start.position;
+    report.goal = config.goal.position;
+    report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),
+                          2. * std::atan(0.5 * camera.height / camera.fy())};
+    if (outcome.path && world.hasTexture()) {
+        report.views = waypointViews(*outcome.path, config, world);
+    }
+    report.progress = outcome.progress;
+
+    std::vector<NamedFigure> figures =
+        planFigures(config, world, run, outcome, recorded, report.paths);
+    if (!evolutions.empty()) {
+        const TopView map = topView(config, world, outcome, {});
+        figures.push_back(
+            {"tree_evolution.png",
+             {"The trees as they grow, and the best path so far. They were grown again for this "
+              "figure, with a pause at every number of vertices; the path found by then guides the "
+              "samples, so the last path may differ from the result above.",
+              treeEvolutionFigure(map, evolutions, {10, 500, config.vertices}).png()}});
+        for (const TreeStage& stage : evolutions.front().stages) {
+            report.frames.push_back({fmt::format("{} vertices", stage.vertices),
+                                     treeEvolutionFigure(map, evolutions, {stage.vertices}).png()});
+        }
+    }
+    if (outcome.path) writeTrajectory(folder / "path.tum", *outcome.path, T_b_c);
+    writeResultFolder(folder, report, figures);
+}
+
+void writeResultFolder(const fs::path& folder, ReportData& report,
+                       const std::vector<NamedFigure>& figures) {
+    for (const NamedFigure& named : figures) {
+        writeFileAtomically(folder / named.name, named.figure.image);
+        report.figures.push_back(named.figure);
+    }
+    if (!report.config.empty()) writeFileAtomically(folder / "config.yaml", report.config);
+    const std::string text = reportJson(report);
+    writeFileAtomically(folder / "report.json", text);
+    writeReport(folder / "report.html", text);
+}
+
+Eigen::ArrayXXd viewGrid(PlanningProblem& run, const Eigen::AlignedBox2d& area, double height,
+                         double yaw, int cells,
+                         const std::function<double(const Matrix6&)>& value) {
+    const double step = area.sizes().maxCoeff() / cells;
+    const int nx = std::max(1, static_cast<int>(std::lround(area.sizes().x() / step)));
+    const int ny = std::max(1, static_cast<int>(std::lround(area.sizes().y() / step)));
+    Eigen::ArrayXXd values =
+        Eigen::ArrayXXd::Constant(nx, ny, std::numeric_limits<double>::quiet_NaN());
+    Pose T_w_b = Pose::Identity();
+    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    for (int i = 0; i < nx; ++i) {
+        for (int j = 0; j < ny; ++j) {
+            T_w_b.translation() << area.min().x() + (i + 0.5) * area.sizes().x() / nx,
+                area.min().y() + (j + 0.5) * area.sizes().y() / ny, height;
+            if (run.isFlyable(T_w_b.translation())) {
+                values(i, j) = value(run.informationAt(T_w_b));
+            }
+        }
+    }
+    return values;
+}
+
+}  // namespace photonav

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/replay_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "drawing/replay_figures.hpp"
+#include "figures/top_view.hpp"
+#include "report/plan_report.hpp"
+
+namespace photonav {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr Color kEstimateColor{222, 79, 12}, kTruthColor{28, 108, 214};
+constexpr double kOverconfident = 3.;  // NEES per degree of freedom that is stated in words
+
+/// "0.0123 m", or `none` for a missing value.
+std::string number(const json& value, double factor, const char* format,
+                   const char* none = "not known") {
+    if (!value.is_number()) return none;
+    return fmt::format(fmt::runtime(format), factor * value.get<double>());
+}
+
+std::string relative(const json& rpe) {
+    if (!rpe.is_object()) return "recording too short";
+    return fmt::format("{:.2f} mm, {:.3f} deg (rms of {})",
+                       1e3 * rpe["translation_m"].get<double>(), rpe["rotation_deg"].get<double>(),
+                       rpe["pairs"].get<std::size_t>());
+}
+
+std::string calibrationText(const json& c) {
+    std::string text = fmt::format(
+        "--scale {:.3g} --sigma-floor {:.3g} --sigma-floor-rotation {:.3g} (NEES of single "
+        "alignments {:.3g}, "
+        "then {:.3g}",
+        c["scale"].get<double>(), c["floor"][0].get<double>(), c["floor"][1].get<double>(),
+        c["nees_before"].get<double>(), c["nees_after"].get<double>());
+    const auto alike = c["correlation_time"].get<double>();
+    if (alike > 1.) text += fmt::format("; errors correlated over {:.3g} images", alike);
+    return text + ")";
+}
+
+DrawnPath estimatedPath(const ReplayRun& run) {
+    DrawnPath path{"estimate", kEstimateColor};
+    for (const StampedBelief& belief : beliefsOf(run))
+        append(path, makePathPoint(belief.T_c_w, weightedTrace(belief.T_c_w.covariance), 0., 0.));
+    return path;
+}
+
+DrawnPath truePath(const ReplayRun& run) {
+    DrawnPath path{"ground truth", kTruthColor};
+    for (const ReplayedFrame& frame : run.frames)
+        if (frame.truth_c_w)
+            append(path, makePathPoint({*frame.truth_c_w, Matrix6::Zero()}, 0., 0., 0.));
+    return path;
+}
+
+/// The paths with a margin, not narrower than a third of its length.
+Eigen::AlignedBox2d areaOf(const std::vector<DrawnPath>& paths) {
+    Eigen::AlignedBox2d area;
+    for (const DrawnPath& path : paths) {
+        for (const PathPoint& point : path.points) area.extend(point.position.head<2>());
+    }
+    const double side = std::max(area.sizes().maxCoeff(), 0.02);
+    const Eigen::Vector2d half =
+        (0.5 * area.sizes()).cwiseMax(side / 6.) + Eigen::Vector2d::Constant(0.08 * side);
+    return {Eigen::Vector2d(area.center() - half), Eigen::Vector2d(area.center() + half)};
+}
+
+/// A power of ten that makes the ellipses a few hundredths of the figure.
+double ellipseScale(const DrawnPath& path, double side) {
+    double variance = 0.;
+    for (const PathPoint& point : path.points) {
+        variance = std::max(variance, point.positionCovariance.trace());
+    }
+    if (!(variance > 0.)) return 0.;
+    const double wanted = 0.03 * side / (3. * std::sqrt(variance));
+    return std::max(1., std::pow(10., std::floor(std::log10(wanted))));
+}
+
+Png topView(const std::vector<DrawnPath>& paths, const std::string& title) {
+    TopView view;
+    view.title = title;
+    view.paths = paths;
+    view.area = areaOf(paths);
+    view.start = paths[0].points.front().position;
+    view.goal = paths[0].points.back().position;
+    view.goalName = "end";
+    view.ellipseScale = ellipseScale(paths[0], view.area.sizes().maxCoeff());
+    return topViewFigure(view).png();
+}
+
+std::vector<NamedFigure> figuresOf(bool odometry, const ReplayRun& run, const ReplayErrors& errors,
+                                   const std::vector<DrawnPath>& paths, const std::string& name) {
+    std::vector<NamedFigure> figures;
+    if (!paths.empty()) {
+        const std::string caption = run.laidOn ? fmt::format(
+                                                     "From above. The estimate is placed at the "
+                                                     "true pose of image {}, not aligned as a "
+                                                     "whole.",
+                                                     *run.laidOn)
+                                               : "From above.";
+        figures.push_back({"top_view.png", {caption, topView(paths, name)}});
+    }
+    if (!run.frames.empty()) {
+        figures.push_back(
+            {"errors.png",
+             {"Error and predicted standard deviation (root of the trace) over time; below, the "
+              "NEES per degree of freedom, 1 on average if the covariances are consistent.",
+              replayErrorsFigure("Error and prediction", run, errors).png()}});
+    }
+    if (!run.strips.empty()) {
+        const char* caption =
+            odometry
+                ? "Observed; the keyframe rendered at the estimated pose and exposure; their "
+                  "difference (violet: none, yellow: 0.25 of the grey scale)."
+                : "Observed; the map rendered at the estimated pose and exposure; their difference "
+                  "(violet: none, yellow: 0.25 of the grey scale).";
+        figures.push_back({"strips.png", {caption, stripsFigure(run.strips).png()}});
+    }
+    return figures;
+}
+
+using TableRows = std::vector<std::pair<std::string, std::string>>;
+
+/// With a warning where covariances are overconfident.
+std::string neesText(const json& result) {
+    const double nees = result["nees_per_dof"];
+    const std::string text =
+        fmt::format("{:.3g}, {:.3g}", nees, result["nees_median_per_dof"].get<double>());
+    if (nees < kOverconfident || result.contains("calibration")) return text;
+    return text +
+           fmt::format(": overconfident, errors are {:.1f} times the predicted ones (--calibrate)",
+                       std::sqrt(nees));
+}
+
+TableRows errorRows(const json& result) {
+    if (result["judged"] == 0) return {{"errors", "not known: no tracked image has a true pose"}};
+    const auto& rpe = result["rpe"];
+    const bool isLaidLater = result["laid_on_frame"].is_number() && result["laid_on_frame"] > 0;
+    const std::string nees = result["nees_per_dof"].is_number() ? neesText(result)
+                             : isLaidLater
+                                 ? "not known: the first image has no true pose (--frames)"
+                                 : "not known";
+    const std::string aligned = result["ate_alignment"] == "none" ? "not aligned" : "SE(3) aligned";
+    return {{fmt::format("absolute error ({}), rms", aligned),
+             number(result["ate_rmse_m"], 1e3, "{:.2f} mm")},
+            {"absolute error, largest", number(result["ate_max_m"], 1e3, "{:.2f} mm")},
+            {"absolute error of orientation, rms",
+             number(result["ate_rotation_rmse_deg"], 1., "{:.3f} deg")},
+            {"relative error over a frame", relative(rpe["frame"])},
+            {"relative error over a second", relative(rpe["second"])},
+            {"relative error over a metre", relative(rpe["metre"])},
+            {"NEES per degree of freedom (1: consistent), mean, median", nees}};
+}
+
+std::string degenerateText(const json& result) {
+    const int count = result["degenerate"];
+    return count > 0 ? fmt::format(" ({} degenerate)", count) : "";
+}
+
+}  // namespace
+
+ReportTable replaySummary(const json& result) {
+    const bool isStereo = result["dataset"]["layout"] == "EuRoC";
+    ReportTable table{"Replay", {}};
+    table.rows = {
+        {"verdict", result["verdict"].get<std::string>()},
+        {"frames tracked, lost, unreadable",
+         fmt::format("{}{}, {}, {}", result["tracked"].dump(), degenerateText(result),
+                     result["lost"].dump(), result["unreadable"].dump())},
+        {"skipped, gaps in time",
+         fmt::format("{}, {}", result["skipped"].size(), result["gaps"].size())},
+    };
+    for (auto& row : errorRows(result)) table.rows.push_back(std::move(row));
+    table.rows.emplace_back(
+        isStereo ? "pixels with depth from stereo" : "pixels with recorded depth",
+        number(result["depth_density"], 100., "{:.1f} %", "none"));
+    table.rows.emplace_back(
+        isStereo ? "tracking; with reading images and stereo" : "tracking; with reading images",
+        number(result["fps"], 1., "{:.0f} frames/s; ", "nothing tracked; ") +
+            number(result["fps_with_reading"], 1., "{:.0f} frames/s", "none"));
+    if (result.contains("calibration")) {
+        const json& c = result["calibration"];
+        table.rows.emplace_back("calibrated", c.is_null()
+                                                  ? "fewer than 20 alignments with a true pose"
+                                                  : calibrationText(c));
+    }
+    return table;
+}
+
+void writeReplayReport(const ReplayOptions& options, const std::string& config, const json& result,
+                       const ReplaySource& source, const ReplayRun& run, const ReplayErrors& errors,
+                       const std::function<void(ReportData&)>& describeMap) {
+    const std::string name =
+        (fs::path(options.dataset) / "").lexically_normal().parent_path().filename().string();
+    ReportData report;
+    report.title = "Replay of " + name;
+    report.subtitle = options.odometry ? "Odometry from image to image: errors accumulate."
+                                       : "Localisation of every image in " +
+                                             fs::path(options.mapFile).filename().string() + ".";
+    report.commandLine = options.commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.config = config;
+    report.tables = {replaySummary(result)};
+    report.fieldOfView = {2. * std::atan(0.5 * source.camera.width / source.camera.fx()),
+                          2. * std::atan(0.5 * source.camera.height / source.camera.fy())};
+    describeMap(report);
+    std::array paths{estimatedPath(run), truePath(run)};
+    for (DrawnPath& path : paths) {
+        if (!path.points.empty()) report.paths.push_back(std::move(path));
+    }
+    if (!report.paths.empty()) {
+        report.start = report.paths[0].points.front().position;
+        report.goal = report.paths[0].points.back().position;
+    }
+    writeResultFolder(options.out, report,
+                      figuresOf(options.odometry, run, errors, report.paths, name));
+}
+
+}  // namespace photonav

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The report of a run: one self-contained HTML page (3-D view, charts, figures, numbers) that opens
+// offline, and the JSON it is made of.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "figures/paths.hpp"
+#include "map/textured_octree.hpp"
+#include "plot/picture.hpp"
+#include "problem/planning_problem.hpp"
+#include "scene/scene.hpp"
+
+namespace photonav {
+
+/// Textured triangles of the 3-D view, in w [m].
+struct ReportMesh {
+    std::vector<float> positions;         ///< 9 per triangle
+    std::vector<float> uv;                ///< 6 per triangle; v downward, textures repeat
+    std::vector<std::uint32_t> textures;  ///< 1 per triangle, index into `images`
+    std::vector<Png> images;
+};
+
+/// Grey cubes of the 3-D view, in w [m].
+struct ReportVoxels {
+    std::vector<float> centers;      ///< 3 per voxel
+    std::vector<std::uint8_t> grey;  ///< 1 per voxel
+    double size = 0.0;               ///< edge length [m]
+};
+
+/// The predicted view at a point of the first path.
+struct ReportView {
+    std::size_t point = 0;  ///< index into paths[0].points
+    Png image;
+    Png contribution;  ///< see contributionPicture(); may be empty
+};
+
+struct ReportFigure {
+    std::string caption;
+    Png image;
+};
+
+struct ReportTable {
+    std::string title;
+    std::vector<std::pair<std::string, std::string>> rows;  ///< label, value with unit
+};
+
+/// All the page shows. Empty members are simply not shown.
+struct ReportData {
+    std::string title;
+    std::string subtitle;     ///< one sentence: what was done
+    std::string commandLine;  ///< as typed
+    std::string version;
+    nlohmann::json result = nlohmann::json::object();  ///< result.json of the run
+    std::string config;                                ///< YAML, complete
+    ReportMesh mesh;
+    ReportVoxels voxels;
+    std::vector<DrawnTree> trees;
+    std::vector<DrawnPath> paths;  ///< the answer first, then what it is compared with
+    Eigen::Vector3d start = Eigen::Vector3d::Zero();
+    Eigen::Vector3d goal = Eigen::Vector3d::Zero();
+    Eigen::Vector2d fieldOfView{1.2217, 0.84};  ///< of the camera, full angles, horizontal and
+                                                ///< vertical [rad]
+    std::vector<ReportView> views;
+    std::vector<PlanProgress> progress;
+    std::vector<ReportFigure> figures;
+    std::vector<ReportFigure> frames;  ///< one after the other, as an animation
+    std::vector<ReportTable> tables;
+};
+
+/// The scene as the page draws it: textures as PNG of at most 2048 pixels a side.
+ReportMesh makeReportMesh(const Scene& scene);
+
+/// The voxels as the page draws them. Beyond `limit`, eight neighbours become one of twice the size
+/// and their mean grey value, until they are few enough.
+/// @param size edge length [m]
+ReportVoxels makeReportVoxels(const std::vector<Eigen::Vector3f>& centers,
+                              const std::vector<std::uint8_t>& grey, double size,
+                              std::size_t limit = 400000);
+
+/// The occupied cells of a map with the mean grey value of their faces (0.5 where never observed).
+ReportVoxels makeReportVoxels(const TexturedOcTree& map);
+
+/// The JSON that the page draws, the content of report.json: large arrays as base64 of
+/// little-endian float32, uint32 or uint8, pictures as base64 of PNG.
+std::string reportJson(const ReportData& data);
+
+/// The content of report.json.
+/// @throws InputError naming file and reason if it is missing, cut or not ours
+std::string readReportJson(const std::filesystem::path& file);
+
+/// Writes the page, whole or not at all.
+/// @param content of reportJson() or readReportJson()
+/// @throws InputError if it cannot be written
+void writeReport(const std::filesystem::path& file, std::string_view content);
+
+}  // namespace photonav

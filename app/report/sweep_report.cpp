@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/sweep_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "drawing/sweep_figures.hpp"
+#include "geometry/constants.hpp"
+#include "io/atomic_file.hpp"
+#include "report/plan_report.hpp"
+#include "result/json_values.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+constexpr const char* kBlank = "-";  // in the table
+
+const std::vector<std::string> kRunKeys{"planner", "alpha",      "seed",       "cost",
+                                        "length",  "mean_trace", "goal_trace", "vertices",
+                                        "views",   "seconds",    "excess",     "status"};
+
+std::vector<std::string> summaryKeys(const ReferenceCosts& reference) {
+    std::vector<std::string> keys{"planner", "alpha", "runs", "solved"};
+    for (const SweepColumn& column : sweepColumns(reference)) {
+        keys.push_back(column.name + "_mean");
+        keys.push_back(column.name + "_std");
+    }
+    for (const char* key : {"paper_length", "paper_mean_trace", "paper_goal_trace"}) {
+        keys.emplace_back(key);
+    }
+    return keys;
+}
+
+std::string statusOf(const SweepOutcome& outcome) {
+    if (outcome.interrupted) return "interrupted";
+    const bool anySolved = std::any_of(outcome.runs.begin(), outcome.runs.end(),
+                                       [](const SweepRun& run) { return run.isSolved(); });
+    return anySolved ? "done" : "no path";
+}
+
+TopView pathsView(const Config& config, const World& world, const std::vector<DrawnPath>& paths) {
+    TopView view = viewFromAbove(config, world, paths);
+    view.title = fmt::format("{}: the cheapest path per alpha", config.sweep.planners.front());
+    view.ellipseScale = 0.;
+    return view;
+}
+
+/// "12.34 +- 0.05" with a fixed number of decimals, the deviation only where there is one.
+std::string cellText(const Statistic& value, double scale, int decimals) {
+    if (!std::isfinite(value.mean)) return kBlank;
+    const std::string mean = fmt::format("{:.{}f}", scale * value.mean, decimals);
+    if (!std::isfinite(value.deviation)) return mean;
+    return fmt::format("{} ± {:.{}f}", mean, scale * value.deviation, decimals);
+}
+
+/// Pads by characters, not bytes: ± takes two of these.
+std::string padded(const std::string& text, std::size_t width) {
+    const auto characters = static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+    return std::string(width > characters ? width - characters : 0, ' ') + text;
+}
+
+/// Of traces in the table.
+double traceUnit(const SweepConfig& config, const std::vector<SweepCell>& cells) {
+    if (!config.paper.empty()) return config.paperTraceUnit;
+    double smallest = kInfinity;
+    for (const SweepCell& cell : cells) {
+        for (const char* column : {"mean_trace", "goal_trace"}) {
+            const double mean = cell.columns.at(column).mean;
+            if (mean > 0.) smallest = std::min(smallest, mean);
+        }
+    }
+    return smallest < kInfinity ? std::pow(10., std::floor(std::log10(smallest)) + 1.) : 1.;
+}
+
+/// A column of the table.
+struct TextColumn {
+    std::string heading;
+    std::size_t width;
+    std::function<std::string(const SweepCell&)> text;
+};
+
+TextColumn ownColumn(const std::string& heading, std::size_t width, const std::string& name,
+                     double scale, int decimals) {
+    return {heading, width, [=](const SweepCell& cell) {
+                return cellText(cell.columns.at(name), scale, decimals);
+            }};
+}
+
+TextColumn paperColumn(double PaperRow::*value, double scale) {
+    return {"paper", 7, [=](const SweepCell& cell) {
+                const bool isBeside = cell.paper && cell.solved > 0;  // a value of ours
+                return isBeside ? fmt::format("{:.2f}", scale * ((*cell.paper).*value)) : "";
+            }};
+}
+
+/// The columns that are not empty for a planner.
+std::vector<TextColumn> textColumns(const std::vector<SweepCell>& cells, double unit) {
+    std::vector<TextColumn> columns{
+        {"alpha", 6, [](const SweepCell& cell) { return fmt::format("{}", cell.alpha); }},
+        ownColumn("J", 17, "cost", 1., 3),
+        ownColumn("length [m]", 15, "length", 1., 2),
+        paperColumn(&PaperRow::length, 1.),
+        ownColumn("mean trace", 16, "mean_trace", 1. / unit, 2),
+        paperColumn(&PaperRow::meanTrace, 1. / unit),
+        ownColumn("goal trace", 16, "goal_trace", 1. / unit, 2),
+        paperColumn(&PaperRow::goalTrace, 1. / unit),
+        ownColumn("excess [%]", 15, "excess", 100., 2),
+        ownColumn("vertices", 12, "vertices", 1., 0),
+        ownColumn("views", 13, "views", 1., 0),
+        ownColumn("seconds", 14, "seconds", 1., 2),
+        {"solved", 8,
+         [](const SweepCell& cell) { return fmt::format("{}/{}", cell.solved, cell.runs); }}};
+    std::erase_if(columns, [&](const TextColumn& column) {
+        return std::all_of(cells.begin(), cells.end(), [&](const SweepCell& cell) {
+            const std::string text = column.text(cell);
+            return text.empty() || text == kBlank;
+        });
+    });
+    return columns;
+}
+
+}  // namespace
+
+json sweepResult(const Config& config, const SweepOutcome& outcome,
+                 const ReferenceCosts& reference) {
+    json result{{"schema", 1},
+                {"command", "sweep"},
+                {"version", PHOTONAV_VERSION},
+                {"status", statusOf(outcome)},
+                {"config", outcome.name},
+                {"planners", config.sweep.planners},
+                {"alphas", config.sweep.alphas},
+                {"first_seed", config.seed},
+                {"runs_per_cell", config.sweep.runs},
+                {"shard", toString(outcome.shard)},
+                {"runs_done", outcome.runs.size()},
+                {"runs_asked", outcome.asked},
+                {"time", {{"total_s", outcome.seconds}}},
+                {"runs", json::array()},
+                {"summary", json::array()}};
+    for (const SweepRun& run : outcome.runs) {
+        json row = toJson(run);
+        row["excess"] = finiteOrNull(reference.excess(run));
+        result["runs"].push_back(row);
+    }
+    const auto cells = summarize(config.sweep, outcome.runs, reference);
+    result["trace_unit"] = traceUnit(config.sweep, cells);
+    for (const SweepCell& cell : cells) result["summary"].push_back(toJson(cell));
+    return result;
+}
+
+void writeSweepReport(const fs::path& folder, const Config& config, const World& world,
+                      const SweepOutcome& outcome, const ReferenceCosts& reference,
+                      const json& result) {
+    const auto cells = summarize(config.sweep, outcome.runs, reference);
+    ReportData report;
+    report.title = outcome.name;
+    report.subtitle =
+        fmt::format("{} runs of {} vertices: {} planners, {} values of alpha, {} seeds",
+                    outcome.runs.size(), config.vertices, config.sweep.planners.size(),
+                    config.sweep.alphas.size(), config.sweep.runs);
+    report.commandLine = outcome.commandLine;
+    report.version = PHOTONAV_VERSION;
+    report.result = result;
+    report.config = toYaml(config);
+    report.start = config.start.position;
+    report.goal = config.goal.position;
+    describeWorld(world, report);
+    report.paths = pathsByAlpha(config.sweep.planners.front(), outcome.runs);
+
+    writeFileAtomically(folder / "runs.csv", toCsv(result["runs"], kRunKeys));
+    writeFileAtomically(folder / "summary.csv", toCsv(result["summary"], summaryKeys(reference)));
+    writeFileAtomically(folder / "sweep.png", sweepFigure(outcome.name, cells).png());
+    writeFileAtomically(folder / "pareto.png",
+                        frontFigure(outcome.name, cells, outcome.runs).png());
+    writeResultFolder(folder, report,
+                      {{"paths.png",
+                        {"The cheapest path of " + config.sweep.planners.front() +
+                             " for every alpha, from above.",
+                         topViewFigure(pathsView(config, world, report.paths)).png()}}});
+    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+}
+
+std::string sweepTable(const SweepConfig& config, const std::vector<SweepCell>& cells) {
+    std::string text;
+    const double unit = traceUnit(config, cells);
+    for (auto first = cells.begin(); first != cells.end();) {
+        const auto last = std::find_if(
+            first, cells.end(), [&](const SweepCell& c) { return c.planner != first->planner; });
+        text += "\n" + first->planner + fmt::format("  (traces in {:g} m^2 + rad^2)\n", unit);
+        const auto columns = textColumns({first, last}, unit);
+        for (const TextColumn& column : columns) text += padded(column.heading, column.width);
+        text += '\n';
+        for (; first != last; ++first) {
+            for (const TextColumn& column : columns)
+                text += padded(column.text(*first), column.width);
+            text += '\n';
+        }
+    }
+    return text;
+}
+
+}  // namespace photonav

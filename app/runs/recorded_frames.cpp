@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "runs/recorded_frames.hpp"
+
+#include <fmt/format.h>
+
+#include "commands/map_config.hpp"
+#include "geometry/constants.hpp"
+#include "result/json_values.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kWaypoints = 6;
+
+std::optional<Recording> recordingOf(const std::string& mapFile) {
+    if (mapFile.empty()) return {};
+    const fs::path file = fs::path(mapFile).parent_path() / "config.yaml";
+    if (!fs::exists(file) || !isMapConfig(file.string())) return {};
+    MapOptions options;
+    readMapConfig(file.string(), options);
+    options.needsDepth = false;  // grey values are compared
+    options.depthScale.reset();
+    return readRecording(options);
+}
+
+/// Waypoints of the path, first and last included.
+std::vector<std::size_t> chosenPoints(const JudgedPath& path) {
+    std::vector<std::size_t> waypoints;
+    for (std::size_t i = 0; i < path.points.size(); ++i) {
+        if (path.points[i].isWaypoint) waypoints.push_back(i);
+    }
+    if (waypoints.size() <= kWaypoints) return waypoints;
+    std::vector<std::size_t> chosen;
+    for (std::size_t k = 0; k < kWaypoints; ++k) {
+        chosen.push_back(waypoints[k * (waypoints.size() - 1) / (kWaypoints - 1)]);
+    }
+    return chosen;
+}
+
+/// Mean depth of a view [m]; 1 where nothing is in view.
+double typicalDepth(const View& view) {
+    double sum = 0.;
+    unsigned count = 0;
+    for (unsigned i = 0; i < view.depth.getSize(); ++i) {
+        if (!(view.depth.bitmap[i] > 0.F)) continue;
+        sum += view.depth.bitmap[i];
+        ++count;
+    }
+    return count > 0 ? sum / count : 1.;
+}
+
+std::size_t nearestFrame(const Sequence& sequence, const Pose& T_c_w, double depth,
+                         NearestFrame& nearest) {
+    double least = kInfinity;
+    std::size_t index = 0;
+    for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
+        const Pose motion = T_c_w * sequence.frames[i].T_c_w.inverse();
+        const double distance = motion.translation().norm();
+        const double angle = Eigen::AngleAxisd(motion.linear()).angle();
+        if (distance / depth + angle >= least) continue;
+        least = distance / depth + angle;
+        index = i;
+        nearest.distance = distance;
+        nearest.angle = angle;
+    }
+    nearest.timestamp = sequence.frames[index].timestamp;
+    return index;
+}
+
+}  // namespace
+
+std::optional<RecordedComparison> compareWithRecording(const Config& config, const World& world,
+                                                       const JudgedPath& path) {
+    const auto recording = recordingOf(config.mapFile);
+    if (!recording) return {};
+    const Sequence& sequence = recording->sequence;
+    RecordedComparison comparison;
+    std::vector<std::vector<CaptionedImage>> rows;
+    View there;
+    View predicted;
+    for (const std::size_t point : chosenPoints(path)) {
+        const BeliefPoint& waypoint = path.points[point];
+        const Pose T_c_w = (waypoint.T_w_b * config.camera.T_b_c()).inverse();
+        world.views().render(sequence.camera, T_c_w, there);
+        NearestFrame nearest;
+        nearest.point = point;
+        const std::size_t index = nearestFrame(sequence, T_c_w, typicalDepth(there), nearest);
+        const RecordedFrame frame = recording->load(index);
+        world.views().render(sequence.camera, frame.T_c_w, predicted);
+        nearest.difference = compareViews(frame.view, predicted);
+        comparison.frames.push_back(nearest);
+        rows.push_back({{fmt::format("predicted on the path at {:.2f} m", waypoint.length),
+                         predictedPicture(there)}});
+        const auto images =
+            comparisonImages(frame.view, predicted,
+                             fmt::format("recorded {:.0f} cm and {:.0f} degrees away",
+                                         100. * nearest.distance, nearest.angle / kDegree));
+        rows.back().insert(rows.back().end(), images.begin(), images.end());
+    }
+    comparison.picture = imagesFigure(rows, 400.).png();
+    return comparison;
+}
+
+nlohmann::json toJson(const RecordedComparison& comparison) {
+    nlohmann::json frames = nlohmann::json::array();
+    for (const NearestFrame& frame : comparison.frames) {
+        frames.push_back({{"waypoint", frame.point},
+                          {"stamp", frame.timestamp},
+                          {"distance_m", frame.distance},
+                          {"angle_deg", frame.angle / kDegree},
+                          {"predicted", frame.difference.predicted},
+                          {"mean_abs_difference", orNull(frame.difference.meanIntensity)}});
+    }
+    return frames;
+}
+
+std::optional<double> meanDifference(const RecordedComparison& comparison) {
+    double sum = 0.;
+    int count = 0;
+    for (const NearestFrame& frame : comparison.frames) {
+        if (!frame.difference.meanIntensity) continue;
+        sum += *frame.difference.meanIntensity;
+        ++count;
+    }
+    return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
+}  // namespace photonav

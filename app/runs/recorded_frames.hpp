@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A plan in a recorded map beside the recorded images near the path.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "drawing/comparison_images.hpp"
+#include "mapping/view_difference.hpp"
+#include "problem/planning_problem.hpp"
+
+namespace photonav {
+
+/// The recorded frame nearest to a waypoint, and how well the map predicts it.
+struct NearestFrame {
+    std::size_t point = 0;      ///< of the path
+    double timestamp = 0.;      ///< of the frame [s]
+    double distance = 0.;       ///< between the two camera centres [m]
+    double angle = 0.;          ///< between the two camera orientations [rad]
+    ViewDifference difference;  ///< of the frame and the view predicted at the frame's own pose
+};
+
+struct RecordedComparison {
+    std::vector<NearestFrame> frames;
+    Png picture;  ///< per waypoint: the view predicted there, the frame, its prediction, difference
+};
+
+/// Looks for the recording of the config's map (config.yaml beside the map file, as `photonav map`
+/// leaves it) and compares a few waypoints spread over the path. All views are those of the
+/// recording's camera. Nearest: least distance by the depth in view plus angle, about how far the
+/// image moves.
+/// @return nothing for a scene, and for a map whose recording is not stated
+/// @throws InputError when it is stated but cannot be read
+std::optional<RecordedComparison> compareWithRecording(const Config& config, const World& world,
+                                                       const JudgedPath& path);
+
+/// [{waypoint, stamp, distance_m, angle_deg, predicted, mean_abs_difference}], the last one null
+/// where nothing is predicted.
+nlohmann::json toJson(const RecordedComparison& comparison);
+
+/// Of all compared frames; none when nothing is predicted in any.
+std::optional<double> meanDifference(const RecordedComparison& comparison);
+
+}  // namespace photonav

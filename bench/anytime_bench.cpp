@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// J over time: the best path of belief_rrt_star, of Algorithm 1 and of OMPL's RRTstar when they are
+// stopped by a clock, on the paper's two scenarios and in a room. Seconds are those of this process
+// (one thread), views included; every planner begins without views.
+// Usage: anytime_bench [seeds = 10] [longest time in seconds = 10]
+#include <fmt/format.h>
+#include <ompl/geometric/PathGeometric.h>
+#include <ompl/geometric/planners/rrt/RRTstar.h>
+#include <ompl/util/Console.h>
+
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "problem/planning_problem.hpp"
+
+namespace {
+
+using namespace photonav;
+namespace ob = ompl::base;
+
+double processSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// Costs of one planner's best paths after each of the times; infinite: none yet.
+using Curve = std::vector<double>;
+
+/// Solves again and again until each of the times; `costOf` judges what there is then.
+template <typename CostOf>
+Curve measure(ob::Planner& planner, const std::vector<double>& times, const CostOf& costOf) {
+    Curve curve;
+    double judging = 0.;  // not counted
+    const double start = processSeconds();
+    const auto used = [&] { return processSeconds() - start - judging; };
+    for (const double time : times) {
+        planner.solve(ob::PlannerTerminationCondition([&] { return used() >= time; }));
+        const double before = processSeconds();
+        curve.push_back(costOf());
+        judging += processSeconds() - before;
+    }
+    return curve;
+}
+
+Curve measureOurs(PlanningProblem& problem, const std::string& name, unsigned seed,
+                  const std::vector<double>& times) {
+    problem.forgetViews();
+    const auto planner = problem.makePlanner(name);
+    planner->params().setParam("seed", std::to_string(seed));
+    planner->params().setParam("max_vertices", "0");
+    planner->params().setParam("max_iterations", "0");
+    return measure(*planner, times, [&] { return planner->bestCost(); });
+}
+
+/// The shortest path that OMPL's RRTstar finds, with the neighbourhood that ours has.
+Curve measureOmpl(PlanningProblem& problem, unsigned seed, const std::vector<double>& times) {
+    ompl::RNG::setSeed(seed);
+    problem.forgetViews();
+    const auto judge = problem.makePlanner("belief_rrt_star");
+    const auto& si = problem.spaceInformation();
+    const ob::ProblemDefinitionPtr definition = problem.definition();
+    ompl::geometric::RRTstar planner(si);
+    planner.setKNearest(false);
+    planner.setRange(0.2 * si->getMaximumExtent());
+    planner.setProblemDefinition(definition);
+    planner.setup();
+    return measure(planner, times, [&] {
+        if (!definition->hasExactSolution()) return kInfinity;
+        auto& path = *definition->getSolutionPath()->as<ompl::geometric::PathGeometric>();
+        return judge->model()
+            .evaluate({path.getStates().begin(), path.getStates().end()})
+            .back()
+            .cost;
+    });
+}
+
+/// Mean over the seeds that have a path, and how many have none.
+void printRow(const std::string& name, const std::vector<Curve>& curves) {
+    fmt::print("| {} |", name);
+    for (std::size_t i = 0; i < curves.front().size(); ++i) {
+        double sum = 0.;
+        std::size_t found = 0;
+        for (const Curve& curve : curves) {
+            if (curve[i] == kInfinity) continue;
+            sum += curve[i];
+            ++found;
+        }
+        const std::size_t without = curves.size() - found;
+        fmt::print(" {}{} |", found > 0 ? fmt::format("{:.4g}", sum / found) : "none",
+                   found > 0 && without > 0 ? fmt::format(" ({} none)", without) : "");
+    }
+    fmt::print("\n");
+    std::fflush(stdout);
+}
+
+void printTable(const std::string& scenario, unsigned seeds, const std::vector<double>& times) {
+    const Config config =
+        loadConfig(fmt::format("{}/config/{}.yaml", PHOTONAV_SOURCE_DIR, scenario));
+    const World world(config);
+    PlanningProblem problem(config, world);
+    fmt::print("\n| {}, {} seeds: J after |", scenario, seeds);
+    for (const double time : times) fmt::print(" {} s |", time);
+    fmt::print("\n|---|");
+    for (std::size_t i = 0; i < times.size(); ++i) fmt::print("---|");
+    fmt::print("\n");
+    for (const std::string name : {"belief_rrt_star", "pa_rrt_star", "OMPL RRTstar"}) {
+        std::vector<Curve> curves;
+        for (unsigned seed = 1; seed <= seeds; ++seed) {
+            curves.push_back(name == "OMPL RRTstar" ? measureOmpl(problem, seed, times)
+                                                    : measureOurs(problem, name, seed, times));
+        }
+        printRow(name, curves);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    ompl::msg::noOutputHandler();
+    const unsigned seeds = argc > 1 ? static_cast<unsigned>(std::stoul(argv[1])) : 10;
+    const double longest = argc > 2 ? std::stod(argv[2]) : 10.;
+    std::vector<double> times;
+    for (const double time : {0.05, 0.1, 0.2, 0.5, 1., 2., 5., 10.}) {
+        if (time <= longest) times.push_back(time);
+    }
+    for (const char* scenario : {"two_textures", "stripes", "room"}) {
+        printTable(scenario, seeds, times);
+    }
+    return 0;
+}

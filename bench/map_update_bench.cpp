@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What it costs per keyframe that everything follows a map that changes, against doing it from
+// scratch: fusion, clearance and the snapshot for views. One thread, cells of 5 cm.
+#include <fmt/format.h>
+
+#include <time.h>
+
+#include <algorithm>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "map/distance_map.hpp"
+#include "map/map_fusion.hpp"
+#include "render/mesh_renderer.hpp"
+#include "render/voxel_snapshots.hpp"
+#include "scene/scene.hpp"
+
+using namespace photonav;
+
+namespace {
+
+constexpr double kCell = 0.05;
+
+struct World {
+    const char* name;
+    Eigen::Vector3d size;  // of the space inside the walls [m]; it begins at the origin
+    Scene scene;
+    std::vector<Eigen::Vector2d> walk;  // corners of a closed route [m]
+};
+
+void addWall(Scene& scene, const Eigen::Vector3d& corner, const Eigen::Vector3d& along,
+             double height, std::size_t texture) {
+    addPlane(scene, corner, along, {0., 0., height}, texture);
+}
+
+/// Floor, ceiling and the four outer walls, all textured.
+World emptyWorld(const char* name, const Eigen::Vector3d& size) {
+    World world{name, size, {}, {}};
+    const auto carpet = addTexture(world.scene, valueNoise({.size = {8., 8.}, .seed = 4}));
+    const double x = size.x(), y = size.y(), z = size.z();
+    addPlane(world.scene, {0., 0., 0.}, {x, 0., 0.}, {0., y, 0.}, carpet);
+    addPlane(world.scene, {0., 0., z}, {x, 0., 0.}, {0., y, 0.}, carpet);
+    addWall(world.scene, {0., 0., 0.}, {x, 0., 0.}, z, carpet);
+    addWall(world.scene, {0., y, 0.}, {x, 0., 0.}, z, carpet);
+    addWall(world.scene, {0., 0., 0.}, {0., y, 0.}, z, carpet);
+    addWall(world.scene, {x, 0., 0.}, {0., y, 0.}, z, carpet);
+    return world;
+}
+
+/// A room with two free-standing walls.
+World makeRoom() {
+    World world = emptyWorld("room 8 x 8 x 3 m", {8., 8., 3.});
+    addWall(world.scene, {4., 2.5, 0.}, {0., 3., 0.}, 2., 0);
+    addWall(world.scene, {2.5, 4., 0.}, {3., 0., 0.}, 1.2, 0);
+    world.walk = {{1.5, 1.5}, {6.5, 1.5}, {6.5, 6.5}, {1.5, 6.5}};
+    return world;
+}
+
+/// Walls across a hall that leave a door alternately on either side.
+World makeLabyrinth() {
+    World world = emptyWorld("labyrinth 27 x 10 x 2.5 m", {27., 10., 2.5});
+    for (int i = 1; i < 9; ++i) {
+        const double y = i % 2 == 0 ? 2. : 0.;
+        addWall(world.scene, {3. * i, y, 0.}, {0., 8., 0.}, 2.5, 0);
+    }
+    for (int i = 0; i < 9; ++i) {
+        world.walk.emplace_back(3. * i + 1.5, i % 2 == 0 ? 1. : 9.);
+        world.walk.emplace_back(3. * i + 1.5, i % 2 == 0 ? 9. : 1.);
+    }
+    return world;
+}
+
+/// Poses every 0.25 m along the route, once forth and once back; the camera looks ahead, somewhat
+/// down, with random deviations.
+std::vector<Pose> posesOf(const World& world) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> uniform(-1., 1.);
+    std::vector<Eigen::Vector2d> route = world.walk;
+    route.insert(route.end(), world.walk.rbegin() + 1, world.walk.rend());
+    std::vector<Pose> poses;
+    for (std::size_t i = 1; i < route.size(); ++i) {
+        const Eigen::Vector2d leg = route[i] - route[i - 1];
+        const double yaw = std::atan2(leg.y(), leg.x());
+        for (double s = 0.; s < leg.norm(); s += 0.25) {
+            const Eigen::Vector2d at = route[i - 1] + s * leg.normalized();
+            Pose T_w_b = Pose::Identity();
+            T_w_b.translation() =
+                Eigen::Vector3d(at.x() + 0.2 * uniform(random), at.y() + 0.2 * uniform(random),
+                                1.2 + 0.3 * uniform(random));
+            T_w_b.linear() =
+                Eigen::AngleAxisd(yaw + 0.6 * uniform(random), Eigen::Vector3d::UnitZ())
+                    .toRotationMatrix();
+            poses.push_back((T_w_b * cameraMount(0.4 + 0.3 * uniform(random))).inverse());
+        }
+    }
+    return poses;
+}
+
+View noisyView(const MeshRenderer& scene, const Camera& camera, const Pose& T_c_w, unsigned seed) {
+    View view;
+    scene.render(camera, T_c_w, view);
+    std::mt19937 random(seed);
+    std::normal_distribution<float> noise(0.F, 1.F);
+    for (unsigned i = 0; i < view.depth.getSize(); ++i) {
+        float& z = view.depth.bitmap[i];
+        view.intensity.bitmap[i] =
+            std::clamp(view.intensity.bitmap[i] + 0.02F * noise(random), 0.F, 1.F);
+        if (z > 0.F) z += 0.002F * z * z * noise(random);
+    }
+    return view;
+}
+
+/// Of the processor, so that other programs on the machine count for little.
+double milliseconds(const auto& work) {
+    const auto now = [] {
+        timespec time;
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+        return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+    };
+    const double begin = now();
+    work();
+    return now() - begin;
+}
+
+double quantile(std::vector<double> values, double q) {
+    std::sort(values.begin(), values.end());
+    return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
+}
+
+void print(const char* what, const std::vector<double>& times) {
+    fmt::print("  {:22} median {:7.2f}   90 % {:7.2f}   most {:7.2f} ms\n", what,
+               quantile(times, 0.5), quantile(times, 0.9), quantile(times, 1.));
+}
+
+/// Times of keyframes [first, last) of a walk.
+struct Times {
+    std::vector<double> fuse, distance, snapshot, total;
+
+    void print(const char* name) const {
+        fmt::print(" {} ({} keyframes)\n", name, total.size());
+        ::print("fuse", fuse);
+        ::print("clearance", distance);
+        ::print("snapshot", snapshot);
+        ::print("together", total);
+    }
+};
+
+void run(const World& world, const Camera& camera) {
+    const MeshRenderer scene(world.scene);
+    const std::vector<Pose> poses = posesOf(world);
+    const Eigen::AlignedBox3d bounds(Eigen::Vector3d::Zero(), world.size);
+    TexturedOcTree map(kCell);
+    DistanceMap distances(map, bounds, {});
+    VoxelSnapshots snapshots(map, UnknownPolicy::occupied);
+    Times forth, back;
+    double bricks = 0.;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const View view = noisyView(scene, camera, poses[i], static_cast<unsigned>(i));
+        Times& times = i < poses.size() / 2 ? forth : back;
+        MapChange change;
+        times.fuse.push_back(milliseconds([&] { change = fuse(map, view, camera, poses[i]); }));
+        times.distance.push_back(milliseconds([&] { distances.update(map, change); }));
+        times.snapshot.push_back(milliseconds([&] { snapshots.update(map, change); }));
+        times.total.push_back(times.fuse.back() + times.distance.back() + times.snapshot.back());
+        bricks += static_cast<double>(change.bricks().size()) / static_cast<double>(poses.size());
+    }
+    fmt::print("\n{}, {} x {} images; {:.0f} bricks change per keyframe\n", world.name,
+               camera.width, camera.height, bricks);
+    forth.print("unknown space, first half");
+    back.print("space seen before, second half");
+    const double distance = milliseconds([&] { DistanceMap(map, bounds, {}); });
+    const double snapshot = milliseconds([&] { VoxelRenderer(map, UnknownPolicy::occupied); });
+    fmt::print(
+        " from scratch: clearance {:.1f} ms, snapshot {:.1f} ms; following takes 1/{:.0f}\n",
+        distance, snapshot,
+        (distance + snapshot) / (quantile(back.distance, 0.5) + quantile(back.snapshot, 0.5)));
+}
+
+}  // namespace
+
+int main() {
+    for (const World& world : {makeRoom(), makeLabyrinth()}) {
+        run(world, makeCamera(188, 120, 1.2));
+        run(world, makeCamera(376, 240, 1.2));
+    }
+}

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "figures/perspective.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace photonav {
+namespace {
+
+constexpr unsigned kPictureWidth = 960, kPictureHeight = 660;
+constexpr Color kShadow{70, 70, 70};
+constexpr double kHeightOfEye = 0.8;    // above the box, over its longer side
+constexpr double kSurfaceMargin = 0.1;  // a path this far behind a surface is hidden [m]
+
+/// Depth of the first surface along a direction, 0 when there is none.
+double depthAlong(const ViewSource& world, const Eigen::Vector3d& eye, bool up) {
+    Pose T_w_c = Pose::Identity();
+    if (!up) T_w_c.linear() = Eigen::Vector3d(1., -1., -1.).asDiagonal();
+    T_w_c.translation() = eye;
+    View view;
+    world.render(makeCamera(3, 3, 0.01), T_w_c.inverse(), view);
+    return view.depth[1][1];
+}
+
+/// Above the corner of least x and y, as high as the ceiling allows.
+Eigen::Vector3d eyeAbove(const ViewSource& world, const Eigen::AlignedBox3d& box) {
+    Eigen::Vector3d eye(box.min().x(), box.min().y(), box.max().z());
+    const double wanted = kHeightOfEye * box.sizes().head<2>().maxCoeff();
+    const double ceiling = depthAlong(world, eye, true);
+    eye.z() += ceiling > 0. ? std::min(wanted, 0.9 * ceiling) : wanted;
+    return eye;
+}
+
+Pose lookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target) {
+    const Eigen::Vector3d z = (target - eye).normalized();
+    const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
+    Pose T_w_c = Pose::Identity();
+    T_w_c.linear() << x, z.cross(x), z;
+    T_w_c.translation() = eye;
+    return T_w_c.inverse();
+}
+
+/// Where a box lies in the image plane at depth 1.
+Eigen::AlignedBox2d projected(const Eigen::AlignedBox3d& box, const Pose& T_c_w) {
+    Eigen::AlignedBox2d image;
+    for (int i = 0; i < 8; ++i) {
+        const Eigen::Vector3d p =
+            T_c_w * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+        if (p.z() > 0.1) image.extend(Eigen::Vector2d(p.head<2>() / p.z()));
+    }
+    return image;
+}
+
+/// T_c_w of a camera at the eye with the box in the middle of its picture.
+Pose lookAtMiddle(const Eigen::Vector3d& eye, const Eigen::AlignedBox3d& box) {
+    Pose T_c_w = lookAt(eye, box.center());
+    for (int i = 0; i < 8; ++i) {
+        const Eigen::Vector3d middle = projected(box, T_c_w).center().homogeneous();
+        T_c_w = lookAt(eye, T_c_w.inverse() * middle);
+    }
+    return T_c_w;
+}
+
+/// The narrowest camera at T_c_w whose image contains the whole box.
+Camera cameraAround(const Eigen::AlignedBox3d& box, const Pose& T_c_w) {
+    const Eigen::AlignedBox2d image = projected(box, T_c_w);
+    const Eigen::Vector2d half = image.min().cwiseAbs().cwiseMax(image.max().cwiseAbs());
+    const double reach = std::max(half.x(), half.y() * kPictureWidth / double{kPictureHeight});
+    return makeCamera(kPictureWidth, kPictureHeight,
+                      2. * std::atan(std::clamp(1.03 * reach, 0.1, 2.)));
+}
+
+/// How bright surfaces are drawn: upright ones darker, by the axis that they face. That is found
+/// from points some pixels away, beyond the steps between cells of a map.
+class Shading {
+  public:
+    Shading(const View& view, const Camera& camera, const Pose& T_c_w)
+        : view_(view), camera_(camera), T_w_c_(T_c_w.inverse()) {}
+
+    float at(unsigned u, unsigned v) const {
+        constexpr unsigned kReach = 4;
+        if (u < kReach || v < kReach || u + kReach >= kPictureWidth || v + kReach >= kPictureHeight)
+            return 1.F;
+        const Eigen::Vector3d down = point(u, v + kReach) - point(u, v - kReach);
+        if (std::abs(down.z()) <= down.head<2>().norm()) return 1.F;
+        const Eigen::Vector3d right = point(u + kReach, v) - point(u - kReach, v);
+        return std::abs(right.x()) > std::abs(right.y()) ? 0.82F : 0.68F;
+    }
+
+  private:
+    Eigen::Vector3d point(unsigned u, unsigned v) const {
+        return T_w_c_ * Eigen::Vector3d(view_.depth[v][u] *
+                                        Eigen::Vector3d((u - camera_.cx()) / camera_.fx(),
+                                                        (v - camera_.cy()) / camera_.fy(), 1.));
+    }
+
+    const View& view_;
+    const Camera& camera_;
+    Pose T_w_c_;
+};
+
+/// Draws world points into the rendered picture.
+class Sketch {
+  public:
+    Sketch(Plot& plot, const ViewSource& world, const View& view, const Camera& camera,
+           const Pose& T_c_w)
+        : plot_(plot), world_(world), view_(view), camera_(camera), T_c_w_(T_c_w) {}
+
+    /// The path, thin where something hides it, and its shadow.
+    void route(const DrawnPath& path) const {
+        Plot::Points shadow, visible, hidden;
+        const auto add = [&](Plot::Points& segments, const Eigen::Vector3d& a,
+                             const Eigen::Vector3d& b) {
+            if ((T_c_w_ * a).z() > 0.1 && (T_c_w_ * b).z() > 0.1)
+                segments.insert(segments.end(), {at(a), at(b)});
+        };
+        for (std::size_t i = 1; i < path.points.size(); ++i) {
+            const Eigen::Vector3d& a = path.points[i - 1].position;
+            const Eigen::Vector3d& b = path.points[i].position;
+            add(shadow, below(a), below(b));
+            add(isVisible(0.5 * (a + b)) ? visible : hidden, a, b);
+        }
+        plot_.segments(shadow, {.color = kShadow, .width = 1.4});
+        plot_.segments(hidden, {.color = path.color, .width = 1.6});
+        plot_.segments(visible, {.color = path.color, .width = 4., .name = path.name});
+    }
+
+    void stem(const Eigen::Vector3d& p, const Color& color) const {
+        plot_.curve({at(p), at(below(p))}, {.color = kShadow, .width = 1.4});
+        plot_.marker(at(p), color, "");
+    }
+
+  private:
+    Eigen::Vector2d pixel(const Eigen::Vector3d& p_w) const {
+        const Eigen::Vector3d p = T_c_w_ * p_w;
+        return {camera_.cx() + camera_.fx() * p.x() / p.z(),
+                camera_.cy() + camera_.fy() * p.y() / p.z()};
+    }
+
+    /// y is upward in plots.
+    Plot::Point at(const Eigen::Vector3d& p_w) const {
+        const Eigen::Vector2d p = pixel(p_w);
+        return {p.x(), kPictureHeight - p.y()};
+    }
+
+    bool isVisible(const Eigen::Vector3d& p_w) const {
+        const Eigen::Vector2d p = pixel(p_w).array().round();
+        if (p.x() < 0. || p.y() < 0. || p.x() >= kPictureWidth || p.y() >= kPictureHeight)
+            return true;
+        const float depth = view_.depth[static_cast<unsigned>(p.y())][static_cast<unsigned>(p.x())];
+        return depth <= 0.F || (T_c_w_ * p_w).z() < depth + kSurfaceMargin;
+    }
+
+    Eigen::Vector3d below(const Eigen::Vector3d& p_w) const {
+        return p_w - depthAlong(world_, p_w, false) * Eigen::Vector3d::UnitZ();
+    }
+
+    Plot& plot_;
+    const ViewSource& world_;
+    const View& view_;
+    const Camera& camera_;
+    const Pose& T_c_w_;
+};
+
+Picture shaded(const View& view, const Shading& shading) {
+    Picture picture{{}, kPictureWidth};
+    for (unsigned i = 0; i < view.intensity.getSize(); ++i) {
+        const float grey = std::clamp(view.intensity.bitmap[i], 0.F, 1.F) *
+                           shading.at(i % kPictureWidth, i / kPictureWidth);
+        picture.pixels.push_back(view.depth.bitmap[i] > 0.F ? greyColor((70. + 170. * grey) / 255.)
+                                                            : kWhite);
+    }
+    return picture;
+}
+
+}  // namespace
+
+Figure perspectiveFigure(const ViewSource& world, const Perspective& perspective) {
+    const Eigen::AlignedBox3d& box = perspective.box;
+    const Pose T_c_w = lookAtMiddle(eyeAbove(world, box), box);
+    const Camera camera = cameraAround(box, T_c_w);
+    View view;
+    world.render(camera, T_c_w, view);
+    Plot plot = Plot::image(shaded(view, {view, camera, T_c_w}), kPictureWidth, true);
+    const Sketch sketch(plot, world, view, camera, T_c_w);
+    for (auto path = perspective.paths.rbegin(); path != perspective.paths.rend(); ++path) {
+        sketch.route(*path);
+        if (path->points.empty()) continue;
+        sketch.stem(path->points.front().position, path->color);
+        sketch.stem(path->points.back().position, path->color);
+    }
+    return {perspective.title, {{plot}}};
+}
+
+}  // namespace photonav

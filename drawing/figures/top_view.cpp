@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "figures/top_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace photonav {
+namespace {
+
+constexpr double kSigmas = 3.;  // size of the ellipses
+constexpr Color kStart{22, 128, 57}, kGoal{160, 28, 92};
+
+/// The background is lightened, so that lines are distinct on it.
+Picture lightened(const ImageF& background) {
+    Picture picture{{}, static_cast<int>(background.getWidth())};
+    for (unsigned i = 0; i < background.getSize(); ++i)
+        picture.pixels.push_back(
+            greyColor((110. + 140. * std::clamp(background.bitmap[i], 0.F, 1.F)) / 255.));
+    return picture;
+}
+
+void addTree(Plot& plot, const DrawnTree& tree) {
+    Plot::Points ends;
+    for (const Edge& edge : tree.edges)
+        for (const Eigen::Vector3f& end : edge) ends.emplace_back(end.head<2>().cast<double>());
+    const double sparse = std::clamp(60. / static_cast<double>(tree.edges.size()), 0.25, 0.8);
+    plot.segments(ends, {.color = tree.color,
+                         .width = tree.isOnTop ? 1.3 : 1.,
+                         .opacity = tree.isOnTop ? 0.6 : sparse,
+                         .name = tree.name});
+}
+
+/// About twenty along the path, with its ends: more hide each other.
+void addEllipses(Plot& plot, const DrawnPath& path, double scale, const std::string& name) {
+    if (path.points.empty()) return;
+    const double length = path.points.back().distance;
+    std::vector<Plot::Points> outlines;
+    double next = 0.;
+    for (const PathPoint& point : path.points) {
+        if (point.distance < next) continue;
+        outlines.push_back(ellipse(point.position.head<2>(),
+                                   point.positionCovariance.topLeftCorner<2, 2>(),
+                                   kSigmas * scale));
+        next = std::min(point.distance + length / 20., std::max(length, point.distance + 1e-9));
+    }
+    plot.fill(outlines, {.color = path.color, .opacity = 0.22, .name = name});
+    for (const Plot::Points& outline : outlines)
+        plot.curve(outline, {.color = path.color, .width = 1.2});
+}
+
+/// Wider than each path on top of it that runs along it, so that none hides another. White on both
+/// sides sets a path off, except from one that runs below.
+void addRoute(Plot& plot, const TopView& view, std::size_t index) {
+    const DrawnPath& path = view.paths[index];
+    const double tolerance = 0.004 * view.area.sizes().maxCoeff();
+    double width = 3.6;
+    for (std::size_t i = 0; i < index; ++i)
+        if (runsAlong(path, view.paths[i], tolerance)) width += 4.;
+    const bool isLowest =
+        std::none_of(view.paths.begin() + static_cast<long>(index) + 1, view.paths.end(),
+                     [&](const DrawnPath& below) { return runsAlong(below, path, tolerance); });
+    Plot::Points route;
+    for (const PathPoint& point : path.points) route.emplace_back(point.position.head<2>());
+    plot.curve(
+        route,
+        {.color = path.color, .width = width, .name = path.name, .halo = isLowest ? 1.2 : 0.});
+}
+
+Plot mapOf(const TopView& view, double side) {
+    Plot plot = Plot::map(view.area, side);
+    if (view.background.getSize() > 0) plot.picture(lightened(view.background), view.area, true);
+    for (const DrawnTree& tree : view.trees)
+        if (!tree.isOnTop) addTree(plot, tree);
+    if (view.ellipseScale > 0.) {
+        const std::string name = view.ellipseScale == 1.
+                                     ? "3σ of the position"
+                                     : fmt::format("3σ of the position, {:g}×", view.ellipseScale);
+        for (const DrawnPath& path : view.paths) addEllipses(plot, path, view.ellipseScale, name);
+    }
+    for (std::size_t i = view.paths.size(); i-- > 0;) addRoute(plot, view, i);
+    for (const DrawnTree& tree : view.trees)
+        if (tree.isOnTop) addTree(plot, tree);
+    plot.marker(view.start.head<2>(), kStart, "start");
+    plot.marker(view.goal.head<2>(), kGoal, view.goalName);
+    return plot;
+}
+
+}  // namespace
+
+Figure topViewFigure(const TopView& view) {
+    return {view.title, {{mapOf(view, 820.)}}, Figure::Legend::right};
+}
+
+Figure mapsFigure(const std::vector<std::vector<TopView>>& rows) {
+    Figure figure{.legend = Figure::Legend::none};
+    for (const auto& row : rows) {
+        auto& plots = figure.rows.emplace_back();
+        for (TopView view : row) {
+            view.ellipseScale = 0.;
+            Plot& plot = plots.emplace_back(mapOf(view, 420.));
+            plot.title = view.title;
+            if (&row != &rows.back()) plot.x.label.clear();
+            if (plots.size() > 1) plot.y.label.clear();
+        }
+    }
+    return figure;
+}
+
+}  // namespace photonav

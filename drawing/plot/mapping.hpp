@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From the units of a plot's axes to pixels.
+#pragma once
+
+#include "plot/painter.hpp"
+#include "plot/plot.hpp"
+
+namespace photonav {
+
+struct Mapping {
+    Frame frame;
+    Axis x, y;
+
+    Point at(const Point& p) const {
+        return {frame.x + frame.width * x.fraction(p.x()),
+                frame.bottom() - frame.height * y.fraction(p.y())};
+    }
+    std::vector<Point> at(const std::vector<Point>& points) const {
+        std::vector<Point> pixels;
+        pixels.reserve(points.size());
+        for (const Point& p : points) pixels.push_back(at(p));
+        return pixels;
+    }
+    Frame at(const Eigen::AlignedBox2d& box) const {
+        const Point low = at(Point(box.min())), high = at(Point(box.max()));
+        return {low.x(), high.y(), high.x() - low.x(), low.y() - high.y()};
+    }
+};
+
+}  // namespace photonav

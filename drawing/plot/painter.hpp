@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The few strokes that figures are made of, in pixels (y downward), on a surface of cairo.
+#pragma once
+
+#include <cairo.h>
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plot/color.hpp"
+#include "plot/picture.hpp"
+
+namespace photonav {
+
+using Point = Eigen::Vector2d;
+
+/// A rectangle in pixels.
+struct Frame {
+    double x = 0., y = 0., width = 0., height = 0.;
+    double right() const { return x + width; }
+    double bottom() const { return y + height; }
+};
+
+enum class Align { left, center, right };
+
+struct Font {
+    double size = 15.;  ///< [px]
+    Color color = kInk;
+    bool upward = false;  ///< reads from below to above
+};
+
+using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
+
+/// Appends to a std::string: cairo's way to write files into memory.
+cairo_status_t appendTo(void* text, const unsigned char* bytes, unsigned count);
+
+class Painter {
+  public:
+    explicit Painter(cairo_surface_t* surface) : cairo_(cairo_create(surface), &cairo_destroy) {}
+
+    /// Lines through the points; one that is not finite leaves a gap.
+    void line(const std::vector<Point>& points, const Color& color, double width,
+              bool dashed = false);
+    void fill(const std::vector<Point>& outline, const Color& color);
+    void disc(const Point& center, double diameter, const Color& color);
+    void box(const Frame& frame, const Color& color);
+    void outline(const Frame& frame, const Color& color, double width);
+    /// Diagonal lines that meet those of the boxes beside it.
+    void hatching(const Frame& frame, const Color& color, double width);
+    /// A picture stretched over a frame.
+    void picture(const Picture& picture, const Frame& frame, bool smooth);
+
+    /// One line of text; `at` is on its base line.
+    void text(const std::string& content, const Point& at, Align align, const Font& font = {});
+    double textWidth(const std::string& content, double size = Font{}.size);
+
+    /// What `draw` draws lets through what is below it, where its parts overlap as well as
+    /// elsewhere.
+    void translucent(double opacity, const std::function<void()>& draw);
+    /// Only what `draw` draws inside the frame remains.
+    void clipped(const Frame& frame, const std::function<void()>& draw);
+
+  private:
+    void setColor(const Color& color);
+    void setFont(double size);
+
+    std::unique_ptr<cairo_t, decltype(&cairo_destroy)> cairo_;
+};
+
+}  // namespace photonav

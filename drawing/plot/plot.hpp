@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A panel of a figure: a frame with two axes and what is drawn in it.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "plot/axis.hpp"
+#include "plot/color.hpp"
+#include "plot/picture.hpp"
+
+namespace photonav {
+
+class Painter;
+struct Frame;
+struct Mapping;
+
+struct Style {
+    Color color = kInk;
+    double width = 2.;      ///< of a line; the diameter of a dot [px]
+    double opacity = 1.;    ///< of all of a mark, where it covers itself as well
+    std::string name = {};  ///< in the legend; marks of the same name share an entry
+    bool dashed = false;
+    double halo = 0.;  ///< white on both sides [px]
+};
+
+/// Marks are drawn in the order of the calls. Coordinates are in the units of the axes; infinite
+/// ones are at the border of the frame, and NaN leaves a gap.
+class Plot {
+  public:
+    using Point = Eigen::Vector2d;
+    using Points = std::vector<Point>;
+
+    std::string title = {};
+    Axis x = {}, y = {};
+    double width = 860., height = 260.;  ///< of the frame [px]
+    bool hasAxes = true;
+
+    /// A map of an area in metres, at the same scale in x and y.
+    /// @param side of the longer side [px]
+    /// @throws std::invalid_argument if the area is empty
+    static Plot map(const Eigen::AlignedBox2d& area, double side);
+
+    /// A picture alone.
+    /// @param width of the frame [px]; its height follows
+    static Plot image(Picture picture, double width, bool smooth = false);
+
+    void curve(Points points, Style style);
+    void dots(Points points, Style style);
+    /// Lines between the points 0 and 1, 2 and 3, ...
+    void segments(const Points& ends, Style style);
+    void fill(std::vector<Points> outlines, Style style);
+    /// The area between two curves of as many points.
+    void band(const Points& low, const Points& high, Style style);
+    /// Dots set off by white: places.
+    void marker(const Point& at, const Color& color, const std::string& name);
+    void picture(Picture picture, const Eigen::AlignedBox2d& box, bool smooth);
+    void hatched(std::vector<Eigen::AlignedBox2d> boxes, const std::string& name);
+    /// A scale of viridis on the right of the frame.
+    void colorBar(const Axis& scale) { bar_ = {scale}; }
+
+  private:
+    friend class FigureLayout;
+
+    struct LegendEntry {
+        std::string name;
+        std::function<void(Painter&, const Frame&)> draw;
+    };
+
+    void add(const Points& points, const Style& style,
+             std::function<void(Painter&, const Mapping&)> draw,
+             std::function<void(Painter&, const Frame&)> drawSample);
+
+    std::vector<std::function<void(Painter&, const Mapping&)>> marks_;
+    std::vector<LegendEntry> legend_;
+    std::vector<double> xs_, ys_;  ///< all coordinates, for the limits of the axes
+    std::vector<Axis> bar_;        ///< none or one
+};
+
+/// Outline of the ellipse in which `sigmas` standard deviations of a point lie.
+Plot::Points ellipse(const Plot::Point& mean, const Eigen::Matrix2d& covariance, double sigmas);
+
+}  // namespace photonav

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config/config.hpp"
+
+#include <filesystem>
+
+#include "config/config_keys.hpp"
+#include "geometry/constants.hpp"
+#include "map/octree_file.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+namespace {
+
+/// The value of an override. A path is what was typed, whatever YAML makes of ' #' and ': ', unless
+/// it is quoted; then made absolute.
+YAML::Node overrideValue(const KeyTable& keys, const std::string& path, const std::string& text) {
+    if (text.empty()) return YAML::Node("");
+    try {
+        const bool isQuoted = text.front() == '"' || text.front() == '\'';
+        const ConfigKey* key = keys.find(path);
+        if (key == nullptr || !key->isFile) return YAML::Load(text);
+        const auto file = isQuoted ? YAML::Load(text).as<std::string>() : text;
+        return YAML::Node(file.empty() ? file : fs::absolute(file).string());
+    } catch (const YAML::Exception&) {
+        throw InputError("--set", path, "cannot read the value '" + text + "'");
+    }
+}
+
+/// Sets node[a][b] = value for the override "a.b=value".
+void applyOverride(const KeyTable& keys, const YAML::Node& root, const std::string& text) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0) {
+        throw InputError("--set", text, "expected key.path=value");
+    }
+    const std::string path = text.substr(0, equals);
+    const YAML::Node value = overrideValue(keys, path, text.substr(equals + 1));
+    YAML::Node node = root;
+    for (std::size_t begin = 0; begin <= path.size();) {
+        const std::size_t end = std::min(path.find('.', begin), path.size());
+        const std::string key = path.substr(begin, end - begin);
+        if (!node.IsMap() && !node.IsNull()) throw InputError("--set", path, "no such key");
+        if (end == path.size()) {
+            node[key] = value;
+        } else if (!node[key].IsDefined()) {
+            node[key] = YAML::Node(YAML::NodeType::Map);
+        }
+        node.reset(YAML::Node(node[key]));
+        begin = end + 1;
+    }
+}
+
+/// Files that other commands write are often given in place of a planning problem.
+void checkThatIsProblem(const std::string& file) {
+    if (isOcTreeFile(file)) {
+        throw InputError(file, "",
+                         "is a map, not a planning problem: name it as map.file in a config "
+                         "(photonav info shows what it holds)");
+    }
+}
+
+void checkSource(YamlMap& root) {
+    for (const char* key : {"dataset", "scans"}) {
+        if (!root.has(key)) continue;
+        root.fail(key, "this is the config of a map or a replay, not of a planning problem");
+    }
+}
+
+}  // namespace
+
+Camera CameraConfig::camera() const { return makeCamera(width, height, hfov * kDegree); }
+
+Pose CameraConfig::T_b_c() const { return cameraMount(mountDegrees(mount).value() * kDegree); }
+
+BeliefOptions defaultBelief() {
+    BeliefOptions belief;
+    belief.initialCovariance.diagonal() << 1e-2, 1e-2, 1e-2, 1e-5, 1e-5, 1e-4;
+    belief.motionNoise.diagonal() << 1e-4, 1e-4, 1e-4, 4.5e-6, 4.5e-6, 1.35e-4;
+    return belief;
+}
+
+Config loadConfig(const std::string& file, const std::vector<std::string>& overrides) {
+    checkThatIsProblem(file);
+    Config config;
+    config.file = file;
+    const KeyTable keys = keysOf(config);
+    const YAML::Node node = loadYaml(file);
+    for (const auto& text : overrides) applyOverride(keys, node, text);
+    YamlMap root(file, node);
+    checkSource(root);
+    keys.read(root);
+    return config;
+}
+
+std::string toYaml(const Config& config) {
+    Config copy = config;
+    return keysOf(copy).toYaml();
+}
+
+}  // namespace photonav

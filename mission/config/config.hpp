@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A planning problem: the home of every default that a YAML file can override.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "belief/belief.hpp"
+#include "config/fly_config.hpp"
+#include "config/sweep_config.hpp"
+#include "geometry/camera.hpp"
+#include "map/textured_octree.hpp"
+#include "photometry/photometric.hpp"
+#include "planners/belief_rrt_star.hpp"
+
+namespace photonav {
+
+/// [x, y, z] or [x, y, z, yaw] in the world [m, rad].
+struct Place {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    std::optional<double> yaw;
+};
+
+struct CameraConfig {
+    std::string mount = "down";  ///< down, front45, forward, or degrees below the horizon
+    double hfov = 70.;           ///< horizontal field of view [degrees]
+    unsigned width = 188;
+    unsigned height = 120;
+
+    Camera camera() const;
+    Pose T_b_c() const;
+};
+
+/// The planner's model of a view's information. Paths are judged by the photometric information,
+/// whatever the planner's model is.
+struct ViewModelConfig {
+    std::string name = "photometric";  ///< one of viewModelNames()
+    FeatureOptions features;
+    double mapPriorSigma = 1.;  ///< MapUncertaintyOptions::priorSigma
+    double kappa = 2.5;         ///< metres of detour that 1 m of flight at a penalty of 1 is worth
+};
+
+/// BeliefOptions with the variances of a small robot.
+BeliefOptions defaultBelief();
+
+struct Config {
+    std::string file;  ///< where this was read from
+
+    std::string sceneFile;  ///< procedural scene (.yaml) or mesh; absolute. Either this
+    std::string mapFile;    ///< or a textured OctoMap (.ot, .bt); absolute
+    std::string mapMadeBy;  ///< the command that makes it, shown where it is missing
+    UnknownPolicy unknownToPlanner = UnknownPolicy::occupied;
+    UnknownPolicy unknownToCamera = UnknownPolicy::free;
+
+    Eigen::AlignedBox3d bounds;
+    StateKind space = StateKind::position;
+    Place start;
+    Place goal;
+    double robotRadius = 0.2;           ///< [m]
+    double clearanceResolution = 0.05;  ///< cells that a scene is sampled into for clearance [m]
+
+    CameraConfig camera;
+    PhotometricOptions photometric;
+    BeliefOptions belief = defaultBelief();
+    InformationField::Options field;
+
+    std::string planner = "belief_rrt_star";
+    ViewModelConfig viewModel;
+    unsigned vertices = 2500;
+    SearchOptions search;  ///< of belief_rrt_star
+    GrowthOptions growth;
+    double rotationWeight = 0.25;  ///< metres that a radian of rotation counts
+    bool compareWithRrtStar = true;
+    SweepConfig sweep;
+    FlyConfig fly;
+
+    std::uint32_t seed = 1;
+};
+
+/// Names that `planner.name` accepts.
+const std::vector<std::string>& plannerNames();
+
+/// Names that `planner.information` accepts: information about the pose (photometric,
+/// feature_reprojection, none), or a penalty in its place (feature_count, map_uncertainty).
+const std::vector<std::string>& viewModelNames();
+
+/// Reads a config and applies overrides "key.path=value" on top. Paths in the file are relative to
+/// the file, paths in overrides to the working directory.
+/// @throws InputError naming file, key and reason for anything unknown, missing or out of range
+Config loadConfig(const std::string& file, const std::vector<std::string>& overrides = {});
+
+/// The complete config, defaults filled in, as YAML that loadConfig() reads back.
+std::string toYaml(const Config& config);
+
+}  // namespace photonav

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config/config_keys.hpp"
+
+#include <fmt/format.h>
+
+#include "geometry/constants.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr double kTiny = 1e-6;
+
+Place readPlace(YamlMap& root, const std::string& key, const Eigen::AlignedBox3d& bounds) {
+    if (!root.has(key)) root.fail(key, "missing");
+    std::vector<double> numbers;
+    root.readNumbers(key, numbers, 3, 4);
+    Place place{Eigen::Vector3d(numbers[0], numbers[1], numbers[2]), std::nullopt};
+    if (numbers.size() == 4) place.yaw = numbers[3];
+    if (!bounds.contains(place.position)) root.fail(key, "outside the bounds");
+    return place;
+}
+
+Eigen::AlignedBox3d readBounds(YamlMap& root) {
+    if (!root.has("bounds")) root.fail("bounds", "missing");
+    std::vector<std::vector<double>> corners;
+    root.read("bounds", corners);
+    if (corners.size() != 2 || corners[0].size() != 3 || corners[1].size() != 3) {
+        root.fail("bounds", "expected [[x, y, z], [x, y, z]]");
+    }
+    const Eigen::AlignedBox3d box(Eigen::Vector3d(corners[0].data()),
+                                  Eigen::Vector3d(corners[1].data()));
+    if (!box.min().allFinite() || !box.max().allFinite()) {
+        root.fail("bounds", "not a finite number");
+    }
+    if (box.isEmpty()) root.fail("bounds", "the first corner must be the lower one");
+    if (box.sizes().isZero(0.)) root.fail("bounds", "a point leaves nothing to plan");
+    return box;
+}
+
+YAML::Node nodeOf(const Place& place) {
+    std::vector<double> numbers(place.position.data(), place.position.data() + 3);
+    if (place.yaw) numbers.push_back(*place.yaw);
+    return yamlList(numbers);
+}
+
+YAML::Node nodeOf(const Eigen::AlignedBox3d& box) {
+    YAML::Node corners(YAML::NodeType::Sequence);
+    for (const Eigen::Vector3d& corner : {box.min(), box.max()}) {
+        corners.push_back(yamlList(std::vector<double>(corner.data(), corner.data() + 3)));
+    }
+    corners.SetStyle(YAML::EmitterStyle::Flow);
+    return corners;
+}
+
+/// The state space by name; "auto" follows start and goal.
+StateKind readSpace(YamlMap& root, const Config& config) {
+    static const std::vector<std::string> kSpaces{"auto", "xyz", "xyz_yaw", "se3"};
+    std::string space = "auto";
+    root.readChoice("space", space, kSpaces);
+    if (space == "auto") space = config.start.yaw || config.goal.yaw ? "xyz_yaw" : "xyz";
+    if (space == "xyz" && config.goal.yaw) {
+        root.fail("goal", "a heading at the goal needs space xyz_yaw (xyz keeps the start's)");
+    }
+    if (space == "xyz") return StateKind::position;
+    return space == "xyz_yaw" ? StateKind::positionYaw : StateKind::se3;
+}
+
+void addWorld(KeyTable& keys, Config& c) {
+    static const std::vector<std::string> kUnknown{"free", "occupied"};
+    keys.beginSection("scene");
+    keys.file({"file", "", "procedural scene (`.yaml`) or mesh; either this or `map.file`"},
+              c.sceneFile);
+    keys.beginSection("map");
+    keys.file({"file", "", "OctoMap (`.ot`, `.bt`)"}, c.mapFile);
+    keys.text({"made_by", "", "the command that makes the map, shown where the file is missing"},
+              c.mapMadeBy);
+    keys.choice({"unknown", "", "how the planner treats cells that no ray has visited"},
+                c.unknownToPlanner, kUnknown);
+    keys.choice({"unknown_to_camera", "", "how predicted views treat them"}, c.unknownToCamera,
+                kUnknown);
+    keys.beginSection("");
+    keys.add({.words = {"bounds", "m", "lower and upper corner; equal heights plan at one height"},
+              .allowed = "`[[x, y, z], [x, y, z]]`",
+              .read =
+                  [&c](YamlMap& root) {
+                      if (c.sceneFile.empty() == c.mapFile.empty()) {
+                          root.fail("scene.file", "give either scene.file or map.file");
+                      }
+                      c.bounds = readBounds(root);
+                  },
+              .value = [&c] { return c.bounds.isEmpty() ? YAML::Node() : nodeOf(c.bounds); }});
+}
+
+void addFlight(KeyTable& keys, Config& c) {
+    const auto place = [&](const KeyWords& words, Place& value) {
+        keys.add(
+            {.words = words,
+             .allowed = "`[x, y, z]`, `[x, y, z, heading]`",
+             .read = [&c, &value, name = words.name](
+                         YamlMap& root) { value = readPlace(root, name, c.bounds); },
+             .value = [&c, &value] { return c.bounds.isEmpty() ? YAML::Node() : nodeOf(value); }});
+    };
+    place({"start", "m, rad", "position, heading of the body"}, c.start);
+    place({"goal", "m, rad",
+           "position and heading; without heading, in a space that has one, any will do"},
+          c.goal);
+    keys.add({.words = {"space", "",
+                        "`xyz` (the heading stays the start's), `xyz_yaw`, `se3`; `auto`: "
+                        "`xyz_yaw` if start or goal has a heading, else `xyz`"},
+              .allowed = "auto, xyz, xyz_yaw, se3",
+              .read = [&c](YamlMap& root) { c.space = readSpace(root, c); },
+              .value =
+                  [&c] {
+                      static const std::vector<std::string> kNames{"xyz", "xyz_yaw", "se3"};
+                      return YAML::Node(c.bounds.isEmpty()
+                                            ? "auto"
+                                            : kNames.at(static_cast<std::size_t>(c.space)));
+                  }});
+    keys.count({"seed", "", "of all random numbers"}, c.seed, {1., 4294967295.});
+    keys.beginSection("robot");
+    keys.number({"radius", "m", "of the sphere that must stay free"}, c.robotRadius,
+                {0., kInfinity});
+    keys.number(
+        {"clearance_resolution", "m", "cells that a scene is sampled into to measure clearance"},
+        c.clearanceResolution, {1e-3, 10.});
+}
+
+void addCamera(KeyTable& keys, Config& c) {
+    keys.beginSection("camera");
+    keys.add({.words = {"mount", "degrees", "direction of the camera below the horizon"},
+              .allowed = "down, front45, forward, -90 to 90",
+              .read =
+                  [&c](YamlMap& map) {
+                      map.read("mount", c.camera.mount);
+                      if (mountDegrees(c.camera.mount)) return;
+                      map.fail("mount", "'" + c.camera.mount +
+                                            "' is not down, front45, forward or degrees below the "
+                                            "horizon");
+                  },
+              .value = [&c] { return YAML::Node(c.camera.mount); }});
+    keys.count({"width", "pixels", "of the predicted views"}, c.camera.width, {8., 8192.});
+    keys.count({"height", "pixels", "of the predicted views"}, c.camera.height, {8., 8192.});
+    keys.number({"hfov", "degrees", "horizontal field of view"}, c.camera.hfov, {1., 170.});
+    keys.number(
+        {"sigma", "grey value", "standard deviation of the image noise, grey values in [0, 1]"},
+        c.photometric.sigma, {kTiny, 1.});
+    keys.number({"information_scale", "",
+                 "factor on the information: neighbouring pixels are not independent"},
+                c.photometric.scale, {0., kInfinity});
+    keys.count({"stride", "pixels", "use every n-th row and column"}, c.photometric.stride,
+               {1., 64.});
+}
+
+void addNoise(KeyTable& keys, Config& c) {
+    keys.beginSection("noise");
+    keys.variances({"initial", "m^2, rad^2", "variances at the start"}, c.belief.initialCovariance);
+    keys.variances({"motion", "m^2, rad^2 per m",
+                    "variances added per metre flown ([which metre](planner.md#with-a-heading))"},
+                   c.belief.motionNoise);
+    keys.choice({"propagation", "", "order of the compounding"}, c.belief.order,
+                {"second", "fourth"});
+    keys.beginSection("features");
+    keys.number({"threshold", "grey value",
+                 "contrast of a corner; for `feature_reprojection` and `feature_count`"},
+                c.viewModel.features.threshold, {1. / 255., 1.});
+    keys.number({"pixel_sigma", "pixels", "standard deviation of a tracked corner"},
+                c.viewModel.features.pixelSigma, {kTiny, kInfinity});
+    keys.number({"reference_count", "corners", "that halve the penalty of a view"},
+                c.viewModel.features.referenceCount, {kTiny, kInfinity});
+}
+
+/// What the planner optimises.
+void addObjective(KeyTable& keys, Config& c) {
+    keys.beginSection("planner");
+    keys.choice({"name", "", "[planners](planner.md)"}, c.planner, plannerNames());
+    keys.choice({"information", "", "the information model of a view"}, c.viewModel.name,
+                viewModelNames());
+    keys.number({"alpha", "", "1: the shortest path, 0: the most certain one"}, c.belief.alpha,
+                {0., 1.});
+    keys.number(
+        {"kappa", "1/m", "metres of detour that 1 m of flight at tr(Sigma) = 1 m^2 is worth"},
+        c.belief.kappa, {0., kInfinity});
+    keys.number({"ds", "m", "longest distance flown between views"}, c.belief.ds,
+                {1e-3, kInfinity});
+    keys.flag({"view_at_start", "", "plans count the view from the start, which a flight takes"},
+              c.belief.viewAtStart);
+    keys.choice({"cost", "", "by the metre flown, or per vertex (the paper's)"}, c.belief.cost,
+                {"integral", "per_vertex"});
+    keys.number({"characteristic_length", "m", "weighs rad^2 against m^2 in the trace"},
+                c.belief.characteristicLength, {0., kInfinity});
+    keys.number({"rotation_weight", "m/rad",
+                 "turning by 1 rad costs as much as flying so many metres "
+                 "([with a heading](planner.md#with-a-heading))"},
+                c.rotationWeight, {0., kInfinity});
+    keys.number(
+        {"penalty_kappa", "", "replaces `planner.kappa` for `feature_count` and `map_uncertainty`"},
+        c.viewModel.kappa, {0., kInfinity});
+    keys.number({"map_prior_sigma", "",
+                 "standard deviation of log depth before the first view (`map_uncertainty`)"},
+                c.viewModel.mapPriorSigma, {0., kInfinity});
+    keys.number({"view_pitch", "m", "edge of a cell of the grid of views, see below"},
+                c.field.positionPitch, {kTiny, kInfinity});
+    keys.number({"view_rotation_pitch", "rad", "the same of its rotations"}, c.field.rotationPitch,
+                {kTiny, 3.2});
+}
+
+/// How it searches.
+void addSearch(KeyTable& keys, Config& c) {
+    keys.count({"vertices", "", "of the tree or roadmap"}, c.vertices, {2., 1e8});
+    keys.count({"labels", "", "beliefs kept per vertex (`belief_rrt_star`)"}, c.search.labels,
+               {1., 1e6});
+    keys.flag(
+        {"informed", "", "refuse most samples where no better path can pass (`belief_rrt_star`)"},
+        c.search.informed);
+    keys.count({"shortcut", "", "changes tried by the descent; 0: none (`belief_rrt_star`)"},
+               c.search.shortcut, {0., 1e9});
+    keys.number({"range", "m", "longest motion added; 0: a fifth of the space's extent"},
+                c.growth.range, {0., kInfinity});
+    keys.number({"goal_bias", "", "share of samples drawn at the goal until it is reached"},
+                c.growth.goalBias, {1e-4, 1.});
+    keys.number({"rewire_factor", "", "on the connection radius of RRT*"}, c.growth.rewireFactor,
+                {kTiny, kInfinity});
+    keys.flag({"compare_with_rrt_star", "", "`plan` also runs RRT*"}, c.compareWithRrtStar);
+}
+
+}  // namespace
+
+/// Degrees below the horizon of a mount name or number; nothing when it is neither.
+std::optional<double> mountDegrees(const std::string& mount) {
+    if (mount == "down") return 90.;
+    if (mount == "front45") return 45.;
+    if (mount == "forward") return 0.;
+    try {
+        std::size_t used = 0;
+        const double degrees = std::stod(mount, &used);
+        if (used == mount.size() && degrees >= -90. && degrees <= 90.) return degrees;
+    } catch (const std::exception&) {
+    }
+    return std::nullopt;
+}
+
+const std::vector<std::string>& plannerNames() {
+    static const std::vector<std::string> names{"belief_rrt_star", "pa_rrt_star", "rrbt",
+                                                "rrt_star"};
+    return names;
+}
+
+const std::vector<std::string>& viewModelNames() {
+    static const std::vector<std::string> names{"photometric", "feature_reprojection", "none",
+                                                "feature_count", "map_uncertainty"};
+    return names;
+}
+
+KeyTable keysOf(Config& config) {
+    KeyTable keys;
+    addWorld(keys, config);
+    addFlight(keys, config);
+    addCamera(keys, config);
+    addNoise(keys, config);
+    addObjective(keys, config);
+    addSearch(keys, config);
+    addKeys(keys, config.sweep);
+    addKeys(keys, config.fly);
+    return keys;
+}
+
+}  // namespace photonav

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config/key_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+namespace photonav {
+namespace fs = std::filesystem;
+namespace {
+
+std::string textOf(Range range) {
+    if (range.least == 0. && std::isinf(range.most)) return ">= 0";
+    if (std::isinf(range.least)) return "";
+    if (std::isinf(range.most)) return fmt::format(">= {}", range.least);
+    return fmt::format("{} to {}", range.least, range.most);
+}
+
+/// For a cell of a Markdown table.
+std::string quoted(const std::string& value) {
+    return value.empty() ? value : fmt::format("`{}`", value);
+}
+
+std::string valueText(const ConfigKey& key) {
+    const YAML::Node value = key.value();
+    if (value.IsNull() || (value.IsScalar() && value.Scalar().empty())) return "";
+    return YAML::Dump(value);
+}
+
+}  // namespace
+
+YAML::Node yamlNumber(double value) { return YAML::Node(fmt::format("{}", value)); }
+
+YAML::Node yamlList(const std::vector<double>& numbers) {
+    YAML::Node list(YAML::NodeType::Sequence);
+    for (const double number : numbers) list.push_back(yamlNumber(number));
+    list.SetStyle(YAML::EmitterStyle::Flow);
+    return list;
+}
+
+YAML::Node yamlList(const std::vector<std::string>& words) {
+    YAML::Node list(words);
+    list.SetStyle(YAML::EmitterStyle::Flow);
+    return list;
+}
+
+std::string resolvedPath(const std::string& path, const std::string& file) {
+    if (path.empty() || fs::path(path).is_absolute()) return path;
+    const fs::path folder = file.empty() ? fs::current_path() : fs::absolute(file).parent_path();
+    return fs::weakly_canonical(folder / path).string();
+}
+
+std::string ConfigKey::path() const {
+    return section.empty() ? words.name : section + "." + words.name;
+}
+
+std::string ConfigKey::description() const {
+    std::string text = words.meaning;
+    std::erase(text, '`');
+    if (!words.unit.empty()) text += fmt::format(" [{}]", words.unit);
+    const std::string present = valueText(*this);
+    return present.empty() ? text : fmt::format("{} (default: {})", text, present);
+}
+
+void ConfigKey::set(const std::string& text) const {
+    YAML::Node node(YAML::NodeType::Map);
+    try {
+        node[words.name] = isFile ? YAML::Node(text) : YAML::Load(text);
+    } catch (const YAML::Exception&) {
+        throw InputError("", "", "cannot read the value '" + text + "'");
+    }
+    YamlMap map("", node);
+    read(map);
+}
+
+void KeyTable::number(const KeyWords& words, double& value, Range range) {
+    add({.words = words,
+         .allowed = textOf(range),
+         .read = [&value, range, name = words.name](
+                     YamlMap& map) { map.readNumber(name, value, range.least, range.most); },
+         .value = [&value] { return yamlNumber(value); }});
+}
+
+void KeyTable::number(const KeyWords& words, std::optional<double>& value, Range range) {
+    add({.words = words,
+         .allowed = textOf(range),
+         .read =
+             [&value, range, name = words.name](YamlMap& map) {
+                 double number = value.value_or(range.least);
+                 map.readNumber(name, number, range.least, range.most);
+                 if (map.has(name)) value = number;
+             },
+         .value = [&value] { return value ? yamlNumber(*value) : YAML::Node(); }});
+}
+
+void KeyTable::flag(const KeyWords& words, bool& value) {
+    add({.words = words,
+         .allowed = "true, false",
+         .read = [&value, name = words.name](YamlMap& map) { map.read(name, value); },
+         .value = [&value] { return YAML::Node(value); }});
+}
+
+void KeyTable::text(const KeyWords& words, std::string& value) {
+    add({.words = words,
+         .read = [&value, name = words.name](YamlMap& map) { map.read(name, value); },
+         .value = [&value] { return value.empty() ? YAML::Node() : YAML::Node(value); }});
+}
+
+void KeyTable::file(const KeyWords& words, std::string& value) {
+    add({.words = words,
+         .isFile = true,
+         .read =
+             [&value, name = words.name](YamlMap& map) {
+                 map.read(name, value);
+                 if (map.has(name)) value = resolvedPath(value, map.file());
+             },
+         .value =
+             [&value] {
+                 return value.empty() ? YAML::Node()
+                                      : YAML::Node(fs::absolute(value).lexically_normal().string());
+             }});
+}
+
+void KeyTable::requiredFile(const KeyWords& words, std::string& value) {
+    file(words, value);
+    keys_.back().read = [read = keys_.back().read, name = words.name](YamlMap& map) {
+        if (!map.has(name)) map.fail(name, "missing");
+        read(map);
+    };
+}
+
+void KeyTable::choice(const KeyWords& words, std::string& value,
+                      const std::vector<std::string>& choices) {
+    add({.words = words,
+         .allowed = fmt::format("{}", fmt::join(choices, ", ")),
+         .read =
+             [&value, choices, name = words.name](YamlMap& map) {
+                 if (map.has(name) || !value.empty()) map.readChoice(name, value, choices);
+             },
+         .value = [&value] { return value.empty() ? YAML::Node() : YAML::Node(value); }});
+}
+
+void KeyTable::variances(const KeyWords& words, Matrix6& value) {
+    add({.words = words,
+         .allowed = ">= 0",
+         .read =
+             [&value, name = words.name](YamlMap& map) {
+                 Vector6 variances = value.diagonal();
+                 map.readVector<6>(name, variances);
+                 if ((variances.array() < 0.).any()) map.fail(name, "negative variance");
+                 value = variances.asDiagonal();
+             },
+         .value =
+             [&value] {
+                 const Vector6 d = value.diagonal();
+                 return yamlList(std::vector<double>(d.data(), d.data() + 6));
+             }});
+}
+
+void KeyTable::addCount(const KeyWords& words, Range range,
+                        std::function<std::optional<double>()> get,
+                        std::function<void(double)> set) {
+    add({.words = words,
+         .allowed = textOf(range),
+         .read =
+             [=, name = words.name](YamlMap& map) {
+                 double number = get().value_or(range.least);
+                 map.readNumber(name, number, range.least, range.most);
+                 if (number != std::floor(number)) map.fail(name, "not a whole number");
+                 if (map.has(name)) set(number);
+             },
+         .value =
+             [get] {
+                 const std::optional<double> number = get();
+                 return number ? yamlNumber(*number) : YAML::Node();
+             }});
+}
+
+void KeyTable::addNamed(const KeyWords& words, const std::vector<std::string>& names,
+                        std::function<std::size_t()> get, std::function<void(std::size_t)> set) {
+    add({.words = words,
+         .allowed = fmt::format("{}", fmt::join(names, ", ")),
+         .read =
+             [=, name = words.name](YamlMap& map) {
+                 std::string chosen = names.at(get());
+                 map.readChoice(name, chosen, names);
+                 set(static_cast<std::size_t>(std::find(names.begin(), names.end(), chosen) -
+                                              names.begin()));
+             },
+         .value = [=] { return YAML::Node(names.at(get())); }});
+}
+
+void KeyTable::add(ConfigKey key) {
+    key.section = section_;
+    keys_.push_back(std::move(key));
+}
+
+const ConfigKey* KeyTable::find(const std::string& path) const {
+    const auto key = std::ranges::find(keys_, path, &ConfigKey::path);
+    return key == keys_.end() ? nullptr : &*key;
+}
+
+void KeyTable::read(YamlMap& root) const {
+    std::map<std::string, YamlMap> sections;
+    for (const ConfigKey& key : keys_) {
+        if (key.section.empty()) {
+            key.read(root);
+        } else {
+            auto section = sections.find(key.section);
+            if (section == sections.end()) {
+                section = sections.emplace(key.section, root.map(key.section)).first;
+            }
+            key.read(section->second);
+        }
+    }
+    for (const auto& [name, section] : sections) section.finish();
+    root.finish();
+}
+
+void KeyTable::read(const std::string& file) const {
+    YamlMap root(file, loadYaml(file));
+    read(root);
+}
+
+std::string KeyTable::toYaml() const {
+    YAML::Node root(YAML::NodeType::Map);
+    for (const ConfigKey& key : keys_) {
+        const YAML::Node value = key.value();
+        if (value.IsNull()) continue;
+        if (key.section.empty()) {
+            root[key.words.name] = value;
+        } else {
+            root[key.section][key.words.name] = value;
+        }
+    }
+    return YAML::Dump(root) + "\n";
+}
+
+std::string KeyTable::toMarkdown(const std::vector<std::string>& names) const {
+    for (const std::string& name : names) {
+        const bool isKnown = std::ranges::any_of(
+            keys_, [&](const ConfigKey& key) { return key.section == name || key.path() == name; });
+        if (!isKnown) throw InputError(name, "", "is neither a key nor a section of a config");
+    }
+    std::string text = "| key | default | unit | values | |\n|---|---|---|---|---|\n";
+    for (const ConfigKey& key : keys_) {
+        const bool isAsked = std::ranges::any_of(names, [&](const std::string& name) {
+            return key.section == name || key.path() == name;
+        });
+        if (!isAsked && !names.empty()) continue;
+        text += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path(), quoted(valueText(key)),
+                            key.words.unit, key.allowed, key.words.meaning);
+    }
+    return text;
+}
+
+}  // namespace photonav

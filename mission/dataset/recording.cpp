@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <sstream>
+
+#include "dataset/stereo_recording.hpp"
+#include "evaluation/averages.hpp"
+#include "io/error.hpp"
+#include "recording/floor_plane.hpp"
+#include "recording/sequence_euroc.hpp"
+#include "recording/sequence_tum.hpp"
+#include "recording/trajectory.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kFloorFrames = 30;
+constexpr unsigned kFloorColumns = 32;
+
+std::optional<std::size_t> parseIndex(const std::string& text) {
+    std::size_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return {};
+    return value;
+}
+
+/// What the depth images show below the camera, from frames spread over the recording.
+struct Seen {
+    std::vector<Eigen::Vector3d> points;  ///< in the recorded world
+    std::vector<double> depths;           ///< of the same
+};
+
+Seen pointsBelow(const Recording& recording, const Eigen::Vector3d& roughUp) {
+    const Sequence& sequence = recording.sequence;
+    const Camera& camera = sequence.camera;
+    const unsigned stride = std::max(1U, camera.width / kFloorColumns);
+    const std::size_t step = 1 + (sequence.frames.size() - 1) / kFloorFrames;
+    Seen seen;
+    for (std::size_t i = 0; i < sequence.frames.size(); i += step) {
+        if (!sequence.frames[i].hasPose) continue;
+        const RecordedFrame frame = recording.load(i);
+        const Pose T_w_c = frame.T_c_w.inverse();
+        for (unsigned v = stride / 2; v < camera.height; v += stride) {
+            for (unsigned u = stride / 2; u < camera.width; u += stride) {
+                const double z = frame.view.depth[v][u];
+                if (!(z > 0.)) continue;
+                const Eigen::Vector3d p = z * Eigen::Vector3d((u - camera.cx()) / camera.fx(),
+                                                              (v - camera.cy()) / camera.fy(), 1.);
+                if ((T_w_c.linear() * p).dot(roughUp) > 0.) continue;
+                seen.points.push_back(T_w_c * p);
+                seen.depths.push_back(z);
+            }
+        }
+    }
+    return seen;
+}
+
+Eigen::Vector3d upByFloor(const Recording& recording) {
+    if (!recording.sequence.hasDepth()) {
+        throw InputError("--up", "floor", "the recording has no depth images to find it in");
+    }
+    if (std::ranges::none_of(recording.sequence.frames, &Sequence::Entry::hasPose)) {
+        throw InputError("--up", "", "the recording has no true poses to turn");
+    }
+    Eigen::Vector3d roughUp = Eigen::Vector3d::Zero();  // the upper edge of the images
+    for (const auto& frame : recording.sequence.frames) {
+        if (!frame.hasPose) continue;
+        roughUp -= frame.T_c_w.linear().row(1).transpose();
+    }
+    const Seen seen = pointsBelow(recording, roughUp.normalized());
+    std::optional<Eigen::Vector3d> up;
+    if (!seen.points.empty() && roughUp.norm() > 1e-9) {
+        FloorOptions options;
+        options.tolerance = 0.01 * median(seen.depths, 0.);
+        up = floorNormal(seen.points, roughUp.normalized(), options);
+    }
+    if (!up) {
+        throw InputError("--up", "floor",
+                         "no floor to be seen toward the lower edge of the images; of a camera "
+                         "that looks straight down give the direction x,y,z");
+    }
+    return *up;
+}
+
+void checkDepthImages(const RecordingOptions& options) {
+    const fs::path folder = options.dataset;
+    if (!options.needsDepth || !fs::exists(folder / "rgb.txt")) return;
+    for (const char* list : {"depth.txt", "assoc.txt", "associations.txt"}) {
+        if (fs::exists(folder / list)) return;
+    }
+    throw InputError((folder / "depth.txt").string(), "",
+                     "no such file; without depth images there is `map --depth monocular`, and "
+                     "`replay --map`");
+}
+
+void checkReading(const RecordingOptions& options) {
+    const auto require = [](bool good, const char* option, const std::string& reason) {
+        if (!good) throw InputError(option, "", reason);
+    };
+    require(options.every >= 1, "--every", "must be at least 1");
+    const auto isPositive = [](double x) { return std::isfinite(x) && x > 0.; };
+    require(isPositive(options.tolerance), "--tolerance", "must be above 0");
+    require(isPositive(options.depthScale.value_or(1.)), "--depth-scale", "must be above 0");
+    require(parseUp(options.up) || options.up == "floor", "--up",
+            fmt::format("'{}' is not one of {}, nor x,y,z, nor floor", options.up,
+                        fmt::join(axisNames(), ", ")));
+    require(options.stereo.empty() || options.stereo == "bm" || options.stereo == "sgbm",
+            "--stereo", fmt::format("'{}' is not one of bm, sgbm", options.stereo));
+}
+
+/// All frames of a dataset with depth images, in the recorded world.
+Recording readDepthRecording(const RecordingOptions& options) {
+    if (!options.stereo.empty()) {
+        throw InputError("--stereo", "", "is for EuRoC recordings: this one has depth images");
+    }
+    checkDepthImages(options);
+    TumOptions tum;
+    tum.tolerance = options.tolerance;
+    tum.depthScale = options.depthScale;
+    tum.cameraFile = options.cameraFile;
+    tum.forgiving = options.forgiving;
+    tum.needsDepth = options.needsDepth;
+    Recording recording;
+    recording.layout = "TUM RGB-D";
+    recording.sequence = readTumSequence(options.dataset, tum);
+    if (recording.sequence.cameraAssumed) recording.note = "the benchmark's Kinect was assumed";
+    if (options.depthScale && !recording.sequence.hasDepth()) {
+        throw InputError("--depth-scale", "", "the recording has no depth images");
+    }
+    recording.view = [all = recording.sequence](std::size_t i) { return loadFrame(all, i).view; };
+    return recording;
+}
+
+/// Only these frames, with their images.
+void keepFrames(Recording& recording, const std::vector<std::size_t>& indices) {
+    std::vector<Sequence::Entry> kept;
+    kept.reserve(indices.size());
+    for (const std::size_t i : indices) kept.push_back(recording.sequence.frames[i]);
+    recording.sequence.frames = std::move(kept);
+    recording.view = [all = recording.view, indices](std::size_t i) { return all(indices.at(i)); };
+}
+
+void skipWithoutPose(const RecordingOptions& options, Recording& recording) {
+    std::vector<std::size_t> posed;
+    const auto& frames = recording.sequence.frames;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (frames[i].hasPose) {
+            posed.push_back(i);
+        } else {
+            recording.sequence.skipped.push_back(
+                {frames[i].colourFile, fmt::format("no pose within {} s", options.tolerance)});
+        }
+    }
+    if (posed.empty()) throw InputError(options.dataset, "", "no poses of the camera");
+    keepFrames(recording, posed);
+}
+
+}  // namespace
+
+void requirePlausibleDepth(double median, const RecordingOptions& options,
+                           const std::string& cameraFile) {
+    constexpr double kLeast = 0.05, kMost = 100., kUsual = 2.;  // [m]
+    if (median >= kLeast && median <= kMost) return;
+    const bool isOfFile = !options.depthScale && !cameraFile.empty();
+    throw InputError(isOfFile ? cameraFile : options.dataset,
+                     isOfFile ? "depth_scale" : "--depth-scale",
+                     fmt::format("implausible depths: their median is {:.3g} m; the scale seems "
+                                 "{} by a factor of about {:.0e}",
+                                 median, median > 1. ? "too small" : "too large",
+                                 std::max(median / kUsual, kUsual / median)));
+}
+
+std::optional<Eigen::Vector3d> parseUp(const std::string& text) {
+    const auto& axes = axisNames();
+    if (std::find(axes.begin(), axes.end(), text) != axes.end()) {
+        return worldUpRotation(text).transpose() * Eigen::Vector3d::UnitZ();
+    }
+    std::istringstream stream(text);
+    Eigen::Vector3d up;
+    char comma = ',';
+    stream >> up.x() >> comma;
+    if (comma == ',') stream >> up.y() >> comma;
+    if (comma == ',') stream >> up.z();
+    if (!stream || !(stream >> std::ws).eof() || !(up.norm() > 1e-9)) return {};
+    return up.normalized();
+}
+
+std::pair<std::size_t, std::size_t> parseFrames(const std::string& text, std::size_t count) {
+    if (text.empty()) return {0, count};
+    const auto colon = text.find(':');
+    const std::string before = text.substr(0, colon);
+    const std::string after = colon == std::string::npos ? "" : text.substr(colon + 1);
+    const auto first = before.empty() ? 0 : parseIndex(before);
+    const auto end = after.empty() ? count : parseIndex(after);
+    if (colon == std::string::npos || !first || !end) {
+        throw InputError("--frames", "", fmt::format("'{}' is not a range first:end", text));
+    }
+    if (*first >= std::min(*end, count)) {
+        throw InputError("--frames", "", fmt::format("'{}' leaves none of {} frames", text, count));
+    }
+    return {*first, std::min(*end, count)};
+}
+
+Recording readRecording(const RecordingOptions& options) {
+    checkReading(options);
+    Recording recording =
+        isEurocFolder(options.dataset) ? readStereoRecording(options) : readDepthRecording(options);
+    if (!options.forgiving) skipWithoutPose(options, recording);
+    const auto given = parseUp(options.up);
+    recording.up = given ? *given : upByFloor(recording);
+    Pose T_recorded_w = Pose::Identity();
+    T_recorded_w.linear() = worldUpRotation(recording.up).transpose();
+    auto& frames = recording.sequence.frames;
+    const auto [first, end] = parseFrames(options.frames, frames.size());
+    std::vector<std::size_t> used;
+    for (std::size_t i = first; i < end; i += std::size_t(options.every)) used.push_back(i);
+    keepFrames(recording, used);
+    for (Sequence::Entry& frame : frames) {
+        if (frame.hasPose) frame.T_c_w = frame.T_c_w * T_recorded_w;
+    }
+    return recording;
+}
+
+std::string upText(const Eigen::Vector3d& up) {
+    for (const std::string& name : axisNames()) {
+        if (up == *parseUp(name)) return name;
+    }
+    return fmt::format("{:.17g},{:.17g},{:.17g}", up.x(), up.y(), up.z());
+}
+
+double tiltDegrees(const Eigen::Vector3d& up) {
+    return std::acos(std::min(1., up.cwiseAbs().maxCoeff())) * 180. / std::numbers::pi;
+}
+
+}  // namespace photonav

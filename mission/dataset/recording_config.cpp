@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/recording_config.hpp"
+
+#include "geometry/constants.hpp"
+
+namespace photonav {
+
+void addKeys(KeyTable& keys, RecordingOptions& options) {
+    keys.requiredFile({"dataset", "", "folder in the TUM RGB-D or the EuRoC layout"},
+                      options.dataset);
+    keys.file({"camera", "", "camera file instead of the dataset's"}, options.cameraFile);
+    keys.text({"up", "", "upward direction of the recorded world: x ... -z, \"x,y,z\" or floor"},
+              options.up);
+    keys.count({"every", "", "use every n-th frame"}, options.every, {1., 1e9});
+    keys.number({"tolerance", "s", "largest difference of timestamps"}, options.tolerance,
+                {1e-9, kInfinity});
+    keys.number({"depth_scale", "1/m", "depth image value of one metre; none: the dataset's"},
+                options.depthScale, {1e-6, kInfinity});
+    keys.text({"frames", "", "\"a:b\": only the frames from a on and before b"}, options.frames);
+    keys.choice({"stereo", "", "block matching or semi-global matching, of EuRoC recordings"},
+                options.stereo, {"bm", "sgbm"});
+}
+
+}  // namespace photonav

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/flight.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "geometry/constants.hpp"
+#include "geometry/gaussian.hpp"
+#include "geometry/se3.hpp"
+
+namespace photonav {
+namespace {
+
+UncertainPose beliefAtStart(const std::vector<PlannedView>& plan, const FlightWorld& world,
+                            const FlightOptions& options) {
+    return {(plan.front().T_w_b * world.T_b_c).inverse(), options.initialCovariance};
+}
+
+/// Body pose drawn from the belief.
+Pose drawStart(const UncertainPose& start, const Pose& T_b_c, std::uint64_t seed) {
+    std::mt19937_64 random(seedFor(seed, 0));
+    const Pose T_c_w = expSE3(draw(rootOf(start.covariance), random)) * start.mean;
+    return T_c_w.inverse() * T_b_c.inverse();
+}
+
+TrackerOptions trackerOptions(const FlightWorld& world, const FlightOptions& options) {
+    TrackerOptions tracker;
+    tracker.map = options.alignment;
+    tracker.searchPrior = true;
+    tracker.loss = options.loss;
+    tracker.T_b_c = world.T_b_c;
+    return tracker;
+}
+
+PilotOptions pilotOptions(const FlightOptions& options) {
+    PilotOptions pilot = options.pilot;
+    pilot.photometric = options.alignment.photometric;
+    return pilot;
+}
+
+/// Compares a flight with the truth as it goes on.
+class Judge {
+  public:
+    Judge(const FlightWorld& world, const FlightOptions& options, const PlannedView& goal,
+          const SimulatedRobot& robot)
+        : world_(world),
+          options_(options),
+          goal_(goal),
+          robot_(robot),
+          timeLimit_(60. + options.timePerMetre * goal.distance),
+          before_w_(robot.T_w_b().translation()) {
+        result_.leastClearance = kInfinity;
+    }
+
+    void onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker,
+                const Pilot& pilot);
+    /// Whether the flight has ended, and how.
+    bool hasEnded(const Tracker& tracker, const Pilot& pilot);
+    FlightResult finish(const Tracker& tracker, FlightEnd end);
+
+    FlightEnd end() const { return end_; }
+
+  private:
+    double goalError() const {
+        return (robot_.T_w_b().translation() - goal_.T_w_b.translation()).norm();
+    }
+    bool endAs(FlightEnd end) {
+        end_ = end;
+        return true;
+    }
+
+    const FlightWorld& world_;
+    const FlightOptions& options_;
+    PlannedView goal_;
+    const SimulatedRobot& robot_;
+    double timeLimit_;
+    Eigen::Vector3d before_w_;
+    FlightEnd end_ = FlightEnd::stopped;
+    FlightResult result_;
+};
+
+void Judge::onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker,
+                   const Pilot& pilot) {
+    const Eigen::Vector3d p_w = robot_.T_w_b().translation();
+    result_.way += (p_w - std::exchange(before_w_, p_w)).norm();
+    result_.leastClearance = std::min(result_.leastClearance, world_.clearance(p_w));
+    if (robot_.exposed()) {
+        const UncertainPose belief = tracker.belief();
+        result_.samples.push_back(
+            {robot_.time(), pilot.route().progress(belief.mean), robot_.T_c_w(), belief});
+    }
+    for (const TrackedFrame& frame : tracked) {
+        ++result_.images;
+        result_.rejectedImages += frame.lost;
+        const auto sample =
+            std::find_if(result_.samples.rbegin(), result_.samples.rend(),
+                         [&](const FlightSample& s) { return s.time == frame.time; });
+        sample->belief = frame.T_c_w;
+        sample->distance = pilot.route().progress(frame.T_c_w.mean);
+    }
+    if (pilot.hasServoedOnImage() && !std::exchange(result_.photometric, true)) {
+        result_.goalErrorBefore = goalError();
+    }
+}
+
+bool Judge::hasEnded(const Tracker& tracker, const Pilot& pilot) {
+    const double time = robot_.time();
+    if (result_.leastClearance < options_.bodyRadius) return endAs(FlightEnd::collided);
+    if (pilot.hasGivenUp(tracker, time)) return endAs(FlightEnd::lost);
+    if (time > timeLimit_) return endAs(FlightEnd::outOfTime);
+    if (!pilot.hasArrived(tracker, time)) return false;
+    return endAs(goalError() <= options_.arrivalTolerance ? FlightEnd::arrived : FlightEnd::astray);
+}
+
+FlightResult Judge::finish(const Tracker& tracker, FlightEnd end) {
+    result_.end = end;
+    result_.duration = robot_.time();
+    result_.lost = tracker.loss().lostTime(robot_.time());
+    result_.timesLost = tracker.loss().timesLost();
+    result_.goalError = goalError();
+    return std::move(result_);
+}
+
+}  // namespace
+
+std::string nameOf(FlightEnd end) {
+    switch (end) {
+        case FlightEnd::arrived:
+            return "arrived";
+        case FlightEnd::astray:
+            return "astray";
+        case FlightEnd::collided:
+            return "collided";
+        case FlightEnd::lost:
+            return "lost";
+        case FlightEnd::outOfTime:
+            return "out of time";
+        case FlightEnd::stopped:
+            break;
+    }
+    return "stopped";
+}
+
+FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
+                 const FlightOptions& options, const std::function<bool()>& isStopped,
+                 const OnExposure& onExposure) {
+    Pilot pilot(plan, world.map, world.camera, world.T_b_c, pilotOptions(options));
+    const UncertainPose start = beliefAtStart(plan, world, options);
+    SimulatedRobot robot(world.truth, world.camera, world.T_b_c,
+                         drawStart(start, world.T_b_c, options.seed), world.noise, options.robot,
+                         options.seed);
+    Tracker tracker(world.map, robot.camera(), start, trackerOptions(world, options));
+    Judge judge(world, options, plan.back(), robot);
+    BodyVelocity command;
+    for (double seconds = 0.;; seconds = options.timeStep) {
+        const Observation observation = robot.fly(command, seconds);
+        const std::vector<TrackedFrame> tracked = tracker.update(observation);
+        for (std::size_t i = 0; i < tracked.size(); ++i) {
+            pilot.observe(tracker, tracked[i], observation.frames[i].view.intensity);
+        }
+        judge.onStep(tracked, tracker, pilot);
+        if (onExposure && robot.exposed()) onExposure(*robot.exposed());
+        if (isStopped && isStopped()) return judge.finish(tracker, FlightEnd::stopped);
+        if (judge.hasEnded(tracker, pilot)) return judge.finish(tracker, judge.end());
+        command = pilot.command(tracker, observation.time, options.timeStep);
+    }
+}
+
+}  // namespace photonav

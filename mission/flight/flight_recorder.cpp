@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/flight_recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <system_error>
+#include <vector>
+
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
+#include "recording/image_file.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr double kDepthScale = 5000.;  // the benchmark's
+
+std::string pngOf(const cv::Mat& pixels) {
+    std::vector<unsigned char> bytes;
+    cv::imencode(".png", pixels, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9});
+    return {bytes.begin(), bytes.end()};
+}
+
+cv::Mat wrapped(const ImageF& image) {
+    return {static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_32FC1,
+            image.bitmap};
+}
+
+std::string depthPng(const ImageF& depth) {
+    cv::Mat pixels = wrapped(depth) * kDepthScale;
+    pixels.setTo(0., pixels >= 65535.5);  // more than 16 bits hold
+    pixels.convertTo(pixels, CV_16U);
+    return pngOf(pixels);
+}
+
+void makeFolder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw InputError(folder.string(), "", "cannot be made: " + error.message());
+}
+
+}  // namespace
+
+FlightRecorder::FlightRecorder(const std::filesystem::path& folder, const Camera& camera,
+                               double informationScale)
+    : folder_(folder),
+      pairs_("# timestamp colour timestamp depth\n"),
+      poses_("# timestamp tx ty tz qx qy qz qw (true, camera to world)\n") {
+    for (const char* name : {"rgb", "depth"}) makeFolder(folder_ / name);
+    writeFileAtomically(
+        folder_ / "camera.yaml",
+        fmt::format("width: {}\nheight: {}\nfx: {}\nfy: {}\ncx: {}\ncy: {}\ndepth_scale: {}\n"
+                    "information_scale: {}\n",
+                    camera.width, camera.height, camera.fx(), camera.fy(), camera.cx(), camera.cy(),
+                    kDepthScale, informationScale));
+}
+
+void FlightRecorder::add(const Exposed& exposed) {
+    const std::string stamp = fmt::format("{:.6f}", exposed.time);
+    const std::string colourFile = "rgb/" + stamp + ".png";
+    const std::string depthFile = "depth/" + stamp + ".png";
+    writeFileAtomically(folder_ / colourFile, greyPng(exposed.image));
+    writeFileAtomically(folder_ / depthFile, depthPng(exposed.depth));
+    colour_ += stamp + " " + colourFile + "\n";
+    depth_ += stamp + " " + depthFile + "\n";
+    pairs_ += stamp + " " + colourFile + " " + stamp + " " + depthFile + "\n";
+    const Pose T_w_c = exposed.T_c_w.inverse();
+    const Eigen::Quaterniond q(T_w_c.linear());
+    const Eigen::Vector3d& p = T_w_c.translation();
+    poses_ += fmt::format("{} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", stamp, p.x(),
+                          p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+    ++frames_;
+}
+
+void FlightRecorder::finish() const {
+    writeFileAtomically(folder_ / "rgb.txt", colour_);
+    writeFileAtomically(folder_ / "depth.txt", depth_);
+    writeFileAtomically(folder_ / "assoc.txt", pairs_);
+    writeFileAtomically(folder_ / "groundtruth.txt", poses_);
+}
+
+}  // namespace photonav

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "problem/planning_problem.hpp"
+
+#include <fmt/format.h>
+#include <ompl/base/goals/GoalState.h>
+#include <ompl/base/goals/GoalStates.h>
+#include <ompl/geometric/PathGeometric.h>
+
+#include <numbers>
+
+#include "geometry/se3.hpp"
+#include "io/error.hpp"
+#include "io/stopwatch.hpp"
+#include "planners/belief_rrt_star.hpp"
+#include "planners/perception_rrt_star.hpp"
+#include "planners/rrbt.hpp"
+#include "problem/tree_evolution.hpp"
+
+namespace photonav {
+namespace ob = ompl::base;
+namespace {
+
+constexpr int kFreeHeadings = 8;               // goals offered where the goal has no yaw
+constexpr std::size_t kProgressInterval = 50;  // vertices
+constexpr double kShowInterval = 0.5;          // of progress without new vertices [s]
+constexpr std::size_t kMostSamples = 200;      // per vertex asked for: most are in vain, give up
+
+/// The answer may come from an earlier tree than the one audited.
+void includePath(Audit& audit, double stored, double replayed) {
+    const double error = std::abs(stored - replayed) / (1. + replayed);
+    if (!(error <= audit.maxCostError)) audit.maxCostError = error;
+}
+
+std::vector<const ob::State*> solutionOf(const BeliefPlanner& planner) {
+    const auto path = planner.getProblemDefinition()->getSolutionPath();
+    const auto& states = path->as<ompl::geometric::PathGeometric>()->getStates();
+    return {states.begin(), states.end()};
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> JudgedPath::fromAbove() const {
+    std::vector<Eigen::Vector2d> positions;
+    positions.reserve(points.size());
+    for (const BeliefPoint& point : points) {
+        positions.emplace_back(point.T_w_b.translation().head<2>());
+    }
+    return positions;
+}
+
+PlanningProblem::PlanningProblem(const Config& config, const World& world)
+    : config_(config),
+      world_(world),
+      space_(config.space, config.bounds, config.rotationWeight, config.start.yaw.value_or(0.)),
+      si_(makeSpaceInformation(
+          space_, [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
+          config.robotRadius)),
+      field_(makeField("photometric")),
+      plannersField_(config.viewModel.name == "photometric" ? field_
+                                                            : makeField(config.viewModel.name)),
+      judge_(makeModel(field_, config.planner == "rrt_star" ? 1. : config.belief.alpha)) {}
+
+PlanningProblem::PlanningProblem(const PlanningProblem& other, double alpha)
+    : config_([&] {
+          Config config = other.config_;
+          config.belief.alpha = alpha;
+          return config;
+      }()),
+      world_(other.world_),
+      space_(other.space_),
+      si_(other.si_),
+      field_(other.field_),
+      plannersField_(other.plannersField_),
+      judge_(makeModel(field_, alpha)) {}
+
+void PlanningProblem::checkPlaces() const {
+    checkPlace("start", config_.start);
+    checkPlace("goal", config_.goal);
+}
+
+bool PlanningProblem::isFlyable(const Eigen::Vector3d& p_w) const {
+    return world_.clearance(p_w) > config_.robotRadius;
+}
+
+void PlanningProblem::checkPlace(const std::string& key, const Place& place) const {
+    if (isFlyable(place.position)) return;
+    throw InputError(config_.file, key,
+                     fmt::format("in collision: clearance {:.3f} m, robot.radius {} m",
+                                 world_.clearance(place.position), config_.robotRadius));
+}
+
+std::string PlanningProblem::statusOf(const PlanOutcome& outcome) const {
+    return outcome.path ? "done" : reasonForNoPath(outcome.vertices, outcome.iterations);
+}
+
+std::string PlanningProblem::reasonForNoPath(std::size_t vertices, std::size_t iterations) const {
+    if (vertices >= config_.vertices) {
+        return fmt::format("no path: the goal was not reached by {} vertices", vertices);
+    }
+    return fmt::format("no path: {} vertices after {} samples, then given up", vertices,
+                       iterations);
+}
+
+PlanOutcome PlanningProblem::solve(const std::string& name, const std::atomic<bool>& interrupted,
+                                   const std::function<void(const PlanProgress&)>& onProgress) {
+    const Stopwatch watch;
+    const auto planner = makePlanner(name);
+    const BeliefModel& model = planner->model();
+    PlanOutcome outcome;
+    const auto progress = [&] {
+        return PlanProgress{planner->vertices(), watch.seconds(), planner->bestCost(),
+                            model.field().views()};
+    };
+    double shown = 0.;  // [s]
+    const auto show = [&](const PlanProgress& now) {
+        shown = now.seconds;
+        if (onProgress) onProgress(now);
+    };
+    std::size_t next = kProgressInterval;
+    const auto isDone = [&] {
+        if (planner->vertices() >= next) {
+            show(outcome.progress.emplace_back(progress()));
+            next = planner->vertices() + kProgressInterval;
+        } else if (watch.seconds() > shown + kShowInterval) {  // in the last search and descent
+            show(progress());
+        }
+        return interrupted.load();
+    };
+    planner->solve(ob::PlannerTerminationCondition(isDone));
+    show(outcome.progress.emplace_back(progress()));
+
+    outcome.alpha = model.options().alpha;
+    outcome.vertices = planner->vertices();
+    outcome.iterations = planner->iterations();
+    outcome.views = model.field().views();
+    outcome.cacheHits = model.field().cacheHits();
+    outcome.fallbacks = model.fallbacks();
+    outcome.planSeconds = watch.seconds();
+    outcome.viewSeconds = model.field().seconds();
+    outcome.beliefSeconds = model.seconds();
+    outcome.tree = drawnEdges(*planner);
+    outcome.audit = auditTree(*planner);
+    if (planner->getProblemDefinition()->hasExactSolution()) {
+        outcome.path = judge(*planner);
+        outcome.plannerCost = planner->bestCost();
+        const double replayed = planner->model().evaluate(solutionOf(*planner)).back().cost;
+        includePath(outcome.audit, outcome.plannerCost, replayed);
+    }
+    return outcome;
+}
+
+std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& name) const {
+    GrowthOptions growth = config_.growth;
+    growth.seed = config_.seed;
+    growth.maxVertices = config_.vertices;
+    growth.maxIterations = kMostSamples * config_.vertices;
+    const auto model = makeModel(plannersField_, name == "rrt_star" ? 1. : config_.belief.alpha);
+    std::shared_ptr<BeliefPlanner> planner;
+    if (name == "belief_rrt_star") {
+        planner = std::make_shared<BeliefRRTstar>(si_, model, config_.search, growth);
+    } else if (name == "rrbt") {
+        planner = std::make_shared<RRBT>(si_, model, growth);
+    } else {
+        planner = std::make_shared<PerceptionRRTstar>(si_, model, growth);
+    }
+    planner->setProblemDefinition(definition());
+    planner->setup();
+    return planner;
+}
+
+std::shared_ptr<InformationField> PlanningProblem::makeField(const std::string& viewModel) const {
+    const Camera camera = config_.camera.camera();
+    const Pose T_b_c = config_.camera.T_b_c();
+    if (viewModel == "none" || !world_.hasTexture()) {
+        return std::make_shared<InformationField>(InformationFormula{}, T_b_c, config_.field);
+    }
+    const auto field = [&](const auto& model) {
+        return std::make_shared<InformationField>(world_.sharedViews(), camera, model, T_b_c,
+                                                  config_.field);
+    };
+    const FeatureOptions& features = config_.viewModel.features;
+    if (viewModel == "feature_reprojection") {
+        return field(featureReprojectionModel(camera, features));
+    }
+    if (viewModel == "feature_count") return field(featureCountModel(features));
+    if (viewModel == "map_uncertainty") {
+        return field(mapUncertaintyModel(
+            camera, config_.photometric,
+            {.priorSigma = config_.viewModel.mapPriorSigma, .baseline = config_.belief.ds}));
+    }
+    return field(photometricModel(camera, config_.photometric));
+}
+
+std::shared_ptr<BeliefModel> PlanningProblem::makeModel(std::shared_ptr<InformationField> field,
+                                                        double alpha) const {
+    BeliefOptions options = config_.belief;
+    options.alpha = alpha;
+    if (field->hasPenalties()) options.kappa = config_.viewModel.kappa;
+    return std::make_shared<BeliefModel>(space_, std::move(field), options);
+}
+
+ob::ProblemDefinitionPtr PlanningProblem::definition() const {
+    auto definition = std::make_shared<ob::ProblemDefinition>(si_);
+    ob::ScopedState<> state(si_);
+    space_.setState(state.get(), config_.start.position, config_.start.yaw.value_or(0.));
+    definition->addStartState(state);
+    const bool anyHeading = config_.space != StateKind::position && !config_.goal.yaw;
+    auto goals = std::make_shared<ob::GoalStates>(si_);
+    for (int i = 0; i < (anyHeading ? kFreeHeadings : 1); ++i) {
+        const double yaw =
+            config_.goal.yaw.value_or(0.) + 2. * std::numbers::pi * i / kFreeHeadings;
+        space_.setState(state.get(), config_.goal.position, yaw);
+        goals->addState(state);
+    }
+    definition->setGoal(goals);
+    return definition;
+}
+
+std::optional<JudgedPath> PlanningProblem::descend(const std::vector<Pose>& waypoints,
+                                                   const DescentOptions& options,
+                                                   const std::atomic<bool>& interrupted) {
+    ompl::geometric::PathGeometric path(si_);
+    ob::ScopedState<> state(si_);
+    for (const Pose& T_w_b : waypoints) {
+        space_.setState(state.get(), T_w_b.translation(), yawOf(T_w_b));
+        path.append(state.get());
+    }
+    if (waypoints.empty() || !path.check()) return std::nullopt;
+    PathDescent descent(si_, judge_, options);
+    descent.begin({path.getStates().begin(), path.getStates().end()});
+    descent.descend(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+    return judge("descent", descent.path());
+}
+
+JudgedPath PlanningProblem::judge(const BeliefPlanner& planner) {
+    return judge(planner.getName(), solutionOf(planner));
+}
+
+JudgedPath PlanningProblem::judge(const std::string& planner, const std::vector<Place>& waypoints) {
+    std::vector<ob::ScopedState<>> states;
+    std::vector<const ob::State*> pointers;
+    states.reserve(waypoints.size());
+    pointers.reserve(waypoints.size());
+    for (const Place& place : waypoints) {
+        pointers.push_back(states.emplace_back(si_).get());
+        space_.setState(states.back().get(), place.position, place.yaw.value_or(0.));
+    }
+    return judge(planner, pointers);
+}
+
+JudgedPath PlanningProblem::judge(const std::string& planner,
+                                  const std::vector<const ob::State*>& path) {
+    JudgedPath judged{.planner = planner, .points = judge_->evaluate(path)};
+    double integral = 0.;
+    for (std::size_t i = 1; i < judged.points.size(); ++i) {
+        const BeliefPoint& last = judged.points[i - 1];
+        const BeliefPoint& next = judged.points[i];
+        integral += 0.5 * (next.distance - last.distance) * (last.trace + next.traceBefore);
+    }
+    const BeliefPoint& goal = judged.points.back();
+    judged.cost = goal.cost;
+    judged.length = goal.length;
+    judged.meanTrace = goal.distance > 0. ? integral / goal.distance : goal.trace;
+    judged.goalTrace = goal.trace;
+    return judged;
+}
+
+}  // namespace photonav

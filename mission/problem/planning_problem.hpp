@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A config becomes a planner, a planner becomes a path with beliefs.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <optional>
+
+#include "config/config.hpp"
+#include "planners/audit.hpp"
+#include "problem/world.hpp"
+
+namespace photonav {
+
+/// A path and its photometric beliefs, which are the same measure for every planner.
+struct JudgedPath {
+    std::string planner;
+    std::vector<BeliefPoint> points;
+    double cost = 0.;       ///< with the config's alpha and kappa
+    double length = 0.;     ///< of the positions [m]
+    double meanTrace = 0.;  ///< integral of the trace over the way flown, by its length
+    double goalTrace = 0.;  ///< after the last view
+
+    /// Positions of the points in x and y of w [m].
+    std::vector<Eigen::Vector2d> fromAbove() const;
+};
+
+/// State of the search when its best cost changed (and at its end).
+struct PlanProgress {
+    std::size_t vertices = 0;
+    double seconds = 0.;
+    double cost = 0.;  ///< the planner's own; infinite: no path yet
+    std::size_t views = 0;
+};
+
+using TreeSegment = std::array<Eigen::Vector3f, 2>;  ///< end points in w [m]
+
+/// What planning took and gave.
+struct PlanOutcome {
+    std::optional<JudgedPath> path;  ///< none: the goal was not reached
+    double plannerCost = 0.;         ///< of the path, by the planner's own model
+    double alpha = 0.;
+    std::size_t vertices = 0, iterations = 0, views = 0, cacheHits = 0, fallbacks = 0;
+    double planSeconds = 0., viewSeconds = 0., beliefSeconds = 0.;
+    std::vector<PlanProgress> progress;
+    std::vector<TreeSegment> tree;
+    Audit audit;  ///< of the tree, and of the path's cost
+};
+
+inline const std::atomic<bool> kNotInterrupted{false};
+
+/// Start, goal and robot of a config in a world, and the planners that solve them:
+///
+///     const Config config = loadConfig("config/two_textures.yaml");
+///     const World world(config);
+///     const PlanOutcome outcome = PlanningProblem(config, world).solve(config.planner);
+class PlanningProblem {
+  public:
+    /// @param world must outlive it
+    PlanningProblem(const Config& config, const World& world);
+    /// The same problem with another trade-off, over the same views.
+    PlanningProblem(const PlanningProblem& other, double alpha);
+
+    /// @throws InputError for a start or goal in collision
+    void checkPlaces() const;
+
+    /// Grows the planner of this name until it has the config's number of vertices.
+    /// @param onProgress called now and then while planning
+    PlanOutcome solve(const std::string& planner,
+                      const std::atomic<bool>& interrupted = kNotInterrupted,
+                      const std::function<void(const PlanProgress&)>& onProgress = {});
+
+    /// "done", or why there is no path.
+    std::string statusOf(const PlanOutcome& outcome) const;
+    /// For a tree of this size that does not reach the goal.
+    std::string reasonForNoPath(std::size_t vertices, std::size_t iterations) const;
+
+    /// The best path that descent from these waypoints (of the body) finds.
+    /// @return nothing if the way along them is not free
+    std::optional<JudgedPath> descend(const std::vector<Pose>& waypoints,
+                                      const DescentOptions& options,
+                                      const std::atomic<bool>& interrupted);
+
+    /// A path given by its waypoints, judged like one that was found.
+    JudgedPath judge(const std::string& planner, const std::vector<Place>& waypoints);
+
+    /// The information of a view from here, remembered; for heat maps.
+    Matrix6 informationAt(const Pose& T_w_b) { return judge_->informationAt(T_w_b); }
+    /// The covariance at the start before any view, camera frame.
+    const Matrix6& initialCovariance() const { return judge_->initialCovariance(); }
+    bool isFlyable(const Eigen::Vector3d& p_w) const;
+
+    // For programs that run planners themselves.
+
+    const ompl::base::SpaceInformationPtr& spaceInformation() const { return si_; }
+    /// Start and goal.
+    ompl::base::ProblemDefinitionPtr definition() const;
+    /// A planner that is set up for it.
+    std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name) const;
+    /// Beliefs of these options over the photometric views of this problem.
+    std::shared_ptr<BeliefModel> makeBeliefs(const BeliefOptions& options) const {
+        return std::make_shared<BeliefModel>(space_, field_, options);
+    }
+    const Config& config() const { return config_; }
+    /// The solution of a planner that has one.
+    JudgedPath judge(const BeliefPlanner& planner);
+    /// Makes the next views new ones; planners that are not cleared must not be used again.
+    void forgetViews() {
+        field_->clear();
+        plannersField_->clear();
+    }
+
+  private:
+    void checkPlace(const std::string& key, const Place& place) const;
+    std::shared_ptr<InformationField> makeField(const std::string& viewModel) const;
+    std::shared_ptr<BeliefModel> makeModel(std::shared_ptr<InformationField> field,
+                                           double alpha) const;
+    JudgedPath judge(const std::string& planner, const std::vector<const ompl::base::State*>& path);
+
+    const Config config_;
+    const World& world_;
+    FlightSpace space_;
+    ompl::base::SpaceInformationPtr si_;
+    std::shared_ptr<InformationField> field_;          // photometric, of judge_
+    std::shared_ptr<InformationField> plannersField_;  // of the planner
+    std::shared_ptr<BeliefModel> judge_;
+};
+
+}  // namespace photonav

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "problem/tree_evolution.hpp"
+
+#include <ompl/geometric/PathGeometric.h>
+
+#include <set>
+
+namespace photonav {
+namespace ob = ompl::base;
+TreeEvolution growInStages(PlanningProblem& run, const std::string& name,
+                           const std::vector<std::size_t>& vertices,
+                           const std::atomic<bool>& interrupted) {
+    const auto planner = run.makePlanner(name);
+    const FlightSpace& space = planner->model().space();
+    TreeEvolution evolution{planner->getName(), {}};
+    for (const std::size_t stop : vertices) {
+        planner->params().setParam("max_vertices", std::to_string(stop));
+        planner->solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+        TreeStage& stage = evolution.stages.emplace_back();
+        stage.vertices = planner->vertices();
+        stage.tree = drawnEdges(*planner);
+        const auto path = planner->getProblemDefinition()->getSolutionPath();
+        if (path == nullptr) continue;
+        for (const ob::State* state : path->as<ompl::geometric::PathGeometric>()->getStates()) {
+            stage.path.push_back(space.position(state));
+        }
+        stage.cost = run.judge(*planner).cost;
+    }
+    return evolution;
+}
+
+std::vector<TreeSegment> drawnEdges(const BeliefPlanner& planner) {
+    const FlightSpace& space = planner.model().space();
+    const auto nodes = planner.tree();
+    std::set<std::pair<const ob::State*, const ob::State*>> drawn;
+    std::vector<TreeSegment> edges;
+    for (const TreeNode& node : nodes) {
+        if (node.parent < 0) continue;
+        const ob::State* parent = nodes[node.parent].state;
+        if (!drawn.emplace(std::minmax(parent, node.state)).second) continue;
+        edges.push_back(
+            {space.position(parent).cast<float>(), space.position(node.state).cast<float>()});
+    }
+    return edges;
+}
+
+}  // namespace photonav

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "problem/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "io/error.hpp"
+#include "map/octree_file.hpp"
+#include "render/mesh_renderer.hpp"
+#include "render/voxel_renderer.hpp"
+#include "scene/scene.hpp"
+
+namespace photonav {
+namespace {
+
+/// How far clearance is looked for [m]: beyond the robot, and as far as a grid of such cells goes.
+double reach(double robotRadius, double cell) {
+    return std::min(std::max(1., 2. * robotRadius), 150. * cell);
+}
+
+/// Darkens the lower side of a step between surfaces, which separates objects of one grey.
+void outlineSteps(ImageF& picture, const ImageF& depth) {
+    constexpr float kStep = 0.15F, kShade = 0.45F;  // [m], of the brightness
+    const auto isStep = [&](float a, float b) { return a > 0.F && b > 0.F && a - b > kStep; };
+    for (unsigned v = 1; v + 1 < depth.getHeight(); ++v) {
+        for (unsigned u = 1; u + 1 < depth.getWidth(); ++u) {
+            const float here = depth[v][u];
+            if (isStep(here, depth[v][u - 1]) || isStep(here, depth[v][u + 1]) ||
+                isStep(here, depth[v - 1][u]) || isStep(here, depth[v + 1][u]))
+                picture[v][u] *= kShade;
+        }
+    }
+}
+
+}  // namespace
+
+World::World(const Config& config) {
+    if (!config.mapMadeBy.empty() && !std::filesystem::exists(config.mapFile)) {
+        throw InputError(
+            config.file, "map.file",
+            config.mapFile + ": not there; this config's map is made by " + config.mapMadeBy);
+    }
+    try {
+        if (config.mapFile.empty())
+            loadScene(config);
+        else
+            loadMap(config);
+    } catch (const InputError& error) {
+        throw InputError(config.file, config.mapFile.empty() ? "scene.file" : "map.file",
+                         error.what());
+    } catch (const std::invalid_argument& error) {  // too large a grid for these bounds
+        throw InputError(config.file, "bounds", error.what());
+    }
+}
+
+void World::loadScene(const Config& config) {
+    auto renderer = std::make_unique<MeshRenderer>(photonav::loadScene(config.sceneFile));
+    scene_ = &renderer->scene();
+    extent_ = scene_->boundingBox();
+    distances_ =
+        DistanceMap(*scene_, config.clearanceResolution, config.bounds,
+                    {.maxDistance = reach(config.robotRadius, config.clearanceResolution)});
+    views_ = std::move(renderer);
+}
+
+void World::loadMap(const Config& config) {
+    const std::shared_ptr<TexturedOcTree> map = loadTexturedOcTree(config.mapFile);
+    hasTexture_ = false;
+    for (auto cell = map->begin_leafs(); cell != map->end_leafs() && !hasTexture_; ++cell) {
+        hasTexture_ = cell->meanGrey().has_value();
+    }
+    views_ = std::make_shared<VoxelRenderer>(*map, config.unknownToCamera);
+    distances_ = DistanceMap(*map, config.bounds,
+                             {.maxDistance = reach(config.robotRadius, map->getResolution()),
+                              .unknown = config.unknownToPlanner});
+    map->getMetricMin(extent_.min().x(), extent_.min().y(), extent_.min().z());
+    map->getMetricMax(extent_.max().x(), extent_.max().y(), extent_.max().z());
+    map_ = map;
+}
+
+ImageF World::pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const {
+    // Small tiles, each seen by a camera of its own from right above, scaled for the lowest
+    // surface.
+    constexpr unsigned kTile = 16;
+    const auto pixels = [&](double extent) {
+        return static_cast<unsigned>(std::ceil(extent / pixelSize / kTile)) * kTile;
+    };
+    const unsigned width = std::max(kTile, pixels(area.sizes().x()));
+    const unsigned height = std::max(kTile, pixels(area.sizes().y()));
+    const double step = area.sizes().x() / width;
+    const double depth = std::max(z - extent_.min().z(), pixelSize);
+    const Camera camera = makeCamera(kTile, kTile, 2. * std::atan(0.5 * kTile * step / depth));
+    Pose T_w_c = Pose::Identity();  // image right is world x, image down is world -y
+    T_w_c.linear() = Eigen::Vector3d(1., -1., -1.).asDiagonal();
+    ImageF picture(height, width);
+    ImageF depths(height, width);
+    View view;
+    for (unsigned v = 0; v < height; v += kTile) {
+        for (unsigned u = 0; u < width; u += kTile) {
+            T_w_c.translation() << area.min().x() + (u + 0.5 * kTile) * step,
+                area.max().y() - (v + 0.5 * kTile) * area.sizes().y() / height, z;
+            views_->render(camera, T_w_c.inverse(), view);
+            for (unsigned row = 0; row < kTile; ++row) {
+                for (unsigned column = 0; column < kTile; ++column) {
+                    const bool isSeen = view.depth[row][column] > 0.F;
+                    picture[v + row][u + column] = isSeen ? view.intensity[row][column] : 1.F;
+                    depths[v + row][u + column] = view.depth[row][column];
+                }
+            }
+        }
+    }
+    outlineSteps(picture, depths);
+    return picture;
+}
+
+}  // namespace photonav

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The scene or map of a config, ready to be looked at and flown in.
+#pragma once
+
+#include <memory>
+
+#include "config/config.hpp"
+#include "map/distance_map.hpp"
+#include "photometry/view.hpp"
+#include "scene/scene.hpp"
+
+namespace photonav {
+
+class World {
+  public:
+    /// Loads the scene or map of the config.
+    /// @throws InputError when it cannot be read, or is too large for the resolution asked for
+    explicit World(const Config& config);
+
+    const ViewSource& views() const { return *views_; }
+    /// The same for those who keep them.
+    std::shared_ptr<const ViewSource> sharedViews() const { return views_; }
+    /// Whether any surface has a grey value: false for a map of occupancy only.
+    bool hasTexture() const { return hasTexture_; }
+    double clearance(const Eigen::Vector3d& p_w) const { return distances_.clearance(p_w); }
+
+    /// Box of everything that can be seen [m].
+    const Eigen::AlignedBox3d& extent() const { return extent_; }
+
+    /// What the world was made of, one of the two; null: it was the other.
+    const Scene* scene() const { return scene_; }
+    const TexturedOcTree* map() const { return map_.get(); }
+
+    /// The grey values below height z, from above, nearly orthographic: first row at the largest y.
+    ImageF pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const;
+
+  private:
+    void loadScene(const Config& config);
+    void loadMap(const Config& config);
+
+    std::shared_ptr<const ViewSource> views_;
+    bool hasTexture_ = true;
+    DistanceMap distances_;
+    Eigen::AlignedBox3d extent_;
+    std::shared_ptr<const TexturedOcTree> map_;
+    const Scene* scene_ = nullptr;  // of the renderer in views_
+};
+
+}  // namespace photonav

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "result/json_values.hpp"
+
+#include <cmath>
+
+namespace photonav {
+
+nlohmann::json finiteOrNull(double value) {
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+
+nlohmann::json orNull(const std::optional<double>& value) {
+    return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
+}
+
+nlohmann::json cameraJson(const Camera& camera) {
+    return {{"width", camera.width}, {"height", camera.height}, {"fx", camera.fx()},
+            {"fy", camera.fy()},     {"cx", camera.cx()},       {"cy", camera.cy()}};
+}
+
+}  // namespace photonav

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A flying robot as tracker and pilot use it: commands in, measurements out.
+#pragma once
+
+#include "control/body_velocity.hpp"
+#include "estimation/observation.hpp"
+
+namespace photonav {
+
+class Robot {
+  public:
+    Robot() = default;
+    Robot(const Robot&) = delete;
+    Robot& operator=(const Robot&) = delete;
+    virtual ~Robot() = default;
+
+    /// Flies with a commanded velocity for some seconds; 0: only looks.
+    /// @return odometry of that time, and the images that have arrived by its end
+    virtual Observation fly(const BodyVelocity& command, double seconds) = 0;
+
+    virtual const Camera& camera() const = 0;  ///< of the images
+    virtual const Pose& T_b_c() const = 0;     ///< its mount
+};
+
+}  // namespace photonav

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A camera in a simulated world: noisy images at a rate, with depth if it measures it, late, and
+// sometimes not at all.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <random>
+
+#include "depth/stereo_depth.hpp"
+#include "estimation/observation.hpp"
+#include "photometry/photometric.hpp"
+#include "simulation/camera_noise.hpp"
+
+namespace photonav {
+
+/// Adds the noise of one exposure to the noise-free image.
+using ImageNoise = std::function<void(ImageF& image, std::mt19937_64& random)>;
+
+/// The noise that PhotometricOptions describe: Gaussian with standard deviation sigma, over an area
+/// of 1 / scale pixels correlated. `scale` says that neighbouring pixels are not independent; with
+/// noise like this an image is worth what Lambda says. Independent pixels for a scale of 1 or more.
+ImageNoise assumedNoise(const PhotometricOptions& options);
+
+/// How the exposure of a camera wanders that sets it by itself: a first-order Gauss-Markov process.
+struct WanderingExposure {
+    double gainSigma = 0.1;  ///< standard deviation of the gain about 1, cut off at twice as much
+    double correlation = 0.95;  ///< of the gains of consecutive images
+};
+
+/// The noise of a real camera, image by image, times a gain that wanders. A copy has an exposure of
+/// its own, from where the original's is.
+ImageNoise realNoise(const CameraNoiseOptions& options = {},
+                     const WanderingExposure& wandering = {});
+
+enum class DepthSensor {
+    none,
+    rgbd,    ///< depth of every pixel, with DepthNoiseOptions
+    stereo,  ///< a second camera to the right, and StereoDepth
+};
+
+struct SimulatedCameraOptions {
+    DepthSensor depth = DepthSensor::none;
+    DepthNoiseOptions depthNoise = {};  ///< rgbd
+    double baseline = 0.11;             ///< stereo [m]
+    StereoOptions stereo{.halvings = 0};
+    double period = 0.25;        ///< between exposures [s]
+    double latency = 0.;         ///< from the exposure to the image being there [s]
+    double dropRate = 0.;        ///< share of the frames that never arrive
+    double blackRate = 0.;       ///< share of the frames that are black
+    double blackoutStart = 0.;   ///< all frames taken from here on [s] ...
+    double blackoutLength = 0.;  ///< ... for as long as this are black [s]
+};
+
+/// An exposure: its image may be late or never arrive.
+struct Exposed {
+    double time = 0.;               ///< [s]
+    Pose T_c_w = Pose::Identity();  ///< true
+    ImageF image;                   ///< with noise
+    ImageF depth;                   ///< true [m]
+};
+
+/// Deterministic for a seed.
+class SimulatedCamera {
+  public:
+    /// @param world the true one; must outlive the camera
+    /// @throws std::invalid_argument for a period that is not positive, a negative latency, a
+    ///         baseline that is not positive with stereo
+    SimulatedCamera(const ViewSource& world, const Camera& camera, ImageNoise noise,
+                    const SimulatedCameraOptions& options, std::uint64_t seed);
+
+    /// Takes an image when it is time to. @return nothing when it is not
+    std::optional<Exposed> expose(double time, const Pose& T_c_w);
+
+    /// The next image that has arrived by now, oldest first.
+    std::optional<CameraFrame> receive(double time);
+
+    /// Of the images: with stereo that of the rectified left one.
+    const Camera& camera() const { return stereo_ ? stereo_->camera() : camera_; }
+
+  private:
+    bool isBlack(double time);
+    void measureDepth(const Pose& T_c_w, View& view);
+    vpImage<unsigned char> rightImage(const Pose& T_c_w);
+
+    const ViewSource& world_;
+    Camera camera_;
+    ImageNoise noise_;
+    SimulatedCameraOptions options_;
+    std::mt19937_64 random_, depthRandom_;
+    std::optional<StereoDepth> stereo_;
+    double next_ = 0.;  // exposure [s]
+    std::deque<CameraFrame> onTheWay_;
+};
+
+}  // namespace photonav

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/simulated_mav.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "geometry/gaussian.hpp"
+#include "geometry/se3.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr std::uint64_t kDriftSeed = 0x9e3779b97f4a7c15;  // draws of its own
+
+}  // namespace
+
+SimulatedMav::SimulatedMav(const Pose& T_w_b, const MavOptions& options, std::uint64_t seed)
+    : T_w_b_(T_w_b),
+      options_(options),
+      noiseRoot_(rootOf(options.odometryFactor * options.odometryNoise)),
+      random_(seed),
+      driftRandom_(seed ^ kDriftSeed) {
+    if (!(options.lag >= 0.) || !(options.odometryFactor >= 0.)) {
+        throw std::invalid_argument("simulated MAV: negative lag or odometry factor");
+    }
+    if (!(options.drift >= 0.) || !(options.driftTime > 0.)) {
+        throw std::invalid_argument("simulated MAV: negative drift, or no time of drift");
+    }
+}
+
+/// A first-order Gauss-Markov process.
+void SimulatedMav::changeDrift(double dt) {
+    const double kept = std::exp(-dt / options_.driftTime);
+    std::normal_distribution<double> normal(0., options_.drift);
+    for (double& component : drift_w_) {
+        component = kept * component + std::sqrt(1. - kept * kept) * normal(driftRandom_);
+    }
+}
+
+UncertainPose SimulatedMav::step(const BodyVelocity& command, double dt) {
+    // The exact response of a first-order lag to a constant command; its mean moves the body.
+    const double lag = options_.lag;
+    const double left = lag > 0. ? std::exp(-dt / lag) : 0.;
+    const double mean = lag > 0. ? lag / dt * (1. - left) : 0.;
+    const auto respond = [&](auto now, auto wanted) { return wanted + (now - wanted) * left; };
+    Vector6 motion = Vector6::Zero();  // of the body, in its own axes
+    motion.head<3>() = dt * (command.linear + mean * (velocity_.linear - command.linear));
+    if (options_.drift > 0.) {
+        changeDrift(dt);
+        motion.head<3>() += dt * (T_w_b_.linear().transpose() * drift_w_);
+    }
+    motion[5] = dt * (command.yawRate + mean * (velocity_.yawRate - command.yawRate));
+    velocity_.linear = respond(velocity_.linear, Eigen::Vector3d(command.linear)).eval();
+    velocity_.yawRate = respond(velocity_.yawRate, command.yawRate);
+
+    const Pose T_next_now = expSE3(-motion);
+    T_w_b_ = T_w_b_ * T_next_now.inverse();
+    const double way = motion.head<3>().norm() + options_.rotationWeight * std::abs(motion[5]);
+    // The true motion is exp(xi^) times the measured one.
+    const Vector6 xi = std::sqrt(way) * draw(noiseRoot_, random_);
+    return {expSE3(-xi) * T_next_now, way * options_.odometryNoise};
+}
+
+}  // namespace photonav

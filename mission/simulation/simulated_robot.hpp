@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A robot in a simulated world. Nothing else knows where it truly is.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "robot/robot.hpp"
+#include "simulation/simulated_camera.hpp"
+#include "simulation/simulated_mav.hpp"
+
+namespace photonav {
+
+struct SimulatedRobotOptions {
+    MavOptions body;
+    SimulatedCameraOptions camera;
+};
+
+/// Body and camera, each with its own random numbers, so that options of one do not change those
+/// of the other. Deterministic for a seed.
+class SimulatedRobot : public Robot {
+  public:
+    /// @param world the true one
+    /// @param T_w_b where it begins
+    /// @throws std::invalid_argument as SimulatedMav and SimulatedCamera do
+    SimulatedRobot(std::shared_ptr<const ViewSource> world, const Camera& camera, const Pose& T_b_c,
+                   const Pose& T_w_b, const ImageNoise& noise, const SimulatedRobotOptions& options,
+                   std::uint64_t seed);
+
+    Observation fly(const BodyVelocity& command, double seconds) override;
+    const Camera& camera() const override { return camera_.camera(); }
+    const Pose& T_b_c() const override { return T_b_c_; }
+
+    // The truth, to judge by.
+
+    const Pose& T_w_b() const { return mav_.T_w_b(); }
+    Pose T_c_w() const { return (T_w_b() * T_b_c_).inverse(); }
+    double time() const { return time_; }  ///< [s]
+    /// The exposure that ended the last call of fly(), whether its image arrives or not.
+    const std::optional<Exposed>& exposed() const { return exposed_; }
+
+  private:
+    std::shared_ptr<const ViewSource> world_;
+    Pose T_b_c_;
+    SimulatedMav mav_;
+    SimulatedCamera camera_;
+    double time_ = 0.;
+    std::optional<Exposed> exposed_;
+};
+
+/// Independent seeds from one, for everything that draws random numbers.
+std::uint64_t seedFor(std::uint64_t seed, std::uint64_t use);
+
+}  // namespace photonav

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep/reference_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "geometry/se3.hpp"
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
+#include "space/flight_space.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kColumns =
+    "alpha,cost,length,mean_trace,goal_trace,planner,vertices,labels,seed";
+constexpr const char* kPathColumns = "alpha,x,y,z,yaw";
+
+long keyOf(double alpha) { return std::lround(alpha * 1e6); }
+
+/// Calls `row` with the fields of every line after `header`.
+/// @return the lines before it, which begin with #
+template <typename Row>
+std::vector<std::string> readCsv(const fs::path& file, const std::string& header,
+                                 std::size_t columns, Row row) {
+    std::ifstream stream(file);
+    if (!stream) throw InputError(file.string(), "", "cannot be read");
+    std::vector<std::string> notes;
+    std::string line;
+    while (std::getline(stream, line) && line.starts_with('#')) notes.push_back(line);
+    int number = static_cast<int>(notes.size()) + 1;
+    if (line != header) {
+        throw InputError(file.string(), fmt::format("line {}", number), "expected " + header);
+    }
+    while (std::getline(stream, line)) {
+        ++number;
+        std::vector<std::string> fields;
+        std::istringstream text(line);
+        for (std::string field; std::getline(text, field, ',');) fields.push_back(field);
+        try {
+            if (fields.size() != columns) throw std::invalid_argument("columns");
+            row(fields);
+        } catch (const std::exception&) {
+            throw InputError(file.string(), fmt::format("line {}", number),
+                             "expected numbers for " + header);
+        }
+    }
+    return notes;
+}
+
+}  // namespace
+
+ReferenceTable::ReferenceTable(fs::path file) : file_(std::move(file)) {}
+
+fs::path ReferenceTable::pathsFile() const {
+    return file_.parent_path() / (file_.stem().string() + "_paths.csv");
+}
+
+void ReferenceTable::read() {
+    rows_.clear();
+    notes_.clear();
+    if (!fs::exists(file_)) return;
+    notes_ = readCsv(file_, kColumns, 9, [&](const std::vector<std::string>& f) {
+        const double alpha = std::stod(f[0]);
+        rows_[keyOf(alpha)] = {.alpha = alpha,
+                               .cost = std::stod(f[1]),
+                               .length = std::stod(f[2]),
+                               .meanTrace = std::stod(f[3]),
+                               .goalTrace = std::stod(f[4]),
+                               .planner = f[5],
+                               .vertices = static_cast<unsigned>(std::stoul(f[6])),
+                               .labels = static_cast<unsigned>(std::stoul(f[7])),
+                               .seed = static_cast<std::uint32_t>(std::stoul(f[8])),
+                               .waypoints = {}};
+    });
+    readCsv(pathsFile(), kPathColumns, 5, [&](const std::vector<std::string>& f) {
+        Pose T_w_b = Pose::Identity();
+        T_w_b.translation() << std::stod(f[1]), std::stod(f[2]), std::stod(f[3]);
+        T_w_b.linear() =
+            Eigen::AngleAxisd(std::stod(f[4]), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+        rows_.at(keyOf(std::stod(f[0]))).waypoints.push_back(T_w_b);
+    });
+}
+
+void ReferenceTable::write() const {
+    std::string table;
+    for (const std::string& note : notes_) table += note + "\n";
+    table += std::string(kColumns) + "\n";
+    std::string paths = std::string(kPathColumns) + "\n";
+    for (const auto& [key, r] : rows_) {
+        table += fmt::format("{:.6g},{:.9g},{:.6g},{:.6g},{:.6g},{},{},{},{}\n", r.alpha, r.cost,
+                             r.length, r.meanTrace, r.goalTrace, r.planner, r.vertices, r.labels,
+                             r.seed);
+        for (const Pose& T_w_b : r.waypoints) {
+            const Eigen::Vector3d p = T_w_b.translation();
+            paths +=
+                fmt::format("{:.6g},{},{},{},{}\n", r.alpha, p.x(), p.y(), p.z(), yawOf(T_w_b));
+        }
+    }
+    writeFileAtomically(pathsFile(), paths);
+    writeFileAtomically(file_, table);
+}
+
+void ReferenceTable::addNote(const std::string& text) {
+    const std::string note = "# " + text;
+    if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
+}
+
+bool ReferenceTable::offer(const ReferencePath& path) {
+    const ReferencePath* known = at(path.alpha);
+    if (known != nullptr && known->cost <= path.cost) return false;
+    rows_[keyOf(path.alpha)] = path;
+    return true;
+}
+
+const ReferencePath* ReferenceTable::at(double alpha) const {
+    const auto it = rows_.find(keyOf(alpha));
+    return it == rows_.end() ? nullptr : &it->second;
+}
+
+void ReferenceTable::drop(double alpha) { rows_.erase(keyOf(alpha)); }
+
+std::vector<double> ReferenceTable::alphas() const {
+    std::vector<double> alphas;
+    for (const auto& [key, row] : rows_) alphas.push_back(row.alpha);
+    return alphas;
+}
+
+}  // namespace photonav

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep/sweep_runs.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <set>
+
+#include "geometry/constants.hpp"
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
+#include "problem/planning_problem.hpp"
+#include "result/json_values.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+constexpr int kJournalSchema = 1;
+
+SweepRun runFrom(const json& line) {
+    const auto number = [&](const char* key) {
+        return line.at(key).is_null() ? kNone : line.at(key).get<double>();
+    };
+    SweepRun run{{line.at("planner"), line.at("alpha"), line.at("seed")},
+                 number("cost"),
+                 number("length"),
+                 number("mean_trace"),
+                 number("goal_trace"),
+                 line.at("vertices"),
+                 line.at("views"),
+                 line.at("seconds"),
+                 line.at("status"),
+                 {}};
+    for (const json& p : line.at("path")) run.path.emplace_back(p.at(0), p.at(1), p.at(2));
+    return run;
+}
+
+SweepHeader headerFrom(const json& line) {
+    if (line.at("photonav_sweep") != kJournalSchema) throw InputError("", "", "of another version");
+    return {line.at("name"),
+            line.at("config"),
+            line.at("identity"),
+            {line.at("shard").at(0), line.at("shard").at(1)}};
+}
+
+json lineOf(const SweepHeader& header) {
+    return {{"photonav_sweep", kJournalSchema},
+            {"name", header.name},
+            {"config", header.config},
+            {"identity", header.identity},
+            {"shard", {header.shard.index, header.shard.count}}};
+}
+
+json lineOf(const SweepRun& run) {
+    json line = toJson(run);
+    line["path"] = json::array();
+    for (const Eigen::Vector3d& p : run.path) line["path"].push_back({p.x(), p.y(), p.z()});
+    return line;
+}
+
+}  // namespace
+
+std::optional<SweepRun> runItem(const Config& config, const World& world, const SweepItem& item,
+                                const std::atomic<bool>& interrupted) {
+    Config own = config;
+    own.belief.alpha = item.alpha;
+    own.seed = item.seed;
+    own.planner = "belief_rrt_star";  // whose cost is the one with this alpha
+    PlanningProblem plan(own, world);
+    const PlanOutcome outcome = plan.solve(item.planner, interrupted);
+    if (interrupted) return std::nullopt;
+    SweepRun run{item,
+                 kNone,
+                 kNone,
+                 kNone,
+                 kNone,
+                 outcome.vertices,
+                 outcome.views,
+                 outcome.planSeconds,
+                 plan.statusOf(outcome),
+                 {}};
+    if (!outcome.path) return run;
+    run.cost = outcome.path->cost;
+    run.length = outcome.path->length;
+    run.meanTrace = outcome.path->meanTrace;
+    run.goalTrace = outcome.path->goalTrace;
+    for (const BeliefPoint& point : outcome.path->points) {
+        if (point.isWaypoint) run.path.push_back(point.T_w_b.translation());
+    }
+    return run;
+}
+
+void runItems(const Config& config, const World& world, const std::vector<SweepItem>& items,
+              unsigned jobs, const std::atomic<bool>& interrupted,
+              const std::function<void(const SweepRun&)>& onRun) {
+    using tbb::filter_mode;
+    std::size_t next = 0;
+    const auto take = tbb::make_filter<void, std::size_t>(
+        filter_mode::serial_in_order, [&](tbb::flow_control& control) -> std::size_t {
+            if (next < items.size() && !interrupted) return next++;
+            control.stop();
+            return next;
+        });
+    const auto run = tbb::make_filter<std::size_t, std::optional<SweepRun>>(
+        filter_mode::parallel,
+        [&](std::size_t i) { return runItem(config, world, items[i], interrupted); });
+    const auto report = tbb::make_filter<std::optional<SweepRun>, void>(
+        filter_mode::serial_out_of_order, [&](const std::optional<SweepRun>& done) {
+            if (done) onRun(*done);
+        });
+    tbb::task_arena threads(static_cast<int>(jobs));
+    threads.execute([&] { tbb::parallel_pipeline(jobs, take & run & report); });
+}
+
+json toJson(const SweepRun& run) {
+    return {{"planner", run.item.planner},
+            {"alpha", run.item.alpha},
+            {"seed", run.item.seed},
+            {"cost", finiteOrNull(run.cost)},
+            {"length", finiteOrNull(run.length)},
+            {"mean_trace", finiteOrNull(run.meanTrace)},
+            {"goal_trace", finiteOrNull(run.goalTrace)},
+            {"vertices", run.vertices},
+            {"views", run.views},
+            {"seconds", run.seconds},
+            {"status", run.status}};
+}
+
+SweepJournal SweepJournal::create(const fs::path& folder, const SweepHeader& header) {
+    SweepJournal journal(folder / kFileName);
+    if (fs::exists(journal.file_)) fs::rename(journal.file_, journal.file_.string() + "~");
+    journal.header_ = header;
+    journal.write(lineOf(header));
+    return journal;
+}
+
+SweepJournal SweepJournal::read(const fs::path& folder) {
+    SweepJournal journal(folder / kFileName);
+    std::ifstream stream(journal.file_);
+    if (!stream) throw InputError(journal.file_.string(), "", "no such file; is this a sweep?");
+    int number = 0;
+    for (std::string text; std::getline(stream, text) && !stream.eof();) {
+        ++number;
+        try {
+            const json line = json::parse(text);
+            if (number == 1)
+                journal.header_ = headerFrom(line);
+            else
+                journal.runs_.push_back(runFrom(line));
+        } catch (const std::exception&) {
+            throw InputError(journal.file_.string(), fmt::format("line {}", number),
+                             "not a run of this version of photonav sweep");
+        }
+        journal.size_ += text.size() + 1;
+    }
+    if (number == 0) throw InputError(journal.file_.string(), "", "empty");
+    return journal;
+}
+
+void SweepJournal::write(const json& line) {
+    if (!stream_.is_open()) {
+        std::error_code ignored;  // a new file
+        fs::resize_file(file_, size_, ignored);
+        stream_.open(file_, std::ios::app);
+    }
+    stream_ << line.dump() + "\n" << std::flush;
+    if (!stream_) throw InputError(file_.string(), "", "cannot be written");
+}
+
+void SweepJournal::append(const SweepRun& run) {
+    write(lineOf(run));
+    runs_.push_back(run);
+}
+
+void SweepJournal::replaceHeader(const SweepHeader& header) {
+    std::string text = lineOf(header).dump() + "\n";
+    for (const SweepRun& run : runs_) text += lineOf(run).dump() + "\n";
+    stream_.close();
+    writeFileAtomically(file_, text);
+    header_ = header;
+    size_ = text.size();
+}
+
+std::vector<SweepRun> SweepJournal::runsOf(const std::vector<SweepItem>& items) const {
+    const std::set<SweepItem> wanted(items.begin(), items.end());
+    std::vector<SweepRun> runs = runs_;
+    std::erase_if(runs, [&](const SweepRun& run) { return !wanted.contains(run.item); });
+    return runs;
+}
+
+std::vector<SweepItem> SweepJournal::missing(const std::vector<SweepItem>& items) const {
+    std::set<SweepItem> done;
+    for (const SweepRun& run : runs_) done.insert(run.item);
+    std::vector<SweepItem> open = items;
+    std::erase_if(open, [&](const SweepItem& item) { return done.contains(item); });
+    return open;
+}
+
+}  // namespace photonav

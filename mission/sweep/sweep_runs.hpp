@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The runs of a sweep: doing them, and the file that keeps each one as soon as it is done.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "problem/world.hpp"
+#include "sweep/sweep_plan.hpp"
+
+namespace photonav {
+
+/// What one run gave. Numbers about the path are NaN when there is none.
+struct SweepRun {
+    SweepItem item;
+    double cost, length, meanTrace, goalTrace;  ///< as in JudgedPath, with the item's alpha
+    std::size_t vertices = 0;
+    std::size_t views = 0;              ///< rendered by this run alone, nothing remembered
+    double seconds = 0.;                ///< planning with nothing remembered; wall clock
+    std::string status;                 ///< "done", or why there is no path
+    std::vector<Eigen::Vector3d> path;  ///< its waypoints in w [m]
+
+    bool isSolved() const { return status == "done"; }
+};
+
+/// Plans one item from scratch: with no view remembered, so that its numbers depend on nothing that
+/// was run before. Every planner's path is judged by the photometric beliefs with the item's alpha.
+/// @return nothing when interrupted
+std::optional<SweepRun> runItem(const Config& config, const World& world, const SweepItem& item,
+                                const std::atomic<bool>& interrupted);
+
+/// Runs items on `jobs` threads. What a run gives (but its seconds) does not depend on `jobs`.
+/// @param onRun called after each run, never twice at a time
+/// @throws what a run or onRun threw first
+void runItems(const Config& config, const World& world, const std::vector<SweepItem>& items,
+              unsigned jobs, const std::atomic<bool>& interrupted,
+              const std::function<void(const SweepRun&)>& onRun);
+
+/// What a sweep's file of runs begins with.
+struct SweepHeader {
+    std::string name;    ///< of the config
+    std::string config;  ///< YAML, complete
+    SweepIdentity identity;
+    SweepShard shard;
+};
+
+/// runs.jsonl: the header and one line per run, in the order they ended. Lines are only added, and
+/// each is flushed: a killed sweep loses the runs in progress.
+class SweepJournal {
+  public:
+    static constexpr const char* kFileName = "runs.jsonl";
+
+    /// Begins a new file; an earlier one is kept as runs.jsonl~.
+    /// @throws InputError if it cannot be written
+    static SweepJournal create(const std::filesystem::path& folder, const SweepHeader& header);
+
+    /// Reads the file of a folder; a last line that was cut is dropped.
+    /// @throws InputError if it is missing or not ours
+    static SweepJournal read(const std::filesystem::path& folder);
+
+    /// Puts another header before the same runs. The old file stays whole until that is done.
+    /// @throws InputError if it cannot be written
+    void replaceHeader(const SweepHeader& header);
+
+    /// @throws InputError if it cannot be written
+    void append(const SweepRun& run);
+
+    const SweepHeader& header() const { return header_; }
+    const std::vector<SweepRun>& runs() const { return runs_; }
+    const std::filesystem::path& file() const { return file_; }
+
+    /// The runs that belong to `items`.
+    std::vector<SweepRun> runsOf(const std::vector<SweepItem>& items) const;
+
+    /// Those of `items` that have no run yet.
+    std::vector<SweepItem> missing(const std::vector<SweepItem>& items) const;
+
+  private:
+    explicit SweepJournal(std::filesystem::path file) : file_(std::move(file)) {}
+    void write(const nlohmann::json& line);
+
+    std::filesystem::path file_;
+    SweepHeader header_;
+    std::vector<SweepRun> runs_;
+    std::uintmax_t size_ = 0;  ///< of the whole lines [bytes]
+    std::ofstream stream_;
+};
+
+/// A run as result.json holds it, `path` left out.
+nlohmann::json toJson(const SweepRun& run);
+
+}  // namespace photonav

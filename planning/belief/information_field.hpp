@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the view from a body pose is worth, evaluated lazily, kept, and renewed as the map changes.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <memory>
+#include <numbers>
+#include <unordered_map>
+#include <vector>
+
+#include "belief/view_extent.hpp"
+#include "belief/view_models.hpp"
+
+namespace photonav {
+
+/// Information, or penalties, over body poses: one view per cell of a pose grid.
+///
+/// The view is taken at the *centre* of the cell, so that the value depends on the pose alone and
+/// not on the order of queries: a path costs the same whenever it is evaluated. Information is kept
+/// in world-oriented axes, turned by the rotation of the camera at the centre, which rendered the
+/// view: in the camera's axes, a heading that differs from the centre's would mix what the view
+/// observes with what it does not.
+class InformationField {
+  public:
+    struct Options {
+        double positionPitch = 0.125;  ///< edge of a cell [m]
+        double rotationPitch =
+            std::numbers::pi / 36.;  ///< per component of the rotation vector [rad]
+    };
+
+    struct Entry {
+        Matrix6 information;  ///< about the camera centre, world-oriented axes (see Belief)
+        bool isZero;          ///< no information: the update can be skipped
+        bool isStale;         ///< the map has changed in view since: ask current() before use
+        std::uint32_t index;  ///< in the field
+        std::uint32_t epoch;  ///< of the field, when this was evaluated
+        ViewPenalty penalty;  ///< for fields of penalties; relief in world-oriented axes
+    };
+
+    /// A field over a map.
+    /// @param views of the map; kept until update() replaces it
+    /// @param T_b_c camera mount
+    /// @throws std::invalid_argument unless both pitches are positive
+    InformationField(std::shared_ptr<const ViewSource> views, const Camera& camera,
+                     const InformationModel& model, const Pose& T_b_c, const Options& options);
+    /// A field of penalties, whose views give no information about the pose.
+    InformationField(std::shared_ptr<const ViewSource> views, const Camera& camera,
+                     const PenaltyModel& model, const Pose& T_b_c, const Options& options);
+
+    /// A field without a map, which no update() changes.
+    /// @param formula empty: there is no view anywhere, and no information
+    InformationField(const InformationFormula& formula, const Pose& T_b_c, const Options& options);
+    InformationField(const PenaltyFormula& formula, const Pose& T_b_c, const Options& options);
+
+    /// What the view from the cell of T_w_b is worth in the map as it is now. The reference stays
+    /// valid until clear(); update() may make the entry stale.
+    const Entry& at(const Pose& T_w_b);
+
+    /// An entry of this field, evaluated again in place if it is stale.
+    const Entry& current(const Entry& entry);
+
+    /// Follows a map: from now on views are rendered from `views`, and entries whose view the
+    /// change can have touched are stale. Entries that are not stale equal fresh ones to the bit,
+    /// but for grey values that moved by less than the tolerance of MapChange::texture. Costs much
+    /// less than one view, and grows with the change.
+    ///
+    /// The camera is taken to be within the map's bounding box, or unknown space to be free to it.
+    /// @param views of the map after the change
+    void update(std::shared_ptr<const ViewSource> views, const MapChange& change);
+
+    std::uint32_t epoch() const { return epoch_; }  ///< number of updates so far
+
+    /// Whether motions are to be charged by penalty and not by covariance.
+    bool hasPenalties() const { return hasPenalties_; }
+
+    const Pose& mount() const { return T_b_c_; }
+    std::size_t size() const { return entries_.size(); }  ///< cells evaluated
+    std::size_t stale() const;                            ///< of them, those that are stale
+    std::size_t views() const { return views_; }          ///< evaluated, again ones included
+    std::size_t cacheHits() const { return cacheHits_; }  ///< queries answered without a view
+    double seconds() const { return seconds_; }           ///< spent on views
+    void clear();
+
+  private:
+    using Cell = std::array<std::int32_t, 6>;
+    struct CellHash {
+        std::size_t operator()(const Cell& cell) const;
+    };
+    using Evaluate = std::function<void(const View& view, const Pose& T_c_w, Entry& entry)>;
+
+    InformationField(Evaluate evaluate, const Pose& T_b_c, const Options& options);
+    Cell cellOf(const Pose& T_w_b) const;
+    Pose cameraPose(const Cell& cell) const;  // T_c_w at the centre
+    void evaluate(const Cell& cell, Entry& entry, ViewExtent& extent);
+
+    Evaluate evaluate_;
+    std::shared_ptr<const ViewSource> source_;  // none: formulas
+    Camera camera_;
+    bool hasPenalties_ = false;
+    Pose T_b_c_;
+    Options options_;
+    std::unordered_map<Cell, std::uint32_t, CellHash> index_;
+    std::deque<Entry> entries_;
+    std::vector<Cell> cells_;                  // by entry
+    std::vector<ViewExtent> extents_;          // by entry, for fields over a map
+    std::vector<Eigen::AlignedBox3d> bounds_;  // of the extents
+    View view_;                                // rendered last
+    std::uint32_t epoch_ = 0;
+    std::size_t views_ = 0;
+    std::size_t cacheHits_ = 0;
+    double seconds_ = 0.;
+};
+
+}  // namespace photonav

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which part of space a view depends on, coarsely: what a change of the map is tested against.
+#pragma once
+
+#include <vector>
+
+#include "geometry/camera.hpp"
+#include "map/map_change.hpp"
+
+namespace photonav {
+
+/// The space between a camera and the surfaces in its view: per tile of the image the largest depth
+/// of its pixels, infinite where a ray met no surface or unknown space.
+class ViewExtent {
+  public:
+    static constexpr unsigned kTile = 8;  ///< edge of a tile [px]
+
+    ViewExtent() = default;
+    /// @param depth z of the surface in the camera frame [m]; 0: no surface, unknown
+    ViewExtent(const Camera& camera, const ImageF& depth);
+
+    /// Whether some ray of the view meets the box no farther away than its surface. May be true
+    /// without need, but is never false when a ray does.
+    /// @param T_c_w camera pose of the view
+    /// @param box_w in the world [m]
+    bool meets(const Camera& camera, const Pose& T_c_w, const Eigen::AlignedBox3d& box_w) const;
+
+    /// A box in the world around all of it [m].
+    Eigen::AlignedBox3d bounds(const Camera& camera, const Pose& T_c_w) const;
+
+  private:
+    unsigned columns_ = 0, rows_ = 0;
+    std::vector<float> depth_;  // by tile, row by row
+};
+
+/// The space that views depend on around the bricks of a change, as a tree of boxes.
+///
+/// A view depends on the cells along its rays and on those around the cells where rays end: grey
+/// values are interpolated between neighbouring faces, over steps of the surface, and where it
+/// ends.
+class ChangedBricks {
+  public:
+    /// Cells around the end of a ray that its grey value depends on (VoxelRenderer).
+    static constexpr int kReach = 2;
+
+    /// Occupancy and texture bricks of a change, grown by kReach.
+    explicit ChangedBricks(const MapChange& change);
+
+    /// Whether `meets(box)` holds for some brick's box. It is asked first for boxes around several
+    /// bricks, so it has to hold for a box that contains one for which it holds.
+    template <class Predicate>
+    bool any(const Predicate& meets) const {
+        for (std::size_t i = 0; i < nodes_.size();) {
+            const Node& node = nodes_[i];
+            const bool isMet = meets(node.box);
+            if (isMet && node.end == i + 1) return true;
+            i = isMet ? i + 1 : node.end;
+        }
+        return false;
+    }
+
+  private:
+    struct Node {
+        Eigen::AlignedBox3d box;
+        std::size_t end;  // of the nodes below this one, which follow it; a leaf has none
+    };
+    using Boxes = std::vector<Eigen::AlignedBox3d>;
+
+    void build(Boxes::iterator begin, Boxes::iterator end);
+
+    std::vector<Node> nodes_;
+};
+
+}  // namespace photonav

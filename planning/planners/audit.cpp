@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planners/audit.hpp"
+
+namespace photonav {
+
+Audit auditTree(const BeliefPlanner& planner) {
+    BeliefModel& model = planner.model();
+    const auto nodes = planner.tree();
+    std::vector<BeliefPoint> replayed;
+    replayed.reserve(nodes.size());
+    Audit audit;
+    const auto rootPoint = [&](const TreeNode& node) {
+        BeliefPoint point = model.evaluate({node.state}).front();
+        if (const auto& root = planner.movedRoot()) {
+            point.covariance = model.cameraCovariance(node.state, *root);
+            point.trace = weightedTrace(root->covariance, model.options().characteristicLength);
+            point.cost = root->cost;
+        }
+        return point;
+    };
+    for (const TreeNode& node : nodes) {
+        if (!node.covariance) {  // a planner without beliefs: its cost is the way flown
+            BeliefPoint point{};
+            if (planner.movedRoot()) point.cost = planner.movedRoot()->cost;
+            if (node.parent >= 0) {
+                const double way = model.motion(nodes[node.parent].state, node.state).length;
+                point.cost = replayed[node.parent].cost + way;
+            }
+            replayed.push_back(point);
+        } else if (node.parent < 0) {
+            replayed.push_back(rootPoint(node));
+        } else {
+            std::vector<BeliefPoint> way{replayed[node.parent]};
+            model.evaluateMotion(nodes[node.parent].state, node.state, way);
+            replayed.push_back(way.back());
+        }
+        const BeliefPoint& truth = replayed.back();
+        const double costError = std::abs(node.cost - truth.cost) / (1. + truth.cost);
+        if (!(costError <= audit.maxCostError)) audit.maxCostError = costError;  // NaN counts
+        if (node.covariance) {
+            const double error = (*node.covariance - truth.covariance).norm() /
+                                 std::max(truth.covariance.norm(), 1e-300);
+            if (!(error <= audit.maxCovarianceError)) audit.maxCovarianceError = error;
+        }
+        ++audit.nodes;
+    }
+    return audit;
+}
+
+}  // namespace photonav

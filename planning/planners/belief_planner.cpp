@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planners/belief_planner.hpp"
+
+#include <ompl/base/goals/GoalSampleableRegion.h>
+#include <ompl/datastructures/NearestNeighborsGNATNoThreadSafety.h>
+#include <ompl/geometric/PathGeometric.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/constants.hpp"
+#include "planners/path_cost_objective.hpp"
+
+namespace photonav {
+namespace ob = ompl::base;
+namespace {
+
+constexpr double kExploration = 0.2;   // share of the samples taken wherever they fall
+constexpr double kMostToFinish = 0.5;  // of the time of solve(), for what comes after growth
+
+/// OMPL's tree of neighbours draws its pivots by a seed from the clock, and which of two vertices
+/// at the same distance comes first depends on them. Here the seed is always the same.
+template <typename T>
+class SeededNeighbours : public ompl::NearestNeighborsGNATNoThreadSafety<T> {
+  public:
+    SeededNeighbours() { Pivots::rngOf(this->pivotSelector_).setLocalSeed(1); }
+
+  private:
+    struct Pivots : ompl::GreedyKCenters<T> {
+        static ompl::RNG& rngOf(ompl::GreedyKCenters<T>& centers) {
+            return centers.*(&Pivots::rng_);
+        }
+    };
+};
+
+}  // namespace
+
+BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
+                             const std::string& name, const GrowthOptions& growth)
+    : ob::Planner(si, name),
+      model_(std::move(model)),
+      growth_(growth),
+      best_{kInfinity, {}},
+      objective_(std::make_shared<PathCostObjective>(si, model_)) {
+    specs_.optimizingPaths = true;
+    specs_.canReportIntermediateSolutions = false;
+    const auto declare = [this](const std::string& key, auto& value) {
+        using T = std::decay_t<decltype(value)>;
+        params_.declareParam<T>(
+            key, [&value](T v) { value = v; }, [&value] { return value; });
+    };
+    declare("range", growth_.range);
+    declare("goal_bias", growth_.goalBias);
+    declare("rewire_factor", growth_.rewireFactor);
+    declare("max_vertices", growth_.maxVertices);
+    declare("max_iterations", growth_.maxIterations);
+    declare("seed", growth_.seed);
+    const auto show = [this](const std::string& property, const auto& value) {
+        addPlannerProgressProperty(property, [&value] { return std::to_string(value.load()); });
+    };
+    show("best cost REAL", progress_.cost);
+    show("vertices INTEGER", progress_.vertices);
+    show("iterations INTEGER", progress_.iterations);
+    show("views INTEGER", progress_.views);
+}
+
+BeliefPlanner::~BeliefPlanner() { freeMemory(); }
+
+void BeliefPlanner::setup() {
+    Planner::setup();
+    if (!neighbours_) {
+        neighbours_ = std::make_shared<SeededNeighbours<Vertex*>>();
+        neighbours_->setDistanceFunction(
+            [this](const Vertex* a, const Vertex* b) { return si_->distance(a->state, b->state); });
+    }
+}
+
+/// RRT* in one page; compare the paper's Algorithm 1.
+ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& ptc) {
+    checkValidity();
+    if (dynamic_cast<ob::GoalSampleableRegion*>(pdef_->getGoal().get()) == nullptr) {
+        return ob::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
+    }
+    if (!addStarts()) return ob::PlannerStatus::INVALID_START;
+    if (!sampler_) {
+        sampler_ = model_->space().sampler(growth_.seed);
+        rng_.setLocalSeed(growth_.seed);
+    }
+
+    begin(ptc);
+    ob::ScopedState<> goalOrSample(si_);
+    while (!ptc && !isGrown()) {
+        ++iterations_;
+        grow(goalOrSample.get(), ptc);
+        publishProgress();
+    }
+    finish(ptc);
+    publishProgress();
+    return report();
+}
+
+double BeliefPlanner::range() const {
+    return growth_.range > 0. ? growth_.range : 0.2 * si_->getMaximumExtent();
+}
+
+ob::PlannerStatus BeliefPlanner::solve(double seconds) {
+    budget_ = std::clamp(seconds, 0., 1e9);
+    deadline_ = Clock::now() +
+                std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(budget_));
+    const struct Reset {  // also after an exception
+        std::optional<Clock::time_point>& deadline;
+        ~Reset() { deadline.reset(); }
+    } reset{deadline_};
+    return solve(ob::PlannerTerminationCondition([this] { return secondsLeft() <= 0.; }));
+}
+
+double BeliefPlanner::secondsLeft() const {
+    if (!deadline_) return kInfinity;
+    return std::chrono::duration<double>(*deadline_ - Clock::now()).count();
+}
+
+bool BeliefPlanner::isGrown() const {
+    return (growth_.maxVertices > 0 && vertices() >= growth_.maxVertices) ||
+           (growth_.maxIterations > 0 && iterations_ >= growth_.maxIterations) ||
+           (deadline_ && secondsLeft() <= std::min(timeToFinish(), kMostToFinish * budget_));
+}
+
+/// One sample, and the vertex toward it.
+void BeliefPlanner::grow(ob::State* target, const ob::PlannerTerminationCondition& ptc) {
+    const bool isGoalSample = sample(target);
+    const auto extension = extend(target);
+    if (!extension) return;
+    Vertex& fresh = *extension->fresh;
+    const bool isReached = isGoalSample && si_->distance(fresh.state, target) == 0.;
+    if (isReached) goalSamples_.push_back(&fresh);
+    fresh.isGoal = isReached || pdef_->getGoal()->isSatisfied(fresh.state);
+    if (fresh.isGoal) goals_.push_back(&fresh);
+    connect(fresh, near(fresh, extension->nearest), ptc);
+    neighbours_->add(&fresh);
+}
+
+void BeliefPlanner::publishProgress() {
+    progress_.cost = bestCost();
+    progress_.vertices = vertices();
+    progress_.iterations = iterations();
+    progress_.views = model_->field().views();
+}
+
+bool BeliefPlanner::addStarts() {
+    while (const ob::State* start = pis_.nextStart()) {
+        Vertex& root = addVertex(start);
+        root.isGoal = pdef_->getGoal()->isSatisfied(start);
+        roots_.push_back({&root, rootBelief(start)});
+        addRoot(roots_.back());
+        neighbours_->add(&root);
+        if (root.isGoal) offer(0., {root.state});
+    }
+    return std::any_of(roots_.begin(), roots_.end(),
+                       [this](const Root& root) { return si_->isValid(root.vertex->state); });
+}
+
+/// A goal state now and then until all of them are vertices, else a uniform sample.
+/// @return whether `state` is a goal state
+bool BeliefPlanner::sample(ob::State* state) {
+    const auto& goal = *pdef_->getGoal()->as<ob::GoalSampleableRegion>();
+    if (goalSamples_.size() < goal.maxSampleCount() && goal.canSample() &&
+        rng_.uniform01() < growth_.goalBias) {
+        goal.sampleGoal(state);
+        if (si_->isValid(state)) return true;
+    }
+    sampler_->sampleUniform(state);
+    return false;
+}
+
+/// A vertex at most range() from the nearest one toward the target, if the way is free.
+std::optional<BeliefPlanner::Extension> BeliefPlanner::extend(const ob::State* target) {
+    Vertex probe;
+    probe.state = const_cast<ob::State*>(target);
+    Vertex* nearest = neighbours_->nearest(&probe);
+    const double distance = si_->distance(nearest->state, target);
+    if (distance == 0.) return {};
+    if (!isPromising(*nearest) && rng_.uniform01() >= kExploration) return {};
+
+    Vertex& fresh = addVertex(target);
+    if (distance > range()) {
+        si_->getStateSpace()->interpolate(nearest->state, target, range() / distance, fresh.state);
+    }
+    if (!motionIsFree(*nearest, fresh)) {
+        release(fresh);
+        return {};
+    }
+    return Extension{&fresh, nearest};
+}
+
+/// Neighbours within gamma (log n / n)^(1/d) (Karaman and Frazzoli 2011), `nearest` in front.
+std::vector<Vertex*> BeliefPlanner::near(const Vertex& fresh, Vertex* nearest) const {
+    const auto& space = model_->space();
+    const double d = space.dimension();
+    const double n = static_cast<double>(vertices());
+    const double gamma =
+        growth_.rewireFactor *
+        std::pow(2. * (1. + 1. / d) * space.measure() / space.unitBallMeasure(), 1. / d);
+    const double radius = std::min(range(), gamma * std::pow(std::log(n) / n, 1. / d));
+    std::vector<Vertex*> neighbourhood;
+    neighbours_->nearestR(const_cast<Vertex*>(&fresh), radius, neighbourhood);
+    const auto it = std::find(neighbourhood.begin(), neighbourhood.end(), nearest);
+    if (it == neighbourhood.end())
+        neighbourhood.insert(neighbourhood.begin(), nearest);
+    else
+        std::swap(*it, neighbourhood.front());
+    return neighbourhood;
+}
+
+Vertex& BeliefPlanner::addVertex(const ob::State* state) {
+    if (unused_.empty()) {
+        unused_.push_back(&vertices_.emplace_back());
+        unused_.back()->index = static_cast<std::uint32_t>(vertices_.size() - 1);
+    }
+    Vertex& vertex = *unused_.back();
+    unused_.pop_back();
+    vertex = {si_->cloneState(state), vertex.index, false};
+    return vertex;
+}
+
+void BeliefPlanner::release(Vertex& vertex) {
+    si_->freeState(vertex.state);
+    vertex.state = nullptr;
+    unused_.push_back(&vertex);
+}
+
+void BeliefPlanner::remove(const std::vector<Vertex*>& vertices) {
+    for (Vertex* vertex : vertices) {
+        removeEdgesOf(*vertex);
+        neighbours_->remove(vertex);
+        std::erase(goals_, vertex);
+        std::erase(goalSamples_, vertex);
+        release(*vertex);
+    }
+}
+
+void BeliefPlanner::offer(double cost, const std::vector<const ob::State*>& path) {
+    if (cost >= best_.cost) return;
+    si_->freeStates(best_.states);
+    best_.states.clear();
+    for (const ob::State* state : path) best_.states.push_back(si_->cloneState(state));
+    best_.cost = cost;
+}
+
+ob::PlannerStatus BeliefPlanner::report() {
+    if (best_.states.empty()) return ob::PlannerStatus::TIMEOUT;
+    addSolution();
+    return ob::PlannerStatus::EXACT_SOLUTION;
+}
+
+void BeliefPlanner::addSolution() {
+    auto path = std::make_shared<ompl::geometric::PathGeometric>(si_);
+    for (const ob::State* state : best_.states) path->append(state);
+    ob::PlannerSolution solution(path);
+    solution.setPlannerName(getName());
+    solution.setOptimized(objective_, ob::Cost(best_.cost), false);
+    pdef_->addSolutionPath(solution);
+}
+
+void BeliefPlanner::clear() {
+    Planner::clear();
+    freeMemory();
+    vertices_.clear();
+    roots_.clear();
+    goals_.clear();
+    best_ = {kInfinity, {}};
+    sampler_.reset();
+    if (neighbours_) neighbours_->clear();
+    iterations_ = 0;
+    goalSamples_.clear();
+    unused_.clear();
+    movedRoot_.reset();
+    model_->clear();
+    publishProgress();
+}
+
+void BeliefPlanner::freeMemory() {
+    for (Vertex& vertex : vertices_) {
+        if (vertex.state != nullptr) si_->freeState(vertex.state);
+    }
+    si_->freeStates(best_.states);
+    best_.states.clear();
+}
+
+void BeliefPlanner::getPlannerData(ob::PlannerData& data) const {
+    Planner::getPlannerData(data);
+    const auto nodes = tree();
+    for (const TreeNode& node : nodes) {
+        if (node.parent < 0) {
+            data.addStartVertex(ob::PlannerDataVertex(node.state));
+        } else {
+            const ob::State* parent = nodes[node.parent].state;
+            data.addEdge(ob::PlannerDataVertex(parent), ob::PlannerDataVertex(node.state), {},
+                         ob::Cost(si_->distance(parent, node.state)));
+        }
+    }
+    for (const Vertex* goal : goals_) data.markGoalState(goal->state);
+}
+
+}  // namespace photonav

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What all our planners share: growing a set of vertices by sampling, and OMPL's planner contract.
+#pragma once
+
+#include <ompl/base/OptimizationObjective.h>
+#include <ompl/base/Planner.h>
+#include <ompl/datastructures/NearestNeighbors.h>
+#include <ompl/util/RandomNumbers.h>
+
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "belief/belief.hpp"
+#include "geometry/constants.hpp"
+#include "planners/changed_space.hpp"
+#include "planners/vertex.hpp"
+
+namespace photonav {
+
+struct GrowthOptions {
+    double range = 0.;          ///< longest motion added [m]; 0: a fifth of the space's extent
+    double goalBias = 0.05;     ///< share of samples drawn at the goal until it is reached
+    double rewireFactor = 1.1;  ///< on the connection radius of Karaman and Frazzoli 2011
+    std::uint32_t seed = 1;     ///< of everything random in the planner
+    /// solve() stops growing with as many vertices, or after as many samples, and finishes what it
+    /// has; 0: with the termination condition.
+    unsigned maxVertices = 0;
+    std::size_t maxIterations = 0;
+    /// How far clearance is computed: DistanceMap::maxDistance() [m]. mapChanged() checks again
+    /// what is as near to a change of occupancy.
+    double clearanceCap = 1.;
+};
+
+/// A belief the planner stores, and the node it was propagated from: what an audit replays.
+struct TreeNode {
+    const ompl::base::State* state;
+    int parent;  ///< index of an earlier node; -1 for a start
+    double cost;
+    std::optional<Matrix6> covariance;  ///< of T_c_w, camera frame, left; none where the planner
+                                        ///< propagates no covariances
+};
+
+/// Base of rrt_star, pa_rrt_star, rrbt and belief_rrt_star. Derived planners define how a new
+/// vertex is connected and where the best path is; everything else is here.
+///
+/// While map and root stay, the answer is the best path ever found: its cost never rises, whatever
+/// happens to the tree. When one of them changes, the best path is judged again: it is dropped
+/// where it is no longer free, and its cost may rise.
+class BeliefPlanner : public ompl::base::Planner {
+  public:
+    BeliefPlanner(const ompl::base::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
+                  const std::string& name, const GrowthOptions& growth = {});
+    ~BeliefPlanner() override;
+
+    void setup() override;
+
+    /// Grows until the condition holds or the vertices or iterations of the options are used up,
+    /// then finishes what it has, as far as the condition allows.
+    ompl::base::PlannerStatus solve(const ompl::base::PlannerTerminationCondition& ptc) override;
+
+    /// Solves for so long [s]. Since the deadline is known, planners that improve their path in the
+    /// end begin that in time.
+    ompl::base::PlannerStatus solve(double seconds);
+    using ompl::base::Planner::solve;
+
+    /// Follows a map that has changed. Clearance and information field have to follow it first.
+    /// Removes what is in collision; what the change may have freed is checked again. The best path
+    /// is kept only if it is still free, at the cost that it has in the views of the map as it is
+    /// now; so are the solutions of the problem definition. The next solve() goes on from there.
+    void mapChanged(const MapChange& change);
+
+    /// Plans from another state and belief from now on, as while a path is flown: the only root of
+    /// the tree, and the start state of the problem definition until another one is set. The part
+    /// of the best path that lies ahead is kept.
+    /// @param belief as those of BeliefModel; costs are counted from its own
+    void moveRoot(const ompl::base::State* state, const Belief& belief);
+
+    void clear() override;
+    void getPlannerData(ompl::base::PlannerData& data) const override;
+
+    std::size_t vertices() const { return vertices_.size() - unused_.size(); }
+    std::size_t iterations() const { return iterations_; }
+    double bestCost() const { return best_.cost; }  ///< infinite until the goal is reached
+    /// The belief at the root, once moveRoot() has set it.
+    const std::optional<Belief>& movedRoot() const { return movedRoot_; }
+    BeliefModel& model() const { return *model_; }
+
+    /// Every belief the planner holds, parents before children.
+    virtual std::vector<TreeNode> tree() const = 0;
+
+  protected:
+    /// A start and the belief there.
+    struct Root {
+        Vertex* vertex;
+        Belief belief;
+    };
+
+    /// Called when a start has become a vertex.
+    virtual void addRoot(const Root& root) = 0;
+
+    /// The belief at a start; renders the view from there.
+    virtual Belief rootBelief(const ompl::base::State* start) { return model_->root(start); }
+
+    /// Joins a new vertex (not yet among the neighbours) to those near it, to which motions are
+    /// short but unchecked; the first of them is the vertex it was steered from, checked.
+    virtual void connect(Vertex& fresh, const std::vector<Vertex*>& near,
+                         const ompl::base::PlannerTerminationCondition& ptc) = 0;
+
+    /// Whether a sample whose nearest vertex is this one is worth a try. Asked for most samples;
+    /// the rest are taken wherever they fall, so that in the end nothing is missed.
+    virtual bool isPromising(const Vertex&) { return true; }
+
+    /// Called when solve() begins.
+    virtual void begin(const ompl::base::PlannerTerminationCondition&) {}
+
+    /// Called before solve() returns, when the vertex set is final for now.
+    virtual void finish(const ompl::base::PlannerTerminationCondition&) {}
+
+    /// How long finish() is going to take [s]: growth ends so much before the deadline.
+    virtual double timeToFinish() const { return 0.; }
+
+    /// Called when the map has changed: motions through changed space are to be checked again.
+    /// @param colliding vertices that are no longer valid
+    /// @return the vertices to be removed, those in collision included
+    virtual std::vector<Vertex*> invalidate(const ChangedSpace& changed,
+                                            std::vector<Vertex*> colliding) = 0;
+
+    /// Called before a vertex is removed.
+    virtual void removeEdgesOf(const Vertex& vertex) = 0;
+
+    /// Called when the map has changed and vertices are removed: views may have changed as well.
+    virtual void renewBeliefs() = 0;
+
+    /// Called when `root` has become the only root.
+    /// @param near of a new vertex: those near it, not joined yet
+    /// @return vertices to be removed
+    virtual std::vector<Vertex*> replaceRoots(const Root& root,
+                                              const std::vector<Vertex*>& near) = 0;
+
+    /// The belief at the other end of a motion.
+    virtual Belief propagate(const Belief& belief, Motion& motion, bool backward) {
+        return model_->propagate(belief, motion, backward);
+    }
+
+    bool motionIsFree(const Vertex& from, const Vertex& to) const {
+        return si_->checkMotion(from.state, to.state);
+    }
+
+    /// Keeps a path (start first) if it is the best ever.
+    void offer(double cost, const std::vector<const ompl::base::State*>& path);
+
+    /// Time until the deadline of solve(double) [s]; infinite without one.
+    double secondsLeft() const;
+
+    std::deque<Vertex> vertices_;  // removed ones have no state
+    std::vector<Root> roots_;
+    std::vector<Vertex*> goals_;
+    std::shared_ptr<BeliefModel> model_;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    struct Solution {
+        double cost;
+        std::vector<ompl::base::State*> states;
+    };
+    struct Extension {
+        Vertex* fresh;
+        Vertex* nearest;
+    };
+    /// What benchmarks sample from another thread while solve() runs.
+    struct Progress {
+        std::atomic<double> cost{kInfinity};
+        std::atomic<std::size_t> vertices{0}, iterations{0}, views{0};
+    };
+    void publishProgress();
+    bool addStarts();
+    bool isGrown() const;
+    double range() const;
+    void grow(ompl::base::State* target, const ompl::base::PlannerTerminationCondition& ptc);
+    bool sample(ompl::base::State* state);
+    std::optional<Extension> extend(const ompl::base::State* target);
+    std::vector<Vertex*> near(const Vertex& fresh, Vertex* nearest) const;
+    Vertex& addVertex(const ompl::base::State* state);
+    void release(Vertex& vertex);
+    void remove(const std::vector<Vertex*>& vertices);
+    void removeColliding(const ChangedSpace& changed);
+    bool isRoot(const Vertex& vertex) const;
+    void joinRootToBest();
+    void judgeBest();
+    std::optional<double> costOf(const std::vector<ompl::base::State*>& path);
+    void setStartOfProblem(const ompl::base::State* state);
+    void addSolution();
+    ompl::base::PlannerStatus report();
+    void freeMemory();
+
+    GrowthOptions growth_;
+    std::shared_ptr<ompl::NearestNeighbors<Vertex*>> neighbours_;
+    ompl::base::StateSamplerPtr sampler_;
+    ompl::RNG rng_;
+    Solution best_;
+    std::optional<Belief> movedRoot_;
+    std::optional<Clock::time_point> deadline_;
+    double budget_ = 0.;  // of the solve() that has a deadline [s]
+    std::size_t iterations_ = 0;
+    std::vector<const Vertex*> goalSamples_;  // vertices that were sampled at a goal
+    std::vector<Vertex*> unused_;             // removed, to be used again
+    Progress progress_;
+    ompl::base::OptimizationObjectivePtr objective_;
+};
+
+}  // namespace photonav

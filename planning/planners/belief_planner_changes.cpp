@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a planner keeps when the map or the place of the robot changes.
+#include <algorithm>
+
+#include "planners/belief_planner.hpp"
+
+namespace photonav {
+namespace ob = ompl::base;
+namespace {
+
+/// Distance from a point to a segment [m].
+double distanceToLeg(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    const Eigen::Vector3d way = b - a;
+    const double squared = way.squaredNorm();
+    const double t = squared > 0. ? std::clamp((p - a).dot(way) / squared, 0., 1.) : 0.;
+    return (p - a - t * way).norm();
+}
+
+}  // namespace
+
+void BeliefPlanner::mapChanged(const MapChange& change) {
+    if (change.empty() || roots_.empty()) return;
+    removeColliding(ChangedSpace(change, growth_.clearanceCap));
+    if (!movedRoot_) {  // the views from the starts may have changed
+        for (Root& root : roots_) root.belief = rootBelief(root.vertex->state);
+    }
+    judgeBest();
+    renewBeliefs();
+    pdef_->clearSolutionPaths();
+    if (!best_.states.empty()) addSolution();
+    publishProgress();
+}
+
+/// Roots stay: a robot that is too near to a wall has no path, but is still there.
+void BeliefPlanner::removeColliding(const ChangedSpace& changed) {
+    std::vector<Vertex*> colliding;
+    for (Vertex& vertex : vertices_) {
+        if (vertex.state == nullptr || isRoot(vertex)) continue;
+        if (!changed.contains(model_->space().position(vertex.state))) continue;
+        if (!si_->isValid(vertex.state)) colliding.push_back(&vertex);
+    }
+    remove(invalidate(changed, std::move(colliding)));
+}
+
+bool BeliefPlanner::isRoot(const Vertex& vertex) const {
+    return std::any_of(roots_.begin(), roots_.end(),
+                       [&](const Root& root) { return root.vertex == &vertex; });
+}
+
+void BeliefPlanner::moveRoot(const ob::State* state, const Belief& belief) {
+    checkValidity();
+    setStartOfProblem(state);
+    Vertex probe;
+    probe.state = const_cast<ob::State*>(state);
+    Vertex* root = neighbours_->size() > 0 ? neighbours_->nearest(&probe) : nullptr;
+    std::vector<Vertex*> others;
+    if (root == nullptr || si_->distance(root->state, state) > 0.) {
+        if (root != nullptr) others = near(probe, root);
+        root = &addVertex(state);
+        neighbours_->add(root);
+    }
+    root->isGoal = pdef_->getGoal()->isSatisfied(state);
+    if (root->isGoal && std::find(goals_.begin(), goals_.end(), root) == goals_.end()) {
+        goals_.push_back(root);
+    }
+    roots_ = {{root, belief}};
+    movedRoot_ = belief;
+    joinRootToBest();
+    judgeBest();
+    remove(replaceRoots(roots_.front(), others));
+    if (root->isGoal) offer(belief.cost, {root->state});
+    pdef_->clearSolutionPaths();
+    if (!best_.states.empty()) addSolution();
+    publishProgress();
+}
+
+void BeliefPlanner::setStartOfProblem(const ob::State* state) {
+    pdef_->clearStartStates();
+    pdef_->addStartState(state);
+    while (pis_.nextStart() != nullptr) {
+    }
+}
+
+/// Replaces the part of the best path before the leg nearest to the root.
+void BeliefPlanner::joinRootToBest() {
+    auto& states = best_.states;
+    if (states.size() < 2) return;
+    const FlightSpace& space = model_->space();
+    const ob::State* root = roots_.front().vertex->state;
+    const auto at = [&](std::size_t i) { return space.position(states[i]); };
+    std::size_t next = 1;
+    double least = kInfinity;
+    for (std::size_t i = 1; i < states.size(); ++i) {
+        const double distance = distanceToLeg(space.position(root), at(i - 1), at(i));
+        if (distance > least) continue;
+        least = distance;
+        next = i;
+    }
+    if (si_->distance(root, states[next]) > 0. && !si_->checkMotion(root, states[next])) --next;
+    if (next + 1 < states.size() && si_->distance(root, states[next]) == 0.) ++next;
+    for (std::size_t i = 0; i < next; ++i) si_->freeState(states[i]);
+    states.erase(states.begin(), states.begin() + static_cast<std::ptrdiff_t>(next));
+    states.insert(states.begin(), si_->cloneState(root));
+}
+
+/// Drops the best path unless it is free from a root on, else takes its cost as it is now.
+void BeliefPlanner::judgeBest() {
+    if (best_.states.empty()) return;
+    if (const auto cost = costOf(best_.states)) {
+        best_.cost = *cost;
+        return;
+    }
+    si_->freeStates(best_.states);
+    best_ = {kInfinity, {}};
+}
+
+std::optional<double> BeliefPlanner::costOf(const std::vector<ob::State*>& path) {
+    const auto root = std::find_if(roots_.begin(), roots_.end(), [&](const Root& r) {
+        return si_->equalStates(r.vertex->state, path.front());
+    });
+    if (root == roots_.end() || !si_->isValid(path.front())) return {};
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        if (!si_->checkMotion(path[i - 1], path[i])) return {};
+    }
+    Belief belief = root->belief;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        Motion motion = model_->motion(path[i - 1], path[i]);
+        belief = propagate(belief, motion, false);
+    }
+    return belief.cost;
+}
+
+}  // namespace photonav

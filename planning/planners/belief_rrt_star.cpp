@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planners/belief_rrt_star.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "geometry/constants.hpp"
+#include "planners/loewner_order.hpp"
+
+namespace photonav {
+namespace ob = ompl::base;
+namespace {
+
+constexpr std::size_t kFirstSearch = 100;          // vertices
+constexpr double kSearchGrowth = 2.;               // of the roadmap between searches
+constexpr double kSearchGrowthWithoutPath = 1.25;  // while no search has reached the goal
+constexpr double kSearchMargin = 1.5;              // a search takes so much longer than expected
+
+constexpr double kDominanceSlack = 0.02;  // see isDominated()
+constexpr double kMinLever = 1.;          // [m]
+constexpr double kMaxLever = 100.;        // [m]
+
+}  // namespace
+
+BeliefRRTstar::BeliefRRTstar(const ob::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
+                             const SearchOptions& search, const GrowthOptions& growth)
+    : BeliefPlanner(si, std::move(model), "belief_rrt_star", growth), options_(search) {
+    const auto declare = [this](const std::string& key, auto& value) {
+        using T = std::decay_t<decltype(value)>;
+        params_.declareParam<T>(
+            key, [&value](T v) { value = v; }, [&value] { return value; });
+    };
+    declare("labels", options_.labels);
+    declare("informed", options_.informed);
+    declare("shortcut", options_.shortcut);
+    addPlannerProgressProperty("shortcuts tried INTEGER",
+                               [this] { return std::to_string(shortcutsTried_); });
+    addPlannerProgressProperty("shortcuts taken INTEGER",
+                               [this] { return std::to_string(shortcutsTaken_); });
+}
+
+/// A roadmap that has changed is searched before it grows.
+void BeliefRRTstar::begin(const ob::PlannerTerminationCondition& ptc) {
+    if (isSearchDue_ && !goals_.empty()) search(ptc);
+}
+
+void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near,
+                            const ob::PlannerTerminationCondition& ptc) {
+    for (Vertex* vertex : near) {
+        roadmap_.add(vertex, &fresh, model_->motion(vertex->state, fresh.state));
+    }
+    roadmap_.of(&fresh).front()->isFree = true;
+    if (fresh.index < promising_.size()) promising_[fresh.index] = true;
+    if (fresh.index + 1 < vertices_.size()) toGo_ = {};  // the number was that of a removed vertex
+    isSearchDue_ = true;
+    if (fresh.isGoal && bestCost() == kInfinity) offerCheckedPath(fresh);
+    const double growth = path_.empty() ? kSearchGrowthWithoutPath : kSearchGrowth;
+    const double due = std::max<double>(kFirstSearch, growth * static_cast<double>(searched_));
+    if (goals_.empty() || static_cast<double>(vertices()) < due) return;
+    search(ptc);
+    promising_.assign(vertices_.size(), false);
+    for (const Label& label : settled_) promising_[label.vertex->index] = true;
+    descend(ptc, static_cast<unsigned>(vertices()));
+}
+
+/// The way to a goal over edges that were checked already, for the time until the first search.
+void BeliefRRTstar::offerCheckedPath(const Vertex& goal) {
+    std::vector<Roadmap::Edge*> arrival(vertices_.size(), nullptr);
+    std::vector<const Vertex*> reached{&goal};  // backward from the goal, breadth first
+    const auto rootAt = [&](const Vertex* vertex) {
+        return std::find_if(roots_.begin(), roots_.end(),
+                            [&](const Root& root) { return root.vertex == vertex; });
+    };
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+        const Vertex* vertex = reached[i];
+        if (const auto root = rootAt(vertex); root != roots_.end()) {
+            std::vector<const ob::State*> path{vertex->state};
+            Belief belief = root->belief;
+            while (vertex != &goal) {
+                Roadmap::Edge& edge = *arrival[vertex->index];
+                belief = propagate(belief, edge.motion, vertex == edge.to);
+                vertex = edge.otherEnd(vertex);
+                path.push_back(vertex->state);
+            }
+            offer(belief.cost, path);
+            return;
+        }
+        for (Roadmap::Edge* edge : roadmap_.of(vertex)) {
+            const Vertex* next = edge->otherEnd(vertex);
+            if (!edge->isFree.value_or(false) || next == &goal) continue;
+            if (arrival[next->index] != nullptr) continue;
+            arrival[next->index] = edge;
+            reached.push_back(next);
+        }
+    }
+}
+
+/// Beside a vertex that the last search found on a path which might still have been the best, or
+/// beside a younger one.
+bool BeliefRRTstar::isPromising(const Vertex& nearest) {
+    return !options_.informed || nearest.index >= promising_.size() || promising_[nearest.index];
+}
+
+void BeliefRRTstar::finish(const ob::PlannerTerminationCondition& ptc) {
+    if (isSearchDue_) search(ptc);
+    descend(ptc, options_.shortcut);
+}
+
+/// As the last search took, and the changes so far. Before there is any measure, half of the time
+/// that is left belongs to the end.
+double BeliefRRTstar::timeToFinish() const {
+    if (goals_.empty()) return 0.;
+    if (searched_ == 0) return kInfinity;
+    const double growth = static_cast<double>(vertices()) / static_cast<double>(searched_);
+    const double descent = shortcutsTried_ > 0
+                               ? descentSeconds_ / shortcutsTried_ * options_.shortcut
+                               : searchSeconds_;
+    return kSearchMargin * growth * searchSeconds_ + descent;
+}
+
+/// Best-first over labels (vertex, belief). No label costs more than its bound says, so the first
+/// one that settles at a goal is the best that the labels kept can give.
+void BeliefRRTstar::search(const ob::PlannerTerminationCondition& ptc) {
+    const auto start = std::chrono::steady_clock::now();
+    roadmap_.resize(vertices_.size());
+    settled_.clear();
+    labelsOf_.assign(vertices_.size(), {});
+    toGo_.update(roadmap_, vertices_, goals_, *model_);
+
+    Open open;
+    for (const Root& root : roots_) {
+        Candidate candidate{0., -1, nullptr, root.vertex};
+        candidate.belief = std::make_unique<Belief>(root.belief);
+        push(open, std::move(candidate));
+    }
+    while (!open.empty()) {
+        if (ptc) return;
+        std::pop_heap(open.begin(), open.end());
+        Candidate candidate = std::move(open.back());
+        open.pop_back();
+        if (isFull(*candidate.vertex)) continue;
+        if (candidate.belief == nullptr) {
+            if (propagateTo(candidate)) push(open, std::move(candidate));
+            continue;
+        }
+        if (isDominated(*candidate.vertex, *candidate.belief)) continue;
+        const int label = static_cast<int>(settled_.size());
+        labelsOf_[candidate.vertex->index].push_back(label);
+        settled_.push_back({candidate.vertex, candidate.parent, *candidate.belief});
+        if (candidate.vertex->isGoal) {
+            keepPath(label);
+            break;
+        }
+        expand(label, open);
+    }
+    searched_ = vertices();
+    isSearchDue_ = false;
+    searchSeconds_ =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void BeliefRRTstar::push(Open& open, Candidate candidate) const {
+    if (!(candidate.bound <= limit()) || candidate.bound == kInfinity) return;
+    open.push_back(std::move(candidate));
+    std::push_heap(open.begin(), open.end());
+}
+
+void BeliefRRTstar::expand(int label, Open& open) const {
+    const auto& [vertex, parent, belief] = settled_[label];
+    const auto variances = toGo_.variances(belief.covariance);
+    for (Roadmap::Edge* edge : roadmap_.of(vertex)) {
+        Vertex* next = edge->otherEnd(vertex);
+        if (isFull(*next) || !edge->isFree.value_or(true)) continue;
+        push(open, {belief.cost + toGo_.over(*edge, *vertex, variances), label, edge, next});
+    }
+}
+
+/// @return whether the edge is free, and the label neither dominated nor too costly
+bool BeliefRRTstar::propagateTo(Candidate& candidate) {
+    Roadmap::Edge& edge = *candidate.edge;
+    if (!Roadmap::isFree(edge, *si_)) return false;
+    const Vertex& vertex = *candidate.vertex;
+    const Belief arrival =
+        propagate(settled_[candidate.parent].belief, edge.motion, candidate.vertex == edge.from);
+    if (isDominated(vertex, arrival)) return false;
+    candidate.bound = arrival.cost + toGo_.from(vertex, toGo_.variances(arrival.covariance));
+    candidate.belief = std::make_unique<Belief>(arrival);
+    return candidate.bound <= limit();
+}
+
+/// Dominated is what costs no less than a label settled before and is nowhere better by more than
+/// the slack, neither relative to itself nor to the whole. Without the second part a label lives on
+/// for a hair less roll, and near-copies crowd out the one that matters. A rotation error counts by
+/// what it will do to the position on the way to the goal.
+bool BeliefRRTstar::isDominated(const Vertex& vertex, const Belief& belief) const {
+    const double lever = std::clamp(toGo_.distance(vertex), kMinLever, kMaxLever);
+    Matrix6 limit = (1. + kDominanceSlack) * belief.covariance;
+    const double whole = kDominanceSlack * weightedTrace(belief.covariance, lever);
+    limit.diagonal().head<3>().array() += whole;
+    limit.diagonal().tail<3>().array() += whole / (lever * lever);
+    for (const int label : labelsOf_[vertex.index]) {
+        const Belief& known = settled_[label].belief;
+        if (known.cost > belief.cost) continue;
+        if (isLoewnerLess(known.covariance, limit)) return true;
+    }
+    return false;
+}
+
+void BeliefRRTstar::keepPath(int label) {
+    pathCost_ = settled_[label].belief.cost;
+    std::vector<const ob::State*> path;
+    for (; label >= 0; label = settled_[label].parent) {
+        path.push_back(settled_[label].vertex->state);
+    }
+    std::reverse(path.begin(), path.end());
+    if (path == path_) return;
+    path_ = std::move(path);
+    descent_.reset();
+    offer(pathCost_, path_);
+}
+
+/// Changes the best path of the roadmap until so many changes were tried, in all calls together.
+void BeliefRRTstar::descend(const ob::PlannerTerminationCondition& ptc, unsigned changes) {
+    if (options_.shortcut == 0 || path_.empty()) return;
+    const auto start = std::chrono::steady_clock::now();
+    if (!descent_) {
+        descent_.emplace(si_, model_, DescentOptions{.moves = options_.shortcut});
+        const auto root = std::find_if(roots_.begin(), roots_.end(), [&](const Root& r) {
+            return r.vertex->state == path_.front();
+        });
+        descent_->begin(path_, root->belief);
+    }
+    const unsigned tried = descent_->tried();
+    const unsigned accepted = descent_->accepted();
+    descent_->descend(ptc, changes);
+    shortcutsTried_ += descent_->tried() - tried;
+    shortcutsTaken_ += descent_->accepted() - accepted;
+    offer(descent_->cost(), descent_->path());
+    descentSeconds_ +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::vector<Vertex*> BeliefRRTstar::invalidate(const ChangedSpace& changed,
+                                               std::vector<Vertex*> colliding) {
+    roadmap_.mapChanged(changed, model_->space());
+    return colliding;
+}
+
+/// What the last search found rests on another map: the next solve() searches again.
+void BeliefRRTstar::renewBeliefs() {
+    toGo_ = {};
+    settled_.clear();
+    labelsOf_.clear();
+    promising_.clear();
+    path_.clear();
+    pathCost_ = kInfinity;
+    descent_.reset();
+    searched_ = 0;
+    isSearchDue_ = true;
+}
+
+std::vector<Vertex*> BeliefRRTstar::replaceRoots(const Root& root,
+                                                 const std::vector<Vertex*>& near) {
+    for (Vertex* vertex : near) {
+        roadmap_.add(root.vertex, vertex, model_->motion(root.vertex->state, vertex->state));
+    }
+    renewBeliefs();
+    return {};
+}
+
+void BeliefRRTstar::clear() {
+    BeliefPlanner::clear();
+    roadmap_.clear();
+    renewBeliefs();
+    isSearchDue_ = false;
+    searchSeconds_ = descentSeconds_ = 0.;
+    shortcutsTried_ = shortcutsTaken_ = 0;
+}
+
+std::vector<TreeNode> BeliefRRTstar::tree() const {
+    std::vector<TreeNode> nodes;
+    nodes.reserve(settled_.size());
+    for (const Label& label : settled_) {
+        const ob::State* state = label.vertex->state;
+        nodes.push_back({state, label.parent, label.belief.cost,
+                         model_->cameraCovariance(state, label.belief)});
+    }
+    return nodes;
+}
+
+}  // namespace photonav

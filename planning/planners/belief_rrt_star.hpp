@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Belief search over a sampled roadmap: the default planner.
+#pragma once
+
+#include <atomic>
+
+#include "geometry/constants.hpp"
+#include "planners/belief_planner.hpp"
+#include "planners/cost_to_go.hpp"
+#include "planners/path_descent.hpp"
+#include "planners/roadmap.hpp"
+
+namespace photonav {
+
+struct SearchOptions {
+    unsigned labels = 5;       ///< kept per vertex, at most
+    bool informed = true;      ///< samples only where a better path may pass, most of the time
+    unsigned shortcut = 3000;  ///< changes tried on the best path of a search, at most; 0: none
+};
+
+/// Grows the roadmap that RRT* would (same samples, same connection radius), keeps all its edges,
+/// and searches beliefs over it with several labels per vertex: a costlier way to a vertex that
+/// arrives there better localised is kept as long as it is not dominated in the partial order of
+/// cost and covariance (Loewner order; Bry and Roy 2011). Algorithm 1 keeps only the cheapest and
+/// can stay in the wrong plateau however many vertices it adds.
+///
+/// The cap on the labels and a slack in the order make the answer the best of the labels kept, not
+/// of all beliefs.
+///
+/// Edges are checked for collision, and their views rendered, only when a label is about to be
+/// propagated along them.
+///
+/// The planner is anytime: whenever the roadmap has doubled it is searched, and as many changes are
+/// tried on the path found as the roadmap has vertices, before it grows on. With a known deadline
+/// (solve(double)) the last search and the descent from its path begin in time; a termination
+/// condition ends at once.
+class BeliefRRTstar : public BeliefPlanner {
+  public:
+    BeliefRRTstar(const ompl::base::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
+                  const SearchOptions& search = {}, const GrowthOptions& growth = {});
+
+    void clear() override;
+    std::vector<TreeNode> tree() const override;
+
+    unsigned shortcutsTried() const { return shortcutsTried_; }
+    unsigned shortcutsTaken() const { return shortcutsTaken_; }
+
+  private:
+    struct Label {
+        Vertex* vertex;
+        int parent;  // index into settled_; -1 at a start
+        Belief belief;
+    };
+    /// A label to come: its edge is checked, and the belief propagated, only when it is next.
+    struct Candidate {
+        double bound;  // least cost of a path to the goal through here
+        int parent;
+        Roadmap::Edge* edge;                  // from the parent; none at a start
+        Vertex* vertex;                       // where it leads
+        std::unique_ptr<Belief> belief = {};  // there, once propagated
+
+        bool operator<(const Candidate& other) const { return bound > other.bound; }
+    };
+    using Open = std::vector<Candidate>;  // a heap, the least bound in front
+
+    /// What a path over the roadmap may cost at most: the best one so far is found again.
+    double limit() const { return pathCost_ * (1. + 1e-12); }
+
+    void addRoot(const Root&) override { isSearchDue_ = true; }
+    void begin(const ompl::base::PlannerTerminationCondition& ptc) override;
+    void connect(Vertex& fresh, const std::vector<Vertex*>& near,
+                 const ompl::base::PlannerTerminationCondition& ptc) override;
+    bool isPromising(const Vertex& nearest) override;
+    void finish(const ompl::base::PlannerTerminationCondition& ptc) override;
+    double timeToFinish() const override;
+    std::vector<Vertex*> invalidate(const ChangedSpace& changed,
+                                    std::vector<Vertex*> colliding) override;
+    void removeEdgesOf(const Vertex& vertex) override { roadmap_.removeEdgesOf(vertex); }
+    void renewBeliefs() override;
+    std::vector<Vertex*> replaceRoots(const Root& root, const std::vector<Vertex*>& near) override;
+
+    void offerCheckedPath(const Vertex& goal);
+    void search(const ompl::base::PlannerTerminationCondition& ptc);
+    void push(Open& open, Candidate candidate) const;
+    void expand(int label, Open& open) const;
+    bool propagateTo(Candidate& candidate);
+    bool isFull(const Vertex& vertex) const {
+        return labelsOf_[vertex.index].size() >= options_.labels;
+    }
+    bool isDominated(const Vertex& vertex, const Belief& belief) const;
+    void keepPath(int label);
+    void descend(const ompl::base::PlannerTerminationCondition& ptc, unsigned changes);
+
+    SearchOptions options_;
+    Roadmap roadmap_;
+    CostToGo toGo_;
+    std::vector<Label> settled_;                  // in the order they were settled
+    std::vector<std::vector<int>> labelsOf_;      // by vertex, into settled_
+    std::size_t searched_ = 0;                    // number of vertices at the last complete search
+    bool isSearchDue_ = false;                    // something has changed since
+    std::vector<bool> promising_;                 // by vertex, from the last search while growing
+    std::vector<const ompl::base::State*> path_;  // the best over the roadmap
+    double pathCost_ = kInfinity;
+    std::optional<PathDescent> descent_;        // from path_
+    double searchSeconds_ = 0.;                 // of the last complete search
+    double descentSeconds_ = 0.;                // of all changes tried
+    std::atomic<unsigned> shortcutsTried_ = 0;  // progress properties are read from other threads
+    std::atomic<unsigned> shortcutsTaken_ = 0;
+};
+
+}  // namespace photonav

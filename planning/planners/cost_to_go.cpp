@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planners/cost_to_go.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <queue>
+
+#include "geometry/constants.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr double kLeastInformation = 1e-6;  // a coordinate known to 1 km is not observed [1/m^2]
+constexpr double kTrust = 0.99;             // of the charge
+
+/// Dijkstra's algorithm from the values that `distance` holds already.
+void findDistances(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
+                   std::vector<double>& distance) {
+    using Entry = std::pair<double, const Vertex*>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+    for (const Vertex& vertex : vertices) {
+        if (distance[vertex.index] < kInfinity) open.emplace(distance[vertex.index], &vertex);
+    }
+    while (!open.empty()) {
+        const auto [length, vertex] = open.top();
+        open.pop();
+        if (length > distance[vertex->index]) continue;
+        for (const Roadmap::Edge* edge : roadmap.of(vertex)) {
+            if (!edge->isFree.value_or(true)) continue;
+            double& next = distance[edge->otherEnd(vertex)->index];
+            if (length + edge->motion.length >= next) continue;
+            next = length + edge->motion.length;
+            open.emplace(next, edge->otherEnd(vertex));
+        }
+    }
+}
+
+}  // namespace
+
+void CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
+                      const std::vector<Vertex*>& goals, BeliefModel& model) {
+    const BeliefOptions& options = model.options();
+    model_ = &model;
+    alpha_ = options.alpha;
+    const bool byCovariance = options.cost == CostRule::integral && !model.field().hasPenalties();
+    charge_ = byCovariance ? kTrust * (1. - alpha_) * options.kappa : 0.;
+    toGoal_.assign(vertices.size(), kInfinity);
+    if (goals.empty()) toGoal_.assign(vertices.size(), 0.);
+    for (const Vertex* goal : goals) toGoal_[goal->index] = 0.;
+    findDistances(roadmap, vertices, toGoal_);
+    if (charge_ == 0.) return;
+
+    observes_.clear();
+    isEvaluated_.clear();
+    for (const Vertex& vertex : vertices) {
+        const bool isRemoved = vertex.state == nullptr;
+        const Vertex* near = isRemoved ? nullptr : evaluatedNear(roadmap, vertex);
+        isEvaluated_.push_back(!isRemoved && near == nullptr);
+        if (isRemoved)
+            observes_.push_back({});
+        else
+            observes_.push_back(near == nullptr ? observedFrom(vertex) : observes_[near->index]);
+    }
+    for (int k = 0; k < kAxes; ++k) findViews(roadmap, vertices, k);
+}
+
+/// An older vertex no farther than views are apart, whose view was evaluated.
+const Vertex* CostToGo::evaluatedNear(const Roadmap& roadmap, const Vertex& vertex) const {
+    for (const Roadmap::Edge* edge : roadmap.of(&vertex)) {
+        const Vertex* other = edge->otherEnd(&vertex);
+        const bool isNear = edge->motion.length <= model_->options().ds;
+        if (isNear && other->index < vertex.index && isEvaluated_[other->index]) return other;
+    }
+    return nullptr;
+}
+
+CostToGo::Observed CostToGo::observedFrom(const Vertex& vertex) const {
+    const auto& view = model_->field().at(model_->space().bodyPose(vertex.state));
+    Observed observed{};
+    for (int k = 0; k < kAxes; ++k) observed[k] = view.information(k, k) > kLeastInformation;
+    return observed;
+}
+
+void CostToGo::findViews(const Roadmap& roadmap, const std::deque<Vertex>& vertices, int axis) {
+    auto& toView = toView_[axis];
+    auto& viaView = viaView_[axis];
+    toView.assign(vertices.size(), kInfinity);
+    viaView.assign(vertices.size(), kInfinity);
+    for (const Vertex& vertex : vertices) {
+        for (const Roadmap::Edge* edge : roadmap.of(&vertex)) {
+            const Vertex* next = edge->otherEnd(&vertex);
+            if (!edge->isFree.value_or(true)) continue;
+            if (!observes(*edge, axis)) continue;
+            toView[vertex.index] = 0.;
+            viaView[vertex.index] =
+                std::min(viaView[vertex.index], edge->motion.length + toGoal_[next->index]);
+        }
+    }
+    findDistances(roadmap, vertices, toView);
+    findDistances(roadmap, vertices, viaView);
+}
+
+double CostToGo::from(const Vertex& vertex, const PerAxis& variance) const {
+    const double length = toGoal_[vertex.index];
+    if (charge_ == 0. || length == kInfinity) return alpha_ * length;
+    double unobserved = 0.;  // charge until each axis is observed, on the shortest path
+    double detour = 0.;      // at least as much more for one of the axes
+    for (int k = 0; k < kAxes; ++k) {
+        const double toView = toView_[k][vertex.index];
+        const double least = charge_ * variance[k] * std::min(toView, length);
+        const double never = charge_ * variance[k] * length;
+        const double viaView =
+            toView == kInfinity
+                ? kInfinity
+                : charge_ * variance[k] * toView + alpha_ * (viaView_[k][vertex.index] - length);
+        unobserved += least;
+        detour = std::max(detour, std::min(viaView, never) - least);
+    }
+    return alpha_ * length + unobserved + detour;
+}
+
+double CostToGo::over(const Roadmap::Edge& edge, const Vertex& vertex,
+                      const PerAxis& variance) const {
+    PerAxis left = variance;
+    double cost = alpha_ * edge.motion.length;
+    if (charge_ > 0.) {
+        for (int k = 0; k < kAxes; ++k) {
+            if (observes(edge, k)) left[k] = 0.;
+            cost += charge_ * left[k] * edge.motion.length;
+        }
+    }
+    return cost + from(*edge.otherEnd(&vertex), left);
+}
+
+CostToGo::PerAxis CostToGo::variances(const Matrix6& covariance) const {
+    PerAxis variance{};
+    if (charge_ == 0.) return variance;
+    const Eigen::LLT<Matrix6> llt(covariance);
+    if (llt.info() != Eigen::Success) return variance;
+    const Matrix6 precision = llt.solve(Matrix6::Identity());
+    for (int k = 0; k < kAxes; ++k) variance[k] = 1. / precision(k, k);
+    return variance;
+}
+
+}  // namespace photonav

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What our planners minimise, as OMPL compares and prints it.
+#pragma once
+
+#include <ompl/base/OptimizationObjective.h>
+
+#include <memory>
+
+#include "belief/belief.hpp"
+
+namespace photonav {
+
+/// J = alpha * length + (1 - alpha) * kappa * integral of the trace, as an OMPL objective for
+/// comparing, printing and stopping at solutions. The cost of a motion depends on the belief it is
+/// flown with, which OMPL does not carry: motionCost() is the part that no belief can undercut, so
+/// the sum over a path (ompl::base::Path::cost) is a lower bound, exact for alpha = 1.
+class PathCostObjective : public ompl::base::OptimizationObjective {
+  public:
+    PathCostObjective(const ompl::base::SpaceInformationPtr& si,
+                      std::shared_ptr<const BeliefModel> model);
+
+    ompl::base::Cost stateCost(const ompl::base::State*) const override {
+        return ompl::base::Cost(0.);
+    }
+    ompl::base::Cost motionCost(const ompl::base::State* from,
+                                const ompl::base::State* to) const override;
+    ompl::base::Cost motionCostHeuristic(const ompl::base::State* from,
+                                         const ompl::base::State* to) const override {
+        return motionCost(from, to);
+    }
+
+  private:
+    std::shared_ptr<const BeliefModel> model_;
+};
+
+}  // namespace photonav

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planners/path_descent.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "planners/loewner_order.hpp"
+
+namespace photonav {
+namespace ob = ompl::base;
+namespace {
+
+constexpr double kRefinement = 0.6;    // of the shifts from round to round
+constexpr double kShortestLeg = 0.25;  // a leg shorter than twice this is not bent [m]
+constexpr double kLeastGain = 1e-9;    // relative: what counts as lower cost
+
+/// Whether `covariance` is nowhere better than `known`, but for rounding: with no less cost either,
+/// all that follows costs no less, since the cost-to-go grows with the covariance.
+bool isNowhereBetter(const Matrix6& covariance, const Matrix6& known) {
+    Matrix6 limit = covariance;
+    limit.diagonal() += 1e-9 * known.diagonal();
+    return isLoewnerLess(known, limit);
+}
+
+}  // namespace
+
+PathDescent::PathDescent(ob::SpaceInformationPtr si, std::shared_ptr<BeliefModel> model,
+                         const DescentOptions& options)
+    : si_(std::move(si)), model_(std::move(model)), options_(options) {}
+
+void PathDescent::begin(const std::vector<const ob::State*>& path) {
+    begin(path, model_->root(path.front()));
+}
+
+void PathDescent::begin(const std::vector<const ob::State*>& path, const Belief& root) {
+    sampler_ = model_->space().sampler(options_.seed);
+    tried_ = accepted_ = 0;
+    step_ = options_.firstStep;
+    nodes_.clear();
+    for (const ob::State* state : path) {
+        Node& node = nodes_.emplace_back();
+        node.state = between(state, state, 0.);
+        if (nodes_.size() == 1) {
+            node.belief = root;
+            continue;
+        }
+        const Node& last = nodes_[nodes_.size() - 2];
+        node.arrival = model_->motion(last.state.get(), node.state.get());
+        node.belief = model_->propagate(last.belief, node.arrival);
+    }
+    rest_.assign(nodes_.size(), 0.);
+    for (std::size_t i = nodes_.size() - 1; i > 0; --i) {
+        rest_[i - 1] = rest_[i] + nodes_[i].arrival.length;
+    }
+}
+
+/// Rounds from coarse shifts to fine ones, again and again: a far shift that failed once may help
+/// in another direction, or from where the fine ones led. Only a path too short to be changed ends
+/// that before the moves are used up.
+void PathDescent::descend(const ob::PlannerTerminationCondition& ptc, unsigned moves) {
+    ptc_ = &ptc;
+    lastMove_ = std::min(options_.moves, moves);
+    removeVertices();
+    unsigned begun = 0;
+    do {
+        begun = tried_;
+        for (; step_ >= options_.lastStep && !isOver(); step_ *= kRefinement) {
+            shiftVertices(step_);
+            shiftLegs(step_);
+            bendLegs(step_);
+            cutCorners();
+            removeVertices();
+        }
+        if (step_ < options_.lastStep) step_ = options_.firstStep;
+    } while (!isOver() && tried_ > begun);
+    ptc_ = nullptr;
+}
+
+void PathDescent::removeVertices() {
+    for (std::size_t i = 1; i + 1 < nodes_.size() && !isOver();) {
+        if (!tryReplace(i - 1, i + 1, {})) ++i;
+    }
+}
+
+void PathDescent::shiftVertices(double step) {
+    for (std::size_t i = 1; i + 1 < nodes_.size() && !isOver(); ++i) {
+        tryBothWays(i - 1, i + 1, nodes_[i].state, nullptr, step);
+    }
+}
+
+/// Both ends of an inner leg by the same shift.
+void PathDescent::shiftLegs(double step) {
+    for (std::size_t i = 1; i + 2 < nodes_.size() && !isOver(); ++i) {
+        tryBothWays(i - 1, i + 2, nodes_[i].state, nodes_[i + 1].state, step);
+    }
+}
+
+void PathDescent::bendLegs(double step) {
+    for (std::size_t i = 1; i < nodes_.size() && !isOver(); ++i) {
+        const double length = nodes_[i].arrival.length;
+        if (length < 2. * kShortestLeg) continue;
+        const StatePtr middle = between(nodes_[i - 1].state.get(), nodes_[i].state.get(), 0.5);
+        if (tryBothWays(i - 1, i, middle, nullptr, std::min(step, 0.5 * length))) ++i;
+    }
+}
+
+void PathDescent::cutCorners() {
+    for (std::size_t i = 1; i + 1 < nodes_.size() && !isOver(); ++i) {
+        const ob::State* corner = nodes_[i].state.get();
+        const double before = nodes_[i].arrival.length;
+        const double after = nodes_[i + 1].arrival.length;
+        const double cut = std::min(before, after) / 3.;
+        if (cut < kShortestLeg) continue;
+        tryReplace(i - 1, i + 1,
+                   {between(corner, nodes_[i - 1].state.get(), cut / before),
+                    between(corner, nodes_[i + 1].state.get(), cut / after)});
+    }
+}
+
+/// Shifts a state by at most `step` in a random direction, else the opposite one; as far again
+/// while that helps. `follower`, if any, moves along. Both are copied, since a replacement frees
+/// the nodes that they come from.
+bool PathDescent::tryBothWays(std::size_t first, std::size_t last, StatePtr centre,
+                              StatePtr follower, double step) {
+    const bool isLeg = follower != nullptr;
+    const StatePtr away = between(centre.get(), centre.get(), 0.);
+    sampler_->sampleUniformNear(away.get(), centre.get(), step);
+    const auto tryShift = [&, centre = std::move(centre),
+                           follower = std::move(follower)](double t) {
+        std::vector<StatePtr> states{between(centre.get(), away.get(), t)};
+        if (isLeg) states.push_back(parallel(*centre, *states[0], *follower));
+        return tryReplace(first, last, states);
+    };
+    double t = 1.;
+    if (!tryShift(t)) {
+        t = -1.;
+        if (!tryShift(t)) return false;
+    }
+    last = first + (isLeg ? 3 : 2);  // one state more where a leg was bent
+    do {
+        t *= 2.;
+    } while (!isOver() && tryShift(t));
+    return true;
+}
+
+/// Replaces what lies between the nodes `first` and `last` by other states, if that costs less.
+bool PathDescent::tryReplace(std::size_t first, std::size_t last,
+                             const std::vector<StatePtr>& between) {
+    ++tried_;
+    const double limit = cost() * (1. - kLeastGain);
+    std::vector<Node> fresh;
+    double rest = rest_[last];
+    const auto addMotion = [&](const ob::State* from, const StatePtr& to) {
+        fresh.push_back({to, model_->motion(from, to.get()), {}});
+        rest += fresh.back().arrival.length;
+    };
+    for (const StatePtr& state : between) {
+        addMotion(fresh.empty() ? nodes_[first].state.get() : fresh.back().state.get(), state);
+    }
+    addMotion(fresh.empty() ? nodes_[first].state.get() : fresh.back().state.get(),
+              nodes_[last].state);
+
+    Belief belief = nodes_[first].belief;
+    for (Node& node : fresh) {
+        if (belief.cost + model_->lowerBound(rest) >= limit) return false;
+        if (node.arrival.length == 0.) return false;
+        if (!si_->checkMotion(node.arrival.from, node.arrival.to)) return false;
+        belief = node.belief = model_->propagate(belief, node.arrival);
+        rest -= node.arrival.length;
+    }
+    std::vector<Belief> beliefs;
+    if (!propagateRest(last, belief, beliefs)) return false;
+
+    ++accepted_;
+    for (std::size_t i = 0; i < beliefs.size(); ++i) nodes_[last + 1 + i].belief = beliefs[i];
+    const auto begin = nodes_.begin() + static_cast<std::ptrdiff_t>(first) + 1;
+    const auto end = nodes_.begin() + static_cast<std::ptrdiff_t>(last) + 1;
+    nodes_.insert(nodes_.erase(begin, end), std::make_move_iterator(fresh.begin()),
+                  std::make_move_iterator(fresh.end()));
+    rest_.assign(nodes_.size(), 0.);
+    for (std::size_t i = nodes_.size() - 1; i > 0; --i) {
+        rest_[i - 1] = rest_[i] + nodes_[i].arrival.length;
+    }
+    return true;
+}
+
+/// The beliefs after node `last`, reached with another belief than so far. Gives up as soon as the
+/// path cannot become cheaper.
+bool PathDescent::propagateRest(std::size_t last, Belief belief, std::vector<Belief>& beliefs) {
+    const double limit = cost() * (1. - kLeastGain);
+    for (std::size_t i = last;; ++i) {
+        if (belief.cost + model_->lowerBound(rest_[i]) >= limit) return false;
+        if (i + 1 == nodes_.size()) return true;
+        if (belief.cost >= nodes_[i].belief.cost &&
+            isNowhereBetter(belief.covariance, nodes_[i].belief.covariance)) {
+            return false;
+        }
+        belief = model_->propagate(belief, nodes_[i + 1].arrival);
+        beliefs.push_back(belief);
+    }
+}
+
+/// The fourth corner of a parallelogram: `follower` moved as `from` moved to `to`.
+PathDescent::StatePtr PathDescent::parallel(const ob::State& from, const ob::State& to,
+                                            const ob::State& follower) const {
+    return between(&from, between(&to, &follower, 0.5).get(), 2.);
+}
+
+PathDescent::StatePtr PathDescent::between(const ob::State* from, const ob::State* to,
+                                           double t) const {
+    StatePtr state(si_->cloneState(from), [si = si_](ob::State* s) { si->freeState(s); });
+    if (t != 0.) {
+        si_->getStateSpace()->interpolate(from, to, t, state.get());
+        si_->enforceBounds(state.get());
+    }
+    return state;
+}
+
+std::vector<const ob::State*> PathDescent::path() const {
+    std::vector<const ob::State*> states;
+    for (const Node& node : nodes_) states.push_back(node.state.get());
+    return states;
+}
+
+}  // namespace photonav

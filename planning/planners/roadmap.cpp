@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planners/roadmap.hpp"
+
+#include <algorithm>
+
+namespace photonav {
+
+Roadmap::Edge& Roadmap::add(Vertex* from, Vertex* to, Motion motion) {
+    resize(1 + std::max(from->index, to->index));
+    if (removed_.empty()) removed_.push_back(&edges_.emplace_back());
+    Edge& edge = *removed_.back();
+    removed_.pop_back();
+    edge = {from, to, std::move(motion), std::nullopt};
+    edgesOf_[from->index].push_back(&edge);
+    edgesOf_[to->index].push_back(&edge);
+    return edge;
+}
+
+void Roadmap::removeEdgesOf(const Vertex& vertex) {
+    if (vertex.index >= edgesOf_.size()) return;
+    for (Edge* edge : edgesOf_[vertex.index]) {
+        std::erase(edgesOf_[edge->otherEnd(&vertex)->index], edge);
+        *edge = {};
+        removed_.push_back(edge);
+    }
+    edgesOf_[vertex.index].clear();
+}
+
+bool Roadmap::isFree(Edge& edge, const ompl::base::SpaceInformation& si) {
+    if (!edge.isFree) edge.isFree = si.checkMotion(edge.from->state, edge.to->state);
+    return *edge.isFree;
+}
+
+void Roadmap::mapChanged(const ChangedSpace& changed, const FlightSpace& space) {
+    for (Edge& edge : edges_) {
+        if (edge.from == nullptr || !edge.isFree) continue;
+        if (changed.touches(space.position(edge.from->state), space.position(edge.to->state))) {
+            edge.isFree.reset();
+        }
+    }
+}
+
+void Roadmap::clear() {
+    edgesOf_.clear();
+    removed_.clear();
+    edges_.clear();
+}
+
+}  // namespace photonav

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A graph over a planner's vertices: motions that can be flown in both directions.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "belief/belief.hpp"
+#include "planners/changed_space.hpp"
+#include "planners/vertex.hpp"
+
+namespace photonav {
+
+/// Edges stay where they are in memory until they are removed.
+class Roadmap {
+  public:
+    struct Edge {
+        Vertex* from;
+        Vertex* to;
+        Motion motion;               ///< keeps its views once a belief was propagated along it
+        std::optional<bool> isFree;  ///< nothing: not checked for collision yet
+
+        Vertex* otherEnd(const Vertex* end) const { return end == from ? to : from; }
+    };
+
+    Edge& add(Vertex* from, Vertex* to, Motion motion);
+
+    /// Removes all edges that begin or end at a vertex.
+    void removeEdgesOf(const Vertex& vertex);
+
+    /// Whether an edge is free, checked for collision when it is asked for the first time.
+    static bool isFree(Edge& edge, const ompl::base::SpaceInformation& si);
+
+    /// Forgets of all edges through changed space whether they are free.
+    void mapChanged(const ChangedSpace& changed, const FlightSpace& space);
+
+    /// Edges that begin or end at a vertex.
+    const std::vector<Edge*>& of(const Vertex* vertex) const { return edgesOf_[vertex->index]; }
+
+    std::size_t size() const { return edgesOf_.size(); }  ///< of a table by vertex
+    void resize(std::size_t vertices) {
+        if (vertices > edgesOf_.size()) edgesOf_.resize(vertices);
+    }
+    void clear();
+
+  private:
+    std::deque<Edge> edges_;                   // removed ones begin nowhere
+    std::vector<Edge*> removed_;               // to be used again
+    std::vector<std::vector<Edge*>> edgesOf_;  // by vertex
+};
+
+}  // namespace photonav

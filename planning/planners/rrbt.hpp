@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rapidly-exploring random belief trees: the baseline that keeps every belief worth keeping.
+#pragma once
+
+#include "planners/belief_planner.hpp"
+#include "planners/roadmap.hpp"
+
+namespace photonav {
+
+/// RRBT of Bry and Roy (Rapidly-exploring random belief trees for motion planning under
+/// uncertainty, ICRA 2011).
+///
+/// As published: a graph grown by sampling, whose vertices hold any number of belief nodes, each
+/// with its cost, its covariance and its parent node; a new vertex is joined to the nearest vertex
+/// and to all within the radius of RRG; the beliefs of its neighbours are queued, and everything in
+/// the queue is propagated over the edges until the queue is empty; a belief is appended unless one
+/// at the same vertex is better in the partial order
+///     a < b  <=>  cost_a < cost_b  and  Sigma_a < Sigma_b + epsilon 1  (Loewner order),
+/// and it removes those that are worse than itself (with epsilon = 0) with all that follows from
+/// them. No cap on the beliefs of a vertex, no bound by the best path so far.
+///
+/// Adapted to our problem: motions are straight lines whose views, noise and costs are those of
+/// BeliefModel::propagate, for all planners alike, and are steered at most `range` far; there is no
+/// controller, hence no second covariance of where the controller will be, and collision is a
+/// minimum clearance instead of a chance constraint on the belief. epsilon weighs rotations by the
+/// characteristic length, as the trace does. The queue is sorted by cost. A belief that was already
+/// propagated over an edge is not propagated again when a neighbour appears.
+class RRBT : public BeliefPlanner {
+  public:
+    /// @param epsilon slack of the partial order [m^2]: larger is fewer beliefs
+    RRBT(const ompl::base::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
+         const GrowthOptions& growth = {}, double epsilon = 1e-3);
+
+    void clear() override;
+    std::vector<TreeNode> tree() const override;
+
+    /// Beliefs held at all vertices together. May be read while another thread solves.
+    std::size_t beliefs() const { return beliefs_; }
+
+  private:
+    struct Node {
+        Vertex* vertex;
+        Node* parent;
+        Belief belief;
+        std::vector<Node*> children = {};
+        bool isRemoved = false;
+    };
+
+    void addRoot(const Root& root) override;
+    void connect(Vertex& fresh, const std::vector<Vertex*>& near,
+                 const ompl::base::PlannerTerminationCondition& ptc) override;
+    void begin(const ompl::base::PlannerTerminationCondition& ptc) override { propagateQueue(ptc); }
+    std::vector<Vertex*> invalidate(const ChangedSpace& changed,
+                                    std::vector<Vertex*> colliding) override;
+    void removeEdgesOf(const Vertex& vertex) override { roadmap_.removeEdgesOf(vertex); }
+    void renewBeliefs() override;
+    std::vector<Vertex*> replaceRoots(const Root& root, const std::vector<Vertex*>& near) override;
+
+    void propagateQueue(const ompl::base::PlannerTerminationCondition& ptc);
+    void propagateOver(Node& node, Roadmap::Edge& edge);
+    void appendBelief(Vertex& vertex, Node& parent, const Belief& belief);
+    bool isAtLeastAsGood(const Belief& a, const Belief& b, double epsilon) const;
+    void remove(Node& node);
+    void enqueue(Node& node);
+    void offerPath(const Node& goal);
+
+    double epsilon_;
+    Roadmap roadmap_;
+    std::deque<Node> nodes_;
+    std::vector<std::vector<Node*>> nodesOf_;  // by vertex
+    std::vector<Node*> queue_;                 // heap, cheapest first
+    std::atomic<std::size_t> beliefs_ = 0;     // nodes that are not removed
+};
+
+}  // namespace photonav

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A sampled state, as all planners number it.
+#pragma once
+
+#include <ompl/base/State.h>
+
+#include <cstdint>
+
+namespace photonav {
+
+struct Vertex {
+    ompl::base::State* state = nullptr;  ///< null once the vertex was removed
+    std::uint32_t index = 0;  ///< of the vertex in every table that a planner keeps by vertex
+    bool isGoal = false;
+};
+
+}  // namespace photonav

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mean and median of lists of numbers.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+namespace photonav {
+
+/// The arithmetic mean; `ofNothing` of an empty list.
+inline double mean(const std::vector<double>& values, double ofNothing) {
+    if (values.empty()) return ofNothing;
+    return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
+}
+
+/// The upper median; `ofNothing` of an empty list.
+template <class T>
+double median(std::vector<T> values, double ofNothing) {
+    if (values.empty()) return ofNothing;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace photonav

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SE(3) in the notation of Barfoot and Furgale, "Associating Uncertainty With Three-Dimensional
+// Poses for Use in Estimation Problems", T-RO 2014 (cited as BF14). Twists are (rho, phi).
+#pragma once
+
+#include "geometry/types.hpp"
+
+namespace photonav {
+
+/// phi^: the cross-product matrix, phi^ v = phi x v.
+Eigen::Matrix3d hat(const Eigen::Vector3d& phi);
+
+/// exp(xi^), BF14 eq. (3): rotation exp(phi^), translation J(phi) rho.
+Pose expSE3(const Vector6& xi);
+
+/// The twist with expSE3(logSE3(T)) = T and a rotation angle in [0, pi].
+Vector6 logSE3(const Pose& T);
+
+/// Heading of a body about the world's z axis [rad].
+double yawOf(const Pose& T_w_b);
+
+/// Ad(T) = [C, r^ C; 0, C]: T exp(xi^) T^-1 = exp((Ad(T) xi)^), BF14 eq. (4).
+Matrix6 adjoint(const Pose& T);
+
+/// A covariance or an information matrix of a twist in axes turned by R, about the same point:
+/// diag(R, R) matrix diag(R, R)^T. `matrix` is symmetric, and so is the result, to the bit.
+Matrix6 inTurnedAxes(const Matrix6& matrix, const Eigen::Matrix3d& R);
+
+/// Left Jacobian of SE(3): exp((xi + d)^) = exp((J(xi) d)^) exp(xi^) to first order in d, BF14
+/// eq. (100).
+Matrix6 leftJacobian(const Vector6& xi);
+
+/// Inverse of the left Jacobian. Singular at rotations of 2 pi only.
+Matrix6 leftJacobianInverse(const Vector6& xi);
+
+}  // namespace photonav

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Strict reading of text tables with blanks between the fields, as TUM's and evo's files are, or
+// commas, as EuRoC's.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/error.hpp"
+
+namespace photonav {
+
+/// One line of a table; its errors name file and line.
+class TextRow {
+  public:
+    TextRow(std::string file, int line, std::vector<std::string> fields)
+        : file_(std::move(file)), line_(line), fields_(std::move(fields)) {}
+
+    const std::string& text(std::size_t column) const { return fields_[column]; }
+
+    /// @throws InputError unless the whole field is a finite number
+    double number(std::size_t column) const;
+
+    /// "FILE: line N: reason"
+    InputError error(const std::string& reason) const;
+    /// @throws InputError error(reason)
+    [[noreturn]] void fail(const std::string& reason) const { throw error(reason); }
+
+  private:
+    std::string file_;
+    int line_;
+    std::vector<std::string> fields_;
+};
+
+/// All rows of a file but blank lines and those that start with '#'.
+/// @throws InputError for a missing file and, without `badRows`, for a row that does not have
+///         `columns` fields
+std::vector<TextRow> readTable(const std::string& file, std::size_t columns,
+                               std::vector<InputError>* badRows = nullptr);
+
+/// The same for fields with commas between them, as EuRoC's files have; blanks around a field do
+/// not count, and a row may have more fields than `leastColumns`.
+std::vector<TextRow> readCsv(const std::string& file, std::size_t leastColumns,
+                             std::vector<InputError>* badRows = nullptr);
+
+}  // namespace photonav

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/yaml_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+
+namespace photonav {
+namespace {
+
+std::size_t editDistance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
+        }
+    }
+    return row.back();
+}
+
+}  // namespace
+
+std::string nearestWord(std::string_view word, const std::vector<std::string>& candidates) {
+    std::string best;
+    std::size_t bestDistance = std::max<std::size_t>(word.size() / 2, 2) + 1;
+    for (const auto& candidate : candidates) {
+        const std::size_t distance = editDistance(word, candidate);
+        if (distance < bestDistance) {
+            bestDistance = distance;
+            best = candidate;
+        }
+    }
+    return best;
+}
+
+YAML::Node loadYaml(const std::string& file) {
+    if (!std::filesystem::exists(file)) throw InputError(file, "", "no such file");
+    if (!std::filesystem::is_regular_file(file)) throw InputError(file, "", "not a file");
+    try {
+        return YAML::LoadFile(file);
+    } catch (const YAML::ParserException& error) {
+        throw InputError(file, fmt::format("line {}", error.mark.line + 1), error.msg);
+    } catch (const YAML::Exception& error) {
+        throw InputError(file, "", error.msg);
+    }
+}
+
+YamlMap::YamlMap(std::string file, const YAML::Node& node, std::string prefix)
+    : file_(std::move(file)), node_(node), prefix_(std::move(prefix)) {
+    if (node_.IsNull()) node_ = YAML::Node(YAML::NodeType::Map);
+    if (!node_.IsMap()) throw InputError(file_, prefix_, "expected 'key: value' lines");
+    std::set<std::string> keys;
+    for (const auto& entry : node_) {
+        if (!entry.first.IsScalar()) throw InputError(file_, prefix_, "a key is not a word");
+        const auto& key = entry.first.Scalar();
+        if (!keys.insert(key).second) fail(key, "is there twice");
+    }
+}
+
+void YamlMap::readNumbers(const std::string& key, std::vector<double>& value, std::size_t least,
+                          std::size_t most) {
+    read(key, value);
+    if (value.size() < least || value.size() > most) {
+        const auto count =
+            least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most);
+        fail(key, fmt::format("expected {} numbers, found {}", count, value.size()));
+    }
+    for (const double number : value) {
+        if (!std::isfinite(number)) fail(key, "not a finite number");
+    }
+}
+
+void YamlMap::readNumber(const std::string& key, double& value, double least, double most) {
+    read(key, value);
+    if (!(value >= least && value <= most)) {
+        fail(key, std::isfinite(most) ? fmt::format("{} is outside [{}, {}]", value, least, most)
+                                      : fmt::format("{} is below {}", value, least));
+    }
+    if (!std::isfinite(value)) fail(key, "not a finite number");
+}
+
+void YamlMap::readChoice(const std::string& key, std::string& value,
+                         const std::vector<std::string>& choices) {
+    read(key, value);
+    if (std::find(choices.begin(), choices.end(), value) != choices.end()) return;
+    fail(key, fmt::format("'{}' is not one of {}", value, fmt::join(choices, ", ")));
+}
+
+YamlMap YamlMap::map(const std::string& key) {
+    known_.insert(key);
+    const YAML::Node child = has(key) ? node_[key] : YAML::Node(YAML::NodeType::Map);
+    return {file_, child, prefix_.empty() ? key : prefix_ + "." + key};
+}
+
+std::vector<YamlMap> YamlMap::list(const std::string& key) {
+    known_.insert(key);
+    std::vector<YamlMap> maps;
+    if (!has(key)) return maps;
+    if (!node_[key].IsSequence()) fail(key, "expected a list");
+    const std::string path = prefix_.empty() ? key : prefix_ + "." + key;
+    for (std::size_t i = 0; i < node_[key].size(); ++i) {
+        maps.emplace_back(file_, node_[key][i], fmt::format("{}[{}]", path, i));
+    }
+    return maps;
+}
+
+void YamlMap::finish() const {
+    for (const auto& entry : node_) {
+        const auto key = entry.first.as<std::string>();
+        if (known_.contains(key)) continue;
+        const auto nearest = nearestWord(key, {known_.begin(), known_.end()});
+        fail(key, nearest.empty() ? fmt::format("unknown key; known: {}", fmt::join(known_, ", "))
+                                  : fmt::format("unknown key, did you mean '{}'?", nearest));
+    }
+}
+
+void YamlMap::fail(const std::string& key, const std::string& reason) const {
+    throw InputError(file_, prefix_.empty() ? key : prefix_ + "." + key, reason);
+}
+
+}  // namespace photonav

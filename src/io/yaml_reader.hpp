@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Strict reading of YAML mappings: every key must be known, every value must parse, and every
+// error is an InputError that names file, key and reason. The only includer of yaml-cpp in src.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <Eigen/Dense>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/error.hpp"
+
+namespace photonav {
+
+/// The candidate closest to `word` by edit distance, or "" when none is near.
+std::string nearestWord(std::string_view word, const std::vector<std::string>& candidates);
+
+/// Loads a YAML file. @throws InputError when it is missing or does not parse.
+YAML::Node loadYaml(const std::string& file);
+
+/// One YAML mapping being read. read() the keys you know, then finish().
+class YamlMap {
+  public:
+    /// @param prefix dotted path of this mapping inside the file, for messages
+    /// @throws InputError when the node is no mapping, and for a key that is there twice
+    YamlMap(std::string file, const YAML::Node& node, std::string prefix = "");
+
+    bool has(const std::string& key) const { return node_[key].IsDefined(); }
+
+    /// Overwrites `value` when the key is there; keeps it as the default otherwise.
+    template <typename T>
+    void read(const std::string& key, T& value) {
+        known_.insert(key);
+        if (!has(key)) return;
+        try {
+            value = node_[key].template as<T>();
+        } catch (const YAML::Exception&) {
+            fail(key, "cannot read the value '" + YAML::Dump(node_[key]) + "'");
+        }
+    }
+
+    /// Reads a list of finite numbers; its length must be within [least, most].
+    void readNumbers(const std::string& key, std::vector<double>& value, std::size_t least,
+                     std::size_t most);
+
+    /// Reads exactly N finite numbers into a vector.
+    template <int N>
+    void readVector(const std::string& key, Eigen::Matrix<double, N, 1>& value) {
+        std::vector<double> numbers(value.data(), value.data() + N);
+        readNumbers(key, numbers, N, N);
+        value = Eigen::Map<const Eigen::Matrix<double, N, 1>>(numbers.data());
+    }
+
+    /// Reads a number and demands that it is finite and within [least, most].
+    void readNumber(const std::string& key, double& value, double least, double most);
+
+    /// Reads a word and demands that it is one of `choices`.
+    void readChoice(const std::string& key, std::string& value,
+                    const std::vector<std::string>& choices);
+
+    /// The mapping below `key`; empty when the key is absent.
+    YamlMap map(const std::string& key);
+
+    /// The mappings of the sequence below `key`; empty when the key is absent.
+    std::vector<YamlMap> list(const std::string& key);
+
+    /// @throws InputError for the first key that was not read, naming the nearest known one
+    void finish() const;
+
+    /// @throws InputError naming this file and the dotted key
+    [[noreturn]] void fail(const std::string& key, const std::string& reason) const;
+
+    const std::string& file() const { return file_; }
+
+  private:
+    std::string file_;
+    YAML::Node node_;
+    std::string prefix_;
+    std::set<std::string> known_;
+};
+
+}  // namespace photonav

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The leaves of an octree that hold a brick of 4 x 4 x 4 cells.
+#pragma once
+
+#include "map/map_change.hpp"
+#include "map/textured_octree.hpp"
+
+namespace photonav {
+
+inline bool hasChildren(const TexturedOcTree& map, const TexturedOcTreeNode& node) {
+    for (unsigned i = 0; i < 8; ++i) {
+        if (map.nodeChildExists(&node, i)) return true;
+    }
+    return false;
+}
+
+/// The node of a brick, or the larger leaf that holds it, or null where nothing is known.
+/// @param brick index in the world, as in MapChange
+inline const TexturedOcTreeNode* findBrick(const TexturedOcTree& map, const Eigen::Array3i& brick) {
+    const Eigen::Array3i corner = MapChange::kBrickEdge * brick + kKeyOfZero;
+    const TexturedOcTreeNode* node = map.size() > 0 ? map.getRoot() : nullptr;
+    for (int edge = kKeyOfZero; node != nullptr && edge >= MapChange::kBrickEdge; edge /= 2) {
+        if (!hasChildren(map, *node)) break;
+        const auto child = static_cast<unsigned>((corner.x() & edge) != 0) |
+                           static_cast<unsigned>((corner.y() & edge) != 0) << 1U |
+                           static_cast<unsigned>((corner.z() & edge) != 0) << 2U;
+        node = map.nodeChildExists(node, child) ? map.getNodeChild(node, child) : nullptr;
+    }
+    return node;
+}
+
+/// Calls visit(leaf, lowest, edge) for every leaf at and below the node of a brick.
+/// @param lowest the node's first cell, counted from the brick's
+/// @param edge of the node in cells
+template <class Visit>
+void visitLeaves(const TexturedOcTree& map, const TexturedOcTreeNode& node, const Visit& visit,
+                 const Eigen::Array3i& lowest = Eigen::Array3i::Zero(),
+                 int edge = MapChange::kBrickEdge) {
+    bool isLeaf = true;
+    for (int i = 0; edge > 1 && i < 8; ++i) {
+        if (!map.nodeChildExists(&node, i)) continue;
+        isLeaf = false;
+        const Eigen::Array3i half(i & 1, i >> 1 & 1, i >> 2 & 1);
+        const Eigen::Array3i corner = lowest + edge / 2 * half;
+        visitLeaves(map, *map.getNodeChild(&node, i), visit, corner, edge / 2);
+    }
+    if (isLeaf) visit(node, lowest, edge);
+}
+
+}  // namespace photonav

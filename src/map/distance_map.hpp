@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clearance: how far a point is from the nearest obstacle.
+#pragma once
+
+#include <vector>
+
+#include "map/distance_transform.hpp"
+#include "map/map_change.hpp"
+#include "map/textured_octree.hpp"
+#include "scene/scene.hpp"
+
+namespace photonav {
+
+/// Capped exact Euclidean distance on a regular grid over a box.
+class DistanceMap {
+  public:
+    struct Options {
+        double maxDistance = 1.0;  ///< clearances beyond this read as this [m]; at most 180 cells
+        UnknownPolicy unknown = UnknownPolicy::occupied;  ///< of map cells no ray has visited
+    };
+
+    /// No obstacles anywhere: every clearance is maxDistance.
+    explicit DistanceMap(double maxDistance = 1.0) : maxDistance_(maxDistance) {}
+
+    /// Obstacles are the occupied (and, by policy, the unknown) cells of the map.
+    /// @param bounds where clearance will be asked for [m]; obstacles up to maxDistance outside it
+    ///        count
+    /// @throws std::invalid_argument for empty bounds, a maxDistance that is not positive or above
+    ///        180 cells, or a grid above 3e9 bytes (the message says which resolution would fit)
+    DistanceMap(const TexturedOcTree& map, const Eigen::AlignedBox3d& bounds,
+                const Options& options);
+
+    /// Obstacles are all cells that a triangle touches (and, along slanted outlines, some of their
+    /// neighbours), and those whose centre is in a solid; cells are cubes of `resolution` [m]
+    /// around the multiples of it. Throws as above; `unknown` does not matter, a scene knows
+    /// everything.
+    DistanceMap(const Scene& scene, double resolution, const Eigen::AlignedBox3d& bounds,
+                const Options& options);
+
+    /// Distance from p_w to the nearest obstacle cell [m], capped at maxDistance; inside an
+    /// obstacle negative, down to minus half a cell. At the centres of cells it is never too large
+    /// and at most 0.37 cell too small (it is known how far the nearest obstacle's centre is, not
+    /// whether its face, edge or corner points here). Between them it is interpolated, which next
+    /// to edges and corners may be too large, by at most half a cell (at the corner of a lone
+    /// cell). Outside the bounds: the value at the nearest cell. Thread-safe.
+    double clearance(const Eigen::Vector3d& p_w) const {
+        if (grid_.empty()) return maxDistance_;
+        const Eigen::Vector3d q = ((p_w - firstCentre_) * inverseResolution_)
+                                      .cwiseMax(0.)
+                                      .cwiseMin(lastCorner_ + Eigen::Vector3d::Ones());
+        const Eigen::Vector3d corner = q.cwiseMin(lastCorner_);
+        const Eigen::Array3i i = corner.array().cast<int>();
+        const Eigen::Vector3f t = (q - i.cast<double>().matrix()).cast<float>();
+        const float* c =
+            grid_.data() + (std::size_t(i.z()) * size_.y() + i.y()) * size_.x() + i.x();
+        const std::ptrdiff_t dy = size_.x();
+        const std::ptrdiff_t dz = dy * size_.y();
+        const auto alongX = [&](const float* d) { return d[0] + t.x() * (d[1] - d[0]); };
+        const auto alongY = [&](const float* d) {
+            const float near = alongX(d);
+            return near + t.y() * (alongX(d + dy) - near);
+        };
+        const float near = alongY(c);
+        return near + t.z() * (alongY(c + dz) - near);
+    }
+
+    double maxDistance() const { return maxDistance_; }
+
+    /// Follows the map this was made from, at a cost that grows with the change. The result equals
+    /// that of a map made anew, to the bit. Not while another thread asks for clearances.
+    /// @param change all that changed in the map since this was made or updated
+    /// @throws std::invalid_argument when this was not made from a map, or from one of another
+    ///         resolution
+    void update(const TexturedOcTree& map, const MapChange& change);
+
+  private:
+    void begin(const struct ObstacleLayout& layout);
+    bool compute();
+
+    double maxDistance_;
+    bool unknownIsObstacle_ = false;
+    double resolution_ = 0.;
+    double inverseResolution_ = 0.;
+    Eigen::Vector3d firstCentre_ = Eigen::Vector3d::Zero();  ///< of the first cell [m]
+    Eigen::Vector3d lastCorner_ = Eigen::Vector3d::Zero();   ///< last cell to interpolate from
+    Eigen::Array3i size_ = Eigen::Array3i::Zero();           ///< cells
+    Eigen::Array3i firstOuter_ = Eigen::Array3i::Zero();     ///< index of transform_'s first cell
+    std::vector<float> grid_;  ///< clearance at cell centres [m], x fastest; empty: no obstacle
+    std::vector<float> clearanceOf_;  ///< by squared distance in cells [m]
+    DistanceTransform transform_;     ///< to update; empty: of a scene
+};
+
+}  // namespace photonav

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/textured_octree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace photonav {
+namespace {
+
+/// OctoMap's factory keeps one empty tree of every type it can read.
+void registerWithOctomap() {
+    struct Registration : TexturedOcTree {
+        Registration() : TexturedOcTree(0.1) {
+            clearKeyRays();
+            AbstractOcTree::registerTreeType(this);
+        }
+    };
+    static Registration registration;
+}
+
+[[maybe_unused]] const bool kRegistered = (registerWithOctomap(), true);
+
+template <class T>
+void readRaw(std::istream& stream, T& value) {
+    stream.read(reinterpret_cast<char*>(&value), sizeof(value));
+}
+
+template <class T>
+void writeRaw(std::ostream& stream, const T& value) {
+    stream.write(reinterpret_cast<const char*>(&value), sizeof(value));
+}
+
+std::uint16_t quantised(float grey) {
+    return static_cast<std::uint16_t>(std::lrint(std::clamp(grey, 0.F, 1.F) * 65535.F));
+}
+
+/// The largest difference between two sets of shown greys.
+float difference(const std::optional<ShownGreys>& before, const std::optional<ShownGreys>& after) {
+    if (!before || !after) return before.has_value() == after.has_value() ? 0.F : 1.F;
+    int largest = 0;
+    for (unsigned f = 0; f < 6; ++f)
+        largest = std::max(largest, std::abs((*before)[f] - (*after)[f]));
+    return static_cast<float>(largest) / 65535.F;
+}
+
+}  // namespace
+
+void FaceTexture::observe(float grey, float addedWeight, float maxWeight) {
+    weight += addedWeight;
+    mean += (grey - mean) * (addedWeight / weight);
+    weight = std::min(weight, maxWeight);
+}
+
+// The base's copy would make children of the base's type.
+// NOLINTNEXTLINE(bugprone-copy-constructor-init)
+TexturedOcTreeNode::TexturedOcTreeNode(const TexturedOcTreeNode& other)
+    : octomap::OcTreeNode(),  // NOLINT(readability-redundant-member-init): g++ asks for it
+      faces(other.faces) {
+    value = other.value;
+    if (other.children == nullptr) return;
+    allocChildren();
+    for (unsigned i = 0; i < 8; ++i) {
+        if (const auto* child = static_cast<const TexturedOcTreeNode*>(other.children[i])) {
+            children[i] = new TexturedOcTreeNode(*child);
+        }
+    }
+}
+
+std::optional<float> TexturedOcTreeNode::meanGrey() const {
+    double sum = 0., weight = 0.;
+    for (const FaceTexture& face : faces) {
+        sum += static_cast<double>(face.weight) * face.mean;
+        weight += face.weight;
+    }
+    return weight > 0. ? std::optional(static_cast<float>(sum / weight)) : std::nullopt;
+}
+
+std::optional<ShownGreys> TexturedOcTreeNode::shownGreys() const {
+    const std::optional<float> mean = meanGrey();
+    if (!mean) return std::nullopt;
+    ShownGreys greys;
+    for (unsigned f = 0; f < 6; ++f) {
+        greys[f] = quantised(faces[f].observed() ? faces[f].mean : *mean);
+    }
+    return greys;
+}
+
+void TexturedOcTreeNode::copyData(const TexturedOcTreeNode& from) {
+    octomap::OcTreeNode::copyData(from);
+    faces = from.faces;
+}
+
+bool TexturedOcTreeNode::operator==(const TexturedOcTreeNode& other) const {
+    return value == other.value && faces == other.faces;
+}
+
+// Occupancy, a byte that says which faces were observed, and those faces' mean and weight: most
+// nodes are free space and take five bytes.
+std::istream& TexturedOcTreeNode::readData(std::istream& stream) {
+    std::uint8_t observed = 0;
+    readRaw(stream, value);
+    readRaw(stream, observed);
+    for (unsigned f = 0; f < 6; ++f) {
+        if ((observed >> f & 1U) == 0) continue;
+        readRaw(stream, faces[f].mean);
+        readRaw(stream, faces[f].weight);
+    }
+    return stream;
+}
+
+std::ostream& TexturedOcTreeNode::writeData(std::ostream& stream) const {
+    unsigned observed = 0;
+    for (unsigned f = 0; f < 6; ++f) observed |= static_cast<unsigned>(faces[f].observed()) << f;
+    writeRaw(stream, value);
+    writeRaw(stream, static_cast<std::uint8_t>(observed));
+    for (const FaceTexture& face : faces) {
+        if (!face.observed()) continue;
+        writeRaw(stream, face.mean);
+        writeRaw(stream, face.weight);
+    }
+    return stream;
+}
+
+TexturedOcTree::TexturedOcTree(double cellSize)
+    : octomap::OccupancyOcTreeBase<TexturedOcTreeNode>(cellSize) {
+    if (!(cellSize > 0.)) throw std::invalid_argument("TexturedOcTree: resolution not positive");
+    // A single outlying pixel makes a cell a hit, a clear view through it says more: OctoMap's own
+    // 0.7 and 0.4 thicken walls mapped by a depth camera.
+    setProbHit(0.55);
+    setProbMiss(0.2);
+}
+
+void TexturedOcTree::expandNode(TexturedOcTreeNode* node) {
+    OccupancyOcTreeBase::expandNode(node);
+    node->faces = {};
+}
+
+TexturedOcTreeNode& TexturedOcTree::obtainRoot() {
+    if (root == nullptr) {
+        root = new TexturedOcTreeNode;
+        ++tree_size;
+        size_changed = true;
+    }
+    return *root;
+}
+
+struct TexturedOcTree::BrickUpdate {
+    octomap::OcTreeKey corner;
+    std::uint64_t missed, hit;
+    const std::function<void(TexturedOcTreeNode&, unsigned)>& texture;
+    BrickChange& change;
+
+    /// Which children of a node `level` levels above the cells hold cells of this update.
+    bool concerns(unsigned level, unsigned child, unsigned firstBit) const {
+        if (level > 2)
+            return child == octomap::computeChildIdx(corner, static_cast<int>(level) - 1);
+        const std::uint64_t cells =
+            level == 2 ? 0xFFULL << (8 * child) : 1ULL << (firstBit + child);
+        return ((missed | hit) & cells) != 0;
+    }
+};
+
+BrickChange TexturedOcTree::updateBrick(
+    const octomap::OcTreeKey& corner, std::uint64_t missed, std::uint64_t hit,
+    const std::function<void(TexturedOcTreeNode&, unsigned bit)>& texture) {
+    BrickChange change;
+    if ((missed | hit) == 0) return change;
+    const bool empty = root == nullptr;
+    updateRecursively(obtainRoot(), empty, tree_depth,
+                      {corner, missed & ~hit, hit, texture, change}, 0);
+    return change;
+}
+
+void TexturedOcTree::updateCell(TexturedOcTreeNode& node, bool justMade, const BrickUpdate& update,
+                                unsigned bit) {
+    const bool hit = (update.hit >> bit & 1U) != 0;
+    const bool wasOccupied = !justMade && isNodeOccupied(node);
+    std::optional<ShownGreys> greys;
+    if (hit && wasOccupied) greys = node.shownGreys();
+    updateNodeLogOdds(&node, hit ? prob_hit_log : prob_miss_log);
+    if (hit) update.texture(node, bit);
+    if (justMade || isNodeOccupied(node) != wasOccupied) {
+        update.change.occupancy = true;
+    } else if (hit && wasOccupied) {
+        const float moved = difference(greys, node.shownGreys());
+        update.change.texture = update.change.texture || moved > 0.F;
+        update.change.greyMoved = std::max(update.change.greyMoved, moved);
+    }
+}
+
+bool TexturedOcTree::accumulateDrift(const octomap::OcTreeKey& corner, float greyMoved,
+                                     float tolerance) {
+    float& drift = drift_[corner];
+    drift += greyMoved;
+    if (!(drift > tolerance)) return false;
+    drift = 0.F;
+    return true;
+}
+
+void TexturedOcTree::updateRecursively(TexturedOcTreeNode& node, bool justMade, unsigned level,
+                                       const BrickUpdate& update, unsigned firstBit) {
+    if (level == 0) return updateCell(node, justMade, update, firstBit);
+    const bool pruned = !justMade && !nodeHasChildren(&node);
+    if (pruned && update.hit == 0 && node.getLogOdds() <= clamping_thres_min) return;
+    if (pruned) expandNode(&node);
+    for (unsigned i = 0; i < 8; ++i) {
+        if (!update.concerns(level, i, firstBit)) continue;
+        const bool make = !nodeChildExists(&node, i);
+        TexturedOcTreeNode* child = make ? createNodeChild(&node, i) : getNodeChild(&node, i);
+        updateRecursively(*child, make, level - 1, update, level == 2 ? 8 * i : firstBit + i);
+    }
+    if (!pruneNode(&node)) node.updateOccupancyChildren();
+}
+
+}  // namespace photonav

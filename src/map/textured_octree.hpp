@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The map of record: an OctoMap whose leaves carry the grey value of their six faces.
+#pragma once
+
+#include <octomap/OcTreeNode.h>
+#include <octomap/OccupancyOcTreeBase.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include "photometry/view.hpp"
+
+namespace photonav {
+
+inline constexpr int kKeyOfZero = 32768;  ///< OctoMap's key of the cell that begins at the origin
+
+/// What a cell that no ray has visited counts as. There is no silent default anywhere.
+enum class UnknownPolicy { free, occupied };
+
+/// Faces in the order -x, +x, -y, +y, -z, +z of the outward normal.
+struct FaceTexture {
+    float mean = 0.F;    ///< grey value in [0, 1]
+    float weight = 0.F;  ///< sum of observation weights; 0: never seen
+
+    bool observed() const { return weight > 0.F; }
+    /// Weighted running mean; observing the mean itself leaves it as it is, to the bit.
+    /// @param maxWeight the weight stays at most this: what was observed long ago is forgotten, so
+    ///        that a surface that looks different now is learned anew
+    void observe(float grey, float addedWeight,
+                 float maxWeight = std::numeric_limits<float>::infinity());
+    bool operator==(const FaceTexture&) const = default;
+};
+
+/// Grey values of a cell's six faces as views show them; 65535 is white.
+using ShownGreys = std::array<std::uint16_t, 6>;
+
+/// Log-odds occupancy and six faces. Inner nodes carry occupancy only.
+class TexturedOcTreeNode : public octomap::OcTreeNode {
+  public:
+    std::array<FaceTexture, 6> faces;
+
+    TexturedOcTreeNode() = default;
+    TexturedOcTreeNode(const TexturedOcTreeNode& other);  ///< with all children, as OctoMap's
+    TexturedOcTreeNode& operator=(const TexturedOcTreeNode&) = delete;
+
+    /// Mean over the observed faces by weight; nothing when no face was ever observed.
+    std::optional<float> meanGrey() const;
+
+    /// What views show of an occupied cell: a face that was never observed takes meanGrey().
+    /// Nothing when no face was ever observed.
+    std::optional<ShownGreys> shownGreys() const;
+
+    // What OctoMap asks of a node type; pruning merges leaves only when their faces agree as well.
+    void copyData(const TexturedOcTreeNode& from);
+    bool operator==(const TexturedOcTreeNode& other) const;
+    std::istream& readData(std::istream& stream);
+    std::ostream& writeData(std::ostream& stream) const;
+};
+
+/// What one update changed in a brick of 4 x 4 x 4 cells.
+struct BrickChange {
+    bool occupancy = false;  ///< a cell became known, free or occupied
+    bool texture = false;    ///< the shown grey of a cell that was occupied before changed
+    float greyMoved = 0.F;   ///< the most by which it did; 1 where there was none before
+};
+
+/// An OctoMap of textured nodes, registered with OctoMap's factory as "TexturedOcTree" (so that
+/// octomap::AbstractOcTree::read() knows its files). A cell is unknown (no node), free or occupied.
+class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
+  public:
+    /// @param resolution edge of a cell [m] @throws std::invalid_argument unless positive
+    explicit TexturedOcTree(double resolution);
+
+    TexturedOcTree* create() const override { return new TexturedOcTree(resolution); }
+    std::string getTreeType() const override { return "TexturedOcTree"; }
+    void expandNode(TexturedOcTreeNode* node) override;
+
+    /// The root, made when the tree is empty.
+    TexturedOcTreeNode& obtainRoot();
+
+    /// One observation of up to 64 cells: the brick of 4 x 4 x 4 cells that begins at `corner`
+    /// (a multiple of four). Bit 8 * i + j of the masks is child j of child i in OctoMap's order.
+    /// The same effect as updateNode() on each cell, for a fraction of the time.
+    /// @param texture called for every hit cell after its occupancy was raised
+    BrickChange updateBrick(const octomap::OcTreeKey& corner, std::uint64_t missed,
+                            std::uint64_t hit,
+                            const std::function<void(TexturedOcTreeNode&, unsigned bit)>& texture);
+
+    /// Sums up by how much the greys of the brick at `corner` have moved, so that small steps in
+    /// one direction do not pass unnoticed.
+    /// @returns whether the sum exceeds the tolerance; it then begins at zero again
+    bool accumulateDrift(const octomap::OcTreeKey& corner, float greyMoved, float tolerance);
+
+  private:
+    struct BrickUpdate;
+    void updateCell(TexturedOcTreeNode& node, bool justMade, const BrickUpdate& update,
+                    unsigned bit);
+    void updateRecursively(TexturedOcTreeNode& node, bool justMade, unsigned level,
+                           const BrickUpdate& update, unsigned firstBit);
+
+    std::unordered_map<octomap::OcTreeKey, float, octomap::OcTreeKey::KeyHash> drift_;
+};
+
+/// Bit of a cell in its brick of 4 x 4 x 4, from the two low bits of its key.
+constexpr unsigned brickBit(unsigned x, unsigned y, unsigned z) {
+    return (x & 1U) | (y & 1U) << 1U | (z & 1U) << 2U | (x & 2U) << 2U | (y & 2U) << 3U |
+           (z & 2U) << 4U;
+}
+
+}  // namespace photonav

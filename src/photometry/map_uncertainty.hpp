@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How much a motion past a view reduces the uncertainty of the *map*: the objective of active
+// reconstruction, a baseline to planning for the uncertainty of the pose.
+#pragma once
+
+#include "photometry/photometric.hpp"
+
+namespace photonav {
+
+struct MapUncertaintyOptions {
+    double priorSigma =
+        0.3;                 ///< standard deviation of log depth before the look: 30 % of the depth
+    double baseline = 0.25;  ///< way between the two images that a depth is measured from [m]
+    int stride = 2;          ///< looks at every stride-th row and column
+};
+
+/// How well a short motion measures the depths in sight.
+struct MapCertainty {
+    double share = 0.;  ///< of the pixels that a motion can measure at all: those whose variance it
+                        ///< would at least halve if it went along their gradient
+    Eigen::Matrix3d gain = Eigen::Matrix3d::Zero();  ///< mean over these pixels (see below)
+
+    /// Variance of log depth left over the image by a motion along the unit vector t (camera
+    /// frame), relative to the prior: 1 where nothing is measured.
+    double varianceLeft(const Eigen::Vector3d& t_c) const {
+        return 1. - share + share / (1. + t_c.dot(gain * t_c));
+    }
+};
+
+/// Per pixel, with j = grad I^T dpi/dp (1x3) the response of its grey value to translation, log
+/// depth is measured from two images `baseline` apart with information (baseline j t)^2 /
+/// (2 sigma^2), so that 1 / (1 + t^T G t) of the prior's variance is left,
+///     G = priorSigma^2 baseline^2 / (2 sigma^2) * j^T j:
+/// parallax times the gradient along the epipolar line, over the noise of two images. Pixels with
+/// tr G >= 1 count, by their mean G; all others (no texture, no surface, a depth discontinuity)
+/// stay as uncertain as they were.
+///
+/// This is the objective of Forster, Pizzoli and Scaramuzza, Appearance-based active, monocular,
+/// dense reconstruction for micro aerial vehicles (RSS 2014): the expected variance of the depth
+/// given texture and motion. They carry a depth filter per pixel along a trajectory; here every
+/// view is judged on its own, against the same prior, so that it can be a cost per metre.
+MapCertainty mapCertainty(const View& view, const Camera& camera,
+                          const PhotometricOptions& photometric = {},
+                          const MapUncertaintyOptions& options = {});
+
+}  // namespace photonav

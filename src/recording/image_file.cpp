@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recording/image_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "io/error.hpp"
+#include "io/image_bytes.hpp"
+
+namespace photonav {
+namespace {
+
+cv::Mat readImage(const std::string& file, int flags, const Camera& camera,
+                  const std::string& source) {
+    const auto bytes = soundImage(readBytes(file));
+    cv::Mat image = bytes.empty() ? cv::Mat() : cv::imdecode(bytes, flags);
+    if (image.empty()) throw InputError(file, "", "not an image, or damaged");
+    if (image.cols != int(camera.width) || image.rows != int(camera.height)) {
+        throw InputError(file, "",
+                         fmt::format("{}x{} pixels, not the {}x{} of {}", image.cols, image.rows,
+                                     camera.width, camera.height, source));
+    }
+    return image;
+}
+
+template <class Value>
+vpImage<Value> copied(const cv::Mat& image) {
+    vpImage<Value> result(static_cast<unsigned>(image.rows), static_cast<unsigned>(image.cols));
+    for (int v = 0; v < image.rows; ++v) {
+        const Value* row = image.ptr<Value>(v);
+        std::copy(row, row + image.cols, result[v]);
+    }
+    return result;
+}
+
+}  // namespace
+
+vpImage<unsigned char> readGrey8(const std::string& file, const Camera& camera,
+                                 const std::string& source) {
+    return copied<unsigned char>(
+        readImage(file, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION, camera, source));
+}
+
+vpImage<std::uint16_t> readDepth16(const std::string& file, const Camera& camera,
+                                   const std::string& source) {
+    const cv::Mat image = readImage(file, cv::IMREAD_UNCHANGED, camera, source);
+    if (image.type() != CV_16UC1) throw InputError(file, "", "expected one channel of 16 bits");
+    return copied<std::uint16_t>(image);
+}
+
+std::string greyPng(const ImageF& image, unsigned maxSide) {
+    if (image.getSize() == 0) throw std::invalid_argument("greyPng: the image is empty");
+    cv::Mat grey(static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_32F,
+                 image.bitmap);
+    const double factor = static_cast<double>(maxSide) / std::max(grey.rows, grey.cols);
+    if (factor < 1.) cv::resize(grey, grey, {}, factor, factor, cv::INTER_AREA);
+    cv::Mat levels;
+    grey.convertTo(levels, CV_8U, 255.);
+    std::vector<unsigned char> bytes;
+    cv::imencode(".png", levels, bytes);
+    return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace photonav

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads recorded images, with their size checked against the camera's, and writes grey ones.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "geometry/camera.hpp"
+#include "geometry/types.hpp"
+
+namespace photonav {
+
+/// An image of a recording's list.
+struct StampedFile {
+    double timestamp = 0.;  ///< [s]
+    std::string file;
+};
+
+/// Colour becomes grey as OpenCV weighs it; orientation tags are ignored.
+/// @param source the file and keys that give the camera's size, for messages: "camera.yaml (width,
+/// height)"
+/// @throws InputError for a file that is missing, damaged or of another size than the camera's
+vpImage<unsigned char> readGrey8(const std::string& file, const Camera& camera,
+                                 const std::string& source);
+
+/// @throws InputError as readGrey8(), and unless the image has one channel of 16 bits
+vpImage<std::uint16_t> readDepth16(const std::string& file, const Camera& camera,
+                                   const std::string& source);
+
+/// The bytes of a PNG file of a grey image in [0, 1], reduced to at most `maxSide` pixels a side.
+/// @throws std::invalid_argument if the image is empty
+std::string greyPng(const ImageF& image, unsigned maxSide = 2048);
+
+}  // namespace photonav

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recording/sequence_tum.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+
+#include "geometry/constants.hpp"
+#include "io/text_table.hpp"
+#include "io/yaml_reader.hpp"
+#include "recording/image_file.hpp"
+#include "recording/time_order.hpp"
+#include "recording/trajectory.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Pair {
+    double timestamp = 0.;  ///< of the colour image [s]
+    std::string colour;
+    StampedFile depth;
+};
+
+/// Rows that cannot be used are skipped where that is asked for.
+template <typename Item>
+std::vector<Item> readList(const std::string& file, std::size_t columns,
+                           const std::function<Item(const TextRow&)>& parse, bool forgiving,
+                           Sequence& sequence) {
+    std::vector<InputError> badRows;
+    std::vector<InputError>* bad = forgiving ? &badRows : nullptr;
+    auto list = parseInOrderOfTime(readTable(file, columns, bad), parse, Repeats::skipped, bad);
+    for (const InputError& row : badRows) sequence.skipped.push_back({file, row.reason()});
+    if (list.empty()) throw InputError(file, "", "no images");
+    return list;
+}
+
+std::vector<StampedFile> readFileList(const fs::path& folder, const std::string& name,
+                                      bool forgiving, Sequence& sequence) {
+    return readList<StampedFile>(
+        (folder / name).string(), 2,
+        [&](const TextRow& row) {
+            return StampedFile{row.number(0), (folder / row.text(1)).string()};
+        },
+        forgiving, sequence);
+}
+
+std::vector<Pair> readAssociation(const fs::path& folder, const std::string& name, bool forgiving,
+                                  Sequence& sequence) {
+    return readList<Pair>((folder / name).string(), 4,
+                          [&](const TextRow& row) {
+                              StampedFile colour{row.number(0), (folder / row.text(1)).string()};
+                              StampedFile depth{row.number(2), (folder / row.text(3)).string()};
+                              if (row.text(1).starts_with("depth")) std::swap(colour, depth);
+                              return Pair{colour.timestamp, colour.file, depth};
+                          },
+                          forgiving, sequence);
+}
+
+/// Index of the depth image of every colour image, or -1: closest pairs first, as the benchmark's
+/// associate.py.
+std::vector<int> associate(const std::vector<StampedFile>& colour,
+                           const std::vector<StampedFile>& depth, double tolerance) {
+    struct Candidate {
+        double difference;
+        int colour;
+        int depth;
+    };
+    std::vector<Candidate> candidates;
+    for (std::size_t i = 0; i < colour.size(); ++i) {
+        const double time = colour[i].timestamp;
+        auto j =
+            std::lower_bound(depth.begin(), depth.end(), time - tolerance,
+                             [](const StampedFile& file, double t) { return file.timestamp < t; });
+        for (; j != depth.end() && j->timestamp <= time + tolerance; ++j) {
+            candidates.push_back({std::abs(j->timestamp - time), static_cast<int>(i),
+                                  static_cast<int>(j - depth.begin())});
+        }
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const auto& a, const auto& b) { return a.difference < b.difference; });
+    std::vector<int> partner(colour.size(), -1);
+    std::vector<bool> taken(depth.size(), false);
+    for (const auto& candidate : candidates) {
+        if (partner[candidate.colour] >= 0 || taken[candidate.depth]) continue;
+        partner[candidate.colour] = candidate.depth;
+        taken[candidate.depth] = true;
+    }
+    return partner;
+}
+
+std::vector<Pair> readPairs(const fs::path& folder, const TumOptions& options, Sequence& sequence) {
+    const double tolerance = options.tolerance;
+    for (const char* name : {"assoc.txt", "associations.txt"}) {
+        if (!fs::exists(folder / name)) continue;
+        auto pairs = readAssociation(folder, name, options.forgiving, sequence);
+        sequence.recorded = pairs.size() + sequence.skipped.size();
+        return pairs;
+    }
+    const auto colour = readFileList(folder, "rgb.txt", options.forgiving, sequence);
+    sequence.recorded = colour.size() + sequence.skipped.size();
+    std::vector<StampedFile> depth;
+    if (options.needsDepth || fs::exists(folder / "depth.txt")) {
+        depth = readFileList(folder, "depth.txt", options.forgiving, sequence);
+    }
+    const auto partner = associate(colour, depth, tolerance);
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < colour.size(); ++i) {
+        if (partner[i] >= 0) {
+            pairs.push_back({colour[i].timestamp, colour[i].file, depth[partner[i]]});
+        } else if (!options.needsDepth) {
+            pairs.push_back({colour[i].timestamp, colour[i].file, {}});
+        } else {
+            sequence.skipped.push_back(
+                {colour[i].file, fmt::format("no depth image within {} s", tolerance)});
+        }
+    }
+    if (pairs.empty()) {
+        throw InputError((folder / "depth.txt").string(), "",
+                         fmt::format("no depth image within {} s of any colour image", tolerance));
+    }
+    return pairs;
+}
+
+void forgetMissingDepth(std::vector<Pair>& pairs) {
+    for (Pair& pair : pairs) {
+        if (!fs::exists(pair.depth.file)) pair.depth.file.clear();
+    }
+}
+
+/// Fields of view up to 179 degrees, principal points up to ten images outside: beyond, a number
+/// has gone wrong.
+vpCameraParameters readIntrinsics(YamlMap& yaml, const Camera& camera) {
+    const auto required = [&](const std::string& key, double least, double most) {
+        if (!yaml.has(key)) yaml.fail(key, "missing");
+        double value = 0.;
+        yaml.readNumber(key, value, least, most);
+        return value;
+    };
+    const double width = camera.width;
+    const double height = camera.height;
+    return {required("fx", 0.005 * width, 1e9), required("fy", 0.005 * height, 1e9),
+            required("cx", -10. * width, 10. * width), required("cy", -10. * height, 10. * height)};
+}
+
+void readCamera(const std::string& file, Sequence& sequence) {
+    YamlMap yaml(file, loadYaml(file));
+    const auto readPixels = [&](const std::string& key, unsigned& value) {
+        if (!yaml.has(key)) yaml.fail(key, "missing");
+        yaml.read(key, value);
+        if (value == 0) yaml.fail(key, "is zero");
+    };
+    readPixels("width", sequence.camera.width);
+    readPixels("height", sequence.camera.height);
+    sequence.camera.intrinsics = readIntrinsics(yaml, sequence.camera);
+    yaml.readNumber("depth_scale", sequence.depthScale, 1e-6, kInfinity);
+    if (yaml.has("information_scale")) {
+        yaml.readNumber("information_scale", sequence.informationScale.emplace(), 1e-6, kInfinity);
+    }
+    if (yaml.has("depth_camera")) {
+        YamlMap depthCamera = yaml.map("depth_camera");
+        sequence.depthIntrinsics = readIntrinsics(depthCamera, sequence.camera);
+        depthCamera.finish();
+    }
+    yaml.finish();
+}
+
+/// For every colour column (or row) the depth column of the same ray, or -1 outside the image.
+std::vector<int> depthPixels(unsigned count, double focal, double centre, double depthFocal,
+                             double depthCentre) {
+    std::vector<int> pixels(count);
+    for (unsigned i = 0; i < count; ++i) {
+        const double j = std::round((i - centre) * depthFocal / focal + depthCentre);
+        pixels[i] = j >= 0. && j < count ? static_cast<int>(j) : -1;
+    }
+    return pixels;
+}
+
+/// @param source the file and keys that give the camera's size, for messages
+void loadDepth(const Sequence& sequence, const std::string& file, const std::string& source,
+               ImageF& metres) {
+    const Camera& camera = sequence.camera;
+    const vpImage<std::uint16_t> values = readDepth16(file, camera, source);
+    const vpCameraParameters& k = camera.intrinsics;
+    const vpCameraParameters& d = sequence.depthIntrinsics.value_or(k);
+    const auto columns = depthPixels(camera.width, k.get_px(), k.get_u0(), d.get_px(), d.get_u0());
+    const auto rows = depthPixels(camera.height, k.get_py(), k.get_v0(), d.get_py(), d.get_v0());
+    const auto unit = static_cast<float>(1. / sequence.depthScale);
+    for (unsigned v = 0; v < camera.height; ++v) {
+        if (rows[v] < 0) continue;
+        const std::uint16_t* z = values[rows[v]];
+        for (unsigned u = 0; u < camera.width; ++u) {
+            if (columns[u] >= 0) metres[v][u] = unit * z[columns[u]];
+        }
+    }
+}
+
+void addPoses(const std::string& groundtruth, const std::vector<Pair>& pairs,
+              const TumOptions& options, Sequence& sequence) {
+    Trajectory trajectory;
+    std::vector<InputError> badRows;
+    if (!options.forgiving || fs::exists(groundtruth)) {
+        trajectory = readTrajectory(groundtruth, options.forgiving ? &badRows : nullptr);
+    }
+    for (const InputError& row : badRows) sequence.skipped.push_back({groundtruth, row.reason()});
+    bool anyPose = false;
+    for (const auto& [timestamp, colour, depth] : pairs) {
+        const auto T_w_c = poseAt(trajectory, timestamp, options.tolerance, options.maxPoseGap);
+        anyPose = anyPose || T_w_c;
+        if (T_w_c || options.forgiving) {
+            sequence.frames.push_back({timestamp, T_w_c ? T_w_c->inverse() : Pose::Identity(),
+                                       T_w_c.has_value(), colour, depth.file});
+        } else {
+            sequence.skipped.push_back(
+                {colour, fmt::format("no pose within {} s", options.tolerance)});
+        }
+    }
+    if (!anyPose && !trajectory.empty()) {
+        throw InputError(
+            groundtruth, "",
+            fmt::format("no pose within {} s of any image: poses from {:.3f} to {:.3f} s, images "
+                        "from {:.3f} to {:.3f} s",
+                        options.tolerance, trajectory.front().timestamp,
+                        trajectory.back().timestamp, pairs.front().timestamp,
+                        pairs.back().timestamp));
+    }
+}
+
+}  // namespace
+
+Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
+    if (!fs::is_directory(folder)) throw InputError(folder, "", "no such folder");
+    if (fs::is_empty(folder)) throw InputError(folder, "", "the folder is empty");
+    Sequence sequence;
+    const std::string inFolder = (fs::path(folder) / "camera.yaml").string();
+    if (!options.cameraFile.empty() || fs::exists(inFolder)) {
+        sequence.cameraFile = options.cameraFile.empty() ? inFolder : options.cameraFile;
+        readCamera(sequence.cameraFile, sequence);
+    } else {
+        sequence.camera = {640, 480, vpCameraParameters(525., 525., 319.5, 239.5)};
+        sequence.cameraAssumed = true;
+    }
+    sequence.needsDepth = options.needsDepth;
+    if (options.depthScale) sequence.depthScale = *options.depthScale;
+    auto pairs = readPairs(folder, options, sequence);
+    if (!options.needsDepth) forgetMissingDepth(pairs);
+    addPoses((fs::path(folder) / "groundtruth.txt").string(), pairs, options, sequence);
+    return sequence;
+}
+
+RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
+    const Sequence::Entry& entry = sequence.frames.at(index);
+    const Camera& camera = sequence.camera;
+    const std::string source = sequence.cameraAssumed ? "the camera assumed without a camera.yaml"
+                                                      : sequence.cameraFile + " (width, height)";
+    const vpImage<unsigned char> grey = readGrey8(entry.colourFile, camera, source);
+    RecordedFrame frame{entry.T_c_w, {}, entry.timestamp};
+    frame.view.intensity.resize(camera.height, camera.width);
+    frame.view.depth.resize(camera.height, camera.width, 0.F);
+    for (unsigned i = 0; i < grey.getSize(); ++i) {
+        frame.view.intensity.bitmap[i] = static_cast<float>(grey.bitmap[i]) / 255.F;
+    }
+    if (entry.depthFile.empty()) return frame;
+    try {
+        loadDepth(sequence, entry.depthFile, source, frame.view.depth);
+    } catch (const InputError&) {
+        if (sequence.needsDepth) throw;
+    }
+    return frame;
+}
+
+}  // namespace photonav

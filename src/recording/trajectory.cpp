@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recording/trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
+#include "recording/time_order.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr double kFarthest = 1e8;  // [m]; more than twice around the earth
+
+StampedPose parsePose(const TextRow& row) {
+    std::array<double, 8> v{};
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = row.number(i);
+    Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
+    if (q.norm() < 1e-6) row.fail("quaternion of zero norm");
+    if (std::abs(q.norm() - 1.) > 0.1) {
+        row.fail(fmt::format("quaternion of norm {:.3g}, expected 1", q.norm()));
+    }
+    const Eigen::Vector3d position(v[1], v[2], v[3]);
+    if (position.norm() > kFarthest) {
+        row.fail(fmt::format("position {:.3g} m from the origin", position.norm()));
+    }
+    StampedPose pose;
+    pose.timestamp = v[0];
+    pose.T_w_c.linear() = q.normalized().toRotationMatrix();
+    pose.T_w_c.translation() = position;
+    return pose;
+}
+
+Pose interpolate(const Pose& a, const Pose& b, double s) {
+    const Eigen::Quaterniond from(a.linear());
+    const Eigen::Quaterniond to(b.linear());
+    Pose pose = Pose::Identity();
+    pose.linear() = from.slerp(s, to).toRotationMatrix();
+    pose.translation() = a.translation() + s * (b.translation() - a.translation());
+    return pose;
+}
+
+}  // namespace
+
+Trajectory readTrajectory(const std::string& file, std::vector<InputError>* badRows) {
+    return trajectoryOf(file, readTable(file, 8, badRows), parsePose, badRows);
+}
+
+Trajectory trajectoryOf(const std::string& file, const std::vector<TextRow>& rows,
+                        const std::function<StampedPose(const TextRow&)>& parse,
+                        std::vector<InputError>* badRows) {
+    Trajectory trajectory = parseInOrderOfTime(rows, parse, Repeats::kept, badRows);
+    if (!trajectory.empty()) return trajectory;
+    throw InputError(file, "", "no poses");
+}
+
+void writeTrajectory(const std::string& file, const Trajectory& trajectory) {
+    std::string text = "# timestamp tx ty tz qx qy qz qw (camera to world)\n";
+    for (const auto& [timestamp, T_w_c] : trajectory) {
+        const Eigen::Vector3d& t = T_w_c.translation();
+        const Eigen::Quaterniond q(T_w_c.linear());
+        text += fmt::format("{:.6f} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", timestamp,
+                            t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+    }
+    writeFileAtomically(file, text);
+}
+
+std::optional<Pose> poseAt(const Trajectory& trajectory, double timestamp, double tolerance,
+                           double maxGap) {
+    if (trajectory.empty()) return {};
+    const auto after = std::lower_bound(
+        trajectory.begin(), trajectory.end(), timestamp,
+        [](const StampedPose& pose, double time) { return pose.timestamp < time; });
+    if (after != trajectory.end() && after->timestamp == timestamp) return after->T_w_c;
+    if (after != trajectory.begin() && after != trajectory.end()) {
+        const auto before = after - 1;
+        const double gap = after->timestamp - before->timestamp;
+        if (gap <= maxGap) {
+            return interpolate(before->T_w_c, after->T_w_c, (timestamp - before->timestamp) / gap);
+        }
+    }
+    auto nearest = after;
+    if (after == trajectory.end() ||
+        (after != trajectory.begin() &&
+         timestamp - (after - 1)->timestamp < after->timestamp - timestamp)) {
+        nearest = after - 1;
+    }
+    if (std::abs(nearest->timestamp - timestamp) > tolerance) return {};
+    return nearest->T_w_c;
+}
+
+const std::vector<std::string>& axisNames() {
+    static const std::vector<std::string> names = {"x", "y", "z", "-x", "-y", "-z"};
+    return names;
+}
+
+Eigen::Matrix3d worldUpRotation(std::string_view upAxis) {
+    Eigen::Matrix3d R;  // rows: the new axes in recorded coordinates
+    if (upAxis == "z") {
+        R.setIdentity();
+    } else if (upAxis == "-z") {
+        R << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+    } else if (upAxis == "y") {
+        R << 0, 0, -1, -1, 0, 0, 0, 1, 0;
+    } else if (upAxis == "-y") {
+        R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    } else if (upAxis == "x") {
+        R << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+    } else if (upAxis == "-x") {
+        R << 0, 1, 0, 0, 0, -1, -1, 0, 0;
+    } else {
+        throw std::invalid_argument(
+            fmt::format("up axis '{}' is not one of {}", upAxis, fmt::join(axisNames(), ", ")));
+    }
+    return R;
+}
+
+Eigen::Matrix3d worldUpRotation(const Eigen::Vector3d& up) {
+    Eigen::Index axis = 0;
+    up.cwiseAbs().maxCoeff(&axis);
+    const auto& names = axisNames();
+    const Eigen::Matrix3d R = worldUpRotation(names[axis + (up[axis] < 0. ? 3 : 0)]);
+    return Eigen::Quaterniond::FromTwoVectors(R * up, Eigen::Vector3d::UnitZ()) * R;
+}
+
+}  // namespace photonav

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Camera trajectories and their files (TUM format, which evo reads).
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geometry/types.hpp"
+#include "io/text_table.hpp"
+
+namespace photonav {
+
+struct StampedPose {
+    double timestamp = 0.;  ///< [s]
+    Pose T_w_c = Pose::Identity();
+};
+
+using Trajectory = std::vector<StampedPose>;  ///< timestamps never decrease
+
+/// Reads lines `t tx ty tz qx qy qz qw` (camera to world); blank lines and those starting with '#'
+/// are skipped, quaternions are normalised.
+/// @throws InputError naming the line for a wrong number of fields, a value that is not a finite
+///         number, a position beyond 1e8 m, a quaternion whose norm is not within 0.1 of 1, or a
+///         decreasing timestamp; also for a missing file and one without poses
+/// @param badRows where there is one it gets such lines, which are passed over; when there are more
+///        of them than poses the first is thrown
+Trajectory readTrajectory(const std::string& file, std::vector<InputError>* badRows = nullptr);
+
+/// The same of the rows of any table.
+Trajectory trajectoryOf(const std::string& file, const std::vector<TextRow>& rows,
+                        const std::function<StampedPose(const TextRow&)>& parse,
+                        std::vector<InputError>* badRows);
+
+/// Writes what readTrajectory reads; translations and quaternions with 9 digits.
+/// @throws InputError when the file cannot be written
+void writeTrajectory(const std::string& file, const Trajectory& trajectory);
+
+/// The pose at a time: interpolated (translation linearly, rotation by slerp) between the poses
+/// before and after when these are at most `maxGap` apart, else the nearest one within `tolerance`,
+/// else nothing. All in seconds.
+std::optional<Pose> poseAt(const Trajectory& trajectory, double timestamp, double tolerance,
+                           double maxGap);
+
+/// The names worldUpRotation understands: x, y, z, -x, -y, -z.
+const std::vector<std::string>& axisNames();
+
+/// Rotation from a recorded world, one of whose axes points up, to a world with z up. y-up and
+/// y-down worlds become x forward, y left as seen by a camera of theirs that looks along -z or z.
+/// @throws std::invalid_argument for a name that is not among axisNames()
+Eigen::Matrix3d worldUpRotation(std::string_view upAxis);
+
+/// The same for any direction: the rotation of the nearest axis, then the smallest one that is
+/// left.
+/// @param up unit vector in the recorded world
+Eigen::Matrix3d worldUpRotation(const Eigen::Vector3d& up);
+
+}  // namespace photonav

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The faces of the cells of one brick, and the patches of texture that rays look up.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "map/textured_octree.hpp"
+#include "render/voxel_grid.hpp"
+
+namespace photonav {
+
+/// What the map holds of a brick of 4 x 4 x 4 cells. Bit x + 4 y + 16 z of the masks.
+struct BrickSurface {
+    std::uint64_t occupied = 0;
+    std::uint64_t known = 0;                 ///< occupied, and some face of the cell was observed
+    std::array<std::uint64_t, 6> exposed{};  ///< known, and the cell before this face is not solid
+    std::array<ShownGreys, 64> grey{};       ///< of the faces of known cells; 0 elsewhere
+
+    bool hasSameCells(const BrickSurface& other) const {
+        return occupied == other.occupied && known == other.known && grey == other.grey;
+    }
+};
+
+constexpr unsigned surfaceBit(int x, int y, int z) {
+    return static_cast<unsigned>((x & 3) | (y & 3) << 2 | (z & 3) << 4);
+}
+
+/// A brick and the 26 around it, x fastest; those without a surface are an empty one.
+using SurfaceNeighbours = std::array<const BrickSurface*, 27>;
+
+/// The faces of a brick's known cells, by face, that no occupied cell covers.
+std::array<std::uint64_t, 6> exposedFaces(const SurfaceNeighbours& neighbours);
+
+/// Which faces of one layer of a brick are exposed, as FacePatch::valid.
+std::uint16_t exposedInLayer(const BrickSurface& surface, int face, int layer);
+
+/// Grey values of one layer of the middle brick and around it.
+FacePatch makePatch(const SurfaceNeighbours& neighbours, int face, int layer, std::uint16_t valid);
+
+}  // namespace photonav

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Views of a textured triangle scene by ray casting (the only includer of Embree is its .cpp).
+#pragma once
+
+#include <memory>
+
+#include "photometry/view.hpp"
+#include "scene/scene.hpp"
+
+namespace photonav {
+
+/// Visibility at pixel centres is exact: by the depth buffer where triangles are few for the number
+/// of pixels, else by Embree's ray packets; both see the same triangles. Depth and grey value come
+/// from the visible triangle's plane (surface_shader.hpp). Both sides of a triangle are visible.
+class MeshRenderer : public ViewSource {
+  public:
+    explicit MeshRenderer(Scene scene);
+    ~MeshRenderer() override;
+    MeshRenderer(MeshRenderer&&) noexcept;
+    MeshRenderer& operator=(MeshRenderer&&) noexcept;
+
+    void render(const Camera& camera, const Pose& T_c_w, View& view) const override;
+
+    const Scene& scene() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace photonav

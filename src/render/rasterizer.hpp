@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Visibility of a small mesh by projecting its triangles.
+#pragma once
+
+#include <vector>
+
+#include "photometry/view.hpp"
+#include "render/surface_shader.hpp"
+#include "scene/scene.hpp"
+
+namespace photonav {
+
+/// Which triangle every pixel centre sees, by the depth buffer. Looks at every triangle of the
+/// scene in every view, so it beats rays where triangles are few for the number of pixels.
+///
+/// Works in homogeneous coordinates (Olano and Greer, "Triangle Scan Conversion using 2D
+/// Homogeneous Coordinates", 1997), so that nothing is clipped: with corners p0, p1, p2 in the
+/// camera frame, a ray d meets the triangle where E_i . d >= 0 for all three
+/// E_i = p_j x p_k / det(p0 p1 p2), and (E_0 + E_1 + E_2) . d is the inverse depth there.
+class Rasterizer {
+  public:
+    explicit Rasterizer(const std::vector<Triangle>& triangles);
+
+    /// Overwrites all of `visible`, which has the camera's size. Thread-safe.
+    void rasterize(const Camera& camera, const Pose& T_c_w, VisibilityImage& visible) const;
+
+  private:
+    std::size_t count_;
+    /// Per triangle one corner, and the edges from it to the other two: x, y, z of each as an
+    /// array over all triangles, padded to whole vectors with triangles of no area.
+    std::array<std::vector<float>, 9> coordinates_;
+};
+
+}  // namespace photonav

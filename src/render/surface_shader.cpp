@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/surface_shader.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "photometry/simd.hpp"
+
+namespace photonav {
+namespace {
+
+using simd::bits;
+using simd::Float;
+using simd::Int;
+using simd::kWidth;
+using simd::rounded;
+using simd::splat;
+using simd::toFloat;
+using simd::toInt;
+
+/// Area of texture that a pixel is taken to integrate, relative to its footprint. Levels and the
+/// interpolation blur, too: this value is the closest to integrating over the pixel (measured for
+/// texels from a third of a pixel to two pixels: half the error that 1 gives).
+constexpr double kFootprint = 0.6;
+
+constexpr int kMostLevels = 17;  // a texture has at most 32768 texels along a side
+
+/// a x + b y + c over the image, x and y in pixels.
+struct Affine {
+    float a, b, c;
+    Float operator()(Float x, float y) const { return a * x + (b * y + c); }
+};
+
+/// What one triangle looks like from one camera.
+struct Surface {
+    std::uint32_t id = VisibilityImage::kNothing;
+    bool edgeOn = false;      ///< the camera lies in its plane: nothing to see
+    float nearest, farthest;  ///< bounds of the inverse depth over the corners [1/m]
+    Affine inverseDepth;      ///< [1/m]
+    Affine u, v;              ///< (texel coordinate - its value at the camera) / depth [1/m]
+    float footprint;          ///< texels^2 per pixel, times depth^3
+    const MipTexture* texture;
+    /// Per pyramid level: scale of texel coordinates, and the texel coordinate at the camera split
+    /// into a whole and a fractional part, so that nothing is lost far from the texture's origin.
+    struct Level {
+        float uScale, vScale, uWhole, vWhole, uPart, vPart;
+    };
+    std::array<Level, kMostLevels> levels;
+};
+
+Affine affineInPixels(const Eigen::Vector3d& perRay, const Camera& camera) {
+    const double a = perRay.x() / camera.fx();
+    const double b = perRay.y() / camera.fy();
+    return {static_cast<float>(a), static_cast<float>(b),
+            static_cast<float>(perRay.z() - a * camera.cx() - b * camera.cy())};
+}
+
+/// Prepares the levels that depths between the corners can ask for.
+void setLevels(Surface& surface, const Eigen::Vector2d& texelAtCamera) {
+    const auto& levels = surface.texture->levels();
+    const auto coarsest = static_cast<double>(levels.size() - 1);
+    const auto levelAt = [&](double inverseDepth) {
+        return 0.5 * std::log2(surface.footprint / std::pow(inverseDepth, 3));
+    };
+    const auto first =
+        static_cast<std::size_t>(std::clamp(levelAt(surface.nearest) - 0.1, 0., coarsest));
+    const auto last =  // at least 1: level 0 is blended with the next one whatever the weight
+        static_cast<std::size_t>(std::clamp(levelAt(surface.farthest) + 1.1, 1., coarsest));
+    for (std::size_t k = first; k <= last; ++k) {
+        const double uScale = double{levels[k].width} / levels[0].width;
+        const double vScale = double{levels[k].height} / levels[0].height;
+        const double u = texelAtCamera.x() * uScale - 0.5;
+        const double v = texelAtCamera.y() * vScale - 0.5;
+        const auto whole = [](double x, double n) { return std::floor(x) - n * std::floor(x / n); };
+        const double uWhole = whole(u, levels[k].width);
+        const double vWhole = whole(v, levels[k].height);
+        surface.levels[k] = {static_cast<float>(uScale),
+                             static_cast<float>(vScale),
+                             static_cast<float>(uWhole),
+                             static_cast<float>(vWhole),
+                             static_cast<float>(u - std::floor(u)),
+                             static_cast<float>(v - std::floor(v))};
+    }
+}
+
+void setUp(Surface& surface, const Triangle& triangle, const MipTexture& texture,
+           const Camera& camera, const Pose& T_c_w) {
+    std::array<Eigen::Vector3d, 3> p;
+    for (int i = 0; i < 3; ++i) p[i] = T_c_w * triangle.corners[i].cast<double>();
+    const Eigen::Vector3d a = p[1] - p[0];
+    const Eigen::Vector3d b = p[2] - p[0];
+    const Eigen::Vector3d normal = a.cross(b);
+    const double distance = normal.dot(p[0]);  // times the normal's length
+    surface.texture = &texture;
+    surface.edgeOn = std::abs(distance) < 1e-9 * normal.norm();
+    if (surface.edgeOn) return;
+
+    const double smallest = std::min({p[0].z(), p[1].z(), p[2].z()});
+    const double largest = std::max({p[0].z(), p[1].z(), p[2].z()});
+    surface.nearest = smallest > 1e-6 ? static_cast<float>(1. / smallest) : 1e6F;
+    surface.farthest = largest > 1e-6 ? static_cast<float>(1. / largest) : 1e6F;
+    surface.inverseDepth = affineInPixels(normal / distance, camera);
+
+    if (texture.uniform()) return;
+
+    // Texel coordinates are linear in the point: gradients from the values at the corners.
+    const Eigen::Vector3d alongA = b.cross(normal) / normal.squaredNorm();
+    const Eigen::Vector3d alongB = normal.cross(a) / normal.squaredNorm();
+    const auto& base = texture.levels()[0];
+    const auto texel = [&](int i) -> Eigen::Vector2d {
+        return triangle.uv[i].cast<double>().cwiseProduct(Eigen::Vector2d(base.width, base.height));
+    };
+    const Eigen::Vector2d stepA = texel(1) - texel(0);
+    const Eigen::Vector2d stepB = texel(2) - texel(0);
+    const Eigen::Vector3d uGradient = stepA.x() * alongA + stepB.x() * alongB;
+    const Eigen::Vector3d vGradient = stepA.y() * alongA + stepB.y() * alongB;
+    surface.u = affineInPixels(uGradient, camera);
+    surface.v = affineInPixels(vGradient, camera);
+
+    // The map pixel -> texel is projective, H / inverse depth: its area factor is
+    // det H / (inverse depth)^3, and det H = normal . (uGradient x vGradient) / distance / (fx fy).
+    surface.footprint = static_cast<float>(
+        kFootprint * std::abs(normal.dot(uGradient.cross(vGradient)) / distance) /
+        (camera.fx() * camera.fy()));
+    setLevels(surface, texel(0) - Eigen::Vector2d(uGradient.dot(p[0]), vGradient.dot(p[0])));
+}
+
+/// The surfaces met so far in this view; a triangle that maps to a taken place replaces it.
+class SurfaceCache {
+  public:
+    SurfaceCache(const Scene& scene, const std::vector<MipTexture>& textures, const Camera& camera,
+                 const Pose& T_c_w)
+        : scene_(scene), textures_(textures), camera_(camera), T_c_w_(T_c_w) {}
+
+    const Surface& operator[](std::uint32_t id) {
+        Surface& surface = surfaces_[id % surfaces_.size()];
+        if (surface.id != id) {
+            const Triangle& triangle = scene_.triangles[id];
+            surface.id = id;
+            setUp(surface, triangle, textures_[triangle.texture], camera_, T_c_w_);
+        }
+        return surface;
+    }
+
+  private:
+    const Scene& scene_;
+    const std::vector<MipTexture>& textures_;
+    const Camera& camera_;
+    const Pose& T_c_w_;
+    std::array<Surface, 256> surfaces_;
+};
+
+/// i modulo n for whole numbers; within [0, n) whatever i is.
+[[gnu::always_inline]] inline Float wrapped(Float i, float n, float inverse) {
+    return simd::clamp(i - n * rounded((i + 0.5F) * inverse - 0.5F), 0.F, n - 1.F);
+}
+
+/// The 16-bit halves of 32 bits.
+struct Halves {
+    Float low, high;
+    explicit Halves(Int bits) : low(toFloat(bits & 0xffff)), high(toFloat((bits >> 16) & 0xffff)) {}
+};
+
+/// A texture's grey values, times MipTexture::kOne, at one pyramid level.
+[[gnu::always_inline]] inline Float bilinear(const MipTexture& texture, std::size_t level,
+                                             const Surface::Level& origin, Float u, Float v) {
+    const MipTexture::Level& image = texture.levels()[level];
+    const std::uint16_t* texels = texture.texels(level);
+    const Float x = u * origin.uScale + origin.uPart;
+    const Float column = rounded(x - 0.5F);  // floor, or one less with x - column = 1: the same
+    const Float s = x - column;
+    const Int across = toInt(wrapped(column + origin.uWhole, image.width, image.inverseWidth));
+    const auto between = [s](const std::uint16_t* row, Int index) {
+        // A texel and its right neighbour are 32 bits in one piece.
+        const Halves pair(simd::gather<sizeof(*row)>(row, index));
+        return pair.low + (pair.high - pair.low) * s;
+    };
+    if (image.height == 1.F) return between(texels, across);  // stripes: rows are alike
+
+    const Float y = v * origin.vScale + origin.vPart;
+    const Float row = rounded(y - 0.5F);
+    const Int index =
+        toInt(wrapped(row + origin.vWhole, image.height, image.inverseHeight)) * image.pitch +
+        across;
+    const Float top = between(texels, index);
+    const Float bottom = between(texels + image.pitch, index);
+    return top + (bottom - top) * (y - row);
+}
+
+/// log2 by exponent and mantissa: exact at powers of two, linear between, continuous.
+Float roughLog2(Float x) {
+    const Int bits = std::bit_cast<Int>(x);
+    return toFloat(bits) * (1.F / (1 << 23)) - 127.F;
+}
+
+/// @param active bits of the lanes that count
+Float trilinear(const Surface& surface, Float z, Float u, Float v, unsigned active) {
+    const MipTexture& texture = *surface.texture;
+    const std::size_t count = texture.levels().size();
+    const auto coarsest = static_cast<float>(count - 1);
+    const Float level = simd::clamp(0.5F * roughLog2(surface.footprint * z * z * z), 0.F, coarsest);
+    const Int whole = toInt(level);
+    const Float part = level - toFloat(whole);
+
+    Float grey{};
+    for (unsigned todo = active; todo != 0;) {
+        const auto k = static_cast<std::size_t>(whole[std::countr_zero(todo)]);
+        const Int here = whole == static_cast<int>(k);
+        const std::size_t next = std::min(k + 1, count - 1);
+        const Float fine = bilinear(texture, k, surface.levels[k], u, v);
+        const Float coarse = bilinear(texture, next, surface.levels[next], u, v);
+        grey = here ? fine + (coarse - fine) * part : grey;
+        todo &= ~bits(here);
+    }
+    return grey * (1.F / MipTexture::kOne);
+}
+
+/// Depth and grey value of one row's pixels.
+struct PixelRow {
+    float* depth;
+    float* grey;
+
+    /// Writes kWidth pixels from x, but not beyond the row. What lies to the right of the pixels
+    /// that are meant gets its own values later.
+    void store(unsigned x, unsigned width, Float z, Float intensity) const {
+        if (x + kWidth <= width) {
+            simd::store(depth + x, z);
+            simd::store(grey + x, intensity);
+        } else {
+            std::memcpy(depth + x, &z, (width - x) * sizeof(float));
+            std::memcpy(grey + x, &intensity, (width - x) * sizeof(float));
+        }
+    }
+};
+
+/// Pixels [begin, end) of row y, which all see the same surface.
+void shadeRun(const Surface& surface, unsigned begin, unsigned end, unsigned width, unsigned row,
+              const PixelRow& pixels) {
+    const auto y = static_cast<float>(row);
+    const auto uniform = surface.texture->uniform();
+    for (unsigned x = begin; x < end; x += kWidth) {
+        if (surface.edgeOn) {
+            pixels.store(x, width, Float{}, Float{});
+            continue;
+        }
+        const Float column = simd::ramp() + static_cast<float>(x);
+        const Float w = surface.inverseDepth(column, y);
+        const Float z = 1.F / simd::clamp(w, surface.farthest, surface.nearest);
+        if (uniform) {
+            pixels.store(x, width, z, splat(*uniform));
+            continue;
+        }
+        const Float u = surface.u(column, y) * z;
+        const Float v = surface.v(column, y) * z;
+        const unsigned active = simd::kAllLanes >> (kWidth - std::min<unsigned>(kWidth, end - x));
+        pixels.store(x, width, z, trilinear(surface, z, u, v, active));
+    }
+}
+
+/// Where the run of pixels that see the same as pixel `begin` ends.
+unsigned endOfRun(const std::uint32_t* ids, unsigned begin, unsigned width) {
+    const auto first = static_cast<int>(ids[begin]);
+    for (unsigned x = begin; x < width; x += kWidth) {
+        const auto other = bits(simd::load<Int>(ids + x) != first);
+        if (other != 0) return std::min<unsigned>(width, x + std::countr_zero(other));
+    }
+    return width;
+}
+
+}  // namespace
+
+void VisibilityImage::resize(unsigned width, unsigned height) {
+    constexpr unsigned kMostLanes = 16;
+    pitch = (width + 2U * kMostLanes - 1U) / kMostLanes * kMostLanes;
+    ids.resize(pitch * ((std::size_t{height} + 3U) / 4U * 4U));
+}
+
+SurfaceShader::SurfaceShader(const Scene& scene) : scene_(&scene) {
+    textures_.reserve(scene.textures.size());
+    for (const Texture& texture : scene.textures) textures_.emplace_back(texture.image);
+}
+
+void SurfaceShader::shade(const Camera& camera, const Pose& T_c_w, const VisibilityImage& visible,
+                          View& view) const {
+    SurfaceCache surfaces(*scene_, textures_, camera, T_c_w);
+    for (unsigned y = 0; y < camera.height; ++y) {
+        const std::uint32_t* ids = visible.row(y);
+        const PixelRow pixels{view.depth[y], view.intensity[y]};
+        for (unsigned begin = 0; begin < camera.width;) {
+            const unsigned end = endOfRun(ids, begin, camera.width);
+            if (ids[begin] == VisibilityImage::kNothing) {
+                std::fill(pixels.depth + begin, pixels.depth + end, 0.F);
+                std::fill(pixels.grey + begin, pixels.grey + end, 0.F);
+            } else {
+                shadeRun(surfaces[ids[begin]], begin, end, camera.width, y, pixels);
+            }
+            begin = end;
+        }
+    }
+}
+
+}  // namespace photonav

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A textured octree laid out for rays: a dense snapshot that VoxelRenderer marches through.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "map/textured_octree.hpp"
+
+namespace photonav {
+
+/// Grey values of 4 x 4 coplanar cell faces and of the faces around them, ready for bilinear
+/// interpolation: entry 6 * (q + 1) + p + 1 belongs to the face at (p, q), -1 <= p, q <= 4.
+struct FacePatch {
+    static constexpr int kSide = 6;
+    static constexpr int kValidIndex = kSide * kSide;  ///< of `valid`, in 16-bit words
+
+    std::array<std::uint16_t, kValidIndex> grey{};  ///< 65535 is white
+    std::uint16_t valid = 0;                        ///< bit 4 * q + p: the face has a grey value
+    std::array<std::uint16_t, 3> unused{};          ///< 80 bytes; also lets one read past valid
+};
+
+/// Cells of a grid from `low` up to, not including, `high`.
+struct CellBox {
+    Eigen::Array3i low = Eigen::Array3i::Zero();
+    Eigen::Array3i high = Eigen::Array3i::Zero();
+
+    bool empty() const { return (low >= high).any(); }
+    CellBox grown(int cells) const { return {low - cells, high + cells}; }
+    CellBox clippedTo(const CellBox& other) const {
+        return {low.max(other.low), high.min(other.high)};
+    }
+    void extend(const CellBox& other) {
+        if (other.empty()) return;
+        *this = empty() ? other : CellBox{low.min(other.low), high.max(other.high)};
+    }
+};
+
+/// Whole bricks of 4 x 4 x 4 cells that hold the map's bounding box and a border of at least one
+/// cell, x fastest, counted from `first`. Plain data; VoxelGridBuilder fills and changes it.
+struct VoxelGrid {
+    static constexpr int kPatchesPerBrick = 6 * 4;     ///< face, then layer along its normal
+    static constexpr std::uint8_t kMostDistance = 32;  ///< [cells]; what is farther counts as this
+
+    double resolution = 1.;                          ///< [m]
+    Eigen::Array3i first = Eigen::Array3i::Zero();   ///< world index of cell (0, 0, 0)
+    Eigen::Array3i size = Eigen::Array3i::Zero();    ///< cells that are stored, multiples of 4
+    Eigen::Array3i bricks = Eigen::Array3i::Zero();  ///< size / 4
+    CellBox box;                                     ///< the map's bounding box; outside it is free
+
+    /// Cells to the nearest cell that ends a ray, in the maximum norm: all cells closer than that
+    /// are empty. 0: this cell ends rays. Holds in the box and the one cell around it. Four bytes
+    /// are readable at every cell.
+    std::vector<std::uint8_t> distance;
+
+    /// Textures of a brick: entry brickTextures[brick] * kPatchesPerBrick + 4 * face + layer of
+    /// patchOf is an index into patches. Brick textures 0 and patch 0 are empty.
+    std::vector<std::int32_t> brickTextures;
+    std::vector<std::int32_t> patchOf;
+    std::vector<FacePatch> patches;
+
+    /// Where rays may be: the box and one cell around it.
+    CellBox reach() const { return box.grown(1); }
+    std::size_t cellIndex(int x, int y, int z) const {
+        return (std::size_t(z) * size.y() + y) * size.x() + x;
+    }
+    std::size_t brickIndex(const Eigen::Array3i& brick) const {
+        return (std::size_t(brick.z()) * bricks.y() + brick.y()) * bricks.x() + brick.x();
+    }
+};
+
+/// Computes VoxelGrid::distance in a box from which of its cells end rays (those with distance 0)
+/// and from the distances around the box, which must be right.
+void measureDistances(VoxelGrid& grid, const CellBox& within);
+
+}  // namespace photonav

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Makes the grid of a map, and keeps it up to date.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "map/map_change.hpp"
+#include "render/brick_surface.hpp"
+#include "render/voxel_grid.hpp"
+
+namespace photonav {
+
+/// What an update rewrote in a grid, for copies of it.
+struct GridUpdate {
+    bool laidOutAnew = false;            ///< all of it: only a whole copy is equal to it
+    std::vector<CellBox> cells;          ///< distances
+    std::vector<Eigen::Array3i> bricks;  ///< textures
+};
+
+/// Makes `copy`, which was equal to `grid` before the update, equal to it again. After several
+/// updates, in their order. None of them laid the grid out anew.
+void copyUpdate(const VoxelGrid& grid, const GridUpdate& update, VoxelGrid& copy);
+
+/// Fills a grid from a map and follows the map's changes. Between the calls it keeps what the map
+/// holds of every brick with a surface, so that only changed bricks are read again.
+class VoxelGridBuilder {
+  public:
+    /// @throws std::invalid_argument when the map's bounding box has more than 2^31 cells
+    VoxelGridBuilder(const TexturedOcTree& map, UnknownPolicy unknown, VoxelGrid& grid);
+
+    /// Makes the grid that this builder filled equal to a fresh one of the map as it is now.
+    /// @param change all that changed in the map since
+    /// @throws std::invalid_argument as above, or when the change is of another resolution
+    GridUpdate update(const TexturedOcTree& map, const MapChange& change, VoxelGrid& grid);
+
+  private:
+    using Bricks = std::vector<Eigen::Array3i>;
+
+    void readAll(const TexturedOcTree& map, const TexturedOcTreeNode& node,
+                 const Eigen::Array3i& lowest, int edge, VoxelGrid& grid, Bricks& changed);
+    void grow(const CellBox& box, VoxelGrid& grid, GridUpdate& update, Bricks& toRead) const;
+    void refreshPatches(const Bricks& changed, VoxelGrid& grid, Bricks& rewritten);
+    bool setSurface(std::size_t brick, const BrickSurface& surface, VoxelGrid& grid);
+    void makePatches(const SurfaceNeighbours& neighbours, std::int32_t textures, VoxelGrid& grid);
+    SurfaceNeighbours neighboursOf(const Eigen::Array3i& brick, const VoxelGrid& grid) const;
+
+    bool unknownEndsRays_;
+    std::deque<BrickSurface> surfaces_{1};  // index as in VoxelGrid::brickTextures
+    std::vector<std::int32_t> freePatches_;
+};
+
+}  // namespace photonav

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/voxel_grid_layout.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace photonav {
+namespace {
+
+using Eigen::Array3i;
+
+constexpr double kMostCells = 2147483647.;
+
+/// Extends the box by the leaves below a node, but goes only where it may grow.
+void extendBox(const TexturedOcTree& map, const TexturedOcTreeNode& node, const Array3i& lowest,
+               int edge, CellBox& box) {
+    if ((lowest >= box.low).all() && (lowest + edge <= box.high).all()) return;
+    bool leaf = true;
+    for (int i = 0; i < 8; ++i) {
+        if (!map.nodeChildExists(&node, i)) continue;
+        leaf = false;
+        const Array3i corner = lowest + edge / 2 * Array3i(i & 1, i >> 1 & 1, i >> 2 & 1);
+        extendBox(map, *map.getNodeChild(&node, i), corner, edge / 2, box);
+    }
+    if (!leaf) return;
+    box.low = box.low.min(lowest);
+    box.high = box.high.max(lowest + edge);
+}
+
+/// The whole bricks around a box.
+CellBox wholeBricks(const CellBox& box) {
+    const auto floored = [](const Array3i& cell) -> Array3i {
+        return cell.unaryExpr([](int i) { return i & ~3; });
+    };
+    return {floored(box.low), floored(box.high + 3)};
+}
+
+double cellsIn(const CellBox& box) { return (box.high - box.low).cast<double>().prod(); }
+
+/// Room for a box, and on the sides where `held` was too small for a quarter more.
+CellBox roomFor(const CellBox& box, const CellBox& held) {
+    CellBox room = wholeBricks(box);
+    if (cellsIn(room) > kMostCells) {
+        const Array3i size = box.high - box.low;
+        throw std::invalid_argument(
+            fmt::format("voxel view: the map's bounding box has {} x {} x {} "
+                        "cells, more than 2^31; use a "
+                        "coarser map or a part of it",
+                        size.x(), size.y(), size.z()));
+    }
+    if (held.empty()) return room;
+    const Array3i spare = ((box.high - box.low) / 4).max(8);
+    const CellBox more = wholeBricks({(box.low < held.low).select(box.low - spare, held.low),
+                                      (box.high > held.high).select(box.high + spare, held.high)});
+    return cellsIn(more) > kMostCells ? room : more;
+}
+
+/// Copies the rows of a dense array into one of another layout.
+template <class T>
+void copyRows(const std::vector<T>& from, const Array3i& fromSize, std::vector<T>& to,
+              const Array3i& toSize, const Array3i& offset) {
+    for (int z = 0; z < fromSize.z(); ++z) {
+        for (int y = 0; y < fromSize.y(); ++y) {
+            const auto in = (std::size_t(z) * fromSize.y() + y) * fromSize.x();
+            const auto out =
+                (std::size_t(z + offset.z()) * toSize.y() + y + offset.y()) * toSize.x();
+            std::copy_n(from.data() + in, fromSize.x(), to.data() + out + offset.x());
+        }
+    }
+}
+
+}  // namespace
+
+CellBox boundingBox(const TexturedOcTree& map) {
+    if (map.size() == 0) return {};
+    CellBox box{Array3i::Constant(kKeyOfZero), Array3i::Constant(-kKeyOfZero)};
+    extendBox(map, *map.getRoot(), Array3i::Constant(-kKeyOfZero), 2 * kKeyOfZero, box);
+    return box;
+}
+
+bool layOut(const CellBox& box, VoxelGrid& grid) {
+    const CellBox held{grid.first, grid.first + grid.size};
+    const CellBox needed = box.grown(1);
+    const bool fits = (needed.low >= held.low).all() && (needed.high <= held.high).all();
+    if (!fits) {
+        const CellBox room = roomFor(needed, held);
+        const VoxelGrid old = std::exchange(grid, {});
+        grid.resolution = old.resolution;
+        grid.first = room.low;
+        grid.size = room.high - room.low;
+        grid.bricks = grid.size / 4;
+        grid.distance.assign(std::size_t(cellsIn(room)) + 3, VoxelGrid::kMostDistance);
+        grid.brickTextures.assign(std::size_t(cellsIn(room)) / 64, 0);
+        grid.patchOf = old.patchOf;
+        grid.patches = old.patches;
+        copyRows(old.distance, old.size, grid.distance, grid.size, old.first - grid.first);
+        copyRows(old.brickTextures, old.bricks, grid.brickTextures, grid.bricks,
+                 (old.first - grid.first) / 4);
+    }
+    grid.box = {box.low - grid.first, box.high - grid.first};
+    return !fits;
+}
+
+void fillBox(VoxelGrid& grid, const CellBox& box, std::uint8_t value) {
+    for (int z = box.low.z(); z < box.high.z(); ++z) {
+        for (int y = box.low.y(); y < box.high.y(); ++y) {
+            std::uint8_t* row = grid.distance.data() + grid.cellIndex(0, y, z);
+            std::fill(row + box.low.x(), row + box.high.x(), value);
+        }
+    }
+}
+
+void addBricks(const CellBox& box, std::vector<Array3i>& bricks) {
+    const CellBox whole = wholeBricks(box);
+    for (int z = whole.low.z(); z < whole.high.z(); z += 4) {
+        for (int y = whole.low.y(); y < whole.high.y(); y += 4) {
+            for (int x = whole.low.x(); x < whole.high.x(); x += 4) {
+                bricks.emplace_back(x / 4, y / 4, z / 4);
+            }
+        }
+    }
+}
+
+}  // namespace photonav

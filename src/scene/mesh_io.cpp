@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/mesh_io.hpp"
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "io/error.hpp"
+#include "scene/mesh_check.hpp"
+
+namespace photonav {
+namespace {
+
+using Rgb = std::array<double, 3>;
+
+bool isGltf(const std::string& file) {
+    const auto extension = std::filesystem::path(file).extension();
+    return extension == ".gltf" || extension == ".glb";
+}
+
+/// Maps file coordinates to the world: the file's up axis becomes z, units become metres.
+Eigen::Affine3d fileToWorld(const std::string& file, const MeshOptions& options) {
+    const bool yUp = options.up == UpAxis::y || (options.up == UpAxis::automatic && isGltf(file));
+    Eigen::Affine3d T_w_file(Eigen::Scaling(options.scale));
+    if (yUp) {
+        Eigen::Matrix3d turn;  // a quarter turn about x, without rounding
+        turn << 1., 0., 0., 0., 0., -1., 0., 1., 0.;
+        T_w_file = T_w_file * turn;
+    }
+    return T_w_file;
+}
+
+Eigen::Affine3d toEigen(const aiMatrix4x4& m) {
+    Eigen::Affine3d T;
+    T.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1,
+        m.d2, m.d3, m.d4;
+    return T;
+}
+
+Rgb baseColour(const aiMaterial& material) {
+    aiColor4D colour(1.F, 1.F, 1.F, 1.F);
+    if (material.Get(AI_MATKEY_BASE_COLOR, colour) != aiReturn_SUCCESS) {
+        material.Get(AI_MATKEY_COLOR_DIFFUSE, colour);
+    }
+    return {colour.r, colour.g, colour.b};
+}
+
+std::optional<std::string> baseTextureName(const aiMaterial& material) {
+    aiString name;
+    for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
+        if (material.GetTexture(type, 0, &name) == aiReturn_SUCCESS) return name.C_Str();
+    }
+    return std::nullopt;
+}
+
+/// Remembers which files assimp opened: the mesh, its buffers, its materials.
+class RememberingFiles : public Assimp::DefaultIOSystem {
+  public:
+    explicit RememberingFiles(std::vector<std::string>& files) : files_(files) {}
+
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
+        const bool isNew = std::find(files_.begin(), files_.end(), file) == files_.end();
+        if (stream != nullptr && isNew) files_.emplace_back(file);
+        return stream;
+    }
+
+  private:
+    std::vector<std::string>& files_;
+};
+
+/// Fills a Scene from what assimp read.
+class MeshReader {
+  public:
+    MeshReader(const std::string& file, const MeshOptions& options, const aiScene& input,
+               std::vector<std::string> files)
+        : T_w_file_(fileToWorld(file, options)), file_(file), input_(input) {
+        scene_.files = std::move(files);
+    }
+
+    Scene read() {
+        addNode(*input_.mRootNode, T_w_file_);
+        if (scene_.triangles.empty()) {
+            throw InputError(
+                file_, "", dropped_ > 0 ? "all triangles are degenerate" : "contains no triangles");
+        }
+        return std::move(scene_);
+    }
+
+  private:
+    void addNode(const aiNode& node, const Eigen::Affine3d& T_w_parent) {
+        const Eigen::Affine3d T_w_node = T_w_parent * toEigen(node.mTransformation);
+        for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+            addMesh(*input_.mMeshes[node.mMeshes[i]], T_w_node);
+        }
+        for (unsigned i = 0; i < node.mNumChildren; ++i) addNode(*node.mChildren[i], T_w_node);
+    }
+
+    void addMesh(const aiMesh& mesh, const Eigen::Affine3d& T_w_mesh) {
+        if (!(mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE)) return;
+        const Surface surface = surfaceOf(mesh);
+        for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+            if (mesh.mFaces[i].mNumIndices == 3) addFace(mesh, mesh.mFaces[i], T_w_mesh, surface);
+        }
+    }
+
+    struct Surface {
+        std::uint32_t texture = 0;
+        bool vertexColours = false;
+    };
+
+    void addFace(const aiMesh& mesh, const aiFace& face, const Eigen::Affine3d& T_w_mesh,
+                 const Surface& surface) {
+        Triangle triangle;
+        triangle.texture = surface.texture;
+        for (unsigned k = 0; k < 3; ++k) {
+            const unsigned vertex = face.mIndices[k];
+            const aiVector3D& p = mesh.mVertices[vertex];
+            triangle.corners[k] = (T_w_mesh * Eigen::Vector3d(p.x, p.y, p.z)).cast<float>();
+            triangle.uv[k] = coordinates(mesh, vertex, surface);
+            if (!triangle.corners[k].allFinite() || !triangle.uv[k].allFinite()) {
+                throw InputError(file_, "",
+                                 "vertex " + std::to_string(vertex) + " of mesh '" +
+                                     mesh.mName.C_Str() + "' is not finite");
+            }
+        }
+        const Eigen::Vector3f a = triangle.corners[1] - triangle.corners[0];
+        const Eigen::Vector3f b = triangle.corners[2] - triangle.corners[0];
+        const float longest = std::max(a.squaredNorm(), b.squaredNorm());
+        if (a.cross(b).norm() > 1e-6F * longest) {
+            scene_.triangles.push_back(triangle);
+        } else {
+            ++dropped_;
+        }
+    }
+
+    Eigen::Vector2f coordinates(const aiMesh& mesh, unsigned vertex, const Surface& surface) const {
+        if (surface.vertexColours) {
+            // The ramp has texels 0 and 1 at u = 1/4 and 3/4: u is the grey value itself, and
+            // interpolating u over the triangle interpolates grey.
+            const aiColor4D& c = mesh.mColors[0][vertex];
+            Rgb linear{c.r, c.g, c.b};
+            if (!isGltf(file_)) {
+                for (double& channel : linear) channel = decodeSrgb(channel);
+            }
+            return {0.25F + 0.5F * static_cast<float>(greyOfLinear(linear)), 0.5F};
+        }
+        if (!mesh.HasTextureCoords(0)) return Eigen::Vector2f::Zero();
+        const aiVector3D& uv = mesh.mTextureCoords[0][vertex];
+        return {uv.x, 1.F - uv.y};  // assimp counts v upward for every format
+    }
+
+    Surface surfaceOf(const aiMesh& mesh) {
+        const aiMaterial& material = *input_.mMaterials[mesh.mMaterialIndex];
+        const auto name = baseTextureName(material);
+        if (name && mesh.HasTextureCoords(0)) {
+            return {textureOfMaterial(mesh.mMaterialIndex, *name, baseColour(material)), false};
+        }
+        if (mesh.HasVertexColors(0)) return {rampTexture(), true};
+        return {textureOfMaterial(mesh.mMaterialIndex, "", baseColour(material)), false};
+    }
+
+    std::uint32_t rampTexture() {
+        if (!ramp_) {
+            Texture texture{ImageF(1, 2, 0.F)};
+            texture.image[0][1] = 1.F;
+            ramp_ = addTexture(scene_, std::move(texture));
+        }
+        return *ramp_;
+    }
+
+    std::uint32_t textureOfMaterial(unsigned material, const std::string& name, const Rgb& factor) {
+        const auto [entry, isNew] = textures_.try_emplace({material, name}, 0);
+        if (isNew) {
+            Texture texture = name.empty() ? uniformTexture(greyOfLinear(factor))
+                                           : Texture{readTexture(name, factor)};
+            entry->second = addTexture(scene_, std::move(texture));
+        }
+        return entry->second;
+    }
+
+    ImageF readTexture(const std::string& name, const Rgb& factor) {
+        if (const aiTexture* embedded = input_.GetEmbeddedTexture(name.c_str())) {
+            return embeddedTexture(*embedded, name, factor);
+        }
+        std::string relative = name;
+        std::replace(relative.begin(), relative.end(), '\\', '/');
+        const auto path = std::filesystem::path(file_).parent_path() / relative;
+        if (!std::filesystem::is_regular_file(path)) {
+            throw InputError(file_, "texture", "no such image '" + path.string() + "'");
+        }
+        auto& files = scene_.files;
+        if (std::find(files.begin(), files.end(), path) == files.end()) {
+            files.push_back(path.string());
+        }
+        return readGrey(path.string(), factor);
+    }
+
+    ImageF embeddedTexture(const aiTexture& texture, const std::string& name,
+                           const Rgb& factor) const {
+        if (texture.mHeight == 0) {  // an image file; mWidth is its length in bytes
+            const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture.pcData);
+            return decodeGrey({bytes, texture.mWidth}, file_ + ": texture " + name, factor);
+        }
+        ImageF image(texture.mHeight, texture.mWidth);
+        for (unsigned i = 0; i < image.getSize(); ++i) {
+            const aiTexel& t = texture.pcData[i];
+            image.bitmap[i] = static_cast<float>(greyOfLinear(
+                {factor[0] * decodeSrgb(t.r / 255.), factor[1] * decodeSrgb(t.g / 255.),
+                 factor[2] * decodeSrgb(t.b / 255.)}));
+        }
+        return image;
+    }
+
+    Eigen::Affine3d T_w_file_;
+    const std::string& file_;
+    const aiScene& input_;
+    Scene scene_;
+    std::map<std::pair<unsigned, std::string>, std::uint32_t> textures_;
+    std::size_t dropped_ = 0;
+    std::optional<std::uint32_t> ramp_;
+};
+
+}  // namespace
+
+Scene loadMesh(const std::string& file, const MeshOptions& options) {
+    if (!std::filesystem::exists(file)) throw InputError(file, "", "no such file");
+    if (!std::filesystem::is_regular_file(file)) throw InputError(file, "", "not a file");
+    if (std::filesystem::file_size(file) == 0) throw InputError(file, "", "the file is empty");
+    checkMeshFile(file);
+    std::vector<std::string> files;  // outlives the importer, which owns the RememberingFiles
+    Assimp::Importer importer;
+    importer.SetIOHandler(new RememberingFiles(files));  // NOLINT(cppcoreguidelines-owning-memory)
+    const aiScene* input = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType);
+    if (input == nullptr || input->mRootNode == nullptr) {
+        std::string reason = importer.GetErrorString();
+        std::replace(reason.begin(), reason.end(), '\n', ' ');
+        throw InputError(file, "", reason.empty() ? "cannot read the mesh" : reason);
+    }
+    return MeshReader(file, options, *input, files).read();
+}
+
+}  // namespace photonav

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "app/executable.hpp"
+#include "commands/compare_command.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Compare, EveryMethodOnceJudgedByTheSameBeliefs) {
+    const fs::path folder = fs::temp_directory_path() / "photonav_compare";
+    fs::remove_all(folder);
+    const Execution run =
+        photonav("compare " + config("two_textures") + " --runs 1 --out " + folder.string() +
+                 " --set planner.vertices=150 --set planner.view_pitch=0.5 --set seed=7 --quiet");
+    ASSERT_EQ(run.exitCode, 0) << run.output;
+    const auto result = nlohmann::json::parse(std::ifstream(folder / "result.json"));
+    const auto& runs = result["scenarios"][0]["runs"];
+    ASSERT_EQ(runs.size(), compareMethods().size());
+    std::map<std::string, nlohmann::json> byMethod;
+    for (const auto& r : runs) {
+        byMethod[r["method"]] = r;
+        EXPECT_EQ(r["seed"], 7);
+    }
+    // The planner that goes by what judges sees its own cost; one that sees nothing does not.
+    const auto& ours = byMethod["belief_rrt_star, photometric"];
+    EXPECT_NEAR(ours["cost"], ours["planner_cost"], 1e-9);
+    const auto& blind = byMethod["belief_rrt_star, none"];
+    EXPECT_EQ(blind["views"], 0);
+    EXPECT_GT(blind["planner_cost"], 0.);
+    EXPECT_GT(blind["cost"], 1.2 * ours["cost"].get<double>());
+    EXPECT_LT(blind["length"], ours["length"]);
+    EXPECT_TRUE(fs::exists(folder / "two_textures.png"));
+    std::stringstream table;
+    table << std::ifstream(folder / "two_textures.md").rdbuf();
+    for (const CompareMethod& method : compareMethods()) {
+        EXPECT_NE(table.str().find("| " + method.label() + " |"), std::string::npos);
+    }
+    fs::remove_all(folder);
+}
+
+TEST(Compare, ItsTableSaysHowManyRunsFoundAPath) {
+    const std::string method = compareMethods().front().label();
+    PlanOutcome found;
+    found.path = JudgedPath{};
+    found.path->cost = 2.;
+    const std::string table =
+        compareTable({{method, 1, found, "done"}, {method, 2, PlanOutcome{}, "no path"}});
+    EXPECT_NE(table.find("| " + method + " (1 of 2 found a path) | 2.000 |"), std::string::npos)
+        << table;
+}
+
+TEST(Compare, TwoConfigsOfOneNameAreRefused) {
+    const fs::path folder = fs::temp_directory_path() / "photonav_compare_names";
+    const std::string file = config("two_textures");
+    const Execution run = photonav("compare " + file + " " + file + " --out " + folder.string());
+    EXPECT_EQ(run.exitCode, 2);
+    EXPECT_NE(run.output.find("has the name of"), std::string::npos) << run.output;
+    EXPECT_FALSE(fs::exists(folder));
+}
+
+TEST(Compare, AMissingConfigIsOneLine) {
+    const Execution run = photonav("compare no_such.yaml");
+    EXPECT_EQ(run.exitCode, 2);
+    EXPECT_NE(run.output.find("no_such.yaml"), std::string::npos) << run.output;
+}
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `photonav fly`, run as a user runs it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "app/executable.hpp"
+#include "flight/flight_set.hpp"
+#include "recording/sequence_tum.hpp"
+#include "recording/trajectory.hpp"
+#include "temporary_folder.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// A small image, coarse views and few vertices: a flight takes a fraction of a second.
+const std::string kQuickFlight =
+    " --set planner.vertices=150 --set planner.view_pitch=0.5 --set camera.width=94"
+    " --set camera.height=60 --set goal=[2,3,2] ";
+
+class FlyCommand : public testing::Test {
+  protected:
+    FlyCommand() {
+        folder_ = fs::temp_directory_path() /
+                  (std::string("photonav_fly_command_") +
+                   testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    ~FlyCommand() override { fs::remove_all(folder_); }
+
+    std::string at(const std::string& name) const { return (folder_ / name).string(); }
+
+    Execution fly(const std::string& name, const std::string& arguments) const {
+        return photonav(fmt::format("fly {} {} {} --out {}", config("two_textures"), kQuickFlight,
+                                    arguments, at(name)));
+    }
+
+    json result(const std::string& name) const {
+        return json::parse(std::ifstream(folder_ / name / "result.json"));
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(FlyCommand, FliesBothPlannersAndWritesWhatOthersRead) {
+    const Execution run = fly("a", "--flights 2 --record " + at("recorded"));
+    ASSERT_TRUE(run.exitCode == 0 || run.exitCode == 1) << run.output;
+    const json a = result("a");
+    EXPECT_EQ(a["command"], "fly");
+    ASSERT_EQ(a["planners"].size(), 2U);
+    for (const json& planner : a["planners"]) {
+        EXPECT_EQ(planner["flights"], 2);
+        EXPECT_EQ(planner["each"].size(), 2U);
+        for (const char* key :
+             {"collisions", "position_rmse_m", "predicted_sigma_m", "nees_per_dof", "lost_s"}) {
+            EXPECT_TRUE(planner[key].is_number()) << key;
+        }
+    }
+    // Whether the shortest path arrives does not count.
+    const bool hasArrived = a["planners"][0]["arrived"].get<int>() > 0;
+    EXPECT_EQ(run.exitCode, hasArrived ? 0 : 1);
+    EXPECT_NE(run.output.find("NEES at goal"), std::string::npos) << run.output;
+    for (const char* name : {"report.html", "errors.png", "nees.png", "top_view.png", "config.yaml",
+                             "trajectory.cov", "trajectory.ov"}) {
+        EXPECT_TRUE(fs::exists(folder_ / "a" / name)) << name;
+    }
+    const Trajectory truth = readTrajectory(at("a/groundtruth.tum"));
+    EXPECT_EQ(readTrajectory(at("a/trajectory.tum")).size(), truth.size());
+    const Sequence recorded = readTumSequence(at("recorded"));
+    ASSERT_EQ(recorded.frames.size(), truth.size());
+    EXPECT_EQ(recorded.informationScale, 0.08);  // of the config
+    const RecordedFrame frame = loadFrame(recorded, 3);
+    EXPECT_TRUE(frame.T_c_w.inverse().isApprox(truth[3].T_w_c, 1e-6));
+    EXPECT_NEAR(frame.view.depth[30][47], truth[3].T_w_c.translation().z(), 0.01);
+}
+
+TEST_F(FlyCommand, IsDeterministicWhateverTheThreads) {
+    ASSERT_NE(fly("a", "--flights 3 --seed 4").exitCode, 2);
+    ASSERT_NE(fly("b", "--flights 3 --seed 4 --jobs 3").exitCode, 2);
+    EXPECT_EQ(result("a")["planners"], result("b")["planners"]);
+}
+
+TEST_F(FlyCommand, FliesThePlanOfAResultFolder) {
+    const Execution planned = photonav(
+        fmt::format("plan {} {} --out {}", config("two_textures"), kQuickFlight, at("plan")));
+    ASSERT_EQ(planned.exitCode, 0) << planned.output;
+    for (const std::string what : {"plan", "plan/result.json", "plan/path.tum"}) {
+        const Execution run =
+            photonav(fmt::format("fly {} --flights 1 --out {} "
+                                 "--set planner.compare_with_rrt_star=false",
+                                 at(what), at("flown")));
+        EXPECT_NE(run.exitCode, 2) << run.output;
+        const json flown = result("flown")["planners"];
+        ASSERT_EQ(flown.size(), 1U);
+        EXPECT_NEAR(flown[0]["length_m"], result("plan")["length"], 1e-6);
+    }
+}
+
+TEST_F(FlyCommand, ItsConfigRepeatsTheRun) {
+    std::ofstream(folder_ / "calibration.yaml")
+        << "scale: 0.2\nsigma_floor: 0.01\nsigma_floor_rotation: 0.001\ncorrelation_time: 4\n";
+    ASSERT_NE(fly("a",
+                  "--flights 2 --seed 3 --camera real --odometry 4 --latency 0.1 --rate 5"
+                  " --blackout 3,0.2 --drop 0.1 --speed 0.8 --no-photometric-goal"
+                  " --calibration " +
+                      at("calibration.yaml") + " --sigma-floor-rotation 0.004 --map " +
+                      PHOTONAV_SOURCE_DIR + "/config/scenes/two_textures.yaml")
+                  .exitCode,
+              2);
+    const auto again = [&](const std::string& from, const std::string& to) {
+        return photonav(fmt::format("fly {} --out {}", at(from + "/config.yaml"), at(to)));
+    };
+    const Execution run = again("a", "b");
+    ASSERT_NE(run.exitCode, 2) << run.output;
+    EXPECT_EQ(result("a")["planners"], result("b")["planners"]);
+    EXPECT_EQ(result("a")["flight"], result("b")["flight"]);
+    EXPECT_EQ(result("a")["flight"]["scale"], 0.05);  // 0.2 over 4 images
+    EXPECT_EQ(result("a")["flight"]["camera"], "real");
+    EXPECT_EQ(result("a")["flight"]["exposure_prior"]["gain_sigma"], 0.1);
+    EXPECT_EQ(result("a")["flight"]["photometric_goal"], false);
+    EXPECT_EQ(result("a")["flight"]["floor"], json({0.01, 0.004}));
+    EXPECT_EQ(test::contentOf(folder_ / "a/config.yaml"),
+              test::contentOf(folder_ / "b/config.yaml"));
+    EXPECT_NE(photonav(fmt::format("fly {} --flights 1 --camera assumed --out {}",
+                                   at("a/config.yaml"), at("c")))
+                  .exitCode,
+              2);
+    EXPECT_EQ(result("c")["planners"][0]["flights"], 1);  // options go over the config
+    EXPECT_NE(test::contentOf(folder_ / "c/config.yaml").find("rate: 5"), std::string::npos);
+    const Execution bad = photonav(fmt::format("fly {} --set fly.odometri=2", at("a/config.yaml")));
+    EXPECT_EQ(bad.exitCode, 2);
+    EXPECT_NE(bad.output.find("fly.odometri: unknown key, did you mean 'odometry'"),
+              std::string::npos)
+        << bad.output;
+}
+
+TEST_F(FlyCommand, TheConfigOfAFlownPlanFliesThatPlan) {
+    ASSERT_EQ(photonav(fmt::format("plan {} {} --set planner.compare_with_rrt_star=false --out {}",
+                                   config("two_textures"), kQuickFlight, at("plan")))
+                  .exitCode,
+              0);
+    ASSERT_NE(photonav(fmt::format("fly {} --flights 1 --set planner.vertices=20 --out {}",
+                                   at("plan"), at("a")))
+                  .exitCode,
+              2);
+    ASSERT_NE(photonav(fmt::format("fly {} --out {}", at("a/config.yaml"), at("b"))).exitCode, 2);
+    EXPECT_NEAR(result("b")["planners"][0]["length_m"], result("plan")["length"], 1e-6);
+    EXPECT_EQ(result("a")["planners"], result("b")["planners"]);
+    fs::remove_all(folder_ / "plan");
+    const Execution gone = photonav(fmt::format("fly {}", at("a/config.yaml")));
+    EXPECT_EQ(gone.exitCode, 2);
+    EXPECT_NE(gone.output.find("plan/result.json: cannot be read"), std::string::npos)
+        << gone.output;
+}
+
+TEST_F(FlyCommand, WhatWasNeverFlownHasNoErrors) {
+    // Interrupted as soon as the folder is there: long before a flight has ended.
+    const Execution run = execute(fmt::format(
+        "{{ {} fly {} {} --flights 1000 --quiet --out {} & until [ -d {} ]; do sleep 0.02; done;"
+        " kill -INT $!; wait $!; }}",
+        PHOTONAV_BINARY, config("two_textures"), kQuickFlight, at("out"), at("out")));
+    EXPECT_EQ(run.exitCode, 130) << run.output;
+    const json r = result("out");
+    EXPECT_EQ(r["status"], "interrupted");
+    for (const json& planner : r["planners"]) {
+        if (planner["flights"] != 0) continue;
+        for (const char* key : {"position_rmse_m", "predicted_sigma_m", "believed_sigma_m",
+                                "nees_per_dof", "duration_s", "goal_error_m"}) {
+            EXPECT_TRUE(planner[key].is_null()) << key << planner[key];
+        }
+    }
+    FlightSet none;
+    none.plan = {PlannedView{}};
+    EXPECT_TRUE(std::isnan(summarise(none).positionRmse));
+    EXPECT_TRUE(std::isnan(summarise(none).nees));
+    EXPECT_TRUE(std::isnan(summarise(none).goalError));
+}
+
+TEST_F(FlyCommand, RecordsNothingWhereNothingFlies) {
+    const Execution run =
+        photonav(fmt::format("fly {} --set planner.vertices=2 --record {} --out {}", config("room"),
+                             at("recorded"), at("out")));
+    EXPECT_EQ(run.exitCode, 1) << run.output;
+    EXPECT_FALSE(fs::exists(at("recorded")));
+}
+
+/// Images that are only late are not missed.
+TEST_F(FlyCommand, LatencyIsNotLoss) {
+    fly("late", "--flights 1 --latency 2 --set planner.compare_with_rrt_star=false");
+    EXPECT_EQ(result("late")["planners"][0]["each"][0]["times_lost"], 0);
+}
+
+TEST_F(FlyCommand, ExitsWithOneWhenNoFlightArrives) {
+    const Execution run =
+        fly("dark", "--flights 1 --black 1 --set planner.compare_with_rrt_star=false");
+    EXPECT_EQ(run.exitCode, 1) << run.output;
+    EXPECT_EQ(result("dark")["planners"][0]["each"][0]["end"], "lost");
+    EXPECT_GT(result("dark")["planners"][0]["lost_s"].get<double>(), 5.);
+}
+
+TEST_F(FlyCommand, RejectsBadInput) {
+    const auto expect = [](const Execution& run, const std::string& reason) {
+        EXPECT_EQ(run.exitCode, 2) << run.output;
+        EXPECT_NE(run.output.find(reason), std::string::npos) << run.output;
+        EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+    };
+    expect(fly("x", "--blackout 3"), "--blackout: expected 2 numbers, found 1");
+    expect(fly("x", "--flights 0"), "--flights");
+    expect(fly("x", "--scale 0"), "--scale: 0 is below 1e-12");
+    expect(fly("x", "--sigma-floor -1"), "--sigma-floor: -1 is below 0");
+    expect(fly("x", "--record /proc/x"), "/proc/x: cannot be made");
+    fs::create_directories(folder_ / "old" / "rgb");
+    fs::create_directories(folder_ / "x");
+    std::ofstream(folder_ / "x" / "result.json") << "{}";  // of an earlier run
+    expect(fly("x", "--record " + at("old")), "old: holds a recording already");
+    EXPECT_TRUE(fs::exists(folder_ / "x" / "result.json"));
+    fs::remove_all(folder_ / "x");
+    expect(fly("x", "--seed abc"), "--seed");
+    expect(fly("x", "--map " + at("gone.ot")), "gone.ot");
+    const auto calibration = [&](const std::string& text) {
+        std::ofstream(folder_ / "calibration.yaml") << text;
+        return fly("x", "--calibration " + at("calibration.yaml"));
+    };
+    expect(calibration("sigma_floor: 0.01\n"), "calibration.yaml: scale: missing");
+    expect(calibration("scale: 1\n"), "calibration.yaml: sigma_floor: missing");
+    expect(calibration("scale: 1\nsigma_floor_rotation: 0\nsigma_floor: [0.01, 0.005]\n"),
+           "calibration.yaml: sigma_floor: ");
+    expect(calibration("scale: [\n"), "calibration.yaml");
+    expect(calibration("scale: 1\nsigma_floor: 0\nsigma_floor_rotation: 0\nmode: odometry\n"),
+           "calibration.yaml: mode: is odometry");
+    expect(
+        calibration("scale: 1\nsigma_floor: 0\nsigma_floor_rotation: 0\ncorrelation_time: 0.5\n"),
+        "calibration.yaml: correlation_time: ");
+    expect(photonav("fly " + at("")), "not a result of photonav plan");
+    fs::create_directories(folder_ / "no");
+    fs::copy(config("two_textures"), folder_ / "no" / "config.yaml");
+    std::ofstream(folder_ / "no" / "result.json") << R"({"command": "map"})";
+    expect(photonav(fmt::format("fly {} --set scene.file={}/config/scenes/two_textures.yaml "
+                                "--out {}",
+                                at("no"), PHOTONAV_SOURCE_DIR, at("x"))),
+           "not a result of photonav plan");
+    EXPECT_FALSE(fs::exists(folder_ / "x" / "result.json"));
+}
+
+/// Believed positions known to be off by 3 and 9 sigma in one direction, of which one in six
+/// counts.
+TEST(FlySummary, ComparesErrorsWithWhatWasPredicted) {
+    FlightSet set;
+    PlannedView from, to;
+    from.covariance = 0.01 * Matrix6::Identity();
+    to.covariance = 0.04 * Matrix6::Identity();
+    to.distance = 2.;
+    set.plan = {from, to};
+    FlightResult flight;
+    flight.end = FlightEnd::arrived;
+    FlightSample sample;
+    sample.distance = 1.;
+    sample.belief.covariance = 0.01 * Matrix6::Identity();
+    sample.T_c_w.translation().x() = 0.3;
+    FlightSample worse = sample;
+    worse.T_c_w.translation().x() = 0.9;
+    flight.samples = {sample, worse};
+    set.flights = {flight};
+    const FlightSummary s = summarise(set);
+    EXPECT_EQ(s.arrived, 1U);
+    EXPECT_NEAR(s.positionRmse, std::sqrt(0.45), 1e-12);
+    EXPECT_NEAR(s.believedSigma, std::sqrt(0.03), 1e-12);
+    EXPECT_NEAR(s.predictedSigma, std::sqrt(0.075), 1e-12);
+    EXPECT_NEAR(s.nees, 0.5 * (9. + 81.) / 6., 1e-12);
+    EXPECT_NEAR(s.neesAtGoal, 81. / 6., 1e-12);
+    EXPECT_NEAR(s.neesMedian, s.nees, 1e-12);
+    EXPECT_EQ(s.within3Sigma, 0.5);
+    EXPECT_NEAR(neesBounds(100).second, 669.77 / 600., 1e-4);  // tables: 669.77
+    EXPECT_NEAR(neesBounds(1).first, 1.237 / 6., 1e-3);        // tables: 1.237
+}
+
+/// Where a belief is certain there is nothing to divide an error by.
+TEST(FlySummary, BeliefsWithoutAnErrorDoNotCount) {
+    FlightSample certain, sample;
+    sample.belief.covariance = 0.01 * Matrix6::Identity();
+    sample.T_c_w.translation().x() = 0.3;
+    EXPECT_FALSE(neesPerDof(certain));
+    FlightResult flight;
+    flight.samples = {certain, sample};
+    EXPECT_NEAR(neesPerDof(flight), 1.5, 1e-12);
+    FlightSet set;
+    set.plan = {PlannedView{}};
+    set.flights = {flight};
+    EXPECT_NEAR(summarise(set).nees, 1.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace photonav

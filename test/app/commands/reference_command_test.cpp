@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "app/executable.hpp"
+#include "sweep/reference_table.hpp"
+#include "temporary_folder.hpp"
+
+namespace photonav {
+namespace {
+
+TEST(ReferenceCommand, NeverMakesItsTableWorse) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("table.csv");
+    const std::string command = fmt::format(
+        "reference {} --alpha 0.5 --vertices 150 --labels 2 --runs 1"
+        " --set planner.view_pitch=0.5 --file {} --quiet --planners ",
+        config("two_textures"), file);
+    ASSERT_EQ(photonav(command + "belief_rrt_star --moves 2000").exitCode, 0);
+    ReferenceTable table(file);
+    table.read();
+    const double best = table.at(0.5)->cost;
+    ASSERT_EQ(photonav(command + "belief_rrt_star --moves 0 --set seed=2").exitCode, 0);
+    table.read();
+    EXPECT_LE(table.at(0.5)->cost, best * (1. + 1e-9));
+    const Execution wrong = photonav(command + "no_such_planner");
+    EXPECT_EQ(wrong.exitCode, 2);
+    EXPECT_NE(wrong.output.find("no_such_planner"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The report page in a real browser: headless Chromium with a software renderer.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "app/report/sample_report.hpp"
+#include "report/base64.hpp"
+#include "report/report.hpp"
+#include "temporary_folder.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kChromium = "/usr/bin/chromium";
+
+struct Outcome {
+    std::string dom;  ///< the page after its scripts ran
+    std::string log;  ///< what Chromium said, its console included
+};
+
+class ReportBrowserTest : public testing::Test {
+  protected:
+    void SetUp() override {
+#ifdef __SANITIZE_ADDRESS__
+        GTEST_SKIP() << "the page runs in the browser, not under the sanitizers";
+#endif
+        if (!fs::exists(kChromium)) GTEST_SKIP() << kChromium << " is not installed";
+        std::string name = (fs::temp_directory_path() / "photonav_browser_XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        folder_ = name;
+    }
+    void TearDown() override {
+        if (!folder_.empty()) fs::remove_all(folder_);
+    }
+
+    /// Opens the page of `data` and returns it as it stands a few (virtual) seconds later.
+    /// @param script appended to the page: what a visitor would do
+    Outcome open(const ReportData& data, const std::string& hash = "",
+                 const std::string& options = "", const std::string& script = "") const {
+        writeReport(folder_ / "report.html", reportJson(data));
+        if (!script.empty())
+            std::ofstream(folder_ / "report.html", std::ios::app)
+                << "<script>" << script << "</script>";
+        const std::string command =
+            std::string(kChromium) +
+            " --headless --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader"
+            " --disable-background-networking --disable-component-update --disable-sync"
+            " --no-first-run --enable-logging=stderr --virtual-time-budget=8000"
+            " --window-size=1400,2200 --user-data-dir=" +
+            (folder_ / "profile").string() + " " + options + " --dump-dom 'file://" +
+            (folder_ / "report.html").string() + hash + "' >" + (folder_ / "dom").string() + " 2>" +
+            (folder_ / "log").string();
+        EXPECT_EQ(std::system(command.c_str()), 0) << test::contentOf(folder_ / "log");
+        return {test::contentOf(folder_ / "dom"), test::contentOf(folder_ / "log")};
+    }
+
+    fs::path folder_;
+};
+
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+/// The value of a data-... attribute of <html>; empty if it is not there.
+std::string published(const std::string& dom, const std::string& name) {
+    const std::string root = dom.substr(dom.find("<html"), dom.find('>', dom.find("<html")));
+    const std::size_t begin = root.find("data-" + name + "=\"");
+    if (begin == std::string::npos) return {};
+    const std::size_t value = begin + name.size() + 7;
+    return root.substr(value, root.find('"', value) - value);
+}
+
+void expectNoErrors(const Outcome& outcome) {
+    EXPECT_EQ(published(outcome.dom, "errors"), "");
+    std::istringstream lines(outcome.log);
+    for (std::string line; std::getline(lines, line);)
+        EXPECT_FALSE(contains(line, ":CONSOLE")) << line;
+}
+
+TEST_F(ReportBrowserTest, PageIsDrawnAndShowsTheWaypointOfItsAddress) {
+    const ReportData data = sampleReport();
+    const Outcome outcome = open(data, "#waypoint=3");
+    expectNoErrors(outcome);
+    EXPECT_TRUE(contains(outcome.dom, "<title>Two textures"));
+    EXPECT_TRUE(contains(outcome.dom, "times smaller"));
+    EXPECT_EQ(published(outcome.dom, "canvas"), "drawn");
+    EXPECT_GT(std::atoi(published(outcome.dom, "colors").c_str()), 50);
+
+    EXPECT_EQ(published(outcome.dom, "waypoint"), "3");
+    EXPECT_TRUE(contains(outcome.dom, "Waypoint 3 of"));
+    const std::string prefix = "\" src=\"data:image/png;base64,";
+    EXPECT_TRUE(contains(outcome.dom, prefix + base64Encode(data.views[3].image) + "\""));
+    EXPECT_TRUE(contains(outcome.dom, prefix + base64Encode(data.views[3].contribution) + "\""));
+}
+
+// The mouse searches the canvas until the cursor says that a waypoint is under it, and clicks. Then
+// the left arrow key goes one back. At the end nothing may be drawn any more.
+constexpr const char* kVisitor = R"js(
+  setTimeout(() => {
+    const canvas = document.getElementById('scene'), box = canvas.getBoundingClientRect();
+    const result = document.documentElement.dataset;
+    const mouse = (type, x, y) => canvas.dispatchEvent(
+        new PointerEvent(type, {clientX: box.left + x, clientY: box.top + y, bubbles: true}));
+    for (let y = 0; y < box.height && !result.clicked; y += 10)
+      for (let x = 0; x < box.width && !result.clicked; x += 10) {
+        mouse('pointermove', x, y);
+        if (!canvas.classList.contains('hit')) continue;
+        mouse('pointerdown', x, y);
+        mouse('pointerup', x, y);
+        result.clicked = result.waypoint;
+      }
+    dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft'}));
+    result.walked = result.waypoint;
+    setTimeout(() => {
+      let frames = 0;
+      const request = window.requestAnimationFrame;
+      window.requestAnimationFrame = (draw) => { ++frames; return request(draw); };
+      setTimeout(() => { result.frames = frames; }, 1000);
+    }, 1000);
+  }, 1500);
+)js";
+
+TEST_F(ReportBrowserTest, ClickAndKeySelectWaypointsAndIdlePageRests) {
+    const Outcome outcome = open(sampleReport(), "#waypoint=0", "", kVisitor);
+    expectNoErrors(outcome);
+    const int clicked = std::atoi(published(outcome.dom, "clicked").c_str());
+    EXPECT_GT(clicked, 0);
+    EXPECT_EQ(published(outcome.dom, "walked"), std::to_string(clicked - 1));
+    EXPECT_EQ(published(outcome.dom, "frames"), "0");
+}
+
+TEST_F(ReportBrowserTest, MapOfVoxelsWithoutPathIsDrawn) {
+    ReportData data;
+    data.title = "A map";
+    std::vector<Eigen::Vector3f> centers;
+    std::vector<std::uint8_t> grey;
+    for (int i = 0; i < 40; ++i)
+        for (int j = 0; j < 40; ++j) {
+            centers.emplace_back(0.05F * i, 0.05F * j, 0.05F * ((i / 8 + j / 8) % 2));
+            grey.push_back(static_cast<std::uint8_t>(6 * i));
+        }
+    data.voxels = makeReportVoxels(centers, grey, 0.05);
+    const Outcome outcome = open(data);
+    expectNoErrors(outcome);
+    EXPECT_EQ(published(outcome.dom, "canvas"), "drawn");
+}
+
+TEST_F(ReportBrowserTest, FlightsBeginWithWhatWasFlown) {
+    ReportData data = sampleReport();
+    data.result = {{"command", "fly"},
+                   {"planners",
+                    {{{"planner", "ours"},
+                      {"flights", 20},
+                      {"arrived", 19},
+                      {"position_rmse_m", 0.0213},
+                      {"predicted_sigma_m", 0.0241},
+                      {"nees_per_dof", 0.93}},
+                     {{"planner", "theirs"},
+                      {"flights", 0},
+                      {"arrived", 0},
+                      {"position_rmse_m", nullptr},
+                      {"predicted_sigma_m", nullptr},
+                      {"nees_per_dof", nullptr}}}}};
+    const Outcome outcome = open(data);
+    expectNoErrors(outcome);
+    EXPECT_TRUE(contains(outcome.dom,
+                         "ours: 19 of 20 flights arrived, with a position error of "
+                         "2.13&nbsp;cm rms (predicted 2.41&nbsp;cm; NEES "
+                         "0.930); theirs was not flown."));
+    EXPECT_TRUE(contains(outcome.dom, "<b>19<small>of 20</small></b><span>ours: arrived</span>"));
+    EXPECT_FALSE(contains(outcome.dom, "<span>goal trace</span>"));
+}
+
+TEST_F(ReportBrowserTest, RecordedFlightsHaveFramesAndNeitherGoalNorCost) {
+    ReportData data = sampleReport();
+    data.views.clear();
+    for (DrawnPath& path : data.paths)
+        for (PathPoint& point : path.points) point.cost = 0.;
+    data.result = {{"command", "replay"},
+                   {"verdict", "tracked 3 of 4 frames, lost 1"},
+                   {"frames", 4},
+                   {"tracked", 3},
+                   {"lost", 1},
+                   {"ate_rmse_m", 0.0123},
+                   {"nees_per_dof", 1.1},
+                   {"fps_with_reading", 30.},
+                   {"rpe", {{"second", nullptr}, {"frame", nullptr}}}};
+    const Outcome outcome = open(data, "#waypoint=2");
+    expectNoErrors(outcome);
+    EXPECT_TRUE(contains(outcome.dom, "Tracked 3 of 4 frames, lost 1."));
+    EXPECT_TRUE(contains(outcome.dom, "<b>12.3<small>mm</small></b>"));
+    EXPECT_TRUE(contains(outcome.dom, "Frame 2 of"));
+    EXPECT_FALSE(contains(outcome.dom, "Waypoint 2"));
+    EXPECT_FALSE(contains(outcome.dom, "<th>Cost so far</th>"));
+    EXPECT_FALSE(contains(outcome.dom, "<span>cost</span>"));
+}
+
+TEST_F(ReportBrowserTest, WithoutWebGLThePageSaysSoAndTheRestWorks) {
+    const Outcome outcome = open(sampleReport(), "#waypoint=2", "--disable-3d-apis");
+    EXPECT_EQ(published(outcome.dom, "errors"), "");
+    EXPECT_EQ(published(outcome.dom, "canvas"), "");
+    EXPECT_TRUE(contains(outcome.dom, "<p class=\"notice\" id=\"no-webgl\">"));
+    EXPECT_TRUE(contains(outcome.dom, "Waypoint 2 of"));
+}
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The table of a sweep in words, and what its figures show.
+#include "report/sweep_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "drawing/sweep_figures.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+SweepRun makeRun(const SweepItem& item, double cost, double length, double meanTrace) {
+    SweepRun run{item, cost, length, meanTrace, 0.5 * meanTrace, 100, 40, 0.25, "done", {}};
+    run.path = {{0., 0., 2.}, {1. / 3., 0.1, 2.}};
+    return run;
+}
+
+TEST(SweepTables, PutThePaperBesideOurs) {
+    SweepConfig config;
+    config.planners = {"a", "b", "rrt_star"};
+    config.alphas = {0.05, 0.15};
+    config.paper = {{0.15, 40.45, 7.75, 9.25}};
+    SweepRun lost = makeRun({"a", 0.15, 2}, kNone, kNone, kNone);
+    lost.goalTrace = kNone;
+    lost.status = "no path";
+    const auto cells = summarize(
+        config,
+        {makeRun({"a", 0.15, 1}, 3., 10., 0.2), lost, makeRun({"b", 0.05, 1}, 5., 11., 0.3),
+         makeRun({"b", 0.05, 2}, 7., 13., 0.1), makeRun({"rrt_star", 0.15, 1}, 9., 8., 0.4)},
+        {});
+    const std::string table = sweepTable(config, cells);
+    EXPECT_NE(table.find("40.45"), std::string::npos) << table;
+    EXPECT_EQ(table.find("paper", table.find("rrt_star")), std::string::npos) << table;
+    EXPECT_NE(table.find("(traces in 0.01 "), std::string::npos) << table;
+    // Without a published table: the unit that the smallest trace, 1.5e-5, can be read in.
+    config.paper.clear();
+    const std::string small =
+        sweepTable(config, summarize(config, {makeRun({"a", 0.15, 1}, 3., 10., 3e-5)}, {}));
+    EXPECT_NE(small.find("(traces in 0.0001 "), std::string::npos) << small;
+    EXPECT_NE(small.find(" 0.15 "), std::string::npos) << small;
+}
+
+TEST(SweepFigures, TheFrontHoldsWhatNothingBeats) {
+    const auto cell = [](const std::string& planner, double alpha, double length, double trace) {
+        SweepCell c;
+        c.planner = planner;
+        c.alpha = alpha;
+        c.solved = 1;
+        c.columns = {{"length", {length, 0.}}, {"mean_trace", {trace, 0.}}};
+        return c;
+    };
+    const std::vector<SweepCell> cells{cell("a", .1, 12., .1), cell("a", .5, 11., .2),
+                                       cell("a", .7, 11.5, .3), cell("b", .5, 1., .01),
+                                       cell("a", .9, 9., .4)};
+    EXPECT_EQ(paretoFront("a", cells), (std::vector<std::size_t>{4, 1, 0}));
+}
+
+TEST(SweepFigures, TheCheapestPathOfEveryAlphaIsDrawn) {
+    SweepRun better = makeRun({"a", 0.5, 2}, 1., 9., 0.1);
+    better.path = {{0., 0., 2.}, {3., 4., 2.}};
+    const auto paths = pathsByAlpha(
+        "a", {makeRun({"a", 0.5, 1}, 2., 9., 0.1), better, makeRun({"b", 0.5, 1}, 0.5, 9., 0.1),
+              makeRun({"a", 0.1, 1}, 2., 9., 0.1)});
+    ASSERT_EQ(paths.size(), 2U);
+    EXPECT_EQ(paths[0].name, "alpha 0.1");
+    EXPECT_DOUBLE_EQ(paths[1].points.back().distance, 5.);
+    EXPECT_FALSE(paths[0].color == paths[1].color);
+}
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/image_bytes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "io/error.hpp"
+#include "recording/sequence_tum.hpp"
+#include "scene/texture.hpp"
+#include "tum_dataset.hpp"
+
+namespace photonav {
+namespace {
+
+std::vector<std::uint8_t> encoded(const char* extension) {
+    cv::Mat3b image(40, 50);
+    cv::randu(image, 0, 255);
+    std::vector<std::uint8_t> bytes;
+    cv::imencode(extension, image, bytes);
+    return bytes;
+}
+
+TEST(ImageBytes, WhatIsWholeDecodesToTheSamePixels) {
+    for (const char* extension : {".png", ".jpg", ".bmp"}) {
+        const auto bytes = encoded(extension);
+        const cv::Mat expected = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+        const cv::Mat image = cv::imdecode(soundImage(bytes), cv::IMREAD_UNCHANGED);
+        EXPECT_EQ(cv::norm(image, expected, cv::NORM_INF), 0.) << extension;
+    }
+}
+
+TEST(ImageBytes, NothingIsLeftOfWhatIsCutOrDamaged) {
+    const auto png = encoded(".png");
+    for (std::size_t length : {9UL, 20UL, png.size() / 2, png.size() - 1}) {
+        EXPECT_TRUE(soundImage(std::span(png).first(length)).empty()) << length;
+    }
+    auto damaged = png;
+    damaged[damaged.size() / 2] ^= 1;
+    EXPECT_TRUE(soundImage(damaged).empty());
+    const auto jpeg = encoded(".jpg");
+    EXPECT_TRUE(soundImage(std::span(jpeg).first(jpeg.size() / 2)).empty());
+    EXPECT_TRUE(soundImage({}).empty());
+}
+
+/// Legal, of no use to us, and what libpng likes to comment on: gone before it is decoded.
+TEST(ImageBytes, ChunksThatAreNoPictureAreLeftOut) {
+    auto png = encoded(".png");
+    const std::string chunk = std::string("\0\0\0\4tEXtphot", 12) + "\x2F\x72\x2E\x01";
+    auto talkative = png;
+    talkative.insert(talkative.begin() + 33, chunk.begin(), chunk.end());
+    EXPECT_FALSE(soundImage(png).empty());
+    EXPECT_EQ(soundImage(talkative), soundImage(png));
+}
+
+/// One line of ours, nothing by the libraries.
+TEST(ImageBytes, DamagedFilesAreReportedByUsAlone) {
+    const test::TemporaryFolder folder;
+    const auto file = (folder.path() / "half.png").string();
+    const auto png = encoded(".png");
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<const char*>(png.data()), std::ssize(png) / 2);
+    testing::internal::CaptureStderr();
+    test::expectInputError([&] { readGrey(file); }, {"half.png", "damaged"});
+    test::expectInputError([&] { readGrey(file + "x"); }, {"half.pngx", "no such file"});
+    test::expectInputError([&] { decodeGrey(std::span(png).first(99), "inside"); }, {"inside"});
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/mesh_io.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <opencv2/imgcodecs.hpp>
+
+#include "io/error.hpp"
+#include "temporary_folder.hpp"
+
+namespace photonav {
+namespace {
+
+using test::messageOf;
+using test::TemporaryFolder;
+
+std::string complaint(const std::string& file) {
+    return messageOf<InputError>([&] { loadMesh(file); });
+}
+
+std::string bytes(const std::vector<float>& values) {
+    std::string result(values.size() * sizeof(float), '\0');
+    std::memcpy(result.data(), values.data(), result.size());
+    return result;
+}
+
+/// Left half dark, right half light.
+std::string twoTexels() {
+    const cv::Mat image = (cv::Mat_<std::uint8_t>(2, 2) << 51, 204, 102, 255);
+    std::vector<std::uint8_t> png;
+    cv::imencode(".png", image, png);
+    return {png.begin(), png.end()};
+}
+
+/// One triangle (0,0,0) (1,0,0) (0,1,0) under a node that doubles it and shifts it by 10 along y.
+/// @param image JSON of the image, material and texture properties
+std::string gltf(const std::string& material, std::size_t extraBytes = 0) {
+    return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+ "nodes": [{"mesh": 0, "scale": [2, 2, 2], "translation": [0, 10, 0]}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 0}]}],
+ "buffers": [{"uri": "mesh.bin", "byteLength": )" +
+           std::to_string(60 + extraBytes) + R"(}],
+ "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
+                 {"buffer": 0, "byteOffset": 36, "byteLength": 24},
+                 {"buffer": 0, "byteOffset": 60, "byteLength": )" +
+           std::to_string(std::max<std::size_t>(extraBytes, 1)) + R"(}],
+ "accessors": [
+  {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0,0,0], "max": [1,1,0]},
+  {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}],
+ )" + material +
+           "}";
+}
+
+std::string triangleBytes() { return bytes({0, 0, 0, 1, 0, 0, 0, 1, 0, /*uv*/ 0, 0, 1, 0, 0, 1}); }
+
+TEST(MeshIo, GltfIsTurnedUprightWithItsNodesApplied) {
+    const TemporaryFolder folder;
+    folder.write("mesh.bin", triangleBytes());
+    const Scene scene = loadMesh(folder.write("mesh.gltf", gltf(R"("materials":
+        [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1]}}])")));
+    ASSERT_EQ(scene.triangles.size(), 1U);
+    const auto& corners = scene.triangles[0].corners;
+    // File (x, y, z), y up, becomes world (x, -z, y).
+    EXPECT_TRUE(corners[0].isApprox(Eigen::Vector3f(0.F, 0.F, 10.F)));
+    EXPECT_TRUE(corners[1].isApprox(Eigen::Vector3f(2.F, 0.F, 10.F)));
+    EXPECT_TRUE(corners[2].isApprox(Eigen::Vector3f(0.F, 0.F, 12.F)));
+    // A linear factor of 0.5 is stored by a camera as 0.735.
+    EXPECT_NEAR(scene.textures.at(scene.triangles[0].texture).image[0][0], 0.7354, 1e-3);
+
+    const Scene asIs = loadMesh(folder.file("mesh.gltf"), {.up = UpAxis::z, .scale = 0.5});
+    EXPECT_TRUE(asIs.triangles[0].corners[2].isApprox(Eigen::Vector3f(0.F, 6.F, 0.F)));
+}
+
+TEST(MeshIo, GltfTextureBesideAndInsideTheFile) {
+    const TemporaryFolder folder;
+    const std::string png = twoTexels();
+    folder.write("a.png", png);
+    const std::string material = R"("textures": [{"source": 0}], "materials":
+        [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}], "images": )";
+    folder.write("mesh.bin", triangleBytes() + png);
+    const auto outside = folder.write("outside.gltf", gltf(material + R"([{"uri": "a.png"}])"));
+    const auto inside = folder.write(
+        "inside.gltf",
+        gltf(material + R"([{"bufferView": 2, "mimeType": "image/png"}])", png.size()));
+    for (const auto& file : {outside, inside}) {
+        const Scene scene = loadMesh(file);
+        const ImageF& image = scene.textures.at(scene.triangles.at(0).texture).image;
+        ASSERT_EQ(image.getWidth(), 2U);
+        EXPECT_NEAR(image[0][0], 51. / 255., 1e-4);
+        EXPECT_NEAR(image[1][0], 102. / 255., 1e-4);
+        // glTF's (0, 0) is the image's upper left, as ours.
+        EXPECT_TRUE(scene.triangles[0].uv[0].isZero(1e-6F));
+        EXPECT_TRUE(scene.triangles[0].uv[2].isApprox(Eigen::Vector2f(0.F, 1.F)));
+    }
+}
+
+TEST(MeshIo, ObjKeepsItsAxesAndCountsVUpward) {
+    const TemporaryFolder folder;
+    folder.write("a.png", twoTexels());
+    folder.write("mesh.mtl", "newmtl skin\nKd 1 1 1\nmap_Kd a.png\n");
+    const Scene scene = loadMesh(folder.write("mesh.obj",
+                                              "mtllib mesh.mtl\nusemtl skin\n"
+                                              "v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+                                              "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                                              "f 1/1 2/2 3/3 4/4\n"));
+    ASSERT_EQ(scene.triangles.size(), 2U);
+    for (const Triangle& triangle : scene.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_FLOAT_EQ(triangle.corners[i].z(), 1.F);
+            EXPECT_NEAR(triangle.uv[i].x(), triangle.corners[i].x(), 1e-6);
+            EXPECT_NEAR(triangle.uv[i].y(), 1.F - triangle.corners[i].y(), 1e-6);
+        }
+    }
+    EXPECT_NEAR(scene.textures.at(scene.triangles[0].texture).image[0][1], 0.8, 1e-4);
+}
+
+TEST(MeshIo, PlyVertexColoursAreInterpolated) {
+    const TemporaryFolder folder;
+    const Scene scene = loadMesh(folder.write("mesh.ply", R"(ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+property uchar red
+property uchar green
+property uchar blue
+element face 1
+property list uchar int vertex_indices
+end_header
+0 0 2 51 51 51
+1 0 2 204 204 204
+0 1 2 255 255 255
+3 0 1 2
+)"));
+    ASSERT_EQ(scene.triangles.size(), 1U);
+    const Triangle& triangle = scene.triangles[0];
+    const Texture& ramp = scene.textures.at(triangle.texture);
+    const auto grey = [&](const Eigen::Vector2f& uv) { return ramp.at(uv.cast<double>()); };
+    EXPECT_NEAR(grey(triangle.uv[0]), 0.2, 1e-4);
+    EXPECT_NEAR(grey(triangle.uv[1]), 0.8, 1e-4);
+    EXPECT_NEAR(grey(triangle.uv[2]), 1.0, 1e-4);
+    EXPECT_NEAR(grey(0.5F * (triangle.uv[0] + triangle.uv[1])), 0.5, 1e-4);
+}
+
+TEST(MeshIo, ComplaintsNameFileAndReason) {
+    const TemporaryFolder folder;
+    const std::string missing = folder.file("missing.obj");
+    EXPECT_EQ(complaint(missing), missing + ": no such file");
+    const auto empty = folder.write("empty.ply", "");
+    EXPECT_EQ(complaint(empty), empty + ": the file is empty");
+    const auto unknown = folder.write("mesh.xyzabc", "hello");
+    EXPECT_EQ(complaint(unknown).rfind(unknown + ": ", 0), 0U);
+    const auto broken = folder.write("broken.glb", "glTF, but not really");
+    EXPECT_EQ(complaint(broken).rfind(broken + ": ", 0), 0U);
+    EXPECT_EQ(complaint(broken).find('\n'), std::string::npos);
+
+    const auto flat = folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    EXPECT_EQ(complaint(flat), flat + ": all triangles are degenerate");
+    const auto notFinite = folder.write("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n");
+    EXPECT_NE(complaint(notFinite).find("vertex 2 of mesh"), std::string::npos)
+        << complaint(notFinite);
+
+    folder.write("mesh.mtl", "newmtl skin\nKd 1 1 1\nmap_Kd gone.png\n");
+    const auto textured = folder.write("textured.obj",
+                                       "mtllib mesh.mtl\nusemtl skin\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                                       "vt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+    EXPECT_EQ(complaint(textured),
+              textured + ": texture: no such image '" + folder.file("gone.png") + "'");
+}
+
+/// assimp would reserve what the header says, and leave the colour of a missing library white.
+TEST(MeshIo, HeadersAndLibrariesAreNotTrusted) {
+    const TemporaryFolder folder;
+    const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+    const std::string faces = "property list uchar int vertex_indices\nend_header\n";
+    for (const std::string format : {"ascii", "binary_little_endian"}) {
+        const std::string head = "ply\nformat " + format + " 1.0\nelement vertex ";
+        const auto vertices =
+            folder.write("vertices.ply", head + "1000000000\n" + xyz + "element face 1\n" + faces);
+        EXPECT_NE(complaint(vertices).find("element vertex: 1000000000"), std::string::npos);
+        const auto many =
+            folder.write("faces.ply", head + "3\n" + xyz + "element face 1000000000\n" + faces +
+                                          "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+        EXPECT_NE(complaint(many).find("element face: 1000000000"), std::string::npos);
+    }
+    const auto obj =
+        folder.write("box.obj", "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(complaint(obj), obj + ": mtllib: no such file 'gone.mtl'");
+}
+
+TEST(MeshIo, SomeDegenerateTrianglesAreDropped) {
+    const TemporaryFolder folder;
+    const auto file =
+        folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\nf 1 1 2\n");
+    EXPECT_EQ(loadMesh(file).triangles.size(), 1U);
+}
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "drawing/decoded.hpp"
+#include "io/error.hpp"
+#include "plot/figure.hpp"
+#include "temporary_folder.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr Color kRed{255, 0, 0}, kBlue{0, 0, 255};
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The frame alone: 400 x 300 px, 4 x 3 units, no axes.
+Plot bare() {
+    Plot plot;
+    plot.x = {0., 4.};
+    plot.y = {0., 3.};
+    plot.width = 400.;
+    plot.height = 300.;
+    plot.hasAxes = false;
+    return plot;
+}
+
+cv::Mat3b drawn(const Plot& plot, const std::string& name) {
+    return decoded(Figure{{}, {{plot}}, Figure::Legend::none}.png(), name);
+}
+
+TEST(Axis, TicksAreRoundAndInside) {
+    const auto labels = [](const Axis& axis, int wanted) {
+        std::string text;
+        for (const Tick& tick : ticksOf(axis, wanted)) text += tick.label + " ";
+        return text;
+    };
+    EXPECT_EQ(labels({0., 10.}, 5), "0 2 4 6 8 10 ");
+    EXPECT_EQ(labels({-0.05, 0.17}, 4), "−0.05 0.00 0.05 0.10 0.15 ");
+    EXPECT_EQ(labels({0.02, 3., true}, 5), "0.02 0.05 0.1 0.2 0.5 1 2 ");
+    EXPECT_EQ(labels({1e-6, 1., true}, 5), "10⁻⁶ 10⁻⁵ 10⁻⁴ 10⁻³ 10⁻² 10⁻¹ 10⁰ ");
+    EXPECT_EQ(labels({3.1e-4, 4.2e-4, true}, 3), "3.5·10⁻⁴ 4·10⁻⁴ ");
+    EXPECT_EQ(labels({0.21, 0.42, true}, 4), "0.25 0.30 0.35 0.40 ");
+}
+
+TEST(Axis, LimitsAreGivenOrFromTheData) {
+    const Axis given = Axis{0., 2.}.fittedTo({-5., 9.});
+    EXPECT_EQ(given.min, 0.);
+    EXPECT_EQ(given.max, 2.);
+    const Axis around = Axis{.min = 0.}.fittedTo({1., std::nan(""), 10., kInfinity});
+    EXPECT_EQ(around.min, 0.);
+    EXPECT_GT(around.max, 10.);
+    EXPECT_LT(around.max, 11.);
+    const Axis log = Axis{.log = true}.fittedTo({-1., 0., 0.01, 1.});
+    EXPECT_GT(log.min, 0.);
+    EXPECT_LT(log.min, 0.01);
+    for (const std::vector<double>& values : {std::vector<double>{}, {0.}, {3., 3.}, {-2.}})
+        for (const Axis& axis : {Axis{}, Axis{.min = 5.}, Axis{.max = -5.}, Axis{.log = true}}) {
+            const Axis fitted = axis.fittedTo(values);
+            EXPECT_LT(fitted.min, fitted.max);
+        }
+}
+
+TEST(Axis, ValuesWithoutALogarithmAreAtTheEnd) {
+    const Axis axis{0.1, 10., true};
+    EXPECT_NEAR(axis.fraction(1.), 0.5, 1e-12);
+    EXPECT_EQ(axis.fraction(0.), 0.);
+    EXPECT_EQ(axis.fraction(-3.), 0.);
+    EXPECT_EQ(axis.fraction(kInfinity), 1.);
+    EXPECT_TRUE(std::isnan(axis.fraction(std::nan(""))));
+}
+
+TEST(Plot, MarksAreWhereTheirCoordinatesAre) {
+    Plot plot = bare();
+    plot.dots({{1., 1.}}, {.color = kRed, .width = 20.});
+    const cv::Mat3b image = drawn(plot, "dot");
+    ASSERT_EQ(image.size(), cv::Size(440, 340));  // a border of 20 px
+    const cv::Rect bounds = boundsOf(image, kRed);
+    EXPECT_NEAR(bounds.x + bounds.width / 2., 20. + 100., 1.);
+    EXPECT_NEAR(bounds.y + bounds.height / 2., 20. + 200., 1.);
+    EXPECT_NEAR(bounds.width, 20., 2.);
+}
+
+TEST(Plot, NothingIsDrawnOutsideTheFrame) {
+    Plot plot = bare();
+    plot.curve({{-1e300, 1.}, {1e300, 1.}}, {.color = kRed, .width = 4.});
+    plot.dots({{4., 3.}, {1e9, 2.}}, {.color = kRed, .width = 20.});
+    const cv::Rect bounds = boundsOf(drawn(plot, "outside"), kRed);
+    EXPECT_EQ(bounds.x, 20);
+    EXPECT_EQ(bounds.br().x, 420);
+    EXPECT_EQ(bounds.y, 20);
+}
+
+TEST(Plot, NaNLeavesAGap) {
+    Plot plot = bare();
+    plot.curve({{0., 1.}, {1., 1.}, {std::nan(""), 1.}, {3., 1.}, {4., 1.}},
+               {.color = kRed, .width = 4.});
+    const cv::Mat3b row = drawn(plot, "gap").row(220);
+    EXPECT_NEAR(countOf(row, kRed), 200, 4);
+    EXPECT_EQ(countOf(row(cv::Rect(130, 0, 180, 1)), kRed), 0);
+}
+
+TEST(Plot, InfinityIsTheBorderOfTheFrame) {
+    Plot plot = bare();
+    plot.band({{1., -kInfinity}, {2., -kInfinity}}, {{1., kInfinity}, {2., kInfinity}},
+              {.color = kRed});
+    const cv::Rect bounds = boundsOf(drawn(plot, "infinity"), kRed);
+    EXPECT_EQ(bounds, cv::Rect(120, 20, 100, 300));
+}
+
+TEST(Plot, OverlapOfATranslucentMarkIsNotDarker) {
+    Plot plot = bare();
+    plot.dots({{1., 1.}, {1.1, 1.}}, {.color = kBlue, .width = 40., .opacity = 0.5});
+    const cv::Mat3b image = drawn(plot, "translucent");
+    EXPECT_EQ(image(220, 125), image(220, 110));
+    EXPECT_EQ(image(220, 125)[0], 255);
+    EXPECT_NEAR(image(220, 125)[2], 128, 2);
+}
+
+TEST(Plot, PictureIsStretchedOverItsBox) {
+    Plot plot = bare();
+    plot.picture({{kRed, kBlue, kBlue, kBlue}, 2},
+                 {Eigen::Vector2d(1., 1.), Eigen::Vector2d(3., 2.)}, false);
+    const cv::Mat3b image = drawn(plot, "picture");
+    EXPECT_EQ(boundsOf(image, kRed), cv::Rect(120, 120, 100, 50));
+    EXPECT_EQ(boundsOf(image, kBlue), cv::Rect(120, 120, 200, 100));
+}
+
+TEST(Plot, EllipseHasTheCovarianceOfItsOutline) {
+    Eigen::Matrix2d covariance;
+    covariance << 2., 0.5, 0.5, 1.;
+    for (const Eigen::Vector2d& p : ellipse({1., 2.}, covariance, 3.)) {
+        const Eigen::Vector2d d = p - Eigen::Vector2d(1., 2.);
+        EXPECT_NEAR(d.dot(covariance.inverse() * d), 9., 1e-9);
+    }
+}
+
+TEST(Figure, FramesOfAColumnAreAligned) {
+    Figure figure;
+    for (const double high : {1., 12345.}) {  // labels of different width
+        Plot plot;
+        plot.y = {0., high, false, "y"};
+        plot.x = {0., 1.};
+        plot.band({{-kInfinity, -kInfinity}, {kInfinity, -kInfinity}},
+                  {{-kInfinity, kInfinity}, {kInfinity, kInfinity}},
+                  {.color = high > 1. ? kRed : kBlue});
+        figure.rows.push_back({plot});
+    }
+    const cv::Mat3b image = decoded(figure.png(), "aligned");
+    EXPECT_EQ(boundsOf(image, kRed).x, boundsOf(image, kBlue).x);
+    EXPECT_GT(boundsOf(image, kRed).y, boundsOf(image, kBlue).br().y);
+}
+
+TEST(Figure, LegendHasEveryNameOnce) {
+    const auto sizeOf = [](Figure::Legend legend, const std::string& second) {
+        Plot plot = bare();
+        plot.dots({{1., 1.}}, {.color = kRed, .name = "one"});
+        plot.dots({{1., 1.}}, {.color = kBlue, .name = second});
+        return decoded(Figure{"title", {{plot, plot}}, legend}.png(), "legend").size();
+    };
+    const cv::Size none = sizeOf(Figure::Legend::none, "two");
+    EXPECT_EQ(sizeOf(Figure::Legend::above, "two").width, none.width);
+    EXPECT_GT(sizeOf(Figure::Legend::above, "two").height, none.height);
+    EXPECT_GT(sizeOf(Figure::Legend::right, "two").width, none.width);
+    EXPECT_GT(sizeOf(Figure::Legend::right, "a long name").width,
+              sizeOf(Figure::Legend::right, "one").width);
+}
+
+TEST(Figure, WritesThreeFormatsByTheNameOfTheFile) {
+    const test::TemporaryFolder folder;
+    Plot plot = bare();
+    plot.curve({{0., 0.}, {4., 3.}}, {.color = kRed, .opacity = 0.5, .name = "curve"});
+    const Figure figure{"title", {{plot}}};
+    for (const auto& [name, begin] :
+         {std::pair{"a.png", "\x89PNG"}, {"a.svg", "<?xml"}, {"a.pdf", "%PDF"}}) {
+        figure.save(folder.path() / name);
+        EXPECT_EQ(test::contentOf(folder.path() / name).find(begin), 0U) << name;
+    }
+    EXPECT_THROW(figure.save(folder.path() / "a.gif"), InputError);
+    EXPECT_THROW(Figure{}.png(), std::invalid_argument);
+}
+
+TEST(PlannerColor, DiffersForEveryPlanner) {
+    const char* const names[]{"belief_rrt_star", "pa_rrt_star", "rrbt", "rrt_star", "unknown"};
+    for (const char* a : names)
+        for (const char* b : names) EXPECT_EQ(plannerColor(a) == plannerColor(b), a == b);
+    EXPECT_EQ(hexColor({222, 79, 12}), "#de4f0c");
+}
+
+}  // namespace
+}  // namespace photonav

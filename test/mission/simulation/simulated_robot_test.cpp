@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/simulated_robot.hpp"
+
+#include <gtest/gtest.h>
+
+#include "geometry/se3.hpp"
+#include "tracking/rooms.hpp"
+
+namespace photonav {
+namespace {
+
+using test::cameraAt;
+using test::kDown;
+
+TEST(SimulatedMav, FollowsCommandsWithALag) {
+    SimulatedMav mav(Pose::Identity(), {.lag = 0.5}, 1);
+    const BodyVelocity command{{1., 0., 0.}, 0.};
+    for (int i = 0; i < 25; ++i) mav.step(command, 0.02);
+    EXPECT_NEAR(mav.velocity().linear.x(), 1. - std::exp(-1.), 1e-9);
+    EXPECT_NEAR(mav.T_w_b().translation().x(), 0.5 - 0.5 * (1. - std::exp(-1.)), 1e-9);
+}
+
+TEST(SimulatedMav, ItsOdometryIsAsUncertainAsItSays) {
+    Vector6 variances;
+    variances << 1e-3, 2e-3, 1e-3, 1e-5, 1e-5, 1e-4;
+    const MavOptions options{.lag = 0., .odometryNoise = variances.asDiagonal()};
+    double sum = 0.;
+    constexpr int kFlights = 300;
+    for (int seed = 1; seed <= kFlights; ++seed) {
+        SimulatedMav mav(Pose::Identity(), options, static_cast<std::uint64_t>(seed));
+        UncertainPose T_now_start;
+        for (int i = 0; i < 20; ++i) {
+            T_now_start = compound(mav.step({{0.5, 0.2, 0.}, 0.4}, 0.1), T_now_start);
+        }
+        const Vector6 xi = logSE3(mav.T_w_b().inverse() * T_now_start.mean.inverse());
+        sum += xi.dot(T_now_start.covariance.ldlt().solve(xi)) / 6.;
+    }
+    EXPECT_NEAR(sum / kFlights, 1., 0.1);
+}
+
+TEST(SimulatedCamera, DeliversLateDropsAndGoesBlack) {
+    const MeshRenderer floor(test::floorOf(valueNoise({.seed = 3})));
+    const Pose T_c_w = cameraAt({0., 0., 2.}, kDown);
+    const SimulatedCameraOptions options{.period = 0.1,
+                                         .latency = 0.25,
+                                         .dropRate = 0.25,
+                                         .blackoutStart = 50.,
+                                         .blackoutLength = 10.};
+    SimulatedCamera camera(floor, makeCamera(8, 8, 1.), {}, options, 1);
+    int taken = 0, received = 0, black = 0;
+    for (int i = 0; i <= 10000; ++i) {
+        const double time = 0.01 * i;
+        taken += camera.expose(time, T_c_w).has_value();
+        while (const auto image = camera.receive(time)) {
+            ++received;
+            black += image->view.intensity[4][4] == 0.F;
+            EXPECT_GE(time - image->time, 0.25 - 1e-6);
+            EXPECT_LT(time - image->time, 0.27);
+        }
+    }
+    EXPECT_EQ(taken, 1001);
+    EXPECT_NEAR(received, 748, 40);
+    EXPECT_NEAR(black, 75, 13);
+}
+
+/// What the planner assumes of an image: its variance, and that Lambda with the scale is right.
+TEST(AssumedNoise, HasTheVarianceAndTheInformationAssumed) {
+    const PhotometricOptions options{.sigma = 0.02, .scale = 0.08};
+    const ImageNoise noise = assumedNoise(options);
+    std::mt19937_64 random(1);
+    double square = 0., blocks = 0.;
+    int pixels = 0, count = 0;
+    for (int i = 0; i < 40; ++i) {
+        ImageF image(64, 64, 0.F);
+        noise(image, random);
+        for (unsigned v = 0; v < 64; v += 16) {
+            for (unsigned u = 0; u < 64; u += 16) {
+                double sum = 0.;
+                for (unsigned k = 0; k < 256; ++k) {
+                    const double x = image[v + k / 16][u + k % 16];
+                    sum += x;
+                    square += x * x;
+                    ++pixels;
+                }
+                blocks += sum * sum / 256.;
+                ++count;
+            }
+        }
+    }
+    EXPECT_NEAR(std::sqrt(square / pixels), 0.02, 0.001);
+    // Sums over areas vary as if there were 0.08 times as many pixels (less at the areas' edges).
+    const double ratio = blocks / count / (0.02 * 0.02);
+    EXPECT_GT(ratio, 0.7 / 0.08);
+    EXPECT_LT(ratio, 1.05 / 0.08);
+}
+
+/// Drift moves a hovering body a little, and its odometry measures it.
+TEST(SimulatedMav, DriftsALittleWhereItHovers) {
+    Vector6 variances;
+    variances << 1e-6, 1e-6, 1e-6, 1e-8, 1e-8, 1e-8;
+    const MavOptions options{.odometryNoise = variances.asDiagonal(), .drift = 0.05};
+    double squares = 0.;
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+        SimulatedMav mav(Pose::Identity(), options, seed);
+        UncertainPose T_now_start;
+        for (int i = 0; i < 100; ++i) T_now_start = compound(mav.step({}, 0.1), T_now_start);
+        const Eigen::Vector3d way = mav.T_w_b().translation();
+        EXPECT_GT(way.norm(), 0.);
+        EXPECT_LT((T_now_start.mean.inverse().translation() - way).norm(), 0.1 * way.norm() + 0.01);
+        squares += way.squaredNorm() / 3. / 50.;
+    }
+    // Integral over 10 s of a velocity of 0.05 m/s correlated over 2 s: 2 s^2 T (t - T (1 -
+    // e^-t/T)).
+    EXPECT_NEAR(std::sqrt(squares), 0.284, 0.06);
+}
+
+class RobotWithDepth : public ::testing::TestWithParam<DepthSensor> {};
+
+/// Depth comes with the noise of its sensor, and changes no image.
+TEST_P(RobotWithDepth, MeasuresTheFloor) {
+    const auto floor =
+        std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    const Camera camera = makeCamera(188, 120, 1.2);
+    Pose T_w_b = Pose::Identity();
+    T_w_b.translation().z() = 2.;
+    SimulatedRobotOptions options;
+    options.camera.depth = GetParam();
+    SimulatedRobot robot(floor, camera, cameraMount(kDown), T_w_b, assumedNoise({.sigma = 0.01}),
+                         options, 1);
+    const Observation observation = robot.fly({}, 0.);
+    ASSERT_EQ(observation.frames.size(), 1U);
+    ASSERT_TRUE(robot.exposed());
+    const View& view = observation.frames[0].view;
+    if (GetParam() == DepthSensor::none) {
+        EXPECT_EQ(view.depth.getSize(), 0U);
+        return;
+    }
+    ASSERT_EQ(view.depth.getSize(), view.intensity.getSize());
+    EXPECT_EQ(robot.camera().width, view.intensity.getWidth());
+    int measured = 0;
+    double squares = 0.;
+    for (unsigned i = 0; i < view.depth.getSize(); ++i) {
+        if (view.depth.bitmap[i] <= 0.F) continue;
+        ++measured;
+        squares += std::pow(view.depth.bitmap[i] - 2., 2);
+    }
+    EXPECT_GT(measured, 0.4 * view.depth.getSize());
+    EXPECT_LT(measured, view.depth.getSize());
+    const double rms = std::sqrt(squares / measured);
+    EXPECT_GT(rms, 0.004);
+    EXPECT_LT(rms, 0.15);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sensors, RobotWithDepth,
+                         ::testing::Values(DepthSensor::none, DepthSensor::rgbd,
+                                           DepthSensor::stereo));
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "planning/fixture.hpp"
+
+namespace photonav::test {
+namespace {
+
+Pose bodyAt(double x, double y, double yaw = 0.) {
+    Pose T_w_b = Pose::Identity();
+    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    T_w_b.translation() << x, y, 2.;
+    return T_w_b;
+}
+
+Matrix6 growsAlongX(const Pose& T_c_w) {
+    return (1. + T_c_w.inverse().translation().x()) * Matrix6::Identity();
+}
+
+TEST(InformationField, CountsViewsAndHits) {
+    InformationField field(growsAlongX, Pose::Identity(), {});
+    field.at(bodyAt(1.01, 0.));
+    field.at(bodyAt(1.02, 0.01));  // the same cell
+    field.at(bodyAt(1.02, 0.01, 0.5));
+    field.at(bodyAt(3., 0.));
+    EXPECT_EQ(field.views(), 3U);
+    EXPECT_EQ(field.cacheHits(), 1U);
+    field.clear();
+    EXPECT_EQ(field.views() + field.cacheHits(), 0U);
+}
+
+TEST(InformationField, ValueDoesNotDependOnTheOrderOfQueries) {
+    InformationField forward(growsAlongX, Pose::Identity(), {});
+    InformationField backward(growsAlongX, Pose::Identity(), {});
+    for (int i = 0; i <= 100; ++i) forward.at(bodyAt(0.01 * i, 0.));
+    for (int i = 100; i >= 0; --i) backward.at(bodyAt(0.01 * i, 0.));
+    for (int i = 0; i <= 100; ++i) {
+        const Pose pose = bodyAt(0.01 * i, 0.);
+        EXPECT_EQ(forward.at(pose).information, backward.at(pose).information);
+    }
+}
+
+TEST(InformationField, EvaluatesWithinHalfACell) {
+    const InformationField::Options options{.positionPitch = 0.2, .rotationPitch = 0.1};
+    Pose asked;
+    InformationField field(
+        [&](const Pose& T_c_w) {
+            asked = T_c_w.inverse();
+            return Matrix6::Identity();
+        },
+        Pose::Identity(), options);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<> uniform(-3., 3.);
+    for (int i = 0; i < 200; ++i) {
+        field.clear();
+        const Pose pose = bodyAt(uniform(random), uniform(random), uniform(random));
+        field.at(pose);
+        EXPECT_LE((asked.translation() - pose.translation()).cwiseAbs().maxCoeff(), 0.1 + 1e-6);
+        EXPECT_LE(Eigen::AngleAxisd(asked.linear().transpose() * pose.linear()).angle(),
+                  0.05 * std::sqrt(3.) + 1e-6);
+    }
+}
+
+TEST(InformationField, NamesViewsWithoutInformation) {
+    InformationField field(stripesThenTexture, cameraMount(std::numbers::pi / 2), {});
+    EXPECT_TRUE(field.at(bodyAt(1., 1.)).isZero);
+    EXPECT_FALSE(field.at(bodyAt(4.5, 1.)).isZero);
+}
+
+TEST(InformationField, KeepsInformationInAxesOfTheWorldWhateverTheHeading) {
+    // The camera observes world x only; the heading is not that of a cell's centre.
+    InformationField field(
+        [](const Pose& T_c_w) {
+            const Matrix6 alongX = vector6(4., 0., 0., 0., 0., 0.).asDiagonal();
+            return inTurnedAxes(alongX, T_c_w.linear());
+        },
+        cameraMount(std::numbers::pi / 4), {});
+    for (const double yaw : {-0.03, 0.04, 1., 3.1}) {
+        const Matrix6& information = field.at(bodyAt(0., 0., yaw)).information;
+        EXPECT_NEAR(information(0, 0), 4., 1e-12);
+        EXPECT_NEAR(information.norm(), 4., 1e-12);
+    }
+}
+
+TEST(InformationField, AModelThatThrowsLeavesItUsable) {
+    bool fail = true;
+    InformationField field(
+        [&](const Pose&) -> Matrix6 {
+            if (fail) throw std::runtime_error("no view");
+            return Matrix6::Identity();
+        },
+        Pose::Identity(), {});
+    EXPECT_THROW(field.at(bodyAt(0., 0.)), std::runtime_error);
+    fail = false;
+    EXPECT_TRUE(field.at(bodyAt(0., 0.)).information.isIdentity(1e-12));
+    EXPECT_EQ(field.views(), 1U);
+}
+
+TEST(InformationField, RejectsAPitchOfZero) {
+    EXPECT_THROW(InformationField(growsAlongX, Pose::Identity(), {0., 0.1}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace photonav::test

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Information that follows a map: entries that a change of the map can have touched are renewed,
+// and no others.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <random>
+
+#include "planning/fixture.hpp"
+#include "render/voxel_renderer.hpp"
+
+namespace photonav::test {
+namespace {
+
+using Eigen::Array3i;
+using Eigen::Vector3d;
+
+constexpr double kCell = 0.05;
+const Array3i kSize(80, 64, 36);  // cells of the room
+
+/// A room with a wall across its middle, clutter, and parts that are unknown, changed at random.
+class ChangingRoom {
+  public:
+    explicit ChangingRoom(unsigned seed) : map(kCell), random_(seed) {
+        for (int z = 0; z < kSize.z(); ++z) {
+            for (int y = 0; y < kSize.y(); ++y) {
+                for (int x = 0; x < kSize.x(); ++x) {
+                    const Array3i cell(x, y, z);
+                    const bool outside = (cell == 0).any() || (cell == kSize - 1).any();
+                    const bool wall = x == 40 && y < 44;
+                    if (outside || wall || dice() < 0.0003) {
+                        set(cell, true);
+                    } else if (dice() < 0.9995) {
+                        set(cell, false);
+                    }
+                }
+            }
+        }
+        map.updateInnerOccupancy();
+    }
+
+    /// Changes a box of at most 6 cells: everything occupied, everything free, or new grey values.
+    MapChange change() {
+        Array3i low, high;
+        for (int i = 0; i < 3; ++i) {
+            low[i] = static_cast<int>(dice() * (kSize[i] - 1));
+            high[i] = std::min(kSize[i] - 1, low[i] + static_cast<int>(dice() * 6.));
+        }
+        const int kind = static_cast<int>(3. * dice());
+        MapChange change;
+        change.resolution = kCell;
+        for (int z = low.z(); z <= high.z(); ++z) {
+            for (int y = low.y(); y <= high.y(); ++y) {
+                for (int x = low.x(); x <= high.x(); ++x) {
+                    const Array3i brick(x / 4, y / 4, z / 4);
+                    if (kind < 2 && isOccupied({x, y, z}) != (kind == 0)) {
+                        set({x, y, z}, kind == 0);
+                        change.occupancy.push_back(brick);
+                    } else if (kind == 2 && isOccupied({x, y, z})) {
+                        set({x, y, z}, true);
+                        change.texture.push_back(brick);
+                    }
+                }
+            }
+        }
+        map.updateInnerOccupancy();
+        change.normalize();
+        return change;
+    }
+
+    /// A body pose in a free cell.
+    Pose freePose() {
+        Array3i cell;
+        do {
+            for (int i = 0; i < 3; ++i) cell[i] = static_cast<int>(dice() * kSize[i]);
+        } while (isOccupied(cell));
+        Pose T_w_b = Pose::Identity();
+        T_w_b.translation() = kCell * (cell.cast<double>().matrix() + Vector3d::Constant(0.5));
+        T_w_b.linear() = Eigen::AngleAxisd(6.28 * dice(), Vector3d::UnitZ()).toRotationMatrix();
+        return T_w_b;
+    }
+
+    TexturedOcTree map;
+
+  private:
+    static octomap::OcTreeKey key(const Array3i& cell) {
+        const Array3i k = cell + kKeyOfZero;
+        return {static_cast<octomap::key_type>(k.x()), static_cast<octomap::key_type>(k.y()),
+                static_cast<octomap::key_type>(k.z())};
+    }
+    double dice() { return std::uniform_real_distribution<>(0., 1.)(random_); }
+    bool isOccupied(const Array3i& cell) const {
+        const auto* node = map.search(key(cell));
+        return node != nullptr && map.isNodeOccupied(node);
+    }
+    void set(const Array3i& cell, bool occupied) {
+        auto* node = map.setNodeValue(key(cell), occupied ? 1.F : -1.F, true);
+        if (!occupied) return;
+        for (FaceTexture& face : node->faces) face = {static_cast<float>(dice()), 1.F};
+    }
+
+    std::mt19937 random_;
+};
+
+std::shared_ptr<InformationField> fieldOf(const std::shared_ptr<const ViewSource>& views,
+                                          double belowHorizon) {
+    const Camera camera = makeCamera(94, 60, 1.2);
+    return std::make_shared<InformationField>(views, camera, photometricModel(camera, {}),
+                                              cameraMount(belowHorizon),
+                                              InformationField::Options{.positionPitch = 1e-3});
+}
+
+struct Marks {
+    std::size_t stale = 0;     ///< entries that an update marked
+    std::size_t needless = 0;  ///< of them, those that are as before
+    std::size_t entries = 0;   ///< entries that were not stale, over all updates
+};
+
+/// Follows random changes; entries that are not stale have to equal fresh ones.
+void follow(UnknownPolicy unknown, double belowHorizon, Marks& marks) {
+    ChangingRoom room(7);
+    std::vector<Pose> poses;
+    for (int i = 0; i < 60; ++i) poses.push_back(room.freePose());
+    const auto field = fieldOf(std::make_shared<VoxelRenderer>(room.map, unknown), belowHorizon);
+    std::vector<const InformationField::Entry*> entries;
+    for (const Pose& pose : poses) entries.push_back(&field->at(pose));
+    for (int round = 0; round < 30; ++round) {
+        MapChange change = room.change();
+        if (round % 3 == 0) change.join(room.change());
+        marks.entries += field->size() - field->stale();
+        const auto views = std::make_shared<VoxelRenderer>(room.map, unknown);
+        field->update(views, change);
+        const auto fresh = fieldOf(views, belowHorizon);
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            const bool isSame = entries[i]->information == fresh->at(poses[i]).information;
+            if (!entries[i]->isStale) {
+                ASSERT_TRUE(isSame) << "round " << round << ", entry " << i;
+            }
+            marks.stale += entries[i]->isStale ? 1 : 0;
+            marks.needless += entries[i]->isStale && isSame ? 1 : 0;
+        }
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            const auto& again =
+                i % 2 == 0 ? field->at(poses[i]) : field->current(*entries[i]);  // in place
+            ASSERT_EQ(&again, entries[i]);
+            ASSERT_FALSE(again.isStale);
+            ASSERT_EQ(again.information, fresh->at(poses[i]).information);
+        }
+    }
+}
+
+class FieldOverAMap : public testing::TestWithParam<UnknownPolicy> {};
+INSTANTIATE_TEST_SUITE_P(Unknown, FieldOverAMap,
+                         testing::Values(UnknownPolicy::free, UnknownPolicy::occupied));
+
+TEST_P(FieldOverAMap, EntriesThatAreNotStaleEqualFreshOnes) {
+    Marks marks;
+    for (const double belowHorizon : {0., std::numbers::pi / 4, std::numbers::pi / 2}) {
+        follow(GetParam(), belowHorizon, marks);
+    }
+    const double share = double(marks.stale) / double(marks.entries);
+    const double needless = double(marks.needless) / double(marks.stale);
+    std::printf("marked stale: %.1f %% of the entries, %.1f %% of them without need\n",
+                100. * share, 100. * needless);
+    EXPECT_LT(share, 0.15);
+    EXPECT_LT(needless, 0.6);  // bricks are as large as a change here, and grow by two cells
+}
+
+TEST(FieldUpdate, MotionsTakeUpWhatTheMapHasBecome) {
+    // Grey values on the floor appear: a motion propagated before informs as a new one does.
+    TexturedOcTree map(0.1);
+    const auto setFloor = [&](float contrast) {
+        for (int y = 0; y < 40; ++y) {
+            for (int x = 0; x < 40; ++x) {
+                const octomap::OcTreeKey key(kKeyOfZero + x, kKeyOfZero + y, kKeyOfZero);
+                auto* node = map.setNodeValue(key, 1.F, true);
+                const float grey = 0.5F + contrast * static_cast<float>((5 * x + 3 * y) % 7 - 3);
+                for (FaceTexture& face : node->faces) face = {grey, 1.F};
+            }
+        }
+        map.updateInnerOccupancy();
+    };
+    setFloor(0.F);
+    const Camera camera = makeCamera(94, 60, 1.2);
+    const auto views = [&] { return std::make_shared<VoxelRenderer>(map, UnknownPolicy::free); };
+    Problem problem;
+    const auto field = std::make_shared<InformationField>(
+        views(), camera, photometricModel(camera, {}), problem.mount, InformationField::Options{});
+    BeliefModel model(problem.space(), field, problem.belief);
+    ob::ScopedState<> from(problem.space().space());
+    ob::ScopedState<> to(problem.space().space());
+    problem.space().setState(from.get(), {1., 2., 2.}, 0.);
+    problem.space().setState(to.get(), {3., 2., 2.}, 0.);
+    Motion motion = model.motion(from.get(), to.get());
+    const Belief root = model.root(from.get());
+    const Belief before = model.propagate(root, motion);
+
+    setFloor(0.05F);
+    MapChange change;
+    change.resolution = 0.1;
+    for (int y = 0; y < 10; ++y) {
+        for (int x = 0; x < 10; ++x) change.texture.push_back({x, y, 0});
+    }
+    change.normalize();
+    field->update(views(), change);
+    EXPECT_EQ(field->stale(), field->size());
+    const Belief after = model.propagate(root, motion);
+    EXPECT_LT(after.covariance.trace(), 0.1 * before.covariance.trace());
+    Motion fresh = model.motion(from.get(), to.get());
+    EXPECT_EQ(model.propagate(root, fresh).covariance, after.covariance);
+    EXPECT_EQ(motion.epoch, field->epoch());
+    EXPECT_EQ(motion.views.back()->epoch, field->epoch());
+}
+
+TEST(FieldUpdate, LeavesFormulasAlone) {
+    InformationField field(stripesThenTexture, cameraMount(0.), {});
+    Pose T_w_b = Pose::Identity();
+    const auto& entry = field.at(T_w_b);
+    MapChange change;
+    change.resolution = 1.;
+    change.occupancy.emplace_back(0, 0, 0);
+    field.update(nullptr, change);
+    EXPECT_FALSE(entry.isStale);
+}
+
+}  // namespace
+}  // namespace photonav::test

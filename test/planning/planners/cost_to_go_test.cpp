@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planners/cost_to_go.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "planning/fixture.hpp"
+
+namespace photonav::test {
+namespace {
+
+/// A grid of vertices half a metre apart, each joined to its eight neighbours; goal at (3, 9).
+class Grid {
+  public:
+    static constexpr int kSide = 20;
+
+    explicit Grid(const Problem& problem)
+        : si_(problem.spaceInformation()), model(problem.model()) {
+        for (int i = 0; i < kSide; ++i) {
+            for (int j = 0; j < kSide; ++j) {
+                Vertex& vertex = vertices.emplace_back();
+                vertex.state = si_->allocState();
+                vertex.index = static_cast<std::uint32_t>(vertices.size() - 1);
+                problem.space().setState(vertex.state, {0.5 * i, 0.5 * j, 2.}, 0.);
+            }
+        }
+        for (int i = 0; i < kSide; ++i) {
+            for (int j = 0; j < kSide; ++j) {
+                join(i, j, i + 1, j - 1);
+                join(i, j, i + 1, j);
+                join(i, j, i + 1, j + 1);
+                join(i, j, i, j + 1);
+            }
+        }
+        toGo.update(roadmap, vertices, {&at(6, 18)}, *model);
+    }
+    ~Grid() {
+        for (Vertex& vertex : vertices) si_->freeState(vertex.state);
+    }
+    Grid(const Grid&) = delete;
+    Grid& operator=(const Grid&) = delete;
+
+    Vertex& at(int i, int j) { return vertices[i * kSide + j]; }
+
+    double bound(Vertex& vertex, const Matrix6& covariance) {
+        return toGo.from(vertex, toGo.variances(covariance));
+    }
+
+    std::deque<Vertex> vertices;
+    Roadmap roadmap;
+    CostToGo toGo;
+
+  private:
+    ob::SpaceInformationPtr si_;
+
+  public:
+    std::shared_ptr<BeliefModel> model;
+
+  private:
+    void join(int i, int j, int k, int l) {
+        if (k >= kSide || l >= kSide || l < 0) return;
+        roadmap.add(&at(i, j), &at(k, l), model->motion(at(i, j).state, at(k, l).state));
+    }
+};
+
+/// Flies at random, but rather toward `toX` and then the goal, and compares what that cost with the
+/// bound at every vertex on the way.
+void flyAndCompare(Grid& grid, double toX, std::mt19937& random) {
+    std::uniform_int_distribution<int> pick(0, Grid::kSide - 1);
+    Vertex* vertex = &grid.at(pick(random), pick(random));
+    const Vertex* goal = &grid.at(6, 18);
+    Belief belief = grid.model->root(vertex->state);
+    std::vector<std::pair<double, double>> sofarAndBound;
+    bool turned = false;
+    for (int step = 0; vertex != goal && step < 3000; ++step) {
+        sofarAndBound.emplace_back(belief.cost, grid.bound(*vertex, belief.covariance));
+        Roadmap::Edge* best = nullptr;
+        double least = 1e9;
+        for (Roadmap::Edge* edge : grid.roadmap.of(vertex)) {
+            const auto p = grid.model->space().position(edge->otherEnd(vertex)->state);
+            const double way = turned ? (p - grid.model->space().position(goal->state)).norm()
+                                      : std::abs(p.x() - toX);
+            const double noisy = way + 0.3 * std::generate_canonical<double, 32>(random);
+            if (noisy < least) {
+                least = noisy;
+                best = edge;
+            }
+        }
+        belief = grid.model->propagate(belief, best->motion, best->to == vertex);
+        vertex = best->otherEnd(vertex);
+        turned = turned || std::abs(grid.model->space().position(vertex->state).x() - toX) < 0.1;
+    }
+    ASSERT_EQ(vertex, goal);
+    for (const auto& [sofar, bound] : sofarAndBound) EXPECT_LE(sofar + bound, belief.cost + 1e-9);
+}
+
+TEST(CostToGo, NoFlightCostsLess) {
+    std::mt19937 random(1);
+    for (const double alpha : {0., 0.05, 0.5}) {
+        Problem problem;
+        problem.belief.alpha = alpha;
+        Grid grid(problem);
+        for (const double toX : {0., 3., 4.5, 6.5, 8.}) {
+            for (int i = 0; i < 8; ++i) flyAndCompare(grid, toX, random);
+        }
+    }
+}
+
+TEST(CostToGo, KnowsThatUncertaintyStaysUntilSomethingIsSeen) {
+    Problem problem;
+    Grid grid(problem);
+    Vertex& start = grid.at(6, 2);  // 1 m from the stripes, 3 m from the texture
+    const Belief root = grid.model->root(start.state);
+    const double byLength = problem.belief.alpha * 8.;
+    EXPECT_GT(grid.bound(start, root.covariance), 2. * byLength);
+    EXPECT_NEAR(grid.bound(start, 1e-9 * root.covariance), byLength, 1e-3);
+    // Nothing to see anywhere: the whole way at the initial uncertainty of the position.
+    problem.information = [](const Pose&) { return Matrix6::Zero().eval(); };
+    Grid blind(problem);
+    const double charge = 0.95 * problem.belief.kappa * 0.05 * 8.;
+    EXPECT_NEAR(blind.bound(blind.at(6, 2), root.covariance), byLength + charge, 0.02 * charge);
+}
+
+TEST(CostToGo, IsInfiniteWhereNoGoalIsReached) {
+    const Problem problem;
+    Grid grid(problem);
+    for (Vertex& vertex : grid.vertices) {
+        for (Roadmap::Edge* edge : grid.roadmap.of(&vertex)) {
+            const auto x = [&](const Vertex* v) {
+                return grid.model->space().position(v->state).x();
+            };
+            if ((x(edge->from) < 5.) != (x(edge->to) < 5.)) edge->isFree = false;
+        }
+    }
+    grid.toGo.update(grid.roadmap, grid.vertices, {&grid.at(6, 18)}, *grid.model);
+    const Matrix6 covariance = problem.belief.initialCovariance;
+    EXPECT_TRUE(std::isinf(grid.bound(grid.at(15, 3), covariance)));
+    EXPECT_TRUE(std::isfinite(grid.bound(grid.at(2, 3), covariance)));
+}
+
+}  // namespace
+}  // namespace photonav::test

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "alignment/keyframe_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include "geometry/constants.hpp"
+#include "tracking/rooms.hpp"
+
+namespace photonav {
+namespace {
+
+using test::cameraAt;
+using test::errorOf;
+
+const Camera& wideCamera() {
+    static const Camera half = makeCamera(320, 240, 1.1);
+    return half;
+}
+
+View roomView(const Pose& T_c_w, double sigma = 0., std::uint64_t seed = 1) {
+    View view;
+    test::room().render(wideCamera(), T_c_w, view);
+    std::mt19937_64 random(seed);
+    if (sigma > 0.) view.intensity = test::noisy(view.intensity, sigma, random);
+    return view;
+}
+
+const Pose kFirst = cameraAt({1.6, 3., 1.6}, 0.6, 0.1);
+
+TEST(KeyframeModel, FindsTheMotion) {
+    std::mt19937_64 random(1);
+    for (const int finest : {0, 1}) {
+        KeyframeOptions options;
+        options.finest = finest;
+        KeyframeModel keyframe(roomView(kFirst), wideCamera(), kFirst, options);
+        for (int i = 0; i < 5; ++i) {
+            const Pose truth = expSE3(test::randomTwist(0.1, 0.06, random)) * kFirst;
+            const Alignment a = keyframe.align(roomView(truth).intensity, kFirst);
+            EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
+            EXPECT_LT(errorOf(a, truth).head<3>().norm(), 2e-3);
+            EXPECT_LT(errorOf(a, truth).tail<3>().norm(), 1e-3);
+            EXPECT_GT(a.overlap, 0.6);
+        }
+    }
+}
+
+TEST(KeyframeModel, LeavesOutDepthThatBends) {
+    View view = roomView(kFirst);
+    for (unsigned v = 60; v < 180; ++v) {  // half the image: every other column is too far
+        for (unsigned u = 0; u < 320; u += 2) view.depth[v][u] *= 1.024F;
+    }
+    const Pose truth = cameraAt({1.7, 3.05, 1.6}, 0.6, 0.1);
+    const auto distance = [&](double mostBend) {
+        KeyframeOptions options;
+        options.finest = 0;
+        options.mostBend = mostBend;
+        KeyframeModel keyframe(view, wideCamera(), kFirst, options);
+        return errorOf(keyframe.align(roomView(truth).intensity, kFirst), truth).norm();
+    };
+    EXPECT_LT(distance(KeyframeOptions().mostBend), 2e-3);
+    EXPECT_GT(distance(1e9), 2. * distance(KeyframeOptions().mostBend));
+}
+
+TEST(KeyframeModel, EstimatesExposure) {
+    KeyframeOptions options;
+    options.alignment.exposure = ExposurePrior{};
+    KeyframeModel keyframe(roomView(kFirst), wideCamera(), kFirst, options);
+    const Pose truth = expSE3(0.05 * Vector6::Unit(1)) * kFirst;
+    ImageF image = roomView(truth).intensity;
+    for (unsigned i = 0; i < image.getSize(); ++i) image.bitmap[i] = 1.2F * image.bitmap[i] - 0.1F;
+    const Alignment a = keyframe.align(image, kFirst);
+    EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
+    EXPECT_NEAR(a.exposure.gain, 1.2, 0.02);
+    EXPECT_NEAR(a.exposure.offset, -0.1, 0.01);
+    EXPECT_LT(errorOf(a, truth).norm(), 2e-3);
+}
+
+/// Information in the camera frame, whatever the motion: that of the planner at the keyframe,
+/// carried over by the adjoint.
+TEST(KeyframeModel, InformationIsCarriedToTheCamera) {
+    KeyframeOptions options;
+    options.finest = 0;
+    options.minGradient = 0.;
+    options.mostBend = kInfinity;  // the pixels that planning counts
+    options.alignment.robust = RobustWeight::none;
+    const View view = roomView(kFirst);
+    KeyframeModel keyframe(view, wideCamera(), kFirst, options);
+    const Alignment a = keyframe.align(view.intensity, kFirst);
+    const Matrix6 planned =
+        photometricInformation(view, wideCamera(), options.alignment.photometric);
+    // A border of a pixel and a few points on its edge are looked up outside the image, and
+    // gradients seen over one pixel are not quite those of the keyframe over two: a little counts
+    // as noise.
+    EXPECT_LT((a.information - planned).norm(), 0.1 * planned.norm());
+
+    Vector6 turn = 0.3 * Vector6::Unit(5);
+    turn[0] = 0.02;
+    const Pose moved = expSE3(turn) * kFirst;
+    const Alignment b = keyframe.align(roomView(moved).intensity, moved);
+    const Matrix6 Ad = adjoint(kFirst * b.T_c_w.inverse());
+    const Matrix6 carried = Ad.transpose() * planned * Ad;
+    EXPECT_LT((b.information - carried).norm(), 0.5 * (b.information - planned).norm());
+}
+
+View floorView(const Texture& texture, const Pose& T_c_w, std::uint64_t seed) {
+    const MeshRenderer floor(test::floorOf(texture));
+    View view;
+    floor.render(wideCamera(), T_c_w, view);
+    std::mt19937_64 random(seed);
+    view.intensity = test::noisy(view.intensity, AlignmentOptions().photometric.sigma, random);
+    return view;
+}
+
+/// The noise of a keyframe has gradients as texture has, and there are many pixels.
+TEST(KeyframeModel, NoiseIsNoTexture) {
+    const Pose above = cameraAt({0., 0., 1.5}, test::kDown);
+    KeyframeModel grey(floorView(uniformTexture(0.5), above, 1), wideCamera(), above);
+    const Alignment a = grey.align(floorView(uniformTexture(0.5), above, 2).intensity, above);
+    EXPECT_EQ(a.openDirections.size(), 6U) << describe(a);
+
+    const Texture bars = stripes({.width = 0.3, .softEdge = 0.05});
+    KeyframeModel striped(floorView(bars, above, 3), wideCamera(), above);
+    const Pose moved = expSE3(Vector6(Vector6::Constant(0.01))) * above;
+    const Alignment b = striped.align(floorView(bars, moved, 4).intensity, above);
+    EXPECT_EQ(b.verdict, Verdict::degenerate) << describe(b);
+    EXPECT_LT(b.openDirections.size(), 6U) << describe(b);
+    const Vector6 e = errorOf(b, moved);
+    EXPECT_LT(squaredDistance(e, b.covariance), 30.) << e.transpose();
+}
+
+TEST(KeyframeModel, SaysWhenItIsLost) {
+    KeyframeModel keyframe(roomView(kFirst), wideCamera(), kFirst);
+    EXPECT_TRUE(isLost(
+        keyframe.align(ImageF(wideCamera().height, wideCamera().width, 0.F), kFirst).verdict));
+    const View elsewhere = roomView(cameraAt({4.5, 1., 1.2}, 0.2, 2.5), 0.01);
+    EXPECT_TRUE(isLost(keyframe.align(elsewhere.intensity, kFirst).verdict));
+    View blind = roomView(kFirst);
+    blind.depth = ImageF(wideCamera().height, wideCamera().width, 0.F);
+    KeyframeModel noDepth(blind, wideCamera(), kFirst);
+    EXPECT_EQ(noDepth.align(blind.intensity, kFirst).verdict, Verdict::lostOverlap);
+}
+
+TEST(KeyframeModel, RefusesImagesOfAnotherSize) {
+    KeyframeModel keyframe(roomView(kFirst), wideCamera(), kFirst);
+    EXPECT_THROW(keyframe.align(ImageF(10, 10), kFirst), std::invalid_argument);
+    EXPECT_THROW(KeyframeModel(View{}, wideCamera()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace photonav

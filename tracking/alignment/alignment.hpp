@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The result of an alignment: pose, covariance and verdict.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "alignment/normal_equations.hpp"
+#include "geometry/constants.hpp"
+#include "geometry/uncertain_pose.hpp"
+
+namespace photonav {
+
+enum class Verdict {
+    converged,
+    degenerate,       ///< converged, but the image leaves directions open: see openDirections
+    lostOverlap,      ///< too little of the model in view
+    lostResidual,     ///< the model does not explain the image
+    lostDivergence,   ///< no minimum found
+    lostImplausible,  ///< a minimum that the prior rules out
+    lostExposure,     ///< the fit needs an implausible gain or offset
+};
+
+inline bool isLost(Verdict verdict) {
+    return verdict != Verdict::converged && verdict != Verdict::degenerate;
+}
+
+/// How far an image's gain and offset may be from 1 and 0, where they are estimated: standard
+/// deviations. Where an image is half blank, they would otherwise take the place of the pose.
+struct ExposurePrior {
+    double gainSigma = kInfinity;
+    double offsetSigma = kInfinity;  ///< [grey value]
+
+    /// Inverse variances.
+    Eigen::Vector2d information() const {
+        return {1. / (gainSigma * gainSigma), 1. / (offsetSigma * offsetSigma)};
+    }
+    /// From the likeliest exposure.
+    static Eigen::Vector2d difference(const Exposure& exposure) {
+        return {exposure.gain - 1., exposure.offset};
+    }
+    /// Squared Mahalanobis distance.
+    double squaredDistance(const Exposure& exposure) const {
+        return information().dot(difference(exposure).cwiseAbs2());
+    }
+};
+
+/// When an alignment is accepted, and its noise.
+struct TrustOptions {
+    double minOverlap = 0.2;  ///< least share of the image's pixels that must count
+    /// A residual above `residualSigmas` times the image noise must leave less than this share of
+    /// the images' variance unexplained: var(r) / (var(observed) + var(predicted)), 0 for equal
+    /// images, 1 for images that have nothing to do with each other.
+    double maxUnexplained = 0.4;
+    double residualSigmas = 3.;
+    /// A direction is open when the image alone leaves it with a larger standard deviation [rad;
+    /// translations in units of the mean depth].
+    double openSigma = 0.02;
+    /// Largest squared Mahalanobis distance of the pose from its prior (6 degrees of freedom).
+    double maxSurprise = 60.;
+    /// Gains, where they are estimated, stay between its inverse and it. (Any image fits any other
+    /// when nearly nothing is multiplied by very much.)
+    double maxGain = 3.;
+    /// Least standard deviations of the result, for what repeats from image to image and no number
+    /// of pixels averages out, as errors of the map do.
+    double floorTranslation = 0.;  ///< [m]
+    double floorRotation = 0.;     ///< [rad]
+};
+
+/// Residuals observed - (gain * predicted + offset), grey values, over the pixels that count.
+struct ResidualStatistics {
+    double mean = 0.;
+    double rms = 0.;
+    double robustSigma = 0.;  ///< 1.4826 times the median of the absolute value
+    double unexplained = 0.;  ///< share of the variance, see TrustOptions
+    double explained = 0.;    ///< variance of the observed image less the mean square residual
+};
+
+/// Names of the axes of a twist of the camera: translations, then rotations about x, y, z.
+inline constexpr std::array kAxes = {"x", "y", "z", "pitch", "yaw", "roll"};
+
+struct Alignment {
+    /// Of the camera to the model; the last iterate when lost.
+    Pose T_c_w = Pose::Identity();
+    /// Left perturbation, camera frame, (rho, phi). Open directions without a prior get one mean
+    /// depth and one radian of standard deviation.
+    Matrix6 covariance = Matrix6::Zero();
+    /// Lambda of the image alone, same frame; where a model can be rendered, by measuredSlope().
+    Matrix6 information = Matrix6::Zero();
+    Exposure exposure;
+    int iterations = 0;  ///< views compared, over all levels
+    ResidualStatistics residual;
+    double overlap = 0.;  ///< share of the image's pixels that count
+    /// Of Lambda with translations in units of the mean depth [1/rad^2], ascending; columns of
+    /// `directions` are the unit eigenvectors, (rho / depth, phi).
+    Vector6 eigenvalues = Vector6::Zero();
+    Matrix6 directions = Matrix6::Identity();
+    double meanDepth = 1.;  ///< harmonic mean over the view [m]
+    Verdict verdict = Verdict::lostDivergence;
+    /// As many of kAxes as there are open directions: those that lie most in them.
+    std::vector<std::string> openDirections;
+};
+
+/// Whether the image alone leaves all directions open.
+inline bool isUninformative(const Alignment& alignment) {
+    return alignment.openDirections.size() == kAxes.size();
+}
+
+/// The verdict in words: "converged", "degenerate along x, yaw", "lost: overlap 0.12 below 0.20".
+std::string describe(const Alignment& alignment, const TrustOptions& options = {});
+
+/// Fisher information of the camera pose and its right side b = J^T r / sigma^2, exposure
+/// eliminated: the step from the image alone solves information * xi = b.
+struct PoseEquations {
+    Matrix6 information = Matrix6::Zero();
+    Vector6 right = Vector6::Zero();
+    /// (d gain, d offset) = exposureRight - exposureOfPose * xi; zero with a fixed exposure.
+    Eigen::Vector2d exposureRight = Eigen::Vector2d::Zero();
+    Eigen::Matrix<double, 2, 6> exposureOfPose = Eigen::Matrix<double, 2, 6>::Zero();
+};
+/// @param prior of the exposure; none: the exposure is fixed
+/// @param exposure at which the equations are
+PoseEquations poseEquations(const NormalEquations& equations, const PhotometricOptions& options,
+                            const std::optional<ExposurePrior>& prior = {},
+                            const Exposure& exposure = {});
+
+/// Eigenvalues of `information` with translations in units of `meanDepth`, ascending.
+struct Spectrum {
+    Vector6 values;
+    Matrix6 directions;
+    Vector6 unit;  ///< (meanDepth x 3, 1 x 3)
+};
+Spectrum spectrum(const Matrix6& information, double meanDepth);
+
+/// Step of the image alone, confined to eigenvalues above `least`, each raised by `damping` times
+/// their mean.
+Vector6 imageStep(const Spectrum& spectrum, const Vector6& right, double least, double damping);
+
+/// Step toward the most likely pose given the image and the prior. It solves
+/// (Lambda + damping + P^-1) xi = b - P^-1 e as (1 + P (Lambda + damping)) xi = P b - e, which
+/// holds for a singular P as well.
+/// @param e deviation(T, T_prior)
+/// @param P covariance of the prior, transported() by e
+Vector6 mapStep(const Spectrum& spectrum, const PoseEquations& equations, const Vector6& e,
+                const Matrix6& P, double damping);
+
+/// Fills in everything of an alignment that follows from its last comparison.
+/// @param prior transported covariance at alignment.T_c_w, if there is one
+void conclude(Alignment& alignment, const NormalEquations& equations, std::size_t pixels,
+              const PhotometricOptions& photometric,
+              const std::optional<ExposurePrior>& exposurePrior,
+              const std::optional<Matrix6>& prior, const TrustOptions& options);
+
+/// The covariance raised where it is below floor (eigenvalues relative to the floor, clipped at 1).
+/// A floor of 0 is none.
+Matrix6 withFloor(const Matrix6& covariance, double translation, double rotation);
+
+/// Squared Mahalanobis distance e^T covariance^-1 e; directions without variance count by a
+/// millionth of the largest.
+double squaredDistance(const Vector6& e, const Matrix6& covariance);
+
+}  // namespace photonav

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "alignment/coarse_to_fine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "alignment/measured_slope.hpp"
+#include "geometry/constants.hpp"
+#include "geometry/se3.hpp"
+
+namespace photonav {
+
+namespace {
+
+constexpr double kLeastDamping = 1e-3;
+constexpr double kMostDamping = 1e4;
+constexpr int kMeasurements = 3;  // of the slope, each where the last one led
+/// Which pixels count changes from pose to pose, and with it the cost by more than small steps do,
+/// those by J M, which do not quite follow its gradient, included.
+constexpr double kCostNoise = 1e-3;
+
+/// A pose on trial, and what the image says there.
+struct Iterate {
+    Pose T_c_w = Pose::Identity();
+    Exposure exposure;
+    NormalEquations equations;
+    Vector6 fromPrior = Vector6::Zero();  ///< deviation() from its mean
+    double priorTerm = 0.;                ///< squared distance from the prior
+};
+
+/// The equations of J M instead of J.
+NormalEquations confined(NormalEquations e, const Matrix6& M) {
+    e.AtA.topLeftCorner<6, 6>() = M.transpose() * e.AtA.topLeftCorner<6, 6>() * M;
+    e.AtA.topRightCorner<6, 2>() = M.transpose() * e.AtA.topRightCorner<6, 2>();
+    e.AtA.bottomLeftCorner<2, 6>() = e.AtA.bottomLeftCorner<2, 6>() * M;
+    e.Atr.head<6>() = M.transpose() * e.Atr.head<6>();
+    return e;
+}
+
+NormalEquations scaled(NormalEquations e, double weight) {
+    e.AtA *= weight;
+    e.Atr *= weight;
+    return e;
+}
+
+class Search {
+  public:
+    Search(Comparison& comparison, const AlignmentOptions& options, const UncertainPose* prior)
+        : comparison_(comparison), options_(options), prior_(prior) {}
+
+    Alignment run(const Pose& T_start);
+
+  private:
+    bool descend();
+    bool measureSlope();
+    bool improve(double& damping);
+    Iterate evaluate(const Pose& T_c_w, const Exposure& exposure);
+    void adaptLoss(double below);
+    double cost(const Iterate& at, double pixels) const;
+    PoseEquations equations() const {
+        return poseEquations(confined(at_.equations, slope_), options_.photometric,
+                             options_.exposure, at_.exposure);
+    }
+    Vector6 step(const PoseEquations& equations, double damping) const;
+    bool isSmall(const Vector6& xi, const Matrix6& information) const;
+    std::optional<Matrix6> transportedPrior() const;
+    /// That makes sums of squares -2 log likelihoods.
+    double weight() const {
+        const PhotometricOptions& p = options_.photometric;
+        return p.scale / (p.sigma * p.sigma);
+    }
+    double scale() const { return std::ldexp(1., static_cast<int>(level_)); }
+
+    Comparison& comparison_;
+    const AlignmentOptions& options_;
+    const UncertainPose* prior_;
+    std::size_t level_ = 0;
+    Loss loss_;
+    Matrix6 slope_ = Matrix6::Identity();  ///< M: J M is what J truly says
+    Iterate at_;
+    int iterations_ = 0;
+    bool done_ = false;  ///< with this level: the last step was small
+};
+
+Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
+    Iterate at{T_c_w, exposure, comparison_.compare(level_, T_c_w, exposure, loss_)};
+    ++iterations_;
+    if (prior_) {
+        at.fromPrior = deviation(T_c_w, prior_->mean);
+        at.priorTerm = squaredDistance(at.fromPrior, transported(prior_->covariance, at.fromPrior));
+    }
+    return at;
+}
+
+/// -2 log likelihood of image and priors, as if `pixels` had been seen: iterates see different
+/// numbers of them.
+double Search::cost(const Iterate& at, double pixels) const {
+    if (at.equations.count < 1.) return kInfinity;
+    const double exposureTerm =
+        options_.exposure ? options_.exposure->squaredDistance(at.exposure) : 0.;
+    return weight() * at.equations.loss * pixels / at.equations.count + at.priorTerm + exposureTerm;
+}
+
+std::optional<Matrix6> Search::transportedPrior() const {
+    if (!prior_) return {};
+    return transported(prior_->covariance, at_.fromPrior);
+}
+
+Vector6 Search::step(const PoseEquations& equations, double damping) const {
+    const double inverseDepth = at_.equations.meanInverseDepth;
+    const Spectrum s = spectrum(equations.information, inverseDepth > 0. ? 1. / inverseDepth : 1.);
+    if (const auto prior = transportedPrior()) {
+        return mapStep(s, equations, at_.fromPrior, *prior, damping);
+    }
+    // A level of a quarter of the pixels has about a quarter of the information.
+    const double sigma = options_.trust.openSigma * scale();
+    return imageStep(s, equations.right, 1. / (sigma * sigma), damping);
+}
+
+bool Search::isSmall(const Vector6& xi, const Matrix6& information) const {
+    if (level_ == 0) {
+        const NormalEquations& e = at_.equations;
+        const double sigma = options_.photometric.sigma;
+        const double noise = std::max(1., e.sumSquares / (e.count * sigma * sigma));
+        const double step = options_.fineStep;
+        return xi.dot(information * xi) < 6. * step * step * noise;
+    }
+    const double radians =
+        xi.head<3>().norm() * at_.equations.meanInverseDepth + xi.tail<3>().norm();
+    return comparison_.camera(level_).fx() * radians < options_.coarseStep;
+}
+
+/// Takes over the scale of the residuals just seen, not below the noise, when it has fallen below
+/// `below` times the one in use.
+void Search::adaptLoss(double below) {
+    if (options_.robust == RobustWeight::none) return;
+    const double seen = std::max(options_.photometric.sigma, comparison_.robustSigma());
+    if (seen >= below * loss_.sigma) return;
+    loss_ = {options_.robust, seen};
+    at_ = evaluate(at_.T_c_w, at_.exposure);
+}
+
+/// One step that lowers the cost, raising the damping until it does; false when there is none.
+bool Search::improve(double& damping) {
+    const PoseEquations equations = this->equations();
+    for (;;) {
+        const Vector6 xi = step(equations, damping);
+        const Eigen::Vector2d change = equations.exposureRight - equations.exposureOfPose * xi;
+        const double most = options_.trust.maxGain;
+        const Exposure exposure{std::clamp(at_.exposure.gain + change[0], 1. / most, most),
+                                at_.exposure.offset + change[1]};
+        const Iterate next = evaluate(expSE3(xi) * at_.T_c_w, exposure);
+        const double pixels = at_.equations.count;
+        const double before = cost(at_, pixels);
+        const double after = cost(next, pixels);
+        const bool better = after <= (1. + kCostNoise) * before;
+        done_ = isSmall(xi, equations.information);
+        if (better) {
+            at_ = next;
+            // A step that gains no more than the noise of the cost need not become smaller by
+            // itself: where visibility jumps, iterates would go to and fro.
+            const bool isGain = after < (1. - kCostNoise) * before;
+            damping = isGain ? (damping > kLeastDamping ? 0.1 * damping : 0.)
+                             : std::max(kLeastDamping, 10. * damping);
+        }
+        if (better || done_) return true;
+        damping = std::max(kLeastDamping, 10. * damping);
+        if (damping > kMostDamping) return false;
+    }
+}
+
+/// One level; false when no minimum was found.
+bool Search::descend() {
+    adaptLoss(1.);
+    const int last = iterations_ + options_.maxIterations;
+    double damping = 0.;
+    done_ = false;
+    while (at_.equations.count > 0. && iterations_ < last) {
+        if (!improve(damping)) return false;
+        if (done_) return true;
+        adaptLoss(0.7);
+    }
+    return false;
+}
+
+/// J as it is over the distances that the pose is uncertain by.
+bool Search::measureSlope() {
+    const auto walk = comparison_.predictionAsImage(level_, at_.T_c_w);
+    if (!walk) return false;
+    slope_ = measuredSlope(transportedPrior(), options_.trust, [&](const Pose& T_away_here) {
+        ++iterations_;
+        return scaled(walk(T_away_here * at_.T_c_w), weight());
+    });
+    return true;
+}
+
+Alignment Search::run(const Pose& T_start) {
+    at_.T_c_w = T_start;
+    bool converged = false;
+    for (level_ = comparison_.levels(); level_-- > 0;) {
+        loss_ = {RobustWeight::none, std::numeric_limits<double>::max()};
+        at_ = evaluate(at_.T_c_w, at_.exposure);
+        converged = descend();
+        if (level_ == 0) break;
+    }
+    for (int i = 0; i < kMeasurements && converged && options_.measureSlope; ++i) {
+        const Pose before = at_.T_c_w;
+        if (!measureSlope()) break;
+        converged = descend();
+        if (isSmall(logSE3(at_.T_c_w * before.inverse()), equations().information)) break;
+    }
+    Alignment result;
+    result.T_c_w = at_.T_c_w;
+    result.exposure = at_.exposure;
+    result.iterations = iterations_;
+    result.verdict = converged ? Verdict::converged : Verdict::lostDivergence;
+    if (prior_ && at_.priorTerm > options_.trust.maxSurprise) {
+        result.verdict = Verdict::lostImplausible;
+    }
+    conclude(result, confined(at_.equations, slope_), comparison_.pixels(), options_.photometric,
+             options_.exposure, transportedPrior(), options_.trust);
+    result.residual.robustSigma = comparison_.robustSigma();
+    return result;
+}
+
+}  // namespace
+
+Alignment alignCoarseToFine(Comparison& comparison, const AlignmentOptions& options,
+                            const Pose& T_start, const UncertainPose* prior) {
+    return Search(comparison, options, prior).run(T_start);
+}
+
+}  // namespace photonav

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "alignment/dense_aligner.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include "alignment/image_pyramid.hpp"
+
+namespace photonav {
+
+/// Compares images with the model rendered for the camera of each level.
+class DenseAligner::RenderedModel : public Comparison {
+  public:
+    RenderedModel(const ViewSource& model, const Camera& full, const AlignmentOptions& options)
+        : options_(options), model_(model) {
+        Camera c = full;
+        for (int l = 0; l < std::max(1, options.levels); ++l) {
+            levels_.push_back({c,
+                               ViewComparison(c, options.photometric, options.modelNoise),
+                               ViewComparison(c, options.photometric),
+                               {}});
+            c = halved(c);
+            if (std::min(c.width, c.height) < kLeastSide) break;
+        }
+    }
+
+    void observe(const ImageF& image) {
+        if (image.getWidth() != camera(0).width || image.getHeight() != camera(0).height) {
+            throw std::invalid_argument("alignment: image and camera differ in size");
+        }
+        levels_[0].observed = image;
+        for (std::size_t l = 1; l < levels_.size(); ++l) {
+            levels_[l].observed = halvedAsRendered(levels_[l - 1].observed);
+        }
+    }
+
+    const AlignmentOptions& options() const { return options_; }
+    std::size_t levels() const override { return levels_.size(); }
+    const Camera& camera(std::size_t level) const override { return levels_[level].camera; }
+    std::size_t pixels() const override { return std::size_t(camera(0).width) * camera(0).height; }
+    double robustSigma() const override { return levels_[last_].compare.robustSigma(); }
+
+    NormalEquations compare(std::size_t level, const Pose& T_c_w, const Exposure& exposure,
+                            const Loss& loss) override {
+        last_ = level;
+        Level& at = levels_[level];
+        model_.render(at.camera, T_c_w, predicted_);
+        return at.compare(predicted_, at.observed, exposure, loss);
+    }
+
+    AgainstPrediction predictionAsImage(std::size_t level, const Pose& T_image_w) override {
+        return [this, level, T_image_w, isRendered = false](const Pose& T_c_w) mutable {
+            Level& at = levels_[level];
+            if (!isRendered) model_.render(at.camera, T_image_w, asImage_);
+            isRendered = true;
+            const bool isHere = T_c_w.matrix() == T_image_w.matrix();
+            if (!isHere) model_.render(at.camera, T_c_w, predicted_);
+            return at.comparePredictions(isHere ? asImage_ : predicted_, asImage_.intensity,
+                                         Exposure{}, Loss{});
+        };
+    }
+
+  private:
+    struct Level {
+        Camera camera;
+        ViewComparison compare, comparePredictions;
+        ImageF observed;
+    };
+
+    AlignmentOptions options_;
+    const ViewSource& model_;
+    std::vector<Level> levels_;
+    std::size_t last_ = 0;  ///< level compared last
+    View predicted_, asImage_;
+};
+
+DenseAligner::DenseAligner(const ViewSource& model, const Camera& camera,
+                           const AlignmentOptions& options)
+    : model_(std::make_unique<RenderedModel>(model, camera, options)) {}
+DenseAligner::~DenseAligner() = default;
+DenseAligner::DenseAligner(DenseAligner&&) noexcept = default;
+DenseAligner& DenseAligner::operator=(DenseAligner&&) noexcept = default;
+
+const AlignmentOptions& DenseAligner::options() const { return model_->options(); }
+const Camera& DenseAligner::camera() const { return model_->camera(0); }
+
+Alignment DenseAligner::align(const ImageF& observed, const Pose& T_start) {
+    model_->observe(observed);
+    return alignCoarseToFine(*model_, options(), T_start, nullptr);
+}
+
+Alignment DenseAligner::align(const ImageF& observed, const UncertainPose& prior) {
+    return align(observed, prior, prior.mean);
+}
+
+Alignment DenseAligner::align(const ImageF& observed, const UncertainPose& prior,
+                              const Pose& T_start) {
+    model_->observe(observed);
+    return alignCoarseToFine(*model_, options(), T_start, &prior);
+}
+
+}  // namespace photonav

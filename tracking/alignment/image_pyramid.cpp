@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "alignment/image_pyramid.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace photonav {
+
+namespace {
+
+constexpr int kTaps = 8;
+constexpr std::array<float, kTaps> kBinomial = {1.F / 128,  7.F / 128,  21.F / 128, 35.F / 128,
+                                                35.F / 128, 21.F / 128, 7.F / 128,  1.F / 128};
+
+}  // namespace
+
+Camera halved(const Camera& camera) {
+    const auto centre = [](double c) { return 0.5 * (c + 0.5) - 0.5; };
+    return {camera.width / 2, camera.height / 2,
+            vpCameraParameters(0.5 * camera.fx(), 0.5 * camera.fy(), centre(camera.cx()),
+                               centre(camera.cy()))};
+}
+
+ImageF halvedAsRendered(const ImageF& image) {
+    const int width = static_cast<int>(image.getWidth());
+    const int height = static_cast<int>(image.getHeight());
+    ImageF half(image.getHeight() / 2, image.getWidth() / 2);
+    std::vector<float> row(static_cast<std::size_t>(width) + kTaps);  // filtered over rows, padded
+    constexpr int kBefore = kTaps / 2 - 1;
+    for (int v = 0; v < height / 2; ++v) {
+        std::array<const float*, kTaps> source;
+        for (int k = 0; k < kTaps; ++k) {
+            source[k] = image[std::clamp(2 * v + k - kBefore, 0, height - 1)];
+        }
+        for (int u = 0; u < width; ++u) {
+            float sum = 0.F;
+            for (int k = 0; k < kTaps; ++k) sum += kBinomial[k] * source[k][u];
+            row[u + kBefore] = sum;
+        }
+        std::fill_n(row.begin(), kBefore, row[kBefore]);
+        std::fill(row.begin() + kBefore + width, row.end(), row[kBefore + width - 1]);
+        float* out = half[v];
+        for (int u = 0; u < width / 2; ++u) {
+            float sum = 0.F;
+            for (int k = 0; k < kTaps; ++k) sum += kBinomial[k] * row[2 * u + k];
+            out[u] = sum;
+        }
+    }
+    return half;
+}
+
+}  // namespace photonav

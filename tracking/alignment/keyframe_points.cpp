@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "alignment/keyframe_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "alignment/product_sums.hpp"
+#include "photometry/simd.hpp"
+
+namespace photonav {
+
+namespace {
+
+using simd::Float;
+using simd::Int;
+using simd::kWidth;
+
+constexpr std::size_t kChunk = 32;       ///< vectors whose products are summed together
+constexpr std::size_t kSampleEvery = 4;  ///< chunks per chunk of residuals kept
+constexpr std::size_t kNoiseEvery = 16;  ///< points per point that the noise is reckoned from
+
+double square(double x) { return x * x; }
+
+Float at(const float* p) { return simd::load<Float>(p); }
+
+/// An image between its pixels.
+struct Sample {
+    Float grey;
+    Float du, dv;  ///< gradient [grey value per pixel]
+};
+
+/// At (u, v), both within [0, size - 1).
+Sample bilinear(const ImageF& image, const Float& u, const Float& v) {
+    const Int column = simd::toInt(u);
+    const Int row = simd::toInt(v);
+    const Float du = u - simd::toFloat(column);
+    const Float dv = v - simd::toFloat(row);
+    const Int index = row * static_cast<int>(image.getWidth()) + column;
+    const float* base = image.bitmap;
+    const float* below = base + image.getWidth();
+    const auto pixel = [&](const float* from) {
+        return reinterpret_cast<Float>(simd::gather<4>(from, index));
+    };
+    const Float left = pixel(base), right = pixel(base + 1);
+    const Float downLeft = pixel(below) - left, downRight = pixel(below + 1) - right;
+    const Float atLeft = left + dv * downLeft;
+    const Float across = right + dv * downRight - atLeft;
+    return {atLeft + du * across, across, downLeft + du * (downRight - downLeft)};
+}
+
+/// Elements first, first + 2, ... of two vectors one after the other.
+template <int... kLane>
+Float everySecond(const Float& a, const Float& b, int first,
+                  std::integer_sequence<int, kLane...> /*lanes*/) {
+    return first == 0 ? __builtin_shufflevector(a, b, (2 * kLane)...)
+                      : __builtin_shufflevector(a, b, (2 * kLane + 1)...);
+}
+
+/// out[u] = merge of a[2u], a[2u + 1], b[2u], b[2u + 1].
+template <class Merge>
+void halveRows(const float* a, const float* b, float* out, unsigned width, const Merge& merge) {
+    const auto columns = [](const float* row, int first) {
+        return everySecond(at(row), at(row + kWidth), first,
+                           std::make_integer_sequence<int, kWidth>());
+    };
+    unsigned u = 0;
+    for (; u + kWidth <= width; u += kWidth) {
+        const std::size_t from = 2 * std::size_t(u);
+        simd::store(out + u, merge(columns(a + from, 0), columns(a + from, 1), columns(b + from, 0),
+                                   columns(b + from, 1)));
+    }
+    for (; u < width; ++u) {
+        const std::size_t from = 2 * std::size_t(u);
+        out[u] = merge(simd::splat(a[from]), simd::splat(a[from + 1]), simd::splat(b[from]),
+                       simd::splat(b[from + 1]))[0];
+    }
+}
+
+}  // namespace
+
+ImageF halvedByMean(const ImageF& image) {
+    ImageF half(image.getHeight() / 2, image.getWidth() / 2);
+    for (unsigned v = 0; v < half.getHeight(); ++v) {
+        halveRows(image[2 * v], image[2 * v + 1], half[v], half.getWidth(),
+                  [](const Float& a, const Float& b, const Float& c, const Float& d) {
+                      return 0.25F * ((a + b) + (c + d));
+                  });
+    }
+    return half;
+}
+
+ImageF halvedDepth(const ImageF& depth, float spread) {
+    ImageF half(depth.getHeight() / 2, depth.getWidth() / 2);
+    const auto merge = [&](const Float& a, const Float& b, const Float& c, const Float& d) {
+        const Float zero = simd::splat(0.F), one = simd::splat(1.F), far = simd::splat(1e30F);
+        const auto orFar = [&](const Float& z) { return z > 0.F ? z : far; };
+        const auto isThere = [&](const Float& z) { return z > 0.F ? one : zero; };
+        const Float nearest =
+            simd::min(simd::min(orFar(a), orFar(b)), simd::min(orFar(c), orFar(d)));
+        const Float farthest = simd::max(simd::max(a, b), simd::max(c, d));
+        const Float count = (isThere(a) + isThere(b)) + (isThere(c) + isThere(d));
+        const Float mean = ((a + b) + (c + d)) / simd::max(count, one);
+        return farthest <= nearest * (1.F + spread) ? mean : zero;
+    };
+    for (unsigned v = 0; v < half.getHeight(); ++v) {
+        halveRows(depth[2 * v], depth[2 * v + 1], half[v], half.getWidth(), merge);
+    }
+    return half;
+}
+
+/// What is known of an image row before the choice is made; column u at index u.
+struct PointSet::Row {
+    std::vector<float> inverseDepth, gx, gy;
+    std::vector<std::int32_t> used;
+    const float* intensity = nullptr;
+    float y = 0.F;
+
+    explicit Row(std::size_t width) : inverseDepth(width), gx(width), gy(width), used(width, 0) {}
+};
+
+PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions& options)
+    : camera_(camera),
+      mostNoise_(2. * square(options.alignment.photometric.sigma) +
+                 2. * square(options.minGradient)) {
+    const unsigned width = camera.width;
+    const std::size_t capacity = std::size_t(width) * camera.height + kWidth;
+    for (auto* field : {&x_, &y_, &w_, &intensity_, &gx_, &gy_}) field->resize(capacity);
+
+    const PhotometricOptions& p = options.alignment.photometric;
+    const auto jump = static_cast<float>(std::min(p.depthJump, options.mostBend / camera.fx()));
+    const auto dark = static_cast<float>(p.saturation);
+    const auto aspect = static_cast<float>(camera.fy() / camera.fx());
+    const auto least = static_cast<float>(4. * square(options.minGradient));
+    const auto nearerThan = static_cast<float>(1. / options.maxDepth);
+    const auto fartherThan = static_cast<float>(1. / options.minDepth);
+    std::vector<float> inverse(std::size_t(width) * camera.height);
+    for (std::size_t i = 0; i < inverse.size(); ++i) {
+        const float z = view.depth.bitmap[i];
+        inverse[i] = z > 0.F ? 1.F / z : kNoSurface;
+    }
+    Row row(width);
+    for (unsigned v = 1; v + 1 < camera.height; ++v) {
+        const float* W = &inverse[std::size_t(v) * width];
+        const float* aboveW = W - width;
+        const float* belowW = W + width;
+        const float* I = view.intensity[v];
+        const float* above = view.intensity[v - 1];
+        const float* below = view.intensity[v + 1];
+        row.intensity = I;
+        row.y = static_cast<float>((v - camera.cy()) / camera.fy());
+        for (unsigned u = 1; u + 1 < width; ++u) {
+            const float horizontal = std::abs(W[u - 1] + W[u + 1] - 2.F * W[u]);
+            const float vertical = std::abs(aboveW[u] + belowW[u] - 2.F * W[u]);
+            const float du = I[u + 1] - I[u - 1];
+            const float dv = below[u] - above[u];
+            row.inverseDepth[u] = W[u];
+            row.gx[u] = du;
+            row.gy[u] = aspect * dv;
+            row.used[u] = (W[u] >= nearerThan) & (W[u] <= fartherThan) &
+                          (std::max(horizontal, vertical) <= jump * W[u]) & (I[u] > dark) &
+                          (I[u] < 1.F - dark) & (du * du + dv * dv >= least);
+        }
+        append(row, width);
+    }
+    const std::size_t padded = (size_ + kWidth - 1) / kWidth * kWidth;
+    double sum = 0.;
+    for (std::size_t i = 0; i < size_; ++i) sum += w_[i];
+    meanInverseDepth_ = size_ > 0 ? sum / static_cast<double>(size_) : 0.;
+    for (auto* field : {&x_, &y_, &w_, &intensity_, &gx_, &gy_}) field->resize(padded);
+    std::fill(x_.begin() + static_cast<std::ptrdiff_t>(size_), x_.end(), 1e6F);
+    std::fill(w_.begin() + static_cast<std::ptrdiff_t>(size_), w_.end(), 0.F);
+    for (std::size_t i = 0; i < size_; i += kNoiseEvery) noise_.add(x_[i], y_[i], w_[i]);
+}
+
+/// Every pixel is written, and the next goes over it unless it is used: no branch to predict.
+void PointSet::append(const Row& row, unsigned width) {
+    std::size_t n = size_;
+    const auto perColumn = static_cast<float>(1. / camera_.fx());
+    const auto centre = static_cast<float>(camera_.cx());
+    for (unsigned u = 1; u + 1 < width; ++u) {
+        x_[n] = (static_cast<float>(u) - centre) * perColumn;
+        y_[n] = row.y;
+        w_[n] = row.inverseDepth[u];
+        intensity_[n] = row.intensity[u];
+        gx_[n] = row.gx[u];
+        gy_[n] = row.gy[u];
+        n += static_cast<std::size_t>(row.used[u]);
+    }
+    size_ = n;
+}
+
+NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
+                                  const Exposure& exposure, const Loss& loss) {
+    const Eigen::Matrix3f R = T_c_k.linear().cast<float>();
+    const Eigen::Vector3f t = T_c_k.translation().cast<float>();
+    const auto fx = static_cast<float>(camera_.fx()), fy = static_cast<float>(camera_.fy());
+    const auto cx = static_cast<float>(camera_.cx()), cy = static_cast<float>(camera_.cy());
+    const auto gain = static_cast<float>(exposure.gain);
+    const auto offset = static_cast<float>(exposure.offset);
+    const float right = static_cast<float>(camera_.width) - 1.001F;
+    const float bottom = static_cast<float>(camera_.height) - 1.001F;
+
+    const float aspect = fy / fx;
+    Float noiseX{}, noiseY{};
+
+    ProductSums sums(loss, kChunk);
+    residualSample_.clear();
+    const std::size_t vectors = x_.size() / kWidth;
+    for (std::size_t begin = 0; begin < vectors; begin += kChunk) {
+        sums.beginRow();
+        const bool keep = begin / kChunk % kSampleEvery == 0;
+        for (std::size_t i = begin; i < std::min(begin + kChunk, vectors); ++i) {
+            const std::size_t k = i * kWidth;
+            const Float x = at(&x_[k]), y = at(&y_[k]), w = at(&w_[k]);
+            const Float px = R(0, 0) * x + R(0, 1) * y + (R(0, 2) + t[0] * w);
+            const Float py = R(1, 0) * x + R(1, 1) * y + (R(1, 2) + t[1] * w);
+            const Float pz = R(2, 0) * x + R(2, 1) * y + (R(2, 2) + t[2] * w);
+            const Float inverse = 1.F / pz;
+            const Float u = fx * px * inverse + cx;
+            const Float v = fy * py * inverse + cy;
+            const Int inView = (pz > 0.01F) & (u >= 0.F) & (u < right) & (v >= 0.F) & (v < bottom);
+            const Float I = at(&intensity_[k]);
+            const Sample seen = bilinear(observed, inView ? u : Float{}, inView ? v : Float{});
+            const Float r = seen.grey - (gain * I + offset);
+            const Float gx = at(&gx_[k]), gy = at(&gy_[k]);
+            // Noise is what it does not share with the gradient seen, turned to the keyframe.
+            const Float perPixel = inView ? 2.F / gain * inverse : Float{};
+            const Float du = perPixel * seen.du, dv = perPixel * aspect * seen.dv;
+            noiseX += gx * ((inView ? gx : Float{}) - (R(0, 0) * du + R(1, 0) * dv));
+            noiseY += gy * ((inView ? gy : Float{}) - (R(0, 1) * du + R(1, 1) * dv));
+            const Float s = x * gx + y * gy;
+            sums.add({gx * w, gy * w, s * w, y * s + gy, x * s + gx, x * gy - y * gx, I}, r,
+                     inView);
+            if (keep) {
+                residualSample_.resize(residualSample_.size() + kWidth);
+                simd::store(&residualSample_[residualSample_.size() - kWidth],
+                            inView ? r : simd::splat(kUnused));
+            }
+        }
+        sums.endRow();
+    }
+    const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
+    NormalEquations equations = sums.result(unit);
+    equations.meanInverseDepth = meanInverseDepth_;
+    noise_.subtractFrom(equations, {simd::sum(noiseX), simd::sum(noiseY)}, mostNoise_,
+                        unit.head<6>());
+    return equations;
+}
+
+}  // namespace photonav

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One pass over an image pair: what Gauss-Newton needs to know at one pose.
+#pragma once
+
+#include "photometry/photometric.hpp"
+
+namespace photonav {
+
+using Vector8 = Eigen::Matrix<double, 8, 1>;
+using Matrix8 = Eigen::Matrix<double, 8, 8>;
+
+/// How residuals are weighed. `huber` and `tukey` keep 95 % of the efficiency on Gaussian noise.
+enum class RobustWeight { none, huber, tukey };
+
+/// A robust loss for residuals of the given scale.
+struct Loss {
+    RobustWeight kind = RobustWeight::none;
+    double sigma = 1.;  ///< standard deviation of the inliers [grey value]
+
+    /// Residual at which weights begin to fall (huber: 1.345 sigma) or end (tukey: 4.685 sigma).
+    double width() const { return (kind == RobustWeight::huber ? 1.345 : 4.685) * sigma; }
+};
+
+/// observed = gain * predicted + offset.
+struct Exposure {
+    double gain = 1.;
+    double offset = 0.;
+};
+
+/// Sums over the pixels that count, for residuals r = observed - (gain * predicted + offset) and
+/// unknowns (xi, d gain, d offset), where xi is the left perturbation of the camera pose:
+/// r = A (xi, dg, do), A = [-gain * J | predicted | 1], J as in photometricInformation().
+struct NormalEquations {
+    Matrix8 AtA = Matrix8::Zero();  ///< sum w A^T A
+    Vector8 Atr = Vector8::Zero();  ///< sum w A^T r
+    double loss = 0.;               ///< sum rho(r), rho = r^2 where the weight is one
+    double count = 0.;              ///< pixels used
+    double sum = 0.;                ///< of r, not weighted
+    double sumSquares = 0.;         ///< of r^2, not weighted
+    double sumPredicted = 0.;       ///< of the predicted grey values, not weighted
+    double sumPredictedSquares = 0.;
+    double sumPredictedTimesR = 0.;
+    double meanInverseDepth = 0.;  ///< over the surfaces in view [1/m]; 0: none
+};
+
+class GradientNoise;
+
+/// Whether the prediction has noise of its own, whose gradients are to be taken out
+/// (GradientNoise).
+enum class ModelNoise { none, measured };
+
+/// Compares a predicted view with an observed image, pixel by pixel at the same place. The gradient
+/// is that of the prediction; which pixels count is decided by the prediction alone, by
+/// the rules of photometricInformation(), whose Lambda this is (times sigma^2, without weights).
+/// `photometric.stride` must be 1.
+class ViewComparison {
+  public:
+    ViewComparison(const Camera& camera, const PhotometricOptions& photometric,
+                   ModelNoise noise = ModelNoise::none);
+
+    /// @throws std::invalid_argument when the images and the camera differ in size
+    NormalEquations operator()(const View& predicted, const ImageF& observed,
+                               const Exposure& exposure, const Loss& loss);
+
+    /// 1.4826 times the median of |r| of the last call; 0 when no pixel counted.
+    double robustSigma() const;
+
+  private:
+    void load(const View& predicted, const ImageF& observed);
+    GradientNoise pointsSeen() const;
+
+    Camera camera_;
+    PhotometricOptions photometric_;
+    ModelNoise noise_;
+    std::size_t pitch_;  ///< of the padded copies: a column before and whole vectors after
+    std::vector<float> intensity_, inverseDepth_, observed_;
+    std::vector<float> residual_;  ///< kUnused where a pixel does not count
+    double meanInverseDepth_ = 0.;
+};
+
+/// 1.4826 times the median of |r| over the values below 2 (others stand for unused pixels).
+double robustSigmaOf(const std::vector<float>& residuals);
+
+}  // namespace photonav

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "alignment/wide_aligner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "alignment/image_pyramid.hpp"
+#include "geometry/se3.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr double kBasin = 6.;         // standard deviation that one start converges from [pixels]
+constexpr double kSpacing = 8.;       // of the views compared [pixels]
+constexpr double kReach = 3.;         // that they cover [standard deviations]
+constexpr double kMostPlaces = 4e3;   // of these views: beyond, they lie wider apart
+constexpr std::size_t kTried = 64;    // of them, those most like the image are aligned
+constexpr std::size_t kStarts = 8;    // of full alignments, at most
+constexpr double kJitter = 1.5;       // of starts where hard edges may keep alignments [pixels]
+constexpr double kNoiseSlack = 1.1;   // of the image noise's variance
+constexpr double kMisfit = 0.02;      // of the images' variance, beyond noise, at the right place
+constexpr double kAmbiguous = 12.;    // difference of -2 log likelihood that decides at least
+constexpr double kNarrow = 0.1;       // share of the pixels that show something in a strip
+constexpr double kLeastShown = 0.13;  // explained variance of a strip, per pixel, times what a
+                                      // pixel is worth: what shows less fits anywhere
+constexpr double kStuck = 0.3;        // share of what the best explains that decides at least along
+                                      // a single wide axis, where all that repeats has been tried:
+                                      // hard edges keep alignments a pixel from the right place
+constexpr double kElsewhere = 30.;    // squared Mahalanobis distance of another place
+
+/// Image motion over the uncertainty of a prior: principal axes [twist per pixel] and standard
+/// deviations [pixels].
+struct ImageMotion {
+    Matrix6 axes;
+    Vector6 sigmas;
+};
+
+ImageMotion imageMotionOf(const Matrix6& covariance, const Camera& camera, double depth) {
+    // A step along the optical axis moves the content at the image's side by that share of it, a
+    // turn about it as much as it turns.
+    const double side = 0.5 * camera.width;
+    Vector6 pixels;
+    pixels << camera.fx() / depth, camera.fy() / depth, side / depth, camera.fy(), camera.fx(),
+        side;
+    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(pixels.asDiagonal() * covariance *
+                                                        pixels.asDiagonal());
+    return {pixels.cwiseInverse().asDiagonal() * solver.eigenvectors(),
+            solver.eigenvalues().cwiseMax(0.).cwiseSqrt()};
+}
+
+/// Points of a grid within an ellipsoid, its middle included [pixels].
+std::vector<Vector6> placesWithin(const Vector6& sigmas) {
+    const Vector6 radii = kReach * sigmas;
+    const double volume = (2. * radii / kSpacing).cwiseMax(1.).prod();
+    const double spacing = kSpacing * std::cbrt(std::max(1., volume / kMostPlaces));
+    std::vector<Vector6> places{Vector6::Zero()};
+    for (int axis = 0; axis < 6; ++axis) {
+        const int reach = static_cast<int>(radii[axis] / spacing);
+        for (std::size_t k = places.size(); k-- > 0;) {
+            for (int i = -reach; i <= reach; ++i) {
+                Vector6 place = places[k];
+                place[axis] = spacing * i;
+                const Vector6 share = place.cwiseQuotient(radii.cwiseMax(spacing));
+                if (i != 0 && share.squaredNorm() <= 1.) places.push_back(place);
+            }
+        }
+    }
+    return places;
+}
+
+/// Harmonic mean; 1 where there is no surface.
+double meanDepth(const View& view) {
+    double sum = 0.;
+    double count = 0.;
+    for (unsigned i = 0; i < view.depth.getSize(); ++i) {
+        if (view.depth.bitmap[i] <= 0.F) continue;
+        sum += 1. / view.depth.bitmap[i];
+        ++count;
+    }
+    return count > 0. ? count / sum : 1.;
+}
+
+/// Share of the pixels that an image's contrast is in: the participation ratio of its squares.
+double spread(const ImageF& image) {
+    const auto pixels = Eigen::Map<const Eigen::ArrayXf>(image.bitmap, image.getSize());
+    const Eigen::ArrayXd squares = (pixels - pixels.mean()).cast<double>().square();
+    const double fourth = squares.square().sum();
+    return fourth > 0. ? squares.sum() * squares.sum() / (fourth * double(squares.size())) : 0.;
+}
+
+/// -2 log likelihood of an image where there is a surface, in its likeliest exposure.
+/// @param weight that makes mean square differences -2 log likelihoods
+double misfit(const ImageF& observed, const View& predicted, double weight,
+              const std::optional<ExposurePrior>& prior) {
+    Eigen::Matrix2d AtA = Eigen::Matrix2d::Zero();  // of gain and offset, from 1 and 0
+    Eigen::Vector2d Atr = Eigen::Vector2d::Zero();
+    double sum = 0.;
+    for (unsigned i = 0; i < observed.getSize(); ++i) {
+        if (predicted.depth.bitmap[i] <= 0.F) continue;
+        const Eigen::Vector2d a(predicted.intensity.bitmap[i], 1.);
+        const double r = observed.bitmap[i] - a[0];
+        AtA += a * a.transpose();
+        Atr += r * a;
+        sum += r * r;
+    }
+    const double count = AtA(1, 1);
+    if (count == 0.) return weight;
+    AtA *= weight / count;
+    Atr *= weight / count;
+    if (!prior) return weight * sum / count;
+    // A little more on the diagonal: gain and offset of a uniform image cannot be told apart.
+    AtA.diagonal() += prior->information() + Eigen::Vector2d::Constant(1e-9 * weight);
+    return weight * sum / count - Atr.dot(AtA.inverse() * Atr);
+}
+
+/// Largest eigenvalue of the prior's covariance times Lambda. Below one, the image informs less
+/// than the prior in all directions.
+double informationRatio(const Alignment& a, const UncertainPose& prior) {
+    return (prior.covariance * a.information).eigenvalues().real().maxCoeff();
+}
+
+Camera quartered(const Camera& camera) { return halved(halved(camera)); }
+
+/// A quarter of the size, worth as much as the whole image.
+AlignmentOptions forSmall(AlignmentOptions options) {
+    options.levels = 1;
+    options.maxIterations = 10;
+    options.measureSlope = false;  // to find where to begin
+    options.photometric.scale *= 16.;
+    return options;
+}
+
+/// Coarser levels would lead all starts to the same place: beside white they average a strip of
+/// texture away.
+AlignmentOptions forNear(AlignmentOptions options, bool measureSlope) {
+    options.levels = 2;
+    options.measureSlope = measureSlope;
+    return options;
+}
+
+Alignment undecided(Alignment a, const UncertainPose& prior, Verdict verdict) {
+    a.T_c_w = prior.mean;
+    a.covariance = prior.covariance;
+    a.verdict = verdict;
+    if (verdict == Verdict::degenerate) a.openDirections.assign(kAxes.begin(), kAxes.end());
+    return a;
+}
+
+struct Start {
+    Pose T_c_w;
+    double cost;  ///< -2 log likelihood
+};
+
+void sortByCost(std::vector<Start>& starts) {
+    std::sort(starts.begin(), starts.end(),
+              [](const Start& a, const Start& b) { return a.cost < b.cost; });
+}
+
+/// The first `most`, without those closer than `distance` [m] to one before.
+std::vector<Pose> distinct(const std::vector<Start>& starts, double distance, std::size_t most) {
+    std::vector<Pose> chosen;
+    for (const Start& start : starts) {
+        const auto isNear = [&](const Pose& T_c_w) {
+            return (start.T_c_w * T_c_w.inverse()).translation().norm() < distance;
+        };
+        if (chosen.size() < most && std::none_of(chosen.begin(), chosen.end(), isNear)) {
+            chosen.push_back(start.T_c_w);
+        }
+    }
+    return chosen;
+}
+
+}  // namespace
+
+WideAligner::WideAligner(const ViewSource& model, const Camera& camera,
+                         const AlignmentOptions& options)
+    : model_(model),
+      aligner_(model, camera, options),
+      small_(model, quartered(camera), forSmall(options)),
+      near_(model, camera, forNear(options, false)),
+      final_(model, camera, forNear(options, options.measureSlope)) {}
+
+/// Where in the prior views of a quarter of the size are most like the image.
+std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const UncertainPose& prior,
+                                            double depth) {
+    const ImageF image = halvedAsRendered(halvedAsRendered(observed));
+    const ImageMotion motion = imageMotionOf(prior.covariance, aligner_.camera(), depth);
+    std::vector<Start> starts;
+    View view;
+    for (const Vector6& place : placesWithin(motion.sigmas)) {
+        const Pose T_c_w = expSE3(motion.axes * place) * prior.mean;
+        model_.render(small_.camera(), T_c_w, view);
+        starts.push_back(
+            {T_c_w, misfit(image, view, weight(), aligner_.options().exposure) +
+                        place.cwiseQuotient(motion.sigmas.cwiseMax(1e-3)).squaredNorm()});
+    }
+    sortByCost(starts);
+    if (starts.size() > kTried) starts.resize(kTried);
+    for (Start& start : starts) {
+        const Alignment a = small_.align(image, prior, start.T_c_w);
+        const bool hasNoOverlap = a.verdict == Verdict::lostOverlap;
+        start = {a.T_c_w, hasNoOverlap ? kInfinity : costOf(a, prior)};
+    }
+    sortByCost(starts);
+    return distinct(starts, 0.5 * kSpacing * depth / aligner_.camera().fx(), kStarts);
+}
+
+double WideAligner::pixels() const {
+    return double(aligner_.camera().width) * aligner_.camera().height;
+}
+
+/// That makes mean square residuals -2 log likelihoods.
+double WideAligner::weight() const {
+    const PhotometricOptions& p = aligner_.options().photometric;
+    return p.scale * pixels() / (p.sigma * p.sigma);
+}
+
+/// -2 log likelihood of image and priors.
+double WideAligner::costOf(const Alignment& a, const UncertainPose& prior) const {
+    const auto& exposure = aligner_.options().exposure;
+    const Vector6 e = deviation(a.T_c_w, prior.mean);
+    return weight() * a.residual.rms * a.residual.rms +
+           (exposure ? exposure->squaredDistance(a.exposure) : 0.) +
+           squaredDistance(e, transported(prior.covariance, e));
+}
+
+/// Whether image and prediction are the same down to the noise, by what there is to see: where a
+/// strip of texture comes into view beside white, the wrong strip differs in few pixels.
+bool WideAligner::fits(const Alignment& a) const {
+    const double sigma = aligner_.options().photometric.sigma;
+    const double noise = kNoiseSlack * sigma * sigma;
+    const double square = a.residual.rms * a.residual.rms;
+    return square <= noise || a.residual.unexplained * (1. - noise / square) < kMisfit;
+}
+
+/// Of the surfaces in view [m].
+double WideAligner::pixel(const Alignment& a) const { return a.meanDepth / aligner_.camera().fx(); }
+
+bool WideAligner::isElsewhere(const Alignment& a, const Alignment& best) const {
+    const Vector6 apart = deviation(a.T_c_w, best.T_c_w);
+    return apart.head<3>().norm() > kSpacing * pixel(best) &&
+           squaredDistance(apart, best.covariance) > kElsewhere;
+}
+
+/// Ambiguous matches: the best one, moved along axes of large image motion to where others ended
+/// that explain the image worse. Repeated texture matches there when the other axes are as at the
+/// best, and alignments from elsewhere may have got stuck.
+std::vector<Pose> WideAligner::ambiguousMatches(const Alignment& best,
+                                                const std::vector<Alignment>& found,
+                                                const UncertainPose& prior) const {
+    const ImageMotion motion = imageMotionOf(prior.covariance, aligner_.camera(), best.meanDepth);
+    const Vector6 isWide = (motion.sigmas.array() >= kBasin).cast<double>();
+    const Matrix6 alongWide = motion.axes * isWide.asDiagonal() * motion.axes.inverse();
+    std::vector<Start> starts;
+    const double least = costOf(best, prior);
+    for (const Alignment& a : found) {
+        const double cost = costOf(a, prior);
+        if (!isElsewhere(a, best) || cost < least + kAmbiguous) continue;
+        const Vector6 apart = logSE3(a.T_c_w * best.T_c_w.inverse());
+        starts.push_back({expSE3(alongWide * apart) * best.T_c_w, cost});
+    }
+    sortByCost(starts);
+    std::vector<Pose> around;
+    for (const Pose& T_c_w : distinct(starts, 0.5 * kSpacing * pixel(best), kStarts)) {
+        for (const double pixels : {0., -kJitter, kJitter}) {
+            around.push_back(expSE3(pixels * motion.axes.col(5)) * T_c_w);
+        }
+    }
+    return around;
+}
+
+/// Whether there is an alignment from elsewhere that explains the image almost as well.
+bool WideAligner::hasRival(const Alignment& best, const std::vector<Alignment>& found,
+                           const UncertainPose& prior) const {
+    const ImageMotion motion = imageMotionOf(prior.covariance, aligner_.camera(), best.meanDepth);
+    const double stuck =
+        motion.sigmas[4] < kBasin ? kStuck * weight() * best.residual.explained : 0.;
+    const double decides = std::max(kAmbiguous, stuck);
+    const double least = costOf(best, prior);
+    return std::any_of(found.begin(), found.end(), [&](const Alignment& a) {
+        return isElsewhere(a, best) && costOf(a, prior) < least + decides;
+    });
+}
+
+/// The alignments from these starts that are not lost.
+std::vector<Alignment> WideAligner::alignFrom(const std::vector<Pose>& starts,
+                                              DenseAligner& aligner, const ImageF& observed,
+                                              const UncertainPose& prior) {
+    std::vector<Alignment> found;
+    for (const Pose& T_start_w : starts) {
+        const Alignment a = aligner.align(observed, prior, T_start_w);
+        if (!isLost(a.verdict)) found.push_back(a);
+    }
+    return found;
+}
+
+Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior) {
+    const Alignment first = aligner_.align(observed, prior);
+    if (informationRatio(first, prior) < 1. && fits(first)) return first;
+    View expected;
+    model_.render(small_.camera(), prior.mean, expected);
+    const double depth = meanDepth(expected);
+    if (imageMotionOf(prior.covariance, aligner_.camera(), depth).sigmas.maxCoeff() < kBasin)
+        return first;
+
+    const auto isLikelier = [&](const Alignment& a, const Alignment& b) {
+        return costOf(a, prior) < costOf(b, prior);
+    };
+    auto found = alignFrom(likelyStarts(observed, prior, depth), near_, observed, prior);
+    if (!isLost(first.verdict)) found.push_back(first);
+    if (found.empty()) return first;
+    const Pose T_best_w = std::min_element(found.begin(), found.end(), isLikelier)->T_c_w;
+    Alignment best = final_.align(observed, prior, T_best_w);
+    if (isLost(best.verdict)) return undecided(best, prior, best.verdict);
+    for (Alignment& a : alignFrom(ambiguousMatches(best, found, prior), final_, observed, prior)) {
+        if (isLikelier(a, best)) std::swap(a, best);
+        found.push_back(a);
+    }
+    if (!fits(best)) return undecided(best, prior, Verdict::lostResidual);
+    // Where the view expected shows something and the image nothing, no place is found: all places
+    // that would show nothing are as likely, and the information of the view expected is not there.
+    model_.render(small_.camera(), best.T_c_w, expected);
+    const double explained = weight() * best.residual.explained;
+    const bool isStrip = spread(expected.intensity) < kNarrow;
+    const double least = isStrip ? kLeastShown * pixels() : kAmbiguous;
+    if (explained < least || hasRival(best, found, prior)) {
+        return undecided(best, prior, Verdict::degenerate);
+    }
+    return best;
+}
+
+}  // namespace photonav

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a plan and a belief to commands.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "control/photometric_servo.hpp"
+#include "control/route.hpp"
+#include "control/waypoint_servo.hpp"
+#include "estimation/tracker.hpp"
+
+namespace photonav {
+
+struct PilotOptions {
+    ServoOptions servo;
+    RouteOptions route;
+    bool photometricGoal = true;  ///< servo on the goal's image where it determines all velocities
+    PhotometricOptions photometric;  ///< of that image
+    double hoverTime = 1.;           ///< waited on the spot after a loss before flying back [s]
+    /// How far to fly back to the last view that determined the pose [m]. If it is farther, the
+    /// route goes on: its views are nearer, and chosen for what they inform of.
+    double returnDistance = 3.;
+    double giveUpTime = 20.;  ///< searched in vain before giving up [s]
+};
+
+/// Flies to the views of a plan, one after the other, by visual servoing on the believed pose; at
+/// the goal on its image. While tracking is lost it hovers, then flies back to the last view that
+/// determined the pose, or on along the route if that is far, and gives up after a while.
+class Pilot {
+  public:
+    /// @param plan at least two views @throws std::invalid_argument otherwise
+    /// @param map in which the goal's image is rendered
+    Pilot(std::vector<PlannedView> plan, std::shared_ptr<const ViewSource> map,
+          const Camera& camera, const Pose& T_b_c, const PilotOptions& options);
+
+    /// An image was tracked: for servoing on the goal's.
+    void observe(const Tracker& tracker, const TrackedFrame& tracked, const ImageF& image);
+
+    /// Velocity for the next `dt` seconds, within the limits of ServoOptions.
+    /// @param time now [s]
+    BodyVelocity command(const Tracker& tracker, double time, double dt);
+
+    /// Whether the belief has been at the goal for long enough, or the image is the goal's.
+    bool hasArrived(const Tracker& tracker, double time) const;
+    bool hasGivenUp(const Tracker& tracker, double time) const;
+
+    /// Whether the goal's image was servoed on.
+    bool hasServoedOnImage() const { return hasServoedOnImage_; }
+    const Route& route() const { return route_; }
+
+  private:
+    BodyVelocity decide(const Tracker& tracker, double time);
+    bool isNear(const Pose& T_c_w, const Pose& T_other_w) const;
+    void approachOnImage(const ImageF& image, const Pose& T_w_b);
+    void leaveImage();
+
+    std::shared_ptr<const ViewSource> map_;
+    Pose T_b_c_;
+    PilotOptions options_;
+    Route route_;
+    WaypointServo servo_;
+    PhotometricServo goalServo_;
+    BodyVelocity command_;
+    std::optional<double> atGoalSince_;    ///< [s]
+    std::optional<BodyVelocity> onImage_;  ///< wanted by the goal's image
+    int smallSteps_ = 0;                   ///< in a row
+    bool hasServoedOnImage_ = false;
+};
+
+}  // namespace photonav

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "depth/stereo_depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+namespace photonav {
+namespace {
+
+constexpr int kDisparityUnit = 16;  // OpenCV gives sixteenths of pixels
+constexpr int kMostDisparities = 512;
+
+cv::Matx33d matrixOf(const Camera& camera) {
+    return {camera.fx(), 0., camera.cx(), 0., camera.fy(), camera.cy(), 0., 0., 1.};
+}
+
+cv::Mat wrapped(const vpImage<unsigned char>& image) {
+    return {static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_8UC1,
+            image.bitmap};
+}
+
+/// Multiples of 16, enough for the nearest surface.
+int disparities(double focalTimesBaseline, double minDepth) {
+    const int needed = static_cast<int>(std::ceil(focalTimesBaseline / minDepth / 16.)) * 16;
+    return std::clamp(needed, 16, kMostDisparities);
+}
+
+cv::Ptr<cv::StereoMatcher> makeMatcher(const StereoOptions& o, int count) {
+    cv::Ptr<cv::StereoMatcher> matcher;
+    if (o.method == StereoMethod::blockMatching) {
+        const auto blocks = cv::StereoBM::create(count, o.blockSize);
+        blocks->setTextureThreshold(o.texture);
+        blocks->setUniquenessRatio(o.uniqueness);
+        matcher = blocks;
+    } else {
+        const int block = std::max(3, o.blockSize / 3) | 1;
+        const int area = block * block;
+        matcher = cv::StereoSGBM::create(0, count, block, 8 * area, 32 * area, 1, 31, o.uniqueness);
+    }
+    matcher->setSpeckleWindowSize(o.speckle);
+    matcher->setSpeckleRange(2);
+    return matcher;
+}
+
+}  // namespace
+
+struct StereoDepth::Impl {
+    StereoOptions options;
+    Camera recorded;  ///< size of the images to come
+    Camera camera;
+    Pose T_r_c = Pose::Identity();
+    double baseline = 0.;
+    std::array<std::array<cv::Mat, 2>, 2> maps;  ///< of left and right
+    std::array<cv::Mat, 2> small, rectified;
+    cv::Mat disparity;
+    cv::Ptr<cv::StereoMatcher> matcher;
+
+    Impl(const DistortedCamera& left, const DistortedCamera& right, const StereoOptions& o);
+    void rectify(const vpImage<unsigned char>& image, std::size_t side);
+};
+
+StereoDepth::Impl::Impl(const DistortedCamera& left, const DistortedCamera& right,
+                        const StereoOptions& o)
+    : options(o), recorded(left.camera) {
+    const Camera& l = left.camera;
+    const Camera& r = right.camera;
+    if (l.width != r.width || l.height != r.height) {
+        throw std::invalid_argument("stereo: the two cameras differ in size");
+    }
+    const auto halved = [&](Camera c) {
+        const auto width = c.width >> static_cast<unsigned>(o.halvings);
+        const auto height = c.height >> static_cast<unsigned>(o.halvings);
+        c = scaled(c, std::ldexp(1., -o.halvings));
+        c.width = width;  // odd last rows and columns are dropped
+        c.height = height;
+        return c;
+    };
+    const Camera smallLeft = halved(l);
+    const Camera smallRight = halved(r);
+    const cv::Size size(static_cast<int>(smallLeft.width), static_cast<int>(smallLeft.height));
+    const Pose T_r_l = right.T_b_c.inverse() * left.T_b_c;
+    cv::Matx33d R;
+    cv::Vec3d t;
+    for (int i = 0; i < 3; ++i) {
+        t[i] = T_r_l.translation()[i];
+        for (int j = 0; j < 3; ++j) R(i, j) = T_r_l.linear()(i, j);
+    }
+    const cv::Vec4d dLeft(left.distortion.data());
+    const cv::Vec4d dRight(right.distortion.data());
+    cv::Matx33d R1, R2;
+    cv::Matx34d P1, P2;
+    cv::Matx44d Q;
+    cv::stereoRectify(matrixOf(smallLeft), dLeft, matrixOf(smallRight), dRight, size, R, t, R1, R2,
+                      P1, P2, Q, cv::CALIB_ZERO_DISPARITY, 0.);
+    baseline = -P2(0, 3) / P2(0, 0);
+    if (!(baseline > 0.)) {
+        throw std::invalid_argument("stereo: the right camera is not to the right of the left one");
+    }
+    camera.width = smallLeft.width;
+    camera.height = smallLeft.height;
+    camera.intrinsics = vpCameraParameters(P1(0, 0), P1(1, 1), P1(0, 2), P1(1, 2));
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) T_r_c.linear()(i, j) = R1(i, j);
+    }
+    cv::initUndistortRectifyMap(matrixOf(smallLeft), dLeft, R1, P1, size, CV_16SC2, maps[0][0],
+                                maps[0][1]);
+    cv::initUndistortRectifyMap(matrixOf(smallRight), dRight, R2, P2, size, CV_16SC2, maps[1][0],
+                                maps[1][1]);
+    matcher = makeMatcher(o, disparities(baseline * camera.fx(), o.minDepth));
+}
+
+/// Halved first: the mean of pixels is sharp enough, and a quarter of the work is left.
+void StereoDepth::Impl::rectify(const vpImage<unsigned char>& image, std::size_t side) {
+    if (image.getWidth() != recorded.width || image.getHeight() != recorded.height) {
+        throw std::invalid_argument("stereo: image and camera differ in size");
+    }
+    const cv::Size size(static_cast<int>(camera.width), static_cast<int>(camera.height));
+    const int factor = 1 << options.halvings;
+    const cv::Mat whole = wrapped(image)(cv::Rect(0, 0, size.width * factor, size.height * factor));
+    if (factor > 1) {
+        cv::resize(whole, small[side], size, 0., 0., cv::INTER_AREA);
+    } else {
+        small[side] = whole;
+    }
+    cv::remap(small[side], rectified[side], maps[side][0], maps[side][1], cv::INTER_LINEAR);
+}
+
+StereoDepth::StereoDepth(const DistortedCamera& left, const DistortedCamera& right,
+                         const StereoOptions& options)
+    : impl_(std::make_unique<Impl>(left, right, options)) {}
+StereoDepth::~StereoDepth() = default;
+StereoDepth::StereoDepth(StereoDepth&&) noexcept = default;
+StereoDepth& StereoDepth::operator=(StereoDepth&&) noexcept = default;
+
+const Camera& StereoDepth::camera() const { return impl_->camera; }
+const Pose& StereoDepth::T_r_c() const { return impl_->T_r_c; }
+double StereoDepth::baseline() const { return impl_->baseline; }
+
+void StereoDepth::operator()(const StereoImages& images, View& view) {
+    Impl& m = *impl_;
+    m.rectify(images.left, 0);
+    m.rectify(images.right, 1);
+    m.matcher->compute(m.rectified[0], m.rectified[1], m.disparity);
+    view.intensity.resize(m.camera.height, m.camera.width);
+    view.depth.resize(m.camera.height, m.camera.width);
+    const auto numerator = static_cast<float>(kDisparityUnit * m.camera.fx() * m.baseline);
+    const auto least =
+        static_cast<std::int16_t>(std::max(1., std::ceil(numerator / m.options.maxDepth)));
+    for (unsigned v = 0; v < m.camera.height; ++v) {
+        const auto* grey = m.rectified[0].ptr<std::uint8_t>(static_cast<int>(v));
+        const auto* shift = m.disparity.ptr<std::int16_t>(static_cast<int>(v));
+        for (unsigned u = 0; u < m.camera.width; ++u) {
+            view.intensity[v][u] = static_cast<float>(grey[u]) / 255.F;
+            view.depth[v][u] = shift[u] >= least ? numerator / static_cast<float>(shift[u]) : 0.F;
+        }
+    }
+}
+
+}  // namespace photonav

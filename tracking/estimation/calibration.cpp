@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/calibration.hpp"
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "geometry/constants.hpp"
+
+namespace photonav {
+namespace {
+
+Matrix6 covarianceOf(const AlignmentError& error, double scale, double floorTranslation,
+                     double floorRotation) {
+    return withFloor((scale * error.information).inverse(), floorTranslation, floorRotation);
+}
+
+/// Mean of -2 log likelihood per degree of freedom, without the constant.
+double misfit(std::span<const AlignmentError> errors, double scale, double translation,
+              double rotation) {
+    double sum = 0.;
+    for (const AlignmentError& e : errors) {
+        const Matrix6 covariance = covarianceOf(e, scale, translation, rotation);
+        const Eigen::LLT<Matrix6> factor(covariance);
+        if (factor.info() != Eigen::Success) return kInfinity;
+        const Matrix6 L = factor.matrixL();
+        sum += factor.matrixL().solve(e.xi).squaredNorm() + 2. * L.diagonal().array().log().sum();
+    }
+    return sum / (6. * static_cast<double>(errors.size()));
+}
+
+/// 1 + 2 sum of the autocorrelation, summed until it is no longer positive: the number of images
+/// that inform of a mean as much as one would if errors were independent.
+double correlationTime(std::span<const AlignmentError> errors, const Calibration& c) {
+    std::vector<Vector6> white;
+    for (const AlignmentError& e : errors) {
+        const Matrix6 covariance = covarianceOf(e, c.scale, c.floorTranslation, c.floorRotation);
+        white.push_back(covariance.llt().matrixL().solve(e.xi));
+    }
+    double time = 1.;
+    for (std::size_t lag = 1; lag < white.size() / 2; ++lag) {
+        double product = 0., square = 0.;
+        for (std::size_t i = 0; i + lag < white.size(); ++i) {
+            product += white[i].dot(white[i + lag]);
+            square += white[i].squaredNorm();
+        }
+        if (product <= 0.) break;
+        time += 2. * product / square;
+    }
+    return time;
+}
+
+/// Coordinate descent over logarithms, each step halved until a percent or so.
+void descend(std::span<const AlignmentError> errors, std::array<double, 3>& parameters, int first,
+             int end) {
+    double best = misfit(errors, parameters[0], parameters[1], parameters[2]);
+    for (double factor = 4.; factor > 1.01; factor = std::sqrt(factor)) {
+        for (bool improved = true; improved;) {
+            improved = false;
+            for (int i = first; i < end; ++i) {
+                for (const double by : {factor, 1. / factor}) {
+                    std::array<double, 3> trial = parameters;
+                    trial[i] *= by;
+                    const double m = misfit(errors, trial[0], trial[1], trial[2]);
+                    if (m >= best - 1e-9) continue;
+                    best = m;
+                    parameters = trial;
+                    improved = true;
+                }
+            }
+        }
+    }
+}
+
+/// The factor, and the errors themselves as floor.
+std::array<double, 3> startOf(std::span<const AlignmentError> errors, double scale) {
+    std::array<double, 3> start = {scale, 0., 0.};
+    for (const AlignmentError& e : errors) {
+        start[1] += e.xi.head<3>().squaredNorm();
+        start[2] += e.xi.tail<3>().squaredNorm();
+    }
+    const double n = 3. * static_cast<double>(errors.size());
+    start[1] = std::sqrt(start[1] / n);
+    start[2] = std::sqrt(start[2] / n);
+    return start;
+}
+
+}  // namespace
+
+double neesPerDof(std::span<const AlignmentError> errors, double scale, double floorTranslation,
+                  double floorRotation) {
+    double sum = 0.;
+    for (const AlignmentError& e : errors) {
+        const Matrix6 covariance = covarianceOf(e, scale, floorTranslation, floorRotation);
+        sum += e.xi.dot(covariance.ldlt().solve(e.xi)) / 6.;
+    }
+    return sum / static_cast<double>(errors.size());
+}
+
+Calibration calibrate(std::span<const AlignmentError> errors) {
+    if (errors.size() < 20) throw std::invalid_argument("calibrate: fewer than 20 alignments");
+    Calibration result;
+    result.neesBefore = neesPerDof(errors);
+    // Without a floor the most likely factor is the one that makes the NEES one.
+    result.scale = 1. / result.neesBefore;
+    std::array<double, 3> withFloors = startOf(errors, 1.);
+    descend(errors, withFloors, 0, 3);
+    constexpr double kWorthwhile = 0.05;  // misfit per degree of freedom
+    if (misfit(errors, withFloors[0], withFloors[1], withFloors[2]) <
+        misfit(errors, result.scale, 0., 0.) - kWorthwhile) {
+        result.scale = withFloors[0];
+        result.floorTranslation = withFloors[1];
+        result.floorRotation = withFloors[2];
+    }
+    result.correlationTime = correlationTime(errors, result);
+    result.neesAfter =
+        neesPerDof(errors, result.scale, result.floorTranslation, result.floorRotation);
+    return result;
+}
+
+Calibration calibrateFloor(std::span<const AlignmentError> errors, double scale) {
+    if (errors.size() < 20) throw std::invalid_argument("calibrate: fewer than 20 alignments");
+    std::array<double, 3> withFloors = startOf(errors, scale);
+    descend(errors, withFloors, 1, 3);
+    Calibration result{scale, withFloors[1], withFloors[2]};
+    result.neesBefore = neesPerDof(errors, scale);
+    result.neesAfter = neesPerDof(errors, scale, withFloors[1], withFloors[2]);
+    return result;
+}
+
+AlignmentOptions realCameraOptions(double resolution) {
+    AlignmentOptions options;
+    options.exposure = {.gainSigma = 0.1, .offsetSigma = 0.003};
+    options.photometric.scale = 0.65;
+    // Flights in maps of 5 and 2.5 cm, the scene about 2.5 m away.
+    const double floor = 0.015 * std::pow(resolution / 0.05, 1.3);
+    options.trust.floorTranslation = floor;
+    options.trust.floorRotation = 0.5 * floor;
+    return options;
+}
+
+}  // namespace photonav

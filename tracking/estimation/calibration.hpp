@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Making predicted covariances true: what factor on Lambda and what floor recorded errors ask for.
+#pragma once
+
+#include <span>
+
+#include "alignment/alignment.hpp"
+#include "alignment/coarse_to_fine.hpp"
+
+namespace photonav {
+
+/// One alignment whose truth is known.
+struct AlignmentError {
+    Vector6 xi = Vector6::Zero();           ///< deviation() of the true pose from the estimated
+    Matrix6 information = Matrix6::Zero();  ///< Lambda with scale 1, full rank
+};
+
+/// NEES per degree of freedom, mean over the samples: 1 when covariances are consistent, above when
+/// they are overconfident.
+/// @param scale factor on every information matrix
+double neesPerDof(std::span<const AlignmentError> errors, double scale = 1.,
+                  double floorTranslation = 0., double floorRotation = 0.);
+
+struct Calibration {
+    double scale = 1.;             ///< for PhotometricOptions::scale
+    double floorTranslation = 0.;  ///< for TrustOptions [m]; 0 when the errors ask for none
+    double floorRotation = 0.;     ///< [rad]
+    /// Over how many images errors stay alike: the integrated autocorrelation of the whitened
+    /// errors, 1 when every image errs in its own way. A filter that averages images must divide
+    /// the factor by it. (calibrateFloor does not measure it.)
+    double correlationTime = 1.;
+    double neesBefore = 0.;  ///< per degree of freedom, without floor and with scale 1
+                             ///< (calibrateFloor: the scale)
+    double neesAfter = 0.;
+};
+
+/// The factor and the floor under which the errors are most likely (Gaussian). When a factor alone
+/// is nearly as likely, there is no floor.
+/// @param errors in the order of the images
+/// @throws std::invalid_argument below 20 samples
+Calibration calibrate(std::span<const AlignmentError> errors);
+
+/// The floor alone, with this factor: for maps of cells, whose errors repeat from image to image,
+/// so that a factor which describes one alignment would be averaged away by the next.
+/// @throws std::invalid_argument below 20 samples
+Calibration calibrateFloor(std::span<const AlignmentError> errors, double scale);
+
+/// Options for images of a real camera, from the calibration in docs/tracking.md: exposure is
+/// estimated, Lambda weighs less, and the floor is that of a map.
+/// @param resolution of the map [m]; 0: a mesh as exact as the images
+AlignmentOptions realCameraOptions(double resolution);
+
+}  // namespace photonav

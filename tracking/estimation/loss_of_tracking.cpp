@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/loss_of_tracking.hpp"
+
+#include <Eigen/Eigenvalues>
+
+namespace photonav {
+namespace {
+
+/// Share of the variance added by a loss that may be left when it ends.
+constexpr double kLeft = 0.5;
+/// Share of the prior's variance that an image must leave in one direction at most, to inform.
+constexpr double kInformed = 0.5;
+
+/// Eigenvalues of A relative to B, ascending.
+Vector6 relativeEigenvalues(const Matrix6& A, Matrix6 B) {
+    B.diagonal().array() += 1e-18;  // directions known exactly
+    return Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6>(A, B, Eigen::EigenvaluesOnly)
+        .eigenvalues();
+}
+
+}  // namespace
+
+bool resolvesLoss(const Matrix6& before, const Matrix6& prior, const Matrix6& after) {
+    const Matrix6 allowed = 2. * before + kLeft * (prior - before);
+    return relativeEigenvalues(after, allowed)[5] <= 1. &&
+           relativeEigenvalues(after, prior)[0] <= kInformed;
+}
+
+void LossOfTracking::onTracked(double time) {
+    lastImage_ = time;
+    rejectedInRow_ = 0;
+    searched_ = 0;
+    if (since_) lost_ += time - *since_;
+    since_.reset();
+}
+
+void LossOfTracking::onRejected(double time, bool isMotionMeasured) {
+    lastImage_ = time;
+    ++rejectedInRow_;
+    if (since_) ++searched_;
+    if (!isMotionMeasured || rejectedInRow_ >= options_.rejectedImages) begin(time);
+}
+
+void LossOfTracking::onTime(double time) {
+    if (time - lastImage_ > options_.blindTime) begin(time);
+}
+
+void LossOfTracking::begin(double time) {
+    if (since_) return;
+    since_ = time;
+    ++timesLost_;
+}
+
+double LossOfTracking::lostTime(double now) const { return lost_ + (since_ ? now - *since_ : 0.); }
+
+UncertainPose LossOfTracking::widened(const UncertainPose& T_c_w) const {
+    UncertainPose wide = T_c_w;
+    const double radius = options_.searchRadius * (1. + options_.searchGrowth * searched_);
+    wide.covariance.diagonal().head<3>().array() += radius * radius;
+    const Eigen::Vector3d up_c = wide.mean.linear().col(2);
+    wide.covariance.bottomRightCorner<3, 3>() +=
+        options_.searchTurn * options_.searchTurn * up_c * up_c.transpose();
+    return wide;
+}
+
+bool LossOfTracking::isExplained(const Alignment& alignment, const TrustOptions& trust,
+                                 double sigma) const {
+    return alignment.residual.rms <= trust.residualSigmas * sigma ||
+           alignment.residual.unexplained <= options_.maxUnexplainedShare * trust.maxUnexplained;
+}
+
+}  // namespace photonav

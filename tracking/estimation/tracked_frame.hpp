@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The result of tracking for one image.
+#pragma once
+
+#include <optional>
+
+#include "alignment/alignment.hpp"
+
+namespace photonav {
+
+struct TrackedFrame {
+    double time = 0.;     ///< of the exposure [s]
+    UncertainPose T_c_w;  ///< after the image; only predicted when lost
+    /// The alignment that the belief follows from; when lost, the first that was tried.
+    Alignment alignment;
+    bool lost = false;  ///< the image contributed nothing to the belief, for it was rejected
+    /// Time of the keyframe that the image was aligned to, its own if it began one [s]; none: it
+    /// was aligned to the map.
+    std::optional<double> keyframe;
+};
+
+}  // namespace photonav

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/tracker.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace photonav {
+
+class Tracker::MapAligner {
+  public:
+    MapAligner(std::shared_ptr<const ViewSource> map, const Camera& camera,
+               const TrackerOptions& options)
+        : map_(std::move(map)) {
+        if (options.searchPrior) {
+            wide_.emplace(*map_, camera, options.map);
+        } else {
+            dense_.emplace(*map_, camera, options.map);
+        }
+    }
+
+    Alignment align(const ImageF& image, const UncertainPose& prior) {
+        return wide_ ? wide_->align(image, prior) : dense_->align(image, prior);
+    }
+
+  private:
+    std::shared_ptr<const ViewSource> map_;
+    std::optional<WideAligner> wide_;
+    std::optional<DenseAligner> dense_;
+};
+
+Tracker::Tracker(std::shared_ptr<const ViewSource> map, const Camera& camera,
+                 const UncertainPose& start, const TrackerOptions& options)
+    : camera_(camera),
+      options_(options),
+      odometry_(options.T_b_c),
+      velocity_(options.motion),
+      loss_(options.loss),
+      belief_(start),
+      T_certain_w_(start.mean),
+      trackedCovariance_(start.covariance) {
+    if (!map && !options.keyframes) {
+        throw std::invalid_argument("tracker: neither a map nor keyframes");
+    }
+    if (options.keyframes) keyframes_.emplace(camera, *options.keyframes);
+    setMap(std::move(map));
+}
+Tracker::~Tracker() = default;
+Tracker::Tracker(Tracker&&) noexcept = default;
+Tracker& Tracker::operator=(Tracker&&) noexcept = default;
+
+void Tracker::setMap(std::shared_ptr<const ViewSource> map) {
+    if (!map && !keyframes_) throw std::invalid_argument("tracker: no map, and no keyframes");
+    map_ = map ? std::make_unique<MapAligner>(std::move(map), camera_, options_) : nullptr;
+}
+
+std::vector<TrackedFrame> Tracker::update(const Observation& observation) {
+    now_ = observation.time;
+    if (observation.T_next_now) {
+        hasOdometry_ = true;
+        odometry_.add(now_, *observation.T_next_now);
+    }
+    std::vector<TrackedFrame> tracked;
+    for (const CameraFrame& frame : observation.frames)
+        tracked.push_back(track(frame.view, frame.time));
+    if (hasOdometry_) loss_.onTime(now_);
+    return tracked;
+}
+
+TrackedFrame Tracker::track(const View& view, double time) {
+    now_ = std::max(now_, time);
+    const Pose stayed = belief_.mean;
+    predict(time);
+    TrackedFrame frame;
+    frame.time = time;
+    if (const auto match = find(view, stayed, frame)) {
+        take(view, *match, stayed, frame);
+    } else {
+        miss(view, stayed, frame);
+    }
+    frame.T_c_w = belief_;
+    return frame;
+}
+
+/// The belief at the time of an image.
+void Tracker::predict(double time) {
+    const UncertainPose motion = hasOdometry_
+                                     ? odometry_.takeUntil(time)
+                                     : velocity_.predict(imageTime_ ? time - *imageTime_ : 0.);
+    imageTime_ = time;
+    belief_ = compound(motion, belief_);
+    sinceTracked_ = compound(motion, {Pose::Identity(), sinceTracked_}).covariance;
+}
+
+/// @param stayed where the camera was at the last image
+std::optional<Tracker::Match> Tracker::find(const View& view, const Pose& stayed,
+                                            TrackedFrame& frame) {
+    std::optional<Match> match;
+    if (map_) match = findInMap(view.intensity, stayed, frame);
+    if (!match && keyframes_ && !keyframes_->isEmpty()) {
+        match = findByKeyframes(view.intensity, stayed, frame);
+    }
+    if (match) return match;
+    loss_.onRejected(now_, hasOdometry_);
+    return map_ && hasOdometry_ && loss_.isLost() ? findInNeighbourhood(view.intensity)
+                                                  : std::nullopt;
+}
+
+/// Whether an image agrees with what it was aligned to. Without odometry, one that does not inform
+/// must not carry the extrapolated motion on; after a loss, little but the image supports the pose.
+bool Tracker::agrees(const Alignment& alignment, const AlignmentOptions& options) const {
+    if (isLost(alignment.verdict)) return false;
+    if (!hasOdometry_ && isUninformative(alignment)) return false;
+    return !loss_.isLost() ||
+           loss_.isExplained(alignment, options.trust, options.photometric.sigma);
+}
+
+std::optional<Tracker::Match> Tracker::findInMap(const ImageF& image, const Pose& stayed,
+                                                 TrackedFrame& frame) {
+    std::vector<UncertainPose> priors{belief_};
+    if (!hasOdometry_) priors.push_back({stayed, belief_.covariance});
+    for (const UncertainPose& prior : priors) {
+        const Alignment alignment = map_->align(image, prior);
+        if (&prior == &priors.front()) frame.alignment = alignment;
+        if (!agrees(alignment, options_.map)) continue;
+        if (isResolvedBy(alignment, prior)) {
+            return Match{alignment, {alignment.T_c_w, alignment.covariance}, {}};
+        }
+    }
+    return {};
+}
+
+/// Whether tracking is not lost, or no longer after an image that agrees with the map.
+bool Tracker::isResolvedBy(const Alignment& alignment, const UncertainPose& prior) const {
+    if (!loss_.isLost() || alignment.verdict == Verdict::converged) return true;
+    if (isUninformative(alignment)) return false;
+    if (!hasOdometry_) {
+        return resolvesLoss(trackedCovariance_, prior.covariance, alignment.covariance);
+    }
+    // The belief of a lost camera may be too narrow: the image must do without it.
+    const Matrix6 wide = loss_.widened(prior).covariance;
+    return resolvesLoss(prior.covariance, wide, updateCovariance(wide, alignment.information));
+}
+
+/// Perhaps it is not the image but the belief that is wrong.
+std::optional<Tracker::Match> Tracker::findInNeighbourhood(const ImageF& image) {
+    const Alignment alignment = map_->align(image, loss_.widened(belief_));
+    if (alignment.verdict != Verdict::converged || !agrees(alignment, options_.map)) return {};
+    return Match{alignment, {alignment.T_c_w, alignment.covariance}, {}};
+}
+
+std::optional<Tracker::Match> Tracker::findByKeyframes(const ImageF& image, const Pose& stayed,
+                                                       TrackedFrame& frame) {
+    const AlignmentOptions& options = keyframes_->options().keyframe.alignment;
+    const auto match = [&](const std::optional<Alignment>& alignment) -> std::optional<Match> {
+        if (!alignment || !agrees(*alignment, options)) return {};
+        if (loss_.isLost() && alignment->verdict != Verdict::converged &&
+            !resolvesLoss(Matrix6::Zero(), sinceTracked_, alignment->covariance)) {
+            return {};
+        }
+        return Match{*alignment, keyframes_->beliefOf(*alignment), keyframes_->latestTime()};
+    };
+    const UncertainPose moved{belief_.mean, sinceTracked_};
+    const UncertainPose still{hasOdometry_ ? belief_.mean : stayed, sinceTracked_};
+    const Alignment first = keyframes_->align(image, moved);
+    if (!map_) {
+        frame.alignment = first;
+        frame.keyframe = keyframes_->latestTime();
+    }
+    if (auto found = match(first)) return found;
+    if (!hasOdometry_) {
+        if (auto found = match(keyframes_->align(image, still))) return found;
+    }
+    if (auto found = match(keyframes_->alignToLastTracked(image, still))) return found;
+    const double share = options_.loss.maxUnexplainedShare;
+    return match(keyframes_->relocalize(image, share * options.trust.maxUnexplained));
+}
+
+/// The belief after an image that was found.
+void Tracker::take(const View& view, const Match& match, const Pose& before, TrackedFrame& frame) {
+    frame.alignment = match.alignment;
+    frame.keyframe = match.keyframe;
+    belief_ = match.T_c_w;
+    // The pose before is that of the last image tracked, images lost since then or not.
+    velocity_.observe(belief_.mean * before.inverse(),
+                      trackedTime_ ? frame.time - *trackedTime_ : 0.);
+    trackedTime_ = frame.time;
+    trackedCovariance_ = belief_.covariance;
+    sinceTracked_.setZero();
+    lostInRow_ = 0;
+    if (match.alignment.verdict == Verdict::converged) T_certain_w_ = belief_.mean;
+    loss_.onTracked(now_);
+    if (!keyframes_ || view.depth.getSize() == 0) return;
+    if (keyframes_->isEmpty()) {
+        keyframes_->begin(view, belief_, frame.time);
+    } else {
+        const double overlap = match.keyframe ? match.alignment.overlap : 1.;
+        keyframes_->add(view, belief_, frame.time, overlap, match.alignment.meanDepth);
+    }
+}
+
+/// The belief after a lost image. Without a map the first image that shows anything begins a chain
+/// of keyframes, at the start and, at the belief of then, after many lost ones.
+void Tracker::miss(const View& view, const Pose& stayed, TrackedFrame& frame) {
+    frame.lost = true;
+    velocity_.forget();
+    if (!hasOdometry_) {
+        belief_.mean = stayed;
+        if (map_) belief_ = bounded(belief_);
+    }
+    if (!keyframes_) return;
+    keyframes_->forgetLastTracked();
+    const bool isFirst = keyframes_->isEmpty() && !map_;
+    if (!isFirst && ++lostInRow_ < keyframes_->options().patience) return;
+    if (view.depth.getSize() == 0 || !keyframes_->begin(view, belief_, frame.time)) return;
+    trackedTime_ = frame.time;
+    trackedCovariance_ = belief_.covariance;
+    sinceTracked_.setZero();
+    lostInRow_ = 0;
+    loss_.onTracked(now_);
+    if (!isFirst) return;
+    frame.lost = false;
+    frame.alignment.verdict = Verdict::converged;
+    frame.keyframe = frame.time;
+}
+
+UncertainPose Tracker::bounded(UncertainPose belief) const {
+    Vector6 most;
+    most << Eigen::Vector3d::Constant(options_.loss.mostTranslation),
+        Eigen::Vector3d::Constant(options_.loss.mostRotation);
+    const Vector6 sigma = belief.covariance.diagonal().cwiseMax(1e-30).cwiseSqrt();
+    const Vector6 factor = most.cwiseQuotient(sigma).cwiseMin(1.);
+    belief.covariance = factor.asDiagonal() * belief.covariance * factor.asDiagonal();
+    return belief;
+}
+
+}  // namespace photonav
