@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map/map_fusion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -55,8 +56,10 @@ class Scan {
     /// @returns whether the cell was crossed for the first time
     bool cross(const Array3i& cell) { return std::exchange(crossed_[place(cell)], 1) == 0; }
 
-    /// Crosses the cells from the eye up to, not including, the one that holds `end`.
-    void castRay(const Vector3d& eye, const Vector3d& end);
+    void addRay(const Vector3d& end) { rayEnds_.push_back(end); }
+
+    /// Crosses the cells from the eye up to, not including, those that hold the ends of the rays.
+    void castRays(const Vector3d& eye);
 
     /// @param eye without one, surfaces are seen from all sides
     MapChange apply(TexturedOcTree& map, const std::optional<Vector3d>& eye,
@@ -88,31 +91,46 @@ class Scan {
     std::vector<std::uint8_t> crossed_;   // per cell; bytes, since setting bits waits for memory
     std::vector<std::int32_t> pixelsOf_;  // per brick: index into pixels_
     std::vector<std::array<CellPixels, 64>> pixels_;
+    std::vector<Vector3d> rayEnds_;
 };
 
-/// Amanatides and Woo's traversal, without branches: which axis is next is a coin toss.
-void Scan::castRay(const Vector3d& eye, const Vector3d& end) {
-    const Array3i cell = eye.array().floor().cast<int>();
-    const Array3i last = end.array().floor().cast<int>();
-    const Vector3d d = end - eye;
-    std::array<double, 3> next, delta;
-    std::array<std::ptrdiff_t, 3> step;
-    for (int a = 0; a < 3; ++a) {
-        const double gap = d[a] < 0. ? eye[a] - cell[a] : cell[a] + 1. - eye[a];
-        delta[a] = 1. / std::max(std::abs(d[a]), 1e-9);
-        next[a] = gap * delta[a];
-        step[a] = d[a] < 0. ? -stride_[a] : stride_[a];
-    }
-    auto [x, y, z] = next;
-    std::uint8_t* crossed = &crossed_[place(cell)];
-    for (int n = (last - cell).abs().sum(); n > 0; --n) {
-        *crossed = 1;
-        const bool xFirst = (x <= y) & (x <= z), yFirst = !xFirst & (y <= z);
-        const bool zFirst = !xFirst & !yFirst;
-        crossed += xFirst ? step[0] : yFirst ? step[1] : step[2];
-        x += xFirst ? delta[0] : 0.;
-        y += yFirst ? delta[1] : 0.;
-        z += zFirst ? delta[2] : 0.;
+/// Amanatides and Woo's traversal, without branches: which axis is next is a coin toss. Four rays
+/// at a time, since each step of one waits for the step before.
+void Scan::castRays(const Vector3d& eye) {
+    constexpr int kLanes = 4;
+    using Doubles [[gnu::vector_size(kLanes * 8)]] = double;
+    using Places [[gnu::vector_size(kLanes * 8)]] = std::int64_t;
+    const Array3i from = eye.array().floor().cast<int>();
+    for (std::size_t first = 0; first < rayEnds_.size(); first += kLanes) {
+        std::array<Doubles, 3> next{}, delta{};  // in parts of the ray, per axis
+        std::array<Places, 3> step{};
+        Places left{};  // steps to the cell that holds the end
+        const std::size_t rays = std::min<std::size_t>(kLanes, rayEnds_.size() - first);
+        for (std::size_t i = 0; i < rays; ++i) {
+            const Vector3d& end = rayEnds_[first + i];
+            const Vector3d d = end - eye;
+            for (int a = 0; a < 3; ++a) {
+                const double gap = d[a] < 0. ? eye[a] - from[a] : from[a] + 1. - eye[a];
+                delta[a][i] = 1. / std::max(std::abs(d[a]), 1e-9);
+                next[a][i] = gap * delta[a][i];
+                step[a][i] = d[a] < 0. ? -stride_[a] : stride_[a];
+            }
+            left[i] = (end.array().floor().cast<int>() - from).abs().sum();
+        }
+        const Places start = Places{} + place(from);  // where rays that are done wait
+        Places at = start;
+        for (auto n = std::max({left[0], left[1], left[2], left[3]}); n > 0; --n) {
+            for (std::size_t i = 0; i < kLanes; ++i) crossed_[at[i]] = 1;
+            auto& [x, y, z] = next;
+            const Places xFirst = (x <= y) & (x <= z), yFirst = ~xFirst & (y <= z);
+            const Places zFirst = ~(xFirst | yFirst);
+            left -= 1;
+            at = left > 0 ? at + ((xFirst & step[0]) | (yFirst & step[1]) | (zFirst & step[2]))
+                          : start;
+            x += xFirst ? delta[0] : Doubles{};
+            y += yFirst ? delta[1] : Doubles{};
+            z += zFirst ? delta[2] : Doubles{};
+        }
     }
 }
 
@@ -267,9 +285,10 @@ MapChange fuse(TexturedOcTree& map, const View& observed, const Camera& camera, 
             const Array3i cell = end.array().floor().cast<int>();
             const bool first = z > options.maxRange ? scan.cross(cell)
                                                     : scan.addPixel(cell, observed.intensity[v][u]);
-            if (first) scan.castRay(frame.eye, end);
+            if (first) scan.addRay(end);
         }
     }
+    scan.castRays(frame.eye);
     return scan.apply(map, frame.eye, options);
 }
 
@@ -298,8 +317,9 @@ MapChange fuseScan(TexturedOcTree& map, const ScanPoints& points,
     visitEnds([&](const Vector3d& end, float grey, bool isSurface) {
         const Array3i cell = end.array().floor().cast<int>();
         const bool first = isSurface ? scan.addPixel(cell, grey) : scan.cross(cell);
-        if (first && eye) scan.castRay(*eye, end);
+        if (first && eye) scan.addRay(end);
     });
+    if (eye) scan.castRays(*eye);
     return scan.apply(map, eye, {});
 }
 

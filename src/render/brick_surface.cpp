@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/brick_surface.hpp"
 
-#include <algorithm>
 #include <bit>
 
 namespace photonav {
 namespace {
-
-using Eigen::Array3i;
 
 constexpr int kMiddle = 13;  // of SurfaceNeighbours
 
@@ -37,67 +34,83 @@ std::uint16_t layerOf(std::uint64_t mask, int axis, int layer) {
     return static_cast<std::uint16_t>(bits);
 }
 
-/// Grey values at p, q = -2 ... 5 of a layer, negative where no face is exposed.
+constexpr int kWindow = 8;  // cells along each side of a window
+
+/// Grey values at p, q = -2 ... 5 of a layer, and which of them are known: bit 8 * (q + 2) + p + 2.
 struct Window {
-    std::array<std::array<int, 8>, 8> grey;
+    std::array<std::uint16_t, kWindow * kWindow> grey;
+    std::uint64_t known = 0;
 };
 
-/// The exposed faces in and around one layer, -1 to 4, of the middle brick.
-Window exposedGreys(const SurfaceNeighbours& neighbours, int face, int layer) {
-    const int axis = face / 2, pAxis = axis == 0 ? 1 : 0, qAxis = axis == 2 ? 1 : 2;
+/// The coordinates of a layer: p and q run along the axes that are not its normal.
+struct LayerAxes {
+    int p, q;
+    explicit constexpr LayerAxes(int normal) : p(normal == 0 ? 1 : 0), q(normal == 2 ? 1 : 2) {}
+};
+
+/// How the nine bricks around a layer lie in its window.
+struct WindowOverlap {
+    struct Brick {
+        int offset = 0;                       // in SurfaceNeighbours
+        std::uint64_t cells = 0;              // of the brick's first layer, those in the window
+        std::array<std::int8_t, 64> place{};  // in the window, of a cell of the first layer
+    };
+    std::array<Brick, 9> bricks;
+
+    explicit constexpr WindowOverlap(int normal) {
+        constexpr std::array<int, 3> kStride{1, 3, 9};
+        const LayerAxes axes(normal);
+        for (int i = 0; i < 9; ++i) {
+            Brick& brick = bricks[i];
+            const int p0 = i % 3 - 1, q0 = i / 3 - 1;
+            brick.offset = p0 * kStride[axes.p] + q0 * kStride[axes.q];
+            for (int cell = 0; cell < 16; ++cell) {
+                const int p = cell % 4, q = cell / 4;
+                const int column = 4 * p0 + p + 2, row = 4 * q0 + q + 2;
+                if (column < 0 || column >= kWindow || row < 0 || row >= kWindow) continue;
+                const int bit = p * kLayerShift[axes.p] + q * kLayerShift[axes.q];
+                brick.cells |= 1ULL << bit;
+                brick.place[bit] = static_cast<std::int8_t>(kWindow * row + column);
+            }
+        }
+    }
+};
+
+constexpr std::array<WindowOverlap, 3> kOverlap{WindowOverlap(0), WindowOverlap(1),
+                                                WindowOverlap(2)};
+
+/// Adds the exposed faces in and around one layer, -1 to 4, of the middle brick, where the window
+/// has none yet.
+void addExposedGreys(const SurfaceNeighbours& neighbours, int face, int layer, Window& window) {
     constexpr std::array<int, 3> kStride{1, 3, 9};
-    Window window;
-    for (auto& row : window.grey) row.fill(-1);
-    for (int brick = 0; brick < 9; ++brick) {
-        const int p0 = 4 * (brick % 3) - 2, q0 = 4 * (brick / 3) - 2;  // its corner in the window
-        const BrickSurface& surface =
-            *neighbours[kMiddle + (layer >> 2) * kStride[axis] + (brick % 3 - 1) * kStride[pAxis] +
-                        (brick / 3 - 1) * kStride[qAxis]];
-        if (surface.exposed[face] == 0) continue;
-        const unsigned exposed = layerOf(surface.exposed[face], axis, layer & 3);
-        for (unsigned todo = exposed; todo != 0; todo &= todo - 1) {
-            const int cell = std::countr_zero(todo), p = cell & 3, q = cell >> 2;
-            if (p0 + p < 0 || p0 + p > 7 || q0 + q < 0 || q0 + q > 7) continue;
-            Array3i at;
-            at[axis] = layer & 3;
-            at[pAxis] = p;
-            at[qAxis] = q;
-            window.grey[q0 + q][p0 + p] = surface.grey[surfaceBit(at.x(), at.y(), at.z())][face];
+    const int axis = face / 2, shift = (layer & 3) * kLayerShift[axis];
+    const BrickSurface* const* middle = &neighbours[kMiddle + (layer >> 2) * kStride[axis]];
+    for (const WindowOverlap::Brick& brick : kOverlap[axis].bricks) {
+        const BrickSurface& surface = *middle[brick.offset];
+        std::uint64_t todo = surface.exposed[face] >> shift & brick.cells;
+        for (; todo != 0; todo &= todo - 1) {
+            const int bit = std::countr_zero(todo), place = brick.place[bit];
+            if ((window.known >> place & 1U) != 0) continue;
+            window.known |= 1ULL << place;
+            window.grey[place] = surface.grey[bit + shift][face];
         }
     }
-    return window;
-}
-
-/// Fills gaps of a window from another one.
-void fillGaps(Window& window, const Window& other) {
-    for (int q = 0; q < 8; ++q) {
-        for (int p = 0; p < 8; ++p) {
-            if (window.grey[q][p] < 0) window.grey[q][p] = other.grey[q][p];
-        }
-    }
-}
-
-bool hasGaps(const Window& window) {
-    return std::any_of(window.grey.begin(), window.grey.end(), [](const auto& row) {
-        return std::any_of(row.begin(), row.end(), [](int grey) { return grey < 0; });
-    });
 }
 
 /// Where the surface does not go on, it takes the mean of its neighbours along the edges, or else
 /// of those across the corners: the same from every patch, so that patches agree where they meet.
-int continued(const Window& window, int p, int q) {
-    if (window.grey[q][p] >= 0) return window.grey[q][p];
-    constexpr std::array<std::array<int, 2>, 8> kAround{
-        {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+std::uint16_t continued(const Window& window, int place) {
+    constexpr std::array<int, 8> kAround{1,           -1,          kWindow,      -kWindow,
+                                         kWindow + 1, kWindow - 1, -kWindow + 1, -kWindow - 1};
     for (int begin = 0; begin < 8; begin += 4) {
         int sum = 0, count = 0;
         for (int i = begin; i < begin + 4; ++i) {
-            const int grey = window.grey[q + kAround[i][1]][p + kAround[i][0]];
-            if (grey < 0) continue;
-            sum += grey;
+            const int at = place + kAround[i];
+            if ((window.known >> at & 1U) == 0) continue;
+            sum += window.grey[at];
             ++count;
         }
-        if (count > 0) return (sum + count / 2) / count;
+        if (count > 0) return static_cast<std::uint16_t>((sum + count / 2) / count);
     }
     return 0;
 }
@@ -124,16 +137,19 @@ FacePatch makePatch(const SurfaceNeighbours& neighbours, int face, int layer, st
     // The surface goes on over steps of one cell, out or in: real floors are never flat to the
     // cell, and an edge there would be one of the grid, not of the picture.
     const int outward = face % 2 == 1 ? 1 : -1;
-    Window window = exposedGreys(neighbours, face, layer);
+    Window window;
+    addExposedGreys(neighbours, face, layer, window);
     for (const int step : {outward, -outward}) {
-        if (hasGaps(window)) fillGaps(window, exposedGreys(neighbours, face, layer + step));
+        if (~window.known != 0) addExposedGreys(neighbours, face, layer + step, window);
     }
     FacePatch patch;
     patch.valid = valid;
     for (int q = 0; q < FacePatch::kSide; ++q) {
         for (int p = 0; p < FacePatch::kSide; ++p) {
+            const int place = kWindow * (q + 1) + p + 1;
+            const bool known = (window.known >> place & 1U) != 0;
             patch.grey[FacePatch::kSide * q + p] =
-                static_cast<std::uint16_t>(continued(window, p + 1, q + 1));
+                known ? window.grey[place] : continued(window, place);
         }
     }
     return patch;

@@ -18,7 +18,10 @@ class DistancePasses {
           reach_(grid.reach()),
           from_(std::max(box.low.x() - 1, reach_.low.x())),
           to_(std::min(box.high.x() + 1, reach_.high.x())),
-          best_(std::size_t(box.high.x() - box.low.x()) + 2, kFar) {}
+          length_(box.high.x() - box.low.x()),
+          best_(std::size_t(length_) + 2, kFar),
+          row_(std::size_t(length_) + 2 * kFar, kFar),
+          next_(row_) {}
 
     void forgetDistances() {
         for (int z = box_.low.z(); z < box_.high.z(); ++z) {
@@ -35,9 +38,7 @@ class DistancePasses {
         for (int z = box_.low.z(); z < box_.high.z(); ++z) {
             for (int y = box_.low.y(); y < box_.high.y(); ++y) {
                 relax(y, z, -1);
-                std::uint8_t* cells = row(y, z);
-                unsigned run = from_ < box_.low.x() ? cells[from_] : kFar;
-                for (int x = box_.low.x(); x < box_.high.x(); ++x) chain(cells[x], run);
+                spread(row(y, z), box_.low.x() - 1, 1);
             }
         }
     }
@@ -46,9 +47,7 @@ class DistancePasses {
         for (int z = box_.high.z() - 1; z >= box_.low.z(); --z) {
             for (int y = box_.high.y() - 1; y >= box_.low.y(); --y) {
                 relax(y, z, 1);
-                std::uint8_t* cells = row(y, z);
-                unsigned run = to_ > box_.high.x() ? cells[to_ - 1] : kFar;
-                for (int x = box_.high.x() - 1; x >= box_.low.x(); --x) chain(cells[x], run);
+                spread(row(y, z), box_.high.x(), -1);
             }
         }
     }
@@ -56,9 +55,25 @@ class DistancePasses {
   private:
     std::uint8_t* row(int y, int z) { return grid_.distance.data() + grid_.cellIndex(0, y, z); }
 
-    static void chain(std::uint8_t& cell, unsigned& run) {
-        run = std::min<unsigned>(cell, run + 1);
-        cell = static_cast<std::uint8_t>(run);
+    /// Along a row, a cell is at most one farther than the one before it. Steps of 1, 2, 4 ...
+    /// cells in place of one after the other, since the processor takes 32 cells at a time.
+    /// @param before the column before the row's first cell in the given direction
+    void spread(std::uint8_t* cells, int before, int direction) {
+        const std::size_t border = direction > 0 ? kFar - 1 : kFar + length_;
+        const bool counts = before >= from_ && before < to_;
+        row_[border] = next_[border] = counts ? cells[before] : kFar;
+        std::copy_n(cells + box_.low.x(), length_, row_.data() + kFar);
+        for (int step = 1; step < kFar; step *= 2) {
+            const std::uint8_t* here = row_.data() + kFar;
+            const std::uint8_t* behind = here - direction * step;
+            std::uint8_t* out = next_.data() + kFar;
+            for (int i = 0; i < length_; ++i) {
+                out[i] = std::min(here[i], static_cast<std::uint8_t>(behind[i] + step));
+            }
+            row_.swap(next_);
+        }
+        row_[border] = next_[border] = kFar;
+        std::copy_n(row_.data() + kFar, length_, cells + box_.low.x());
     }
 
     void take(int y, int z) {
@@ -75,7 +90,7 @@ class DistancePasses {
         for (int dy = -1; dy <= 1; ++dy) take(y + dy, z + back);
         std::uint8_t* cells = row(y, z) + box_.low.x();
         const std::uint8_t* best = best_.data();
-        for (int i = 0; i < box_.high.x() - box_.low.x(); ++i) {
+        for (int i = 0; i < length_; ++i) {
             const std::uint8_t near = std::min(std::min(best[i], best[i + 2]), best[i + 1]);
             cells[i] = std::min(cells[i], static_cast<std::uint8_t>(near + 1));
         }
@@ -84,7 +99,9 @@ class DistancePasses {
     VoxelGrid& grid_;
     CellBox box_, reach_;
     int from_, to_;                   // columns that count: those of the box and one to each side
+    int length_;                      // of the box's rows
     std::vector<std::uint8_t> best_;  // of the rows around, from the column before the box on
+    std::vector<std::uint8_t> row_, next_;  // a row of the box, with a border of kFar cells
 };
 
 }  // namespace
