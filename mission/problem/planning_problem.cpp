@@ -152,6 +152,7 @@ PlanOutcome PlanningProblem::solve(const std::string& name, const std::atomic<bo
 std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& name) const {
     GrowthOptions growth = config_.growth;
     growth.seed = config_.seed;
+    growth.obstacleReach = config_.robotRadius;
     growth.maxVertices = config_.vertices;
     growth.maxIterations = kMostSamples * config_.vertices;
     const auto model = makeModel(plannersField_, name == "rrt_star" ? 1. : config_.belief.alpha);

@@ -62,8 +62,9 @@ class InformationField {
 
     /// Follows a map: from now on views are rendered from `views`, and entries whose view the
     /// change can have touched are stale. Entries that are not stale equal fresh ones to the bit,
-    /// but for grey values that moved by less than the tolerance of MapChange::texture. Costs much
-    /// less than one view, and grows with the change.
+    /// but for grey values that moved by less than the tolerance of MapChange::texture. Costs
+    /// about 1 us per entry in sight of a change of 600 bricks (map_update_bench), a few views'
+    /// time for 1000 entries.
     ///
     /// The camera is taken to be within the map's bounding box, or unknown space to be free to it.
     /// @param views of the map after the change

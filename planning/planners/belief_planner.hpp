@@ -31,9 +31,9 @@ struct GrowthOptions {
     /// has; 0: with the termination condition.
     unsigned maxVertices = 0;
     std::size_t maxIterations = 0;
-    /// How far clearance is computed: DistanceMap::maxDistance() [m]. mapChanged() checks again
-    /// what is as near to a change of occupancy.
-    double clearanceCap = 1.;
+    /// Obstacles farther away than this collide with nothing: the robot's radius, or more where the
+    /// validity checker asks for more [m]. mapChanged() checks again what is as near to a change.
+    double obstacleReach = 1.;
 };
 
 /// A belief the planner stores, and the node it was propagated from: what an audit replays.

@@ -20,7 +20,7 @@ double distanceToLeg(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const E
 
 void BeliefPlanner::mapChanged(const MapChange& change) {
     if (change.empty() || roots_.empty()) return;
-    removeColliding(ChangedSpace(change, growth_.clearanceCap));
+    removeColliding(ChangedSpace(change, growth_.obstacleReach));
     if (!movedRoot_) {  // the views from the starts may have changed
         for (Root& root : roots_) root.belief = rootBelief(root.vertex->state);
     }

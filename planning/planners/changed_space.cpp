@@ -5,11 +5,11 @@
 
 namespace photonav {
 
-ChangedSpace::ChangedSpace(const MapChange& change, double clearanceCap) {
+ChangedSpace::ChangedSpace(const MapChange& change, double obstacleReach) {
     if (change.occupancy.empty()) return;
     box_ = change.occupancyBox();
     // Clearance is interpolated between the centres of cells.
-    const double margin = clearanceCap + 2. * change.resolution;
+    const double margin = obstacleReach + 2. * change.resolution;
     box_.min().array() -= margin;
     box_.max().array() += margin;
 }

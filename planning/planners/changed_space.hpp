@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a change of the map may have changed clearance.
+// Where a change of the map may have made motions free or put them in collision.
 #pragma once
 
 #include "map/map_change.hpp"
 
 namespace photonav {
 
-/// The box around the cells whose occupancy changed, grown by as far as clearance is computed.
+/// The box around the cells whose occupancy changed, grown by as far as obstacles matter.
 class ChangedSpace {
   public:
-    /// @param clearanceCap DistanceMap::maxDistance(): obstacles farther away change nothing [m]
-    ChangedSpace(const MapChange& change, double clearanceCap);
+    /// @param obstacleReach obstacles farther away collide with nothing [m]
+    ChangedSpace(const MapChange& change, double obstacleReach);
 
     bool contains(const Eigen::Vector3d& p_w) const { return box_.contains(p_w); }
 
