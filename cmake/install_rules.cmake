@@ -12,7 +12,8 @@ install(TARGETS photonav_core photonav_planning photonav_tracking photonav_missi
 install(TARGETS photonav)
 install(DIRECTORY src/ planning/ tracking/ mission/ DESTINATION include/photonav FILES_MATCHING PATTERN "*.hpp"
     PATTERN "yaml_reader.hpp" EXCLUDE PATTERN "key_table.hpp" EXCLUDE
-    PATTERN "config_keys.hpp" EXCLUDE PATTERN "recording_config.hpp" EXCLUDE PATTERN "simd.hpp" EXCLUDE
+    PATTERN "config_keys.hpp" EXCLUDE PATTERN "recording_config.hpp" EXCLUDE
+    PATTERN "map_config.hpp" EXCLUDE PATTERN "replay_config.hpp" EXCLUDE PATTERN "simd.hpp" EXCLUDE
     PATTERN "product_sums.hpp" EXCLUDE PATTERN "keyframe_points.hpp" EXCLUDE)
 install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/photonav/config)
 install(EXPORT photonav_targets NAMESPACE photonav:: DESTINATION ${_config_dir})

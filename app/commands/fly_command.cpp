@@ -11,9 +11,9 @@
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
+#include "mapping/tracking_map.hpp"
+#include "problem/planned_path.hpp"
 #include "report/fly_report.hpp"
-#include "runs/fly_plan.hpp"
-#include "runs/tracking_map.hpp"
 
 namespace photonav {
 namespace {

@@ -6,7 +6,7 @@
 #include "commands/command_line.hpp"
 #include "commands/fly_command.hpp"
 #include "config/config_keys.hpp"
-#include "runs/replay_calibration.hpp"
+#include "replay/replay_calibration.hpp"
 
 namespace photonav {
 namespace {

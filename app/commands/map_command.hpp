@@ -6,29 +6,21 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
-#include "dataset/recording.hpp"
-#include "map/map_fusion.hpp"
+#include "mapping/map_options.hpp"
 #include "report/report.hpp"
 
 namespace photonav {
 
-struct MapOptions : RecordingOptions {
+struct MapCommandOptions : MapOptions {
     std::filesystem::path out;  ///< folder for the results; made when missing
-    double resolution = 0.05;   ///< edge of a cell [m]
-    FusionOptions fusion;
-    std::string depth = "recorded";  ///< or "monocular": from the images, with their poses
-    int compareEvery = 10;    ///< predict every n-th used frame from the finished map; 0: none
-    std::string commandLine;  ///< for the report
+    int compareEvery = 10;      ///< predict every n-th used frame from the finished map; 0: none
+    std::string commandLine;    ///< for the report
 
     /// Called after each fused frame with the number done and the number there are.
     std::function<void(std::size_t done, std::size_t total)> progress;
 };
-
-/// Nearest depth trusted when nothing else is asked for [m].
-double defaultMinRange(const std::string& depth);
 
 struct MapReport {
     nlohmann::json result;  ///< what was written as result.json
@@ -45,6 +37,6 @@ struct MapReport {
 /// @param interrupted checked between frames; what is there then is written, without comparison
 /// @throws InputError for a dataset that cannot be used, an option out of range ("--every") and a
 ///         folder that cannot be written, the last before any work is done; no new folder is left
-MapReport runMap(const MapOptions& options, const std::atomic<bool>& interrupted);
+MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

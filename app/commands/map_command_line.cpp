@@ -3,16 +3,17 @@
 
 #include "commands/command_line.hpp"
 #include "commands/map_command.hpp"
-#include "commands/map_config.hpp"
 #include "commands/scan_command.hpp"
 #include "io/error.hpp"
+#include "mapping/map_config.hpp"
+#include "mapping/scan_map.hpp"
 
 namespace photonav {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct MapArguments : MapOptions {
+struct MapArguments : MapCommandOptions {
     std::vector<double> scanner;
     bool quiet = false;
     bool json = false;
@@ -48,12 +49,12 @@ void addOptions(CLI::App& parser, MapArguments& options) {
 }
 
 /// The options for a laser scan; those that belong to images are errors.
-ScanMapOptions scanOptions(const CLI::App& parser, const MapArguments& options) {
+ScanCommandOptions scanOptions(const CLI::App& parser, const MapArguments& options) {
     for (const char* name : {"--camera", "--up", "--every", "--frames", "--min-range",
                              "--depth-scale", "--tolerance", "--depth", "--stereo"}) {
         if (parser.count(name) > 0) throw InputError(name, "", "is for images, not point clouds");
     }
-    ScanMapOptions scan;
+    ScanCommandOptions scan;
     scan.commandLine = options.commandLine;
     if (!isScan(options.dataset)) {  // the config of an earlier map
         readScanConfig(options.dataset, scan);
@@ -68,7 +69,7 @@ ScanMapOptions scanOptions(const CLI::App& parser, const MapArguments& options) 
 
 MapReport mapScans(const CLI::App& parser, MapArguments& options, ProgressLine& line,
                    const std::atomic<bool>& interrupted) {
-    ScanMapOptions scan = scanOptions(parser, options);
+    ScanCommandOptions scan = scanOptions(parser, options);
     if (options.out.empty()) options.out = "out/map-" + folderName(scan.scans);
     scan.out = options.out;
     scan.progress = [&line](std::size_t done, std::size_t total) {

@@ -3,15 +3,14 @@
 
 #include "commands/command_line.hpp"
 #include "commands/replay_command.hpp"
-#include "commands/replay_config.hpp"
-#include "runs/replay_calibration.hpp"
+#include "replay/replay_calibration.hpp"
 
 namespace photonav {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct ReplayArguments : ReplayOptions {
+struct ReplayArguments : ReplayCommandOptions {
     bool quiet = false;
     bool json = false;
     std::string calibration;  ///< file that says what scale and floors were not typed
@@ -70,7 +69,7 @@ void addOptions(CLI::App& parser, ReplayArguments& options) {
 int run(const CLI::App& parser, ReplayArguments& options, const std::atomic<bool>& interrupted) {
     if (fs::path(options.dataset).extension() == ".yaml") {
         refuseOptionsBeside(options.dataset, parser);
-        readReplayConfig(std::string(options.dataset), options);
+        keysOf(options).read(std::string(options.dataset));
     }
     if (!options.calibration.empty()) {
         const Calibration calibration = readCalibration(options.calibration, options.odometry);

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "mapping/view_difference.hpp"
+#include "geometry/constants.hpp"
 
 namespace photonav {
 namespace {
@@ -22,6 +22,20 @@ std::vector<CaptionedImage> comparisonImages(const View& observed, const View& p
                                                     *difference.meanIntensity, kFullDifference)
                                       : "no pixel is predicted",
              differencePicture(observed.intensity, predicted, kFullDifference)}};
+}
+
+Figure recordedFramesFigure(const RecordedComparison& comparison) {
+    std::vector<std::vector<CaptionedImage>> rows;
+    for (const NearestFrame& frame : comparison) {
+        rows.push_back({{fmt::format("predicted on the path at {:.2f} m", frame.length),
+                         predictedPicture(frame.fromPath)}});
+        const auto images =
+            comparisonImages(frame.observed, frame.predicted,
+                             fmt::format("recorded {:.0f} cm and {:.0f} degrees away",
+                                         100. * frame.distance, frame.angle / kDegree));
+        rows.back().insert(rows.back().end(), images.begin(), images.end());
+    }
+    return imagesFigure(rows, 400.);
 }
 
 }  // namespace photonav

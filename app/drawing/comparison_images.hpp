@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "figures/images.hpp"
+#include "mapping/recorded_frames.hpp"
 
 namespace photonav {
 
@@ -14,5 +15,9 @@ namespace photonav {
 /// @throws std::invalid_argument unless both views have the same size
 std::vector<CaptionedImage> comparisonImages(const View& observed, const View& predicted,
                                              const std::string& caption);
+
+/// Per waypoint: the view predicted there, the frame, its prediction and their difference.
+/// @throws std::invalid_argument without frames
+Figure recordedFramesFigure(const RecordedComparison& comparison);
 
 }  // namespace photonav

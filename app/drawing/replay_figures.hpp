@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "plot/figure.hpp"
-#include "runs/replay_result.hpp"
+#include "replay/replay_result.hpp"
 
 namespace photonav {
 

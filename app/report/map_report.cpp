@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "commands/command_io.hpp"
-#include "commands/map_config.hpp"
 #include "figures/perspective.hpp"
+#include "mapping/map_config.hpp"
 #include "render/voxel_renderer.hpp"
 #include "result/json_values.hpp"
 
@@ -43,7 +43,7 @@ json meansOf(const json& compared) {
 
 json vectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-json datasetJson(const MapOptions& options, const Recording& recording) {
+json datasetJson(const MapCommandOptions& options, const Recording& recording) {
     const Sequence& sequence = recording.sequence;
     json camera = cameraJson(sequence.camera);
     camera["assumed"] = sequence.cameraAssumed;
@@ -62,7 +62,7 @@ json datasetJson(const MapOptions& options, const Recording& recording) {
              {vectorJson(R.row(0)), vectorJson(R.row(1)), vectorJson(R.row(2))}}};
 }
 
-json framesJson(const MapOptions& options, const Recording& recording, const MapRun& run) {
+json framesJson(const MapCommandOptions& options, const Recording& recording, const MapRun& run) {
     json skipped = json::array();
     for (const auto& list : {recording.sequence.skipped, run.black}) {
         for (const auto& [file, reason] : list) {
@@ -123,7 +123,8 @@ DrawnPath cameraPath(const Trajectory& trajectory) {
 
 }  // namespace
 
-nlohmann::json mapResult(const MapOptions& options, const Recording& recording, const MapRun& run) {
+nlohmann::json mapResult(const MapCommandOptions& options, const Recording& recording,
+                         const MapRun& run) {
     return {{"schema", 1},
             {"command", "map"},
             {"version", PHOTONAV_VERSION},
@@ -199,8 +200,8 @@ ReportTable mapSummary(const json& result) {
     return table;
 }
 
-void writeMapReport(const MapOptions& options, const json& result, const Recording& recording,
-                    const TexturedOcTree& map, const MapRun& run) {
+void writeMapReport(const MapCommandOptions& options, const json& result,
+                    const Recording& recording, const TexturedOcTree& map, const MapRun& run) {
     const Camera& camera = recording.sequence.camera;
     ReportData report;
     report.title = "Map of " + fs::path(options.dataset).lexically_normal().filename().string();

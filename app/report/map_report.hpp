@@ -7,21 +7,15 @@
 #include <vector>
 
 #include "commands/map_command.hpp"
-#include "recording/trajectory.hpp"
+#include "mapping/recording_map.hpp"
 #include "report/plan_report.hpp"
 
 namespace photonav {
 
 /// Results of mapping besides the cells.
-struct MapRun {
-    std::size_t frames = 0;                ///< looked at: less than all when interrupted
-    std::vector<Sequence::Skipped> black;  ///< of these, not fused
-    Trajectory trajectory;                 ///< of all of these
-    nlohmann::json monocular;  ///< how good its depths are, null when they were recorded
+struct MapRun : FusedRecording {
     nlohmann::json compared = nlohmann::json::array();  ///< frames and their predictions
     std::vector<NamedFigure> figures;
-    double loadSeconds = 0.;  ///< images
-    double fuseSeconds = 0.;
     bool interrupted = false;
 };
 
@@ -32,13 +26,14 @@ nlohmann::json voxelsJson(const TexturedOcTree& map);
 NamedFigure overview(const TexturedOcTree& map, const std::string& title);
 
 /// result.json but for the cells and the time it took.
-nlohmann::json mapResult(const MapOptions& options, const Recording& recording, const MapRun& run);
+nlohmann::json mapResult(const MapCommandOptions& options, const Recording& recording,
+                         const MapRun& run);
 
 /// The main numbers of result.json, with labels.
 ReportTable mapSummary(const nlohmann::json& result);
 
 /// Writes the figures, config.yaml, report.json and report.html.
-void writeMapReport(const MapOptions& options, const nlohmann::json& result,
+void writeMapReport(const MapCommandOptions& options, const nlohmann::json& result,
                     const Recording& recording, const TexturedOcTree& map, const MapRun& run);
 
 }  // namespace photonav

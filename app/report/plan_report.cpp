@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "commands/command_io.hpp"
+#include "drawing/comparison_images.hpp"
 #include "drawing/tree_evolution_figure.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
@@ -252,7 +253,7 @@ std::vector<NamedFigure> planFigures(const Config& config, const World& world, P
                                       "predictions at their poses is {:.3f}.",
                                       *mean)
                         : "; the map predicts none of their pixels."),
-              recorded->picture}});
+              recordedFramesFigure(*recorded).png()}});
     }
     return figures;
 }

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "figures/top_view.hpp"
+#include "mapping/recorded_frames.hpp"
 #include "problem/planning_problem.hpp"
 #include "problem/tree_evolution.hpp"
 #include "report/report.hpp"
-#include "runs/recorded_frames.hpp"
 
 namespace photonav {
 

@@ -11,6 +11,7 @@
 
 #include "drawing/replay_figures.hpp"
 #include "figures/top_view.hpp"
+#include "replay/replay_tables.hpp"
 #include "report/plan_report.hpp"
 
 namespace photonav {
@@ -98,7 +99,7 @@ Png topView(const std::vector<DrawnPath>& paths, const std::string& title) {
     return topViewFigure(view).png();
 }
 
-std::vector<NamedFigure> figuresOf(bool odometry, const ReplayRun& run, const ReplayErrors& errors,
+std::vector<NamedFigure> figuresOf(const ReplayRun& run, const ReplayErrors& errors,
                                    const std::vector<DrawnPath>& paths, const std::string& name) {
     std::vector<NamedFigure> figures;
     if (!paths.empty()) {
@@ -119,7 +120,7 @@ std::vector<NamedFigure> figuresOf(bool odometry, const ReplayRun& run, const Re
     }
     if (!run.strips.empty()) {
         const char* caption =
-            odometry
+            run.odometry
                 ? "Observed; the keyframe rendered at the estimated pose and exposure; their "
                   "difference (violet: none, yellow: 0.25 of the grey scale)."
                 : "Observed; the map rendered at the estimated pose and exposure; their difference "
@@ -197,9 +198,9 @@ ReportTable replaySummary(const json& result) {
     return table;
 }
 
-void writeReplayReport(const ReplayOptions& options, const std::string& config, const json& result,
-                       const ReplaySource& source, const ReplayRun& run, const ReplayErrors& errors,
-                       const std::function<void(ReportData&)>& describeMap) {
+void writeReplayReport(const ReplayCommandOptions& options, const std::string& config,
+                       const json& result, const Replay& replay, const ReplayRun& run,
+                       const ReplayErrors& errors) {
     const std::string name =
         (fs::path(options.dataset) / "").lexically_normal().parent_path().filename().string();
     ReportData report;
@@ -212,9 +213,12 @@ void writeReplayReport(const ReplayOptions& options, const std::string& config, 
     report.result = result;
     report.config = config;
     report.tables = {replaySummary(result)};
-    report.fieldOfView = {2. * std::atan(0.5 * source.camera.width / source.camera.fx()),
-                          2. * std::atan(0.5 * source.camera.height / source.camera.fy())};
-    describeMap(report);
+    const Camera& camera = replay.recording().sequence.camera;
+    report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),
+                          2. * std::atan(0.5 * camera.height / camera.fy())};
+    if (const TexturedOcTree* map = replay.map().octree.get())
+        report.voxels = makeReportVoxels(*map);
+    if (const Scene* scene = replay.map().scene.get()) report.mesh = makeReportMesh(*scene);
     std::array paths{estimatedPath(run), truePath(run)};
     for (DrawnPath& path : paths) {
         if (!path.points.empty()) report.paths.push_back(std::move(path));
@@ -223,8 +227,7 @@ void writeReplayReport(const ReplayOptions& options, const std::string& config, 
         report.start = report.paths[0].points.front().position;
         report.goal = report.paths[0].points.back().position;
     }
-    writeResultFolder(options.out, report,
-                      figuresOf(options.odometry, run, errors, report.paths, name));
+    writeResultFolder(options.out, report, figuresOf(run, errors, report.paths, name));
 }
 
 }  // namespace photonav

@@ -3,7 +3,8 @@
 #pragma once
 
 #include "commands/replay_command.hpp"
-#include "runs/replay_result.hpp"
+#include "replay/replay.hpp"
+#include "replay/replay_result.hpp"
 
 namespace photonav {
 
@@ -12,10 +13,8 @@ ReportTable replaySummary(const nlohmann::json& result);
 
 /// Writes config.yaml, errors.png, strips.png, top_view.png, report.json and report.html.
 /// @param config as YAML, complete
-/// @param describeMap puts the map into the report's 3-D view
-void writeReplayReport(const ReplayOptions& options, const std::string& config,
-                       const nlohmann::json& result, const ReplaySource& source,
-                       const ReplayRun& run, const ReplayErrors& errors,
-                       const std::function<void(ReportData&)>& describeMap);
+void writeReplayReport(const ReplayCommandOptions& options, const std::string& config,
+                       const nlohmann::json& result, const Replay& replay, const ReplayRun& run,
+                       const ReplayErrors& errors);
 
 }  // namespace photonav

@@ -68,7 +68,7 @@ Eigen::Vector3d upByFloor(const Recording& recording) {
     if (!recording.sequence.hasDepth()) {
         throw InputError("--up", "floor", "the recording has no depth images to find it in");
     }
-    if (std::ranges::none_of(recording.sequence.frames, &Sequence::Entry::hasPose)) {
+    if (!recording.sequence.hasPoses()) {
         throw InputError("--up", "", "the recording has no true poses to turn");
     }
     Eigen::Vector3d roughUp = Eigen::Vector3d::Zero();  // the upper edge of the images

@@ -40,7 +40,7 @@ void MonocularFusion::finish() {
 void MonocularFusion::fuseReference(const DepthFilter& filter) {
     const View view = filter.view();
     count(filter, view.depth);
-    onReference_({filter, recorded_, timestamp_});
+    if (onReference_) onReference_({filter, recorded_, timestamp_});
     ++references_;
     fuse(map_, view, camera_, filter.pose(), options_);
 }

@@ -23,7 +23,7 @@ class MonocularFusion {
     };
 
     /// @param map, camera must outlive it
-    /// @param onReference called with every reference image
+    /// @param onReference called with every reference image; may be missing
     MonocularFusion(TexturedOcTree& map, const Camera& camera, const FusionOptions& options,
                     std::function<void(const Reference&)> onReference);
 

@@ -48,6 +48,8 @@ struct Sequence {
     bool hasDepth() const {
         return std::ranges::any_of(frames, [](const Entry& f) { return !f.depthFile.empty(); });
     }
+    /// Whether any frame has a pose.
+    bool hasPoses() const { return std::ranges::any_of(frames, &Entry::hasPose); }
 };
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/map_config.hpp"
+#include "commands/map_command.hpp"
 
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
@@ -8,6 +8,7 @@
 #include "depth/stereo_depth.hpp"
 #include "euroc_dataset.hpp"
 #include "map/octree_file.hpp"
+#include "mapping/map_config.hpp"
 #include "recording/trajectory.hpp"
 #include "tum_dataset.hpp"
 
@@ -35,7 +36,7 @@ class MapCommand : public testing::Test {
     test::TemporaryFolder folder;
     test::fs::path data = folder.path() / "data";
     test::FloorDataset dataset;
-    MapOptions options;
+    MapCommandOptions options;
     std::atomic<bool> running{false};
 };
 
@@ -117,7 +118,7 @@ TEST_F(MapCommand, ItsConfigMakesTheSameMapAgain) {
     const MapReport first = runMap(options, running);
     const auto config = (options.out / "config.yaml").string();
     EXPECT_TRUE(isMapConfig(config));
-    MapOptions again;
+    MapCommandOptions again;
     again.compareEvery = 2;
     again.out = folder.path() / "again";
     readMapConfig(config, again);
@@ -159,7 +160,7 @@ TEST_F(MapCommand, InterruptedBeforeTheFirstFrameItStillEndsInOrder) {
 
 TEST_F(MapCommand, RejectsOptionsOutOfRange) {
     const auto rejected = [&](auto change, const std::vector<std::string>& parts) {
-        const MapOptions good = options;
+        const MapCommandOptions good = options;
         change();
         expectRejected(parts);
         options = good;
@@ -210,7 +211,7 @@ TEST_F(MapCommand, WithoutDepthImages) {
     EXPECT_TRUE(report.result["comparison"]["frames"][0]["mean_abs_intensity"].is_null());
     EXPECT_FALSE(report.result["comparison"]["mean"].contains("mean_abs_depth"));
     EXPECT_TRUE(test::fs::exists(options.out / "convergence.png"));
-    MapOptions again;
+    MapCommandOptions again;
     readMapConfig((options.out / "config.yaml").string(), again);
     again.out = options.out;
     again.compareEvery = 0;
@@ -287,7 +288,7 @@ TEST_F(MapCommand, MapsWhatTwoCamerasSee) {
     const Pose T_w_left = wall.T_w_b(2) * wall.camera(0).T_b_c;
     const Trajectory trajectory = readTrajectory((options.out / "trajectory.tum").string());
     EXPECT_TRUE(trajectory[2].T_w_c.isApprox(T_w_left * stereo.T_r_c().inverse(), 1e-6));
-    MapOptions again;
+    MapCommandOptions again;
     readMapConfig((options.out / "config.yaml").string(), again);
     EXPECT_EQ(again.stereo, "bm");
     options.stereo = "xy";

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "commands/scan_command.hpp"
 
-#include "commands/map_config.hpp"
 #include "map/octree_file.hpp"
+#include "mapping/map_config.hpp"
+#include "mapping/scan_map.hpp"
 #include "tum_dataset.hpp"
 
 namespace photonav {
@@ -43,7 +44,7 @@ class ScanCommand : public testing::Test {
 
     test::TemporaryFolder folder;
     test::fs::path scans = folder.path() / "scans";
-    ScanMapOptions options;
+    ScanCommandOptions options;
     std::atomic<bool> running{false};
 };
 
@@ -95,7 +96,7 @@ TEST_F(ScanCommand, ItsConfigMakesTheMapAgain) {
     const std::string config = (options.out / "config.yaml").string();
     ASSERT_TRUE(isScanConfig(config));
     EXPECT_FALSE(isMapConfig(config));
-    ScanMapOptions again;
+    ScanCommandOptions again;
     readScanConfig(config, again);
     again.out = folder.path() / "again";
     EXPECT_EQ(runScanMap(again, running).result["voxels"], voxels);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "runs/fly_plan.hpp"
+#include "problem/planned_path.hpp"
 
 #include <cmath>
 #include <fstream>

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "runs/replay_result.hpp"
+#include "replay/replay_result.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <set>
 
 #include "evaluation/averages.hpp"
-#include "io/atomic_file.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
@@ -24,22 +22,6 @@ std::size_t count(const ReplayRun& run, FrameStatus status) {
     return static_cast<std::size_t>(
         std::count_if(run.frames.begin(), run.frames.end(),
                       [status](const ReplayedFrame& f) { return f.status == status; }));
-}
-
-JudgedFrame judgeFrame(const ReplayRun& run, std::size_t i, bool beginsTrue) {
-    const ReplayedFrame& frame = run.frames[i];
-    const UncertainPose& belief = frame.tracked.T_c_w;
-    JudgedFrame result;
-    result.frame = i;
-    result.pair = {frame.index, frame.timestamp, belief.mean.inverse(), frame.truth_c_w->inverse()};
-    const PoseErrors errors = absoluteErrors({result.pair});
-    result.positionError = errors.translation[0];
-    result.rotationError = errors.rotation[0];
-    result.positionSigma = std::sqrt(belief.covariance.diagonal().head<3>().sum());
-    result.rotationSigma = std::sqrt(belief.covariance.diagonal().tail<3>().sum());
-    if (beginsTrue) result.nees = squaredNormalisedError(belief, *frame.truth_c_w);
-    if (result.nees) *result.nees /= 6.;
-    return result;
 }
 
 json summaryJson(const PoseErrors& errors) {
@@ -85,31 +67,19 @@ json intervalsJson(const std::vector<TimeInterval>& intervals) {
     return list;
 }
 
-json skippedJson(const ReplaySource& source, const ReplayRun& run) {
+json skippedJson(const Sequence& sequence, const ReplayRun& run) {
     json list = json::array();
-    for (const auto& [file, reason] : source.skipped) {
+    for (const auto& [file, reason] : sequence.skipped) {
         list.push_back({{"file", file}, {"reason", reason}});
     }
     for (const ReplayedFrame& frame : run.frames) {
         if (frame.status != FrameStatus::unreadable) continue;
-        const std::string& file = source.frames[frame.index].file;
+        const std::string& file = sequence.frames[frame.index].colourFile;
         std::string reason = frame.words;
         if (reason.starts_with(file + ": ")) reason.erase(0, file.size() + 2);
         list.push_back({{"file", file}, {"reason", reason}});
     }
     return list;
-}
-
-const char* nameOf(FrameStatus status) {
-    switch (status) {
-        case FrameStatus::tracked:
-            return "tracked";
-        case FrameStatus::lost:
-            return "lost";
-        case FrameStatus::unreadable:
-            break;
-    }
-    return "unreadable";
 }
 
 constexpr const char* kOverlapHint = "; a smaller --min-overlap asks for less";
@@ -126,7 +96,7 @@ std::size_t countBlack(const ReplayRun& run) {
                       [](const ReplayedFrame& f) { return isLostFrame(f) && f.isBlack; }));
 }
 
-std::string whyLostAtOnce(const ReplayRun& run, std::size_t lost, bool inMap) {
+std::string whyLostAtOnce(const ReplayRun& run, std::size_t lost) {
     if (countBlack(run) == lost) {
         return fmt::format("all {} images{} are black", lost, run.interrupted ? " so far" : "");
     }
@@ -137,66 +107,11 @@ std::string whyLostAtOnce(const ReplayRun& run, std::size_t lost, bool inMap) {
     text += first == run.frames.begin() ? "first image: " : fmt::format("image {}: ", first->index);
     text += first->words;
     if (isShortOfOverlap(*first)) text += kOverlapHint;
-    if (inMap) text += "; poses and map must share a world (--up, --start)";
+    if (!run.odometry) text += "; poses and map must share a world (--up, --start)";
     return text;
 }
 
-/// Quoted: file names and verdicts may have commas.
-std::string quoted(const std::string& text) {
-    std::string result = "\"";
-    for (const char c : text) result += c == '"' ? "\"\"" : std::string(1, c);
-    return result + "\"";
-}
-
-std::string row(const ReplayedFrame& frame, const JudgedFrame* judged) {
-    const std::optional<double>& keyframe = frame.tracked.keyframe;
-    std::string line =
-        fmt::format("{},{:.6f},{},{}", frame.index, frame.timestamp, nameOf(frame.status),
-                    keyframe ? fmt::format("{:.6f}", *keyframe) : "");
-    if (frame.status == FrameStatus::unreadable) {
-        line += ",,,,,,,";
-    } else {
-        const Alignment& a = frame.tracked.alignment;
-        line += fmt::format(",{},{:.4f},{:.6f},{:.4f},{:.5f},{:.5f},{:.3f}", a.iterations,
-                            a.overlap, a.residual.rms, a.residual.unexplained, a.exposure.gain,
-                            a.exposure.offset, 1e3 * frame.seconds);
-    }
-    if (judged) {
-        line += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{}", judged->positionError,
-                            kDegrees * judged->rotationError, judged->positionSigma,
-                            kDegrees * judged->rotationSigma,
-                            judged->nees ? fmt::format("{:.6g}", *judged->nees) : "");
-    } else {
-        line += ",,,,,";
-    }
-    return line + "," + quoted(frame.words) + "\n";
-}
-
 }  // namespace
-
-ReplayErrors judge(const ReplayRun& run, bool odometry) {
-    ReplayErrors errors;
-    const auto first = firstRead(run);
-    const bool beginsTrue = !odometry || (first != run.frames.end() && first->truth_c_w);
-    std::vector<PosePair> pairs;
-    for (std::size_t i = 0; i < run.frames.size(); ++i) {
-        const ReplayedFrame& frame = run.frames[i];
-        if (frame.status != FrameStatus::tracked || !frame.truth_c_w) continue;
-        errors.judged.push_back(judgeFrame(run, i, beginsTrue));
-        pairs.push_back(errors.judged.back().pair);
-    }
-    if (pairs.empty()) return errors;
-    if (odometry) {
-        errors.absolute.translation = absoluteErrors(pairs, positionAlignment(pairs)).translation;
-        errors.absolute.rotation = absoluteErrors(pairs, alignmentOf(pairs)).rotation;
-    } else {
-        errors.absolute = absoluteErrors(pairs);
-    }
-    errors.perFrame = relativeErrors(pairs, Spacing::frames, 1.);
-    errors.perSecond = relativeErrors(pairs, Spacing::seconds, 1.);
-    errors.perMetre = relativeErrors(pairs, Spacing::metres, 1.);
-    return errors;
-}
 
 std::vector<TimeInterval> lostIntervals(const ReplayRun& run) {
     std::vector<TimeInterval> intervals;
@@ -211,16 +126,16 @@ std::vector<TimeInterval> lostIntervals(const ReplayRun& run) {
     return intervals;
 }
 
-std::vector<TimeInterval> gaps(const ReplaySource& source) {
+std::vector<TimeInterval> gaps(const Sequence& sequence) {
     std::vector<double> steps;
-    for (std::size_t i = 1; i < source.frames.size(); ++i) {
-        steps.push_back(source.frames[i].timestamp - source.frames[i - 1].timestamp);
+    for (std::size_t i = 1; i < sequence.frames.size(); ++i) {
+        steps.push_back(sequence.frames[i].timestamp - sequence.frames[i - 1].timestamp);
     }
     const double usual = median(steps, 0.);
     std::vector<TimeInterval> result;
     for (std::size_t i = 0; i < steps.size(); ++i) {
         if (steps[i] > 3. * usual) {
-            result.push_back({source.frames[i].timestamp, source.frames[i + 1].timestamp});
+            result.push_back({sequence.frames[i].timestamp, sequence.frames[i + 1].timestamp});
         }
     }
     return result;
@@ -233,10 +148,10 @@ bool isLostForGood(const ReplayRun& run) {
     return !run.interrupted;
 }
 
-std::string verdictOf(const ReplayRun& run, bool inMap) {
+std::string verdictOf(const ReplayRun& run) {
     const std::size_t tracked = count(run, FrameStatus::tracked);
     const std::size_t lost = count(run, FrameStatus::lost);
-    if (tracked == 0 && lost > 0) return "lost at once: " + whyLostAtOnce(run, lost, inMap);
+    if (tracked == 0 && lost > 0) return "lost at once: " + whyLostAtOnce(run, lost);
     std::string text = fmt::format("tracked {} of {} frames", tracked, run.frames.size());
     if (lost > 0) text += fmt::format(", lost {}", lost);
     const std::size_t black = countBlack(run);
@@ -251,17 +166,7 @@ std::string verdictOf(const ReplayRun& run, bool inMap) {
     return text;
 }
 
-std::vector<StampedBelief> beliefsOf(const ReplayRun& run) {
-    std::vector<StampedBelief> beliefs;
-    for (const ReplayedFrame& frame : run.frames) {
-        if (frame.status != FrameStatus::tracked) continue;
-        beliefs.push_back({frame.timestamp, frame.tracked.T_c_w});
-    }
-    return beliefs;
-}
-
-json replayResult(const ReplaySource& source, const ReplayRun& run, const ReplayErrors& errors,
-                  bool aligned) {
+json replayResult(const Sequence& sequence, const ReplayRun& run, const ReplayErrors& errors) {
     const auto tracked = count(run, FrameStatus::tracked);
     const auto lost = count(run, FrameStatus::lost);
     const double looked = tracked > 0 ? double(tracked + lost) : 0.;
@@ -277,16 +182,16 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
     for (const ReplayedFrame& frame : run.frames) {
         if (frame.tracked.keyframe) keyframes.insert(*frame.tracked.keyframe);
     }
-    return {{"verdict", verdictOf(run, !aligned)},
+    return {{"verdict", verdictOf(run)},
             {"frames", run.frames.size()},
-            {"recorded", source.recorded},
+            {"recorded", sequence.recorded},
             {"tracked", tracked},
             {"degenerate", degenerate},
             {"lost", lost},
             {"unreadable", count(run, FrameStatus::unreadable)},
             {"keyframes", keyframes.size()},
             {"lost_intervals", intervalsJson(lostIntervals(run))},
-            {"gaps", intervalsJson(gaps(source))},
+            {"gaps", intervalsJson(gaps(sequence))},
             {"judged", errors.judged.size()},
             {"laid_on_frame", run.laidOn ? json(*run.laidOn) : json(nullptr)},
             {"ate_rmse_m", judged ? json(absolute.rmse) : json(nullptr)},
@@ -294,7 +199,7 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
             {"ate_median_m", judged ? json(absolute.median) : json(nullptr)},
             {"ate_rotation_rmse_deg",
              judged ? json(kDegrees * summarise(errors.absolute.rotation).rmse) : json(nullptr)},
-            {"ate_alignment", aligned ? "SE(3), by the positions" : "none"},
+            {"ate_alignment", run.odometry ? "SE(3), by the positions" : "none"},
             {"rpe",
              {{"frame", summaryJson(errors.perFrame)},
               {"second", summaryJson(errors.perSecond)},
@@ -304,36 +209,10 @@ json replayResult(const ReplaySource& source, const ReplayRun& run, const Replay
             {"fps", framesPerSecond(looked, run.trackSeconds)},
             {"fps_with_reading", framesPerSecond(looked, run.trackSeconds + run.loadSeconds)},
             {"depth_density", densityJson(run)},
-            {"skipped", skippedJson(source, run)},
+            {"skipped", skippedJson(sequence, run)},
             {"covariance_frame",
              "camera, left perturbation T_c_w = exp(xi) mean, order (rho, phi), upper triangle by "
              "rows"}};
-}
-
-void writeReplayTables(const std::filesystem::path& folder, const ReplayRun& run,
-                       const ReplayErrors& errors) {
-    std::string csv =
-        "frame,timestamp_s,status,keyframe_s,iterations,overlap,residual_rms,unexplained,gain,"
-        "offset,"
-        "time_ms,position_error_m,rotation_error_deg,position_sigma_m,rotation_sigma_deg,"
-        "nees_per_dof,verdict\n";
-    auto judged = errors.judged.begin();
-    Trajectory truth;
-    for (std::size_t i = 0; i < run.frames.size(); ++i) {
-        const bool isJudged = judged != errors.judged.end() && judged->frame == i;
-        csv += row(run.frames[i], isJudged ? &*judged : nullptr);
-        if (isJudged) ++judged;
-        if (run.frames[i].truth_c_w) {
-            truth.push_back({run.frames[i].timestamp, run.frames[i].truth_c_w->inverse()});
-        }
-    }
-    writeFileAtomically(folder / "frames.csv", csv);
-    const std::vector<StampedBelief> beliefs = beliefsOf(run);
-    const auto file = [&](const char* name) { return (folder / name).string(); };
-    writeTrajectory(file("trajectory.tum"), meansOf(beliefs));
-    writeCovariances(file("trajectory.cov"), beliefs);
-    writeOpenVinsTrajectory(file("trajectory.ov"), beliefs);
-    if (!truth.empty()) writeTrajectory(file("groundtruth.tum"), truth);
 }
 
 }  // namespace photonav

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "runs/recorded_frames.hpp"
+#include "mapping/recorded_frames.hpp"
 
-#include <fmt/format.h>
+#include <filesystem>
+#include <utility>
 
-#include "commands/map_config.hpp"
 #include "geometry/constants.hpp"
+#include "mapping/map_config.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
@@ -50,8 +51,9 @@ double typicalDepth(const View& view) {
     return count > 0 ? sum / count : 1.;
 }
 
-std::size_t nearestFrame(const Sequence& sequence, const Pose& T_c_w, double depth,
-                         NearestFrame& nearest) {
+/// @return its index
+std::size_t findNearest(const Sequence& sequence, const Pose& T_c_w, double depth,
+                        NearestFrame& nearest) {
     double least = kInfinity;
     std::size_t index = 0;
     for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
@@ -76,35 +78,27 @@ std::optional<RecordedComparison> compareWithRecording(const Config& config, con
     if (!recording) return {};
     const Sequence& sequence = recording->sequence;
     RecordedComparison comparison;
-    std::vector<std::vector<CaptionedImage>> rows;
-    View there;
-    View predicted;
     for (const std::size_t point : chosenPoints(path)) {
         const BeliefPoint& waypoint = path.points[point];
         const Pose T_c_w = (waypoint.T_w_b * config.camera.T_b_c()).inverse();
-        world.views().render(sequence.camera, T_c_w, there);
         NearestFrame nearest;
         nearest.point = point;
-        const std::size_t index = nearestFrame(sequence, T_c_w, typicalDepth(there), nearest);
-        const RecordedFrame frame = recording->load(index);
-        world.views().render(sequence.camera, frame.T_c_w, predicted);
-        nearest.difference = compareViews(frame.view, predicted);
-        comparison.frames.push_back(nearest);
-        rows.push_back({{fmt::format("predicted on the path at {:.2f} m", waypoint.length),
-                         predictedPicture(there)}});
-        const auto images =
-            comparisonImages(frame.view, predicted,
-                             fmt::format("recorded {:.0f} cm and {:.0f} degrees away",
-                                         100. * nearest.distance, nearest.angle / kDegree));
-        rows.back().insert(rows.back().end(), images.begin(), images.end());
+        nearest.length = waypoint.length;
+        world.views().render(sequence.camera, T_c_w, nearest.fromPath);
+        const std::size_t index =
+            findNearest(sequence, T_c_w, typicalDepth(nearest.fromPath), nearest);
+        RecordedFrame frame = recording->load(index);
+        world.views().render(sequence.camera, frame.T_c_w, nearest.predicted);
+        nearest.difference = compareViews(frame.view, nearest.predicted);
+        nearest.observed = std::move(frame.view);
+        comparison.push_back(std::move(nearest));
     }
-    comparison.picture = imagesFigure(rows, 400.).png();
     return comparison;
 }
 
 nlohmann::json toJson(const RecordedComparison& comparison) {
     nlohmann::json frames = nlohmann::json::array();
-    for (const NearestFrame& frame : comparison.frames) {
+    for (const NearestFrame& frame : comparison) {
         frames.push_back({{"waypoint", frame.point},
                           {"stamp", frame.timestamp},
                           {"distance_m", frame.distance},
@@ -118,7 +112,7 @@ nlohmann::json toJson(const RecordedComparison& comparison) {
 std::optional<double> meanDifference(const RecordedComparison& comparison) {
     double sum = 0.;
     int count = 0;
-    for (const NearestFrame& frame : comparison.frames) {
+    for (const NearestFrame& frame : comparison) {
         if (!frame.difference.meanIntensity) continue;
         sum += *frame.difference.meanIntensity;
         ++count;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `photonav fly` is asked to fly: a config, or the result folder of `photonav plan`.
+// A plan from the result folder of `photonav plan`.
 #pragma once
 
 #include <filesystem>

@@ -2,20 +2,19 @@
 // A map to track in, from a file.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
 #include "map/textured_octree.hpp"
 #include "photometry/view.hpp"
-#include "report/report.hpp"
+#include "scene/scene.hpp"
 
 namespace photonav {
 
 struct TrackingMap {
-    std::shared_ptr<TexturedOcTree> octree;   ///< none: a mesh
-    std::shared_ptr<const ViewSource> views;  ///< what images are compared with
-    std::function<void(ReportData&)> describe = [](ReportData&) {};
+    std::shared_ptr<const ViewSource> views;       ///< what images are compared with
+    std::shared_ptr<const TexturedOcTree> octree;  ///< that they are views of, or
+    std::shared_ptr<const Scene> scene;            ///< a mesh
 
     /// Size of its cells [m]; 0: a mesh.
     double resolution() const { return octree ? octree->getResolution() : 0.; }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/map_config.hpp"
+#include "mapping/map_config.hpp"
 
 #include "dataset/recording_config.hpp"
+#include "depth/depth_filter.hpp"
 #include "geometry/constants.hpp"
 
 namespace photonav {
@@ -17,6 +18,10 @@ void addResolution(KeyTable& keys, double& resolution) {
 }
 
 }  // namespace
+
+double defaultMinRange(const std::string& depth) {
+    return depth == "monocular" ? DepthFilterOptions().minDepth : FusionOptions().minRange;
+}
 
 KeyTable keysOf(MapOptions& options) {
     KeyTable keys;

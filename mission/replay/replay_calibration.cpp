@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "runs/replay_calibration.hpp"
+#include "replay/replay_calibration.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ const std::string& modeOf(bool odometry) { return kModes[odometry ? 0 : 1]; }
 
 }  // namespace
 
-std::vector<AlignmentError> alignmentErrors(const ReplayRun& run, bool odometry, double scale) {
+std::vector<AlignmentError> alignmentErrors(const ReplayRun& run) {
     std::vector<AlignmentError> errors;
     for (const ReplayedFrame& frame : run.frames) {
         const Alignment& alignment = frame.tracked.alignment;
@@ -27,22 +27,21 @@ std::vector<AlignmentError> alignmentErrors(const ReplayRun& run, bool odometry,
         }
         Pose truth = *frame.truth_c_w;
         Pose estimate = frame.tracked.T_c_w.mean;
-        if (odometry) {
+        if (run.odometry) {
             const ReplayedFrame& keyframe = frameAt(run, *frame.tracked.keyframe);
             if (!keyframe.truth_c_w) continue;
             truth = truth * keyframe.truth_c_w->inverse();
             estimate = estimate * keyframe.tracked.T_c_w.mean.inverse();
         }
-        errors.push_back({deviation(truth, estimate), alignment.information / scale});
+        errors.push_back({deviation(truth, estimate), alignment.information / run.scale});
     }
     return errors;
 }
 
-std::optional<Calibration> calibrationOf(const ReplayRun& run, bool odometry, double scale,
-                                         bool floorOnly) {
-    const auto errors = alignmentErrors(run, odometry, scale);
+std::optional<Calibration> calibrationOf(const ReplayRun& run, bool floorOnly) {
+    const auto errors = alignmentErrors(run);
     if (errors.size() < kLeastForCalibration) return {};
-    return floorOnly ? calibrateFloor(errors, scale) : calibrate(errors);
+    return floorOnly ? calibrateFloor(errors, run.scale) : calibrate(errors);
 }
 
 std::string toYaml(const Calibration& c, bool odometry) {

@@ -4,9 +4,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "estimation/calibration.hpp"
-#include "runs/replay_run.hpp"
+#include "replay/replay_run.hpp"
 
 namespace photonav {
 
@@ -14,13 +15,11 @@ constexpr std::size_t kLeastForCalibration = 20;  ///< alignments
 
 /// The errors of the alignments that converged, of images whose true pose is known: in the map, or
 /// relative to the keyframe aligned to.
-/// @param scale factor on the information that was in use
-std::vector<AlignmentError> alignmentErrors(const ReplayRun& run, bool odometry, double scale);
+std::vector<AlignmentError> alignmentErrors(const ReplayRun& run);
 
 /// Nothing when there are too few of them.
 /// @param floorOnly keep the factor: for maps of cells
-std::optional<Calibration> calibrationOf(const ReplayRun& run, bool odometry, double scale,
-                                         bool floorOnly);
+std::optional<Calibration> calibrationOf(const ReplayRun& run, bool floorOnly);
 
 /// For the command line, and as YAML that readCalibration() reads back.
 std::string toYaml(const Calibration& calibration, bool odometry);

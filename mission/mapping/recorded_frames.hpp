@@ -6,30 +6,28 @@
 #include <optional>
 #include <vector>
 
-#include "drawing/comparison_images.hpp"
 #include "mapping/view_difference.hpp"
 #include "problem/planning_problem.hpp"
 
 namespace photonav {
 
-/// The recorded frame nearest to a waypoint, and how well the map predicts it.
+/// The recorded frame nearest to a waypoint, and how well the map predicts it. All views are those
+/// of the recording's camera.
 struct NearestFrame {
     std::size_t point = 0;      ///< of the path
+    double length = 0.;         ///< of the path up to there [m]
     double timestamp = 0.;      ///< of the frame [s]
     double distance = 0.;       ///< between the two camera centres [m]
     double angle = 0.;          ///< between the two camera orientations [rad]
-    ViewDifference difference;  ///< of the frame and the view predicted at the frame's own pose
+    View fromPath;              ///< predicted at the waypoint
+    View observed, predicted;   ///< the frame, and the map at the frame's own pose
+    ViewDifference difference;  ///< of these two
 };
-
-struct RecordedComparison {
-    std::vector<NearestFrame> frames;
-    Png picture;  ///< per waypoint: the view predicted there, the frame, its prediction, difference
-};
+using RecordedComparison = std::vector<NearestFrame>;
 
 /// Looks for the recording of the config's map (config.yaml beside the map file, as `photonav map`
-/// leaves it) and compares a few waypoints spread over the path. All views are those of the
-/// recording's camera. Nearest: least distance by the depth in view plus angle, about how far the
-/// image moves.
+/// leaves it) and compares a few waypoints spread over the path. Nearest: least distance by the
+/// depth in view plus angle, about how far the image moves.
 /// @return nothing for a scene, and for a map whose recording is not stated
 /// @throws InputError when it is stated but cannot be read
 std::optional<RecordedComparison> compareWithRecording(const Config& config, const World& world,
@@ -39,7 +37,7 @@ std::optional<RecordedComparison> compareWithRecording(const Config& config, con
 /// where nothing is predicted.
 nlohmann::json toJson(const RecordedComparison& comparison);
 
-/// Of all compared frames; none when nothing is predicted in any.
+/// Mean absolute difference of all compared frames; none when nothing is predicted in any.
 std::optional<double> meanDifference(const RecordedComparison& comparison);
 
 }  // namespace photonav

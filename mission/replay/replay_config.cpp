@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/replay_config.hpp"
+#include "replay/replay_config.hpp"
 
 #include "dataset/recording_config.hpp"
 #include "geometry/constants.hpp"
@@ -12,8 +12,7 @@ constexpr Range kNotNegative{0., kInfinity};
 
 }  // namespace
 
-KeyTable keysOf(ReplayOptions& o) {
-    KeyTable keys;
+void addKeys(KeyTable& keys, ReplayOptions& o) {
     addKeys(keys, static_cast<RecordingOptions&>(o));
     keys.file({"map", "", "textured octree (.ot), mesh or scene file to localise in"}, o.mapFile);
     keys.flag({"odometry", "", "from image to image, without a map"}, o.odometry);
@@ -32,24 +31,6 @@ KeyTable keysOf(ReplayOptions& o) {
     keys.count({"max_width", "pixels", "images are halved until they are at most as wide"},
                o.maxWidth, {1. * kLeastWidth, 1e6});
     keys.flag({"exposure", "", "estimate gain and offset of every image"}, o.exposure);
-    keys.flag({"calibrate", "", "also fit factor and floor to the errors"}, o.calibrate);
-    return keys;
-}
-
-std::string toYaml(const ReplayOptions& options, const ReplaySource& source,
-                   const ReplayTracker& tracker) {
-    ReplayOptions used = options;
-    used.stereo = source.stereo;
-    used.startSigma = used.startSigma.value_or(kStartSigma);
-    if (used.odometry) used.startSigma.reset();
-    used.scale = tracker.scale;
-    used.floorTranslation = tracker.trust.floorTranslation;
-    used.floorRotation = tracker.trust.floorRotation;
-    return keysOf(used).toYaml();
-}
-
-void readReplayConfig(const std::string& file, ReplayOptions& options) {
-    keysOf(options).read(file);
 }
 
 }  // namespace photonav

@@ -19,7 +19,7 @@ boxes:
 )";
 
 /// A flight over textured ground as a TUM RGB-D folder: pictures of a scene of this test's own.
-struct Flight {
+struct FlightDataset {
     int frames = 12;
     double speed = 0.03;  ///< metres a frame
 
@@ -68,6 +68,12 @@ struct Flight {
         writeText(folder / "camera.yaml",
                   fmt::format("width: 160\nheight: 120\nfx: {0}\nfy: {0}\ncx: 79.5\ncy: 59.5\n",
                               camera.fx()));
+    }
+
+    /// Overwrites an image.
+    void blacken(const fs::path& folder, int i) const {
+        cv::imwrite((folder / fmt::format("rgb/{}.png", i)).string(),
+                    cv::Mat(int(camera.height), int(camera.width), CV_8UC1, cv::Scalar(0)));
     }
 
     static void writeImages(const fs::path& folder, int i, const View& view) {

@@ -4,13 +4,12 @@
 
 #include <string>
 
-#include "commands/map_command.hpp"
-#include "commands/scan_command.hpp"
 #include "config/key_table.hpp"
+#include "mapping/map_options.hpp"
 
 namespace photonav {
 
-/// The keys of both kinds of maps.
+/// Every key of either kind of map, those of its recording included.
 KeyTable keysOf(MapOptions& options);
 KeyTable keysOf(ScanMapOptions& options);
 

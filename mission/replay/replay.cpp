@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "estimation/calibration.hpp"
+#include "evaluation/averages.hpp"
+#include "io/error.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr int kWidthInMap = 320;  // [pixels]
+
+void checkOptions(const ReplayOptions& options) {
+    const auto require = [](bool good, const char* option, const std::string& reason) {
+        if (!good) throw InputError(option, "", reason);
+    };
+    const auto isPositive = [](double x) { return std::isfinite(x) && x > 0.; };
+    require(options.odometry || !options.mapFile.empty(), "--map",
+            "needed, or --odometry: nothing to find the camera in");
+    require(!options.odometry || options.mapFile.empty(), "--odometry", "not together with --map");
+    require(isPositive(options.sigma), "--sigma", "must be above 0");
+    require(!options.startSigma || !options.odometry, "--start-sigma",
+            "is for --map: odometry is exact where it begins");
+    require(isPositive(options.startSigma.value_or(kStartSigma)), "--start-sigma",
+            "must be above 0");
+    require(!options.scale || isPositive(*options.scale), "--scale", "must be above 0");
+    const auto isFloor = [](const std::optional<double>& x) {
+        return !x || (std::isfinite(*x) && *x >= 0.);
+    };
+    require(isFloor(options.floorTranslation), "--sigma-floor", "must be a number, not negative");
+    require(isFloor(options.floorRotation), "--sigma-floor-rotation",
+            "must be a number, not negative");
+    require(options.minOverlap > 0. && options.minOverlap < 1., "--min-overlap",
+            "must be between 0 and 1");
+    require(options.maxWidth.value_or(kWidthInMap) >= kLeastWidth, "--max-width",
+            fmt::format("must be at least {}", kLeastWidth));
+}
+
+Recording openRecording(const ReplayOptions& options) {
+    RecordingOptions asked = options;
+    asked.forgiving = true;
+    asked.needsDepth = options.odometry;
+    Recording recording = readRecording(asked);
+    if (options.up != "z" && !recording.sequence.hasPoses()) {
+        throw InputError("--up", "", "the recording has no true poses to turn");
+    }
+    if (options.odometry && recording.sequence.frames.size() < 2) {
+        throw InputError(options.dataset, "", "a single frame: odometry needs two or more");
+    }
+    return recording;
+}
+
+Pose parsePose(const std::string& text) {
+    std::istringstream in(text);
+    Eigen::Matrix<double, 7, 1> v;
+    for (int i = 0; i < 7; ++i) {
+        char comma = ',';
+        if (i > 0) in >> comma;
+        in >> v[i];
+        if (!in || comma != ',') {
+            throw InputError("--start", "", fmt::format("'{}' is not x,y,z,qx,qy,qz,qw", text));
+        }
+    }
+    const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
+    if (!(in >> std::ws).eof() || !v.allFinite() || std::abs(q.norm() - 1.) > 0.1) {
+        throw InputError("--start", "",
+                         fmt::format("'{}' is not x,y,z,qx,qy,qz,qw with a unit quaternion", text));
+    }
+    Pose T_w_c = Pose::Identity();
+    T_w_c.linear() = q.normalized().toRotationMatrix();
+    T_w_c.translation() = v.head<3>();
+    return T_w_c;
+}
+
+/// Belief of the first frame's T_c_w.
+UncertainPose startOf(const ReplayOptions& options, const Sequence& sequence) {
+    UncertainPose start;
+    if (options.startSigma) {
+        start.covariance = *options.startSigma * *options.startSigma * Matrix6::Identity();
+    }
+    if (!options.start.empty()) {
+        start.mean = parsePose(options.start).inverse();
+        if (options.odometry && sequence.hasPoses()) {
+            throw InputError("--start", "",
+                             "not with --odometry of a recording with ground truth: it is laid on "
+                             "that where it begins");
+        }
+    } else if (!options.odometry) {
+        if (!sequence.frames[0].hasPose) {
+            throw InputError(
+                options.dataset, "--start",
+                sequence.hasPoses()
+                    ? "needed: the first frame has no true pose (or begin later with --frames)"
+                    : "needed: the recording has no ground truth to begin from");
+        }
+        start.mean = sequence.frames[0].T_c_w;
+    }
+    return start;
+}
+
+AlignmentOptions alignmentOf(const ReplayOptions& options, const Sequence& sequence,
+                             double resolution) {
+    AlignmentOptions alignment;
+    if (options.odometry) {
+        alignment = KeyframeOptions().alignment;
+    } else {
+        alignment = realCameraOptions(resolution);
+        // The motion is only guessed, so that nothing else stops a pose from sliding away.
+        alignment.trust.maxUnexplained = 0.25;
+        if (sequence.informationScale) alignment.photometric.scale = *sequence.informationScale;
+    }
+    alignment.photometric.sigma = options.sigma;
+    if (!options.exposure) {
+        alignment.exposure.reset();
+    } else if (!alignment.exposure) {
+        alignment.exposure.emplace();
+    }
+    alignment.robust = RobustWeight::huber;
+    alignment.trust.minOverlap = options.minOverlap;
+    if (options.scale) alignment.photometric.scale = *options.scale;
+    if (options.floorTranslation) alignment.trust.floorTranslation = *options.floorTranslation;
+    if (options.floorRotation) alignment.trust.floorRotation = *options.floorRotation;
+    return alignment;
+}
+
+void setWidth(KeyframeOptions& keyframe, const Camera& camera, int maxWidth) {
+    keyframe.finest = 0;
+    while (static_cast<int>(camera.width >> keyframe.finest) > maxWidth) ++keyframe.finest;
+    // Of all pixels only those with a gradient: faster, and as accurate (docs/replay.md).
+    if (keyframe.finest == 0) keyframe.minGradient = 0.02;
+}
+
+/// The median of all depths in a few images spread over the recording [m]; 0 when there are none,
+/// nothing when none of these images can be used.
+std::optional<double> medianDepthOf(const Recording& recording) {
+    constexpr std::size_t kLooks = 5;
+    std::vector<float> depths;
+    bool anyRead = false;
+    const std::size_t count = recording.sequence.frames.size();
+    for (std::size_t i = 0; i < count; i += std::max<std::size_t>(1, count / kLooks)) {
+        View view;
+        try {
+            view = recording.view(i);
+        } catch (const InputError&) {
+            continue;
+        }
+        anyRead = true;
+        for (unsigned k = 0; k < view.depth.getSize(); k += 7) {
+            if (view.depth.bitmap[k] > 0.F) depths.push_back(view.depth.bitmap[k]);
+        }
+    }
+    if (!anyRead) return {};
+    return median(std::move(depths), 0.);
+}
+
+std::optional<double> checkDepths(const ReplayOptions& options, const Recording& recording) {
+    const std::optional<double> depth = medianDepthOf(recording);
+    if (!depth) return {};
+    if (*depth > 0.) {
+        requirePlausibleDepth(*depth, options, recording.sequence.cameraFile);
+        return depth;
+    }
+    // Black images have no depth from stereo, and replaying them says what they are.
+    if (options.odometry && recording.stereo.empty()) {
+        throw InputError(options.dataset, "", "no depth in any of the images looked at");
+    }
+    return {};
+}
+
+}  // namespace
+
+Replay::Replay(const ReplayOptions& options) : options_(options) {
+    checkOptions(options_);
+    recording_ = openRecording(options_);
+    if (!options_.odometry) {
+        map_ = loadTrackingMap(options_.mapFile);
+        options_.startSigma = options_.startSigma.value_or(kStartSigma);
+    }
+    start_ = startOf(options_, recording_.sequence);
+    alignment_ = alignmentOf(options_, recording_.sequence, map_.resolution());
+    options_.stereo = recording_.stereo;
+    options_.scale = alignment_.photometric.scale;
+    options_.floorTranslation = alignment_.trust.floorTranslation;
+    options_.floorRotation = alignment_.trust.floorRotation;
+    medianDepth_ = checkDepths(options, recording_);
+}
+
+ReplayTracker Replay::makeTracker() const {
+    const Camera& camera = recording_.sequence.camera;
+    if (options_.odometry) {
+        KeyframeChainOptions odometry;
+        odometry.keyframe.alignment = alignment_;
+        if (options_.maxWidth) setWidth(odometry.keyframe, camera, *options_.maxWidth);
+        return odometryTracker(camera, start_, odometry);
+    }
+    TrackerOptions tracker;
+    tracker.map = alignment_;
+    return mapTracker(map_.views, camera, start_, tracker,
+                      static_cast<unsigned>(options_.maxWidth.value_or(kWidthInMap)));
+}
+
+ReplayRun Replay::run(const std::function<bool()>& isStopped,
+                      const std::function<void(std::size_t)>& progress) const {
+    ReplayRun run = replay(recording_, makeTracker(), isStopped, progress);
+    if (options_.odometry) layOnTruth(run);
+    return run;
+}
+
+}  // namespace photonav

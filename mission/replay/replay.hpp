@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A recorded flight through the tracker, in a map or by odometry.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+
+#include "mapping/tracking_map.hpp"
+#include "replay/replay_options.hpp"
+#include "replay/replay_run.hpp"
+
+namespace photonav {
+
+/// A recording with what it is tracked in, checked and ready to run. What a run amounts to:
+/// judge() in replay_errors.hpp, the rest in replay_result.hpp, replay_tables.hpp and
+/// replay_calibration.hpp.
+class Replay {
+  public:
+    /// Reads the tables of the recording, a few of its images, and the map.
+    /// @throws InputError for a recording or map that cannot be used and an option out of range
+    explicit Replay(const ReplayOptions& options);
+
+    /// As given, with the values that recording and tracker decide filled in: `stereo`,
+    /// `startSigma`, `scale` and the floors.
+    const ReplayOptions& options() const { return options_; }
+    const Recording& recording() const { return recording_; }  ///< frames without pose included
+    const TrackingMap& map() const { return map_; }            ///< empty for odometry
+    /// Of all depths in a few images spread over the recording [m]; nothing when there are none.
+    const std::optional<double>& medianDepth() const { return medianDepth_; }
+
+    /// Tracks the recording from its first image on. Odometry is laid on the true pose where it
+    /// begins.
+    /// @param isStopped asked before every frame; the run ends with the frames that were tracked
+    /// @param progress called after every frame with the number done
+    /// @throws InputError when none of the first ten frames can be loaded, with the reason of the
+    ///         first
+    ReplayRun run(const std::function<bool()>& isStopped = {},
+                  const std::function<void(std::size_t done)>& progress = {}) const;
+
+  private:
+    ReplayTracker makeTracker() const;
+
+    ReplayOptions options_;
+    Recording recording_;
+    TrackingMap map_;
+    UncertainPose start_;
+    AlignmentOptions alignment_;
+    std::optional<double> medianDepth_;
+};
+
+}  // namespace photonav

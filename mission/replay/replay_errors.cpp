@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay/replay_errors.hpp"
+
+#include <cmath>
+
+namespace photonav {
+namespace {
+
+JudgedFrame judgeFrame(const ReplayRun& run, std::size_t i, bool beginsTrue) {
+    const ReplayedFrame& frame = run.frames[i];
+    const UncertainPose& belief = frame.tracked.T_c_w;
+    JudgedFrame result;
+    result.frame = i;
+    result.pair = {frame.index, frame.timestamp, belief.mean.inverse(), frame.truth_c_w->inverse()};
+    const PoseErrors errors = absoluteErrors({result.pair});
+    result.positionError = errors.translation[0];
+    result.rotationError = errors.rotation[0];
+    result.positionSigma = std::sqrt(belief.covariance.diagonal().head<3>().sum());
+    result.rotationSigma = std::sqrt(belief.covariance.diagonal().tail<3>().sum());
+    if (beginsTrue) result.nees = squaredNormalisedError(belief, *frame.truth_c_w);
+    if (result.nees) *result.nees /= 6.;
+    return result;
+}
+
+}  // namespace
+
+ReplayErrors judge(const ReplayRun& run) {
+    ReplayErrors errors;
+    const auto first = firstRead(run);
+    const bool beginsTrue = !run.odometry || (first != run.frames.end() && first->truth_c_w);
+    std::vector<PosePair> pairs;
+    for (std::size_t i = 0; i < run.frames.size(); ++i) {
+        const ReplayedFrame& frame = run.frames[i];
+        if (frame.status != FrameStatus::tracked || !frame.truth_c_w) continue;
+        errors.judged.push_back(judgeFrame(run, i, beginsTrue));
+        pairs.push_back(errors.judged.back().pair);
+    }
+    if (pairs.empty()) return errors;
+    if (run.odometry) {
+        errors.absolute.translation = absoluteErrors(pairs, positionAlignment(pairs)).translation;
+        errors.absolute.rotation = absoluteErrors(pairs, alignmentOf(pairs)).rotation;
+    } else {
+        errors.absolute = absoluteErrors(pairs);
+    }
+    errors.perFrame = relativeErrors(pairs, Spacing::frames, 1.);
+    errors.perSecond = relativeErrors(pairs, Spacing::seconds, 1.);
+    errors.perMetre = relativeErrors(pairs, Spacing::metres, 1.);
+    return errors;
+}
+
+}  // namespace photonav

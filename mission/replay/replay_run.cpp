@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay/replay_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "io/error.hpp"
+#include "io/stopwatch.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr std::size_t kStrips = 5;
+constexpr std::size_t kFirstFrames = 10;  // at least one of them must be readable
+
+bool isStripFrame(std::size_t i, std::size_t count) {
+    if (count <= kStrips) return true;
+    for (std::size_t k = 0; k < kStrips; ++k) {
+        if (i == (2 * k + 1) * count / (2 * kStrips)) return true;
+    }
+    return false;
+}
+
+/// Loads a frame or says why it cannot be.
+std::optional<View> tryToLoad(const Recording& recording, ReplayedFrame& frame) {
+    try {
+        return recording.view(frame.index);
+    } catch (const InputError& error) {
+        frame.words = error.what();
+        return {};
+    }
+}
+
+/// When nothing can be read from the beginning, it is not the images that are wrong.
+void checkReadable(const std::vector<ReplayedFrame>& frames, const Recording& recording) {
+    if (frames.size() != std::min(kFirstFrames, recording.sequence.frames.size())) return;
+    const bool anyRead = std::any_of(frames.begin(), frames.end(), [](const auto& f) {
+        return f.status != FrameStatus::unreadable;
+    });
+    if (!anyRead) recording.view(0);  // throws
+}
+
+/// Share of the pixels with depth.
+double shareKnown(const ImageF& depth) {
+    const auto known = std::count_if(depth.bitmap, depth.bitmap + depth.getSize(),
+                                     [](float z) { return z > 0.F; });
+    return static_cast<double>(known) / depth.getSize();
+}
+
+/// What the tracker compares the observed image with.
+void expose(ImageF& predicted, const Exposure& exposure) {
+    for (unsigned i = 0; i < predicted.getSize(); ++i) {
+        predicted.bitmap[i] =
+            static_cast<float>(exposure.gain * predicted.bitmap[i] + exposure.offset);
+    }
+}
+
+void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, ReplayRun& run) {
+    frame.density = shareKnown(view.depth);
+    Stopwatch watch;
+    halve(view, tracker.halvings);
+    frame.isBlack = isBlack(view.intensity);
+    frame.tracked = tracker.track(view, frame.timestamp);
+    frame.seconds = watch.lap();
+    run.trackSeconds += frame.seconds;
+    frame.status = frame.tracked.lost ? FrameStatus::lost : FrameStatus::tracked;
+    const Alignment& alignment = frame.tracked.alignment;
+    frame.words = frame.tracked.lost && !isLost(alignment.verdict)
+                      ? fmt::format("lost: nothing certain to be seen ({})",
+                                    describe(alignment, tracker.trust))
+                      : describe(alignment, tracker.trust);
+}
+
+/// The frame tracked last beside its prediction; odometry predicts it from an earlier image.
+ReplayStrip stripOf(const Recording& recording, const ReplayTracker& tracker, const ReplayRun& run,
+                    View observed) {
+    const ReplayedFrame& frame = run.frames.back();
+    std::optional<TrackedView> keyframe;
+    if (frame.tracked.keyframe) {
+        const ReplayedFrame& earlier = frameAt(run, *frame.tracked.keyframe);
+        keyframe = {recording.view(earlier.index), earlier.tracked};
+        halve(keyframe->view, tracker.halvings);
+    }
+    const TrackedView seen{std::move(observed), frame.tracked};
+    View predicted = tracker.predict(seen, keyframe);
+    expose(predicted.intensity, frame.tracked.alignment.exposure);
+    return {fmt::format("frame {}: {}", frame.index, frame.words), seen.view, std::move(predicted)};
+}
+
+}  // namespace
+
+ReplayRun replay(const Recording& recording, const ReplayTracker& tracker,
+                 const std::function<bool()>& isStopped,
+                 const std::function<void(std::size_t)>& progress) {
+    const std::vector<Sequence::Entry>& entries = recording.sequence.frames;
+    ReplayRun run;
+    run.odometry = tracker.odometry;
+    run.scale = tracker.scale;
+    Stopwatch watch;
+    std::size_t tracked = 0;
+    std::size_t lost = 0;
+    std::size_t notFound = 0;  // though there was something to be seen
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        if (isStopped && isStopped()) {
+            run.interrupted = true;
+            break;
+        }
+        ReplayedFrame frame;
+        frame.index = i;
+        frame.timestamp = entries[i].timestamp;
+        if (entries[i].hasPose) frame.truth_c_w = entries[i].T_c_w;
+        watch.lap();
+        std::optional<View> view = tryToLoad(recording, frame);
+        run.loadSeconds += watch.lap();
+        if (view) track(tracker, *view, frame, run);
+        run.frames.push_back(frame);
+        if (view) {
+            const bool isFirstLoss = frame.tracked.lost && lost == 0;
+            if (isFirstLoss || isStripFrame(i, entries.size())) {
+                run.strips.push_back(stripOf(recording, tracker, run, std::move(*view)));
+            }
+            ++(frame.tracked.lost ? lost : tracked);
+            notFound += frame.tracked.lost && !frame.isBlack;
+        }
+        checkReadable(run.frames, recording);
+        if (progress) progress(run.frames.size());
+        if (tracked == 0 && notFound > 0 && notFound == tracker.patience) {
+            run.stopped =
+                fmt::format("none of {} images that show something could be found", notFound);
+            break;
+        }
+    }
+    return run;
+}
+
+const ReplayedFrame& frameAt(const ReplayRun& run, double timestamp) {
+    return *std::lower_bound(
+        run.frames.begin(), run.frames.end(), timestamp,
+        [](const ReplayedFrame& frame, double time) { return frame.timestamp < time; });
+}
+
+std::vector<ReplayedFrame>::const_iterator firstRead(const ReplayRun& run) {
+    return std::find_if(run.frames.begin(), run.frames.end(), [](const ReplayedFrame& frame) {
+        return frame.status != FrameStatus::unreadable;
+    });
+}
+
+void layOnTruth(ReplayRun& run) {
+    auto tie = firstRead(run);
+    if (tie == run.frames.end()) return;
+    if (!tie->truth_c_w) {
+        tie = std::find_if(tie, run.frames.cend(), [](const ReplayedFrame& frame) {
+            return frame.status == FrameStatus::tracked && frame.truth_c_w;
+        });
+        if (tie == run.frames.end()) return;
+    }
+    run.laidOn = tie->index;
+    const Pose T_estimate_truth = tie->tracked.T_c_w.mean.inverse() * *tie->truth_c_w;
+    for (ReplayedFrame& frame : run.frames) {
+        frame.tracked.T_c_w.mean = frame.tracked.T_c_w.mean * T_estimate_truth;
+    }
+}
+
+}  // namespace photonav

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay/replay_tables.hpp"
+
+#include <fmt/format.h>
+
+#include "geometry/constants.hpp"
+#include "io/atomic_file.hpp"
+#include "recording/trajectory.hpp"
+
+namespace photonav {
+namespace {
+
+const char* nameOf(FrameStatus status) {
+    switch (status) {
+        case FrameStatus::tracked:
+            return "tracked";
+        case FrameStatus::lost:
+            return "lost";
+        case FrameStatus::unreadable:
+            break;
+    }
+    return "unreadable";
+}
+
+/// Quoted: file names and verdicts may have commas.
+std::string quoted(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text) result += c == '"' ? "\"\"" : std::string(1, c);
+    return result + "\"";
+}
+
+std::string row(const ReplayedFrame& frame, const JudgedFrame* judged) {
+    const std::optional<double>& keyframe = frame.tracked.keyframe;
+    std::string line =
+        fmt::format("{},{:.6f},{},{}", frame.index, frame.timestamp, nameOf(frame.status),
+                    keyframe ? fmt::format("{:.6f}", *keyframe) : "");
+    if (frame.status == FrameStatus::unreadable) {
+        line += ",,,,,,,";
+    } else {
+        const Alignment& a = frame.tracked.alignment;
+        line += fmt::format(",{},{:.4f},{:.6f},{:.4f},{:.5f},{:.5f},{:.3f}", a.iterations,
+                            a.overlap, a.residual.rms, a.residual.unexplained, a.exposure.gain,
+                            a.exposure.offset, 1e3 * frame.seconds);
+    }
+    if (judged) {
+        line += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{}", judged->positionError,
+                            judged->rotationError / kDegree, judged->positionSigma,
+                            judged->rotationSigma / kDegree,
+                            judged->nees ? fmt::format("{:.6g}", *judged->nees) : "");
+    } else {
+        line += ",,,,,";
+    }
+    return line + "," + quoted(frame.words) + "\n";
+}
+
+}  // namespace
+
+std::vector<StampedBelief> beliefsOf(const ReplayRun& run) {
+    std::vector<StampedBelief> beliefs;
+    for (const ReplayedFrame& frame : run.frames) {
+        if (frame.status != FrameStatus::tracked) continue;
+        beliefs.push_back({frame.timestamp, frame.tracked.T_c_w});
+    }
+    return beliefs;
+}
+
+void writeReplayTables(const std::filesystem::path& folder, const ReplayRun& run,
+                       const ReplayErrors& errors) {
+    std::string csv =
+        "frame,timestamp_s,status,keyframe_s,iterations,overlap,residual_rms,unexplained,gain,"
+        "offset,"
+        "time_ms,position_error_m,rotation_error_deg,position_sigma_m,rotation_sigma_deg,"
+        "nees_per_dof,verdict\n";
+    auto judged = errors.judged.begin();
+    Trajectory truth;
+    for (std::size_t i = 0; i < run.frames.size(); ++i) {
+        const bool isJudged = judged != errors.judged.end() && judged->frame == i;
+        csv += row(run.frames[i], isJudged ? &*judged : nullptr);
+        if (isJudged) ++judged;
+        if (run.frames[i].truth_c_w) {
+            truth.push_back({run.frames[i].timestamp, run.frames[i].truth_c_w->inverse()});
+        }
+    }
+    writeFileAtomically(folder / "frames.csv", csv);
+    const std::vector<StampedBelief> beliefs = beliefsOf(run);
+    const auto file = [&](const char* name) { return (folder / name).string(); };
+    writeTrajectory(file("trajectory.tum"), meansOf(beliefs));
+    writeCovariances(file("trajectory.cov"), beliefs);
+    writeOpenVinsTrajectory(file("trajectory.ov"), beliefs);
+    if (!truth.empty()) writeTrajectory(file("groundtruth.tum"), truth);
+}
+
+}  // namespace photonav

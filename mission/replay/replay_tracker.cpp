@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay/replay_tracker.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "alignment/image_pyramid.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr std::size_t kPatience = 10;
+
+/// The grey value between four pixels; nothing outside.
+std::optional<float> sample(const ImageF& image, double u, double v) {
+    if (!(u >= 0. && v >= 0. && u < image.getWidth() - 1. && v < image.getHeight() - 1.)) return {};
+    const auto x = static_cast<unsigned>(u);
+    const auto y = static_cast<unsigned>(v);
+    const auto a = static_cast<float>(u - x);
+    const auto b = static_cast<float>(v - y);
+    return (1.F - b) * ((1.F - a) * image[y][x] + a * image[y][x + 1]) +
+           b * ((1.F - a) * image[y + 1][x] + a * image[y + 1][x + 1]);
+}
+
+/// A keyframe as it looks from another place, by the depth seen from there.
+View seenFrom(const View& keyframe, const Camera& camera, const Pose& T_k_c,
+              const ImageF& depth_c) {
+    View result;
+    result.intensity.resize(camera.height, camera.width, 0.F);
+    result.depth.resize(camera.height, camera.width, 0.F);
+    for (unsigned v = 0; v < camera.height; ++v) {
+        for (unsigned u = 0; u < camera.width; ++u) {
+            const double z = depth_c[v][u];
+            if (!(z > 0.)) continue;
+            const Eigen::Vector3d p_k =
+                T_k_c * (z * Eigen::Vector3d((u - camera.cx()) / camera.fx(),
+                                             (v - camera.cy()) / camera.fy(), 1.));
+            if (!(p_k.z() > 0.)) continue;
+            const auto grey =
+                sample(keyframe.intensity, camera.fx() * p_k.x() / p_k.z() + camera.cx(),
+                       camera.fy() * p_k.y() / p_k.z() + camera.cy());
+            if (!grey) continue;
+            result.intensity[v][u] = *grey;
+            result.depth[v][u] = static_cast<float>(z);
+        }
+    }
+    return result;
+}
+
+View halvedView(const View& view) {
+    View half;
+    half.intensity = halvedAsRendered(view.intensity);
+    half.depth.resize(half.intensity.getHeight(), half.intensity.getWidth());
+    for (unsigned v = 0; v < half.depth.getHeight(); ++v) {
+        for (unsigned u = 0; u < half.depth.getWidth(); ++u) {
+            half.depth[v][u] = view.depth[2 * v][2 * u];
+        }
+    }
+    return half;
+}
+
+}  // namespace
+
+void halve(View& view, int times) {
+    for (int i = 0; i < times; ++i) view = halvedView(view);
+}
+
+ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
+                              const KeyframeChainOptions& options) {
+    const auto odometry =
+        std::make_shared<Tracker>(nullptr, camera, start, TrackerOptions{.keyframes = options});
+    ReplayTracker tracker;
+    tracker.odometry = true;
+    tracker.trust = options.keyframe.alignment.trust;
+    tracker.scale = options.keyframe.alignment.photometric.scale;
+    tracker.camera = camera;
+    tracker.track = [=](const View& view, double timestamp) {
+        return odometry->track(view, timestamp);
+    };
+    tracker.predict = [camera](const TrackedView& frame,
+                               const std::optional<TrackedView>& keyframe) {
+        if (!keyframe) {  // nothing was seen yet
+            View nothing = frame.view;
+            nothing.depth = 0.F;
+            return nothing;
+        }
+        const Pose T_k_c = keyframe->tracked.T_c_w.mean * frame.tracked.T_c_w.mean.inverse();
+        return seenFrom(keyframe->view, camera, T_k_c, frame.view.depth);
+    };
+    return tracker;
+}
+
+ReplayTracker mapTracker(const std::shared_ptr<const ViewSource>& map, const Camera& camera,
+                         const UncertainPose& start, const TrackerOptions& options,
+                         unsigned maxWidth) {
+    ReplayTracker tracker;
+    tracker.trust = options.map.trust;
+    tracker.scale = options.map.photometric.scale;
+    tracker.camera = camera;
+    while (tracker.camera.width > maxWidth) {
+        tracker.camera = halved(tracker.camera);
+        ++tracker.halvings;
+    }
+    const auto localizer = std::make_shared<Tracker>(map, tracker.camera, start, options);
+    tracker.patience = kPatience;
+    tracker.track = [=](const View& view, double timestamp) {
+        return localizer->track(view, timestamp);
+    };
+    tracker.predict = [map, small = tracker.camera](const TrackedView& frame, const auto&) {
+        View view;
+        map->render(small, frame.tracked.T_c_w.mean, view);
+        return view;
+    };
+    return tracker;
+}
+
+}  // namespace photonav

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The tracker of a replay: odometry, or localisation in a map.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "estimation/tracker.hpp"
+
+namespace photonav {
+
+/// A frame as it was given to the tracker, and the result.
+struct TrackedView {
+    View view;
+    TrackedFrame tracked;
+};
+
+struct ReplayTracker {
+    std::function<TrackedFrame(const View& view, double timestamp)> track;
+    /// The view of a frame as the model predicts it at the believed pose; depth 0: nothing there.
+    /// @param keyframe that the frame was aligned to, if any
+    std::function<View(const TrackedView& frame, const std::optional<TrackedView>& keyframe)>
+        predict;
+    bool odometry = false;  ///< without a map
+    double scale = 1.;      ///< factor on the information of its alignments
+    TrustOptions trust;     ///< of its alignments, to put them in words
+    Camera camera;          ///< of the views to be given to it
+    int halvings = 0;       ///< of the recorded views
+    /// Images lost from the first one on before giving up, not counting black ones; 0: all.
+    std::size_t patience = 0;
+};
+
+/// Odometry from `start`.
+ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
+                              const KeyframeChainOptions& options);
+
+/// Localisation in a map, with images halved until they are at most `maxWidth` wide.
+ReplayTracker mapTracker(const std::shared_ptr<const ViewSource>& map, const Camera& camera,
+                         const UncertainPose& start, const TrackerOptions& options,
+                         unsigned maxWidth);
+
+/// Halves a view: grey values averaged, depth taken from the first of four pixels.
+void halve(View& view, int times);
+
+}  // namespace photonav
