@@ -6,11 +6,11 @@
 #include <filesystem>
 
 #include "commands/result_folder.hpp"
-#include "drawing/sweep_figures.hpp"
 #include "io/atomic_file.hpp"
 #include "io/stopwatch.hpp"
 #include "problem/planning_problem.hpp"
 #include "report/plan_report.hpp"
+#include "report/sweep_figures.hpp"
 #include "report/sweep_report.hpp"
 #include "sweep/planner_benchmark.hpp"
 

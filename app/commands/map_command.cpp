@@ -9,13 +9,13 @@
 
 #include "commands/command_io.hpp"
 #include "commands/result_folder.hpp"
-#include "drawing/comparison_images.hpp"
-#include "drawing/convergence_figure.hpp"
 #include "io/atomic_file.hpp"
 #include "io/stopwatch.hpp"
 #include "map/octree_file.hpp"
 #include "mapping/view_difference.hpp"
 #include "render/voxel_renderer.hpp"
+#include "report/comparison_images.hpp"
+#include "report/convergence_figure.hpp"
 #include "report/map_report.hpp"
 #include "result/json_values.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "drawing/fly_figures.hpp"
 #include "recording/belief_trajectory.hpp"
+#include "report/fly_figures.hpp"
 #include "report/plan_report.hpp"
 #include "result/json_values.hpp"
 

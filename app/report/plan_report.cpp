@@ -6,8 +6,6 @@
 #include <limits>
 
 #include "commands/command_io.hpp"
-#include "drawing/comparison_images.hpp"
-#include "drawing/tree_evolution_figure.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
 #include "figures/perspective.hpp"
@@ -17,6 +15,8 @@
 #include "io/atomic_file.hpp"
 #include "recording/image_file.hpp"
 #include "recording/trajectory.hpp"
+#include "report/comparison_images.hpp"
+#include "report/tree_evolution_figure.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;

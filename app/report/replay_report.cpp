@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "drawing/replay_figures.hpp"
 #include "figures/top_view.hpp"
 #include "replay/replay_tables.hpp"
 #include "report/plan_report.hpp"
+#include "report/replay_figures.hpp"
 
 namespace photonav {
 namespace {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drawing/sweep_figures.hpp"
 #include "geometry/constants.hpp"
 #include "io/atomic_file.hpp"
 #include "report/plan_report.hpp"
+#include "report/sweep_figures.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {

@@ -161,8 +161,10 @@ std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& n
         planner = std::make_shared<BeliefRRTstar>(si_, model, config_.search, growth);
     } else if (name == "rrbt") {
         planner = std::make_shared<RRBT>(si_, model, growth);
-    } else {
+    } else if (name == "pa_rrt_star" || name == "rrt_star") {
         planner = std::make_shared<PerceptionRRTstar>(si_, model, growth);
+    } else {
+        throw std::invalid_argument("no planner named " + name);
     }
     planner->setProblemDefinition(definition());
     planner->setup();

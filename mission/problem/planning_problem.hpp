@@ -97,6 +97,7 @@ class PlanningProblem {
     /// Start and goal.
     ompl::base::ProblemDefinitionPtr definition() const;
     /// A planner that is set up for it.
+    /// @param name one of plannerNames() @throws std::invalid_argument for any other
     std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name) const;
     /// Beliefs of these options over the photometric views of this problem.
     std::shared_ptr<BeliefModel> makeBeliefs(const BeliefOptions& options) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What our planners minimise, as OMPL compares and prints it.
+// The planners' cost as an OMPL objective. The cost itself is computed in belief/belief.hpp.
 #pragma once
 
 #include <ompl/base/OptimizationObjective.h>

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "drawing/sweep_figures.hpp"
+#include "report/sweep_figures.hpp"
 
 namespace photonav {
 namespace {

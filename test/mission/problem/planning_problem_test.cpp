@@ -38,6 +38,16 @@ TEST(PlanningProblem, PathsAreJudgedByWaypointsToo) {
     EXPECT_NEAR(path.length, std::hypot(6., 4.) + std::hypot(4., 5.), 1e-9);
 }
 
+TEST(PlanningProblem, EveryNamedPlannerIsMadeAndNoOther) {
+    const Config config = smallProblem(0.5);
+    const World world(config);
+    const PlanningProblem problem(config, world);
+    for (const std::string& name : plannerNames()) {
+        EXPECT_EQ(problem.makePlanner(name)->getName(), name);
+    }
+    EXPECT_THROW(problem.makePlanner("prm"), std::invalid_argument);
+}
+
 TEST(World, HoldsWhatItWasMadeOf) {
     const World world(smallProblem(0.1));
     ASSERT_NE(world.scene(), nullptr);

@@ -385,7 +385,8 @@ TEST(DenseAligner, RefusesImagesOfAnotherSize) {
 // --------------------------------------------------------------------------------------
 
 /// NEES per degree of freedom over simulated alignments with independent noise. The chi-square
-/// bounds of 60 x 6 degrees of freedom at three sigma are 1 +- 0.22; bench/honesty runs hundreds.
+/// bounds of 60 x 6 degrees of freedom at three sigma are 1 +- 0.22; consistency_bench runs
+/// hundreds.
 TEST(DenseAligner, CovarianceIsHonestOnTexture) {
     const Camera small = makeCamera(94, 60, 1.2);
     DenseAligner aligner(room(), small);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drawing/replay_figures.hpp"
+#include "report/replay_figures.hpp"
 
 #include <algorithm>
 #include <cmath>

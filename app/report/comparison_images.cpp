@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drawing/comparison_images.hpp"
+#include "report/comparison_images.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drawing/convergence_figure.hpp"
+#include "report/convergence_figure.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drawing/fly_figures.hpp"
+#include "report/fly_figures.hpp"
 
 #include <algorithm>
 #include <cmath>

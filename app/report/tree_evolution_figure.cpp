@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drawing/tree_evolution_figure.hpp"
+#include "report/tree_evolution_figure.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drawing/sweep_figures.hpp"
+#include "report/sweep_figures.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Are predicted covariances true? NEES per degree of freedom of simulated alignments and flights,
-// with independent noise and with what a real camera does, and the calibration that mends it. The
-// numbers of docs/tracking.md. Usage: honesty_bench [alignments per row]
+// Are predicted covariances consistent? NEES per degree of freedom of simulated alignments and
+// flights, with independent noise and with the noise of a real camera, before and after
+// calibration. The numbers of docs/tracking.md. Usage: consistency_bench [alignments per row]
 #include <fmt/format.h>
 
 #include <cstdlib>
