@@ -2,7 +2,7 @@
 // Alignment, one thread. With a TUM folder (argument, or PHOTONAV_DATA/rgbd_office): pairs of
 // 640x480 RGB-D images five frames apart by KeyframeModel and by OpenCV's RgbdOdometry, errors
 // against the recorded poses. Always: tracking of 188x120 images in a mesh and in a textured octree
-// of 5 cm, from where odometry says the camera is.
+// of 5 cm, starting from odometry.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// J over time: the best path of belief_rrt_star, of Algorithm 1 and of OMPL's RRTstar when they are
-// stopped by a clock, on the paper's two scenarios and in a room. Seconds are those of this process
-// (one thread), views included; every planner begins without views.
+// J over time: the best path of belief_rrt_star, of Algorithm 1 and of OMPL's RRTstar after given
+// times, on the paper's two scenarios and in a room. Seconds are processor time of this process
+// (one thread), views included; every planner starts without cached views.
 // Usage: anytime_bench [seeds = 10] [longest time in seconds = 10]
 #include <fmt/format.h>
 #include <ompl/geometric/PathGeometric.h>
@@ -24,18 +24,18 @@ double processSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_
 /// Costs of one planner's best paths after each of the times; infinite: none yet.
 using Curve = std::vector<double>;
 
-/// Solves again and again until each of the times; `costOf` judges what there is then.
+/// Continues solving until each of the times; `costOf` evaluates the solution at that time.
 template <typename CostOf>
 Curve measure(ob::Planner& planner, const std::vector<double>& times, const CostOf& costOf) {
     Curve curve;
-    double judging = 0.;  // not counted
+    double evaluating = 0.;  // not counted
     const double start = processSeconds();
-    const auto used = [&] { return processSeconds() - start - judging; };
+    const auto used = [&] { return processSeconds() - start - evaluating; };
     for (const double time : times) {
         planner.solve(ob::PlannerTerminationCondition([&] { return used() >= time; }));
         const double before = processSeconds();
         curve.push_back(costOf());
-        judging += processSeconds() - before;
+        evaluating += processSeconds() - before;
     }
     return curve;
 }
@@ -54,7 +54,7 @@ Curve measureOurs(PlanningProblem& problem, const std::string& name, unsigned se
 Curve measureOmpl(PlanningProblem& problem, unsigned seed, const std::vector<double>& times) {
     ompl::RNG::setSeed(seed);
     problem.forgetViews();
-    const auto judge = problem.makePlanner("belief_rrt_star");
+    const auto evaluator = problem.makePlanner("belief_rrt_star");
     const auto& si = problem.spaceInformation();
     const ob::ProblemDefinitionPtr definition = problem.definition();
     ompl::geometric::RRTstar planner(si);
@@ -65,7 +65,7 @@ Curve measureOmpl(PlanningProblem& problem, unsigned seed, const std::vector<dou
     return measure(planner, times, [&] {
         if (!definition->hasExactSolution()) return kInfinity;
         auto& path = *definition->getSolutionPath()->as<ompl::geometric::PathGeometric>();
-        return judge->model()
+        return evaluator->model()
             .evaluate({path.getStates().begin(), path.getStates().end()})
             .back()
             .cost;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From how far away does an image find home? Success rate of alignments without a prior, by initial
-// offset, and how often a wrong pose is called right. The tables of docs/tracking.md.
+// The basin of convergence: success rate of alignments without a prior, by initial offset, and how
+// often a wrong pose is accepted. The tables of docs/tracking.md.
 // Usage: basin_bench [trials per cell]
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ Eigen::Vector3d randomDirection(Random& random) {
 
 struct Outcome {
     int right = 0;
-    int unnoticed = 0;  ///< wrong, but not called lost
+    int accepted = 0;  ///< wrong, but not lost
 };
 
 Outcome align(const MeshRenderer& world, double belowHorizon, double metres, double degrees,
@@ -52,21 +52,21 @@ Outcome align(const MeshRenderer& world, double belowHorizon, double metres, dou
         const Vector6 error = logSE3(truth * a.T_c_w.inverse());
         const bool right = error.head<3>().norm() < 0.01 && error.tail<3>().norm() < 0.005;
         outcome.right += right && !isLost(a.verdict) ? 1 : 0;
-        outcome.unnoticed += !right && !isLost(a.verdict) ? 1 : 0;
+        outcome.accepted += !right && !isLost(a.verdict) ? 1 : 0;
     }
     return outcome;
 }
 
 void table(const std::string& name, const MeshRenderer& world, double belowHorizon, int trials) {
     constexpr std::array kDegrees = {0.5, 1., 2., 5., 10.};
-    fmt::print("\n{}: found / wrong and not said [%]\n", name);
+    fmt::print("\n{}: found / wrong but accepted [%]\n", name);
     for (const double degrees : kDegrees) fmt::print("{:>13} deg", degrees);
     fmt::print("\n");
     for (const double centimetres : {1., 2., 5., 10., 20.}) {
         fmt::print("{:3.0f} cm", centimetres);
         for (const double degrees : kDegrees) {
             const Outcome o = align(world, belowHorizon, 0.01 * centimetres, degrees, trials);
-            fmt::print("{:9.0f} / {:3.0f}  ", 100. * o.right / trials, 100. * o.unnoticed / trials);
+            fmt::print("{:9.0f} / {:3.0f}  ", 100. * o.right / trials, 100. * o.accepted / trials);
         }
         fmt::print("\n");
         std::fflush(stdout);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Depth along flights: the monocular filter and stereo block matching against the true depth, image
-// by image and as maps of 5 cm. One thread; both see the same world from the same places. The
-// sample flights again, at their own size and with their own noise; and flights through a hall at
-// 376x240, with the noise of a real camera (shot noise, read noise, blur).
+// by image and as maps of 5 cm. One thread; both methods get views of the same world from the same
+// poses: the poses of the sample flights, with their image size and noise, and flights through a
+// hall at 376x240, with the noise of a real camera (shot noise, read noise, blur).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,9 +48,9 @@ vpImage<unsigned char> bytes(const ImageF& image) {
     return result;
 }
 
-/// Depths of many views against the truth, and the map they make.
-struct Judge {
-    explicit Judge(std::string called) : name(std::move(called)) {}
+/// Errors of the depths of many views, and the map made of them.
+struct DepthErrors {
+    explicit DepthErrors(std::string called) : name(std::move(called)) {}
 
     std::string name;
     TexturedOcTree map{kCell};
@@ -87,7 +87,7 @@ struct Judge {
         fmt::print("\n");
     }
 
-    /// Share of the occupied cells of one map that have one of the other's next to them.
+    /// Share of the occupied cells of one map with an occupied cell of the other next to them.
     static double shareNear(const TexturedOcTree& map, const TexturedOcTree& other) {
         std::size_t count = 0;
         std::size_t near = 0;
@@ -113,7 +113,7 @@ struct Judge {
     }
 };
 
-/// What is flown, and what the camera makes of an ideal image.
+/// The poses of a flight, and the noise of its camera.
 struct Flight {
     std::string title;
     const ViewSource& world;
@@ -122,7 +122,7 @@ struct Flight {
     std::function<ImageF(const ImageF& ideal, std::mt19937_64& random)> expose;
 };
 
-/// Two cameras side by side; the left one is also the one that the monocular filter has.
+/// Two cameras side by side; the monocular filter uses the left one.
 class Rig {
   public:
     explicit Rig(const Flight& flight)
@@ -172,10 +172,10 @@ class Rig {
 void fly(const Flight& flight) {
     Rig rig(flight);
     const Camera& camera = rig.camera();
-    Judge mono("monocular"), pair("stereo"), truth("true depth");
+    DepthErrors mono("monocular"), pair("stereo"), truth("true depth");
     MonocularDepth filters(camera);
     int references = 0;
-    const auto judge = [&](const DepthFilter& filter) {
+    const auto measure = [&](const DepthFilter& filter) {
         const View ideal = rig.ideal(filter.pose());
         mono.add(filter.view(), ideal.depth, camera, filter.pose());
         truth.add(ideal, ideal.depth, camera, filter.pose());
@@ -189,14 +189,14 @@ void fly(const Flight& flight) {
         const double before = threadTime();
         const auto finished = filters.add(image, T_c_w);
         mono.seconds.push_back(1e-3 * (threadTime() - before));
-        if (finished) judge(*finished);
+        if (finished) measure(*finished);
     }
-    if (const auto last = filters.finish()) judge(*last);
+    if (const auto last = filters.finish()) measure(*last);
     truth.seconds.push_back(0.);
     fmt::print("{}: {} images, {} references\n", flight.title, flight.T_c_w.size(), references);
     fmt::print("  {:<22} {:>7}   {:>15}   {:>7}    {:>15}   {:>8}\n", "", "pixels",
                "error p50, p90", "> 10 %", "cells right, found", "time mean, max");
-    for (Judge* judged : {&mono, &pair, &truth}) judged->print(truth.map);
+    for (DepthErrors* errors : {&mono, &pair, &truth}) errors->print(truth.map);
 }
 
 void flyThroughHall(const char* title, const ViewSource& hall, double belowHorizon) {
@@ -208,8 +208,8 @@ void flyThroughHall(const char* title, const ViewSource& hall, double belowHoriz
     fly(flight);
 }
 
-/// A sample flight, by the same poses in the scene it was flown in.
-void flyAgain(const std::string& name, const std::string& scene) {
+/// The poses of a sample flight, in the scene where it was recorded.
+void repeatFlight(const std::string& name, const std::string& scene) {
     const std::string root = PHOTONAV_SOURCE_DIR;
     const MeshRenderer world(loadScene(root + "/config/scenes/" + scene + ".yaml"));
     const Sequence recorded = readTumSequence(root + "/data/" + name);
@@ -231,8 +231,8 @@ void flyAgain(const std::string& name, const std::string& scene) {
 
 int main() {
     cv::setNumThreads(1);
-    flyAgain("flight_down", "two_textures");
-    flyAgain("flight_front45", "room");
+    repeatFlight("flight_down", "two_textures");
+    repeatFlight("flight_front45", "room");
     const MeshRenderer hall(furnishedHall());
     flyThroughHall("hall with boxes, 45 degrees", hall, std::numbers::pi / 4.);
     flyThroughHall("hall with boxes, 10 degrees below the horizon", hall, std::numbers::pi / 18.);

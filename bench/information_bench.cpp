@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <visp3/visual_features/vpFeatureLuminance.h>
 
-#include "least_time.hpp"
+#include "min_time.hpp"
 #include "photometry/photometric.hpp"
 #include "photometry/simd.hpp"
 
@@ -65,14 +65,14 @@ int main() {
 
     double sink = 0.;
     const double kernelTime =
-        leastMicroseconds(50, 50, [&](int) { sink += photometricInformation(view, camera)(0, 0); });
-    const double reusedTime = leastMicroseconds(30, 5, [&](int) { sink += visp(reused, bytes); });
-    const double freshTime = leastMicroseconds(30, 5, [&](int) {
+        minMicroseconds(50, 50, [&](int) { sink += photometricInformation(view, camera)(0, 0); });
+    const double reusedTime = minMicroseconds(30, 5, [&](int) { sink += visp(reused, bytes); });
+    const double freshTime = minMicroseconds(30, 5, [&](int) {
         vpFeatureLuminance feature = fresh();
         sink += visp(feature, bytes);
     });
     const double eigenTime =
-        leastMicroseconds(30, 5, [&](int) { sink += eigen(view, camera)(0, 0); });
+        minMicroseconds(30, 5, [&](int) { sink += eigen(view, camera)(0, 0); });
 
     fmt::print("information of a {}x{} view, {} float lanes (checksum {:.6g})\n", camera.width,
                camera.height, simd::kWidth, sink);

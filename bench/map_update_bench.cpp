@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What it costs per keyframe that everything follows a map that changes, against doing it from
-// scratch: fusion, clearance, the snapshot for views, and finding the views that have changed. One
-// thread, cells of 5 cm.
+// Cost per keyframe of updating everything after a change of the map, compared with computing it
+// from scratch: fusion, clearance, the snapshot for views, and finding the views that have changed.
+// One thread, cells of 5 cm.
 #include <fmt/format.h>
 
 #include <time.h>
@@ -31,7 +31,7 @@ struct World {
     const char* name;
     Eigen::Vector3d size;  // of the space inside the walls [m]; it begins at the origin
     Scene scene;
-    std::vector<Eigen::Vector2d> walk;  // corners of a closed route [m]
+    std::vector<Eigen::Vector2d> corners;  // of a closed route [m]
 };
 
 void addWall(Scene& scene, const Eigen::Vector3d& corner, const Eigen::Vector3d& along,
@@ -58,7 +58,7 @@ World makeRoom() {
     World world = emptyWorld("room 8 x 8 x 3 m", {8., 8., 3.});
     addWall(world.scene, {4., 2.5, 0.}, {0., 3., 0.}, 2., 0);
     addWall(world.scene, {2.5, 4., 0.}, {3., 0., 0.}, 1.2, 0);
-    world.walk = {{1.5, 1.5}, {6.5, 1.5}, {6.5, 6.5}, {1.5, 6.5}};
+    world.corners = {{1.5, 1.5}, {6.5, 1.5}, {6.5, 6.5}, {1.5, 6.5}};
     return world;
 }
 
@@ -70,8 +70,8 @@ World makeLabyrinth() {
         addWall(world.scene, {3. * i, y, 0.}, {0., 8., 0.}, 2.5, 0);
     }
     for (int i = 0; i < 9; ++i) {
-        world.walk.emplace_back(3. * i + 1.5, i % 2 == 0 ? 1. : 9.);
-        world.walk.emplace_back(3. * i + 1.5, i % 2 == 0 ? 9. : 1.);
+        world.corners.emplace_back(3. * i + 1.5, i % 2 == 0 ? 1. : 9.);
+        world.corners.emplace_back(3. * i + 1.5, i % 2 == 0 ? 9. : 1.);
     }
     return world;
 }
@@ -81,8 +81,8 @@ World makeLabyrinth() {
 std::vector<Pose> posesOf(const World& world) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(-1., 1.);
-    std::vector<Eigen::Vector2d> route = world.walk;
-    route.insert(route.end(), world.walk.rbegin() + 1, world.walk.rend());
+    std::vector<Eigen::Vector2d> route = world.corners;
+    route.insert(route.end(), world.corners.rbegin() + 1, world.corners.rend());
     std::vector<Pose> poses;
     for (std::size_t i = 1; i < route.size(); ++i) {
         const Eigen::Vector2d leg = route[i] - route[i - 1];
@@ -116,7 +116,7 @@ View noisyView(const MeshRenderer& scene, const Camera& camera, const Pose& T_c_
     return view;
 }
 
-/// Of the processor, so that other programs on the machine count for little.
+/// Processor time, so that other programs on the machine matter little.
 double milliseconds(const auto& work) {
     const auto now = [] {
         timespec time;
@@ -138,7 +138,7 @@ void print(const char* what, const std::vector<double>& times) {
                quantile(times, 0.5), quantile(times, 0.9), quantile(times, 1.));
 }
 
-/// Times of keyframes [first, last) of a walk.
+/// Times of keyframes [first, last) of a route.
 struct Times {
     std::vector<double> fuse, distance, snapshot, total;
     std::vector<double> mark;  ///< while all views were as the map was

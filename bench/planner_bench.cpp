@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time per vertex of the trees, without images: what a view is worth is a formula here. OMPL's own
-// RRTstar grows in the same run as the yardstick. Without arguments: a few seconds at 5000
-// vertices. `tables`: time and memory from 1000 to 100000 vertices, and cost over time at alpha
-// = 1.
+// Time per vertex of the trees, without images: the information of a view is a formula here. OMPL's
+// own RRTstar grows in the same run for comparison. Without arguments: a few seconds at 5000
+// vertices. `tables`: time and memory from 1000 to 100000 vertices, and cost over time at alpha =
+// 1.
 #include <fmt/format.h>
 #include <ompl/base/ProblemDefinition.h>
 #include <ompl/geometric/planners/rrt/RRTstar.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth from stereo and what odometry makes of it, one thread, at 376x240: the pairs of an EuRoC
-// folder (argument, or PHOTONAV_DATA/euroc_v101_start), images in memory. Median times of a pair;
-// ratios are of the same run.
+// Depth from stereo and odometry with it, one thread, at 376x240: the pairs of an EuRoC folder
+// (argument, or PHOTONAV_DATA/euroc_v101_start), images in memory. Median times of a pair; ratios
+// are of the same run.
 #include <fmt/format.h>
 
 #include <algorithm>

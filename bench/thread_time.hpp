@@ -3,7 +3,7 @@
 
 #include <ctime>
 
-/// Processor time of this thread [ms]: other programs' turns do not count.
+/// Processor time of this thread [ms]; other programs are not counted.
 inline double threadTime() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

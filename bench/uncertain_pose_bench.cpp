@@ -4,7 +4,7 @@
 
 #include "geometry/se3.hpp"
 #include "geometry/uncertain_pose.hpp"
-#include "least_time.hpp"
+#include "min_time.hpp"
 
 using namespace photonav;
 
@@ -74,7 +74,7 @@ int main() {
 
     double sink = 0.;
     const auto time = [&](const auto& call) {
-        return 1e3 * leastMicroseconds(50, 5000, [&](int i) { sink += call(i % kCases)(2, 4); });
+        return 1e3 * minMicroseconds(50, 5000, [&](int i) { sink += call(i % kCases)(2, 4); });
     };
     const auto ours = [&](PropagationOrder order) {
         return time([&](int i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// View and information from a textured octree, against what one would write first: a castRay of
-// OctoMap per pixel and ViSP's luminance feature. Minima are given; the ratio takes the quicker of
-// the two castRays. And what a voxel view is worth beside that of the mesh.
+// View and information from a textured octree, compared with the straightforward way: a castRay of
+// OctoMap per pixel and ViSP's luminance feature. Minima are printed; the ratio uses the faster of
+// the two castRays. Also: the information of voxel views relative to views of the mesh.
 #include <fmt/format.h>
 #include <octomap/OcTree.h>
 #include <visp3/visual_features/vpFeatureLuminance.h>
@@ -21,7 +21,7 @@ namespace {
 
 /// Least time of one call in milliseconds.
 template <class Call>
-double leastTime(int repetitions, const Call& call) {
+double minTime(int repetitions, const Call& call) {
     double least = 1e30;
     for (int i = 0; i < repetitions; ++i) {
         const double start = threadTime();
@@ -73,7 +73,7 @@ TexturedOcTree makeRoom(const Eigen::Array3i& cells, double resolution) {
     return map;
 }
 
-/// The plain way to a view: a ray of OctoMap per pixel, the nearest face's grey value.
+/// The straightforward way to a view: a ray of OctoMap per pixel, the nearest face's grey value.
 template <class Tree>
 void castView(const Tree& map, const Camera& camera, const Pose& T_c_w, View& view) {
     const Pose T_w_c = T_c_w.inverse();
@@ -130,11 +130,11 @@ void compareViews(const char* name, const TexturedOcTree& map, const octomap::Oc
     double casting = 0., castingTextured = 0., luminance = 0., rendering = 0., ours = 0.;
     double trace = 0.;
     for (const Pose& T_c_w : poses) {
-        casting += leastTime(5, [&] { castView(occupancy, camera, T_c_w, view); });
-        castingTextured += leastTime(5, [&] { castView(map, camera, T_c_w, view); });
-        luminance += leastTime(20, [&] { trace += visp(view)[0][0]; });
-        rendering += leastTime(40, [&] { renderer.render(camera, T_c_w, view); });
-        ours += leastTime(40, [&] {
+        casting += minTime(5, [&] { castView(occupancy, camera, T_c_w, view); });
+        castingTextured += minTime(5, [&] { castView(map, camera, T_c_w, view); });
+        luminance += minTime(20, [&] { trace += visp(view)[0][0]; });
+        rendering += minTime(40, [&] { renderer.render(camera, T_c_w, view); });
+        ours += minTime(40, [&] {
             renderer.render(camera, T_c_w, view);
             trace += photometricInformation(view, camera).trace();
         });
@@ -173,7 +173,7 @@ void timeFusion(const VoxelRenderer& renderer, double resolution) {
         const Pose T_c_w = lookFrom(5. + 0.02 * i, 5., 1.5, 0.5, 0.02 * i);
         View view;
         renderer.render(camera, T_c_w, view);
-        const double time = leastTime(1, [&] { fuse(map, view, camera, T_c_w); });
+        const double time = minTime(1, [&] { fuse(map, view, camera, T_c_w); });
         total += time;
         slowest = std::max(slowest, time);
     }
@@ -182,7 +182,7 @@ void timeFusion(const VoxelRenderer& renderer, double resolution) {
 }
 
 /// Trace of Lambda in a map's views relative to those of the mesh that it was made from.
-void printWorth(double resolution) {
+void printInformation(double resolution) {
     const MeshRenderer mesh(furnishedHall());
     const Camera camera = trackingCamera();
     const Camera recorder = makeCamera(376, 240, 70. * std::numbers::pi / 180.);
@@ -232,11 +232,11 @@ int main() {
     compareViews("45 degrees", map, occupancy, renderer, posesAt(std::numbers::pi / 4));
     compareViews("horizontal", map, occupancy, renderer, posesAt(0.));
     fmt::print("rebuild: {:.1f} ms\n",
-               leastTime(5, [&] { VoxelRenderer(map, UnknownPolicy::free); }));
+               minTime(5, [&] { VoxelRenderer(map, UnknownPolicy::free); }));
     View view;
     const Camera camera = makeCamera(188, 120, 1.2);
     renderer.render(camera, lookFrom(5., 5., 2., 1., 0.), view);
-    fmt::print("point spread alone: {:.4f} ms\n", leastTime(100, [&] { applyPointSpread(view); }));
+    fmt::print("point spread alone: {:.4f} ms\n", minTime(100, [&] { applyPointSpread(view); }));
     for (const double cell : {0.05, 0.025}) timeFusion(renderer, cell);
-    for (const double cell : {0.05, 0.025}) printWorth(cell);
+    for (const double cell : {0.05, 0.025}) printInformation(cell);
 }

@@ -17,8 +17,8 @@ constexpr int kMotions = 10;
 constexpr int kSamples = 10000;
 
 //! [motion]
-/// The robot moves 1 m forward and does not quite know how far it has turned. T_b_a maps the old
-/// body frame a to the new one b, hence the minus.
+/// The robot moves 1 m forward, with an uncertain turn. T_b_a maps the old body frame a to the new
+/// one b, hence the minus.
 UncertainPose oneMetreForward() {
     UncertainPose T_b_a;
     T_b_a.mean.translation() << -1., 0., 0.;
@@ -30,8 +30,8 @@ UncertainPose oneMetreForward() {
 Eigen::Vector2d position(const Pose& T_k_w) { return T_k_w.inverse().translation().head<2>(); }
 
 //! [samples]
-/// What really happens: every motion errs on its own, and later ones start where earlier ones
-/// ended.
+/// Samples of the true poses: the errors of the motions are independent, and each motion starts
+/// where the last one ended.
 std::vector<Pose> samplePoses(const UncertainPose& motion) {
     std::mt19937 random(1);
     std::normal_distribution<double> yawError(0., std::sqrt(motion.covariance(5, 5)));
@@ -46,7 +46,7 @@ std::vector<Pose> samplePoses(const UncertainPose& motion) {
 //! [samples]
 
 //! [covariance]
-/// The covariance of the samples about the mean, where it belongs: in the Lie algebra.
+/// The covariance of the samples about the mean, in the Lie algebra.
 Matrix6 sampleCovariance(const std::vector<Pose>& poses, const Pose& mean) {
     Matrix6 covariance = Matrix6::Zero();
     for (const Pose& T : poses) {

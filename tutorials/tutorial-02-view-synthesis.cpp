@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What would a camera see from there? Once from the triangles of a scene, once from an OctoMap that
-// was built by looking at it; and how much of the scene's information survives the cells of a map.
+// What would a camera see from a given pose? Views from the triangles of a scene, and from an
+// OctoMap that was built of other views of it; and how much of the scene's information the cells of
+// a map keep.
 #include <cstdio>
 #include <numbers>
 
@@ -50,7 +51,7 @@ TexturedOcTree mapScene(const ViewSource& scene, const Camera& camera, double re
 //! [map]
 
 //! [compare]
-/// Mean absolute difference of the grey values that both views know.
+/// Mean absolute difference of the grey values, over the pixels with depth in both views.
 double difference(const View& a, const View& b) {
     double sum = 0.;
     int pixels = 0;

@@ -74,12 +74,12 @@ void compareWholeImage(const View& view, const Camera& camera) {
 }
 
 void report(const char* name, const View& view, const Camera& camera) {
-    //! [worth]
+    //! [update]
     UncertainPose belief;
     belief.covariance.diagonal() << 1e-2, 1e-2, 1e-2, 1e-4, 1e-4, 1e-4;  // 0.1 m, 0.01 rad
     const Matrix6 information = photometricInformation(view, camera);
     const Matrix6 after = updateCovariance(belief.covariance, information);
-    //! [worth]
+    //! [update]
     const Vector6 sigma = 1e3 * after.diagonal().cwiseSqrt();
     std::printf("%s: after one image sigma is %6.2f %6.2f %6.2f mm and %5.2f %5.2f %5.2f mrad\n",
                 name, sigma[0], sigma[1], sigma[2], sigma[3], sigma[4], sigma[5]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What happens to a belief along an edge? At every step of ds it is propagated, charged, and
-// updated by the view from there. By hand, then by the planner's BeliefModel.
+// What happens to a belief along an edge? At every step of ds it is propagated, its cost is added,
+// and it is updated by the view from there. First by hand, then by the planners' BeliefModel.
 #include <ompl/base/ScopedState.h>
 
 #include <cstdio>
@@ -20,9 +20,10 @@ struct Step {
 };
 
 //! [by-hand]
-/// Flies a straight motion step by step; `T_c_w` is the belief at its beginning, then at its end.
-void flyByHand(BeliefModel& model, const ob::State* from, const ob::State* to, UncertainPose& T_c_w,
-               std::vector<Step>& steps) {
+/// Propagates a belief along a straight motion, step by step; `T_c_w` is the belief at its
+/// beginning, then at its end.
+void propagateByHand(BeliefModel& model, const ob::State* from, const ob::State* to,
+                     UncertainPose& T_c_w, std::vector<Step>& steps) {
     const BeliefOptions& options = model.options();
     const Pose T_c_b = model.field().mount().inverse();
     const Matrix6 noise = adjoint(T_c_b) * options.motionNoise * adjoint(T_c_b).transpose();
@@ -31,13 +32,13 @@ void flyByHand(BeliefModel& model, const ob::State* from, const ob::State* to, U
     for (int k = 1; k <= count; ++k) {
         Step step = steps.back();
         const double traceLast = step.traceAfter;
-        // 1. Propagate: the motion brings its own noise.
+        // 1. Propagate: the motion adds its own noise.
         const Pose T_w_b = model.space().poseBetween(from, to, static_cast<double>(k) / count);
         const UncertainPose motion{T_c_b * T_w_b.inverse() * T_c_w.mean.inverse(),
                                    options.ds * noise};
         T_c_w = compound(motion, T_c_w);
         step.traceBefore = weightedTrace(T_c_w.covariance);
-        // 2. Charge: the distance, and the integral of the trace along it.
+        // 2. Cost: the distance, and the integral of the trace along it.
         step.distance += options.ds;
         step.cost += options.alpha * options.ds + (1. - options.alpha) * options.kappa *
                                                       options.ds * 0.5 *
@@ -61,8 +62,8 @@ std::vector<ob::ScopedState<>> statesAt(const FlightSpace& space, const std::vec
 }
 
 //! [propagate]
-/// Cost of flying through these places, edge by edge, as the planners do it.
-double costThrough(BeliefModel& model, const std::vector<double>& xs) {
+/// Cost of flying through these places, edge by edge, as planners compute it.
+double costAlong(BeliefModel& model, const std::vector<double>& xs) {
     const auto states = statesAt(model.space(), xs);
     Belief belief = model.root(states.front().get());
     for (std::size_t i = 1; i < states.size(); ++i) {
@@ -104,8 +105,8 @@ int main(int argc, char** argv) {
     UncertainPose T_c_w{T_w_c.inverse(), model.initialCovariance()};
     const double trace = weightedTrace(T_c_w.covariance);
     std::vector<Step> steps{{0., trace, trace, 0.}};
-    flyByHand(model, way[0].get(), way[1].get(), T_c_w, steps);
-    flyByHand(model, way[1].get(), way[2].get(), T_c_w, steps);
+    propagateByHand(model, way[0].get(), way[1].get(), T_c_w, steps);
+    propagateByHand(model, way[1].get(), way[2].get(), T_c_w, steps);
     //! [there-and-back]
     std::puts("  way [m]  trace before view     after      cost");
     for (std::size_t i = 0; i < steps.size(); i += 4) {
@@ -113,11 +114,11 @@ int main(int argc, char** argv) {
                     steps[i].traceBefore, steps[i].traceAfter, steps[i].cost);
     }
 
-    //! [judge]
+    //! [evaluate]
     const double byHand = steps.back().cost;
-    const double flown = costThrough(model, {1., 7., 1.});
+    const double flown = costAlong(model, {1., 7., 1.});
     const double evaluated = model.evaluate({way[0].get(), way[1].get(), way[2].get()}).back().cost;
-    //! [judge]
+    //! [evaluate]
     std::printf("cost by hand %.9f, propagate() %.9f, evaluate() %.9f\n", byHand, flown, evaluated);
 
     //! [cuts]
@@ -130,8 +131,8 @@ int main(int argc, char** argv) {
                            {1., 4., 7., 4., 1.},
                            {1., 2.3, 2.9, 5.2, 6.1, 7., 3.7, 2.2, 1.}}) {
         std::printf("%zu edges: cost %.3f, with ds = 5 cm %.3f; charged per vertex %.3f\n",
-                    xs.size() - 1, costThrough(model, xs), costThrough(fine, xs),
-                    costThrough(perVertex, xs));
+                    xs.size() - 1, costAlong(model, xs), costAlong(fine, xs),
+                    costAlong(perVertex, xs));
     }
     //! [cuts]
     draw(steps);

@@ -40,7 +40,7 @@ int main(int argc, char** argv) try {
     for (const std::string name : {"rrt_star", "pa_rrt_star", "belief_rrt_star"}) {
         //! [plan]
         const PlanOutcome outcome = PlanningProblem(config, world).solve(name);
-        const JudgedPath& path = outcome.path.value();
+        const EvaluatedPath& path = outcome.path.value();
         std::printf("%-16s %9.2f  %10.2f  %10.2f  %16.3f  %6zu\n", name.c_str(), path.length,
                     100. * path.meanTrace, 100. * path.goalTrace, path.cost, outcome.views);
         //! [plan]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much detour is certainty worth? The same problem for ten values of alpha: each answer is a
-// point on the curve of what one can have, from the shortest path to the most certain one.
+// How much detour is certainty worth? The same problem for ten values of alpha: each solution is a
+// point on the front between the shortest and the most certain path.
 #include <cstdio>
 
 #include "figures/images.hpp"
@@ -12,7 +12,7 @@ using namespace photonav;
 
 namespace {
 
-/// Orange for certainty, blue for haste.
+/// Orange for certain paths, blue for short ones.
 Color colorOf(double alpha) {
     return {static_cast<std::uint8_t>(230. * (1. - alpha)), 100,
             static_cast<std::uint8_t>(40. + 200. * alpha)};
@@ -41,7 +41,7 @@ int main(int argc, char** argv) try {
     for (int i = 0; i < 10; ++i) {
         const double alpha = 0.05 + 0.1 * i;
         const PlanOutcome outcome = PlanningProblem(problem, alpha).solve("belief_rrt_star");
-        const JudgedPath& path = outcome.path.value();
+        const EvaluatedPath& path = outcome.path.value();
         answers.emplace_back(path.length, 100. * path.meanTrace);
         std::printf("%5.2f %10.2f  %10.2f  %10.2f  %19zu\n", alpha, answers.back().x(),
                     answers.back().y(), 100. * path.goalTrace, outcome.views - viewsBefore);

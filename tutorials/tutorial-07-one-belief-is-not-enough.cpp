@@ -14,7 +14,7 @@ using namespace photonav;
 
 namespace {
 
-struct Contender {
+struct Method {
     const char* name;
     const char* planner;
     unsigned labels;
@@ -37,13 +37,13 @@ int main(int argc, char** argv) try {
     plot.picture(greyPicture(world.pictureFromAbove(area, 2., 1. / 24.)), area, true);
 
     std::puts("planner               length [m]  mean trace  goal trace [0.01 m^2]    cost");
-    const std::vector<Contender> contenders = {
+    const std::vector<Method> methods = {
         {"Algorithm 1", "pa_rrt_star", 1, plannerColor("pa_rrt_star"), 5.},
         {"search, 1 label", "belief_rrt_star", 1, {38, 140, 122}, 3.},
         {"search, 5 labels", "belief_rrt_star", 5, plannerColor("belief_rrt_star"), 3.}};
-    for (const auto& [name, planner, labels, color, width] : contenders) {
+    for (const auto& [name, planner, labels, color, width] : methods) {
         config.search.labels = labels;
-        const JudgedPath path = PlanningProblem(config, world).solve(planner).path.value();
+        const EvaluatedPath path = PlanningProblem(config, world).solve(planner).path.value();
         std::printf("%-20s %11.2f  %10.2f  %10.2f  %16.3f\n", name, path.length,
                     100. * path.meanTrace, 100. * path.goalTrace, path.cost);
         plot.curve(path.fromAbove(), {.color = color, .width = width, .name = name, .halo = 1.});
@@ -57,7 +57,7 @@ int main(int argc, char** argv) try {
         for (const Eigen::Vector2d& corner : corners) {
             places.push_back({{corner.x(), corner.y(), 2.}, {}});
         }
-        return problem.judge("given waypoints", places).points.back();
+        return problem.evaluate("given waypoints", places).points.back();
     };
     const Eigen::Vector2d start(0., 0.), stripes(18.6, 0.8), meeting(10.5, 11.), goal(5., 19.);
     std::puts("\nway to (10.5, 11)       cost there   std of x, y there [m]   cost at the goal");

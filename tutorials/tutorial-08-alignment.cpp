@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where was this image taken? Render the model where the camera is thought to be, compare pixel by
-// pixel, take a Gauss-Newton step, render again: watch it converge, in a window when there is a
-// screen, as PNG in any case.
+// Where was this image taken? Render the model from the estimated pose, compare pixel by pixel,
+// take a Gauss-Newton step, render again. The residual images are shown in a window, if there is a
+// screen, and written as PNG.
 #include <visp3/core/vpDisplayException.h>
 #include <visp3/core/vpImageConvert.h>
 #include <visp3/gui/vpDisplayX.h>
@@ -103,7 +103,7 @@ void watchItConverge(const ViewSource& model, const Camera& camera, const ImageF
     Pose T_c_w = expSE3(offset) * T_true_w;
     ViewComparison compare(camera, kPhotometric);
     for (int step = 0; step <= 6; ++step) {
-        model.render(camera, T_c_w, view);  // anew: where we now think we are
+        model.render(camera, T_c_w, view);  // anew, at the present estimate
         const NormalEquations e = compare(view, observed, Exposure{}, Loss{});
         const auto [metres, degrees] = errorOf(T_c_w, T_true_w);
         std::printf("%4d %10.4f %12.2f %6.3f\n", step, std::sqrt(e.sumSquares / e.count),
@@ -146,7 +146,8 @@ void lookAtStripes(const Camera& camera, const Vector6& offset) {
     options.photometric = kPhotometric;
     View view;
     //! [prior]
-    // Stripes along the way say nothing about the way: without a prior that direction stays.
+    // Stripes along the camera's x axis do not inform about x: only the prior limits this
+    // direction.
     Scene stripes;
     addPlane(stripes, {-4., -4., 0.}, {8., 0., 0.}, {0., 8., 0.},
              addTexture(stripes, photonav::stripes({.width = 0.4, .softEdge = 0.05})));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fly it: a body that knows where it is from its images only, with a camera that looks straight
-// down and with one that looks 45 degrees ahead, to the same place past a poster on the floor.
+// Fly a plan with a body that estimates its pose from images alone, with a camera that looks
+// straight down and with one that looks 45 degrees ahead, past a poster on the floor.
 #include <ompl/base/ScopedState.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kFlights = 4;
 
-/// A floor of almost nothing, with a strip of carpet across the way.
+/// A floor with almost no texture, and a strip of carpet across the way.
 Scene paleFloor() {
     Scene scene;
     const auto pale = addTexture(

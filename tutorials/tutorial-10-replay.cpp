@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A recorded flight through two trackers: odometry, which only looks at the flight itself, and
-// localisation in a map. How far off is each, and did it know?
+// A recorded flight tracked in two ways: by odometry, which uses only the flight itself, and by
+// localisation in a map. How large are the errors, and are the covariances consistent?
 #include <cstdio>
 #include <numbers>
 #include <set>
@@ -48,7 +48,7 @@ void record(const ViewSource& room, const Camera& camera, const std::string& fol
 struct Result {
     std::vector<PosePair> poses;
     double nees = 0.;  ///< mean of the squared normalised errors, per degree of freedom
-    int judged = 0;
+    int evaluated = 0;
     int lost = 0;
     std::set<double> keyframes;  // timestamps
 
@@ -58,8 +58,8 @@ struct Result {
         if (tracked.lost) return;
         poses.push_back({i, frame.timestamp, tracked.T_c_w.mean.inverse(), frame.T_c_w.inverse()});
         if (const auto squared = squaredNormalisedError(tracked.T_c_w, frame.T_c_w)) {
-            nees = (nees * judged + *squared / 6.) / (judged + 1);
-            ++judged;
+            nees = (nees * evaluated + *squared / 6.) / (evaluated + 1);
+            ++evaluated;
         }
     }
 };
@@ -93,7 +93,7 @@ Tracker localiser(const Sequence& flight, std::shared_ptr<const ViewSource> map)
 }
 //! [localise]
 
-//! [judge]
+//! [print]
 void print(const char* name, const Result& result, bool align) {
     const Pose T = align ? alignmentOf(result.poses) : Pose::Identity();
     const ErrorSummary absolute = summarise(absoluteErrors(result.poses, T).translation);
@@ -103,7 +103,7 @@ void print(const char* name, const Result& result, bool align) {
                 1e3 * absolute.max, 1e3 * summarise(second.translation).rmse,
                 summarise(second.rotation).rmse * 180. / std::numbers::pi, result.nees);
 }
-//! [judge]
+//! [print]
 
 /// Distance from the truth over time, millimetres.
 Plot::Points errorCurve(const Result& result) {

@@ -37,7 +37,7 @@ std::string meanAndDeviation(const Values& values, int decimals) {
 }
 
 std::string tableRow(const std::string& method, const std::vector<const CompareRun*>& runs) {
-    const auto ofPath = [&](double JudgedPath::*value) {
+    const auto ofPath = [&](double EvaluatedPath::*value) {
         Values values;
         for (const CompareRun* run : runs) {
             if (run->outcome.path) values.push_back((*run->outcome.path).*value);
@@ -49,19 +49,19 @@ std::string tableRow(const std::string& method, const std::vector<const CompareR
         for (const CompareRun* run : runs) values.push_back(value(run->outcome));
         return values;
     };
-    const Values costs = ofPath(&JudgedPath::cost);
+    const Values costs = ofPath(&EvaluatedPath::cost);
     const std::string label =
         costs.size() == runs.size()
             ? method
             : fmt::format("{} ({} of {} found a path)", method, costs.size(), runs.size());
-    Values traces = ofPath(&JudgedPath::meanTrace);
-    Values goalTraces = ofPath(&JudgedPath::goalTrace);
+    Values traces = ofPath(&EvaluatedPath::meanTrace);
+    Values goalTraces = ofPath(&EvaluatedPath::goalTrace);
     for (Values* values : {&traces, &goalTraces}) {
         for (double& v : *values) v *= 1e4;
     }
     return fmt::format(
         "| {} | {} | {} | {} | {} | {} | {} | {} |\n", label, meanAndDeviation(costs, 3),
-        meanAndDeviation(ofPath(&JudgedPath::length), 2), meanAndDeviation(traces, 1),
+        meanAndDeviation(ofPath(&EvaluatedPath::length), 2), meanAndDeviation(traces, 1),
         meanAndDeviation(goalTraces, 1),
         meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.vertices); }), 0),
         meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.views); }), 0),

@@ -70,7 +70,7 @@ FlightOptions flightOptions(const Config& config, double resolution) {
 std::vector<FlightSet> planAll(const Config& config, PlanningProblem& run, ProgressLine& line,
                                const std::atomic<bool>& interrupted) {
     std::vector<FlightSet> sets;
-    const auto add = [&](JudgedPath path) {
+    const auto add = [&](EvaluatedPath path) {
         std::vector<PlannedView> plan = plannedViews(path.points);
         sets.push_back({std::move(path), std::move(plan), {}});
     };

@@ -17,9 +17,9 @@
 namespace photonav {
 namespace {
 
-void printSummary(const PlanOutcome& outcome, const std::optional<JudgedPath>& baseline, bool audit,
-                  const std::filesystem::path& folder, double seconds) {
-    const auto row = [](const JudgedPath& path) {
+void printSummary(const PlanOutcome& outcome, const std::optional<EvaluatedPath>& baseline,
+                  bool audit, const std::filesystem::path& folder, double seconds) {
+    const auto row = [](const EvaluatedPath& path) {
         fmt::print("{:<16} {:>8.2f} m {:>12.3g} {:>12.3g} {:>10.4g}\n", path.planner, path.length,
                    path.meanTrace, path.goalTrace, path.cost);
     };
@@ -86,7 +86,7 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     }
 
     PlanOutcome outcome;
-    std::optional<JudgedPath> baseline;
+    std::optional<EvaluatedPath> baseline;
     {
         ProgressLine line(options.quiet);
         RemainingGrowth growth(config.vertices);

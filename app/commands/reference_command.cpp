@@ -27,7 +27,7 @@ Config loadReferenceConfig(const ReferenceOptions& options) {
     return config;
 }
 
-std::vector<Pose> waypointsOf(const JudgedPath& path) {
+std::vector<Pose> waypointsOf(const EvaluatedPath& path) {
     std::vector<Pose> waypoints;
     for (const BeliefPoint& point : path.points) {
         if (point.isWaypoint) waypoints.push_back(point.T_w_b);
@@ -71,13 +71,13 @@ class Search {
   private:
     void descend(const std::vector<Pose>& waypoints, ReferencePath path) {
         const DescentOptions descent{.moves = options_.moves, .seed = config_.seed};
-        const auto judged = run_.descend(waypoints, descent, interrupted_);
-        if (!judged) return;
-        path.cost = judged->cost;
-        path.length = judged->length;
-        path.meanTrace = judged->meanTrace;
-        path.goalTrace = judged->goalTrace;
-        path.waypoints = waypointsOf(*judged);
+        const auto descended = run_.descend(waypoints, descent, interrupted_);
+        if (!descended) return;
+        path.cost = descended->cost;
+        path.length = descended->length;
+        path.meanTrace = descended->meanTrace;
+        path.goalTrace = descended->goalTrace;
+        path.waypoints = waypointsOf(*descended);
         table_.offer(path);
     }
 

@@ -13,7 +13,7 @@
 namespace photonav {
 namespace {
 
-constexpr std::size_t kMostRows = 5;
+constexpr std::size_t kMaxRows = 5;
 constexpr double kFullError = 0.1;  // brightest colour of the relative error
 constexpr std::array<Color, 3> kStateColors{{{205, 205, 205}, {38, 140, 122}, {222, 79, 12}}};
 
@@ -96,7 +96,7 @@ void ConvergenceFigure::add(const DepthFilter& filter, const ImageF& recorded, d
     if (references_++ % stride_ != 0) return;
     rows_.push_back(convergenceImages(
         filter, recorded, fmt::format("reference {}, at {:.3f} s", references_, timestamp)));
-    if (rows_.size() <= kMostRows) return;
+    if (rows_.size() <= kMaxRows) return;
     for (std::size_t k = 1; 2 * k < rows_.size(); ++k) rows_[k] = std::move(rows_[2 * k]);
     rows_.resize((rows_.size() + 1) / 2);
     stride_ *= 2;

@@ -52,7 +52,7 @@ json jsonOf(const BeliefPoint& point) {
             {"min_eigenvalue", std::max(0., eigen.eigenvalues()[0])}};
 }
 
-json jsonOf(const JudgedPath& path) {
+json jsonOf(const EvaluatedPath& path) {
     return {{"planner", path.planner},      {"cost", path.cost},
             {"length", path.length},        {"metric_length", path.points.back().distance},
             {"mean_trace", path.meanTrace}, {"goal_trace", path.goalTrace}};
@@ -63,7 +63,7 @@ UncertainPose belief(const BeliefPoint& point, const Pose& T_b_c) {
 }
 
 /// The predicted views at the waypoints, and the contributions of their pixels.
-std::vector<ReportView> waypointViews(const JudgedPath& path, const Config& config,
+std::vector<ReportView> waypointViews(const EvaluatedPath& path, const Config& config,
                                       const World& world) {
     std::vector<std::size_t> waypoints;
     for (std::size_t i = 0; i < path.points.size(); ++i) {
@@ -125,7 +125,7 @@ Perspective perspective(const Config& config, const World& world, const PlanOutc
     return {fmt::format("{}, alpha {}", config.planner, outcome.alpha), box, paths};
 }
 
-void writeTrajectory(const fs::path& file, const JudgedPath& path, const Pose& T_b_c) {
+void writeTrajectory(const fs::path& file, const EvaluatedPath& path, const Pose& T_b_c) {
     Trajectory trajectory;  // one metre per second
     for (const BeliefPoint& point : path.points) {
         trajectory.push_back({point.length, point.T_w_b * T_b_c});
@@ -140,7 +140,7 @@ std::string placeText(const Config& config, double height, double yaw) {
     return fmt::format("{:.2f} m, heading {:.0f} deg", height, yaw / kDegree);
 }
 
-DrawnPath drawnPath(const JudgedPath& path, const Pose& T_b_c) {
+DrawnPath drawnPath(const EvaluatedPath& path, const Pose& T_b_c) {
     DrawnPath result{path.planner, plannerColor(path.planner)};
     for (const BeliefPoint& point : path.points) {
         result.points.push_back(
@@ -167,7 +167,7 @@ TopView viewFromAbove(const Config& config, const World& world,
 }
 
 json planResult(const Config& config, const PlanOutcome& outcome,
-                const std::optional<JudgedPath>& baseline, bool interrupted) {
+                const std::optional<EvaluatedPath>& baseline, bool interrupted) {
     const double tree = outcome.planSeconds - outcome.viewSeconds - outcome.beliefSeconds;
     json result{{"schema", 1},
                 {"command", "plan"},
@@ -262,7 +262,7 @@ std::vector<NamedFigure> planFigures(const Config& config, const World& world, P
 
 void writePlanReport(const fs::path& folder, const Config& config, const World& world,
                      PlanningProblem& run, const PlanOutcome& outcome,
-                     const std::optional<JudgedPath>& baseline,
+                     const std::optional<EvaluatedPath>& baseline,
                      const std::optional<RecordedComparison>& recorded,
                      const std::vector<TreeEvolution>& evolutions, const std::string& commandLine,
                      const json& result) {

@@ -17,7 +17,7 @@ namespace photonav {
 /// result.json of `photonav plan`; time.total_s (until the report is drawn) is the caller's to
 /// fill.
 nlohmann::json planResult(const Config& config, const PlanOutcome& outcome,
-                          const std::optional<JudgedPath>& baseline, bool interrupted);
+                          const std::optional<EvaluatedPath>& baseline, bool interrupted);
 
 /// Writes config.yaml, top_view.png, report.json and report.html; with a path also path.tum,
 /// trace.png, information.png (unless the world has no texture), and recorded_frames.png where
@@ -25,13 +25,13 @@ nlohmann::json planResult(const Config& config, const PlanOutcome& outcome,
 /// are evolutions.
 void writePlanReport(const std::filesystem::path& folder, const Config& config, const World& world,
                      PlanningProblem& run, const PlanOutcome& outcome,
-                     const std::optional<JudgedPath>& baseline,
+                     const std::optional<EvaluatedPath>& baseline,
                      const std::optional<RecordedComparison>& recorded,
                      const std::vector<TreeEvolution>& evolutions, const std::string& commandLine,
                      const nlohmann::json& result);
 
 /// A path to be drawn, with its beliefs.
-DrawnPath drawnPath(const JudgedPath& path, const Pose& T_b_c);
+DrawnPath drawnPath(const EvaluatedPath& path, const Pose& T_b_c);
 
 /// Puts the surfaces of the world into the report's 3-D view.
 void describeWorld(const World& world, ReportData& report);

@@ -31,7 +31,7 @@ void addTree(Plot& plot, const DrawnTree& tree) {
                          .name = tree.name});
 }
 
-/// About twenty along the path, with its ends: more hide each other.
+/// About twenty ellipses along the path, with its ends; more would hide each other.
 void addEllipses(Plot& plot, const DrawnPath& path, double scale, const std::string& name) {
     if (path.points.empty()) return;
     const double length = path.points.back().distance;

@@ -23,7 +23,7 @@ Color viridis(double share);
 Color inferno(double share);
 
 /// The colour of a planner in every figure, page and tutorial; distinguishable with any colour
-/// vision, on white and on a grey map. Names that are no planner's share a grey.
+/// vision, on white and on a grey map. All other names are grey.
 Color plannerColor(std::string_view planner);
 
 /// "#rrggbb"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The few strokes that figures are made of, in pixels (y downward), on a surface of cairo.
+// The drawing operations of figures, in pixels (y downward), on a surface of cairo.
 #pragma once
 
 #include <cairo.h>

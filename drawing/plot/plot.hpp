@@ -20,7 +20,7 @@ struct Mapping;
 struct Style {
     Color color = kInk;
     double width = 2.;      ///< of a line; the diameter of a dot [px]
-    double opacity = 1.;    ///< of all of a mark, where it covers itself as well
+    double opacity = 1.;    ///< of a whole mark, also where it overlaps itself
     std::string name = {};  ///< in the legend; marks of the same name share an entry
     bool dashed = false;
     double halo = 0.;  ///< white on both sides [px]

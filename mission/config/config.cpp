@@ -11,8 +11,8 @@ namespace photonav {
 namespace fs = std::filesystem;
 namespace {
 
-/// The value of an override. A path is what was typed, whatever YAML makes of ' #' and ': ', unless
-/// it is quoted; then made absolute.
+/// The value of an override. A path is made absolute. Unless it is quoted it is taken as typed,
+/// although ' #' and ': ' have a meaning in YAML.
 YAML::Node overrideValue(const KeyTable& keys, const std::string& path, const std::string& text) {
     if (text.empty()) return YAML::Node("");
     try {
@@ -49,8 +49,8 @@ void applyOverride(const KeyTable& keys, const YAML::Node& root, const std::stri
     }
 }
 
-/// Files that other commands write are often given in place of a planning problem.
-void checkThatIsProblem(const std::string& file) {
+/// Throws for files of other commands, which are often given in place of a planning problem.
+void checkIsPlanningProblem(const std::string& file) {
     if (isOcTreeFile(file)) {
         throw InputError(file, "",
                          "is a map, not a planning problem: name it as map.file in a config "
@@ -79,7 +79,7 @@ BeliefOptions defaultBelief() {
 }
 
 Config loadConfig(const std::string& file, const std::vector<std::string>& overrides) {
-    checkThatIsProblem(file);
+    checkIsPlanningProblem(file);
     Config config;
     config.file = file;
     const KeyTable keys = keysOf(config);

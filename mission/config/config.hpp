@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A planning problem: the home of every default that a YAML file can override.
+// A planning problem as a YAML file describes it, with the default of every key.
 #pragma once
 
 #include <optional>
@@ -32,7 +32,7 @@ struct CameraConfig {
     Pose T_b_c() const;
 };
 
-/// The planner's model of a view's information. Paths are judged by the photometric information,
+/// The planner's model of a view's information. Paths are evaluated by the photometric information,
 /// whatever the planner's model is.
 struct ViewModelConfig {
     std::string name = "photometric";  ///< one of viewModelNames()
@@ -70,7 +70,7 @@ struct Config {
     unsigned vertices = 2500;
     SearchOptions search;  ///< of belief_rrt_star
     GrowthOptions growth;
-    double rotationWeight = 0.25;  ///< metres that a radian of rotation counts
+    double rotationWeight = 0.25;  ///< turning by 1 rad costs as much as flying so many metres
     bool compareWithRrtStar = true;
     SweepConfig sweep;
     FlyConfig fly;

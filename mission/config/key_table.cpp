@@ -15,10 +15,10 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string textOf(Range range) {
-    if (range.least == 0. && std::isinf(range.most)) return ">= 0";
-    if (std::isinf(range.least)) return "";
-    if (std::isinf(range.most)) return fmt::format(">= {}", range.least);
-    return fmt::format("{} to {}", range.least, range.most);
+    if (range.min == 0. && std::isinf(range.max)) return ">= 0";
+    if (std::isinf(range.min)) return "";
+    if (std::isinf(range.max)) return fmt::format(">= {}", range.min);
+    return fmt::format("{} to {}", range.min, range.max);
 }
 
 /// For a cell of a Markdown table.
@@ -82,7 +82,7 @@ void KeyTable::number(const KeyWords& words, double& value, Range range) {
     add({.words = words,
          .allowed = textOf(range),
          .read = [&value, range, name = words.name](
-                     YamlMap& map) { map.readNumber(name, value, range.least, range.most); },
+                     YamlMap& map) { map.readNumber(name, value, range.min, range.max); },
          .value = [&value] { return yamlNumber(value); }});
 }
 
@@ -91,8 +91,8 @@ void KeyTable::number(const KeyWords& words, std::optional<double>& value, Range
          .allowed = textOf(range),
          .read =
              [&value, range, name = words.name](YamlMap& map) {
-                 double number = value.value_or(range.least);
-                 map.readNumber(name, number, range.least, range.most);
+                 double number = value.value_or(range.min);
+                 map.readNumber(name, number, range.min, range.max);
                  if (map.has(name)) value = number;
              },
          .value = [&value] { return value ? yamlNumber(*value) : YAML::Node(); }});
@@ -169,8 +169,8 @@ void KeyTable::addCount(const KeyWords& words, Range range,
          .allowed = textOf(range),
          .read =
              [=, name = words.name](YamlMap& map) {
-                 double number = get().value_or(range.least);
-                 map.readNumber(name, number, range.least, range.most);
+                 double number = get().value_or(range.min);
+                 map.readNumber(name, number, range.min, range.max);
                  if (number != std::floor(number)) map.fail(name, "not a whole number");
                  if (map.has(name)) set(number);
              },

@@ -18,11 +18,11 @@ namespace photonav {
 
 /// Allowed values of a number.
 struct Range {
-    double least = -kInfinity;
-    double most = kInfinity;
+    double min = -kInfinity;
+    double max = kInfinity;
 };
 
-/// What describes a key to its user.
+/// Name, unit and meaning of a key, as its user reads them.
 struct KeyWords {
     std::string name;  ///< within its section
     std::string unit;  ///< may be empty
@@ -33,9 +33,9 @@ struct ConfigKey {
     std::string section = {};  ///< empty: a key of the file itself
     KeyWords words = {};
     std::string allowed = {};  ///< allowed values in words, may be empty
-    bool isFile = false;       ///< a path: relative to the file that it stands in
+    bool isFile = false;       ///< a path, relative to the file that contains it
     std::function<void(YamlMap&)> read = {};
-    std::function<YAML::Node()> value = {};  ///< null: has none, is not written
+    std::function<YAML::Node()> value = {};  ///< null: no value, not written
 
     /// "section.name".
     std::string path() const;

@@ -126,7 +126,7 @@ void addKeys(KeyTable& keys, SweepConfig& c) {
               .allowed = "`{alpha, length, mean_trace, goal_trace}`",
               .read = [&c](YamlMap& map) { readPaper(map, c.paper); },
               .value = [&c] { return nodeOf(c.paper); }});
-    keys.number({"paper_trace_unit", "m^2 + rad^2", "what a printed trace of 1 stands for"},
+    keys.number({"paper_trace_unit", "m^2 + rad^2", "value of a printed trace of 1"},
                 c.paperTraceUnit, {1e-12, kInfinity});
 }
 

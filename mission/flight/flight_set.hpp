@@ -9,7 +9,7 @@
 namespace photonav {
 
 struct FlightSet {
-    JudgedPath path;
+    EvaluatedPath path;
     std::vector<PlannedView> plan;
     std::vector<FlightResult> flights;
 };

@@ -26,7 +26,7 @@ std::optional<Recording> recordingOf(const std::string& mapFile) {
 }
 
 /// Waypoints of the path, first and last included.
-std::vector<std::size_t> chosenPoints(const JudgedPath& path) {
+std::vector<std::size_t> chosenPoints(const EvaluatedPath& path) {
     std::vector<std::size_t> waypoints;
     for (std::size_t i = 0; i < path.points.size(); ++i) {
         if (path.points[i].isWaypoint) waypoints.push_back(i);
@@ -73,7 +73,7 @@ std::size_t findNearest(const Sequence& sequence, const Pose& T_c_w, double dept
 }  // namespace
 
 std::optional<RecordedComparison> compareWithRecording(const Config& config, const World& world,
-                                                       const JudgedPath& path) {
+                                                       const EvaluatedPath& path) {
     const auto recording = recordingOf(config.mapFile);
     if (!recording) return {};
     const Sequence& sequence = recording->sequence;

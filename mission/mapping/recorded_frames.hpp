@@ -31,7 +31,7 @@ using RecordedComparison = std::vector<NearestFrame>;
 /// @return nothing for a scene, and for a map whose recording is not stated
 /// @throws InputError when it is stated but cannot be read
 std::optional<RecordedComparison> compareWithRecording(const Config& config, const World& world,
-                                                       const JudgedPath& path);
+                                                       const EvaluatedPath& path);
 
 /// [{waypoint, stamp, distance_m, angle_deg, predicted, mean_abs_difference}], the last one null
 /// where nothing is predicted.

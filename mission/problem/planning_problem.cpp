@@ -23,9 +23,9 @@ namespace {
 constexpr int kFreeHeadings = 8;               // goals offered where the goal has no yaw
 constexpr std::size_t kProgressInterval = 50;  // vertices
 constexpr double kShowInterval = 0.5;          // of progress without new vertices [s]
-constexpr std::size_t kMostSamples = 200;      // per vertex asked for: most are in vain, give up
+constexpr std::size_t kMaxSamples = 200;       // per requested vertex: beyond, planning gives up
 
-/// The answer may come from an earlier tree than the one audited.
+/// The solution may come from an earlier tree than the one audited.
 void includePath(Audit& audit, double stored, double replayed) {
     const double error = std::abs(stored - replayed) / (1. + replayed);
     if (!(error <= audit.maxCostError)) audit.maxCostError = error;
@@ -39,7 +39,7 @@ std::vector<const ob::State*> solutionOf(const BeliefPlanner& planner) {
 
 }  // namespace
 
-std::vector<Eigen::Vector2d> JudgedPath::fromAbove() const {
+std::vector<Eigen::Vector2d> EvaluatedPath::fromAbove() const {
     std::vector<Eigen::Vector2d> positions;
     positions.reserve(points.size());
     for (const BeliefPoint& point : points) {
@@ -58,7 +58,7 @@ PlanningProblem::PlanningProblem(const Config& config, const World& world)
       field_(makeField("photometric")),
       plannersField_(config.viewModel.name == "photometric" ? field_
                                                             : makeField(config.viewModel.name)),
-      judge_(makeModel(field_, config.planner == "rrt_star" ? 1. : config.belief.alpha)) {}
+      evaluator_(makeModel(field_, config.planner == "rrt_star" ? 1. : config.belief.alpha)) {}
 
 PlanningProblem::PlanningProblem(const PlanningProblem& other, double alpha)
     : config_([&] {
@@ -71,7 +71,7 @@ PlanningProblem::PlanningProblem(const PlanningProblem& other, double alpha)
       si_(other.si_),
       field_(other.field_),
       plannersField_(other.plannersField_),
-      judge_(makeModel(field_, alpha)) {}
+      evaluator_(makeModel(field_, alpha)) {}
 
 void PlanningProblem::checkPlaces() const {
     checkPlace("start", config_.start);
@@ -141,7 +141,7 @@ PlanOutcome PlanningProblem::solve(const std::string& name, const std::atomic<bo
     outcome.tree = drawnEdges(*planner);
     outcome.audit = auditTree(*planner);
     if (planner->getProblemDefinition()->hasExactSolution()) {
-        outcome.path = judge(*planner);
+        outcome.path = evaluate(*planner);
         outcome.plannerCost = planner->bestCost();
         const double replayed = planner->model().evaluate(solutionOf(*planner)).back().cost;
         includePath(outcome.audit, outcome.plannerCost, replayed);
@@ -154,7 +154,7 @@ std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& n
     growth.seed = config_.seed;
     growth.obstacleReach = config_.robotRadius;
     growth.maxVertices = config_.vertices;
-    growth.maxIterations = kMostSamples * config_.vertices;
+    growth.maxIterations = kMaxSamples * config_.vertices;
     const auto model = makeModel(plannersField_, name == "rrt_star" ? 1. : config_.belief.alpha);
     std::shared_ptr<BeliefPlanner> planner;
     if (name == "belief_rrt_star") {
@@ -219,9 +219,9 @@ ob::ProblemDefinitionPtr PlanningProblem::definition() const {
     return definition;
 }
 
-std::optional<JudgedPath> PlanningProblem::descend(const std::vector<Pose>& waypoints,
-                                                   const DescentOptions& options,
-                                                   const std::atomic<bool>& interrupted) {
+std::optional<EvaluatedPath> PlanningProblem::descend(const std::vector<Pose>& waypoints,
+                                                      const DescentOptions& options,
+                                                      const std::atomic<bool>& interrupted) {
     ompl::geometric::PathGeometric path(si_);
     ob::ScopedState<> state(si_);
     for (const Pose& T_w_b : waypoints) {
@@ -229,17 +229,18 @@ std::optional<JudgedPath> PlanningProblem::descend(const std::vector<Pose>& wayp
         path.append(state.get());
     }
     if (waypoints.empty() || !path.check()) return std::nullopt;
-    PathDescent descent(si_, judge_, options);
+    PathDescent descent(si_, evaluator_, options);
     descent.begin({path.getStates().begin(), path.getStates().end()});
     descent.descend(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
-    return judge("descent", descent.path());
+    return evaluate("descent", descent.path());
 }
 
-JudgedPath PlanningProblem::judge(const BeliefPlanner& planner) {
-    return judge(planner.getName(), solutionOf(planner));
+EvaluatedPath PlanningProblem::evaluate(const BeliefPlanner& planner) {
+    return evaluate(planner.getName(), solutionOf(planner));
 }
 
-JudgedPath PlanningProblem::judge(const std::string& planner, const std::vector<Place>& waypoints) {
+EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
+                                        const std::vector<Place>& waypoints) {
     std::vector<ob::ScopedState<>> states;
     std::vector<const ob::State*> pointers;
     states.reserve(waypoints.size());
@@ -248,24 +249,24 @@ JudgedPath PlanningProblem::judge(const std::string& planner, const std::vector<
         pointers.push_back(states.emplace_back(si_).get());
         space_.setState(states.back().get(), place.position, place.yaw.value_or(0.));
     }
-    return judge(planner, pointers);
+    return evaluate(planner, pointers);
 }
 
-JudgedPath PlanningProblem::judge(const std::string& planner,
-                                  const std::vector<const ob::State*>& path) {
-    JudgedPath judged{.planner = planner, .points = judge_->evaluate(path)};
+EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
+                                        const std::vector<const ob::State*>& path) {
+    EvaluatedPath evaluated{.planner = planner, .points = evaluator_->evaluate(path)};
     double integral = 0.;
-    for (std::size_t i = 1; i < judged.points.size(); ++i) {
-        const BeliefPoint& last = judged.points[i - 1];
-        const BeliefPoint& next = judged.points[i];
+    for (std::size_t i = 1; i < evaluated.points.size(); ++i) {
+        const BeliefPoint& last = evaluated.points[i - 1];
+        const BeliefPoint& next = evaluated.points[i];
         integral += 0.5 * (next.distance - last.distance) * (last.trace + next.traceBefore);
     }
-    const BeliefPoint& goal = judged.points.back();
-    judged.cost = goal.cost;
-    judged.length = goal.length;
-    judged.meanTrace = goal.distance > 0. ? integral / goal.distance : goal.trace;
-    judged.goalTrace = goal.trace;
-    return judged;
+    const BeliefPoint& goal = evaluated.points.back();
+    evaluated.cost = goal.cost;
+    evaluated.length = goal.length;
+    evaluated.meanTrace = goal.distance > 0. ? integral / goal.distance : goal.trace;
+    evaluated.goalTrace = goal.trace;
+    return evaluated;
 }
 
 }  // namespace photonav

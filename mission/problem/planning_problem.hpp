@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A config becomes a planner, a planner becomes a path with beliefs.
+// From a config to a planner, and to a path with beliefs.
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@
 
 namespace photonav {
 
-/// A path and its photometric beliefs, which are the same measure for every planner.
-struct JudgedPath {
+/// A path and its photometric beliefs, whatever information model its planner used.
+struct EvaluatedPath {
     std::string planner;
     std::vector<BeliefPoint> points;
     double cost = 0.;       ///< with the config's alpha and kappa
     double length = 0.;     ///< of the positions [m]
-    double meanTrace = 0.;  ///< integral of the trace over the way flown, by its length
+    double meanTrace = 0.;  ///< integral of the trace over the distance flown, divided by it
     double goalTrace = 0.;  ///< after the last view
 
     /// Positions of the points in x and y of w [m].
@@ -36,10 +36,10 @@ struct PlanProgress {
 
 using TreeSegment = std::array<Eigen::Vector3f, 2>;  ///< end points in w [m]
 
-/// What planning took and gave.
+/// Result and effort of planning.
 struct PlanOutcome {
-    std::optional<JudgedPath> path;  ///< none: the goal was not reached
-    double plannerCost = 0.;         ///< of the path, by the planner's own model
+    std::optional<EvaluatedPath> path;  ///< none: the goal was not reached
+    double plannerCost = 0.;            ///< of the path, by the planner's own model
     double alpha = 0.;
     std::size_t vertices = 0, iterations = 0, views = 0, cacheHits = 0, fallbacks = 0;
     double planSeconds = 0., viewSeconds = 0., beliefSeconds = 0.;
@@ -73,22 +73,22 @@ class PlanningProblem {
 
     /// "done", or why there is no path.
     std::string statusOf(const PlanOutcome& outcome) const;
-    /// For a tree of this size that does not reach the goal.
+    /// Why a tree of this size does not reach the goal.
     std::string reasonForNoPath(std::size_t vertices, std::size_t iterations) const;
 
-    /// The best path that descent from these waypoints (of the body) finds.
-    /// @return nothing if the way along them is not free
-    std::optional<JudgedPath> descend(const std::vector<Pose>& waypoints,
-                                      const DescentOptions& options,
-                                      const std::atomic<bool>& interrupted);
+    /// The best path found by descent from these waypoints (of the body).
+    /// @return nothing if the motions between them are not free
+    std::optional<EvaluatedPath> descend(const std::vector<Pose>& waypoints,
+                                         const DescentOptions& options,
+                                         const std::atomic<bool>& interrupted);
 
-    /// A path given by its waypoints, judged like one that was found.
-    JudgedPath judge(const std::string& planner, const std::vector<Place>& waypoints);
+    /// Evaluates a path given by its waypoints.
+    EvaluatedPath evaluate(const std::string& planner, const std::vector<Place>& waypoints);
 
-    /// The information of a view from here, remembered; for heat maps.
-    Matrix6 informationAt(const Pose& T_w_b) { return judge_->informationAt(T_w_b); }
+    /// The information of the view from a body pose, cached; for heat maps.
+    Matrix6 informationAt(const Pose& T_w_b) { return evaluator_->informationAt(T_w_b); }
     /// The covariance at the start before any view, camera frame.
-    const Matrix6& initialCovariance() const { return judge_->initialCovariance(); }
+    const Matrix6& initialCovariance() const { return evaluator_->initialCovariance(); }
     bool isFlyable(const Eigen::Vector3d& p_w) const;
 
     // For programs that run planners themselves.
@@ -104,9 +104,9 @@ class PlanningProblem {
         return std::make_shared<BeliefModel>(space_, field_, options);
     }
     const Config& config() const { return config_; }
-    /// The solution of a planner that has one.
-    JudgedPath judge(const BeliefPlanner& planner);
-    /// Makes the next views new ones; planners that are not cleared must not be used again.
+    /// Evaluates the solution of a planner that has one.
+    EvaluatedPath evaluate(const BeliefPlanner& planner);
+    /// Clears the cached views. Planners made before must be cleared, or not be used again.
     void forgetViews() {
         field_->clear();
         plannersField_->clear();
@@ -117,15 +117,16 @@ class PlanningProblem {
     std::shared_ptr<InformationField> makeField(const std::string& viewModel) const;
     std::shared_ptr<BeliefModel> makeModel(std::shared_ptr<InformationField> field,
                                            double alpha) const;
-    JudgedPath judge(const std::string& planner, const std::vector<const ompl::base::State*>& path);
+    EvaluatedPath evaluate(const std::string& planner,
+                           const std::vector<const ompl::base::State*>& path);
 
     const Config config_;
     const World& world_;
     FlightSpace space_;
     ompl::base::SpaceInformationPtr si_;
-    std::shared_ptr<InformationField> field_;          // photometric, of judge_
+    std::shared_ptr<InformationField> field_;          // photometric, of evaluator_
     std::shared_ptr<InformationField> plannersField_;  // of the planner
-    std::shared_ptr<BeliefModel> judge_;
+    std::shared_ptr<BeliefModel> evaluator_;
 };
 
 }  // namespace photonav

@@ -24,7 +24,7 @@ TreeEvolution growInStages(PlanningProblem& run, const std::string& name,
         for (const ob::State* state : path->as<ompl::geometric::PathGeometric>()->getStates()) {
             stage.path.push_back(space.position(state));
         }
-        stage.cost = run.judge(*planner).cost;
+        stage.cost = run.evaluate(*planner).cost;
     }
     return evolution;
 }

@@ -13,7 +13,7 @@ struct TreeStage {
     std::size_t vertices = 0;
     std::vector<TreeSegment> tree;
     std::vector<Eigen::Vector3d> path;  ///< positions in w; empty: none yet
-    double cost = 0.;                   ///< of that path, as `plan` judges it
+    double cost = 0.;                   ///< of that path, as `plan` evaluates it
 };
 
 struct TreeEvolution {
@@ -21,14 +21,14 @@ struct TreeEvolution {
     std::vector<TreeStage> stages;
 };
 
-/// Grows a planner, pausing at each of these numbers of vertices (in rising order). A pause lets it
-/// finish: belief_rrt_star searches its roadmap there, so its last stage is not to the digit what
-/// it gives in one go.
+/// Grows a planner in stages with these numbers of vertices (in rising order). solve() ends at
+/// every stage, and belief_rrt_star then searches its roadmap. Its last stage therefore differs
+/// slightly from a run without stages.
 TreeEvolution growInStages(PlanningProblem& run, const std::string& planner,
                            const std::vector<std::size_t>& vertices,
                            const std::atomic<bool>& interrupted);
 
-/// The tree's motions between positions, each once however many beliefs flew it.
+/// The motions of the tree, each listed once even if several beliefs use it.
 std::vector<TreeSegment> drawnEdges(const BeliefPlanner& planner);
 
 }  // namespace photonav

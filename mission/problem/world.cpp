@@ -14,7 +14,7 @@
 namespace photonav {
 namespace {
 
-/// How far clearance is looked for [m]: beyond the robot, and as far as a grid of such cells goes.
+/// Range of the clearance [m]: beyond the robot, but at most 150 cells.
 double reach(double robotRadius, double cell) {
     return std::min(std::max(1., 2. * robotRadius), 150. * cell);
 }
@@ -80,7 +80,7 @@ void World::loadMap(const Config& config) {
 }
 
 ImageF World::pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const {
-    // Small tiles, each seen by a camera of its own from right above, scaled for the lowest
+    // Small tiles, each rendered by a camera right above it, scaled for the lowest
     // surface.
     constexpr unsigned kTile = 16;
     const auto pixels = [&](double extent) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scene or map of a config, ready to be looked at and flown in.
+// The scene or map of a config, with its views and clearance.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ class World {
     explicit World(const Config& config);
 
     const ViewSource& views() const { return *views_; }
-    /// The same for those who keep them.
+    /// The same with shared ownership.
     std::shared_ptr<const ViewSource> sharedViews() const { return views_; }
     /// Whether any surface has a grey value: false for a map of occupancy only.
     bool hasTexture() const { return hasTexture_; }
@@ -27,7 +27,7 @@ class World {
     /// Box of everything that can be seen [m].
     const Eigen::AlignedBox3d& extent() const { return extent_; }
 
-    /// What the world was made of, one of the two; null: it was the other.
+    /// The scene or the map that the world was made from; null if it was made from the other.
     const Scene* scene() const { return scene_; }
     const TexturedOcTree* map() const { return map_.get(); }
 

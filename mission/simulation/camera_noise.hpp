@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a real camera does to an image, and a real depth sensor to depth.
+// The noise of a real camera, and of a real depth sensor.
 #pragma once
 
 #include <random>

@@ -12,7 +12,7 @@ namespace photonav {
 namespace {
 
 constexpr double kTimeSlack = 1e-9;                       // of sums of time steps [s]
-constexpr std::uint64_t kDepthSeed = 0x9e3779b97f4a7c15;  // draws of its own
+constexpr std::uint64_t kDepthSeed = 0x9e3779b97f4a7c15;  // for random numbers of its own
 
 /// Weights of a Gaussian kernel of one dimension whose squares sum to one: white noise keeps its
 /// variance.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A camera in a simulated world: noisy images at a rate, with depth if it measures it, late, and
-// sometimes not at all.
+// A camera in a simulated world: noisy images at a fixed rate, with depth if it has a depth sensor,
+// with latency and lost images.
 #pragma once
 
 #include <cstdint>
@@ -19,19 +19,20 @@ namespace photonav {
 /// Adds the noise of one exposure to the noise-free image.
 using ImageNoise = std::function<void(ImageF& image, std::mt19937_64& random)>;
 
-/// The noise that PhotometricOptions describe: Gaussian with standard deviation sigma, over an area
-/// of 1 / scale pixels correlated. `scale` says that neighbouring pixels are not independent; with
-/// noise like this an image is worth what Lambda says. Independent pixels for a scale of 1 or more.
+/// The noise that PhotometricOptions describe: Gaussian with standard deviation sigma, correlated
+/// over an area of 1 / scale pixels. `scale` below 1 means that neighbouring pixels are not
+/// independent; with this noise the information of an image is Lambda. Independent pixels for a
+/// scale of 1 or more.
 ImageNoise assumedNoise(const PhotometricOptions& options);
 
-/// How the exposure of a camera wanders that sets it by itself: a first-order Gauss-Markov process.
+/// The varying gain of a camera with automatic exposure: a first-order Gauss-Markov process.
 struct WanderingExposure {
     double gainSigma = 0.1;  ///< standard deviation of the gain about 1, cut off at twice as much
     double correlation = 0.95;  ///< of the gains of consecutive images
 };
 
-/// The noise of a real camera, image by image, times a gain that wanders. A copy has an exposure of
-/// its own, from where the original's is.
+/// The noise of a real camera, image by image, with a varying gain. A copy varies independently,
+/// from the present gain on.
 ImageNoise realNoise(const CameraNoiseOptions& options = {},
                      const WanderingExposure& wandering = {});
 
@@ -54,7 +55,7 @@ struct SimulatedCameraOptions {
     double blackoutLength = 0.;  ///< ... for as long as this are black [s]
 };
 
-/// An exposure: its image may be late or never arrive.
+/// An exposure. Its image may arrive late or never.
 struct Exposed {
     double time = 0.;               ///< [s]
     Pose T_c_w = Pose::Identity();  ///< true

@@ -10,7 +10,7 @@
 namespace photonav {
 namespace {
 
-constexpr std::uint64_t kDriftSeed = 0x9e3779b97f4a7c15;  // draws of its own
+constexpr std::uint64_t kDriftSeed = 0x9e3779b97f4a7c15;  // for random numbers of its own
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A robot in a simulated world. Nothing else knows where it truly is.
+// A robot in a simulated world. Only this class knows the true pose.
 #pragma once
 
 #include <memory>
@@ -31,7 +31,7 @@ class SimulatedRobot : public Robot {
     const Camera& camera() const override { return camera_.camera(); }
     const Pose& T_b_c() const override { return T_b_c_; }
 
-    // The truth, to judge by.
+    // True values, for evaluation.
 
     const Pose& T_w_b() const { return mav_.T_w_b(); }
     Pose T_c_w() const { return (T_w_b() * T_b_c_).inverse(); }

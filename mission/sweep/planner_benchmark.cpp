@@ -16,7 +16,7 @@ namespace {
 /// Thrown out of OMPL's loop over runs; no std::exception, which it would swallow.
 struct Interrupted {};
 
-/// OMPL's benchmark, with what its sampling of the progress misses: how the run ended.
+/// OMPL's benchmark, with the last value of the progress, which its sampling misses.
 class Benchmark : public ompl::tools::Benchmark {
   public:
     using ompl::tools::Benchmark::Benchmark;
@@ -78,7 +78,7 @@ class Session {
                 config_.seed + static_cast<std::uint32_t>(run % perPlanner)};
     }
 
-    /// A run from scratch: nothing remembered, its own seed, goals offered from the first on.
+    /// Prepares a run from scratch: no cached views, its own seed, goals offered from the first on.
     void prepare(ob::Planner& planner) {
         if (interrupted_) throw Interrupted();
         const SweepItem next = item(outcome_.runs.size());
@@ -110,7 +110,7 @@ class Session {
         }
         samples_.push_back(sample);
         if (planner.getProblemDefinition()->hasExactSolution()) {
-            const JudgedPath path = plan_.judge(ours);
+            const EvaluatedPath path = plan_.evaluate(ours);
             run.cost = path.cost;
             run.length = path.length;
             run.meanTrace = path.meanTrace;

@@ -11,7 +11,7 @@
 
 namespace photonav {
 
-/// How a run came to its result.
+/// The best cost of a run over time.
 struct BenchmarkCurve {
     std::string planner;
     std::vector<double> seconds;
@@ -33,7 +33,7 @@ struct BenchmarkLimits {
 /// from scratch, until it has the config's number of vertices.
 ///
 /// Beside OMPL's own, the log holds per run the seed, cost, length, mean trace and trace at the
-/// goal of the path as the photometric beliefs judge it, vertices and views; and over time the
+/// goal of the path by the photometric beliefs, vertices and views; and over time the
 /// planner's best cost, vertices, iterations and views, the last sample being the result.
 /// @param onRun called before each run with what is about to be done
 BenchmarkOutcome benchmarkPlanners(const Config& config, const World& world,

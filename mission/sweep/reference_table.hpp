@@ -15,7 +15,7 @@ struct ReferencePath {
     double alpha = 0.;
     double cost = 0.;  ///< J with this alpha
     double length = 0., meanTrace = 0., goalTrace = 0.;
-    std::string planner = {};  ///< whose path the descent started from
+    std::string planner = {};  ///< that found the path from which the descent started
     unsigned vertices = 0, labels = 0;
     std::uint32_t seed = 0;
     std::vector<Pose> waypoints = {};  ///< body poses T_w_b, start and goal included
@@ -33,10 +33,10 @@ class ReferenceTable {
     void read();
     void write() const;
 
-    /// What search was done, a line of the file; said once however often it was done.
+    /// Adds a line to the file about the search that was done, unless the line is already there.
     void addNote(const std::string& text);
 
-    /// Keeps a path if none with its alpha is known, or only a costlier one.
+    /// Stores a path if there is none with its alpha yet, or only a costlier one.
     bool offer(const ReferencePath& path);
     const ReferencePath* at(double alpha) const;
     void drop(double alpha);

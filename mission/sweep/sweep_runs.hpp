@@ -14,33 +14,33 @@
 
 namespace photonav {
 
-/// What one run gave. Numbers about the path are NaN when there is none.
+/// The result of one run. Numbers about the path are NaN when there is none.
 struct SweepRun {
     SweepItem item;
-    double cost, length, meanTrace, goalTrace;  ///< as in JudgedPath, with the item's alpha
+    double cost, length, meanTrace, goalTrace;  ///< as in EvaluatedPath, with the item's alpha
     std::size_t vertices = 0;
-    std::size_t views = 0;              ///< rendered by this run alone, nothing remembered
-    double seconds = 0.;                ///< planning with nothing remembered; wall clock
+    std::size_t views = 0;              ///< rendered by this run alone, with no cached views
+    double seconds = 0.;                ///< planning with no cached views; wall clock
     std::string status;                 ///< "done", or why there is no path
     std::vector<Eigen::Vector3d> path;  ///< its waypoints in w [m]
 
     bool isSolved() const { return status == "done"; }
 };
 
-/// Plans one item from scratch: with no view remembered, so that its numbers depend on nothing that
-/// was run before. Every planner's path is judged by the photometric beliefs with the item's alpha.
+/// Plans one item from scratch, with no cached views, so that its numbers depend on no earlier run.
+/// Every planner's path is evaluated by the photometric beliefs with the item's alpha.
 /// @return nothing when interrupted
 std::optional<SweepRun> runItem(const Config& config, const World& world, const SweepItem& item,
                                 const std::atomic<bool>& interrupted);
 
-/// Runs items on `jobs` threads. What a run gives (but its seconds) does not depend on `jobs`.
+/// Runs items on `jobs` threads. The results of runs (but their seconds) do not depend on `jobs`.
 /// @param onRun called after each run, never twice at a time
 /// @throws what a run or onRun threw first
 void runItems(const Config& config, const World& world, const std::vector<SweepItem>& items,
               unsigned jobs, const std::atomic<bool>& interrupted,
               const std::function<void(const SweepRun&)>& onRun);
 
-/// What a sweep's file of runs begins with.
+/// The first line of a sweep's file of runs.
 struct SweepHeader {
     std::string name;    ///< of the config
     std::string config;  ///< YAML, complete

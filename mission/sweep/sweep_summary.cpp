@@ -20,7 +20,7 @@ namespace {
 constexpr double kSameAlpha = 1e-6;
 
 /// Whether a planner uses the information of views, as those of the published tables do.
-bool looksAround(const std::string& planner) { return planner != "rrt_star"; }
+bool usesViews(const std::string& planner) { return planner != "rrt_star"; }
 
 std::vector<std::string> fieldsOf(std::string line) {
     if (line.ends_with('\r')) line.pop_back();
@@ -134,7 +134,7 @@ std::vector<SweepCell> summarize(const SweepConfig& config, const std::vector<Sw
                 cell.columns[column.name] = statisticOf(values);
             }
             for (PaperRow row : config.paper) {
-                if (!looksAround(planner) || std::abs(row.alpha - alpha) > kSameAlpha) continue;
+                if (!usesViews(planner) || std::abs(row.alpha - alpha) > kSameAlpha) continue;
                 row.meanTrace *= config.paperTraceUnit;
                 row.goalTrace *= config.paperTraceUnit;
                 cell.paper = row;

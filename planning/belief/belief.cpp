@@ -11,8 +11,8 @@ namespace photonav {
 namespace ob = ompl::base;
 namespace {
 
-/// Tens of thousands of views lie anywhere in memory: this one is fetched while a step is
-/// compounded.
+/// Loads a view into the cache while the step before it is compounded: there are tens of thousands
+/// of views, anywhere in memory.
 void prefetch(const InformationField::Entry& view) {
     constexpr std::size_t kCacheLine = 64;
     const auto* bytes = reinterpret_cast<const char*>(&view);
@@ -27,7 +27,7 @@ Matrix6 translationAdjoint(const Eigen::Vector3d& t_w) {
     return Ad;
 }
 
-/// The update as it is printed in textbooks, for evaluate().
+/// The update as in textbooks, for evaluate().
 Matrix6 updated(const Matrix6& covariance, const Matrix6& information) {
     const Matrix6 after =
         (Matrix6::Identity() + covariance * information).partialPivLu().solve(covariance);
@@ -59,7 +59,7 @@ BeliefModel::BeliefModel(const FlightSpace& space, std::shared_ptr<InformationFi
 
 Belief BeliefModel::root(const ob::State* start) {
     const Pose T_w_b = space_.bodyPose(start);
-    Belief belief{inTurnedAxes(initialCamera_, T_w_b.linear() * field_->mount().linear()), 0.};
+    Belief belief{inRotatedAxes(initialCamera_, T_w_b.linear() * field_->mount().linear()), 0.};
     if (!options_.viewAtStart || field_->hasPenalties()) return belief;
     const auto& view = field_->at(T_w_b);
     if (!view.isZero) belief.covariance = updateCovariance(belief.covariance, view.information);
@@ -68,12 +68,12 @@ Belief BeliefModel::root(const ob::State* start) {
 
 Matrix6 BeliefModel::informationAt(const Pose& T_w_b) {
     const Eigen::Matrix3d R_c_w = (T_w_b.linear() * field_->mount().linear()).transpose();
-    return inTurnedAxes(field_->at(T_w_b).information, R_c_w);
+    return inRotatedAxes(field_->at(T_w_b).information, R_c_w);
 }
 
 Matrix6 BeliefModel::cameraCovariance(const ob::State* state, const Belief& belief) const {
     const Eigen::Matrix3d R_w_c = space_.bodyPose(state).linear() * field_->mount().linear();
-    return inTurnedAxes(belief.covariance, R_w_c.transpose());
+    return inRotatedAxes(belief.covariance, R_w_c.transpose());
 }
 
 Motion BeliefModel::motion(const ob::State* from, const ob::State* to) const {
@@ -105,7 +105,7 @@ Belief BeliefModel::propagate(const Belief& belief, Motion& motion, bool backwar
         if (turns || k == 1) {
             const Pose T_w_next = cameraPose(motion, at);
             adjointOfStep = translationAdjoint(T_w_c.translation() - T_w_next.translation());
-            noise = inTurnedAxes(step * noiseCamera_, T_w_next.linear());
+            noise = inRotatedAxes(step * noiseCamera_, T_w_next.linear());
             T_w_c = T_w_next;
         }
         const auto moved = compoundCovariance(adjointOfStep, noise, covariance, options_.order);
@@ -139,7 +139,7 @@ Belief BeliefModel::chargePenalties(const Belief& belief, const Motion& motion,
                                    (1. - options_.alpha) * options_.kappa * charge};
 }
 
-/// Of flying past the k-th view of a motion, in either direction.
+/// Penalty of flying past the k-th view of a motion, in either direction.
 double BeliefModel::penaltyAt(const Motion& motion, int k) const {
     if (motion.length == 0.) return motion.views[k]->penalty.base;  // no motion, no parallax
     const Eigen::Vector3d t_w =
@@ -147,7 +147,7 @@ double BeliefModel::penaltyAt(const Motion& motion, int k) const {
     return motion.views[k]->penalty.along(t_w);
 }
 
-/// Looks the views of a motion up, or evaluates those again that the map's changes made stale.
+/// Finds the views of a motion, or updates those that became stale by a change of the map.
 void BeliefModel::updateViews(Motion& motion) {
     if (!motion.views.empty()) {
         if (motion.epoch == field_->epoch()) return;

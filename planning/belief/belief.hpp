@@ -74,11 +74,12 @@ struct BeliefPoint {
 class BeliefModel {
   public:
     /// @throws std::invalid_argument as BeliefOptions::check()
-    /// @param field what views are worth; may be shared, so that no view is rendered twice
+    /// @param field information or penalty of views; may be shared, so that no view is rendered
+    ///        twice
     BeliefModel(const FlightSpace& space, std::shared_ptr<InformationField> field,
                 const BeliefOptions& options);
 
-    /// The belief where a flight starts, at cost 0: the initial covariance, updated by the view
+    /// The belief at the start of a flight, at cost 0: the initial covariance, updated by the view
     /// from there if the options say so.
     Belief root(const ompl::base::State* start);
 
@@ -93,8 +94,8 @@ class BeliefModel {
     /// Cost of a motion that no belief can undercut: alpha times its length.
     double lowerBound(double length) const { return options_.alpha * length; }
 
-    /// The belief at every step of a path, by plain composition of uncertain poses in the camera
-    /// frame and Eigen's LU: slow, with its own poses, costs and updates, to check propagate().
+    /// The belief at every step of a path. A slow and independent implementation (compound() in the
+    /// camera frame, Eigen's LU, its own poses and costs) to check propagate().
     std::vector<BeliefPoint> evaluate(const std::vector<const ompl::base::State*>& path);
 
     /// One motion of evaluate(): appends its steps to `points`, whose last one is the beginning.
@@ -107,16 +108,16 @@ class BeliefModel {
     /// The initial covariance before any view, camera frame.
     const Matrix6& initialCovariance() const { return initialCamera_; }
 
-    /// A belief's covariance at a state, camera frame: what results and files hold.
+    /// A belief's covariance at a state, camera frame, as in results and files.
     Matrix6 cameraCovariance(const ompl::base::State* state, const Belief& belief) const;
 
     const FlightSpace& space() const { return space_; }
     const BeliefOptions& options() const { return options_; }
     InformationField& field() const { return *field_; }
 
-    std::size_t fallbacks() const { return fallbacks_; }  ///< steps done in second order after all
+    std::size_t fallbacks() const { return fallbacks_; }  ///< steps for which fourth order failed
     double seconds() const { return seconds_; }           ///< spent in propagate(), views excluded
-    void clear();  ///< resets the counters; the field is its owner's
+    void clear();                                         ///< resets the counters, not the field
 
   private:
     void updateViews(Motion& motion);

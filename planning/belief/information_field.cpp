@@ -12,13 +12,14 @@ namespace photonav {
 namespace {
 
 void setInformation(const Matrix6& camera, const Pose& T_c_w, InformationField::Entry& entry) {
-    entry.information = inTurnedAxes(camera, T_c_w.linear().transpose());
+    entry.information = inRotatedAxes(camera, T_c_w.linear().transpose());
     entry.isZero = camera.isZero(0.);
 }
 
 void setPenalty(const ViewPenalty& camera, const Pose& T_c_w, InformationField::Entry& entry) {
     entry.penalty = camera;
-    entry.penalty.relief.gain = T_c_w.linear().transpose() * camera.relief.gain * T_c_w.linear();
+    entry.penalty.reduction.gain =
+        T_c_w.linear().transpose() * camera.reduction.gain * T_c_w.linear();
 }
 
 }  // namespace

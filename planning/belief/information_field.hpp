@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the view from a body pose is worth, evaluated lazily, kept, and renewed as the map changes.
+// Information of the view from a body pose: computed when first needed, cached, and updated when
+// the map changes.
 #pragma once
 
 #include <array>
@@ -17,10 +18,10 @@ namespace photonav {
 /// Information, or penalties, over body poses: one view per cell of a pose grid.
 ///
 /// The view is taken at the *centre* of the cell, so that the value depends on the pose alone and
-/// not on the order of queries: a path costs the same whenever it is evaluated. Information is kept
-/// in world-oriented axes, turned by the rotation of the camera at the centre, which rendered the
-/// view: in the camera's axes, a heading that differs from the centre's would mix what the view
-/// observes with what it does not.
+/// not on the order of queries: a path costs the same whenever it is evaluated. Information is
+/// stored in world-oriented axes, rotated by the rotation of the camera at the centre, which
+/// rendered the view. In the camera's axes, a heading that differs from the centre's would mix
+/// observed and unobserved directions.
 class InformationField {
   public:
     struct Options {
@@ -32,10 +33,10 @@ class InformationField {
     struct Entry {
         Matrix6 information;  ///< about the camera centre, world-oriented axes (see Belief)
         bool isZero;          ///< no information: the update can be skipped
-        bool isStale;         ///< the map has changed in view since: ask current() before use
+        bool isStale;         ///< the map has changed in this view: call current() before use
         std::uint32_t index;  ///< in the field
         std::uint32_t epoch;  ///< of the field, when this was evaluated
-        ViewPenalty penalty;  ///< for fields of penalties; relief in world-oriented axes
+        ViewPenalty penalty;  ///< for fields of penalties; its reduction in world-oriented axes
     };
 
     /// A field over a map.
@@ -53,20 +54,21 @@ class InformationField {
     InformationField(const InformationFormula& formula, const Pose& T_b_c, const Options& options);
     InformationField(const PenaltyFormula& formula, const Pose& T_b_c, const Options& options);
 
-    /// What the view from the cell of T_w_b is worth in the map as it is now. The reference stays
-    /// valid until clear(); update() may make the entry stale.
+    /// The information of the view from the cell of T_w_b in the map as it is now. The reference
+    /// stays valid until clear(); update() may make the entry stale.
     const Entry& at(const Pose& T_w_b);
 
     /// An entry of this field, evaluated again in place if it is stale.
     const Entry& current(const Entry& entry);
 
-    /// Follows a map: from now on views are rendered from `views`, and entries whose view the
-    /// change can have touched are stale. Entries that are not stale equal fresh ones to the bit,
-    /// but for grey values that moved by less than the tolerance of MapChange::texture. Costs
-    /// about 1 us per entry in sight of a change of 600 bricks (map_update_bench), a few views'
-    /// time for 1000 entries.
+    /// Updates the field after a change of the map. From now on views are rendered from `views`,
+    /// and entries whose view may depend on the change are stale. All other entries are
+    /// bit-identical to new ones, except for changes of grey values below the tolerance of
+    /// MapChange::texture. Costs about 1 us per entry in view of a change of 600 bricks
+    /// (map_update_bench): for 1000 entries as much as a few views.
     ///
-    /// The camera is taken to be within the map's bounding box, or unknown space to be free to it.
+    /// The camera is assumed to be within the map's bounding box, or the unknown space on the way
+    /// to it to be free.
     /// @param views of the map after the change
     void update(std::shared_ptr<const ViewSource> views, const MapChange& change);
 
@@ -78,7 +80,7 @@ class InformationField {
     const Pose& mount() const { return T_b_c_; }
     std::size_t size() const { return entries_.size(); }  ///< cells evaluated
     std::size_t stale() const;                            ///< of them, those that are stale
-    std::size_t views() const { return views_; }          ///< evaluated, again ones included
+    std::size_t views() const { return views_; }          ///< evaluated, repeated ones included
     std::size_t cacheHits() const { return cacheHits_; }  ///< queries answered without a view
     double seconds() const { return seconds_; }           ///< spent on views
     void clear();

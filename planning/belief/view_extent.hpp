@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which part of space a view depends on, coarsely: what a change of the map is tested against.
+// A coarse bound of the space that a view depends on, to test whether a change of the map affects
+// it.
 #pragma once
 
 #include <vector>
@@ -19,8 +20,8 @@ class ViewExtent {
     /// @param depth z of the surface in the camera frame [m]; 0: no surface, unknown
     ViewExtent(const Camera& camera, const ImageF& depth);
 
-    /// Whether some ray of the view meets the box no farther away than its surface. May be true
-    /// without need, but is never false when a ray does.
+    /// Whether a ray of the view intersects the box before it ends. Conservative: may be true for a
+    /// box that no ray intersects, but is never false for one that a ray intersects.
     /// @param T_c_w camera pose of the view
     /// @param box_w in the world [m]
     bool meets(const Camera& camera, const Pose& T_c_w, const Eigen::AlignedBox3d& box_w) const;
@@ -46,8 +47,8 @@ class ChangedBricks {
     /// Occupancy and texture bricks of a change, grown by kReach.
     explicit ChangedBricks(const MapChange& change);
 
-    /// Whether `meets(box)` holds for some brick's box. It is asked first for boxes around several
-    /// bricks, so it has to hold for a box that contains one for which it holds.
+    /// Whether `meets(box)` is true for the box of any brick. It is called first for boxes around
+    /// several bricks, so it must be true for every box that contains one for which it is true.
     template <class Predicate>
     bool any(const Predicate& meets) const {
         for (std::size_t i = 0; i < nodes_.size();) {

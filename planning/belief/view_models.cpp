@@ -24,7 +24,7 @@ PenaltyModel featureCountModel(const FeatureOptions& options) {
 PenaltyModel mapUncertaintyModel(const Camera& camera, const PhotometricOptions& photometric,
                                  const MapUncertaintyOptions& options) {
     return [camera, photometric, options](const View& view) -> ViewPenalty {
-        return {.base = 1., .relief = mapCertainty(view, camera, photometric, options)};
+        return {.base = 1., .reduction = mapCertainty(view, camera, photometric, options)};
     };
 }
 

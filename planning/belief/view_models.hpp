@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a view is worth to a planner: information about the pose, or a penalty of flying past it.
+// Models of a view for planners: information about the pose, or a penalty for flying past it.
 #pragma once
 
 #include <functional>
@@ -27,12 +27,14 @@ InformationModel featureReprojectionModel(const Camera& camera, const FeatureOpt
 /// Cost per metre of flying past a view, for planners whose objective is another one than the
 /// uncertainty of the pose.
 struct ViewPenalty {
-    double base = 0.;       ///< whatever the direction of the motion
-    MapCertainty relief{};  ///< reduction by what the motion measures of the map
+    double base = 0.;          ///< whatever the direction of the motion
+    MapCertainty reduction{};  ///< by what the motion measures of the map
 
-    /// @param t motion of the camera by distance flown, in the axes of `relief`: a unit vector,
+    /// @param t motion of the camera by distance flown, in the axes of `reduction`: a unit vector,
     /// shorter where the camera also turns
-    double along(const Eigen::Vector3d& t) const { return base - (1. - relief.varianceLeft(t)); }
+    double along(const Eigen::Vector3d& t) const {
+        return base - (1. - reduction.remainingVariance(t));
+    }
 };
 
 /// Relief in the camera frame.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trust in a planner: every belief it stores, replayed from the start.
+// A check of planners: every belief that a planner stores is computed again from the start.
 #pragma once
 
 #include "planners/belief_planner.hpp"
@@ -7,13 +7,13 @@
 namespace photonav {
 
 struct Audit {
-    double maxCostError = 0.;        ///< |stored - replayed| / (1 + replayed)
-    double maxCovarianceError = 0.;  ///< Frobenius norm, relative to the replayed covariance
-    std::size_t nodes = 0;           ///< beliefs replayed
+    double maxCostError = 0.;        ///< |stored - recomputed| / (1 + recomputed)
+    double maxCovarianceError = 0.;  ///< Frobenius norm, relative to the recomputed covariance
+    std::size_t nodes = 0;           ///< beliefs recomputed
 };
 
-/// Replays every node of the planner's tree from its root by BeliefModel::evaluateMotion, plain
-/// composition and update, and compares cost and covariance with what the planner stored.
+/// Computes every node of the planner's tree again from its root, by BeliefModel::evaluateMotion(),
+/// and compares cost and covariance with those that the planner stored.
 Audit auditTree(const BeliefPlanner& planner);
 
 }  // namespace photonav

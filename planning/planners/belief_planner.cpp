@@ -15,11 +15,11 @@ namespace photonav {
 namespace ob = ompl::base;
 namespace {
 
-constexpr double kExploration = 0.2;   // share of the samples taken wherever they fall
-constexpr double kMostToFinish = 0.5;  // of the time of solve(), for what comes after growth
+constexpr double kExploration = 0.2;     // share of the samples that are accepted anywhere
+constexpr double kMaxFinishShare = 0.5;  // largest share of the time limit for finish()
 
-/// OMPL's tree of neighbours draws its pivots by a seed from the clock, and which of two vertices
-/// at the same distance comes first depends on them. Here the seed is always the same.
+/// OMPL's nearest-neighbour tree seeds its choice of pivots by the clock, and the order of vertices
+/// at the same distance depends on the pivots. Here the seed is always the same.
 template <typename T>
 class SeededNeighbours : public ompl::NearestNeighborsGNATNoThreadSafety<T> {
   public:
@@ -122,10 +122,10 @@ double BeliefPlanner::secondsLeft() const {
 bool BeliefPlanner::isGrown() const {
     return (growth_.maxVertices > 0 && vertices() >= growth_.maxVertices) ||
            (growth_.maxIterations > 0 && iterations_ >= growth_.maxIterations) ||
-           (deadline_ && secondsLeft() <= std::min(timeToFinish(), kMostToFinish * budget_));
+           (deadline_ && secondsLeft() <= std::min(timeToFinish(), kMaxFinishShare * budget_));
 }
 
-/// One sample, and the vertex toward it.
+/// One sample, and a new vertex toward it.
 void BeliefPlanner::grow(ob::State* target, const ob::PlannerTerminationCondition& ptc) {
     const bool isGoalSample = sample(target);
     const auto extension = extend(target);

@@ -27,16 +27,17 @@ struct GrowthOptions {
     double goalBias = 0.05;     ///< share of samples drawn at the goal until it is reached
     double rewireFactor = 1.1;  ///< on the connection radius of Karaman and Frazzoli 2011
     std::uint32_t seed = 1;     ///< of everything random in the planner
-    /// solve() stops growing with as many vertices, or after as many samples, and finishes what it
-    /// has; 0: with the termination condition.
+    /// Growth ends with this number of vertices, or of samples; then finish() is called. 0: no
+    /// limit but the termination condition.
     unsigned maxVertices = 0;
     std::size_t maxIterations = 0;
-    /// Obstacles farther away than this collide with nothing: the robot's radius, or more where the
-    /// validity checker asks for more [m]. mapChanged() checks again what is as near to a change.
+    /// Obstacles farther away than this do not matter: the robot's radius, or more if the validity
+    /// checker requires more [m]. mapChanged() checks motions within this distance of a change
+    /// again.
     double obstacleReach = 1.;
 };
 
-/// A belief the planner stores, and the node it was propagated from: what an audit replays.
+/// A belief that the planner stores, and the node it was propagated from, for auditTree().
 struct TreeNode {
     const ompl::base::State* state;
     int parent;  ///< index of an earlier node; -1 for a start
@@ -48,9 +49,9 @@ struct TreeNode {
 /// Base of rrt_star, pa_rrt_star, rrbt and belief_rrt_star. Derived planners define how a new
 /// vertex is connected and where the best path is; everything else is here.
 ///
-/// While map and root stay, the answer is the best path ever found: its cost never rises, whatever
-/// happens to the tree. When one of them changes, the best path is judged again: it is dropped
-/// where it is no longer free, and its cost may rise.
+/// While map and root stay, the solution is the best path ever found: its cost never rises,
+/// whatever happens to the tree. When one of them changes, the best path is evaluated again: it is
+/// dropped if it is no longer free, and its cost may rise.
 class BeliefPlanner : public ompl::base::Planner {
   public:
     BeliefPlanner(const ompl::base::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
@@ -60,24 +61,25 @@ class BeliefPlanner : public ompl::base::Planner {
     void setup() override;
 
     /// Grows until the condition holds or the vertices or iterations of the options are used up,
-    /// then finishes what it has, as far as the condition allows.
+    /// then calls finish().
     ompl::base::PlannerStatus solve(const ompl::base::PlannerTerminationCondition& ptc) override;
 
-    /// Solves for so long [s]. Since the deadline is known, planners that improve their path in the
-    /// end begin that in time.
+    /// Solves for a given time [s]. Unlike with a termination condition the end is known in
+    /// advance, so that planners can reserve time to improve their path.
     ompl::base::PlannerStatus solve(double seconds);
     using ompl::base::Planner::solve;
 
-    /// Follows a map that has changed. Clearance and information field have to follow it first.
-    /// Removes what is in collision; what the change may have freed is checked again. The best path
-    /// is kept only if it is still free, at the cost that it has in the views of the map as it is
-    /// now; so are the solutions of the problem definition. The next solve() goes on from there.
+    /// Updates the planner after a change of the map. Clearance and information field must be
+    /// updated first. Vertices and motions in collision are removed; motions that the change may
+    /// have freed are checked again. The best path is kept only if it is still free; its cost is
+    /// computed again in the views of the present map. The same holds for the solutions of the
+    /// problem definition. The next solve() continues from there.
     void mapChanged(const MapChange& change);
 
-    /// Plans from another state and belief from now on, as while a path is flown: the only root of
-    /// the tree, and the start state of the problem definition until another one is set. The part
-    /// of the best path that lies ahead is kept.
-    /// @param belief as those of BeliefModel; costs are counted from its own
+    /// Plans from another state and belief from now on, for example while a path is flown. The
+    /// state becomes the only root of the tree, and the start state of the problem definition until
+    /// another one is set. The part of the best path ahead of it is kept.
+    /// @param belief as those of BeliefModel; costs are counted from its cost
     void moveRoot(const ompl::base::State* state, const Belief& belief);
 
     void clear() override;
@@ -106,13 +108,14 @@ class BeliefPlanner : public ompl::base::Planner {
     /// The belief at a start; renders the view from there.
     virtual Belief rootBelief(const ompl::base::State* start) { return model_->root(start); }
 
-    /// Joins a new vertex (not yet among the neighbours) to those near it, to which motions are
-    /// short but unchecked; the first of them is the vertex it was steered from, checked.
+    /// Connects a new vertex (not yet in the nearest-neighbour structure) to the vertices near it.
+    /// Motions to them are short but not checked for collision, except to the first one, from which
+    /// the new vertex was steered.
     virtual void connect(Vertex& fresh, const std::vector<Vertex*>& near,
                          const ompl::base::PlannerTerminationCondition& ptc) = 0;
 
-    /// Whether a sample whose nearest vertex is this one is worth a try. Asked for most samples;
-    /// the rest are taken wherever they fall, so that in the end nothing is missed.
+    /// Whether a sample whose nearest vertex is this one may improve the path. Asked for most
+    /// samples; the others are accepted anywhere, so that no region is excluded for ever.
     virtual bool isPromising(const Vertex&) { return true; }
 
     /// Called when solve() begins.
@@ -121,10 +124,10 @@ class BeliefPlanner : public ompl::base::Planner {
     /// Called before solve() returns, when the vertex set is final for now.
     virtual void finish(const ompl::base::PlannerTerminationCondition&) {}
 
-    /// How long finish() is going to take [s]: growth ends so much before the deadline.
+    /// Estimated duration of finish() [s]: growth ends that long before the deadline.
     virtual double timeToFinish() const { return 0.; }
 
-    /// Called when the map has changed: motions through changed space are to be checked again.
+    /// Called when the map has changed: motions through changed space must be checked again.
     /// @param colliding vertices that are no longer valid
     /// @return the vertices to be removed, those in collision included
     virtual std::vector<Vertex*> invalidate(const ChangedSpace& changed,
@@ -137,7 +140,7 @@ class BeliefPlanner : public ompl::base::Planner {
     virtual void renewBeliefs() = 0;
 
     /// Called when `root` has become the only root.
-    /// @param near of a new vertex: those near it, not joined yet
+    /// @param near if root is a new vertex: the vertices near it, not connected yet
     /// @return vertices to be removed
     virtual std::vector<Vertex*> replaceRoots(const Root& root,
                                               const std::vector<Vertex*>& near) = 0;
@@ -151,7 +154,7 @@ class BeliefPlanner : public ompl::base::Planner {
         return si_->checkMotion(from.state, to.state);
     }
 
-    /// Keeps a path (start first) if it is the best ever.
+    /// Stores a path (start first) if it is the best so far.
     void offer(double cost, const std::vector<const ompl::base::State*>& path);
 
     /// Time until the deadline of solve(double) [s]; infinite without one.
@@ -172,7 +175,7 @@ class BeliefPlanner : public ompl::base::Planner {
         Vertex* fresh;
         Vertex* nearest;
     };
-    /// What benchmarks sample from another thread while solve() runs.
+    /// Values that benchmarks read from another thread while solve() runs.
     struct Progress {
         std::atomic<double> cost{kInfinity};
         std::atomic<std::size_t> vertices{0}, iterations{0}, views{0};
@@ -191,7 +194,7 @@ class BeliefPlanner : public ompl::base::Planner {
     void removeColliding(const ChangedSpace& changed);
     bool isRoot(const Vertex& vertex) const;
     void joinRootToBest();
-    void judgeBest();
+    void reevaluateBest();
     std::optional<double> costOf(const std::vector<ompl::base::State*>& path);
     void setStartOfProblem(const ompl::base::State* state);
     void addSolution();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a planner keeps when the map or the place of the robot changes.
+// How a planner is updated when the map or the position of the robot changes.
 #include <algorithm>
 
 #include "planners/belief_planner.hpp"
@@ -24,14 +24,14 @@ void BeliefPlanner::mapChanged(const MapChange& change) {
     if (!movedRoot_) {  // the views from the starts may have changed
         for (Root& root : roots_) root.belief = rootBelief(root.vertex->state);
     }
-    judgeBest();
+    reevaluateBest();
     renewBeliefs();
     pdef_->clearSolutionPaths();
     if (!best_.states.empty()) addSolution();
     publishProgress();
 }
 
-/// Roots stay: a robot that is too near to a wall has no path, but is still there.
+/// Roots are kept even in collision: the robot is there, although it has no path.
 void BeliefPlanner::removeColliding(const ChangedSpace& changed) {
     std::vector<Vertex*> colliding;
     for (Vertex& vertex : vertices_) {
@@ -66,7 +66,7 @@ void BeliefPlanner::moveRoot(const ob::State* state, const Belief& belief) {
     roots_ = {{root, belief}};
     movedRoot_ = belief;
     joinRootToBest();
-    judgeBest();
+    reevaluateBest();
     remove(replaceRoots(roots_.front(), others));
     if (root->isGoal) offer(belief.cost, {root->state});
     pdef_->clearSolutionPaths();
@@ -103,8 +103,8 @@ void BeliefPlanner::joinRootToBest() {
     states.insert(states.begin(), si_->cloneState(root));
 }
 
-/// Drops the best path unless it is free from a root on, else takes its cost as it is now.
-void BeliefPlanner::judgeBest() {
+/// Drops the best path unless it is free from a root on, else computes its present cost.
+void BeliefPlanner::reevaluateBest() {
     if (best_.states.empty()) return;
     if (const auto cost = costOf(best_.states)) {
         best_.cost = *cost;

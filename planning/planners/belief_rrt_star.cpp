@@ -64,7 +64,8 @@ void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near,
     descend(ptc, static_cast<unsigned>(vertices()));
 }
 
-/// The way to a goal over edges that were checked already, for the time until the first search.
+/// Stores a path to a goal over edges that are already checked, as a solution until the first
+/// search.
 void BeliefRRTstar::offerCheckedPath(const Vertex& goal) {
     std::vector<Roadmap::Edge*> arrival(vertices_.size(), nullptr);
     std::vector<const Vertex*> reached{&goal};  // backward from the goal, breadth first
@@ -96,8 +97,8 @@ void BeliefRRTstar::offerCheckedPath(const Vertex& goal) {
     }
 }
 
-/// Beside a vertex that the last search found on a path which might still have been the best, or
-/// beside a younger one.
+/// Whether the last search reached the vertex by a path that could still have been the best, or the
+/// vertex is newer.
 bool BeliefRRTstar::isPromising(const Vertex& nearest) {
     return !options_.informed || nearest.index >= promising_.size() || promising_[nearest.index];
 }
@@ -107,8 +108,8 @@ void BeliefRRTstar::finish(const ob::PlannerTerminationCondition& ptc) {
     descend(ptc, options_.shortcut);
 }
 
-/// As the last search took, and the changes so far. Before there is any measure, half of the time
-/// that is left belongs to the end.
+/// Estimated from the durations of the last search and of the changes so far. Before the first
+/// search all of the time that finish() may take.
 double BeliefRRTstar::timeToFinish() const {
     if (goals_.empty()) return 0.;
     if (searched_ == 0) return kInfinity;
@@ -119,8 +120,9 @@ double BeliefRRTstar::timeToFinish() const {
     return kSearchMargin * growth * searchSeconds_ + descent;
 }
 
-/// Best-first over labels (vertex, belief). No label costs more than its bound says, so the first
-/// one that settles at a goal is the best that the labels kept can give.
+/// Best-first search over labels (vertex, belief). No path through a label costs less than the
+/// label's bound, so the first label that is settled at a goal is the best one, given the labels
+/// kept.
 void BeliefRRTstar::search(const ob::PlannerTerminationCondition& ptc) {
     const auto start = std::chrono::steady_clock::now();
     roadmap_.resize(vertices_.size());
@@ -189,10 +191,11 @@ bool BeliefRRTstar::propagateTo(Candidate& candidate) {
     return candidate.bound <= limit();
 }
 
-/// Dominated is what costs no less than a label settled before and is nowhere better by more than
-/// the slack, neither relative to itself nor to the whole. Without the second part a label lives on
-/// for a hair less roll, and near-copies crowd out the one that matters. A rotation error counts by
-/// what it will do to the position on the way to the goal.
+/// A belief is dominated by a settled label that costs no more, if no direction of its covariance
+/// is smaller by more than the slack, relative to the variance in this direction and to the trace.
+/// Without the slack relative to the trace, labels with a negligible advantage in roll would be
+/// kept, and displace labels that matter. A rotation error is weighted by the position error that
+/// it causes on the way to the goal.
 bool BeliefRRTstar::isDominated(const Vertex& vertex, const Belief& belief) const {
     const double lever = std::clamp(toGo_.distance(vertex), kMinLever, kMaxLever);
     Matrix6 limit = (1. + kDominanceSlack) * belief.covariance;
@@ -220,7 +223,8 @@ void BeliefRRTstar::keepPath(int label) {
     offer(pathCost_, path_);
 }
 
-/// Changes the best path of the roadmap until so many changes were tried, in all calls together.
+/// Descends from the best path of the roadmap until this number of changes was tried, in all calls
+/// together.
 void BeliefRRTstar::descend(const ob::PlannerTerminationCondition& ptc, unsigned changes) {
     if (options_.shortcut == 0 || path_.empty()) return;
     const auto start = std::chrono::steady_clock::now();
@@ -247,7 +251,7 @@ std::vector<Vertex*> BeliefRRTstar::invalidate(const ChangedSpace& changed,
     return colliding;
 }
 
-/// What the last search found rests on another map: the next solve() searches again.
+/// The result of the last search belongs to another map: the next solve() searches again.
 void BeliefRRTstar::renewBeliefs() {
     toGo_ = {};
     settled_.clear();

@@ -14,26 +14,26 @@ namespace photonav {
 
 struct SearchOptions {
     unsigned labels = 5;       ///< kept per vertex, at most
-    bool informed = true;      ///< samples only where a better path may pass, most of the time
+    bool informed = true;      ///< draw most samples only where a better path may pass
     unsigned shortcut = 3000;  ///< changes tried on the best path of a search, at most; 0: none
 };
 
 /// Grows the roadmap that RRT* would (same samples, same connection radius), keeps all its edges,
-/// and searches beliefs over it with several labels per vertex: a costlier way to a vertex that
+/// and searches beliefs over it with several labels per vertex: a costlier path to a vertex that
 /// arrives there better localised is kept as long as it is not dominated in the partial order of
-/// cost and covariance (Loewner order; Bry and Roy 2011). Algorithm 1 keeps only the cheapest and
-/// can stay in the wrong plateau however many vertices it adds.
+/// cost and covariance (Loewner order; Bry and Roy 2011). Algorithm 1 keeps only the cheapest
+/// belief and can stay in a local minimum however many vertices it adds.
 ///
-/// The cap on the labels and a slack in the order make the answer the best of the labels kept, not
-/// of all beliefs.
+/// The number of labels is limited and the order has a slack, so the result is the best path over
+/// the labels kept, not over all beliefs.
 ///
 /// Edges are checked for collision, and their views rendered, only when a label is about to be
 /// propagated along them.
 ///
-/// The planner is anytime: whenever the roadmap has doubled it is searched, and as many changes are
-/// tried on the path found as the roadmap has vertices, before it grows on. With a known deadline
-/// (solve(double)) the last search and the descent from its path begin in time; a termination
-/// condition ends at once.
+/// The planner is anytime: whenever the roadmap has doubled, it is searched, and as many changes
+/// are tried on the resulting path as the roadmap has vertices. Then growth continues. With a known
+/// deadline (solve(double)) the last search and the descent from its path begin in time; a
+/// termination condition stops the planner at once.
 class BeliefRRTstar : public BeliefPlanner {
   public:
     BeliefRRTstar(const ompl::base::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
@@ -63,7 +63,8 @@ class BeliefRRTstar : public BeliefPlanner {
     };
     using Open = std::vector<Candidate>;  // a heap, the least bound in front
 
-    /// What a path over the roadmap may cost at most: the best one so far is found again.
+    /// Upper limit of the cost of a path over the roadmap. It includes the best path so far, so
+    /// that a search finds it again.
     double limit() const { return pathCost_ * (1. + 1e-12); }
 
     void addRoot(const Root&) override { isSearchDue_ = true; }

@@ -6,10 +6,11 @@
 
 namespace photonav {
 
-/// The box around the cells whose occupancy changed, grown by as far as obstacles matter.
+/// The box around the cells whose occupancy changed, grown by the distance at which obstacles
+/// matter.
 class ChangedSpace {
   public:
-    /// @param obstacleReach obstacles farther away collide with nothing [m]
+    /// @param obstacleReach obstacles farther away do not matter [m]
     ChangedSpace(const MapChange& change, double obstacleReach);
 
     bool contains(const Eigen::Vector3d& p_w) const { return box_.contains(p_w); }

@@ -10,8 +10,8 @@
 namespace photonav {
 namespace {
 
-constexpr double kLeastInformation = 1e-6;  // a coordinate known to 1 km is not observed [1/m^2]
-constexpr double kTrust = 0.99;             // of the charge
+constexpr double kMinInformation = 1e-6;  // a coordinate known to 1 km is not observed [1/m^2]
+constexpr double kSafety = 0.99;          // factor on the charge
 
 /// Dijkstra's algorithm from the values that `distance` holds already.
 void findDistances(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
@@ -43,7 +43,7 @@ void CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices
     model_ = &model;
     alpha_ = options.alpha;
     const bool byCovariance = options.cost == CostRule::integral && !model.field().hasPenalties();
-    charge_ = byCovariance ? kTrust * (1. - alpha_) * options.kappa : 0.;
+    charge_ = byCovariance ? kSafety * (1. - alpha_) * options.kappa : 0.;
     toGoal_.assign(vertices.size(), kInfinity);
     if (goals.empty()) toGoal_.assign(vertices.size(), 0.);
     for (const Vertex* goal : goals) toGoal_[goal->index] = 0.;
@@ -77,7 +77,7 @@ const Vertex* CostToGo::evaluatedNear(const Roadmap& roadmap, const Vertex& vert
 CostToGo::Observed CostToGo::observedFrom(const Vertex& vertex) const {
     const auto& view = model_->field().at(model_->space().bodyPose(vertex.state));
     Observed observed{};
-    for (int k = 0; k < kAxes; ++k) observed[k] = view.information(k, k) > kLeastInformation;
+    for (int k = 0; k < kAxes; ++k) observed[k] = view.information(k, k) > kMinInformation;
     return observed;
 }
 

@@ -12,10 +12,11 @@ namespace {
 
 constexpr double kRefinement = 0.6;    // of the shifts from round to round
 constexpr double kShortestLeg = 0.25;  // a leg shorter than twice this is not bent [m]
-constexpr double kLeastGain = 1e-9;    // relative: what counts as lower cost
+constexpr double kMinGain = 1e-9;      // relative: what counts as lower cost
 
-/// Whether `covariance` is nowhere better than `known`, but for rounding: with no less cost either,
-/// all that follows costs no less, since the cost-to-go grows with the covariance.
+/// Whether `covariance` is in no direction smaller than `known`, except for rounding. If the cost
+/// is not lower either, the whole path costs no less, since the cost-to-go grows with the
+/// covariance.
 bool isNowhereBetter(const Matrix6& covariance, const Matrix6& known) {
     Matrix6 limit = covariance;
     limit.diagonal() += 1e-9 * known.diagonal();
@@ -54,9 +55,9 @@ void PathDescent::begin(const std::vector<const ob::State*>& path, const Belief&
     }
 }
 
-/// Rounds from coarse shifts to fine ones, again and again: a far shift that failed once may help
-/// in another direction, or from where the fine ones led. Only a path too short to be changed ends
-/// that before the moves are used up.
+/// Repeats rounds from coarse to fine shifts: a large shift that failed may help in another
+/// direction, or after fine shifts. Ends before the moves are used up only if the path is too short
+/// to be changed.
 void PathDescent::descend(const ob::PlannerTerminationCondition& ptc, unsigned moves) {
     ptc_ = &ptc;
     lastMove_ = std::min(options_.moves, moves);
@@ -117,9 +118,9 @@ void PathDescent::cutCorners() {
     }
 }
 
-/// Shifts a state by at most `step` in a random direction, else the opposite one; as far again
-/// while that helps. `follower`, if any, moves along. Both are copied, since a replacement frees
-/// the nodes that they come from.
+/// Shifts a state by at most `step` in a random direction, or else in the opposite one, and repeats
+/// the shift while the cost falls. `follower`, if any, is shifted alike. Both are copied, since a
+/// replacement frees the nodes that they come from.
 bool PathDescent::tryBothWays(std::size_t first, std::size_t last, StatePtr centre,
                               StatePtr follower, double step) {
     const bool isLeg = follower != nullptr;
@@ -147,7 +148,7 @@ bool PathDescent::tryBothWays(std::size_t first, std::size_t last, StatePtr cent
 bool PathDescent::tryReplace(std::size_t first, std::size_t last,
                              const std::vector<StatePtr>& between) {
     ++tried_;
-    const double limit = cost() * (1. - kLeastGain);
+    const double limit = cost() * (1. - kMinGain);
     std::vector<Node> fresh;
     double rest = rest_[last];
     const auto addMotion = [&](const ob::State* from, const StatePtr& to) {
@@ -184,10 +185,10 @@ bool PathDescent::tryReplace(std::size_t first, std::size_t last,
     return true;
 }
 
-/// The beliefs after node `last`, reached with another belief than so far. Gives up as soon as the
-/// path cannot become cheaper.
+/// The beliefs after node `last`, if it is reached with this belief. Stops as soon as the path
+/// cannot become cheaper.
 bool PathDescent::propagateRest(std::size_t last, Belief belief, std::vector<Belief>& beliefs) {
-    const double limit = cost() * (1. - kLeastGain);
+    const double limit = cost() * (1. - kMinGain);
     for (std::size_t i = last;; ++i) {
         if (belief.cost + model_->lowerBound(rest_[i]) >= limit) return false;
         if (i + 1 == nodes_.size()) return true;

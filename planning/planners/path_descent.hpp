@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Local descent on a path: shortcuts and shifted vertices, judged by the beliefs along it.
+// Local descent on a path: shortcuts and shifted vertices, evaluated by the beliefs along it.
 #pragma once
 
 #include <ompl/base/PlannerTerminationCondition.h>
@@ -22,10 +22,10 @@ struct DescentOptions {
 };
 
 /// Lowers the cost of a path in its neighbourhood by random changes: a vertex left out, a vertex
-/// shifted, a leg bent at a new vertex or shifted, a corner cut. The cost is the planners'
-/// own, integral and views included; it is no smooth function of the path, so nothing is
-/// differentiated. Beliefs are propagated again only after a change. The path stays free of
-/// collision and keeps its ends. Deterministic for a seed.
+/// shifted, a leg bent at a new vertex or shifted, a corner cut. The cost is that of the planners,
+/// with the integral and the views. It is not a smooth function of the path, so no derivatives are
+/// used. Only the beliefs behind a change are propagated again. The path stays free of collision
+/// and keeps its ends. Deterministic for a seed.
 class PathDescent {
   public:
     PathDescent(ompl::base::SpaceInformationPtr si, std::shared_ptr<BeliefModel> model,
@@ -33,11 +33,11 @@ class PathDescent {
 
     /// Starts from a path (at least one state) whose motions are free. The states are copied.
     void begin(const std::vector<const ompl::base::State*>& path);
-    /// The same with another belief at its first state than BeliefModel::root().
+    /// The same with a given belief at the first state, instead of BeliefModel::root().
     void begin(const std::vector<const ompl::base::State*>& path, const Belief& root);
 
     /// Descends until the moves since begin() are used up (those of the options, or fewer) or the
-    /// condition holds. Goes on where the last call ended.
+    /// condition holds. Continues where the last call ended.
     void descend(const ompl::base::PlannerTerminationCondition& ptc,
                  unsigned moves = std::numeric_limits<unsigned>::max());
 

@@ -44,8 +44,8 @@ std::vector<PerceptionRRTstar::Candidate> PerceptionRRTstar::candidatesOf(
     return candidates;
 }
 
-/// Lines 6 to 24 of Algorithm 1. Candidates come in the order of a bound on what they can give, so
-/// the first that cannot improve ends the search.
+/// Lines 6 to 24 of Algorithm 1. Candidates are sorted by a bound on their benefit, so the first
+/// that cannot improve ends the search.
 void PerceptionRRTstar::chooseParent(Vertex& fresh, std::vector<Candidate>& candidates) {
     Branch& branch = at(fresh);
     branch.belief.cost = kInfinity;
@@ -164,7 +164,7 @@ void PerceptionRRTstar::renewBeliefs() {
     offerBestGoal();
 }
 
-/// Turns the tree, so that it grows from the new root. A root that reaches no vertex loses it.
+/// Changes the root of the tree. If the new root reaches no vertex, it has no tree.
 std::vector<Vertex*> PerceptionRRTstar::replaceRoots(const Root& root,
                                                      const std::vector<Vertex*>& near) {
     Vertex& vertex = *root.vertex;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simplest way to keep a plan up to date, and the baseline to every cleverer one.
+// The simplest way to keep a plan up to date: the baseline of incremental replanning.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace photonav {
 
-/// What replanning took so far.
+/// Effort of all replanning so far.
 struct ReplanEffort {
     unsigned plans = 0;
     std::size_t vertices = 0;
@@ -17,9 +17,9 @@ struct ReplanEffort {
     double seconds = 0.;
 };
 
-/// Plans anew whenever the map or the start has changed: nothing of the last plan, neither a vertex
-/// nor a view, is used again. So Sadat et al. (Feature-rich path planning for robust navigation of
-/// MAVs with mono-SLAM, 2014) keep up with a growing map, with RRT* for a planner.
+/// Plans anew whenever the map or the start has changed; no vertex and no view of the last plan is
+/// used again. This is how Sadat et al. (Feature-rich path planning for robust navigation of MAVs
+/// with mono-SLAM, 2014) replan in a growing map, with RRT* as the planner.
 class ReplanFromScratch {
   public:
     /// Makes a planner on the map as it is now, set up for the start as it is now, whose model has

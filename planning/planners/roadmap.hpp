@@ -29,10 +29,10 @@ class Roadmap {
     /// Removes all edges that begin or end at a vertex.
     void removeEdgesOf(const Vertex& vertex);
 
-    /// Whether an edge is free, checked for collision when it is asked for the first time.
+    /// Whether an edge is free; checks it for collision when called for the first time.
     static bool isFree(Edge& edge, const ompl::base::SpaceInformation& si);
 
-    /// Forgets of all edges through changed space whether they are free.
+    /// Marks all edges through changed space as not checked.
     void mapChanged(const ChangedSpace& changed, const FlightSpace& space);
 
     /// Edges that begin or end at a vertex.

@@ -70,7 +70,7 @@ void RRBT::appendBelief(Vertex& vertex, Node& parent, const Belief& belief) {
     }
     const std::vector<Node*> before = known;
     for (Node* node : before) {
-        // Strictly cheaper, so that nobody removes an own ancestor.
+        // Strictly cheaper, so that a node never removes its own ancestor.
         const bool isCheaper = belief.cost < node->belief.cost;
         if (isCheaper && !node->isRemoved && isAtLeastAsGood(belief, node->belief, 0.)) {
             remove(*node);
@@ -95,7 +95,7 @@ bool RRBT::isAtLeastAsGood(const Belief& a, const Belief& b, double epsilon) con
     return isLoewnerLess(a.covariance, limit);
 }
 
-/// With everything that follows from it.
+/// Removes a node and all its descendants.
 void RRBT::remove(Node& node) {
     std::erase(node.parent->children, &node);
     std::vector<Node*> open{&node};

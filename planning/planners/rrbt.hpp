@@ -16,8 +16,8 @@ namespace photonav {
 /// the queue is propagated over the edges until the queue is empty; a belief is appended unless one
 /// at the same vertex is better in the partial order
 ///     a < b  <=>  cost_a < cost_b  and  Sigma_a < Sigma_b + epsilon 1  (Loewner order),
-/// and it removes those that are worse than itself (with epsilon = 0) with all that follows from
-/// them. No cap on the beliefs of a vertex, no bound by the best path so far.
+/// and it removes those that are worse than itself (with epsilon = 0) and their descendants. No cap
+/// on the beliefs of a vertex, no bound by the best path so far.
 ///
 /// Adapted to our problem: motions are straight lines whose views, noise and costs are those of
 /// BeliefModel::propagate, for all planners alike, and are steered at most `range` far; there is no

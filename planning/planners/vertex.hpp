@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A sampled state, as all planners number it.
+// A sampled state and its number in the tables of a planner.
 #pragma once
 
 #include <ompl/base/State.h>

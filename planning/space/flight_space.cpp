@@ -78,8 +78,8 @@ class ClearanceChecker : public ob::StateValidityChecker {
     double radius_;
 };
 
-/// Straight motions: the position moves on a line whatever the rotation does, and the robot is a
-/// sphere, so the line is all there is to check.
+/// Checks straight motions. The position moves on a line whatever the rotation does, and the robot
+/// is a sphere, so only the line is checked.
 class ClearanceMotionValidator : public ob::MotionValidator {
   public:
     ClearanceMotionValidator(ob::SpaceInformation* si, const FlightSpace& space,

@@ -43,7 +43,7 @@ class FlightSpace {
                      double fraction) const;
     void setState(ompl::base::State* state, const Eigen::Vector3d& position, double yaw) const;
 
-    /// Uniform sampler with its own seed: what it draws depends on nothing else in the process.
+    /// Uniform sampler with its own seed, independent of all other random numbers in the process.
     ompl::base::StateSamplerPtr sampler(std::uint32_t seed) const;
 
     /// What the connection radius of RRT* depends on: the number of directions that have an extent,
@@ -64,8 +64,8 @@ class FlightSpace {
     ompl::base::StateSpacePtr space_;
 };
 
-/// Distance from a point in the world to the nearest obstacle [m]; motions are as safe as it is
-/// exact.
+/// Distance from a point in the world to the nearest obstacle [m]. The collision check of motions
+/// is as exact as this distance.
 using Clearance = std::function<double(const Eigen::Vector3d& p_w)>;
 
 /// OMPL space information whose states are valid within the bounds and with more than `radius` of

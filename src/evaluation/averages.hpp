@@ -9,16 +9,16 @@
 
 namespace photonav {
 
-/// The arithmetic mean; `ofNothing` of an empty list.
-inline double mean(const std::vector<double>& values, double ofNothing) {
-    if (values.empty()) return ofNothing;
+/// The arithmetic mean; `ifEmpty` for an empty list.
+inline double mean(const std::vector<double>& values, double ifEmpty) {
+    if (values.empty()) return ifEmpty;
     return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
 }
 
-/// The upper median; `ofNothing` of an empty list.
+/// The upper median; `ifEmpty` for an empty list.
 template <class T>
-double median(std::vector<T> values, double ofNothing) {
-    if (values.empty()) return ofNothing;
+double median(std::vector<T> values, double ifEmpty) {
+    if (values.empty()) return ifEmpty;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;

@@ -14,8 +14,8 @@
 namespace photonav {
 namespace {
 
-constexpr double kSlack = 0.1;       // share of the spacing asked for
-constexpr double kLeastSpread = 5.;  // see alignmentOf()
+constexpr double kSlack = 0.1;     // share of the requested spacing
+constexpr double kMinSpread = 5.;  // see alignmentOf()
 
 double angleOf(const Pose& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
 
@@ -24,7 +24,7 @@ void add(PoseErrors& errors, const Pose& error) {
     errors.rotation.push_back(angleOf(error));
 }
 
-/// Where every pose lies on the scale that spacings are measured on.
+/// The coordinate of every pose in the unit of the spacing: frame number, time, or path length.
 std::vector<double> places(const std::vector<PosePair>& pairs, Spacing spacing) {
     std::vector<double> result;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -58,7 +58,7 @@ double secondSpread(const std::vector<Eigen::Vector3d>& points) {
 
 /// The rotation R with the largest trace of R^T M (Umeyama 1991, eq. 40). With matrices of fixed
 /// size, unlike Eigen::umeyama: functions of dynamic matrices that we export would replace those in
-/// OMPL's library, which was built for another alignment of memory.
+/// OMPL's library, which was compiled for another memory alignment.
 Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& M) {
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
     Eigen::Vector3d signs = Eigen::Vector3d::Ones();
@@ -67,7 +67,7 @@ Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& M) {
 }
 
 /// The mean rotation (in the chordal sense) between the orientations, and the mean translation.
-Pose byOrientations(const std::vector<PosePair>& pairs) {
+Pose alignmentOfOrientations(const std::vector<PosePair>& pairs) {
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     for (const PosePair& pair : pairs) {
         sum += pair.T_w_c_truth.linear() * pair.T_w_c_estimate.linear().transpose();
@@ -139,7 +139,7 @@ Pose alignmentOf(const std::vector<PosePair>& pairs) {
     std::vector<Eigen::Vector3d> truth;
     truth.reserve(pairs.size());
     for (const PosePair& pair : pairs) truth.emplace_back(pair.T_w_c_truth.translation());
-    return secondSpread(truth) > kLeastSpread * left + 1e-9 ? T : byOrientations(pairs);
+    return secondSpread(truth) > kMinSpread * left + 1e-9 ? T : alignmentOfOrientations(pairs);
 }
 
 PoseErrors absoluteErrors(const std::vector<PosePair>& pairs, const Pose& T_truth_estimate) {

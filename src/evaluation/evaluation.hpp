@@ -18,7 +18,7 @@ struct PosePair {
     Pose T_w_c_truth = Pose::Identity();
 };
 
-/// Of errors without sign.
+/// Statistics of non-negative errors.
 struct ErrorSummary {
     std::size_t count = 0;
     double rmse = 0., median = 0., p90 = 0., max = 0.;  ///< 0 when there are none
@@ -39,7 +39,7 @@ Pose rigidAlignment(const std::vector<Eigen::Vector3d>& from,
                     const std::vector<Eigen::Vector3d>& to);
 
 /// rigidAlignment() of the estimated positions to the true ones, T_truth_estimate: the alignment of
-/// the absolute trajectory error. Near-static or straight flights leave its rotation open.
+/// the absolute trajectory error. Near-static or straight flights do not determine its rotation.
 Pose positionAlignment(const std::vector<PosePair>& pairs);
 
 /// The alignment T_truth_estimate of positions and orientations. Where the positions do not
@@ -47,8 +47,8 @@ Pose positionAlignment(const std::vector<PosePair>& pairs);
 /// remaining error), the rotation is the mean of the rotations between the orientations.
 Pose alignmentOf(const std::vector<PosePair>& pairs);
 
-/// Of every pose, after the estimates were moved by T_truth_estimate: distance of the camera
-/// centres and angle between the orientations.
+/// Absolute errors of all poses, after the estimates were moved by T_truth_estimate: distance of
+/// the camera centres and angle between the orientations.
 PoseErrors absoluteErrors(const std::vector<PosePair>& pairs,
                           const Pose& T_truth_estimate = Pose::Identity());
 
@@ -58,13 +58,13 @@ enum class Spacing {
     metres,  ///< of the true path between the poses
 };
 
-/// Of the motions over `delta`, from every pose that has another one that far behind it: the one
-/// nearest in spacing, at most a tenth of delta off. E = (true motion)^-1 (estimated motion), as
-/// evo's all_pairs.
+/// Relative errors of the motions over `delta`: from every pose to the later one whose spacing is
+/// nearest to delta, if it differs from delta by at most a tenth. E = (true motion)^-1 (estimated
+/// motion), as evo's all_pairs.
 PoseErrors relativeErrors(const std::vector<PosePair>& pairs, Spacing spacing, double delta);
 
 /// e^T C^-1 e for the error e = deviation(T_c_w_truth, mean) and the covariance transported() to
-/// the truth, 6 on average when the covariance is right. Nothing for a covariance that is not
+/// the truth, 6 on average if the covariance is consistent. Nothing for a covariance that is not
 /// positive definite.
 std::optional<double> squaredNormalisedError(const UncertainPose& T_c_w, const Pose& T_c_w_truth);
 

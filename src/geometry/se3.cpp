@@ -149,7 +149,7 @@ Matrix6 adjoint(const Pose& T) {
     return Ad;
 }
 
-Matrix6 inTurnedAxes(const Matrix6& matrix, const Eigen::Matrix3d& R) {
+Matrix6 inRotatedAxes(const Matrix6& matrix, const Eigen::Matrix3d& R) {
     const auto symmetric = [&](const Eigen::Matrix3d& block) -> Eigen::Matrix3d {
         const Eigen::Matrix3d turned = R * block * R.transpose();
         return 0.5 * (turned + turned.transpose());

@@ -22,9 +22,9 @@ double yawOf(const Pose& T_w_b);
 /// Ad(T) = [C, r^ C; 0, C]: T exp(xi^) T^-1 = exp((Ad(T) xi)^), BF14 eq. (4).
 Matrix6 adjoint(const Pose& T);
 
-/// A covariance or an information matrix of a twist in axes turned by R, about the same point:
-/// diag(R, R) matrix diag(R, R)^T. `matrix` is symmetric, and so is the result, to the bit.
-Matrix6 inTurnedAxes(const Matrix6& matrix, const Eigen::Matrix3d& R);
+/// A covariance or information matrix of a twist in axes rotated by R, about the same point:
+/// diag(R, R) matrix diag(R, R)^T. `matrix` must be symmetric; the result is exactly symmetric.
+Matrix6 inRotatedAxes(const Matrix6& matrix, const Eigen::Matrix3d& R);
 
 /// Left Jacobian of SE(3): exp((xi + d)^) = exp((J(xi) d)^) exp(xi^) to first order in d, BF14
 /// eq. (100).

@@ -23,13 +23,13 @@ inline constexpr double kFourthOrderMaxRotationSigma = 1.0;
 
 struct CompoundedCovariance {
     Matrix6 covariance;
-    bool fellBack = false;  ///< fourth order was asked for, second order was given (see below)
+    bool fellBack = false;  ///< fourth order was requested but second order computed (see below)
 };
 
 /// The fourth-order terms of the covariance of a product of independent factors, BF14 eq. (55):
 /// B / 4 + (A1 S2 + S2 A1^T + A2 S1 + S1 A2^T) / 12, without any guard.
 /// @param first covariance S1 of the left factor, in the frame the product maps into
-/// @param second covariance S2 of the right factor, carried into the same frame by the adjoint
+/// @param second covariance S2 of the right factor, transformed into the same frame by the adjoint
 Matrix6 fourthOrderTerms(const Matrix6& first, const Matrix6& second);
 
 /// Covariance of T_c_a = T_c_b T_b_a for independent factors, BF14 eq. (55) ff.
@@ -48,7 +48,7 @@ CompoundedCovariance compoundCovariance(const Matrix6& adjointMotion, const Matr
 UncertainPose compound(const UncertainPose& T_c_b, const UncertainPose& T_b_a,
                        PropagationOrder order = PropagationOrder::fourth);
 
-/// T_a_b from T_b_a: the covariance is carried to frame a by the adjoint.
+/// T_a_b from T_b_a: the covariance is transformed to frame a by the adjoint.
 UncertainPose inverse(const UncertainPose& T_b_a);
 
 /// Covariance after a measurement with Fisher information `information` in the same frame:

@@ -14,13 +14,14 @@
 
 namespace photonav {
 
-/// The cells in which obstacles count: those to answer for, and `reach` more on every side.
+/// The cells in which obstacles matter: the inner cells, whose clearance is computed, and `reach`
+/// more cells on every side.
 struct ObstacleLayout {
     double resolution;
     double offset;         ///< centre of the cell with index 0, in cells
     int reach;             ///< cells; anything this far is beyond maxDistance
-    Eigen::Array3i first;  ///< index of the first cell to answer for
-    Eigen::Array3i inner;  ///< number of cells to answer for
+    Eigen::Array3i first;  ///< index of the first inner cell
+    Eigen::Array3i inner;  ///< number of inner cells
 
     Eigen::Array3i origin() const { return first - reach; }  ///< of the outer cells
     Eigen::Array3i outer() const { return inner + 2 * reach; }
@@ -75,11 +76,12 @@ ObstacleLayout layOutCells(const Eigen::AlignedBox3d& bounds, double resolution,
     return layout;
 }
 
-/// A lower bound of the distance from a cell's centre to all obstacle cells, by the squared
-/// distance to the nearest obstacle's centre, all in cells. That square does not say where the cell
-/// lies: the least is taken over the cells at this or any larger distance between centres.
-std::vector<float> leastDistances(int reach) {
-    const int most = reach + 2;  // beyond, every cell is farther than what is asked for
+/// Lower bound of the distance from a cell centre to the obstacle cells, by the squared distance to
+/// the nearest obstacle cell's centre; all in cells. The squared distance does not determine the
+/// direction to the obstacle, so that the result is the minimum over all cells whose centres are at
+/// this distance or farther.
+std::vector<float> minDistances(int reach) {
+    const int most = reach + 2;  // cells beyond are farther than the cap
     std::vector<float> least(std::size_t(most) * most + 1, static_cast<float>(reach + 1));
     const auto gap = [](int k) { return std::max(k - 0.5, 0.); };
     for (int x = 1; x <= most; ++x) {
@@ -96,9 +98,9 @@ std::vector<float> leastDistances(int reach) {
     return least;
 }
 
-/// Clearance by squared distance in cells, for what a DistanceTransform gives.
+/// Clearance [m] by squared distance in cells, the result of a DistanceTransform.
 std::vector<float> clearances(const ObstacleLayout& layout, double maxDistance) {
-    const std::vector<float> least = leastDistances(layout.reach);
+    const std::vector<float> least = minDistances(layout.reach);
     std::vector<float> clearance(std::size_t(layout.reach) * layout.reach + 1);
     for (std::size_t i = 0; i < clearance.size(); ++i) {
         clearance[i] = static_cast<float>(std::min(least[i] * layout.resolution, maxDistance));

@@ -15,7 +15,8 @@ namespace photonav {
 class DistanceMap {
   public:
     struct Options {
-        double maxDistance = 1.0;  ///< clearances beyond this read as this [m]; at most 180 cells
+        double maxDistance =
+            1.0;  ///< larger clearances are reported as this [m]; at most 180 cells
         UnknownPolicy unknown = UnknownPolicy::occupied;  ///< of map cells no ray has visited
     };
 
@@ -23,26 +24,26 @@ class DistanceMap {
     explicit DistanceMap(double maxDistance = 1.0) : maxDistance_(maxDistance) {}
 
     /// Obstacles are the occupied (and, by policy, the unknown) cells of the map.
-    /// @param bounds where clearance will be asked for [m]; obstacles up to maxDistance outside it
-    ///        count
+    /// @param bounds box in which clearance is computed [m]; obstacles up to maxDistance outside
+    ///        the box are included
     /// @throws std::invalid_argument for empty bounds, a maxDistance that is not positive or above
-    ///        180 cells, or a grid above 3e9 bytes (the message says which resolution would fit)
+    ///        180 cells, or a grid above 3e9 bytes (the message names a resolution that would fit)
     DistanceMap(const TexturedOcTree& map, const Eigen::AlignedBox3d& bounds,
                 const Options& options);
 
     /// Obstacles are all cells that a triangle touches (and, along slanted outlines, some of their
-    /// neighbours), and those whose centre is in a solid; cells are cubes of `resolution` [m]
-    /// around the multiples of it. Throws as above; `unknown` does not matter, a scene knows
-    /// everything.
+    /// neighbours), and those whose centre is in a solid. Cells are cubes of `resolution` [m]
+    /// around its multiples. Throws as above. `unknown` has no effect, because a scene has no
+    /// unknown space.
     DistanceMap(const Scene& scene, double resolution, const Eigen::AlignedBox3d& bounds,
                 const Options& options);
 
-    /// Distance from p_w to the nearest obstacle cell [m], capped at maxDistance; inside an
-    /// obstacle negative, down to minus half a cell. At the centres of cells it is never too large
-    /// and at most 0.37 cell too small (it is known how far the nearest obstacle's centre is, not
-    /// whether its face, edge or corner points here). Between them it is interpolated, which next
-    /// to edges and corners may be too large, by at most half a cell (at the corner of a lone
-    /// cell). Outside the bounds: the value at the nearest cell. Thread-safe.
+    /// Distance from p_w to the nearest obstacle cell [m], at most maxDistance. Inside an obstacle
+    /// it is negative, at least minus half a cell. At cell centres it is never too large and at
+    /// most 0.37 cells too small, because only the distance between cell centres is stored, not the
+    /// direction to the obstacle. Between cell centres it is interpolated: near edges and corners
+    /// of obstacles it may be too large, by at most half a cell (at the corner of a single cell).
+    /// Outside the bounds: the value at the nearest cell. Thread-safe.
     double clearance(const Eigen::Vector3d& p_w) const {
         if (grid_.empty()) return maxDistance_;
         const Eigen::Vector3d q = ((p_w - firstCentre_) * inverseResolution_)
@@ -66,11 +67,12 @@ class DistanceMap {
 
     double maxDistance() const { return maxDistance_; }
 
-    /// Follows the map this was made from, at a cost that grows with the change. The result equals
-    /// that of a map made anew, to the bit. Not while another thread asks for clearances.
-    /// @param change all that changed in the map since this was made or updated
-    /// @throws std::invalid_argument when this was not made from a map, or from one of another
-    ///         resolution
+    /// Updates the clearances after a change of the map. The cost grows with the size of the
+    /// change, and the result is bit-identical to a new DistanceMap of the map. Must not run while
+    /// another thread calls clearance().
+    /// @param change everything that changed in the map since this object was made or last updated
+    /// @throws std::invalid_argument if this object was not made from a map, or from one of another
+    ///        resolution
     void update(const TexturedOcTree& map, const MapChange& change);
 
   private:

@@ -35,7 +35,7 @@ void lowerEnvelope(const std::uint16_t* in, std::ptrdiff_t stride, int reach, st
     for (int x = 0; x < kBlock; ++x) out[x] = std::min(best[x], cap);
 }
 
-/// Marks what lies less than `reach` from a changed element of a line.
+/// Marks the elements of a line that lie less than `reach` from a changed one.
 void markReached(const std::uint8_t* changed, int n, int reach, std::vector<std::uint8_t>& marks) {
     marks.assign(n, 0);
     for (int i = 0; i < n; ++i) {

@@ -10,13 +10,13 @@
 
 namespace photonav {
 
-/// Capped exact squared Euclidean distance between the centres of cells, axis after axis (the lower
-/// envelopes of Felzenszwalb and Huttenlocher, Distance Transforms of Sampled Functions, 2012). The
-/// result of every axis is kept, so that an update computes again only what a changed obstacle can
-/// have reached, and goes on from an axis to the next only with what has changed there.
+/// Capped exact squared Euclidean distance between the centres of cells, computed one axis after
+/// the other (the lower envelopes of Felzenszwalb and Huttenlocher, Distance Transforms of Sampled
+/// Functions, 2012). The result of every axis is stored: an update recomputes only cells within
+/// `reach` of a changed obstacle, and passes on to the next axis only the cells that have changed.
 ///
-/// Obstacles are set on the `outer` cells: the inner ones and `reach` more on every side. Distances
-/// are those of the inner cells. Begins without obstacles.
+/// Obstacles are set on the `outer` cells: the inner cells and `reach` more cells on every side.
+/// Distances are computed for the inner cells. At first there are no obstacles.
 class DistanceTransform {
   public:
     static constexpr int kBlock = 32;  ///< cells along x that are computed together
@@ -38,9 +38,9 @@ class DistanceTransform {
     using Visit =
         std::function<void(int x, int y, int z, int n, const std::uint16_t* squaredDistances)>;
 
-    /// Computes what the cells set since the last update have changed.
-    /// @param visit called for all cells whose squared distance changed, and some more; without a
-    ///        call, it is what it was (at first: reach^2)
+    /// Updates the distances after calls of set().
+    /// @param visit called for all cells whose squared distance changed, and for some that did not
+    ///        change; distances begin at reach^2
     void update(const Visit& visit);
 
   private:

@@ -8,8 +8,9 @@
 
 namespace photonav {
 
-/// The parts of a map that changed, a value: what is computed from the map (clearance, views,
-/// information, plans) follows it at a cost that grows with the change, not with the map.
+/// The parts of a map that changed. Everything computed from the map (clearance, views,
+/// information, plans) can be updated from it at a cost that grows with the size of the change, not
+/// of the map.
 ///
 /// Space is divided into bricks of 4 x 4 x 4 cells. A brick is named by its index along each axis,
 /// the world index of its cells divided by 4 and rounded down; brick 0 begins at the origin. All
@@ -21,12 +22,12 @@ struct MapChange {
 
     /// Bricks in which a cell became known, free or occupied.
     std::vector<Eigen::Array3i> occupancy{};
-    /// Bricks in which the grey value of an occupied cell's face moved by more than the tolerance
-    /// of FusionOptions since it was reported last. Views of other bricks differ by no more than
-    /// that.
+    /// Bricks in which the grey value of an occupied cell's face changed by more than
+    /// FusionOptions::greyTolerance since the brick was last listed here. All other changes of grey
+    /// values are smaller.
     std::vector<Eigen::Array3i> texture{};
-    /// Bricks in which the grey value of an occupied cell's face changed at all, in the 16 bits
-    /// that a VoxelRenderer keeps of it. Holds every brick of `texture` that fusion reports.
+    /// Bricks in which the grey value of an occupied cell's face changed at all, at the 16 bits of
+    /// a VoxelRenderer. Contains all bricks of `texture`, if the change comes from fuse().
     std::vector<Eigen::Array3i> anyTexture{};
 
     bool empty() const { return occupancy.empty() && texture.empty() && anyTexture.empty(); }

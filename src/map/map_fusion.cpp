@@ -13,20 +13,20 @@ namespace {
 using Eigen::Array3i;
 using Eigen::Vector3d;
 
-// Of one observation: a byte of scratch memory each, and about 18 with the map when all are seen,
-// so that it takes less than 16 GB.
+// Cells in the box of one observation. Each takes a byte of scratch memory, and about 18 bytes with
+// the map if all are observed: less than 16 GB.
 constexpr double kMaxCells = 8.5e8;
 constexpr std::int32_t kNoPixels = -1;
 
-/// What the pixels that end in a cell have seen.
+/// Sums over the pixels whose surface point lies in a cell.
 struct CellPixels {
     double greySum = 0.;
     unsigned count = 0;
 };
 
-/// The cells in view: which were crossed by a ray, which were hit and what was seen there. A dense
-/// box, x fastest, that begins and ends at bricks of 4 x 4 x 4 cells of the octree. Coordinates are
-/// in cells, OctoMap's keys less kKeyOfZero.
+/// The cells in view: which of them were crossed by a ray, which were hit, and the grey values
+/// observed there. A dense box, x fastest, that begins and ends at bricks of 4 x 4 x 4 cells of the
+/// octree. Coordinates are in cells, OctoMap's keys less kKeyOfZero.
 class Scan {
   public:
     explicit Scan(const Eigen::AlignedBox3d& cells)
@@ -88,14 +88,14 @@ class Scan {
 
     Array3i first_, bricks_;
     std::array<std::ptrdiff_t, 3> stride_;
-    std::vector<std::uint8_t> crossed_;   // per cell; bytes, since setting bits waits for memory
+    std::vector<std::uint8_t> crossed_;   // per cell; bytes, because setting single bits is slower
     std::vector<std::int32_t> pixelsOf_;  // per brick: index into pixels_
     std::vector<std::array<CellPixels, 64>> pixels_;
     std::vector<Vector3d> rayEnds_;
 };
 
-/// Amanatides and Woo's traversal, without branches: which axis is next is a coin toss. Four rays
-/// at a time, since each step of one waits for the step before.
+/// Amanatides and Woo's traversal, without branches, because the next axis cannot be predicted.
+/// Four rays at a time, because each step of a ray depends on the step before.
 void Scan::castRays(const Vector3d& eye) {
     constexpr int kLanes = 4;
     using Doubles [[gnu::vector_size(kLanes * 8)]] = double;
@@ -117,7 +117,7 @@ void Scan::castRays(const Vector3d& eye) {
             }
             left[i] = (end.array().floor().cast<int>() - from).abs().sum();
         }
-        const Places start = Places{} + place(from);  // where rays that are done wait
+        const Places start = Places{} + place(from);  // finished rays stay here
         Places at = start;
         for (auto n = std::max({left[0], left[1], left[2], left[3]}); n > 0; --n) {
             for (std::size_t i = 0; i < kLanes; ++i) crossed_[at[i]] = 1;
@@ -201,7 +201,7 @@ MapChange Scan::apply(TexturedOcTree& map, const std::optional<Vector3d>& eye,
                 if (!changed.texture) continue;
                 change.anyTexture.push_back(corner / 4);
                 const auto tolerance = static_cast<float>(options.greyTolerance);
-                if (map.accumulateDrift(key, changed.greyMoved, tolerance)) {
+                if (map.accumulateDrift(key, changed.greyChange, tolerance)) {
                     change.texture.push_back(corner / 4);
                 }
             }
@@ -210,7 +210,7 @@ MapChange Scan::apply(TexturedOcTree& map, const std::optional<Vector3d>& eye,
     return change;
 }
 
-/// Whether inverse depth bends here: it is linear in the image on a plane.
+/// Whether the pixel is at a depth edge: on a plane, inverse depth is linear in the image.
 bool atDepthEdge(const ImageF& depth, unsigned v, unsigned u, double jump) {
     const float z = depth[v][u];
     const auto bends = [&](float before, float after) {

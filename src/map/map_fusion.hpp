@@ -11,44 +11,45 @@
 namespace photonav {
 
 struct FusionOptions {
-    double minRange = 0.2;    ///< nearer depths are not trusted [m], along the optical axis
-    double maxRange = 4.0;    ///< farther surfaces are not entered; the space up to it is free [m]
+    double minRange = 0.2;  ///< nearer depths are not trusted [m], along the optical axis
+    double maxRange = 4.0;  ///< farther surfaces are not mapped; space up to this becomes free [m]
     double depthJump = 0.05;  ///< a relative second difference of inverse depth above this is a
-                              ///< depth edge, where sensors smear: the pixel is dropped
-    double maxFaceWeight = 500.;  ///< a face's grey is the mean of about its last so many pixels:
-                                  ///< enough to average noise (of 0.02 to 0.001), few enough that a
-                                  ///< surface that was painted anew is learned in some 50 views
-    double greyTolerance = 0.01;  ///< a brick's texture counts as changed when a grey value in it
-                                  ///< may have moved by more since the brick was reported last
+                              ///< depth edge, where sensors mix two depths: the pixel is not used
+    double maxFaceWeight = 500.;  ///< a face's grey value is the mean of about this many of its
+                                  ///< latest pixels: enough to reduce noise from 0.02 to 0.001, few
+                                  ///< enough to learn a repainted surface in about 50 views
+    double greyTolerance = 0.01;  ///< a brick is listed in MapChange::texture when a grey value in
+                                  ///< it may have changed by more since the brick was last listed
 };
 
 /// Fuses one observation into the map.
 ///
-/// Ray policy: every cell that holds the surface point of a pixel becomes more occupied, once per
-/// view; every other cell that the ray from the camera to the first such point crosses becomes more
-/// free, once per view. One ray per end cell is cast, not one per pixel (neighbouring rays cross
-/// the same cells); where a cell is both end and crossed, the end counts. Behind surfaces, and
-/// along pixels without depth (not positive, or below minRange), nothing changes: unknown cells
-/// stay unknown.
+/// Ray policy: in every cell that contains the surface point of a pixel (an end cell), occupancy is
+/// raised, once per view. In every other cell that is crossed by the ray from the camera to the
+/// first such point, occupancy is lowered, once per view. One ray is cast per end cell, not per
+/// pixel, because neighbouring rays cross the same cells. A cell that is both crossed and an end is
+/// treated as an end. Behind surfaces, and along pixels without depth (not positive, or below
+/// minRange), nothing changes: unknown cells stay unknown.
 ///
 /// The faces of an end cell that look toward the camera, and are not covered by another end cell,
-/// take the mean grey value of the cell's pixels with weight (pixels) * |n . d|, n the face's
-/// normal and d the direction from the camera to the cell.
+/// observe the mean grey value of the cell's pixels with weight (pixels) * |n . d|, where n is the
+/// face's normal and d the direction from the camera to the cell.
 /// @returns what changed
 /// @throws std::invalid_argument when image, depth and camera differ in size, the pose is not
-///         finite, or the space in view is too large for the map (see maxRange)
+///        finite, or the space in view is too large for the map (see maxRange)
 MapChange fuse(TexturedOcTree& map, const View& observed, const Camera& camera, const Pose& T_c_w,
                const FusionOptions& options = {});
 
-/// Calls the function it is given for every point of a scan; it is asked to do so twice.
+/// A source of scan points: calls its argument for every point. fuseScan() calls it twice.
 using ScanPoints = std::function<void(const std::function<void(const ScanPoint&)>&)>;
 
-/// Fuses what a laser scanner saw from one place, by the same ray policy, and with the defaults of
-/// FusionOptions for weights and tolerance. Memory is that of the cells in the points' bounding
-/// box, however many points there are.
-/// @param scanner where it stood, world frame [m]. Without it nothing becomes free, and all faces
-///        of a cell that no other cell covers take its points' mean.
-/// @param maxRange farther points are not entered; the space up to them is free [m]
+/// Fuses a laser scan taken from one position, with the same ray policy and the default weights and
+/// tolerance of FusionOptions. Memory grows with the number of cells in the bounding box of the
+/// points, not with the number of points.
+/// @param scanner position of the scanner, world frame [m]. Without it no cell becomes free, and
+///        every face of an end cell that no other end cell covers observes the mean of the cell's
+///        points.
+/// @param maxRange farther points are not mapped; the space up to this becomes free [m]
 /// @returns what changed
 /// @throws std::invalid_argument when the box of the points is too large for the map's cells
 MapChange fuseScan(TexturedOcTree& map, const ScanPoints& points,

@@ -50,8 +50,8 @@ Header readHeader(std::istream& stream, const std::string& file) {
     return header;
 }
 
-/// Reads nodes into an empty map. OctoMap's own reader goes on with garbage when the data ends
-/// early; here every byte is asked for.
+/// Reads nodes into an empty map. OctoMap's own reader continues with undefined values when the
+/// data ends early; here every read is checked.
 class NodeReader {
   public:
     NodeReader(std::istream& stream, const std::string& file, TexturedOcTree& map)
@@ -140,7 +140,7 @@ void readColored(NodeReader& reader, Node& node) {
     if (set && node.getLogOdds() > 0.F) node.faces.fill({static_cast<float>(luma), 1.F});
 }
 
-/// Inner nodes carry occupancy only, whatever the file gave them.
+/// Inner nodes carry occupancy only, even if the file has more.
 void clearInnerFaces(TexturedOcTree& map, Node& node) {
     if (!map.nodeHasChildren(&node)) return;
     node.faces = {};

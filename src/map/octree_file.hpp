@@ -9,7 +9,7 @@
 
 namespace photonav {
 
-/// By its name: OctoMap's .ot or .bt.
+/// Whether a file name ends in .ot or .bt.
 bool isOcTreeFile(const std::string& file);
 
 /// Reads a map. Besides our own .ot (class TexturedOcTree) it takes what other OctoMap programs
@@ -24,14 +24,14 @@ std::unique_ptr<TexturedOcTree> loadTexturedOcTree(const std::string& file);
 // Writing replaces the file only when all of it has been written.
 // @throws InputError when the file cannot be written
 
-/// Everything the map knows; loadTexturedOcTree() and octomap::AbstractOcTree::read() read it.
+/// Writes the complete map, for loadTexturedOcTree() and octomap::AbstractOcTree::read().
 void saveTexturedOcTree(const TexturedOcTree& map, const std::string& file);
 
-/// For octovis and other programs: an .ot of class ColorOcTree, grey by TexturedOcTreeNode::
-/// meanGrey(). White becomes 254, since OctoMap takes 255 for "no colour set".
+/// Writes a map for octovis and other programs: an .ot of class ColorOcTree, grey by
+/// TexturedOcTreeNode::meanGrey(). White becomes 254, since OctoMap takes 255 for "no colour set".
 void saveColorOcTree(const TexturedOcTree& map, const std::string& file);
 
-/// Free or occupied, one bit each: a .bt of class OcTree.
+/// Writes only which cells are free or occupied: a .bt of class OcTree.
 void saveBinaryOcTree(const TexturedOcTree& map, const std::string& file);
 
 }  // namespace photonav

@@ -19,23 +19,25 @@ struct ScanPoint {
     float grey = 0.F;
 };
 
-/// A PLY file of coloured points, one station of a scanner or several merged. Only the header is
-/// kept in memory, so that its size does not matter.
+/// A PLY file of coloured points from one scanner position or several merged ones. Only the header
+/// is kept in memory, so that files of any size can be read.
 ///
-/// Colours are `red green blue` (8-bit, or real in [0, 1]), made grey as textures are, or else
-/// `intensity`. Points that are not finite (no echo) are left out. Where the scanner stood is read
-/// from the `camera` element that PCL writes (view_px, view_py, view_pz).
+/// Colours are `red green blue` (8-bit, or real in [0, 1]), converted to grey like textures;
+/// without them, `intensity` is used. Points that are not finite (no echo) are skipped. The
+/// position of the scanner is read from the `camera` element that PCL writes (view_px, view_py,
+/// view_pz).
 class PointCloudFile {
   public:
-    /// Reads the header. @throws InputError naming the file for anything but a PLY file with
-    /// coloured points, and for one that is shorter than its header says
+    /// Reads the header. @throws InputError naming the file unless it is a PLY file with coloured
+    /// points that is at least as long as its header requires
     explicit PointCloudFile(std::string file);
 
     std::uint64_t size() const { return vertices_.count; }
     const std::optional<Eigen::Vector3d>& scanner() const { return scanner_; }
 
     /// Calls `visit` for every finite point, in the order of the file.
-    /// @throws InputError where a line of an ASCII file is no point, or a real colour not in [0, 1]
+    /// @throws InputError where a line of an ASCII file is not a point, or a real colour is not in
+    ///        [0, 1]
     void read(const std::function<void(const ScanPoint&)>& visit) const;
 
   private:

@@ -125,8 +125,8 @@ std::ostream& TexturedOcTreeNode::writeData(std::ostream& stream) const {
 TexturedOcTree::TexturedOcTree(double cellSize)
     : octomap::OccupancyOcTreeBase<TexturedOcTreeNode>(cellSize) {
     if (!(cellSize > 0.)) throw std::invalid_argument("TexturedOcTree: resolution not positive");
-    // A single outlying pixel makes a cell a hit, a clear view through it says more: OctoMap's own
-    // 0.7 and 0.4 thicken walls mapped by a depth camera.
+    // A single outlier makes a cell a hit, while a ray through a cell is stronger evidence.
+    // OctoMap's defaults, 0.7 and 0.4, would thicken walls mapped by a depth camera.
     setProbHit(0.55);
     setProbMiss(0.2);
 }
@@ -151,8 +151,8 @@ struct TexturedOcTree::BrickUpdate {
     const std::function<void(TexturedOcTreeNode&, unsigned)>& texture;
     BrickChange& change;
 
-    /// Which children of a node `level` levels above the cells hold cells of this update.
-    bool concerns(unsigned level, unsigned child, unsigned firstBit) const {
+    /// Whether a child of a node `level` levels above the cells contains cells of this update.
+    bool containsCells(unsigned level, unsigned child, unsigned firstBit) const {
         if (level > 2)
             return child == octomap::computeChildIdx(corner, static_cast<int>(level) - 1);
         const std::uint64_t cells =
@@ -185,14 +185,14 @@ void TexturedOcTree::updateCell(TexturedOcTreeNode& node, bool justMade, const B
     } else if (hit && wasOccupied) {
         const float moved = difference(greys, node.shownGreys());
         update.change.texture = update.change.texture || moved > 0.F;
-        update.change.greyMoved = std::max(update.change.greyMoved, moved);
+        update.change.greyChange = std::max(update.change.greyChange, moved);
     }
 }
 
-bool TexturedOcTree::accumulateDrift(const octomap::OcTreeKey& corner, float greyMoved,
+bool TexturedOcTree::accumulateDrift(const octomap::OcTreeKey& corner, float greyChange,
                                      float tolerance) {
     float& drift = drift_[corner];
-    drift += greyMoved;
+    drift += greyChange;
     if (!(drift > tolerance)) return false;
     drift = 0.F;
     return true;
@@ -205,7 +205,7 @@ void TexturedOcTree::updateRecursively(TexturedOcTreeNode& node, bool justMade, 
     if (pruned && update.hit == 0 && node.getLogOdds() <= clamping_thres_min) return;
     if (pruned) expandNode(&node);
     for (unsigned i = 0; i < 8; ++i) {
-        if (!update.concerns(level, i, firstBit)) continue;
+        if (!update.containsCells(level, i, firstBit)) continue;
         const bool make = !nodeChildExists(&node, i);
         TexturedOcTreeNode* child = make ? createNodeChild(&node, i) : getNodeChild(&node, i);
         updateRecursively(*child, make, level - 1, update, level == 2 ? 8 * i : firstBit + i);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The map of record: an OctoMap whose leaves carry the grey value of their six faces.
+// The map: an OctoMap whose leaves store the grey values of their six faces.
 #pragma once
 
 #include <octomap/OcTreeNode.h>
@@ -19,7 +19,8 @@ namespace photonav {
 
 inline constexpr int kKeyOfZero = 32768;  ///< OctoMap's key of the cell that begins at the origin
 
-/// What a cell that no ray has visited counts as. There is no silent default anywhere.
+/// How cells that no ray has visited are treated. Every function that needs this takes it as an
+/// argument.
 enum class UnknownPolicy { free, occupied };
 
 /// Faces in the order -x, +x, -y, +y, -z, +z of the outward normal.
@@ -28,15 +29,16 @@ struct FaceTexture {
     float weight = 0.F;  ///< sum of observation weights; 0: never seen
 
     bool observed() const { return weight > 0.F; }
-    /// Weighted running mean; observing the mean itself leaves it as it is, to the bit.
-    /// @param maxWeight the weight stays at most this: what was observed long ago is forgotten, so
-    ///        that a surface that looks different now is learned anew
+    /// Weighted running mean. Observing a grey value equal to the mean leaves the mean
+    /// bit-identical.
+    /// @param maxWeight upper limit of the weight: older observations then count less and less, so
+    ///        that a changed surface is learnt anew
     void observe(float grey, float addedWeight,
                  float maxWeight = std::numeric_limits<float>::infinity());
     bool operator==(const FaceTexture&) const = default;
 };
 
-/// Grey values of a cell's six faces as views show them; 65535 is white.
+/// Grey values of a cell's six faces as rendered in views; 65535 is white.
 using ShownGreys = std::array<std::uint16_t, 6>;
 
 /// Log-odds occupancy and six faces. Inner nodes carry occupancy only.
@@ -45,14 +47,14 @@ class TexturedOcTreeNode : public octomap::OcTreeNode {
     std::array<FaceTexture, 6> faces;
 
     TexturedOcTreeNode() = default;
-    TexturedOcTreeNode(const TexturedOcTreeNode& other);  ///< with all children, as OctoMap's
+    TexturedOcTreeNode(const TexturedOcTreeNode& other);  ///< deep copy, with all children
     TexturedOcTreeNode& operator=(const TexturedOcTreeNode&) = delete;
 
     /// Mean over the observed faces by weight; nothing when no face was ever observed.
     std::optional<float> meanGrey() const;
 
-    /// What views show of an occupied cell: a face that was never observed takes meanGrey().
-    /// Nothing when no face was ever observed.
+    /// The grey values that views show for an occupied cell: a face that was never observed takes
+    /// meanGrey(). Nothing when no face was ever observed.
     std::optional<ShownGreys> shownGreys() const;
 
     // What OctoMap asks of a node type; pruning merges leaves only when their faces agree as well.
@@ -65,12 +67,12 @@ class TexturedOcTreeNode : public octomap::OcTreeNode {
 /// What one update changed in a brick of 4 x 4 x 4 cells.
 struct BrickChange {
     bool occupancy = false;  ///< a cell became known, free or occupied
-    bool texture = false;    ///< the shown grey of a cell that was occupied before changed
-    float greyMoved = 0.F;   ///< the most by which it did; 1 where there was none before
+    bool texture = false;    ///< a shown grey value changed in a cell that was already occupied
+    float greyChange = 0.F;  ///< largest such change; 1 if there was no grey value before
 };
 
 /// An OctoMap of textured nodes, registered with OctoMap's factory as "TexturedOcTree" (so that
-/// octomap::AbstractOcTree::read() knows its files). A cell is unknown (no node), free or occupied.
+/// octomap::AbstractOcTree::read() reads its files). A cell is unknown (no node), free or occupied.
 class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
   public:
     /// @param resolution edge of a cell [m] @throws std::invalid_argument unless positive
@@ -80,7 +82,7 @@ class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
     std::string getTreeType() const override { return "TexturedOcTree"; }
     void expandNode(TexturedOcTreeNode* node) override;
 
-    /// The root, made when the tree is empty.
+    /// The root node, created if the tree is empty.
     TexturedOcTreeNode& obtainRoot();
 
     /// One observation of up to 64 cells: the brick of 4 x 4 x 4 cells that begins at `corner`
@@ -91,10 +93,10 @@ class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
                             std::uint64_t hit,
                             const std::function<void(TexturedOcTreeNode&, unsigned bit)>& texture);
 
-    /// Sums up by how much the greys of the brick at `corner` have moved, so that small steps in
-    /// one direction do not pass unnoticed.
-    /// @returns whether the sum exceeds the tolerance; it then begins at zero again
-    bool accumulateDrift(const octomap::OcTreeKey& corner, float greyMoved, float tolerance);
+    /// Adds up the changes of grey values in the brick at `corner`, so that many small changes in
+    /// one direction are reported in the end.
+    /// @returns whether the sum exceeds the tolerance; the sum is then reset to zero
+    bool accumulateDrift(const octomap::OcTreeKey& corner, float greyChange, float tolerance);
 
   private:
     struct BrickUpdate;

@@ -28,8 +28,8 @@ std::vector<Feature> visibleFeatures(const View& view, const FeatureOptions& opt
 /// perturbation (rho, phi), known map:
 ///     Lambda = 1 / pixelSigma^2 * sum J^T J,   J = d pi / d p * [1 | -p^]   (2x6)
 /// This is the pose's part of the bundle adjustment by which Achtelik, Lynen, Weiss, Chli and
-/// Siegwart (Motion- and uncertainty-aware path planning for micro aerial vehicles, 2014) judge a
-/// view.
+/// Siegwart (Motion- and uncertainty-aware path planning for micro aerial vehicles, 2014) evaluate
+/// a view.
 Matrix6 reprojectionInformation(const std::vector<Feature>& features, const Camera& camera,
                                 const FeatureOptions& options = {});
 

@@ -9,12 +9,12 @@ namespace photonav {
 
 struct MapUncertaintyOptions {
     double priorSigma =
-        0.3;                 ///< standard deviation of log depth before the look: 30 % of the depth
+        0.3;                 ///< standard deviation of log depth before the view: 30 % of the depth
     double baseline = 0.25;  ///< way between the two images that a depth is measured from [m]
-    int stride = 2;          ///< looks at every stride-th row and column
+    int stride = 2;          ///< use every stride-th row and column
 };
 
-/// How well a short motion measures the depths in sight.
+/// How well a short motion measures the depths of the visible surfaces.
 struct MapCertainty {
     double share = 0.;  ///< of the pixels that a motion can measure at all: those whose variance it
                         ///< would at least halve if it went along their gradient
@@ -22,7 +22,7 @@ struct MapCertainty {
 
     /// Variance of log depth left over the image by a motion along the unit vector t (camera
     /// frame), relative to the prior: 1 where nothing is measured.
-    double varianceLeft(const Eigen::Vector3d& t_c) const {
+    double remainingVariance(const Eigen::Vector3d& t_c) const {
         return 1. - share + share / (1. + t_c.dot(gain * t_c));
     }
 };
@@ -38,7 +38,7 @@ struct MapCertainty {
 /// This is the objective of Forster, Pizzoli and Scaramuzza, Appearance-based active, monocular,
 /// dense reconstruction for micro aerial vehicles (RSS 2014): the expected variance of the depth
 /// given texture and motion. They carry a depth filter per pixel along a trajectory; here every
-/// view is judged on its own, against the same prior, so that it can be a cost per metre.
+/// view is evaluated on its own, with the same prior, so that it can be a cost per metre.
 MapCertainty mapCertainty(const View& view, const Camera& camera,
                           const PhotometricOptions& photometric = {},
                           const MapUncertaintyOptions& options = {});

@@ -20,10 +20,10 @@ namespace {
 using simd::Float;
 using simd::Int;
 
-// --- Which pixels count: written once, for a float and for a vector of them -------------------
+// --- Which pixels are used: written once, for a float and for a vector of them -------------------
 
-/// Stands for the inverse depth of nothing: fails the test below, yet is finite, so that zero
-/// times it is zero.
+/// Inverse depth of a pixel without surface. It fails the test below but is finite, so that its
+/// product with zero is zero.
 constexpr float kNoSurface = -1e30F;
 
 template <typename T>
@@ -63,7 +63,8 @@ float contrastOf(const PhotometricOptions& options) {
 /// First row and column in use: the border of one pixel and half a stride.
 int firstInStride(int stride) { return 1 + stride / 2; }
 
-/// Harmonic mean over the diagonal of the image (what is near says most); 0 if nothing is seen.
+/// Harmonic mean over the diagonal of the image (near surfaces have most of the information); 0
+/// without any surface.
 float typicalDepth(const View& view) {
     constexpr unsigned kSamples = 16;
     float inverse = 0.F;
@@ -80,12 +81,12 @@ float typicalDepth(const View& view) {
 
 // --- The kernel -------------------------------------------------------------------------------
 
-/// The rows J of one image row after the other, and the sum of their products. Works in vectors of
-/// columns; the last vector ends with the last column that can count and passes over those that the
-/// one before it has had. Needs images wider than a vector.
+/// Computes the rows J of one image row after the other and sums their products. Works in vectors
+/// of columns; the last vector ends with the last usable column and skips columns that the vector
+/// before it contains. Needs images wider than a vector.
 ///
-/// Rotations are about a point among those seen, not about the camera: those look much like
-/// translations, and single precision would lose the difference.
+/// Rotations are about a point in view, not about the camera: rotations about the camera look much
+/// like translations, and single precision would lose the difference.
 class Kernel {
   public:
     static constexpr std::size_t kMinWidth = simd::kWidth + 2;
@@ -118,8 +119,8 @@ class Kernel {
             for (std::size_t i = 0; i <= vectors_; ++i) invert(next_, i);
         }
         fill(v);
-        // The divisions of the row after next go along with the first pass: they take long, and
-        // little else meanwhile.
+        // The divisions for the row after next run during the first pass: they take long but leave
+        // other units free.
         const unsigned ahead = std::min(next_++, camera_.height - 1);
         addProducts<0>([this, ahead](std::size_t i) { invert(ahead, i); });
         invert(ahead, vectors_);
@@ -142,7 +143,7 @@ class Kernel {
         sum = Matrix6(sum.selfadjointView<Eigen::Upper>());
         Pose toPivot = Pose::Identity();
         toPivot.translation().z() = -static_cast<double>(pivot_);
-        Vector6 unit;  // what fill() leaves out
+        Vector6 unit;  // factors that fill() leaves out
         unit << camera_.fx(), camera_.fy(), -camera_.fx(), -camera_.fy(), camera_.fx(),
             camera_.fy();
         const Matrix6 motion = 0.5 * unit.asDiagonal() * adjoint(toPivot);
@@ -176,7 +177,7 @@ class Kernel {
     }
 
     void fill(unsigned v) {
-        // x and y with the ratio of the focal lengths where gradients would need it
+        // x and y are scaled by the ratio of the focal lengths where the gradients would have to be
         const double row = v - camera_.cy();
         const float yOfGradient = static_cast<float>(row / camera_.fx());
         const float y = static_cast<float>(row * camera_.fx() / (camera_.fy() * camera_.fy()));

@@ -19,15 +19,14 @@ struct PhotometricOptions {
 /// perturbation T_c_w = exp(xi^) mean:
 ///     Lambda = scale / sigma^2 * sum J^T J,   J = grad I * dpi/dp * [1 | -p^]
 /// (the paper's eqs. (19) and (20)). The gradient is the central difference of the predicted image;
-/// a border of one pixel is left out. A pixel counts when its four neighbours and itself have
-/// depth, none of them lies across a depth discontinuity, and it is not saturated. Nothing is
-/// stored per pixel; sums are single precision within 16 rows and double across them, with
-/// rotations about a point among those seen: the trace of the inverse keeps six digits.
+/// a border of one pixel is left out. A pixel is used if it and its four neighbours have depth,
+/// none of them lies across a depth discontinuity, and it is not saturated. Nothing is stored per
+/// pixel. Sums are single precision within 16 rows and double across them, with rotations about a
+/// point in view, so that the trace of the inverse is accurate to six digits.
 Matrix6 photometricInformation(const View& view, const Camera& camera,
                                const PhotometricOptions& options = {});
 
-/// The row J of one pixel; zero where the pixel does not count. Plain and slow: for tests, teaching
-/// and pictures.
+/// The row J of one pixel; zero if the pixel is not used. Slow: for tests, tutorials and figures.
 Vector6 pixelJacobian(const View& view, const Camera& camera, unsigned u, unsigned v,
                       const PhotometricOptions& options = {});
 
@@ -37,7 +36,7 @@ Vector6 pixelJacobian(const View& view, const Camera& camera, unsigned u, unsign
 ImageF contributionImage(const View& view, const Camera& camera, const Vector6& direction,
                          const PhotometricOptions& options = {});
 
-/// Sum over all six directions, rotations weighed by the mean depth so that units agree [1/m^2].
+/// Sum over all six directions, rotations weighted by the mean depth so that units agree [1/m^2].
 ImageF contributionImage(const View& view, const Camera& camera,
                          const PhotometricOptions& options = {});
 

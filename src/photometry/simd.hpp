@@ -53,7 +53,7 @@ inline double sum(const Float& a) {
     return total;
 }
 
-/// For |a| < 2^31; any number else (lanes that do not count may hold anything).
+/// For |a| < 2^31; an undefined value otherwise (unused lanes may hold anything).
 inline Int floor(const Float& a) {
     using Unsigned [[gnu::vector_size(kWidth * 4)]] = std::uint32_t;  // wraps
     const Int truncated = toInt(a);
@@ -62,7 +62,7 @@ inline Int floor(const Float& a) {
                                  reinterpret_cast<Unsigned>(above));
 }
 
-/// The nearest whole number, for |a| < 2^22; either one of two that are equally near.
+/// The nearest whole number, for |a| < 2^22; halves are rounded to either side.
 inline Float rounded(const Float& a) {
     constexpr float kMagic = 12582912.F;  // 1.5 * 2^23: the sum has no bits for a fraction
     return (a + kMagic) - kMagic;

@@ -21,7 +21,7 @@ struct FilteredRow {
             intensity[u] = (I[u - 1] + I[u + 1]) + 2.F * I[u];
             depth[u] = std::min(std::min(z[u - 1], z[u + 1]), z[u]);
         }
-        // Beyond the border the image goes on linearly, which leaves the border pixel as it is.
+        // Linear extrapolation beyond the border, which leaves the border pixel as it is.
         intensity[0] = 4.F * I[0];
         depth[0] = std::min(z[0], z[std::min(1U, last)]);
         intensity[last] = 4.F * I[last];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a camera would see: the one interface between maps and everything that looks at them.
+// Views predicted from a map: the interface between maps and everything that uses views.
 #pragma once
 
 #include "geometry/camera.hpp"
@@ -13,23 +13,24 @@ struct View {
     ImageF depth;      ///< z of the surface in the camera frame [m]; 0: no surface, unknown
 };
 
-/// A map that can be looked at. Implementations: MeshRenderer, VoxelRenderer, or your own.
+/// A model of the world from which views can be rendered. Implementations: MeshRenderer,
+/// VoxelRenderer, or your own.
 class ViewSource {
   public:
     virtual ~ViewSource() = default;
 
     /// Predicts the noise-free, anti-aliased view from a camera pose; resizes `view` as needed.
-    /// Thread-safe and deterministic: the same pose gives the same bits.
+    /// Thread-safe and deterministic: views from the same pose are bit-identical.
     virtual void render(const Camera& camera, const Pose& T_c_w, View& view) const = 0;
 };
 
-/// Whether a recorded image is that of a covered lens: a mean grey value below 5 of 255.
+/// Whether a recorded image is black, as with a covered lens: a mean grey value below 5 of 255.
 bool isBlack(const ImageF& image);
 
 /// The camera's point spread, applied by every renderer as its last step: a 3x3 binomial filter of
-/// the intensity, so that edges are about three pixels wide and their gradients mean something.
-/// Pixels with an invalid neighbour (depth 0) keep their value, beyond the border the image goes on
-/// linearly, and a constant image stays constant to the bit.
+/// the intensity, so that edges are about three pixels wide and central differences approximate
+/// their gradients. Pixels with an invalid neighbour (depth 0) keep their value, the image is
+/// extrapolated linearly beyond its border, and a constant image stays bit-identical.
 /// @throws std::invalid_argument when intensity and depth differ in size
 void applyPointSpread(View& view);
 

@@ -97,9 +97,10 @@ void addExposedGreys(const SurfaceNeighbours& neighbours, int face, int layer, W
     }
 }
 
-/// Where the surface does not go on, it takes the mean of its neighbours along the edges, or else
-/// of those across the corners: the same from every patch, so that patches agree where they meet.
-std::uint16_t continued(const Window& window, int place) {
+/// The grey value where no face is exposed, extrapolated: the mean of the four neighbours along the
+/// edges, or else of those across the corners. All patches compute the same value, so that they
+/// agree where they meet.
+std::uint16_t extrapolated(const Window& window, int place) {
     constexpr std::array<int, 8> kAround{1,           -1,          kWindow,      -kWindow,
                                          kWindow + 1, kWindow - 1, -kWindow + 1, -kWindow - 1};
     for (int begin = 0; begin < 8; begin += 4) {
@@ -134,8 +135,8 @@ std::uint16_t exposedInLayer(const BrickSurface& surface, int face, int layer) {
 }
 
 FacePatch makePatch(const SurfaceNeighbours& neighbours, int face, int layer, std::uint16_t valid) {
-    // The surface goes on over steps of one cell, out or in: real floors are never flat to the
-    // cell, and an edge there would be one of the grid, not of the picture.
+    // A surface is continued over steps of one cell, outward or inward: mapped floors are never
+    // flat to the cell, and an edge at such a step would come from the grid, not from the texture.
     const int outward = face % 2 == 1 ? 1 : -1;
     Window window;
     addExposedGreys(neighbours, face, layer, window);
@@ -149,7 +150,7 @@ FacePatch makePatch(const SurfaceNeighbours& neighbours, int face, int layer, st
             const int place = kWindow * (q + 1) + p + 1;
             const bool known = (window.known >> place & 1U) != 0;
             patch.grey[FacePatch::kSide * q + p] =
-                known ? window.grey[place] : continued(window, place);
+                known ? window.grey[place] : extrapolated(window, place);
         }
     }
     return patch;

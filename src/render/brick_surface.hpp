@@ -26,7 +26,8 @@ constexpr unsigned surfaceBit(int x, int y, int z) {
     return static_cast<unsigned>((x & 3) | (y & 3) << 2 | (z & 3) << 4);
 }
 
-/// A brick and the 26 around it, x fastest; those without a surface are an empty one.
+/// A brick and its 26 neighbours, x fastest; a brick without a surface is represented by an empty
+/// one.
 using SurfaceNeighbours = std::array<const BrickSurface*, 27>;
 
 /// The faces of a brick's known cells, by face, that no occupied cell covers.

@@ -10,7 +10,7 @@
 namespace photonav {
 
 /// Visibility at pixel centres is exact: by the depth buffer where triangles are few for the number
-/// of pixels, else by Embree's ray packets; both see the same triangles. Depth and grey value come
+/// of pixels, else by Embree's ray packets; both find the same triangles. Depth and grey value come
 /// from the visible triangle's plane (surface_shader.hpp). Both sides of a triangle are visible.
 class MeshRenderer : public ViewSource {
   public:

@@ -11,8 +11,8 @@
 namespace photonav {
 
 /// Successively halved, area-averaged copies of a texture down to 1 x 1, in 16 bits per grey value.
-/// Every level carries one more column and row that repeat the first, so that a texel's right and
-/// lower neighbours are always where memory says.
+/// Every level carries one more column and row that repeat the first, so that the right and lower
+/// neighbours of a texel follow it in memory.
 class MipTexture {
   public:
     struct Level {

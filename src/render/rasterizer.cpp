@@ -109,7 +109,7 @@ void setCoefficients(Batch& batch, const std::array<Float3, 3>& p, const Float3&
         return {v.x * inverse, v.y * inverse, v.z * inverse};
     };
     const Float3 edge12{edge2.x - edge1.x, edge2.y - edge1.y, edge2.z - edge1.z};
-    // A millionth: neighbours overlap a little instead of leaving pixels out between them.
+    // Relative slack: neighbouring triangles overlap a little instead of leaving gaps.
     constexpr float kRounding = 1e-6F;
     batch.edges[0] = inPixels(scaled(cross(p[1], edge12)), lens, kRounding);
     batch.edges[1] = inPixels(scaled(cross(edge2, p[0])), lens, kRounding);

@@ -10,13 +10,14 @@
 
 namespace photonav {
 
-/// Which triangle every pixel centre sees, by the depth buffer. Looks at every triangle of the
-/// scene in every view, so it beats rays where triangles are few for the number of pixels.
+/// Finds the triangle visible at every pixel centre with a depth buffer. It processes every
+/// triangle of the scene in every view, so that it is faster than ray casting where there are few
+/// triangles per pixel.
 ///
 /// Works in homogeneous coordinates (Olano and Greer, "Triangle Scan Conversion using 2D
 /// Homogeneous Coordinates", 1997), so that nothing is clipped: with corners p0, p1, p2 in the
-/// camera frame, a ray d meets the triangle where E_i . d >= 0 for all three
-/// E_i = p_j x p_k / det(p0 p1 p2), and (E_0 + E_1 + E_2) . d is the inverse depth there.
+/// camera frame, a ray d meets the triangle where E_i . d >= 0 for all three E_i = p_j x p_k /
+/// det(p0 p1 p2), and (E_0 + E_1 + E_2) . d is the inverse depth there.
 class Rasterizer {
   public:
     explicit Rasterizer(const std::vector<Triangle>& triangles);

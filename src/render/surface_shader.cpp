@@ -21,12 +21,13 @@ using simd::splat;
 using simd::toFloat;
 using simd::toInt;
 
-/// Area of texture that a pixel is taken to integrate, relative to its footprint. Levels and the
-/// interpolation blur, too: this value is the closest to integrating over the pixel (measured for
-/// texels from a third of a pixel to two pixels: half the error that 1 gives).
+/// Area of texture over which a pixel is assumed to average, relative to its footprint. Pyramid
+/// levels and interpolation blur as well; with this value the result is closest to the average over
+/// the pixel (measured for texels from a third of a pixel to two pixels: half the error that 1
+/// gives).
 constexpr double kFootprint = 0.6;
 
-constexpr int kMostLevels = 17;  // a texture has at most 32768 texels along a side
+constexpr int kMaxLevels = 17;  // a texture has at most 32768 texels along a side
 
 /// a x + b y + c over the image, x and y in pixels.
 struct Affine {
@@ -48,7 +49,7 @@ struct Surface {
     struct Level {
         float uScale, vScale, uWhole, vWhole, uPart, vPart;
     };
-    std::array<Level, kMostLevels> levels;
+    std::array<Level, kMaxLevels> levels;
 };
 
 Affine affineInPixels(const Eigen::Vector3d& perRay, const Camera& camera) {
@@ -128,7 +129,8 @@ void setUp(Surface& surface, const Triangle& triangle, const MipTexture& texture
     setLevels(surface, texel(0) - Eigen::Vector2d(uGradient.dot(p[0]), vGradient.dot(p[0])));
 }
 
-/// The surfaces met so far in this view; a triangle that maps to a taken place replaces it.
+/// Cache of the surfaces seen so far in this view; a triangle replaces an older one in the same
+/// slot.
 class SurfaceCache {
   public:
     SurfaceCache(const Scene& scene, const std::vector<MipTexture>& textures, const Camera& camera,
@@ -223,8 +225,8 @@ struct PixelRow {
     float* depth;
     float* grey;
 
-    /// Writes kWidth pixels from x, but not beyond the row. What lies to the right of the pixels
-    /// that are meant gets its own values later.
+    /// Writes kWidth pixels from x, but not beyond the row. Pixels to the right of the run are
+    /// overwritten later.
     void store(unsigned x, unsigned width, Float z, Float intensity) const {
         if (x + kWidth <= width) {
             simd::store(depth + x, z);
@@ -236,7 +238,7 @@ struct PixelRow {
     }
 };
 
-/// Pixels [begin, end) of row y, which all see the same surface.
+/// Pixels [begin, end) of row y, which all show the same surface.
 void shadeRun(const Surface& surface, unsigned begin, unsigned end, unsigned width, unsigned row,
               const PixelRow& pixels) {
     const auto y = static_cast<float>(row);
@@ -260,7 +262,7 @@ void shadeRun(const Surface& surface, unsigned begin, unsigned end, unsigned wid
     }
 }
 
-/// Where the run of pixels that see the same as pixel `begin` ends.
+/// End of the run of pixels that show the same triangle as pixel `begin`.
 unsigned endOfRun(const std::uint32_t* ids, unsigned begin, unsigned width) {
     const auto first = static_cast<int>(ids[begin]);
     for (unsigned x = begin; x < width; x += kWidth) {
@@ -273,8 +275,8 @@ unsigned endOfRun(const std::uint32_t* ids, unsigned begin, unsigned width) {
 }  // namespace
 
 void VisibilityImage::resize(unsigned width, unsigned height) {
-    constexpr unsigned kMostLanes = 16;
-    pitch = (width + 2U * kMostLanes - 1U) / kMostLanes * kMostLanes;
+    constexpr unsigned kMaxLanes = 16;
+    pitch = (width + 2U * kMaxLanes - 1U) / kMaxLanes * kMaxLanes;
     ids.resize(pitch * ((std::size_t{height} + 3U) / 4U * 4U));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth and texture of the triangles that the pixels of a view see.
+// Depth and grey value of the triangles that are visible in a view.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace photonav {
 
-/// Which triangle each pixel sees, row by row.
+/// The index of the triangle visible at each pixel, row by row.
 struct VisibilityImage {
     static constexpr std::uint32_t kNothing = 0xffffffffU;
 
@@ -21,24 +21,25 @@ struct VisibilityImage {
     std::uint32_t* row(unsigned v) { return ids.data() + std::size_t{v} * pitch; }
     const std::uint32_t* row(unsigned v) const { return ids.data() + std::size_t{v} * pitch; }
 
-    unsigned pitch = 0;  ///< of rows, beyond the width by a vector; rows in fours
+    unsigned pitch = 0;  ///< entries per row, a vector beyond the width; rows in fours
     std::vector<std::uint32_t> ids;
 };
 
 /// Evaluates depth and grey value per pixel from the plane of its triangle. Inverse depth and
-/// (texture coordinates / depth) are affine in the pixel, with coefficients found in double
-/// precision once per triangle and view: smoother in the pose than a ray's own hit distance.
+/// (texture coordinates / depth) are affine in the pixel, with coefficients computed in double
+/// precision once per triangle and view. They change more smoothly with the pose than the hit
+/// distance of a ray.
 ///
 /// Textures are looked up trilinearly, in 16 bits. The level follows the geometric mean of the
-/// pixel's footprint, sqrt(area): on an oblique surface that blurs the far direction a little less
-/// and the near direction a little more than isotropic footprints would want.
+/// pixel's footprint, sqrt(area): on an oblique surface this blurs the far direction a little less
+/// and the near direction a little more than an isotropic footprint requires.
 class SurfaceShader {
   public:
     /// @param scene must outlive this
     explicit SurfaceShader(const Scene& scene);
 
-    /// Fills depth and intensity of `view`, which has the camera's size already. Pixels that see
-    /// nothing become 0. Thread-safe.
+    /// Fills depth and intensity of `view`, which has the camera's size already. Pixels without
+    /// a triangle become 0. Thread-safe.
     void shade(const Camera& camera, const Pose& T_c_w, const VisibilityImage& visible,
                View& view) const;
 

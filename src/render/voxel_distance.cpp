@@ -6,7 +6,7 @@
 namespace photonav {
 namespace {
 
-constexpr std::uint8_t kFar = VoxelGrid::kMostDistance;
+constexpr std::uint8_t kFar = VoxelGrid::kMaxDistance;
 
 /// Chessboard distance: one pass forward and one backward over the rows, each taking the least
 /// distance of the 26 neighbours that lie in rows already done.

@@ -40,8 +40,9 @@ struct CellBox {
 /// Whole bricks of 4 x 4 x 4 cells that hold the map's bounding box and a border of at least one
 /// cell, x fastest, counted from `first`. Plain data; VoxelGridBuilder fills and changes it.
 struct VoxelGrid {
-    static constexpr int kPatchesPerBrick = 6 * 4;     ///< face, then layer along its normal
-    static constexpr std::uint8_t kMostDistance = 32;  ///< [cells]; what is farther counts as this
+    static constexpr int kPatchesPerBrick = 6 * 4;  ///< face, then layer along its normal
+    static constexpr std::uint8_t kMaxDistance =
+        32;  ///< [cells]; larger distances are stored as this
 
     double resolution = 1.;                          ///< [m]
     Eigen::Array3i first = Eigen::Array3i::Zero();   ///< world index of cell (0, 0, 0)
@@ -49,9 +50,9 @@ struct VoxelGrid {
     Eigen::Array3i bricks = Eigen::Array3i::Zero();  ///< size / 4
     CellBox box;                                     ///< the map's bounding box; outside it is free
 
-    /// Cells to the nearest cell that ends a ray, in the maximum norm: all cells closer than that
-    /// are empty. 0: this cell ends rays. Holds in the box and the one cell around it. Four bytes
-    /// are readable at every cell.
+    /// Chessboard distance [cells] to the nearest cell that ends a ray: all closer cells are empty.
+    /// 0: this cell ends rays. Valid in the box and one cell around it. Four bytes are readable at
+    /// every cell.
     std::vector<std::uint8_t> distance;
 
     /// Textures of a brick: entry brickTextures[brick] * kPatchesPerBrick + 4 * face + layer of
@@ -71,7 +72,7 @@ struct VoxelGrid {
 };
 
 /// Computes VoxelGrid::distance in a box from which of its cells end rays (those with distance 0)
-/// and from the distances around the box, which must be right.
+/// and from the distances around the box, which must be correct.
 void measureDistances(VoxelGrid& grid, const CellBox& within);
 
 }  // namespace photonav

@@ -31,22 +31,24 @@ std::uint64_t insideMask(const VoxelGrid& grid, const Array3i& brick) {
     return mask;
 }
 
-constexpr int kInfluence = VoxelGrid::kMostDistance - 1;  // of a cell on the distances around it
+constexpr int kInfluence =
+    VoxelGrid::kMaxDistance - 1;  // a cell changes distances within this [cells]
 
-/// Adds cells to a few boxes that hold all that changed, such that little is measured in vain. (One
-/// box may be measured before its neighbour: what it takes from there too early lies in both.)
+/// Adds cells to a few boxes that together contain everything that changed, such that few other
+/// cells are recomputed. (A box may be recomputed before its neighbour: the values that it reads
+/// from there before they are updated lie in both boxes.)
 void addToBoxes(const CellBox& cells, const CellBox& within, std::vector<CellBox>& boxes) {
-    const auto effort = [&](const CellBox& box) {
+    const auto cellsToMeasure = [&](const CellBox& box) {
         const CellBox measured = box.grown(kInfluence).clippedTo(within);
         return (measured.high - measured.low).cast<double>().prod();
     };
-    const double alone = effort(cells);
+    const double alone = cellsToMeasure(cells);
     double least = alone;
     CellBox* best = nullptr;
     for (CellBox& box : boxes) {
         CellBox both = box;
         both.extend(cells);
-        const double more = effort(both) - effort(box);
+        const double more = cellsToMeasure(both) - cellsToMeasure(box);
         if (more > least) continue;
         least = more;
         best = &box;
@@ -58,7 +60,7 @@ void addToBoxes(const CellBox& cells, const CellBox& within, std::vector<CellBox
     }
 }
 
-/// Writes which cells of a brick end rays. @returns whether that changed any
+/// Marks the cells of a brick that end rays. @returns whether a cell changed
 bool setEnds(VoxelGrid& grid, const Array3i& brick, std::uint64_t ends) {
     bool changed = false;
     for (int row = 0; row < 16; ++row) {
@@ -68,7 +70,7 @@ bool setEnds(VoxelGrid& grid, const Array3i& brick, std::uint64_t ends) {
         for (int x = 0; x < 4; ++x, ends >>= 1U) {
             const bool endsHere = (ends & 1U) != 0;
             if (endsHere == (cells[x] == 0)) continue;
-            cells[x] = endsHere ? std::uint8_t{0} : VoxelGrid::kMostDistance;
+            cells[x] = endsHere ? std::uint8_t{0} : VoxelGrid::kMaxDistance;
             changed = true;
         }
     }
@@ -175,9 +177,9 @@ GridUpdate VoxelGridBuilder::update(const TexturedOcTree& map, const MapChange& 
     return update;
 }
 
-/// Where the map's bounding box grew, cells that are unknown become obstacles, if unknown ones are,
-/// and distances are measured axis after axis: every step adds a slab to a box, whose shortest ways
-/// stay inside it.
+/// Extends the grid to the map's new bounding box. New cells are unknown: obstacles, if unknown
+/// cells end rays. Distances are computed axis after axis: every step adds a slab to a box, and the
+/// shortest path between two cells of a box stays inside it.
 void VoxelGridBuilder::grow(const CellBox& box, VoxelGrid& grid, GridUpdate& update,
                             Bricks& toRead) const {
     CellBox before{grid.box.low + grid.first, grid.box.high + grid.first};
@@ -235,7 +237,7 @@ SurfaceNeighbours VoxelGridBuilder::neighboursOf(const Array3i& brick,
     return neighbours;
 }
 
-/// Patches show the cells of their brick and up to two beyond it.
+/// Patches depend on the cells of their brick and on up to two cells beyond it.
 void VoxelGridBuilder::refreshPatches(const Bricks& changed, VoxelGrid& grid, Bricks& rewritten) {
     std::vector<bool> isListed(grid.brickTextures.size(), false);
     for (const Array3i& brick : changed) {

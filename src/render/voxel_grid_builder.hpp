@@ -12,26 +12,26 @@
 
 namespace photonav {
 
-/// What an update rewrote in a grid, for copies of it.
+/// The parts of a grid that an update has rewritten, for updating copies of the grid.
 struct GridUpdate {
-    bool laidOutAnew = false;            ///< all of it: only a whole copy is equal to it
+    bool laidOutAnew = false;            ///< the whole grid: copies must be made anew
     std::vector<CellBox> cells;          ///< distances
     std::vector<Eigen::Array3i> bricks;  ///< textures
 };
 
-/// Makes `copy`, which was equal to `grid` before the update, equal to it again. After several
-/// updates, in their order. None of them laid the grid out anew.
+/// Applies an update to `copy`, which was equal to `grid` before the update. Several updates are
+/// applied in their order; none of them may have laid the grid out anew.
 void copyUpdate(const VoxelGrid& grid, const GridUpdate& update, VoxelGrid& copy);
 
-/// Fills a grid from a map and follows the map's changes. Between the calls it keeps what the map
-/// holds of every brick with a surface, so that only changed bricks are read again.
+/// Fills a grid from a map and updates it after changes of the map. Keeps the contents of every
+/// brick with a surface, so that only changed bricks are read from the map again.
 class VoxelGridBuilder {
   public:
     /// @throws std::invalid_argument when the map's bounding box has more than 2^31 cells
     VoxelGridBuilder(const TexturedOcTree& map, UnknownPolicy unknown, VoxelGrid& grid);
 
-    /// Makes the grid that this builder filled equal to a fresh one of the map as it is now.
-    /// @param change all that changed in the map since
+    /// Updates the grid that this builder has filled. The result equals a new grid of the map.
+    /// @param change everything that changed in the map since the last call
     /// @throws std::invalid_argument as above, or when the change is of another resolution
     GridUpdate update(const TexturedOcTree& map, const MapChange& change, VoxelGrid& grid);
 

@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::Array3i;
 
-constexpr double kMostCells = 2147483647.;
+constexpr double kMaxCells = 2147483647.;
 
-/// Extends the box by the leaves below a node, but goes only where it may grow.
+/// Extends the box by the leaves below a node; skips nodes that cannot extend it.
 void extendBox(const TexturedOcTree& map, const TexturedOcTreeNode& node, const Array3i& lowest,
                int edge, CellBox& box) {
     if ((lowest >= box.low).all() && (lowest + edge <= box.high).all()) return;
@@ -40,10 +40,10 @@ CellBox wholeBricks(const CellBox& box) {
 
 double cellsIn(const CellBox& box) { return (box.high - box.low).cast<double>().prod(); }
 
-/// Room for a box, and on the sides where `held` was too small for a quarter more.
+/// The space to allocate for a box: a quarter larger on those sides where `held` was too small.
 CellBox roomFor(const CellBox& box, const CellBox& held) {
     CellBox room = wholeBricks(box);
-    if (cellsIn(room) > kMostCells) {
+    if (cellsIn(room) > kMaxCells) {
         const Array3i size = box.high - box.low;
         throw std::invalid_argument(
             fmt::format("voxel view: the map's bounding box has {} x {} x {} "
@@ -55,7 +55,7 @@ CellBox roomFor(const CellBox& box, const CellBox& held) {
     const Array3i spare = ((box.high - box.low) / 4).max(8);
     const CellBox more = wholeBricks({(box.low < held.low).select(box.low - spare, held.low),
                                       (box.high > held.high).select(box.high + spare, held.high)});
-    return cellsIn(more) > kMostCells ? room : more;
+    return cellsIn(more) > kMaxCells ? room : more;
 }
 
 /// Copies the rows of a dense array into one of another layout.
@@ -92,7 +92,7 @@ bool layOut(const CellBox& box, VoxelGrid& grid) {
         grid.first = room.low;
         grid.size = room.high - room.low;
         grid.bricks = grid.size / 4;
-        grid.distance.assign(std::size_t(cellsIn(room)) + 3, VoxelGrid::kMostDistance);
+        grid.distance.assign(std::size_t(cellsIn(room)) + 3, VoxelGrid::kMaxDistance);
         grid.brickTextures.assign(std::size_t(cellsIn(room)) / 64, 0);
         grid.patchOf = old.patchOf;
         grid.patches = old.patches;

@@ -43,7 +43,8 @@ struct RayFrame {
     }
 };
 
-/// Where rays are: at z-depth t, about to look at `cell`, which they entered across `axis`.
+/// State of a packet of rays: at z-depth t, before testing `cell`, which they entered across
+/// `axis`.
 struct Rays {
     Vector3<Float> direction, inverse;
     Vector3<Int> cell;

@@ -9,12 +9,12 @@
 namespace photonav {
 namespace {
 
-constexpr std::size_t kMostSpares = 2;
-constexpr std::size_t kMostUpdates = 8;  // renderers older than that are copied as a whole
+constexpr std::size_t kMaxSpares = 2;
+constexpr std::size_t kMaxUpdates = 8;  // renderers older than that are copied as a whole
 
 }  // namespace
 
-/// Renderers that nobody holds.
+/// Renderers that are no longer in use.
 struct VoxelSnapshots::Spares {
     struct Spare {
         std::unique_ptr<VoxelRenderer> renderer;
@@ -39,7 +39,7 @@ struct VoxelSnapshots::Spares {
 
     void add(std::unique_ptr<VoxelRenderer> renderer, std::size_t version) {
         const std::lock_guard lock(mutex);
-        if (spares.size() < kMostSpares) spares.push_back({std::move(renderer), version});
+        if (spares.size() < kMaxSpares) spares.push_back({std::move(renderer), version});
     }
 };
 
@@ -50,15 +50,15 @@ VoxelSnapshots::VoxelSnapshots(const TexturedOcTree& map, UnknownPolicy unknown,
                                std::unique_ptr<VoxelRenderer> first)
     : builder_(map, unknown, first->grid_),
       spares_(std::make_shared<Spares>()),
-      current_(handOut(std::move(first))) {}
+      current_(share(std::move(first))) {}
 
-/// Who lets go of a renderer last gives it back.
-std::shared_ptr<const VoxelRenderer> VoxelSnapshots::handOut(
+/// When its last user releases the renderer, it is added to the spares.
+std::shared_ptr<const VoxelRenderer> VoxelSnapshots::share(
     std::unique_ptr<VoxelRenderer> renderer) {
-    const auto giveBack = [spares = spares_, version = version_](VoxelRenderer* unused) {
+    const auto recycle = [spares = spares_, version = version_](VoxelRenderer* unused) {
         spares->add(std::unique_ptr<VoxelRenderer>(unused), version);
     };
-    return {renderer.release(), giveBack};
+    return {renderer.release(), recycle};
 }
 
 std::unique_ptr<VoxelRenderer> VoxelSnapshots::copyOfCurrent() const {
@@ -85,9 +85,9 @@ std::shared_ptr<const VoxelRenderer> VoxelSnapshots::update(const TexturedOcTree
     if (change.empty()) return current_;
     std::unique_ptr<VoxelRenderer> next = copyOfCurrent();
     updates_.push_back(builder_.update(map, change, next->grid_));
-    if (updates_.size() > kMostUpdates) updates_.pop_front();
+    if (updates_.size() > kMaxUpdates) updates_.pop_front();
     ++version_;
-    current_ = handOut(std::move(next));
+    current_ = share(std::move(next));
     return current_;
 }
 

@@ -11,25 +11,26 @@
 
 namespace photonav {
 
-/// Renderers of a map as it was at one time each. A renderer never changes while anyone holds it.
-/// One that nobody holds any more is brought up to date and handed out again, so that an update
-/// costs what changed in the map, not the map: do not hold old ones for longer than needed.
+/// Renderers of a map that changes, each showing the map at one time. A renderer never changes
+/// while it is in use. One that is no longer in use is updated and returned again, so that the cost
+/// of an update grows with the change, not with the map; so do not keep old renderers longer than
+/// needed.
 ///
-/// update() must not run while the map is written. Handing renderers to other threads, and letting
-/// go of them there, is safe at any time.
+/// update() must not run while the map is written. Other threads may use and release renderers at
+/// any time.
 class VoxelSnapshots {
   public:
     /// @throws std::invalid_argument when the map's bounding box has more than 2^31 cells
     VoxelSnapshots(const TexturedOcTree& map, UnknownPolicy unknown);
 
-    /// Of the map at the last update; never null.
+    /// The renderer of the map at the last update; never null.
     const std::shared_ptr<const VoxelRenderer>& current() const { return current_; }
 
-    /// Follows the map. Views of the renderer that is returned equal those of a VoxelRenderer made
-    /// from the map now, to the bit.
-    /// @param change all that changed in the map since the last update
+    /// Updates to the present map. Views of the returned renderer are bit-identical to those of a
+    /// new VoxelRenderer of the map.
+    /// @param change everything that changed in the map since the last update
     /// @throws std::invalid_argument when the map has grown too large (see above), or when the
-    /// change is of another resolution
+    ///        change is of another resolution
     std::shared_ptr<const VoxelRenderer> update(const TexturedOcTree& map, const MapChange& change);
 
   private:
@@ -38,7 +39,7 @@ class VoxelSnapshots {
     VoxelSnapshots(const TexturedOcTree& map, UnknownPolicy unknown,
                    std::unique_ptr<VoxelRenderer> first);
     std::unique_ptr<VoxelRenderer> copyOfCurrent() const;
-    std::shared_ptr<const VoxelRenderer> handOut(std::unique_ptr<VoxelRenderer> renderer);
+    std::shared_ptr<const VoxelRenderer> share(std::unique_ptr<VoxelRenderer> renderer);
 
     VoxelGridBuilder builder_;
     std::shared_ptr<Spares> spares_;

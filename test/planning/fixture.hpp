@@ -33,7 +33,7 @@ inline Matrix6 stripesThenTexture(const Pose& T_c_w) {
     } else if (x > 6.) {
         information = vector6(900., 900., 400., 3e3, 3e3, 2e3).asDiagonal();
     }
-    return inTurnedAxes(information, T_c_w.linear());
+    return inRotatedAxes(information, T_c_w.linear());
 }
 
 inline Eigen::AlignedBox3d box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {

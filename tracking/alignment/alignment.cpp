@@ -11,8 +11,7 @@ namespace photonav {
 
 namespace {
 
-/// Standard deviations that steps of the exposure are taken to have at most, which keeps images of
-/// one grey value solvable.
+/// Largest standard deviation of a step of the exposure, which keeps uniform images solvable.
 constexpr double kExposureSigma = 0.3;
 
 ResidualStatistics statisticsOf(const NormalEquations& e, const Exposure& exposure) {
@@ -29,7 +28,7 @@ ResidualStatistics statisticsOf(const NormalEquations& e, const Exposure& exposu
     const double variance = varianceR + 2. * g * covariance + g * g * varianceI;  // of the image
     const double both = variance + g * g * varianceI;
     s.explained = variance - e.sumSquares / n;
-    // Images of one grey value each are the same one or have nothing to do with each other.
+    // Two uniform images are either equal or unrelated.
     const double without = e.sumSquares > 0. ? 1. : 0.;
     s.unexplained = both > 0. ? std::min(1., e.sumSquares / n / both) : without;
     return s;
@@ -120,16 +119,16 @@ Spectrum spectrum(const Matrix6& information, double meanDepth) {
     return s;
 }
 
-Vector6 imageStep(const Spectrum& s, const Vector6& right, double least, double damping) {
+Vector6 imageStep(const Spectrum& s, const Vector6& right, double minEigenvalue, double damping) {
     const double raise = damping * s.values.mean();
     Vector6 along = s.directions.transpose() * s.unit.cwiseProduct(right);
     for (int i = 0; i < 6; ++i)
-        along[i] = s.values[i] > least ? along[i] / (s.values[i] + raise) : 0.;
+        along[i] = s.values[i] > minEigenvalue ? along[i] / (s.values[i] + raise) : 0.;
     return s.unit.cwiseProduct(s.directions * along);
 }
 
-Vector6 mapStep(const Spectrum& s, const PoseEquations& equations, const Vector6& e,
-                const Matrix6& P, double damping) {
+Vector6 posteriorStep(const Spectrum& s, const PoseEquations& equations, const Vector6& e,
+                      const Matrix6& P, double damping) {
     Matrix6 information = equations.information;
     information.diagonal() += damping * s.values.mean() * s.unit.cwiseAbs2().cwiseInverse();
     const Matrix6 left = Matrix6::Identity() + P * information;

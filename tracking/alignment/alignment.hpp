@@ -15,11 +15,11 @@ namespace photonav {
 
 enum class Verdict {
     converged,
-    degenerate,       ///< converged, but the image leaves directions open: see openDirections
+    degenerate,       ///< converged, but the image does not determine all directions
     lostOverlap,      ///< too little of the model in view
-    lostResidual,     ///< the model does not explain the image
+    lostResidual,     ///< the predicted image differs too much
     lostDivergence,   ///< no minimum found
-    lostImplausible,  ///< a minimum that the prior rules out
+    lostImplausible,  ///< too far from the prior
     lostExposure,     ///< the fit needs an implausible gain or offset
 };
 
@@ -27,8 +27,9 @@ inline bool isLost(Verdict verdict) {
     return verdict != Verdict::converged && verdict != Verdict::degenerate;
 }
 
-/// How far an image's gain and offset may be from 1 and 0, where they are estimated: standard
-/// deviations. Where an image is half blank, they would otherwise take the place of the pose.
+/// Prior of an image's gain and offset, where they are estimated: standard deviations of their
+/// differences from 1 and 0. Without a prior, gain and offset could explain the motion of a half
+/// blank image instead of the pose.
 struct ExposurePrior {
     double gainSigma = kInfinity;
     double offsetSigma = kInfinity;  ///< [grey value]
@@ -37,7 +38,7 @@ struct ExposurePrior {
     Eigen::Vector2d information() const {
         return {1. / (gainSigma * gainSigma), 1. / (offsetSigma * offsetSigma)};
     }
-    /// From the likeliest exposure.
+    /// (gain - 1, offset).
     static Eigen::Vector2d difference(const Exposure& exposure) {
         return {exposure.gain - 1., exposure.offset};
     }
@@ -59,12 +60,12 @@ struct TrustOptions {
     /// translations in units of the mean depth].
     double openSigma = 0.02;
     /// Largest squared Mahalanobis distance of the pose from its prior (6 degrees of freedom).
-    double maxSurprise = 60.;
-    /// Gains, where they are estimated, stay between its inverse and it. (Any image fits any other
-    /// when nearly nothing is multiplied by very much.)
+    double maxPriorDistance = 60.;
+    /// Estimated gains are limited to [1 / maxGain, maxGain]: with a very large gain, a nearly
+    /// uniform image would fit any other.
     double maxGain = 3.;
-    /// Least standard deviations of the result, for what repeats from image to image and no number
-    /// of pixels averages out, as errors of the map do.
+    /// Least standard deviations of the result. Errors that repeat from image to image, as those of
+    /// the map, do not average out over the pixels.
     double floorTranslation = 0.;  ///< [m]
     double floorRotation = 0.;     ///< [rad]
 };
@@ -82,7 +83,7 @@ struct ResidualStatistics {
 inline constexpr std::array kAxes = {"x", "y", "z", "pitch", "yaw", "roll"};
 
 struct Alignment {
-    /// Of the camera to the model; the last iterate when lost.
+    /// Pose of the camera in the model; the last iterate when lost.
     Pose T_c_w = Pose::Identity();
     /// Left perturbation, camera frame, (rho, phi). Open directions without a prior get one mean
     /// depth and one radian of standard deviation.
@@ -93,13 +94,13 @@ struct Alignment {
     int iterations = 0;  ///< views compared, over all levels
     ResidualStatistics residual;
     double overlap = 0.;  ///< share of the image's pixels that count
-    /// Of Lambda with translations in units of the mean depth [1/rad^2], ascending; columns of
-    /// `directions` are the unit eigenvectors, (rho / depth, phi).
+    /// Eigenvalues of Lambda with translations in units of the mean depth [1/rad^2], ascending;
+    /// columns of `directions` are the unit eigenvectors, (rho / depth, phi).
     Vector6 eigenvalues = Vector6::Zero();
     Matrix6 directions = Matrix6::Identity();
     double meanDepth = 1.;  ///< harmonic mean over the view [m]
     Verdict verdict = Verdict::lostDivergence;
-    /// As many of kAxes as there are open directions: those that lie most in them.
+    /// Names from kAxes, one per open direction: the axes closest to the space of open directions.
     std::vector<std::string> openDirections;
 };
 
@@ -134,19 +135,21 @@ struct Spectrum {
 };
 Spectrum spectrum(const Matrix6& information, double meanDepth);
 
-/// Step of the image alone, confined to eigenvalues above `least`, each raised by `damping` times
-/// their mean.
-Vector6 imageStep(const Spectrum& spectrum, const Vector6& right, double least, double damping);
+/// Step by the image alone, confined to eigenvalues above `minEigenvalue`, each raised by `damping`
+/// times their mean.
+Vector6 imageStep(const Spectrum& spectrum, const Vector6& right, double minEigenvalue,
+                  double damping);
 
 /// Step toward the most likely pose given the image and the prior. It solves
 /// (Lambda + damping + P^-1) xi = b - P^-1 e as (1 + P (Lambda + damping)) xi = P b - e, which
 /// holds for a singular P as well.
 /// @param e deviation(T, T_prior)
 /// @param P covariance of the prior, transported() by e
-Vector6 mapStep(const Spectrum& spectrum, const PoseEquations& equations, const Vector6& e,
-                const Matrix6& P, double damping);
+Vector6 posteriorStep(const Spectrum& spectrum, const PoseEquations& equations, const Vector6& e,
+                      const Matrix6& P, double damping);
 
-/// Fills in everything of an alignment that follows from its last comparison.
+/// Completes an alignment from the equations of its last iterate: statistics, information,
+/// covariance and verdict.
 /// @param prior transported covariance at alignment.T_c_w, if there is one
 void conclude(Alignment& alignment, const NormalEquations& equations, std::size_t pixels,
               const PhotometricOptions& photometric,
@@ -154,11 +157,11 @@ void conclude(Alignment& alignment, const NormalEquations& equations, std::size_
               const std::optional<Matrix6>& prior, const TrustOptions& options);
 
 /// The covariance raised where it is below floor (eigenvalues relative to the floor, clipped at 1).
-/// A floor of 0 is none.
+/// 0: no floor.
 Matrix6 withFloor(const Matrix6& covariance, double translation, double rotation);
 
-/// Squared Mahalanobis distance e^T covariance^-1 e; directions without variance count by a
-/// millionth of the largest.
+/// Squared Mahalanobis distance e^T covariance^-1 e; variances of zero are replaced by a millionth
+/// of the largest.
 double squaredDistance(const Vector6& e, const Matrix6& covariance);
 
 }  // namespace photonav

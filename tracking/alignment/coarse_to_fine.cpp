@@ -13,14 +13,14 @@ namespace photonav {
 
 namespace {
 
-constexpr double kLeastDamping = 1e-3;
-constexpr double kMostDamping = 1e4;
-constexpr int kMeasurements = 3;  // of the slope, each where the last one led
-/// Which pixels count changes from pose to pose, and with it the cost by more than small steps do,
-/// those by J M, which do not quite follow its gradient, included.
+constexpr double kMinDamping = 1e-3;
+constexpr double kMaxDamping = 1e4;
+constexpr int kMeasurements = 3;  // of the slope, at most
+/// Relative noise of the cost. The used pixels change from pose to pose, and with them the cost, by
+/// more than small steps do. (Steps by J M do not quite follow the gradient of the cost, either.)
 constexpr double kCostNoise = 1e-3;
 
-/// A pose on trial, and what the image says there.
+/// A pose and the normal equations there.
 struct Iterate {
     Pose T_c_w = Pose::Identity();
     Exposure exposure;
@@ -65,7 +65,7 @@ class Search {
     Vector6 step(const PoseEquations& equations, double damping) const;
     bool isSmall(const Vector6& xi, const Matrix6& information) const;
     std::optional<Matrix6> transportedPrior() const;
-    /// That makes sums of squares -2 log likelihoods.
+    /// Factor that turns sums of squares into -2 log likelihoods.
     double weight() const {
         const PhotometricOptions& p = options_.photometric;
         return p.scale / (p.sigma * p.sigma);
@@ -77,10 +77,10 @@ class Search {
     const UncertainPose* prior_;
     std::size_t level_ = 0;
     Loss loss_;
-    Matrix6 slope_ = Matrix6::Identity();  ///< M: J M is what J truly says
+    Matrix6 slope_ = Matrix6::Identity();  ///< M of measuredSlope()
     Iterate at_;
     int iterations_ = 0;
-    bool done_ = false;  ///< with this level: the last step was small
+    bool done_ = false;  ///< with this level, as the last step was small
 };
 
 Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
@@ -93,8 +93,8 @@ Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
     return at;
 }
 
-/// -2 log likelihood of image and priors, as if `pixels` had been seen: iterates see different
-/// numbers of them.
+/// -2 log likelihood of image and priors, scaled to `pixels` pixels, because iterates use different
+/// numbers of pixels.
 double Search::cost(const Iterate& at, double pixels) const {
     if (at.equations.count < 1.) return kInfinity;
     const double exposureTerm =
@@ -111,7 +111,7 @@ Vector6 Search::step(const PoseEquations& equations, double damping) const {
     const double inverseDepth = at_.equations.meanInverseDepth;
     const Spectrum s = spectrum(equations.information, inverseDepth > 0. ? 1. / inverseDepth : 1.);
     if (const auto prior = transportedPrior()) {
-        return mapStep(s, equations, at_.fromPrior, *prior, damping);
+        return posteriorStep(s, equations, at_.fromPrior, *prior, damping);
     }
     // A level of a quarter of the pixels has about a quarter of the information.
     const double sigma = options_.trust.openSigma * scale();
@@ -131,8 +131,8 @@ bool Search::isSmall(const Vector6& xi, const Matrix6& information) const {
     return comparison_.camera(level_).fx() * radians < options_.coarseStep;
 }
 
-/// Takes over the scale of the residuals just seen, not below the noise, when it has fallen below
-/// `below` times the one in use.
+/// Updates the scale of the robust loss by the last residuals (not below the image noise), if it
+/// has fallen below `below` times the present scale.
 void Search::adaptLoss(double below) {
     if (options_.robust == RobustWeight::none) return;
     const double seen = std::max(options_.photometric.sigma, comparison_.robustSigma());
@@ -158,15 +158,15 @@ bool Search::improve(double& damping) {
         done_ = isSmall(xi, equations.information);
         if (better) {
             at_ = next;
-            // A step that gains no more than the noise of the cost need not become smaller by
-            // itself: where visibility jumps, iterates would go to and fro.
+            // A step that gains less than the noise of the cost raises the damping: where
+            // visibility changes from pixel to pixel, iterates would otherwise oscillate.
             const bool isGain = after < (1. - kCostNoise) * before;
-            damping = isGain ? (damping > kLeastDamping ? 0.1 * damping : 0.)
-                             : std::max(kLeastDamping, 10. * damping);
+            damping = isGain ? (damping > kMinDamping ? 0.1 * damping : 0.)
+                             : std::max(kMinDamping, 10. * damping);
         }
         if (better || done_) return true;
-        damping = std::max(kLeastDamping, 10. * damping);
-        if (damping > kMostDamping) return false;
+        damping = std::max(kMinDamping, 10. * damping);
+        if (damping > kMaxDamping) return false;
     }
 }
 
@@ -184,13 +184,13 @@ bool Search::descend() {
     return false;
 }
 
-/// J as it is over the distances that the pose is uncertain by.
+/// Measures the slope of the image over the uncertainty of the pose.
 bool Search::measureSlope() {
-    const auto walk = comparison_.predictionAsImage(level_, at_.T_c_w);
-    if (!walk) return false;
+    const auto compare = comparison_.predictionAsImage(level_, at_.T_c_w);
+    if (!compare) return false;
     slope_ = measuredSlope(transportedPrior(), options_.trust, [&](const Pose& T_away_here) {
         ++iterations_;
-        return scaled(walk(T_away_here * at_.T_c_w), weight());
+        return scaled(compare(T_away_here * at_.T_c_w), weight());
     });
     return true;
 }
@@ -215,7 +215,7 @@ Alignment Search::run(const Pose& T_start) {
     result.exposure = at_.exposure;
     result.iterations = iterations_;
     result.verdict = converged ? Verdict::converged : Verdict::lostDivergence;
-    if (prior_ && at_.priorTerm > options_.trust.maxSurprise) {
+    if (prior_ && at_.priorTerm > options_.trust.maxPriorDistance) {
         result.verdict = Verdict::lostImplausible;
     }
     conclude(result, confined(at_.equations, slope_), comparison_.pixels(), options_.photometric,

@@ -19,9 +19,9 @@ struct AlignmentOptions {
     std::optional<ExposurePrior> exposure;
     int levels = 4;           ///< of the pyramid, each half the size; fewer when images are small
     int maxIterations = 25;   ///< views rendered per level and descent
-    double coarseStep = 0.3;  ///< a level but the finest is done below this step [its pixels]
-    /// The finest is done below this step [standard deviations, given the residuals seen]. Where
-    /// surfaces end, visibility jumps from pixel to pixel and keeps steps at about 0.3.
+    double coarseStep = 0.3;  ///< every level but the finest ends below this step [its pixels]
+    /// The finest level ends below this step [standard deviations, given the residuals]. At the
+    /// edges of surfaces visibility changes from pixel to pixel, which keeps steps at about 0.3.
     double fineStep = 0.3;
     bool measureSlope = true;  ///< where a model can be rendered (measured_slope.hpp)
 };
@@ -38,13 +38,14 @@ class Comparison {
     virtual const Camera& camera(std::size_t level) const = 0;
     /// How many pixels could count at the finest level.
     virtual std::size_t pixels() const = 0;
-    /// What the image says at a pose; xi of the equations is its left perturbation.
+    /// The normal equations at a pose; xi is its left perturbation.
     virtual NormalEquations compare(std::size_t level, const Pose& T_c_w, const Exposure& exposure,
                                     const Loss& loss) = 0;
-    /// Of the residuals of the last comparison.
+    /// Robust standard deviation of the residuals of the last comparison.
     virtual double robustSigma() const = 0;
-    /// A function that compares what is predicted at a pose, as if it were the image, with what is
-    /// predicted at others; empty where the model cannot be seen from elsewhere.
+    /// A function that takes the view predicted at one pose as the observed image and compares it
+    /// with the view predicted at another pose; empty if the model cannot be rendered from other
+    /// poses.
     using AgainstPrediction = std::function<NormalEquations(const Pose& T_c_w)>;
     virtual AgainstPrediction predictionAsImage(std::size_t, const Pose&) { return {}; }
 };

@@ -21,7 +21,7 @@ class DenseAligner::RenderedModel : public Comparison {
                                ViewComparison(c, options.photometric),
                                {}});
             c = halved(c);
-            if (std::min(c.width, c.height) < kLeastSide) break;
+            if (std::min(c.width, c.height) < kMinSide) break;
         }
     }
 

@@ -13,9 +13,8 @@ namespace photonav {
 /// instead, with its own gradients, makes the covariance several times too small.) Coarse to fine,
 /// Gauss-Newton with Levenberg's damping.
 ///
-/// With T_c_w = exp(xi^) T the predicted image changes by -J xi (photometric.hpp), so that
-/// observed - predicted = -J xi + noise. Directions that the image leaves open do not move unless a
-/// prior says so.
+/// With T_c_w = exp(xi^) T the predicted image changes by -J xi (photometric.hpp), so that observed
+/// - predicted = -J xi + noise. Along open directions, only a prior can change the pose.
 class DenseAligner {
   public:
     /// @param model must outlive the aligner
@@ -26,16 +25,16 @@ class DenseAligner {
     DenseAligner(DenseAligner&&) noexcept;
     DenseAligner& operator=(DenseAligner&&) noexcept;
 
-    /// The pose most likely from the image alone. Never throws for what is in the image: the
-    /// verdict says. Not thread-safe (buffers are reused).
+    /// The most likely pose given the image alone. Does not throw because of the image's content:
+    /// see the verdict. Not thread-safe (buffers are reused).
     /// @param observed of the camera's size @throws std::invalid_argument otherwise
     Alignment align(const ImageF& observed, const Pose& T_start);
 
-    /// The pose most likely given the image and a prior, beginning at its mean. The covariance is
+    /// The most likely pose given the image and a prior, starting at its mean. The covariance is
     /// (Lambda + P^-1)^-1, P the prior's covariance transported() to the result.
     Alignment align(const ImageF& observed, const UncertainPose& prior);
 
-    /// The same, beginning elsewhere.
+    /// The same, starting at another pose.
     Alignment align(const ImageF& observed, const UncertainPose& prior, const Pose& T_start);
 
     const AlignmentOptions& options() const;

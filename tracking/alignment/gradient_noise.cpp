@@ -7,8 +7,8 @@
 namespace photonav {
 namespace {
 
-constexpr double kLeastNoise = 1e-8;  // of a gradient's variance, to divide by
-constexpr double kNoiseMargin = 1.2;  // for its chance, that pure noise says nothing at all
+constexpr double kMinNoise = 1e-8;    // variance of a gradient, to avoid division by 0
+constexpr double kNoiseMargin = 1.2;  // for chance: pure noise then has no information
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void GradientNoise::subtractFrom(NormalEquations& e, const Eigen::Vector2d& notS
                                  const Vector6& unit) const {
     if (points_ < 1. || e.count < 1.) return;
     const auto variance = [&](double sum) {
-        return kNoiseMargin * std::clamp(sum / e.count, kLeastNoise, most);
+        return kNoiseMargin * std::clamp(sum / e.count, kMinNoise, most);
     };
     const Matrix6 perPoint =
         (variance(notShared.x()) * ofX_ + variance(notShared.y()) * ofY_) / points_;

@@ -8,7 +8,7 @@
 
 namespace photonav {
 
-inline constexpr unsigned kLeastSide = 12;  ///< pixels: smaller images are not worth a level
+inline constexpr unsigned kMinSide = 12;  ///< pixels: smaller images get no level
 
 /// The camera of halved(): pixel (u, v) covers pixels 2u, 2u + 1, 2v, 2v + 1; an odd last row or
 /// column is dropped.

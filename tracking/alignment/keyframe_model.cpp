@@ -48,7 +48,7 @@ class KeyframeModel::Points : public Comparison {
         Camera c = camera;
         const int end = options.finest + std::max(1, options.alignment.levels);
         for (int l = 0; l < end; ++l) {
-            if (l >= options.finest && std::min(c.width, c.height) < kLeastSide) break;
+            if (l >= options.finest && std::min(c.width, c.height) < kMinSide) break;
             if (l >= options.finest) levels_.emplace_back(*fine, c, options);
             if (l + 1 == end) break;
             View half{halvedByMean(fine->intensity), halvedDepth(fine->depth, spread)};

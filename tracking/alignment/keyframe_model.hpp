@@ -11,18 +11,18 @@ namespace photonav {
 struct KeyframeOptions {
     KeyframeOptions();
 
-    /// `levels` counts from `finest` on. Steps may end earlier than in a map: by default at one
-    /// standard deviation, which is far below the errors of real depth images.
+    /// `levels` counts from `finest` on. By default iterations end at steps of one standard
+    /// deviation, which is far below the errors of real depth images.
     AlignmentOptions alignment;
-    int finest = 1;             ///< level that decides: 0 full size, 1 half the size
+    int finest = 1;             ///< finest level used: 0 full size, 1 half the size
     double minDepth = 0.1;      ///< nearer depths are not used [m]
-    double maxDepth = 10.;      ///< farther ones neither [m]
+    double maxDepth = 10.;      ///< farther depths are not used [m]
     double depthSpread = 0.05;  ///< pixels merged by the pyramid must agree in depth to this share
-    /// Relative second difference of inverse depth from pixel to pixel, per pixel's angle [1/rad]:
-    /// where measured depth bends by more, it is mostly wrong.
-    double mostBend = 1.5;
-    /// Pixels whose grey value changes by less from one to the next tell little but take time
-    /// [grey value per pixel of the level].
+    /// Largest relative second difference of inverse depth from pixel to pixel, per pixel's angle
+    /// [1/rad]. Measured depth that bends more is mostly wrong.
+    double maxBend = 1.5;
+    /// Pixels with a smaller gradient are not used, because they inform little but take time [grey
+    /// value per pixel of the level].
     double minGradient = 0.01;
 };
 

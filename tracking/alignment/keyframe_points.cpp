@@ -17,8 +17,8 @@ using simd::Int;
 using simd::kWidth;
 
 constexpr std::size_t kChunk = 32;       ///< vectors whose products are summed together
-constexpr std::size_t kSampleEvery = 4;  ///< chunks per chunk of residuals kept
-constexpr std::size_t kNoiseEvery = 16;  ///< points per point that the noise is reckoned from
+constexpr std::size_t kSampleEvery = 4;  ///< residuals of every n-th chunk are kept
+constexpr std::size_t kNoiseEvery = 16;  ///< noise is estimated from every n-th point
 
 double square(double x) { return x * x; }
 
@@ -109,7 +109,7 @@ ImageF halvedDepth(const ImageF& depth, float spread) {
     return half;
 }
 
-/// What is known of an image row before the choice is made; column u at index u.
+/// Values of an image row from which points are chosen; column u at index u.
 struct PointSet::Row {
     std::vector<float> inverseDepth, gx, gy;
     std::vector<std::int32_t> used;
@@ -121,14 +121,14 @@ struct PointSet::Row {
 
 PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions& options)
     : camera_(camera),
-      mostNoise_(2. * square(options.alignment.photometric.sigma) +
-                 2. * square(options.minGradient)) {
+      maxNoise_(2. * square(options.alignment.photometric.sigma) +
+                2. * square(options.minGradient)) {
     const unsigned width = camera.width;
     const std::size_t capacity = std::size_t(width) * camera.height + kWidth;
     for (auto* field : {&x_, &y_, &w_, &intensity_, &gx_, &gy_}) field->resize(capacity);
 
     const PhotometricOptions& p = options.alignment.photometric;
-    const auto jump = static_cast<float>(std::min(p.depthJump, options.mostBend / camera.fx()));
+    const auto jump = static_cast<float>(std::min(p.depthJump, options.maxBend / camera.fx()));
     const auto dark = static_cast<float>(p.saturation);
     const auto aspect = static_cast<float>(camera.fy() / camera.fx());
     const auto least = static_cast<float>(4. * square(options.minGradient));
@@ -173,7 +173,8 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
     for (std::size_t i = 0; i < size_; i += kNoiseEvery) noise_.add(x_[i], y_[i], w_[i]);
 }
 
-/// Every pixel is written, and the next goes over it unless it is used: no branch to predict.
+/// Writes every pixel; a pixel that is not used is overwritten by the next one. This avoids
+/// branches that cannot be predicted.
 void PointSet::append(const Row& row, unsigned width) {
     std::size_t n = size_;
     const auto perColumn = static_cast<float>(1. / camera_.fx());
@@ -224,7 +225,7 @@ NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
             const Sample seen = bilinear(observed, inView ? u : Float{}, inView ? v : Float{});
             const Float r = seen.grey - (gain * I + offset);
             const Float gx = at(&gx_[k]), gy = at(&gy_[k]);
-            // Noise is what it does not share with the gradient seen, turned to the keyframe.
+            // Noise is the difference to the observed gradient, rotated into the keyframe.
             const Float perPixel = inView ? 2.F / gain * inverse : Float{};
             const Float du = perPixel * seen.du, dv = perPixel * aspect * seen.dv;
             noiseX += gx * ((inView ? gx : Float{}) - (R(0, 0) * du + R(1, 0) * dv));
@@ -243,7 +244,7 @@ NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
     const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
-    noise_.subtractFrom(equations, {simd::sum(noiseX), simd::sum(noiseY)}, mostNoise_,
+    noise_.subtractFrom(equations, {simd::sum(noiseX), simd::sum(noiseY)}, maxNoise_,
                         unit.head<6>());
     return equations;
 }

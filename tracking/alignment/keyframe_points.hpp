@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pixels of a keyframe that say something, and their look-up in another image. Included by .cpp
+// The pixels of a keyframe that have texture, and their look-up in another image. Included by .cpp
 // files only.
 #pragma once
 
@@ -21,19 +21,19 @@ ImageF halvedDepth(const ImageF& depth, float spread);
 /// One level of a keyframe.
 class PointSet {
   public:
-    /// Keeps the pixels that count by the rules of photometricInformation() and have a gradient.
+    /// Keeps the pixels that are used by the rules of photometricInformation() and have a gradient.
     PointSet(const View& view, const Camera& camera, const KeyframeOptions& options);
 
-    /// Looks every point up in `observed` (bilinear), an image of the same camera.
-    /// xi of the equations is the perturbation of T on the right, T = T_mean exp(xi^). The noise of
-    /// the keyframe has gradients too: what they add to AtA is taken out.
+    /// Looks up every point in `observed` (bilinear), an image of the same camera. xi of the
+    /// equations is the perturbation of T on the right, T = T_mean exp(xi^). The noise of the
+    /// keyframe has gradients too; their contribution to AtA is subtracted.
     /// @param T_c_k from the keyframe to the camera
     NormalEquations compare(const ImageF& observed, const Pose& T_c_k, const Exposure& exposure,
                             const Loss& loss);
 
     const Camera& camera() const { return camera_; }
     std::size_t size() const { return size_; }
-    /// Of a part of the residuals of the last comparison.
+    /// Robust standard deviation of a sample of the residuals of the last comparison.
     double robustSigma() const { return robustSigmaOf(residualSample_); }
 
   private:
@@ -43,7 +43,7 @@ class PointSet {
     Camera camera_;
     std::size_t size_ = 0;
     double meanInverseDepth_ = 0.;
-    double mostNoise_;  ///< variance of gx and of gy, if they were of white noise
+    double maxNoise_;  ///< variance of gx and of gy, if they were of white noise
     GradientNoise noise_;
     /// Structure of arrays, padded to whole vectors with points that are never in view: normalised
     /// coordinates, inverse depth [1/m], grey value, gradient as J has it (per pixel / 2).

@@ -11,9 +11,9 @@
 namespace photonav {
 namespace {
 
-constexpr double kRelevant = 0.02;     // information, in units of the prior's: less changes nothing
-constexpr double kLongest = 0.1;       // walk [mean depths, rad]
-constexpr double kLeastVisible = 0.8;  // of the pixels: those out of view change the sums
+constexpr double kRelevant = 0.02;   // information, in units of the prior's
+constexpr double kLongest = 0.1;     // displacement [mean depths, rad]
+constexpr double kMinVisible = 0.8;  // share of the pixels
 
 /// Six directions conjugate in J^T J, and the information of J along them.
 struct Directions {
@@ -31,7 +31,7 @@ Directions directionsOf(const NormalEquations& here, const std::optional<Matrix6
     Directions along;
     along.unit << Eigen::Vector3d::Constant(1. / here.meanInverseDepth), Eigen::Vector3d::Ones();
     Matrix6 P = along.unit.cwiseAbs2().asDiagonal();
-    // A prior may be certain of some directions: by as little as does not matter, it is not.
+    // A prior may have directions without variance: a negligible variance makes it invertible.
     if (prior) P = *prior + 1e-10 * P;
     const Matrix6 L = P.llt().matrixL();
     const Eigen::SelfAdjointEigenSolver<Matrix6> solver(L.transpose() * JtJ * L);
@@ -49,7 +49,7 @@ bool isBelowFloor(const Vector6& xi, const TrustOptions& floors) {
            xi.tail<3>().norm() <= floors.floorRotation;
 }
 
-/// W with singular values above 1 made 1: no direction then has more information than J gives it.
+/// W with singular values limited to 1, so that no direction has more information than J gives.
 Matrix6 atMostOne(const Matrix6& W) {
     const Eigen::JacobiSVD<Matrix6> svd(W, Eigen::ComputeFullU | Eigen::ComputeFullV);
     return svd.matrixU() * svd.singularValues().cwiseMin(1.).asDiagonal() *
@@ -59,20 +59,20 @@ Matrix6 atMostOne(const Matrix6& W) {
 }  // namespace
 
 Matrix6 measuredSlope(const std::optional<Matrix6>& prior, const TrustOptions& floors,
-                      const Walk& walk) {
-    const NormalEquations here = walk(Pose::Identity());
+                      const DisplacedComparison& compare) {
+    const NormalEquations here = compare(Pose::Identity());
     if (here.count < 1.) return Matrix6::Identity();
     const Directions along = directionsOf(here, prior);
     Matrix6 W = Matrix6::Identity();  // M from direction to direction
     for (int i = 0; i < 6; ++i) {
         const Vector6 sigma = along.sigmas.col(i);
         if (!along.isRelevant(i) || isBelowFloor(sigma, floors)) continue;
-        // No farther than image and prior together leave open.
+        // No farther than one standard deviation given image and prior.
         const double together = std::sqrt(along.information[i] / (1. + along.information[i]));
         const double step = std::min(together, kLongest / sigma.cwiseQuotient(along.unit).norm());
-        const NormalEquations ahead = walk(expSE3(step * sigma));
-        const NormalEquations behind = walk(expSE3(-step * sigma));
-        if (std::min(ahead.count, behind.count) < kLeastVisible * here.count) continue;
+        const NormalEquations ahead = compare(expSE3(step * sigma));
+        const NormalEquations behind = compare(expSE3(-step * sigma));
+        if (std::min(ahead.count, behind.count) < kMinVisible * here.count) continue;
         const Vector6 JtD =
             (behind.Atr * here.count / behind.count - ahead.Atr * here.count / ahead.count)
                 .head<6>() /

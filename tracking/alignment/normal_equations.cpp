@@ -14,7 +14,7 @@ namespace photonav {
 
 namespace {
 
-constexpr double kMostNoise = 0.25;  // variance of a gradient of noise [that of the image's noise]
+constexpr double kMaxNoise = 0.25;  // variance of a noise gradient [variance of the image noise]
 
 using simd::Float;
 using simd::Int;
@@ -112,7 +112,7 @@ void ViewComparison::load(const View& predicted, const ImageF& observed) {
     meanInverseDepth_ = surfaces > 0 ? sum / static_cast<double>(surfaces) : 0.;
 }
 
-/// Of the pixels that counted in the last comparison, a sixteenth.
+/// A sixteenth of the pixels used in the last comparison.
 GradientNoise ViewComparison::pointsSeen() const {
     GradientNoise noise;
     for (unsigned v = 1; v + 1 < camera_.height; v += 4) {
@@ -171,9 +171,9 @@ NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& 
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
     if (isNoisy) {
-        // A map's grey values are means of many; where map and image do not fit for other reasons,
-        // as cells do not, that must not pass for noise.
-        const double most = kMostNoise * photometric_.sigma * photometric_.sigma;
+        // A map's grey values are means of many. Other differences between map and image, as
+        // between cells, must not be taken for noise.
+        const double most = kMaxNoise * photometric_.sigma * photometric_.sigma;
         pointsSeen().subtractFrom(equations, {simd::sum(notSharedX), simd::sum(notSharedY)}, most,
                                   unit.head<6>());
     }

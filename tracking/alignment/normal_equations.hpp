@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One pass over an image pair: what Gauss-Newton needs to know at one pose.
+// The normal equations of Gauss-Newton at one pose, from one pass over an image pair.
 #pragma once
 
 #include "photometry/photometric.hpp"
@@ -9,7 +9,7 @@ namespace photonav {
 using Vector8 = Eigen::Matrix<double, 8, 1>;
 using Matrix8 = Eigen::Matrix<double, 8, 8>;
 
-/// How residuals are weighed. `huber` and `tukey` keep 95 % of the efficiency on Gaussian noise.
+/// How residuals are weighted. `huber` and `tukey` keep 95 % of the efficiency on Gaussian noise.
 enum class RobustWeight { none, huber, tukey };
 
 /// A robust loss for residuals of the given scale.
@@ -45,13 +45,12 @@ struct NormalEquations {
 
 class GradientNoise;
 
-/// Whether the prediction has noise of its own, whose gradients are to be taken out
-/// (GradientNoise).
+/// Whether the prediction has noise whose gradients are to be subtracted (GradientNoise).
 enum class ModelNoise { none, measured };
 
 /// Compares a predicted view with an observed image, pixel by pixel at the same place. The gradient
-/// is that of the prediction; which pixels count is decided by the prediction alone, by
-/// the rules of photometricInformation(), whose Lambda this is (times sigma^2, without weights).
+/// is that of the prediction. Pixels are chosen by the prediction alone, by the rules of
+/// photometricInformation(), whose Lambda this is (times sigma^2, without weights).
 /// `photometric.stride` must be 1.
 class ViewComparison {
   public:
@@ -78,7 +77,7 @@ class ViewComparison {
     double meanInverseDepth_ = 0.;
 };
 
-/// 1.4826 times the median of |r| over the values below 2 (others stand for unused pixels).
+/// 1.4826 times the median of |r| over the values below 2 (larger ones mark unused pixels).
 double robustSigmaOf(const std::vector<float>& residuals);
 
 }  // namespace photonav

@@ -12,10 +12,10 @@
 
 namespace photonav {
 
-/// Stands for the inverse depth of nothing: fails every test of a surface, yet is finite.
+/// Inverse depth of a pixel without surface: finite, but fails every test of a surface.
 inline constexpr float kNoSurface = -1e30F;
 
-/// Stands for the residual of what does not count: grey values differ by less.
+/// Residual of an unused pixel: larger than any difference of grey values.
 inline constexpr float kUnused = 4.F;
 
 /// What kernels leave out of the columns (J, predicted grey value, 1): half the focal length, the
@@ -41,7 +41,7 @@ class ProductSums {
 
     void beginRow() { row_.clear(); }
 
-    /// @param used lanes that count; columns of others must be finite
+    /// @param used lanes to sum; the columns of others must be finite
     void add(const Columns& columns, const simd::Float& residual, const simd::Int& used) {
         const simd::Float zero = simd::splat(0.F);
         const simd::Float one = used ? simd::splat(1.F) : zero;

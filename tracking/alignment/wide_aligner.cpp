@@ -10,23 +10,25 @@
 namespace photonav {
 namespace {
 
-constexpr double kBasin = 6.;         // standard deviation that one start converges from [pixels]
-constexpr double kSpacing = 8.;       // of the views compared [pixels]
-constexpr double kReach = 3.;         // that they cover [standard deviations]
-constexpr double kMostPlaces = 4e3;   // of these views: beyond, they lie wider apart
-constexpr std::size_t kTried = 64;    // of them, those most like the image are aligned
-constexpr std::size_t kStarts = 8;    // of full alignments, at most
-constexpr double kJitter = 1.5;       // of starts where hard edges may keep alignments [pixels]
-constexpr double kNoiseSlack = 1.1;   // of the image noise's variance
-constexpr double kMisfit = 0.02;      // of the images' variance, beyond noise, at the right place
-constexpr double kAmbiguous = 12.;    // difference of -2 log likelihood that decides at least
-constexpr double kNarrow = 0.1;       // share of the pixels that show something in a strip
-constexpr double kLeastShown = 0.13;  // explained variance of a strip, per pixel, times what a
-                                      // pixel is worth: what shows less fits anywhere
-constexpr double kStuck = 0.3;        // share of what the best explains that decides at least along
-                                      // a single wide axis, where all that repeats has been tried:
-                                      // hard edges keep alignments a pixel from the right place
-constexpr double kElsewhere = 30.;    // squared Mahalanobis distance of another place
+constexpr double kBasin = 6.;        // standard deviation within which one start suffices [pixels]
+constexpr double kSpacing = 8.;      // between the views compared [pixels]
+constexpr double kReach = 3.;        // of these views from the prior's mean [standard deviations]
+constexpr double kMaxPlaces = 4e3;   // views compared; the spacing grows beyond
+constexpr std::size_t kTried = 64;   // most similar views, which are aligned at small size
+constexpr std::size_t kStarts = 8;   // of full alignments, at most
+constexpr double kJitter = 1.5;      // of starts, as hard edges may stop alignments [pixels]
+constexpr double kNoiseSlack = 1.1;  // factor on the variance of the image noise
+constexpr double kMisfit = 0.02;     // share of the images' variance, beyond noise, left
+                                     // unexplained at the right pose
+constexpr double kAmbiguous = 12.;   // least difference of -2 log likelihood between two poses
+                                     // that decides for one of them
+constexpr double kNarrow = 0.1;      // share of the pixels with contrast: less is a strip
+constexpr double kMinShown = 0.13;   // explained variance of a strip, per pixel and times its
+                                     // weight: a strip with less fits anywhere
+constexpr double kStuck = 0.3;       // share of the explained variance that decides between poses
+                                     // if all repetitions along a single wide axis were tried, as
+                                     // hard edges stop alignments a pixel from the right pose
+constexpr double kElsewhere = 30.;   // squared Mahalanobis distance of another place
 
 /// Image motion over the uncertainty of a prior: principal axes [twist per pixel] and standard
 /// deviations [pixels].
@@ -36,8 +38,8 @@ struct ImageMotion {
 };
 
 ImageMotion imageMotionOf(const Matrix6& covariance, const Camera& camera, double depth) {
-    // A step along the optical axis moves the content at the image's side by that share of it, a
-    // turn about it as much as it turns.
+    // At the side of the image, a motion dz along the optical axis moves the content by side * dz /
+    // depth, and a rotation about this axis by side times the angle.
     const double side = 0.5 * camera.width;
     Vector6 pixels;
     pixels << camera.fx() / depth, camera.fy() / depth, side / depth, camera.fy(), camera.fx(),
@@ -52,7 +54,7 @@ ImageMotion imageMotionOf(const Matrix6& covariance, const Camera& camera, doubl
 std::vector<Vector6> placesWithin(const Vector6& sigmas) {
     const Vector6 radii = kReach * sigmas;
     const double volume = (2. * radii / kSpacing).cwiseMax(1.).prod();
-    const double spacing = kSpacing * std::cbrt(std::max(1., volume / kMostPlaces));
+    const double spacing = kSpacing * std::cbrt(std::max(1., volume / kMaxPlaces));
     std::vector<Vector6> places{Vector6::Zero()};
     for (int axis = 0; axis < 6; ++axis) {
         const int reach = static_cast<int>(radii[axis] / spacing);
@@ -80,16 +82,17 @@ double meanDepth(const View& view) {
     return count > 0. ? count / sum : 1.;
 }
 
-/// Share of the pixels that an image's contrast is in: the participation ratio of its squares.
-double spread(const ImageF& image) {
+/// Share of the pixels that have an image's contrast: the participation ratio of its squares.
+double contrastShare(const ImageF& image) {
     const auto pixels = Eigen::Map<const Eigen::ArrayXf>(image.bitmap, image.getSize());
     const Eigen::ArrayXd squares = (pixels - pixels.mean()).cast<double>().square();
     const double fourth = squares.square().sum();
     return fourth > 0. ? squares.sum() * squares.sum() / (fourth * double(squares.size())) : 0.;
 }
 
-/// -2 log likelihood of an image where there is a surface, in its likeliest exposure.
-/// @param weight that makes mean square differences -2 log likelihoods
+/// -2 log likelihood of the observed pixels for which a surface is predicted, with the likeliest
+/// exposure.
+/// @param weight factor that turns mean square differences into -2 log likelihoods
 double misfit(const ImageF& observed, const View& predicted, double weight,
               const std::optional<ExposurePrior>& prior) {
     Eigen::Matrix2d AtA = Eigen::Matrix2d::Zero();  // of gain and offset, from 1 and 0
@@ -108,7 +111,7 @@ double misfit(const ImageF& observed, const View& predicted, double weight,
     AtA *= weight / count;
     Atr *= weight / count;
     if (!prior) return weight * sum / count;
-    // A little more on the diagonal: gain and offset of a uniform image cannot be told apart.
+    // Slightly raised diagonal: gain and offset cannot be separated in a uniform image.
     AtA.diagonal() += prior->information() + Eigen::Vector2d::Constant(1e-9 * weight);
     return weight * sum / count - Atr.dot(AtA.inverse() * Atr);
 }
@@ -121,7 +124,7 @@ double informationRatio(const Alignment& a, const UncertainPose& prior) {
 
 Camera quartered(const Camera& camera) { return halved(halved(camera)); }
 
-/// A quarter of the size, worth as much as the whole image.
+/// For images of a quarter of the size, with the same information as the whole image.
 AlignmentOptions forSmall(AlignmentOptions options) {
     options.levels = 1;
     options.maxIterations = 10;
@@ -130,8 +133,8 @@ AlignmentOptions forSmall(AlignmentOptions options) {
     return options;
 }
 
-/// Coarser levels would lead all starts to the same place: beside white they average a strip of
-/// texture away.
+/// On coarser levels all starts would converge to the same pose: beside white, a strip of texture
+/// is averaged away.
 AlignmentOptions forNear(AlignmentOptions options, bool measureSlope) {
     options.levels = 2;
     options.measureSlope = measureSlope;
@@ -156,7 +159,7 @@ void sortByCost(std::vector<Start>& starts) {
               [](const Start& a, const Start& b) { return a.cost < b.cost; });
 }
 
-/// The first `most`, without those closer than `distance` [m] to one before.
+/// The first `most` starts, without those closer than `distance` [m] to an earlier one.
 std::vector<Pose> distinct(const std::vector<Start>& starts, double distance, std::size_t most) {
     std::vector<Pose> chosen;
     for (const Start& start : starts) {
@@ -180,7 +183,7 @@ WideAligner::WideAligner(const ViewSource& model, const Camera& camera,
       near_(model, camera, forNear(options, false)),
       final_(model, camera, forNear(options, options.measureSlope)) {}
 
-/// Where in the prior views of a quarter of the size are most like the image.
+/// Poses within the prior whose views, at a quarter of the size, are most similar to the image.
 std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const UncertainPose& prior,
                                             double depth) {
     const ImageF image = halvedAsRendered(halvedAsRendered(observed));
@@ -209,7 +212,7 @@ double WideAligner::pixels() const {
     return double(aligner_.camera().width) * aligner_.camera().height;
 }
 
-/// That makes mean square residuals -2 log likelihoods.
+/// Factor that turns mean square residuals into -2 log likelihoods.
 double WideAligner::weight() const {
     const PhotometricOptions& p = aligner_.options().photometric;
     return p.scale * pixels() / (p.sigma * p.sigma);
@@ -224,7 +227,7 @@ double WideAligner::costOf(const Alignment& a, const UncertainPose& prior) const
            squaredDistance(e, transported(prior.covariance, e));
 }
 
-/// Whether image and prediction are the same down to the noise, by what there is to see: where a
+/// Whether image and prediction agree down to the noise, relative to the contrast in view: where a
 /// strip of texture comes into view beside white, the wrong strip differs in few pixels.
 bool WideAligner::fits(const Alignment& a) const {
     const double sigma = aligner_.options().photometric.sigma;
@@ -233,7 +236,7 @@ bool WideAligner::fits(const Alignment& a) const {
     return square <= noise || a.residual.unexplained * (1. - noise / square) < kMisfit;
 }
 
-/// Of the surfaces in view [m].
+/// Size of a pixel on the surfaces in view [m].
 double WideAligner::pixel(const Alignment& a) const { return a.meanDepth / aligner_.camera().fx(); }
 
 bool WideAligner::isElsewhere(const Alignment& a, const Alignment& best) const {
@@ -242,9 +245,9 @@ bool WideAligner::isElsewhere(const Alignment& a, const Alignment& best) const {
            squaredDistance(apart, best.covariance) > kElsewhere;
 }
 
-/// Ambiguous matches: the best one, moved along axes of large image motion to where others ended
-/// that explain the image worse. Repeated texture matches there when the other axes are as at the
-/// best, and alignments from elsewhere may have got stuck.
+/// Starts at ambiguous matches: the best pose, shifted along axes of large image motion to where
+/// other alignments ended that explain the image worse. Repeated texture matches there if the other
+/// axes are as at the best pose, where alignments from elsewhere may have stopped early.
 std::vector<Pose> WideAligner::ambiguousMatches(const Alignment& best,
                                                 const std::vector<Alignment>& found,
                                                 const UncertainPose& prior) const {
@@ -269,9 +272,9 @@ std::vector<Pose> WideAligner::ambiguousMatches(const Alignment& best,
     return around;
 }
 
-/// Whether there is an alignment from elsewhere that explains the image almost as well.
-bool WideAligner::hasRival(const Alignment& best, const std::vector<Alignment>& found,
-                           const UncertainPose& prior) const {
+/// Whether another place explains the image almost as well.
+bool WideAligner::isAmbiguous(const Alignment& best, const std::vector<Alignment>& found,
+                              const UncertainPose& prior) const {
     const ImageMotion motion = imageMotionOf(prior.covariance, aligner_.camera(), best.meanDepth);
     const double stuck =
         motion.sigmas[4] < kBasin ? kStuck * weight() * best.residual.explained : 0.;
@@ -317,13 +320,13 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
         found.push_back(a);
     }
     if (!fits(best)) return undecided(best, prior, Verdict::lostResidual);
-    // Where the view expected shows something and the image nothing, no place is found: all places
-    // that would show nothing are as likely, and the information of the view expected is not there.
+    // If the expected view has texture and the image has none, no pose is found: all poses without
+    // texture in view are as likely, and the information of the expected view is not in the image.
     model_.render(small_.camera(), best.T_c_w, expected);
     const double explained = weight() * best.residual.explained;
-    const bool isStrip = spread(expected.intensity) < kNarrow;
-    const double least = isStrip ? kLeastShown * pixels() : kAmbiguous;
-    if (explained < least || hasRival(best, found, prior)) {
+    const bool isStrip = contrastShare(expected.intensity) < kNarrow;
+    const double least = isStrip ? kMinShown * pixels() : kAmbiguous;
+    if (explained < least || isAmbiguous(best, found, prior)) {
         return undecided(best, prior, Verdict::degenerate);
     }
     return best;

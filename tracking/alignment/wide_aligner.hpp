@@ -6,14 +6,15 @@
 
 namespace photonav {
 
-/// The pose most likely given an image and a prior. Where the image's content
-/// may have moved by more than a few pixels, texture matches in several places: small views from
-/// all over the prior are compared with the image and the most alike of them aligned; full
-/// alignments begin where the best of these end. The best is tried again where others ended, moved
-/// there as it is: that finds the other bars of a grating. It is the answer, if it explains the
-/// image down to the noise, the image shows enough, and nothing else explains it almost as well.
-/// Otherwise the result is the prior, and the verdict `degenerate` along all axes (the image does
-/// not say which place it is) or lost (it is none of them).
+/// Finds the most likely pose given an image and a prior. If the image content may have moved by
+/// more than a few pixels, texture matches in several places. Therefore small views from poses all
+/// over the prior are compared with the image, and the most similar ones are aligned; full
+/// alignments start from the best of these. The best result is then shifted to where other
+/// alignments ended and aligned again: this finds the other bars of a grating.
+///
+/// The best pose is the result if it explains the image down to the noise, the image has enough
+/// texture, and no other pose explains it almost as well. Otherwise the result is the prior, and
+/// the verdict is `degenerate` along all axes (several poses match) or lost (no pose matches).
 class WideAligner {
   public:
     /// @param model must outlive the aligner
@@ -36,14 +37,14 @@ class WideAligner {
     bool isElsewhere(const Alignment& alignment, const Alignment& best) const;
     std::vector<Pose> ambiguousMatches(const Alignment& best, const std::vector<Alignment>& found,
                                        const UncertainPose& prior) const;
-    bool hasRival(const Alignment& best, const std::vector<Alignment>& found,
-                  const UncertainPose& prior) const;
+    bool isAmbiguous(const Alignment& best, const std::vector<Alignment>& found,
+                     const UncertainPose& prior) const;
 
     const ViewSource& model_;
     DenseAligner aligner_;
     DenseAligner small_;  ///< images of a quarter of the size
-    DenseAligner near_;   ///< from where small images agree
-    DenseAligner final_;  ///< and once more, with the slope measured
+    DenseAligner near_;   ///< starts at the best poses of small images
+    DenseAligner final_;  ///< starts at the best pose, with measured slope
 };
 
 }  // namespace photonav

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth from one moving camera: what every pixel of a reference image has learned from the images
-// around it.
+// Depth from one moving camera: a filter for every pixel of a reference image, updated by the
+// images around it.
 #pragma once
 
 #include <cstdint>
@@ -12,29 +12,29 @@
 namespace photonav {
 
 struct DepthFilterOptions {
-    double minDepth = 0.5;      ///< nothing is nearer [m]; how far things may be is not limited
+    double minDepth = 0.5;      ///< of surfaces [m]; the largest depth is not limited
     double sigma = 0.01;        ///< image noise, grey values in [0, 1]
     double matchSigma = 0.25;   ///< error of a match along its epipolar line when images have no
                                 ///< noise: poses, interpolation [pixels]
-    double minScore = 0.6;      ///< correlation from which on patches are taken for the same
-    double converged = 0.02;    ///< standard deviation of a depth that is known [share of it]
-    double minInliers = 0.6;    ///< share of measurements that must have been good by then
-    double maxOutliers = 0.95;  ///< share of bad measurements at which a pixel is given up
-    int maxSteps = 120;         ///< longer searches along an epipolar line are put off [pixels]
+    double minScore = 0.6;      ///< least correlation of matching patches
+    double converged = 0.02;    ///< standard deviation of a converged depth [share of the depth]
+    double minInliers = 0.6;    ///< share of inliers that a converged depth must have
+    double maxOutliers = 0.95;  ///< share of outliers at which a pixel is given up
+    int maxSteps = 120;         ///< longer searches along an epipolar line are skipped [pixels]
 };
 
 enum class DepthState : std::uint8_t { searching, converged, givenUp };
 
 /// The inverse depth w of every pixel of a reference image, with a Gaussian for its value and a
-/// Beta distribution for the share of measurements that are worth anything:
+/// Beta distribution for the inlier ratio rho:
 ///     p(x | w, rho) = rho N(x; w, tau^2) + (1 - rho) U(x; 0, 1 / minDepth)
 /// (Vogiatzis and Hernandez, Video-based, real-time multi-view stereo, 2011, with inverse depth in
 /// place of depth; REMODE, Pizzoli, Forster and Scaramuzza, ICRA 2014). Each image is searched
-/// along the epipolar line, within two standard deviations of what is believed, for the patch of 9
-/// x 9 pixels that correlates best; tau is what image noise and `matchSigma` make of the place
-/// found. Pixels that have converged are left alone.
+/// along the epipolar line, within two standard deviations of the estimate, for the patch of 9 x 9
+/// pixels that correlates best; tau is the standard deviation of this match by image noise and
+/// `matchSigma`. Converged pixels are not updated.
 ///
-/// Poses are taken as exact. Surfaces without texture along the epipolar line stay unknown.
+/// Poses are taken as exact. Surfaces without texture along the epipolar line do not converge.
 class DepthFilter {
   public:
     /// @param T_r_w pose of the camera when it took the reference image
@@ -42,7 +42,8 @@ class DepthFilter {
     DepthFilter(ImageF reference, const Camera& camera, const Pose& T_r_w,
                 const DepthFilterOptions& options = {});
 
-    /// Learns from another image of the same camera. @throws std::invalid_argument for another size
+    /// Updates the filter by another image of the same camera. @throws std::invalid_argument for
+    /// another size
     void observe(const ImageF& image, const Pose& T_c_w);
 
     /// The reference image with the depths that have converged, for fuse() (map_fusion.hpp).
@@ -50,7 +51,7 @@ class DepthFilter {
 
     DepthState state(unsigned v, unsigned u) const { return seeds_[v * camera_.width + u].state; }
     double shareConverged() const;               ///< of all pixels
-    double shareNarrowed() const;                ///< of all pixels: to half the variance or less
+    double shareNarrowed() const;                ///< of all pixels: variance halved or less
     std::optional<double> medianDepth() const;   ///< of the converged pixels [m]
     const Pose& pose() const { return T_r_w_; }  ///< T_r_w
     const ImageF& reference() const { return reference_; }

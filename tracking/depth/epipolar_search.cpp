@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kMostScale = 2.;     // of a patch between the images
-constexpr float kRivalScore = 0.95F;  // of the best: as good
+constexpr double kMaxScale = 2.;      // of a patch between the images
+constexpr float kRivalScore = 0.95F;  // share of the best score: as good
 constexpr int kRivalDistance = 3;     // steps from the best: another place
 
 /// The grey value between four pixels, all of them inside.
@@ -99,7 +99,7 @@ EpipolarMatch EpipolarSearch::operator()(unsigned u, unsigned v, double low, dou
     const Vector3d& t = T_c_r_.translation();
     const auto point = [&](double inverseDepth) -> Vector3d { return q + inverseDepth * t; };
     const Vector3d h = point(w);
-    if (!(h.z() > 1. / kMostScale && h.z() < kMostScale)) return {};
+    if (!(h.z() > 1. / kMaxScale && h.z() < kMaxScale)) return {};
     if (point(low).z() < 0.1 || point(high).z() < 0.1 || away.squaredNorm() < 1e-12) return {};
 
     Line line;
@@ -166,7 +166,7 @@ bool EpipolarSearch::sampleReference(unsigned u, unsigned v, const Vector2d& alo
             slopes += slope * slope;
         }
     }
-    // For all samples from those inside, without what noise alone would give.
+    // Extrapolated from the inner samples to all, less the part that noise alone would give.
     const double noise = options_.sigma * options_.sigma;
     gradient_ = static_cast<float>(slopes * kSide / (kSide - 2) - 0.5 * kSide * kSide * noise);
     if (!(gradient_ > 2. * noise) || !(energy > 0.F)) return false;

@@ -12,7 +12,7 @@ namespace photonav {
 struct EpipolarMatch {
     enum class Outcome {
         found,
-        different,  ///< nothing on the line looks like it
+        different,  ///< no patch on the line correlates
         undecided,  ///< no texture along the line, several candidates, too long, out of the image
     };
     Outcome outcome = Outcome::undecided;
@@ -26,16 +26,16 @@ struct EpipolarOptions {
 };
 
 /// Searches one image for pixels of another. Patches are 9 x 9 samples along and across the
-/// epipolar lines of the two images, which makes up for the camera's rotation, at a spacing that
-/// makes up for the distance. They are compared by normalised correlation: gain and offset do not
-/// matter.
+/// epipolar lines of the two images, which compensates the rotation of the camera, at a spacing
+/// that compensates the distance. They are compared by normalised correlation: gain and offset do
+/// not matter.
 class EpipolarSearch {
   public:
     /// @param reference, image must outlive the search
     EpipolarSearch(const ImageF& reference, const ImageF& image, const Camera& camera,
                    const Pose& T_c_r, const EpipolarOptions& options);
 
-    /// @param w expected inverse depth of the reference's pixel (u, v), where its scale is judged
+    /// @param w expected inverse depth of the reference's pixel (u, v), for the scale of its patch
     /// @param low, high where to search; both ends are searched one pixel beyond
     EpipolarMatch operator()(unsigned u, unsigned v, double low, double w, double high);
 

@@ -13,7 +13,7 @@ std::optional<DepthFilter> MonocularDepth::add(const ImageF& image, const Pose& 
     if (filter_) {
         filter_->observe(image, T_c_w);
         ++images_;
-        if (isFruitless()) {
+        if (isUninformative()) {
             ++givenUp_;
             images_ = 0;
         } else if (hasMovedOn(T_c_w)) {
@@ -33,9 +33,9 @@ std::optional<DepthFilter> MonocularDepth::finish() {
     return finished;
 }
 
-bool MonocularDepth::isFruitless() const {
+bool MonocularDepth::isUninformative() const {
     if (images_ < options_.minImages) return false;
-    return filter_->shareNarrowed() < options_.fruitful ||
+    return filter_->shareNarrowed() < options_.minNarrowed ||
            (images_ >= 10 * options_.minImages && !filter_->medianDepth());
 }
 

@@ -11,7 +11,7 @@ namespace photonav {
 namespace {
 
 constexpr int kDisparityUnit = 16;  // OpenCV gives sixteenths of pixels
-constexpr int kMostDisparities = 512;
+constexpr int kMaxDisparities = 512;
 
 cv::Matx33d matrixOf(const Camera& camera) {
     return {camera.fx(), 0., camera.cx(), 0., camera.fy(), camera.cy(), 0., 0., 1.};
@@ -25,7 +25,7 @@ cv::Mat wrapped(const vpImage<unsigned char>& image) {
 /// Multiples of 16, enough for the nearest surface.
 int disparities(double focalTimesBaseline, double minDepth) {
     const int needed = static_cast<int>(std::ceil(focalTimesBaseline / minDepth / 16.)) * 16;
-    return std::clamp(needed, 16, kMostDisparities);
+    return std::clamp(needed, 16, kMaxDisparities);
 }
 
 cv::Ptr<cv::StereoMatcher> makeMatcher(const StereoOptions& o, int count) {
@@ -112,7 +112,7 @@ StereoDepth::Impl::Impl(const DistortedCamera& left, const DistortedCamera& righ
     matcher = makeMatcher(o, disparities(baseline * camera.fx(), o.minDepth));
 }
 
-/// Halved first: the mean of pixels is sharp enough, and a quarter of the work is left.
+/// Halves first: averaging pixels is sharp enough and leaves a quarter of the work.
 void StereoDepth::Impl::rectify(const vpImage<unsigned char>& image, std::size_t side) {
     if (image.getWidth() != recorded.width || image.getHeight() != recorded.height) {
         throw std::invalid_argument("stereo: image and camera differ in size");

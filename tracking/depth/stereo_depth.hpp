@@ -18,9 +18,9 @@ struct StereoOptions {
     StereoMethod method = StereoMethod::blockMatching;
     int halvings = 1;       ///< of the images before anything else: 0 works at full size
     double minDepth = 0.4;  ///< nearest surface looked for [m]; sets the range of disparities
-    double maxDepth = 20.;  ///< farther ones are left out [m]
+    double maxDepth = 20.;  ///< farther surfaces are left out [m]
     int blockSize = 15;     ///< odd [pixels of the working size]; semiGlobal takes a third
-    int uniqueness = 10;    ///< by how much the best match must beat the next [%]
+    int uniqueness = 10;    ///< margin of the best match over the next [%]
     int texture = 10;       ///< blocks with less contrast are left out (blockMatching)
     int speckle = 60;       ///< smaller patches of depth are left out [pixels]
 };

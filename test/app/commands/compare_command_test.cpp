@@ -49,7 +49,7 @@ TEST(Compare, EveryMethodOnceJudgedByTheSameBeliefs) {
 TEST(Compare, ItsTableSaysHowManyRunsFoundAPath) {
     const std::string method = compareMethods().front().label();
     PlanOutcome found;
-    found.path = JudgedPath{};
+    found.path = EvaluatedPath{};
     found.path->cost = 2.;
     const std::string table =
         compareTable({{method, 1, found, "done"}, {method, 2, PlanOutcome{}, "no path"}});

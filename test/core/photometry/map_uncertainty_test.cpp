@@ -23,15 +23,15 @@ TEST(MapUncertainty, BlankWallStaysAsUncertainAsItWas) {
     View wall;
     wall.intensity.resize(64, 96, 0.5F);
     wall.depth.resize(64, 96, 2.F);
-    EXPECT_EQ(mapCertainty(wall, someCamera()).varianceLeft(Vector3d::UnitX()), 1.);
+    EXPECT_EQ(mapCertainty(wall, someCamera()).remainingVariance(Vector3d::UnitX()), 1.);
 }
 
 TEST(MapUncertainty, StripesAreMeasuredByFlyingAcrossThemOnly) {
     AnalyticPlane floor;
     floor.stripes = true;
     const MapCertainty certainty = mapCertainty(fromAbove(floor), someCamera());
-    EXPECT_LT(certainty.varianceLeft(Vector3d::UnitY()), 0.2);         // across: world x
-    EXPECT_NEAR(certainty.varianceLeft(Vector3d::UnitX()), 1., 1e-4);  // along
+    EXPECT_LT(certainty.remainingVariance(Vector3d::UnitY()), 0.2);         // across: world x
+    EXPECT_NEAR(certainty.remainingVariance(Vector3d::UnitX()), 1., 1e-4);  // along
 }
 
 TEST(MapUncertainty, GainIsTheTranslationPartOfThePhotometricInformation) {
@@ -51,21 +51,21 @@ TEST(MapUncertainty, WhatIsNotTexturedStaysUncertain) {
     const Camera camera = someCamera();
     View view = fromAbove(AnalyticPlane{});
     const MapCertainty whole = mapCertainty(view, camera);
-    EXPECT_LT(whole.varianceLeft(Vector3d::UnitX()), 0.4);
+    EXPECT_LT(whole.remainingVariance(Vector3d::UnitX()), 0.4);
     for (unsigned v = 0; v < 64; ++v) {
         for (unsigned u = 0; u < 48; ++u) view.intensity[v][u] = 0.5F;
     }
     const MapCertainty half = mapCertainty(view, camera);
     EXPECT_LT(half.share, 0.51);
     EXPECT_GT(half.share, 0.4 * whole.share);
-    EXPECT_GT(half.varianceLeft(Vector3d::UnitX()), 0.5);
+    EXPECT_GT(half.remainingVariance(Vector3d::UnitX()), 0.5);
 }
 
 TEST(MapUncertainty, LessIsLeftOfALongerBaseline) {
     const View view = fromAbove(AnalyticPlane{});
     const auto left = [&](double baseline) {
         return mapCertainty(view, someCamera(), {}, {.baseline = baseline})
-            .varianceLeft(Vector3d::UnitX());
+            .remainingVariance(Vector3d::UnitX());
     };
     EXPECT_LT(left(0.5), left(0.25));
     EXPECT_LT(left(0.25), left(0.1));

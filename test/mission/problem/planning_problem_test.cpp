@@ -26,11 +26,12 @@ TEST(PlanningProblem, AnotherTradeOffSharesTheViews) {
     EXPECT_LT(shared.views - before.views, fresh.views);
 }
 
-TEST(PlanningProblem, PathsAreJudgedByWaypointsToo) {
+TEST(PlanningProblem, PathsAreEvaluatedByWaypointsToo) {
     const Config config = smallProblem(0.5);
     const World world(config);
     PlanningProblem problem(config, world);
-    const JudgedPath path = problem.judge("given", {config.start, {{6., 4., 2.}, {}}, config.goal});
+    const EvaluatedPath path =
+        problem.evaluate("given", {config.start, {{6., 4., 2.}, {}}, config.goal});
     const auto positions = path.fromAbove();
     ASSERT_EQ(positions.size(), path.points.size());
     EXPECT_EQ(positions.front(), Eigen::Vector2d(config.start.position.head<2>()));

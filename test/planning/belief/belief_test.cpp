@@ -152,7 +152,7 @@ TEST(Belief, AWanderingHeadingDoesNotObserveTheBlindAxisOfStripes) {
     problem.belief.motionNoise = vector6(1e-3, 1e-3, 1e-3, 0., 0., 0.).asDiagonal();
     problem.information = [](const Pose& T_c_w) {
         const Matrix6 alongX = vector6(1e6, 0., 0., 0., 0., 0.).asDiagonal();
-        return inTurnedAxes(alongX, T_c_w.linear());
+        return inRotatedAxes(alongX, T_c_w.linear());
     };
     BeliefModel model = *problem.model();
     const auto states = wanderingHeading(model.space());

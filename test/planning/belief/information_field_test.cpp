@@ -74,7 +74,7 @@ TEST(InformationField, KeepsInformationInAxesOfTheWorldWhateverTheHeading) {
     InformationField field(
         [](const Pose& T_c_w) {
             const Matrix6 alongX = vector6(4., 0., 0., 0., 0., 0.).asDiagonal();
-            return inTurnedAxes(alongX, T_c_w.linear());
+            return inRotatedAxes(alongX, T_c_w.linear());
         },
         cameraMount(std::numbers::pi / 4), {});
     for (const double yaw : {-0.03, 0.04, 1., 3.1}) {

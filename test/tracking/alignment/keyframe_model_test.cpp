@@ -50,15 +50,15 @@ TEST(KeyframeModel, LeavesOutDepthThatBends) {
         for (unsigned u = 0; u < 320; u += 2) view.depth[v][u] *= 1.024F;
     }
     const Pose truth = cameraAt({1.7, 3.05, 1.6}, 0.6, 0.1);
-    const auto distance = [&](double mostBend) {
+    const auto distance = [&](double maxBend) {
         KeyframeOptions options;
         options.finest = 0;
-        options.mostBend = mostBend;
+        options.maxBend = maxBend;
         KeyframeModel keyframe(view, wideCamera(), kFirst, options);
         return errorOf(keyframe.align(roomView(truth).intensity, kFirst), truth).norm();
     };
-    EXPECT_LT(distance(KeyframeOptions().mostBend), 2e-3);
-    EXPECT_GT(distance(1e9), 2. * distance(KeyframeOptions().mostBend));
+    EXPECT_LT(distance(KeyframeOptions().maxBend), 2e-3);
+    EXPECT_GT(distance(1e9), 2. * distance(KeyframeOptions().maxBend));
 }
 
 TEST(KeyframeModel, EstimatesExposure) {
@@ -81,7 +81,7 @@ TEST(KeyframeModel, InformationIsCarriedToTheCamera) {
     KeyframeOptions options;
     options.finest = 0;
     options.minGradient = 0.;
-    options.mostBend = kInfinity;  // the pixels that planning counts
+    options.maxBend = kInfinity;  // the pixels that planning counts
     options.alignment.robust = RobustWeight::none;
     const View view = roomView(kFirst);
     KeyframeModel keyframe(view, wideCamera(), kFirst, options);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <chrono>
 
-/// Least time of one call [us] over several batches: noise only ever adds.
+/// Shortest time of one call [us] over several batches, because noise only adds time.
 template <class Call>
-double leastMicroseconds(int batches, int calls, const Call& call) {
+double minMicroseconds(int batches, int calls, const Call& call) {
     double least = 1e30;
     for (int b = 0; b < batches; ++b) {
         const auto start = std::chrono::steady_clock::now();
