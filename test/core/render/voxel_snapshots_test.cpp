@@ -138,7 +138,10 @@ TEST(VoxelSnapshots, NeverChangeWhileTheyAreHeld) {
     editBox(edited, random, {-12, -9, -3}, {12, 11, 13});
     edited.takeChange();
     VoxelSnapshots snapshots(edited.map, UnknownPolicy::free);
-    const Pose T_c_w = randomPose(random);
+    Pose T_c_w;
+    do {
+        T_c_w = randomPose(random);
+    } while (viewOf(*snapshots.current(), T_c_w).depth.getMaxValue() == 0.F);
     std::vector<std::shared_ptr<const VoxelRenderer>> held;
     std::vector<View> views;
     for (int step = 0; step < 20; ++step) {
@@ -154,6 +157,7 @@ TEST(VoxelSnapshots, NeverChangeWhileTheyAreHeld) {
             ASSERT_TRUE(areEqual(viewOf(*held[i], T_c_w), views[i])) << step << ' ' << i;
         }
     }
+    EXPECT_FALSE(areEqual(views.front(), views.back()));
     expectEqualViews(*snapshots.current(), VoxelRenderer(edited.map, UnknownPolicy::free), random);
 }
 

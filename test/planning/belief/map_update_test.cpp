@@ -166,6 +166,32 @@ TEST_P(FieldOverAMap, EntriesThatAreNotStaleEqualFreshOnes) {
     EXPECT_LT(needless, 0.6);  // bricks are as large as a change here, and grow by two cells
 }
 
+TEST(FieldUpdate, AnObstacleWhereNoSurfaceWasMakesAViewStale) {
+    TexturedOcTree map(0.1);
+    const auto set = [&](int x, int y, int z, float grey) {
+        const auto key = [](int i) { return static_cast<octomap::key_type>(kKeyOfZero + i); };
+        auto* node = map.setNodeValue(octomap::OcTreeKey(key(x), key(y), key(z)), 1.F, true);
+        for (FaceTexture& face : node->faces) face = {grey, 1.F};
+    };
+    set(-20, 0, 0, 0.5F);  // behind the camera
+    map.updateInnerOccupancy();
+    const auto field = fieldOf(std::make_shared<VoxelRenderer>(map, UnknownPolicy::free), 0.);
+    const InformationField::Entry& entry = field->at(Pose::Identity());
+    EXPECT_TRUE(entry.isZero);
+    MapChange change;
+    change.resolution = 0.1;
+    for (int z = -8; z < 8; ++z) {
+        for (int y = -8; y < 8; ++y) set(20, y, z, (y + z) % 2 == 0 ? 0.2F : 0.8F);
+    }
+    map.updateInnerOccupancy();
+    for (int z = -2; z < 2; ++z) {
+        for (int y = -2; y < 2; ++y) change.occupancy.emplace_back(5, y, z);
+    }
+    field->update(std::make_shared<VoxelRenderer>(map, UnknownPolicy::free), change);
+    EXPECT_TRUE(entry.isStale);
+    EXPECT_FALSE(field->current(entry).isZero);
+}
+
 TEST(FieldUpdate, MotionsTakeUpWhatTheMapHasBecome) {
     // Grey values on the floor appear: a motion propagated before informs as a new one does.
     TexturedOcTree map(0.1);
