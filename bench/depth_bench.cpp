@@ -43,7 +43,7 @@ double quantile(std::vector<float>& values, double q) {
 vpImage<unsigned char> bytes(const ImageF& image) {
     vpImage<unsigned char> result(image.getHeight(), image.getWidth());
     for (unsigned i = 0; i < image.getSize(); ++i) {
-        result.bitmap[i] = static_cast<unsigned char>(std::lround(255.F * image.bitmap[i]));
+        result.bitmap[i] = greyLevel(image.bitmap[i]);
     }
     return result;
 }
@@ -220,7 +220,7 @@ void repeatFlight(const std::string& name, const std::string& scene) {
     flight.expose = [noise = assumedNoise(photometric)](ImageF image, std::mt19937_64& random) {
         noise(image, random);
         for (unsigned i = 0; i < image.getSize(); ++i) {
-            image.bitmap[i] = std::round(255.F * std::clamp(image.bitmap[i], 0.F, 1.F)) / 255.F;
+            image.bitmap[i] = static_cast<float>(greyLevel(image.bitmap[i])) / 255.F;
         }
         return image;
     };

@@ -90,18 +90,11 @@ std::vector<BenchmarkCurve> comparable(const BenchmarkOutcome& outcome) {
 
 void writeReport(const fs::path& folder, const BenchmarkOptions& options, const Config& config,
                  const World& world, const BenchmarkOutcome& outcome, const json& result) {
-    ReportData report;
+    ReportData report = problemReport(config, world, options.commandLine, result);
     report.title = fs::path(options.config).stem().string();
     report.subtitle =
         fmt::format("{} runs of {} vertices, alpha {}, {} planners", outcome.runs.size(),
                     config.vertices, config.belief.alpha, config.sweep.planners.size());
-    report.commandLine = options.commandLine;
-    report.version = PHOTONAV_VERSION;
-    report.result = result;
-    report.config = toYaml(config);
-    report.start = config.start.position;
-    report.goal = config.goal.position;
-    describeWorld(world, report);
     for (const SweepCell& cell : summarize(config.sweep, outcome.runs, {})) {
         report.tables.push_back(summaryTable(cell));
     }

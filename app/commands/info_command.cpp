@@ -169,17 +169,11 @@ Grids lookAround(const InfoOptions& options, const Config& config, double height
 
 ReportData reportOf(const InfoOptions& options, const Config& config, const World& world,
                     const Place& place, const json& result) {
-    ReportData report;
+    ReportData report = problemReport(config, world, options.commandLine, result);
     report.title = fs::path(config.file).stem().string();
     report.subtitle = "The information that the camera gets from a view.";
-    report.commandLine = options.commandLine;
-    report.version = PHOTONAV_VERSION;
-    report.result = result;
     report.result.erase("grid");
-    report.config = toYaml(config);
     report.start = place.position;
-    report.goal = config.goal.position;
-    describeWorld(world, report);
     return report;
 }
 

@@ -71,7 +71,6 @@ MapReport runMapInfo(const CommandOptions& options) {
     page.title = fs::path(options.config).filename().string();
     page.subtitle = "What a map holds. Plan in it with map.file in a config.";
     page.commandLine = options.commandLine;
-    page.version = PHOTONAV_VERSION;
     page.result = report.result;
     page.voxels = makeReportVoxels(*map);
     page.tables = {report.summary};

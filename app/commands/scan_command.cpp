@@ -50,7 +50,6 @@ void writeScanReport(const ScanCommandOptions& options, const json& result,
     report.title = "Map of " + fs::path(options.scans).lexically_normal().filename().string();
     report.subtitle = "A textured OctoMap from laser scans.";
     report.commandLine = options.commandLine;
-    report.version = PHOTONAV_VERSION;
     report.result = result;
     report.config = toYaml(options);
     report.voxels = makeReportVoxels(map);

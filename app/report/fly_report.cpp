@@ -189,24 +189,15 @@ json flyResult(const Config& config, const std::vector<FlightSet>& sets,
 void writeFlyReport(const fs::path& folder, const Config& config, const World& world,
                     const std::vector<FlightSet>& sets, const std::string& commandLine,
                     const json& result) {
-    const Camera camera = config.camera.camera();
-    ReportData report;
+    ReportData report = problemReport(config, world, commandLine, result);
     report.title = fs::path(config.file).stem().string() + ", flown";
     report.subtitle = subtitleOf(config.fly);
-    report.commandLine = commandLine;
-    report.version = PHOTONAV_VERSION;
-    report.result = result;
-    report.config = toYaml(config);
-    describeWorld(world, report);
     for (std::size_t k = 0; k < sets.size(); ++k) {
         report.paths.push_back(drawnPath(sets[k].path, config.camera.T_b_c()));
         report.trees.push_back(drawnFlights(sets[k]));
         report.tables.push_back(tableOf(sets[k]));
     }
-    report.start = config.start.position;
-    report.goal = config.goal.position;
-    report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),
-                          2. * std::atan(0.5 * camera.height / camera.fy())};
+    report.fieldOfView = fieldOfView(config.camera.camera());
     if (!sets.empty() && !sets[0].flights.empty() && sets[0].flights[0].number == 0) {
         writeFirstFlight(folder, sets[0].flights[0]);
     }

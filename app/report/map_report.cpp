@@ -202,12 +202,10 @@ ReportTable mapSummary(const json& result) {
 
 void writeMapReport(const MapCommandOptions& options, const json& result,
                     const Recording& recording, const TexturedOcTree& map, const MapRun& run) {
-    const Camera& camera = recording.sequence.camera;
     ReportData report;
     report.title = "Map of " + fs::path(options.dataset).lexically_normal().filename().string();
     report.subtitle = "A textured OctoMap, and its predictions at the recorded poses.";
     report.commandLine = options.commandLine;
-    report.version = PHOTONAV_VERSION;
     report.result = result;
     report.config = toYaml(options, recording);
     report.voxels = makeReportVoxels(map);
@@ -216,8 +214,7 @@ void writeMapReport(const MapCommandOptions& options, const json& result,
         report.start = run.trajectory.front().T_w_c.translation();
         report.goal = run.trajectory.back().T_w_c.translation();
     }
-    report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),
-                          2. * std::atan(0.5 * camera.height / camera.fy())};
+    report.fieldOfView = fieldOfView(recording.sequence.camera);
     report.tables = {mapSummary(result)};
     writeResultFolder(options.out, report, run.figures);
 }

@@ -260,30 +260,33 @@ std::vector<NamedFigure> planFigures(const Config& config, const World& world, P
 
 }  // namespace
 
+ReportData problemReport(const Config& config, const World& world, const std::string& commandLine,
+                         const json& result) {
+    ReportData report;
+    report.commandLine = commandLine;
+    report.result = result;
+    report.config = toYaml(config);
+    report.start = config.start.position;
+    report.goal = config.goal.position;
+    describeWorld(world, report);
+    return report;
+}
+
 void writePlanReport(const fs::path& folder, const Config& config, const World& world,
                      PlanningProblem& run, const PlanOutcome& outcome,
                      const std::optional<EvaluatedPath>& baseline,
                      const std::optional<RecordedComparison>& recorded,
                      const std::vector<TreeEvolution>& evolutions, const std::string& commandLine,
                      const json& result) {
-    const Camera camera = config.camera.camera();
     const Pose T_b_c = config.camera.T_b_c();
-    ReportData report;
+    ReportData report = problemReport(config, world, commandLine, result);
     report.title = fs::path(config.file).stem().string();
     report.subtitle = fmt::format("{}, alpha {}, {} vertices, seed {}", config.planner,
                                   outcome.alpha, outcome.vertices, config.seed);
-    report.commandLine = commandLine;
-    report.version = PHOTONAV_VERSION;
-    report.result = result;
-    report.config = toYaml(config);
-    describeWorld(world, report);
     report.trees = {{"search tree", kTreeColor, outcome.tree}};
     if (outcome.path) report.paths.push_back(drawnPath(*outcome.path, T_b_c));
     if (baseline) report.paths.push_back(drawnPath(*baseline, T_b_c));
-    report.start = config.start.position;
-    report.goal = config.goal.position;
-    report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),
-                          2. * std::atan(0.5 * camera.height / camera.fy())};
+    report.fieldOfView = fieldOfView(config.camera.camera());
     if (outcome.path && world.hasTexture()) {
         report.views = waypointViews(*outcome.path, config, world);
     }

@@ -36,6 +36,10 @@ DrawnPath drawnPath(const EvaluatedPath& path, const Pose& T_b_c);
 /// Puts the surfaces of the world into the report's 3-D view.
 void describeWorld(const World& world, ReportData& report);
 
+/// The page of a planning problem, without a title: config, world, start and goal.
+ReportData problemReport(const Config& config, const World& world, const std::string& commandLine,
+                         const nlohmann::json& result);
+
 /// Start, goal and paths over what lies below the bounds.
 TopView viewFromAbove(const Config& config, const World& world,
                       const std::vector<DrawnPath>& paths);

@@ -209,13 +209,10 @@ void writeReplayReport(const ReplayCommandOptions& options, const std::string& c
                                        : "Localisation of every image in " +
                                              fs::path(options.mapFile).filename().string() + ".";
     report.commandLine = options.commandLine;
-    report.version = PHOTONAV_VERSION;
     report.result = result;
     report.config = config;
     report.tables = {replaySummary(result)};
-    const Camera& camera = replay.recording().sequence.camera;
-    report.fieldOfView = {2. * std::atan(0.5 * camera.width / camera.fx()),
-                          2. * std::atan(0.5 * camera.height / camera.fy())};
+    report.fieldOfView = fieldOfView(replay.recording().sequence.camera);
     if (const TexturedOcTree* map = replay.map().octree.get())
         report.voxels = makeReportVoxels(*map);
     if (const Scene* scene = replay.map().scene.get()) report.mesh = makeReportMesh(*scene);

@@ -86,13 +86,18 @@ ReportVoxels makeReportVoxels(const std::vector<Eigen::Vector3f>& centers,
     return voxels;
 }
 
+Eigen::Vector2d fieldOfView(const Camera& camera) {
+    return {2. * std::atan(0.5 * camera.width / camera.fx()),
+            2. * std::atan(0.5 * camera.height / camera.fy())};
+}
+
 ReportVoxels makeReportVoxels(const TexturedOcTree& map) {
     std::vector<Eigen::Vector3f> centers;
     std::vector<std::uint8_t> grey;
     const double size = map.getResolution();
     for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
         if (!map.isNodeOccupied(*leaf)) continue;
-        const float value = std::clamp(leaf->meanGrey().value_or(0.5F), 0.F, 1.F);
+        const std::uint8_t level = greyLevel(leaf->meanGrey().value_or(0.5F));
         const int cells = static_cast<int>(std::lround(leaf.getSize() / size));  // of a pruned leaf
         const Eigen::Vector3d corner(leaf.getX(), leaf.getY(), leaf.getZ());
         for (int z = 0; z < cells; ++z)
@@ -100,7 +105,7 @@ ReportVoxels makeReportVoxels(const TexturedOcTree& map) {
                 for (int x = 0; x < cells; ++x) {
                     const Eigen::Array3d cell = Eigen::Array3d(x, y, z) + 0.5 - 0.5 * cells;
                     centers.emplace_back((corner.array() + size * cell).cast<float>());
-                    grey.push_back(static_cast<std::uint8_t>(std::lround(255.F * value)));
+                    grey.push_back(level);
                 }
     }
     return makeReportVoxels(centers, grey, size);

@@ -56,7 +56,7 @@ struct ReportData {
     std::string title;
     std::string subtitle;     ///< one sentence: what was done
     std::string commandLine;  ///< as typed
-    std::string version;
+    std::string version = PHOTONAV_VERSION;
     nlohmann::json result = nlohmann::json::object();  ///< result.json of the run
     std::string config;                                ///< YAML, complete
     ReportMesh mesh;
@@ -73,6 +73,9 @@ struct ReportData {
     std::vector<ReportFigure> frames;  ///< one after the other, as an animation
     std::vector<ReportTable> tables;
 };
+
+/// Full angles of a camera, horizontal and vertical [rad].
+Eigen::Vector2d fieldOfView(const Camera& camera);
 
 /// The scene as the page draws it: textures as PNG of at most 2048 pixels a side.
 ReportMesh makeReportMesh(const Scene& scene);

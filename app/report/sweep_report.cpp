@@ -158,19 +158,12 @@ void writeSweepReport(const fs::path& folder, const Config& config, const World&
                       const SweepOutcome& outcome, const ReferenceCosts& reference,
                       const json& result) {
     const auto cells = summarize(config.sweep, outcome.runs, reference);
-    ReportData report;
+    ReportData report = problemReport(config, world, outcome.commandLine, result);
     report.title = outcome.name;
     report.subtitle =
         fmt::format("{} runs of {} vertices: {} planners, {} values of alpha, {} seeds",
                     outcome.runs.size(), config.vertices, config.sweep.planners.size(),
                     config.sweep.alphas.size(), config.sweep.runs);
-    report.commandLine = outcome.commandLine;
-    report.version = PHOTONAV_VERSION;
-    report.result = result;
-    report.config = toYaml(config);
-    report.start = config.start.position;
-    report.goal = config.goal.position;
-    describeWorld(world, report);
     report.paths = pathsByAlpha(config.sweep.planners.front(), outcome.runs);
 
     writeFileAtomically(folder / "runs.csv", toCsv(result["runs"], kRunKeys));

@@ -90,9 +90,7 @@ class Shading {
 
   private:
     Eigen::Vector3d point(unsigned u, unsigned v) const {
-        return T_w_c_ * Eigen::Vector3d(view_.depth[v][u] *
-                                        Eigen::Vector3d((u - camera_.cx()) / camera_.fx(),
-                                                        (v - camera_.cy()) / camera_.fy(), 1.));
+        return T_w_c_ * camera_.unproject(u, v, view_.depth[v][u]);
     }
 
     const View& view_;
@@ -133,9 +131,7 @@ class Sketch {
 
   private:
     Eigen::Vector2d pixel(const Eigen::Vector3d& p_w) const {
-        const Eigen::Vector3d p = T_c_w_ * p_w;
-        return {camera_.cx() + camera_.fx() * p.x() / p.z(),
-                camera_.cy() + camera_.fy() * p.y() / p.z()};
+        return camera_.project(T_c_w_ * p_w);
     }
 
     /// y is upward in plots.

@@ -53,8 +53,7 @@ Seen pointsBelow(const Recording& recording, const Eigen::Vector3d& roughUp) {
             for (unsigned u = stride / 2; u < camera.width; u += stride) {
                 const double z = frame.view.depth[v][u];
                 if (!(z > 0.)) continue;
-                const Eigen::Vector3d p = z * Eigen::Vector3d((u - camera.cx()) / camera.fx(),
-                                                              (v - camera.cy()) / camera.fy(), 1.);
+                const Eigen::Vector3d p = camera.unproject(u, v, z);
                 if ((T_w_c.linear() * p).dot(roughUp) > 0.) continue;
                 seen.points.push_back(T_w_c * p);
                 seen.depths.push_back(z);

@@ -11,6 +11,7 @@
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "recording/image_file.hpp"
+#include "recording/trajectory.hpp"
 
 namespace photonav {
 namespace {
@@ -66,11 +67,7 @@ void FlightRecorder::add(const Exposed& exposed) {
     colour_ += stamp + " " + colourFile + "\n";
     depth_ += stamp + " " + depthFile + "\n";
     pairs_ += stamp + " " + colourFile + " " + stamp + " " + depthFile + "\n";
-    const Pose T_w_c = exposed.T_c_w.inverse();
-    const Eigen::Quaterniond q(T_w_c.linear());
-    const Eigen::Vector3d& p = T_w_c.translation();
-    poses_ += fmt::format("{} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", stamp, p.x(),
-                          p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+    poses_ += toLine({exposed.time, exposed.T_c_w.inverse()});
     ++frames_;
 }
 

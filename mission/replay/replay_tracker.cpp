@@ -12,7 +12,8 @@ namespace {
 constexpr std::size_t kPatience = 10;
 
 /// The grey value between four pixels; nothing outside.
-std::optional<float> sample(const ImageF& image, double u, double v) {
+std::optional<float> sample(const ImageF& image, const Eigen::Vector2d& pixel) {
+    const double u = pixel.x(), v = pixel.y();
     if (!(u >= 0. && v >= 0. && u < image.getWidth() - 1. && v < image.getHeight() - 1.)) return {};
     const auto x = static_cast<unsigned>(u);
     const auto y = static_cast<unsigned>(v);
@@ -32,13 +33,9 @@ View seenFrom(const View& keyframe, const Camera& camera, const Pose& T_k_c,
         for (unsigned u = 0; u < camera.width; ++u) {
             const double z = depth_c[v][u];
             if (!(z > 0.)) continue;
-            const Eigen::Vector3d p_k =
-                T_k_c * (z * Eigen::Vector3d((u - camera.cx()) / camera.fx(),
-                                             (v - camera.cy()) / camera.fy(), 1.));
+            const Eigen::Vector3d p_k = T_k_c * camera.unproject(u, v, z);
             if (!(p_k.z() > 0.)) continue;
-            const auto grey =
-                sample(keyframe.intensity, camera.fx() * p_k.x() / p_k.z() + camera.cx(),
-                       camera.fy() * p_k.y() / p_k.z() + camera.cy());
+            const auto grey = sample(keyframe.intensity, camera.project(p_k));
             if (!grey) continue;
             result.intensity[v][u] = *grey;
             result.depth[v][u] = static_cast<float>(z);

@@ -46,10 +46,7 @@ ImageF convolvedTransposed(const ImageF& image, const std::vector<float>& kernel
 
 vpImage<unsigned char> bytesOf(const ImageF& image) {
     vpImage<unsigned char> bytes(image.getHeight(), image.getWidth());
-    for (unsigned i = 0; i < image.getSize(); ++i) {
-        bytes.bitmap[i] =
-            static_cast<unsigned char>(std::lround(255.F * std::clamp(image.bitmap[i], 0.F, 1.F)));
-    }
+    std::transform(image.bitmap, image.bitmap + image.getSize(), bytes.bitmap, greyLevel);
     return bytes;
 }
 

@@ -10,6 +10,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "geometry/se3.hpp"
+
 namespace photonav {
 namespace ob = ompl::base;
 namespace {
@@ -177,13 +179,9 @@ Pose FlightSpace::poseBetween(const ob::State* from, const ob::State* to, double
     if (fraction >= 1.) return bodyPose(to);
     const Pose begin = bodyPose(from);
     const Pose end = bodyPose(to);
-    Pose T_w_b = begin;
+    if (kind_ != StateKind::position) return interpolate(begin, end, fraction);
+    Pose T_w_b = begin;  // the heading stays: no turn is worth computing
     T_w_b.translation() += fraction * (end.translation() - begin.translation());
-    if (kind_ != StateKind::position) {
-        const Eigen::Quaterniond rotation(begin.linear());
-        T_w_b.linear() =
-            rotation.slerp(fraction, Eigen::Quaterniond(end.linear())).toRotationMatrix();
-    }
     return T_w_b;
 }
 

@@ -139,6 +139,14 @@ Vector6 logSE3(const Pose& T) {
     return xi;
 }
 
+Pose interpolate(const Pose& a, const Pose& b, double s) {
+    const Eigen::Quaterniond from(a.linear());
+    Pose pose = Pose::Identity();
+    pose.linear() = from.slerp(s, Eigen::Quaterniond(b.linear())).toRotationMatrix();
+    pose.translation() = a.translation() + s * (b.translation() - a.translation());
+    return pose;
+}
+
 double yawOf(const Pose& T_w_b) { return std::atan2(T_w_b(1, 0), T_w_b(0, 0)); }
 
 Matrix6 adjoint(const Pose& T) {

@@ -24,7 +24,7 @@ std::filesystem::path temporaryFor(const std::filesystem::path& file) {
     static std::atomic<unsigned> count{0};
     std::string name = file.string() + ".tmp";
     for (const auto part : {static_cast<unsigned>(getpid()), random, count++}) {
-        name += "-" + std::to_string(part);
+        name.append("-").append(std::to_string(part));
     }
     return name;
 }

@@ -164,7 +164,7 @@ void writeColored(std::ostream& stream, const TexturedOcTree& map, const Node& n
     const float value = node.getLogOdds();
     stream.write(reinterpret_cast<const char*>(&value), sizeof(value));
     const std::optional<float> grey = node.meanGrey();
-    const auto level = grey ? std::min(254L, std::lround(255.F * *grey)) : 255L;
+    const int level = grey ? std::min<int>(254, greyLevel(*grey)) : 255;
     for (int channel = 0; channel < 3; ++channel) stream.put(static_cast<char>(level));
     unsigned children = 0;
     for (unsigned i = 0; i < 8; ++i) {

@@ -10,10 +10,10 @@
 namespace photonav {
 
 std::vector<Feature> visibleFeatures(const View& view, const FeatureOptions& options) {
-    const cv::Mat grey(static_cast<int>(view.intensity.getHeight()),
-                       static_cast<int>(view.intensity.getWidth()), CV_32F, view.intensity.bitmap);
-    cv::Mat bytes;
-    grey.convertTo(bytes, CV_8U, 255.);
+    cv::Mat1b bytes(static_cast<int>(view.intensity.getHeight()),
+                    static_cast<int>(view.intensity.getWidth()));
+    const float* grey = view.intensity.bitmap;
+    std::transform(grey, grey + view.intensity.getSize(), bytes.ptr<unsigned char>(), greyLevel);
     std::vector<cv::KeyPoint> corners;
     cv::FAST(bytes, corners, std::max(1, static_cast<int>(std::lround(255. * options.threshold))),
              true, cv::FastFeatureDetector::TYPE_9_16);
@@ -32,15 +32,10 @@ Matrix6 reprojectionInformation(const std::vector<Feature>& features, const Came
                                 const FeatureOptions& options) {
     Matrix6 sum = Matrix6::Zero();
     for (const Feature& feature : features) {
-        const double Z = feature.depth;
-        const Eigen::Vector3d p((feature.u - camera.cx()) / camera.fx() * Z,
-                                (feature.v - camera.cy()) / camera.fy() * Z, Z);
-        Eigen::Matrix<double, 2, 3> projection;                             // d pi / d p
-        projection << camera.fx() / Z, 0., -camera.fx() * p.x() / (Z * Z),  //
-            0., camera.fy() / Z, -camera.fy() * p.y() / (Z * Z);
+        const Eigen::Vector3d p = camera.unproject(feature.u, feature.v, feature.depth);
         Eigen::Matrix<double, 3, 6> motion;  // d p / d xi = [1 | -p^]
         motion << Eigen::Matrix3d::Identity(), -hat(p);
-        const Eigen::Matrix<double, 2, 6> J = projection * motion;
+        const Eigen::Matrix<double, 2, 6> J = camera.projectionJacobian(p) * motion;
         sum += J.transpose() * J;
     }
     return sum / (options.pixelSigma * options.pixelSigma);

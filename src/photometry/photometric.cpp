@@ -317,15 +317,10 @@ Vector6 pixelJacobian(const View& view, const Camera& camera, unsigned u, unsign
 
     const double gu = 0.5 * (static_cast<double>(I[v][u + 1]) - I[v][u - 1]);
     const double gv = 0.5 * (static_cast<double>(I[v + 1][u]) - I[v - 1][u]);
-    const double Z = view.depth[v][u];
-    const Eigen::Vector3d p((u - camera.cx()) / camera.fx() * Z,
-                            (v - camera.cy()) / camera.fy() * Z, Z);
-    Eigen::Matrix<double, 2, 3> projection;                             // d pi / d p
-    projection << camera.fx() / Z, 0., -camera.fx() * p.x() / (Z * Z),  //
-        0., camera.fy() / Z, -camera.fy() * p.y() / (Z * Z);
+    const Eigen::Vector3d p = camera.unproject(u, v, view.depth[v][u]);
     Eigen::Matrix<double, 3, 6> motion;  // d p / d xi = [1 | -p^]
     motion << Eigen::Matrix3d::Identity(), -hat(p);
-    return (Eigen::RowVector2d(gu, gv) * projection * motion).transpose();
+    return (Eigen::RowVector2d(gu, gv) * camera.projectionJacobian(p) * motion).transpose();
 }
 
 ImageF contributionImage(const View& view, const Camera& camera, const Vector6& direction,

@@ -2,6 +2,9 @@
 // Views predicted from a map: the interface between maps and everything that uses views.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
+
 #include "geometry/camera.hpp"
 #include "geometry/types.hpp"
 
@@ -12,6 +15,11 @@ struct View {
     ImageF intensity;  ///< grey value in [0, 1], proportional to the stored 8-bit value
     ImageF depth;      ///< z of the surface in the camera frame [m]; 0: no surface, unknown
 };
+
+/// The 8-bit level of a grey value in [0, 1], as cameras and image files hold it: the nearest one.
+inline std::uint8_t greyLevel(float grey) {
+    return static_cast<std::uint8_t>(255.F * std::clamp(grey, 0.F, 1.F) + 0.5F);
+}
 
 /// A model of the world from which views can be rendered. Implementations: MeshRenderer,
 /// VoxelRenderer, or your own.

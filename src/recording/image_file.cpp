@@ -10,6 +10,7 @@
 
 #include "io/error.hpp"
 #include "io/image_bytes.hpp"
+#include "photometry/view.hpp"
 
 namespace photonav {
 namespace {
@@ -58,8 +59,8 @@ std::string greyPng(const ImageF& image, unsigned maxSide) {
                  image.bitmap);
     const double factor = static_cast<double>(maxSide) / std::max(grey.rows, grey.cols);
     if (factor < 1.) cv::resize(grey, grey, {}, factor, factor, cv::INTER_AREA);
-    cv::Mat levels;
-    grey.convertTo(levels, CV_8U, 255.);
+    cv::Mat1b levels(grey.size());
+    std::transform(grey.begin<float>(), grey.end<float>(), levels.begin(), greyLevel);
     std::vector<unsigned char> bytes;
     cv::imencode(".png", levels, bytes);
     return {bytes.begin(), bytes.end()};

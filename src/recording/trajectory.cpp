@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "geometry/se3.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "recording/time_order.hpp"
@@ -36,15 +37,6 @@ StampedPose parsePose(const TextRow& row) {
     return pose;
 }
 
-Pose interpolate(const Pose& a, const Pose& b, double s) {
-    const Eigen::Quaterniond from(a.linear());
-    const Eigen::Quaterniond to(b.linear());
-    Pose pose = Pose::Identity();
-    pose.linear() = from.slerp(s, to).toRotationMatrix();
-    pose.translation() = a.translation() + s * (b.translation() - a.translation());
-    return pose;
-}
-
 }  // namespace
 
 Trajectory readTrajectory(const std::string& file, std::vector<InputError>* badRows) {
@@ -59,14 +51,16 @@ Trajectory trajectoryOf(const std::string& file, const std::vector<TextRow>& row
     throw InputError(file, "", "no poses");
 }
 
+std::string toLine(const StampedPose& pose) {
+    const Eigen::Vector3d& t = pose.T_w_c.translation();
+    const Eigen::Quaterniond q(pose.T_w_c.linear());
+    return fmt::format("{:.6f} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", pose.timestamp,
+                       t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+}
+
 void writeTrajectory(const std::string& file, const Trajectory& trajectory) {
     std::string text = "# timestamp tx ty tz qx qy qz qw (camera to world)\n";
-    for (const auto& [timestamp, T_w_c] : trajectory) {
-        const Eigen::Vector3d& t = T_w_c.translation();
-        const Eigen::Quaterniond q(T_w_c.linear());
-        text += fmt::format("{:.6f} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", timestamp,
-                            t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
-    }
+    for (const StampedPose& pose : trajectory) text += toLine(pose);
     writeFileAtomically(file, text);
 }
 

@@ -34,6 +34,9 @@ Trajectory trajectoryOf(const std::string& file, const std::vector<TextRow>& row
                         const std::function<StampedPose(const TextRow&)>& parse,
                         std::vector<InputError>* badRows);
 
+/// The line that readTrajectory() reads, with 9 digits but for the time's 6 decimals.
+std::string toLine(const StampedPose& pose);
+
 /// Writes what readTrajectory reads; translations and quaternions with 9 digits.
 /// @throws InputError when the file cannot be written
 void writeTrajectory(const std::string& file, const Trajectory& trajectory);

@@ -87,9 +87,7 @@ class RayCaster {
             const unsigned u = x0 + i % kTileWidth;
             const unsigned v = y0 + i / kTileWidth;
             valid[i] = u < camera.width && v < camera.height ? -1 : 0;
-            const Eigen::Vector3f ray =
-                R * Eigen::Vector3f(static_cast<float>((u - camera.cx()) / camera.fx()),
-                                    static_cast<float>((v - camera.cy()) / camera.fy()), 1.F);
+            const Eigen::Vector3f ray = R * camera.unproject(u, v).cast<float>();
             packet.ray.org_x[i] = origin.x();
             packet.ray.org_y[i] = origin.y();
             packet.ray.org_z[i] = origin.z();

@@ -36,10 +36,6 @@ Vector2d pixelDerivative(const Camera& camera, const Vector3d& t, const Vector3d
             camera.fy() * (t.y() * h.z() - h.y() * t.z()) / z2};
 }
 
-Vector2d pixelOf(const Camera& camera, const Vector3d& h) {
-    return {camera.fx() * h.x() / h.z() + camera.cx(), camera.fy() * h.y() / h.z() + camera.cy()};
-}
-
 }  // namespace
 
 /// Places where the patch's centre may be: start + k * spacing * along, k from 0 to steps - 1.
@@ -92,7 +88,7 @@ EpipolarSearch::EpipolarSearch(const ImageF& reference, const ImageF& image, con
 EpipolarMatch EpipolarSearch::operator()(unsigned u, unsigned v, double low, double w,
                                          double high) {
     using enum EpipolarMatch::Outcome;
-    const Vector3d f((u - camera_.cx()) / camera_.fx(), (v - camera_.cy()) / camera_.fy(), 1.);
+    const Vector3d f = camera_.unproject(u, v);
     const Vector2d away(camera_.fx() * (f.x() * t_r_.z() - t_r_.x()),
                         camera_.fy() * (f.y() * t_r_.z() - t_r_.y()));
     const Vector3d q = T_c_r_.linear() * f;
@@ -107,8 +103,8 @@ EpipolarMatch EpipolarSearch::operator()(unsigned u, unsigned v, double low, dou
     if (line.along.squaredNorm() < 1e-12) return {};
     line.along.normalize();
     line.spacing = 1. / h.z();
-    const Vector2d first = pixelOf(camera_, point(low));
-    const double length = (pixelOf(camera_, point(high)) - first).dot(line.along);
+    const Vector2d first = camera_.project(point(low));
+    const double length = (camera_.project(point(high)) - first).dot(line.along);
     if (!(length < line.spacing * (options_.maxSteps - 4))) return {};
     line.start = first - line.spacing * line.along;
     line.steps = static_cast<int>(std::ceil(length / line.spacing)) + 3;

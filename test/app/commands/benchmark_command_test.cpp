@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/executable.hpp"
+#include "temporary_folder.hpp"
 
 namespace photonav {
 namespace {
@@ -22,14 +23,6 @@ const std::string kQuickBenchmark =
 
 class BenchmarkCommand : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() /
-                  (std::string("photonav_benchmark_") +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     Execution benchmark(const std::string& arguments) const {
         return photonav(fmt::format("benchmark {} {} --out {}", config("two_textures"), arguments,
                                     folder_.string()));
@@ -47,7 +40,8 @@ class BenchmarkCommand : public testing::Test {
         return json::parse(run.output);
     }
 
-    fs::path folder_;
+    test::TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path() / "out";
 };
 
 TEST_F(BenchmarkCommand, ItsLogIsReadByOmplsOwnTool) {

@@ -18,14 +18,6 @@ using nlohmann::json;
 
 class CommandLine : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() /
-                  (std::string("photonav_") +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     Execution plan(const std::string& arguments, const std::string& name = "two_textures") {
         return photonav("plan " + config(name) + " --out " + folder_.string() + " " + arguments);
     }
@@ -40,7 +32,8 @@ class CommandLine : public testing::Test {
         EXPECT_FALSE(fs::exists(folder_ / "result.json"));
     }
 
-    fs::path folder_;
+    test::TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path() / "out";
 };
 
 constexpr const char* kQuickPlan = " --set planner.vertices=300 --set planner.view_pitch=0.4 ";

@@ -27,15 +27,6 @@ const std::string kQuickFlight =
 
 class FlyCommand : public testing::Test {
   protected:
-    FlyCommand() {
-        folder_ = fs::temp_directory_path() /
-                  (std::string("photonav_fly_command_") +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    ~FlyCommand() override { fs::remove_all(folder_); }
-
     std::string at(const std::string& name) const { return (folder_ / name).string(); }
 
     Execution fly(const std::string& name, const std::string& arguments) const {
@@ -47,7 +38,8 @@ class FlyCommand : public testing::Test {
         return json::parse(std::ifstream(folder_ / name / "result.json"));
     }
 
-    fs::path folder_;
+    test::TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
 };
 
 TEST_F(FlyCommand, FliesBothPlannersAndWritesWhatOthersRead) {

@@ -27,15 +27,6 @@ const std::string kQuickSweep =
 
 class SweepCommand : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() /
-                  (std::string("photonav_sweep_command_") +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     std::string at(const std::string& name) const { return (folder_ / name).string(); }
 
     Execution sweep(const std::string& name, const std::string& arguments,
@@ -76,7 +67,8 @@ class SweepCommand : public testing::Test {
         return whole.str();
     }
 
-    fs::path folder_;
+    test::TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
 };
 
 TEST_F(SweepCommand, WritesEverythingItPromises) {

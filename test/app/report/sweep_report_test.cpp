@@ -4,34 +4,17 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "report/sweep_figures.hpp"
+#include "sweep_run.hpp"
 
 namespace photonav {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-SweepRun makeRun(const SweepItem& item, double cost, double length, double meanTrace) {
-    SweepRun run{item, cost, length, meanTrace, 0.5 * meanTrace, 100, 40, 0.25, "done", {}};
-    run.path = {{0., 0., 2.}, {1. / 3., 0.1, 2.}};
-    return run;
-}
+using test::makeRun;
 
 TEST(SweepTables, PutThePaperBesideOurs) {
-    SweepConfig config;
-    config.planners = {"a", "b", "rrt_star"};
-    config.alphas = {0.05, 0.15};
-    config.paper = {{0.15, 40.45, 7.75, 9.25}};
-    SweepRun lost = makeRun({"a", 0.15, 2}, kNone, kNone, kNone);
-    lost.goalTrace = kNone;
-    lost.status = "no path";
-    const auto cells = summarize(
-        config,
-        {makeRun({"a", 0.15, 1}, 3., 10., 0.2), lost, makeRun({"b", 0.05, 1}, 5., 11., 0.3),
-         makeRun({"b", 0.05, 2}, 7., 13., 0.1), makeRun({"rrt_star", 0.15, 1}, 9., 8., 0.4)},
-        {});
+    auto [config, runs] = test::SampleSweep();
+    const auto cells = summarize(config, runs, {});
     const std::string table = sweepTable(config, cells);
     EXPECT_NE(table.find("40.45"), std::string::npos) << table;
     EXPECT_EQ(table.find("paper", table.find("rrt_star")), std::string::npos) << table;

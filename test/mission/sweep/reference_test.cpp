@@ -10,6 +10,7 @@
 #include "problem/planning_problem.hpp"
 #include "sweep/reference_table.hpp"
 #include "sweep/sweep_summary.hpp"
+#include "temporary_folder.hpp"
 
 namespace photonav {
 namespace {
@@ -70,18 +71,8 @@ TEST(Reference, TheDefaultPlannerComesWithinHalfAPercent) {
 
 class ReferenceFiles : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() /
-                  (std::string("photonav_reference_") +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-        file_ = folder_ / "table.csv";
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path folder_;
-    fs::path file_;
+    test::TemporaryFolder folder_;
+    fs::path file_ = folder_.path() / "table.csv";
 };
 
 TEST_F(ReferenceFiles, ComeBackAsTheyWereWrittenAndOnlyGetBetter) {

@@ -11,11 +11,15 @@
 
 #include "io/error.hpp"
 #include "sweep/sweep_summary.hpp"
+#include "sweep_run.hpp"
+#include "temporary_folder.hpp"
 
 namespace photonav {
 namespace {
 
 namespace fs = std::filesystem;
+
+using test::makeRun;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -32,24 +36,10 @@ std::string reasonOf(const std::function<void()>& action) {
     return "nothing was thrown";
 }
 
-SweepRun makeRun(const SweepItem& item, double cost, double length, double meanTrace) {
-    SweepRun run{item, cost, length, meanTrace, 0.5 * meanTrace, 100, 40, 0.25, "done", {}};
-    run.path = {{0., 0., 2.}, {1. / 3., 0.1, 2.}};
-    return run;
-}
-
 class SweepFiles : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() /
-                  (std::string("photonav_sweep_") +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path folder_;
+    test::TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
 };
 
 TEST(SweepAlphas, RangesIncludeTheirEndAndAreRound) {
@@ -293,18 +283,8 @@ TEST_F(SweepFiles, ReferencesGiveTheExcess) {
 }
 
 TEST(SweepTables, HaveThePapersRowBesideOurs) {
-    SweepConfig config;
-    config.planners = {"a", "b", "rrt_star"};
-    config.alphas = {0.05, 0.15};
-    config.paper = {{0.15, 40.45, 7.75, 9.25}};
-    SweepRun lost = makeRun({"a", 0.15, 2}, kNone, kNone, kNone);
-    lost.goalTrace = kNone;
-    lost.status = "no path";
-    const auto cells = summarize(
-        config,
-        {makeRun({"a", 0.15, 1}, 3., 10., 0.2), lost, makeRun({"b", 0.05, 1}, 5., 11., 0.3),
-         makeRun({"b", 0.05, 2}, 7., 13., 0.1), makeRun({"rrt_star", 0.15, 1}, 9., 8., 0.4)},
-        {});
+    const test::SampleSweep sample;
+    const auto cells = summarize(sample.config, sample.runs, {});
     ASSERT_EQ(cells.size(), 3U);
     const auto first = toJson(cells[0]);
     EXPECT_EQ(first["runs"], 2);
