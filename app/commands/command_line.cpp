@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <set>
+#include <algorithm>
 
 #include "io/error.hpp"
 
@@ -17,6 +17,18 @@ const CLI::Validator& notEmpty() {
         },
         "");
     return validator;
+}
+
+/// Sets a key. @returns why it cannot be set, or nothing
+std::string complaintAbout(const ConfigKey& key, const std::string& text) {
+    try {
+        key.set(valueOf(key, text));
+    } catch (const InputError& error) {
+        const std::string prefix = key.words.name + ": ";
+        const std::string& reason = error.reason();
+        return reason.starts_with(prefix) ? reason.substr(prefix.size()) : reason;
+    }
+    return "";
 }
 
 }  // namespace
@@ -57,22 +69,31 @@ void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig) {
     addOutput(parser, {options.out, options.quiet, options.json}, "out/<command>-<config>");
 }
 
-void addRecording(CLI::App& parser, RecordingOptions& options) {
-    parser.add_option("--camera", options.cameraFile,
-                      "camera.yaml to use instead of the dataset's");
-    parser
-        .add_option("--up", options.up,
-                    "upward direction of the recorded world: x ... -z, a direction x,y,z, or floor")
-        ->capture_default_str();
-    parser.add_option("--every", options.every, "use every n-th frame")->capture_default_str();
-    parser.add_option("--frames", options.frames, "only the frames from a on and before b")
-        ->type_name("A:B");
-    parser.add_option("--depth-scale", options.depthScale,
-                      "depth image value of one metre (default: the dataset's)");
-    parser.add_option("--stereo", options.stereo,
-                      "bm or sgbm: block matching (default), semi-global; for EuRoC recordings");
-    parser.add_option("--tolerance", options.tolerance, "largest difference of timestamps [s]")
-        ->capture_default_str();
+std::string optionOf(const ConfigKey& key) {
+    std::string name = key.words.name;
+    std::replace(name.begin(), name.end(), '_', '-');
+    return "--" + name;
+}
+
+std::string valueOf(const ConfigKey& key, const std::string& text) {
+    return key.allowed.starts_with("`[") ? "[" + text + "]" : text;
+}
+
+void addKeyOptions(CLI::App& parser, const KeyTable& keys, const std::set<std::string>& without) {
+    for (const ConfigKey& key : keys.keys()) {
+        if (without.contains(key.words.name)) continue;
+        const std::string option = optionOf(key);
+        const std::string description = key.description();
+        if (key.allowed == "true, false") {
+            parser.add_flag_function(
+                fmt::format("{0},!--no-{1}", option, option.substr(2)),
+                [&key](std::int64_t count) { key.set(count > 0 ? "true" : "false"); }, description);
+        } else {
+            parser.add_option(option, description)
+                ->type_name(key.isFile ? "FILE" : "VALUE")
+                ->check([&key](const std::string& text) { return complaintAbout(key, text); });
+        }
+    }
 }
 
 std::string folderName(const std::string& path) {

@@ -5,10 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <functional>
+#include <set>
 #include <string>
 
 #include "commands/command_io.hpp"
-#include "dataset/recording.hpp"
+#include "config/key_table.hpp"
 #include "report/report.hpp"
 
 namespace photonav {
@@ -53,8 +54,16 @@ void addSeed(CLI::App& parser, Text& seed, const std::string& what) {
         ->check(CLI::Range(1U, 4294967295U));
 }
 
-/// What is read of a recording: camera, up, frames, timestamps.
-void addRecording(CLI::App& parser, RecordingOptions& options);
+/// "--body-radius" of the key body_radius.
+std::string optionOf(const ConfigKey& key);
+
+/// The value of a key as it was typed: lists are typed without brackets.
+std::string valueOf(const ConfigKey& key, const std::string& text);
+
+/// An option per key, which sets what the table refers to.
+/// @param keys must outlive the parser
+/// @param without names of keys that are typed in another way
+void addKeyOptions(CLI::App& parser, const KeyTable& keys, const std::set<std::string>& without);
 
 /// Last part of a path, without a closing slash.
 std::string folderName(const std::string& path);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "commands/command_line.hpp"
 #include "commands/fly_command.hpp"
 #include "config/config_keys.hpp"
@@ -16,44 +14,6 @@ struct FlyArguments : FlyOptions {
     FlyConfig typed;  ///< the defaults
     KeyTable keys;    ///< of `typed`
 };
-
-std::string optionOf(const ConfigKey& key) {
-    std::string name = key.words.name;
-    std::replace(name.begin(), name.end(), '_', '-');
-    return "--" + name;
-}
-
-/// Lists are typed without brackets.
-std::string valueOf(const ConfigKey& key, const std::string& text) {
-    return key.allowed.starts_with("`[") ? "[" + text + "]" : text;
-}
-
-std::string complaintAbout(const ConfigKey& key, const std::string& text) {
-    try {
-        key.set(valueOf(key, text));
-    } catch (const InputError& error) {
-        const std::string prefix = key.words.name + ": ";
-        const std::string& reason = error.reason();
-        return reason.starts_with(prefix) ? reason.substr(prefix.size()) : reason;
-    }
-    return "";
-}
-
-/// An option per key of the section `fly`: --body-radius is fly.body_radius.
-void addKeyOptions(CLI::App& parser, const KeyTable& keys) {
-    for (const ConfigKey& key : keys.keys()) {
-        if (key.words.name == "plan") continue;  // the positional argument
-        const std::string option = optionOf(key);
-        const std::string description = key.description();
-        if (key.allowed == "true, false") {
-            parser.add_flag(fmt::format("{0},!--no-{1}", option, option.substr(2)), description);
-        } else {
-            parser.add_option(option, description)
-                ->type_name(key.isFile ? "FILE" : "VALUE")
-                ->check([&key](const std::string& text) { return complaintAbout(key, text); });
-        }
-    }
-}
 
 /// What was typed goes over the config, as --set would.
 void override(const CLI::App& parser, const KeyTable& keys, std::vector<std::string>& overrides) {
@@ -88,7 +48,7 @@ Command flyCommand(CLI::App& app, const Invocation& invocation) {
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
     addSeed(*parser, options->seed, "of all random numbers");
-    addKeyOptions(*parser, options->keys);
+    addKeyOptions(*parser, options->keys, {"plan"});  // the positional argument
     parser
         ->add_option("--calibration",
                      "scale and floors from the calibration.yaml of a replay --calibrate, the "

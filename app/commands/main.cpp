@@ -15,12 +15,14 @@
 #include "commands/map_info.hpp"
 #include "commands/plan_command.hpp"
 #include "commands/reference_command.hpp"
+#include "commands/replay_command.hpp"
 #include "commands/sweep_command.hpp"
 #include "config/config_keys.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "io/yaml_reader.hpp"
 #include "map/octree_file.hpp"
+#include "mapping/map_config.hpp"
 #include "report/report.hpp"
 
 namespace {
@@ -174,12 +176,23 @@ Command referenceCommand(CLI::App& app) {
 
 Command keysCommand(CLI::App& app) {
     auto names = std::make_shared<std::vector<std::string>>();
+    auto command = std::make_shared<std::string>("plan");
     CLI::App* parser =
         app.add_subcommand("keys", "List the keys of a config: values, units, meaning.");
     parser->add_option("names", *names, "sections or keys (default: all)");
-    return {parser, [names] {
+    parser->add_option("--of", *command, "plan (also sweep, fly, ...), map, scans (map) or replay")
+        ->check(CLI::IsMember({"plan", "map", "scans", "replay"}))
+        ->capture_default_str();
+    return {parser, [names, command] {
                 Config config;
-                fmt::print("{}", keysOf(config).toMarkdown(*names));
+                MapOptions map;
+                ScanMapOptions scans;
+                ReplayCommandOptions replay;
+                const KeyTable keys = *command == "map"      ? keysOf(map)
+                                      : *command == "scans"  ? keysOf(scans)
+                                      : *command == "replay" ? keysOf(replay)
+                                                             : keysOf(config);
+                fmt::print("{}", keys.toMarkdown(*names));
                 return static_cast<int>(kDone);
             }};
 }

@@ -14,9 +14,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct MapArguments : MapCommandOptions {
-    std::vector<double> scanner;
+    ScanCommandOptions scan;  ///< the same of point clouds
     bool quiet = false;
     bool json = false;
+    KeyTable keys = keysOf(static_cast<MapOptions&>(*this));
+    KeyTable scanKeys = keysOf(scan);
 };
 
 void addOptions(CLI::App& parser, MapArguments& options) {
@@ -26,50 +28,38 @@ void addOptions(CLI::App& parser, MapArguments& options) {
                     "(.ply), or a folder with one per station of the scanner; or the config.yaml "
                     "of an earlier map")
         ->required();
-    parser.add_option("--resolution", options.resolution, "edge of a cell [m]")
-        ->capture_default_str();
-    parser
-        .add_option("--depth", options.depth,
-                    "recorded (of two cameras: stereo), or monocular: from the images of one and "
-                    "their poses alone")
-        ->capture_default_str();
-    parser.add_option("--min-range", options.fusion.minRange,
-                      "nearest depth trusted [m] (0.2, monocular: 0.5)");
-    parser
-        .add_option("--max-range", options.fusion.maxRange,
-                    "farthest surface entered [m] (point clouds: 40)")
-        ->capture_default_str();
-    parser
-        .add_option("--scanner", options.scanner,
-                    "x,y,z of the scanner, for a point cloud without it")
-        ->delimiter(',')
-        ->expected(3);
-    addRecording(parser, options);
+    addKeyOptions(parser, options.keys, {"dataset"});
+    addKeyOptions(parser, options.scanKeys, {"scans", "resolution", "max_range"});
+    parser.get_option("--max-range")
+        ->description(options.keys.find("max_range")->description() + " (point clouds: 40)");
+    parser.get_option("--scanner")
+        ->description("x,y,z of the scanner, for a point cloud without it");
     addOutput(parser, {options.out, options.quiet, options.json}, "out/map-<dataset>");
 }
 
-/// The options for a laser scan; those that belong to images are errors.
-ScanCommandOptions scanOptions(const CLI::App& parser, const MapArguments& options) {
-    for (const char* name : {"--camera", "--up", "--every", "--frames", "--min-range",
-                             "--depth-scale", "--tolerance", "--depth", "--stereo"}) {
-        if (parser.count(name) > 0) throw InputError(name, "", "is for images, not point clouds");
+/// Completes the options for a laser scan; those that belong to images are errors.
+void readScanOptions(const CLI::App& parser, MapArguments& options) {
+    for (const ConfigKey& key : options.keys.keys()) {
+        const std::string name = key.words.name;
+        if (name == "dataset" || name == "resolution" || name == "max_range") continue;
+        if (parser.count(optionOf(key)) == 0) continue;
+        throw InputError(optionOf(key), "", "is for images, not point clouds");
     }
-    ScanCommandOptions scan;
+    ScanCommandOptions& scan = options.scan;
     scan.commandLine = options.commandLine;
     if (!isScan(options.dataset)) {  // the config of an earlier map
-        readScanConfig(options.dataset, scan);
-        return scan;
+        options.scanKeys.read(options.dataset);
+        return;
     }
     scan.scans = options.dataset;
     scan.resolution = options.resolution;
     if (parser.count("--max-range") > 0) scan.maxRange = options.fusion.maxRange;
-    if (!options.scanner.empty()) scan.scanner.emplace(options.scanner.data());
-    return scan;
 }
 
 MapReport mapScans(const CLI::App& parser, MapArguments& options, ProgressLine& line,
                    const std::atomic<bool>& interrupted) {
-    ScanCommandOptions scan = scanOptions(parser, options);
+    readScanOptions(parser, options);
+    ScanCommandOptions& scan = options.scan;
     if (options.out.empty()) options.out = "out/map-" + folderName(scan.scans);
     scan.out = options.out;
     scan.progress = [&line](std::size_t done, std::size_t total) {
@@ -80,11 +70,11 @@ MapReport mapScans(const CLI::App& parser, MapArguments& options, ProgressLine& 
 
 MapReport mapImages(const CLI::App& parser, bool isConfig, MapArguments& options,
                     ProgressLine& line, const std::atomic<bool>& interrupted) {
-    if (!options.scanner.empty()) {
+    if (parser.count("--scanner") > 0) {
         throw InputError("--scanner", "", "is for point clouds, not images");
     }
     if (isConfig) {
-        readMapConfig(std::string(options.dataset), options);
+        options.keys.read(std::string(options.dataset));
     } else if (parser.count("--min-range") == 0) {
         options.fusion.minRange = defaultMinRange(options.depth);
     }

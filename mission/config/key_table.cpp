@@ -50,9 +50,8 @@ YAML::Node yamlList(const std::vector<std::string>& words) {
 }
 
 std::string resolvedPath(const std::string& path, const std::string& file) {
-    if (path.empty() || fs::path(path).is_absolute()) return path;
-    const fs::path folder = file.empty() ? fs::current_path() : fs::absolute(file).parent_path();
-    return fs::weakly_canonical(folder / path).string();
+    if (path.empty() || file.empty() || fs::path(path).is_absolute()) return path;
+    return fs::weakly_canonical(fs::absolute(file).parent_path() / path).string();
 }
 
 std::string ConfigKey::path() const {
@@ -70,7 +69,7 @@ std::string ConfigKey::description() const {
 void ConfigKey::set(const std::string& text) const {
     YAML::Node node(YAML::NodeType::Map);
     try {
-        node[words.name] = isFile ? YAML::Node(text) : YAML::Load(text);
+        node[words.name] = isFile || isText ? YAML::Node(text) : YAML::Load(text);
     } catch (const YAML::Exception&) {
         throw InputError("", "", "cannot read the value '" + text + "'");
     }
@@ -107,6 +106,7 @@ void KeyTable::flag(const KeyWords& words, bool& value) {
 
 void KeyTable::text(const KeyWords& words, std::string& value) {
     add({.words = words,
+         .isText = true,
          .read = [&value, name = words.name](YamlMap& map) { map.read(name, value); },
          .value = [&value] { return value.empty() ? YAML::Node() : YAML::Node(value); }});
 }

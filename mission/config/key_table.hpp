@@ -34,6 +34,7 @@ struct ConfigKey {
     KeyWords words = {};
     std::string allowed = {};  ///< allowed values in words, may be empty
     bool isFile = false;       ///< a path, relative to the file that contains it
+    bool isText = false;       ///< typed on a command line it is taken as it is, not as YAML
     std::function<void(YamlMap&)> read = {};
     std::function<YAML::Node()> value = {};  ///< null: no value, not written
 
@@ -123,7 +124,7 @@ YAML::Node yamlList(const std::vector<std::string>& words);
 /// A number to as many digits as it needs.
 YAML::Node yamlNumber(double value);
 
-/// A path in a file is relative to the folder of that file; without file, to the working directory.
+/// A path in a file is relative to the folder of that file; one without file stays as it is.
 std::string resolvedPath(const std::string& path, const std::string& file);
 
 }  // namespace photonav

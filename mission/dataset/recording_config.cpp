@@ -17,8 +17,10 @@ void addKeys(KeyTable& keys, RecordingOptions& options) {
     keys.number({"depth_scale", "1/m", "depth image value of one metre; none: the dataset's"},
                 options.depthScale, {1e-6, kInfinity});
     keys.text({"frames", "", "\"a:b\": only the frames from a on and before b"}, options.frames);
-    keys.choice({"stereo", "", "block matching or semi-global matching, of EuRoC recordings"},
-                options.stereo, {"bm", "sgbm"});
+    keys.choice(
+        {"stereo", "",
+         "bm: block matching (none: this), sgbm: semi-global matching; of EuRoC recordings"},
+        options.stereo, {"bm", "sgbm"});
 }
 
 }  // namespace photonav

@@ -263,5 +263,19 @@ TEST_F(CommandLine, HelpTeaches) {
     }
 }
 
+TEST(KeysCommand, ListsThoseOfMapsAndReplaysAsDocumented) {
+    const std::string page = test::contentOf(PHOTONAV_SOURCE_DIR "/docs/config.md");
+    for (const auto& [of, key] : {std::pair("map", "min_range"), std::pair("scans", "scanner"),
+                                  std::pair("replay", "max_width")}) {
+        const Execution run = photonav(fmt::format("keys --of {}", of));
+        EXPECT_EQ(run.exitCode, 0) << of;
+        EXPECT_NE(run.output.find(fmt::format("| `{}` |", key)), std::string::npos) << run.output;
+        EXPECT_NE(page.find(fmt::format("<!-- keys --of {} -->\n{}", of, run.output)),
+                  std::string::npos)
+            << "run scripts/update-docs --run build";
+    }
+    EXPECT_EQ(photonav("keys --of nothing").exitCode, 2);
+}
+
 }  // namespace
 }  // namespace photonav

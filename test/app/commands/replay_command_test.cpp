@@ -233,6 +233,23 @@ TEST_F(ReplayCommand, FromTheCommandLine) {
         fmt::format("replay {} --odometry --out {} --json", data.string(), options.out.string()));
     EXPECT_EQ(good.exitCode, 0) << good.output;
     EXPECT_EQ(json::parse(good.output)["tracked"], 12);
+    const Execution typed =
+        photonav(fmt::format("replay {} --odometry --out {} --frames 2: --max-width 80 "
+                             "--no-exposure --sigma 0.03 --json",
+                             data.string(), options.out.string()));
+    ASSERT_EQ(typed.exitCode, 0) << typed.output;
+    const json used = json::parse(typed.output)["options"];
+    EXPECT_EQ(used["frames"], "2:");
+    EXPECT_EQ(used["max_width"], 80);
+    EXPECT_EQ(used["exposure"], false);
+    EXPECT_EQ(used["sigma"], 0.03);
+    for (const char* wrong : {"--max-width 10", "--min-overlap 1", "--every 1.5", "--sigma x"}) {
+        const Execution run =
+            photonav(fmt::format("replay {} --odometry {}", data.string(), wrong));
+        const std::string option(wrong, std::string_view(wrong).find(' '));
+        EXPECT_EQ(run.exitCode, 2) << wrong;
+        EXPECT_TRUE(run.output.starts_with("photonav: " + option)) << run.output;
+    }
     const Execution bad = photonav(fmt::format("replay {} --odometry --depth-scale 5 --out {}",
                                                data.string(), options.out.string()));
     EXPECT_EQ(bad.exitCode, 2);

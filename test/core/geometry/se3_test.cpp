@@ -140,5 +140,18 @@ TEST(VispBridge, RoundTrips) {
     EXPECT_EQ(toVisp(m)[1][4], m(1, 4));
 }
 
+TEST(Interpolation, IsStraightAndTurnsTheShorterWay) {
+    Pose a = Pose::Identity();
+    a.rotate(Eigen::AngleAxisd(3., Eigen::Vector3d::UnitZ()));
+    Pose b = Pose::Identity();
+    b.translation() << 1., 2., -4.;
+    b.rotate(Eigen::AngleAxisd(-3., Eigen::Vector3d::UnitZ()));
+    EXPECT_TRUE(interpolate(a, b, 0.).isApprox(a, 1e-12));
+    EXPECT_TRUE(interpolate(a, b, 1.).isApprox(b, 1e-12));
+    const Pose half = interpolate(a, b, 0.5);
+    EXPECT_TRUE(half.translation().isApprox(Eigen::Vector3d(0.5, 1., -2.), 1e-12));
+    EXPECT_NEAR(std::abs(yawOf(half)), std::numbers::pi, 1e-9);
+}
+
 }  // namespace
 }  // namespace photonav

@@ -78,5 +78,16 @@ TEST(PointSpread, AcceptsImagesOfOneRowOrColumn) {
     }
 }
 
+TEST(GreyLevel, IsTheNearestOfThoseThatFilesHold) {
+    for (int level = 0; level < 256; ++level) {
+        const float grey = static_cast<float>(level) / 255.F;
+        EXPECT_EQ(greyLevel(grey), level);
+        EXPECT_EQ(greyLevel(grey + 0.4F / 255.F), level);
+        EXPECT_EQ(greyLevel(grey - 0.4F / 255.F), level);
+    }
+    EXPECT_EQ(greyLevel(-1.F), 0);
+    EXPECT_EQ(greyLevel(2.F), 255);
+}
+
 }  // namespace
 }  // namespace photonav
