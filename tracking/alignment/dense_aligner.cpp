@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "alignment/hole_margin.hpp"
 #include "alignment/image_pyramid.hpp"
 
 namespace photonav {
@@ -19,6 +20,7 @@ class DenseAligner::RenderedModel : public Comparison {
             levels_.push_back({c,
                                ViewComparison(c, options.photometric, options.modelNoise),
                                ViewComparison(c, options.photometric),
+                               {},
                                {}});
             c = halved(c);
             if (std::min(c.width, c.height) < kMinSide) break;
@@ -35,6 +37,15 @@ class DenseAligner::RenderedModel : public Comparison {
         }
     }
 
+    /// The pose is as uncertain as this from now on.
+    void setPrior(const UncertainPose& prior) {
+        const Level& coarsest = levels_.back();
+        model_.render(coarsest.camera, prior.mean, predicted_);
+        for (Level& level : levels_) {
+            level.margin = holeMargin(prior.covariance, level.camera, meanDepth(predicted_));
+        }
+    }
+
     const AlignmentOptions& options() const { return options_; }
     std::size_t levels() const override { return levels_.size(); }
     const Camera& camera(std::size_t level) const override { return levels_[level].camera; }
@@ -45,17 +56,17 @@ class DenseAligner::RenderedModel : public Comparison {
                             const Loss& loss) override {
         last_ = level;
         Level& at = levels_[level];
-        model_.render(at.camera, T_c_w, predicted_);
+        render(at, T_c_w, predicted_);
         return at.compare(predicted_, at.observed, exposure, loss);
     }
 
     AgainstPrediction predictionAsImage(std::size_t level, const Pose& T_image_w) override {
         return [this, level, T_image_w, isRendered = false](const Pose& T_c_w) mutable {
             Level& at = levels_[level];
-            if (!isRendered) model_.render(at.camera, T_image_w, asImage_);
+            if (!isRendered) render(at, T_image_w, asImage_);
             isRendered = true;
             const bool isHere = T_c_w.matrix() == T_image_w.matrix();
-            if (!isHere) model_.render(at.camera, T_c_w, predicted_);
+            if (!isHere) render(at, T_c_w, predicted_);
             return at.comparePredictions(isHere ? asImage_ : predicted_, asImage_.intensity,
                                          Exposure{}, Loss{});
         };
@@ -66,7 +77,13 @@ class DenseAligner::RenderedModel : public Comparison {
         Camera camera;
         ViewComparison compare, comparePredictions;
         ImageF observed;
+        HoleMargin margin;
     };
+
+    void render(const Level& level, const Pose& T_c_w, View& view) const {
+        model_.render(level.camera, T_c_w, view);
+        widenHoles(view, level.margin);
+    }
 
     AlignmentOptions options_;
     const ViewSource& model_;
@@ -87,6 +104,7 @@ const Camera& DenseAligner::camera() const { return model_->camera(0); }
 
 Alignment DenseAligner::align(const ImageF& observed, const Pose& T_start) {
     model_->observe(observed);
+    model_->setPrior({T_start, Matrix6::Zero()});
     return alignCoarseToFine(*model_, options(), T_start, nullptr);
 }
 
@@ -97,6 +115,7 @@ Alignment DenseAligner::align(const ImageF& observed, const UncertainPose& prior
 Alignment DenseAligner::align(const ImageF& observed, const UncertainPose& prior,
                               const Pose& T_start) {
     model_->observe(observed);
+    model_->setPrior(prior);
     return alignCoarseToFine(*model_, options(), T_start, &prior);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "alignment/hole_margin.hpp"
 #include "alignment/image_pyramid.hpp"
 #include "geometry/se3.hpp"
 
@@ -68,18 +69,6 @@ std::vector<Vector6> placesWithin(const Vector6& sigmas) {
         }
     }
     return places;
-}
-
-/// Harmonic mean; 1 where there is no surface.
-double meanDepth(const View& view) {
-    double sum = 0.;
-    double count = 0.;
-    for (unsigned i = 0; i < view.depth.getSize(); ++i) {
-        if (view.depth.bitmap[i] <= 0.F) continue;
-        sum += 1. / view.depth.bitmap[i];
-        ++count;
-    }
-    return count > 0. ? count / sum : 1.;
 }
 
 /// Share of the pixels that have an image's contrast: the participation ratio of its squares.
@@ -190,22 +179,30 @@ std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const Uncert
     const ImageMotion motion = imageMotionOf(prior.covariance, aligner_.camera(), depth);
     std::vector<Start> starts;
     View view;
+    const HoleMargin margin = holeMargin(prior.covariance, small_.camera(), depth);
     for (const Vector6& place : placesWithin(motion.sigmas)) {
         const Pose T_c_w = expSE3(motion.axes * place) * prior.mean;
         model_.render(small_.camera(), T_c_w, view);
+        widenHoles(view, margin);
         starts.push_back(
             {T_c_w, misfit(image, view, weight(), aligner_.options().exposure) +
                         place.cwiseQuotient(motion.sigmas.cwiseMax(1e-3)).squaredNorm()});
     }
     sortByCost(starts);
     if (starts.size() > kTried) starts.resize(kTried);
-    for (Start& start : starts) {
+    std::vector<Start> aligned;
+    for (const Start& start : starts) {
         const Alignment a = small_.align(image, prior, start.T_c_w);
         const bool hasNoOverlap = a.verdict == Verdict::lostOverlap;
-        start = {a.T_c_w, hasNoOverlap ? kInfinity : costOf(a, prior)};
+        aligned.push_back({a.T_c_w, hasNoOverlap ? kInfinity : costOf(a, prior)});
     }
-    sortByCost(starts);
-    return distinct(starts, 0.5 * kSpacing * depth / aligner_.camera().fx(), kStarts);
+    sortByCost(aligned);
+    const double apart = 0.5 * kSpacing * depth / aligner_.camera().fx();
+    std::vector<Pose> likely = distinct(aligned, apart, kStarts);
+    // Alignments do without the outermost pixels, which are many of a small image: where texture is
+    // only there, they all end at the prior's mean.
+    for (const Pose& T_c_w : distinct(starts, apart, kStarts)) likely.push_back(T_c_w);
+    return likely;
 }
 
 double WideAligner::pixels() const {
