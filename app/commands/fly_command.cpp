@@ -206,6 +206,9 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     PlanningProblem run(config, world);
     run.checkPlaces();
     flight.initialCovariance = run.initialCovariance();
+    flight.pilot.isFree = [&world, radius = config.robotRadius](const Eigen::Vector3d& p_w) {
+        return world.clearance(p_w) >= radius;
+    };
     const NoEmptyFolder noEmptyRecording(options.record);
     const NoEmptyFolder noEmptyFolder(options.out);
     if (!options.record.empty()) prepareRecordFolder(options.record);

@@ -32,9 +32,11 @@ Pilot::Pilot(std::vector<PlannedView> plan, std::shared_ptr<const ViewSource> ma
       options_(options),
       route_(std::move(plan), T_b_c, options.route),
       servo_(T_b_c, options.servo),
-      goalServo_(*map_, camera, T_b_c, route_.goal().T_w_b, {.photometric = options.photometric}) {}
+      goalServo_(*map_, camera, T_b_c, route_.goal().T_w_b, {.photometric = options.photometric}),
+      search_(map_, camera, T_b_c, options.photometric, options.isFree) {}
 
 void Pilot::observe(const Tracker& tracker, const TrackedFrame& tracked, const ImageF& image) {
+    if (searchSince_) continueSearch(tracker, tracked.time);
     if (tracker.loss().isLost()) return leaveImage();
     if (!atGoalSince_) return;
     const Pose T_w_b = tracked.T_c_w.mean.inverse() * T_b_c_.inverse();
@@ -68,25 +70,75 @@ BodyVelocity Pilot::decide(const Tracker& tracker, double time) {
     const UncertainPose belief = tracker.belief();
     if (const auto lostSince = tracker.loss().since()) {
         if (time - *lostSince < options_.hoverTime) return {};
-        const Pose& T_certain_w = tracker.lastCertainView();
-        if (isNear(belief.mean, T_certain_w)) return servo_.toward(belief.mean, T_certain_w);
+        if (!searchSince_) beginSearch(tracker, time);
     }
+    if (searched_) return servo_.toward(belief.mean, (*searched_ * T_b_c_).inverse());
     if (atGoalSince_) {
         return onImage_ ? *onImage_ : servo_.toward(belief.mean, route_.cameraAt(route_.goal()));
     }
+    const double before = route_.lastWaypoint().distance;
     const PlannedView& target = route_.advance(belief);
-    if (route_.isAtGoal()) atGoalSince_ = time;
+    if (!tracker.loss().isLost() && route_.lastWaypoint().distance > before && isMissed(belief)) {
+        beginSearch(tracker, time);
+    }
+    if (route_.isAtGoal() && !searchSince_) {
+        atGoalSince_ = time;
+        isResigned_ = isMissed(belief);
+    }
     return servo_.toward(belief.mean, route_.cameraAt(target));
 }
 
-bool Pilot::isNear(const Pose& T_c_w, const Pose& T_other_w) const {
-    const Eigen::Vector3d apart_w =
-        T_c_w.inverse().translation() - T_other_w.inverse().translation();
-    return apart_w.norm() < options_.returnDistance;
+/// Whether the belief is too wide for waypoints to be reached, and was not to be at the last one.
+bool Pilot::isMissed(const UncertainPose& belief) const {
+    const PlannedView& waypoint = route_.lastWaypoint();
+    const double planned = widestSigma({waypoint.T_w_b, waypoint.covariance});
+    const double sigma = widestSigma(belief);
+    return sigma > options_.route.mostTolerance && std::sqrt(2.) * planned < sigma;
+}
+
+void Pilot::beginSearch(const Tracker& tracker, double time) {
+    searchSince_ = time;
+    searched_ = tracker.loss().isLost()
+                    ? whereToFindItself(tracker)
+                    : search_.nearest(tracker.belief(), route_.lastWaypoint().T_w_b);
+    if (!searched_ && !tracker.loss().isLost()) endSearch();
+}
+
+/// An image has arrived.
+void Pilot::continueSearch(const Tracker& tracker, double time) {
+    if (tracker.loss().isLost()) return;
+    const UncertainPose belief = tracker.belief();
+    const bool isTooLong = time - *searchSince_ > options_.giveUpTime;
+    if (!searched_ || isTooLong || !isMissed(belief)) return endSearch();
+    const Eigen::Vector3d p_w = bodyOf(belief.mean).translation();
+    if ((p_w - searched_->translation()).norm() > options_.route.leastTolerance) return;
+    search_.visited(*searched_);
+    searched_ = search_.nearest(belief, route_.lastWaypoint().T_w_b);
+}
+
+void Pilot::endSearch() {
+    searchSince_.reset();
+    searched_.reset();
+}
+
+/// The last view that determined the pose, unless one that should narrow the belief lies nearer
+/// ahead on the route: none.
+std::optional<Pose> Pilot::whereToFindItself(const Tracker& tracker) const {
+    const UncertainPose belief = tracker.loss().widened(tracker.belief());
+    const Eigen::Vector3d p_w = bodyOf(belief.mean).translation();
+    const Pose certain = bodyOf(tracker.lastCertainView());
+    const double back = (certain.translation() - p_w).norm();
+    const PlannedView& target = route_.target();
+    const double way = (target.T_w_b.translation() - p_w).norm();
+    for (const PlannedView& view : route_.ahead()) {
+        if (way + view.distance - target.distance > back) break;
+        if (search_.narrows(belief, view.T_w_b)) return {};
+    }
+    return certain;
 }
 
 bool Pilot::hasArrived(const Tracker& tracker, double time) const {
-    if (!atGoalSince_ || tracker.loss().isLost()) return false;
+    if (!atGoalSince_ || isResigned_ || tracker.loss().isLost()) return false;
     const double waited = time - *atGoalSince_;
     return onImage_ ? smallSteps_ >= kPhotometricImages || waited > kPhotometricTime
                     : waited > kSettleTime;
@@ -94,7 +146,7 @@ bool Pilot::hasArrived(const Tracker& tracker, double time) const {
 
 bool Pilot::hasGivenUp(const Tracker& tracker, double time) const {
     const auto since = tracker.loss().since();
-    return since && time - *since > options_.hoverTime + options_.giveUpTime;
+    return isResigned_ || (since && time - *since > options_.hoverTime + options_.giveUpTime);
 }
 
 }  // namespace photonav

@@ -2,12 +2,14 @@
 // From a plan and a belief to commands.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "control/photometric_servo.hpp"
 #include "control/route.hpp"
+#include "control/view_search.hpp"
 #include "control/waypoint_servo.hpp"
 #include "estimation/tracker.hpp"
 
@@ -18,16 +20,19 @@ struct PilotOptions {
     RouteOptions route;
     bool photometricGoal = true;  ///< servo on the goal's image where it determines all velocities
     PhotometricOptions photometric;  ///< of that image
-    double hoverTime = 1.;           ///< waited on the spot after a loss before flying back [s]
-    /// How far to fly back to the last view that determined the pose [m]. If it is farther, the
-    /// route goes on: its views are nearer, and chosen for what they inform of.
-    double returnDistance = 3.;
-    double giveUpTime = 20.;  ///< searched in vain before giving up [s]
+    double hoverTime = 1.;           ///< waited on the spot after a loss before flying on [s]
+    double giveUpTime = 20.;         ///< searched in vain before giving up [s]
+    /// Whether the body may be at a place of the world, for searches off the plan; empty: nowhere.
+    std::function<bool(const Eigen::Vector3d& p_w)> isFree;
 };
 
 /// Flies to the views of a plan, one after the other, by visual servoing on the believed pose; at
-/// the goal on its image. While tracking is lost it hovers, then flies back to the last view that
-/// determined the pose, or on along the route if that is far, and gives up after a while.
+/// the goal on its image. A waypoint at which the belief is much wider than planned, so that its
+/// view cannot have been seen, begins a search for a view around that narrows it; what is not found
+/// in time leaves the route as uncertain as before, and a goal not reached for certain is given up.
+/// While tracking is lost the pilot hovers, then flies back to the last view that determined the
+/// pose, or on along the route to one that should narrow the belief, whichever is nearer. It gives
+/// up after a while.
 class Pilot {
   public:
     /// @param plan at least two views @throws std::invalid_argument otherwise
@@ -52,7 +57,12 @@ class Pilot {
 
   private:
     BodyVelocity decide(const Tracker& tracker, double time);
-    bool isNear(const Pose& T_c_w, const Pose& T_other_w) const;
+    bool isMissed(const UncertainPose& belief) const;
+    void beginSearch(const Tracker& tracker, double time);
+    void continueSearch(const Tracker& tracker, double time);
+    void endSearch();
+    std::optional<Pose> whereToFindItself(const Tracker& tracker) const;
+    Pose bodyOf(const Pose& T_c_w) const { return T_c_w.inverse() * T_b_c_.inverse(); }
     void approachOnImage(const ImageF& image, const Pose& T_w_b);
     void leaveImage();
 
@@ -62,6 +72,10 @@ class Pilot {
     Route route_;
     WaypointServo servo_;
     PhotometricServo goalServo_;
+    ViewSearch search_;
+    std::optional<double> searchSince_;  ///< [s]
+    std::optional<Pose> searched_;       ///< body pose to search from; none: the route goes on
+    bool isResigned_ = false;            ///< at the goal, but not for certain
     BodyVelocity command_;
     std::optional<double> atGoalSince_;    ///< [s]
     std::optional<BodyVelocity> onImage_;  ///< wanted by the goal's image

@@ -30,6 +30,7 @@ bool Route::isReached(const UncertainPose& belief) const {
 
 const PlannedView& Route::advance(const UncertainPose& belief) {
     const Eigen::Vector3d p_w = bodyOf(belief.mean).translation();
+    atGoal_ = false;  // a search may have led away from it
     for (;;) {
         if (target().isWaypoint || target_ + 1 == plan_.size()) {
             if (!isReached(belief)) break;

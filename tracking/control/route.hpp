@@ -2,6 +2,7 @@
 // How far along its plan a flight is, and which view to fly to.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "geometry/uncertain_pose.hpp"
@@ -37,10 +38,13 @@ class Route {
     /// Moves on as far as the believed pose allows. @return the view to fly to
     const PlannedView& advance(const UncertainPose& belief);
 
-    /// Whether the last waypoint was reached.
+    /// Whether the belief was at the last waypoint at the last advance().
     bool isAtGoal() const { return atGoal_; }
 
     const PlannedView& target() const { return plan_[target_]; }
+    const PlannedView& lastWaypoint() const { return plan_[passed_]; }
+    /// Views that are still to be flown to, the target first.
+    std::span<const PlannedView> ahead() const { return std::span(plan_).subspan(target_); }
     const PlannedView& goal() const { return plan_.back(); }
     Pose cameraAt(const PlannedView& view) const { return (view.T_w_b * T_b_c_).inverse(); }
 

@@ -175,6 +175,48 @@ TEST_F(Flight, IsFoundAgainWhereTheEstimateIsWrong) {
               0.05);
 }
 
+/// The plan turns where a carpet comes into view. Who is half a metre beside it sees it not, knows
+/// that from the belief, and looks for it around.
+TEST_F(Flight, LooksAroundForAViewThatItMissed) {
+    Scene scene;
+    addPlane(scene, {-10., -10., 0.}, {20., 0., 0.}, {0., 20., 0.},
+             addTexture(scene, uniformTexture(0.9F)));
+    addPlane(scene, {0.6, 0.2, 0.01}, {2., 0., 0.}, {0., 2., 0.},
+             addTexture(scene, valueNoise({.size = {2., 2.}, .seed = 3})));
+    world.truth = world.map = std::make_shared<MeshRenderer>(scene);
+    Vector6 initial;
+    initial << 1e-4, 0.25, 1e-4, 1e-5, 1e-5, 1e-5;
+    const Matrix6 toCamera = adjoint(world.T_b_c.inverse());
+    options.initialCovariance = toCamera * Matrix6(initial.asDiagonal()) * toCamera.transpose();
+    for (PlannedView& view : plan) {
+        view.T_w_b.linear().setIdentity();
+        if (view.distance > 0.9) view.covariance = 1e-4 * Matrix6::Identity();
+        view.T_w_b.translation().y() = -1.;
+    }
+    plan.back().T_w_b.translation() << 1., -3., 2.;
+    plan.back().distance = 5.;
+    int arrived = 0;
+    int lost = 0;
+    int astray = 0;
+    for (const bool isSearching : {false, true}) {
+        if (isSearching) options.pilot.isFree = [](const Eigen::Vector3d&) { return true; };
+        int now = 0;
+        for (options.seed = 1; options.seed <= 8; ++options.seed) {
+            const FlightResult flight = fly(plan, world, options);
+            now += flight.end == FlightEnd::arrived;
+            lost += flight.end == FlightEnd::lost;
+            astray += flight.end == FlightEnd::astray;
+        }
+        if (isSearching) {
+            EXPECT_GT(now, arrived);
+        }
+        arrived = now;
+    }
+    EXPECT_GE(arrived, 7);
+    EXPECT_GT(lost, 0) << "without a search it must not claim to have arrived";
+    EXPECT_EQ(astray, 0);
+}
+
 TEST_F(Flight, EndsInACollision) {
     world.clearance = [](const Eigen::Vector3d& p_w) { return 1.2 - p_w.x(); };
     const FlightResult flight = fly(plan, world, options);

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where to look for what a planned view did not show.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "geometry/uncertain_pose.hpp"
+#include "photometry/photometric.hpp"
+
+namespace photonav {
+
+/// Standard deviation of the position along its widest direction [m].
+double widestSigma(const UncertainPose& T_c_w);
+
+/// Views that would narrow a belief, wherever in it the camera truly is.
+class ViewSearch {
+  public:
+    /// @param isFree whether the body may be at a place of the world; empty: nowhere off the plan
+    ViewSearch(std::shared_ptr<const ViewSource> map, const Camera& camera, const Pose& T_b_c,
+               const PhotometricOptions& photometric,
+               std::function<bool(const Eigen::Vector3d& p_w)> isFree)
+        : map_(std::move(map)),
+          camera_(camera),
+          T_b_c_(T_b_c),
+          photometric_(photometric),
+          isFree_(std::move(isFree)) {}
+
+    /// The nearest body pose level with `T_w_b` from which an image should narrow the belief and
+    /// which can be reached on a straight line; not one that was visited. The farthest ones are a
+    /// field of view beyond three standard deviations.
+    std::optional<Pose> nearest(const UncertainPose& belief, const Pose& T_w_b) const;
+
+    /// Whether an image taken from a believed body pose should at least halve the variance along
+    /// the widest direction of the position, wherever within a standard deviation the camera is.
+    bool narrows(const UncertainPose& belief, const Pose& T_w_b) const;
+
+    /// An image from there did not narrow the belief.
+    void visited(const Pose& T_w_b) { visited_.push_back(T_w_b.translation()); }
+
+  private:
+    double footprint(const Pose& T_w_b) const;
+    bool isReachable(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const;
+    bool wasVisited(const Pose& T_w_b, double apart) const;
+
+    std::shared_ptr<const ViewSource> map_;
+    Camera camera_;
+    Pose T_b_c_;
+    PhotometricOptions photometric_;
+    std::function<bool(const Eigen::Vector3d& p_w)> isFree_;
+    std::vector<Eigen::Vector3d> visited_;
+};
+
+}  // namespace photonav
