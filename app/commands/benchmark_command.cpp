@@ -115,7 +115,8 @@ int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& inter
     const Config config = loadBenchmarkConfig(options);
     const World world(config);
     PlanningProblem(config, world).checkPlaces();
-    const fs::path folder = resultFolder(options, "benchmark", {config.sceneFile, config.mapFile});
+    FolderTransaction folder =
+        beginResult(options, "benchmark", {config.sceneFile, config.mapFile});
 
     BenchmarkOutcome outcome;
     const std::size_t asked = config.sweep.planners.size() * config.sweep.runs;
@@ -137,13 +138,15 @@ int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& inter
     const bool stopped = outcome.runs.size() < asked;
     const double seconds = watch.seconds();
     const json result = benchmarkResult(config, outcome, stopped, seconds);
-    writeReport(folder, options, config, world, outcome, result);
+    writeReport(folder.path(), options, config, world, outcome, result);
+    folder.commit();
     if (options.json) {
         fmt::print("{}\n", result.dump(2));
     } else if (!options.quiet) {
         fmt::print("{}\nlog: {}\nreport: {}\n",
                    sweepTable(config.sweep, summarize(config.sweep, outcome.runs, {})),
-                   (folder / "benchmark.log").string(), (folder / "report.html").string());
+                   (folder.target() / "benchmark.log").string(),
+                   (folder.target() / "report.html").string());
     }
     if (stopped) return kInterrupted;
     return result["status"] == "done" ? kDone : kNoAnswer;

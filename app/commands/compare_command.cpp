@@ -133,12 +133,12 @@ std::vector<Config> loadConfigs(const CompareOptions& options) {
 
 /// Writes the table and picture of one problem.
 json writeScenario(const Config& config, const World& world, const std::vector<CompareRun>& runs,
-                   const CompareOptions& options) {
+                   const fs::path& folder, bool quiet) {
     const std::string name = nameOf(config);
     const std::string table = compareTable(runs);
-    writeFileAtomically(options.out / (name + ".md"), table);
-    writeFileAtomically(options.out / (name + ".png"), picture(config, world, runs));
-    if (!options.quiet) fmt::print("{}\n{}\n", name, table);
+    writeFileAtomically(folder / (name + ".md"), table);
+    writeFileAtomically(folder / (name + ".png"), picture(config, world, runs));
+    if (!quiet) fmt::print("{}\n{}\n", name, table);
     json scenario{{"config", name}, {"alpha", config.belief.alpha}, {"runs", json::array()}};
     for (const CompareRun& run : runs) scenario["runs"].push_back(jsonOf(run));
     return scenario;
@@ -193,7 +193,8 @@ std::string compareTable(const std::vector<CompareRun>& runs) {
 
 int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupted) {
     const std::vector<Config> configs = loadConfigs(options);
-    claimFolder(options.out, {options.configs.begin(), options.configs.end()});
+    FolderTransaction folder =
+        beginResult(options.out, {options.configs.begin(), options.configs.end()});
     json result{{"schema", 1},
                 {"command", "compare"},
                 {"version", PHOTONAV_VERSION},
@@ -207,11 +208,13 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
         line.clear();
         for (const CompareRun& run : runs) anyPath = anyPath || run.outcome.path;
         if (!runs.empty())
-            result["scenarios"].push_back(writeScenario(config, world, runs, options));
+            result["scenarios"].push_back(
+                writeScenario(config, world, runs, folder.path(), options.quiet));
         if (interrupted) break;
     }
     result["interrupted"] = interrupted.load();
-    writeFileAtomically(options.out / "result.json", result.dump(2) + "\n");
+    writeFileAtomically(folder.path() / "result.json", result.dump(2) + "\n");
+    folder.commit();
     if (interrupted) return kInterrupted;
     return anyPath ? kDone : kNoAnswer;
 }

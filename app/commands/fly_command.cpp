@@ -93,23 +93,23 @@ std::vector<FlightSet> planAll(const Config& config, PlanningProblem& run, Progr
 }
 
 /// Of an earlier recording images would be left over, and it may be one that cannot be had again.
-void prepareRecordFolder(const std::filesystem::path& folder) {
+void checkRecordFolder(const std::filesystem::path& folder) {
     for (const char* list : {"rgb.txt", "assoc.txt", "rgb"}) {
         if (!std::filesystem::exists(folder / list)) continue;
         throw InputError(folder.string(), "", "holds a recording already: remove it first");
     }
-    prepareFolder(folder);
 }
 
 void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const FlightOptions& flight,
-            const FlyOptions& options, unsigned count, ProgressLine& line,
-            const std::atomic<bool>& interrupted) {
+            const FlyOptions& options, FolderTransaction* recording, unsigned count,
+            ProgressLine& line, const std::atomic<bool>& interrupted) {
     std::optional<FlightRecorder> recorder;  // from the first image on
     OnExposure record;
-    if (!options.record.empty()) {
+    if (recording != nullptr) {
         record = [&](const Exposed& exposed) {
             if (!recorder) {
-                recorder.emplace(options.record, world.camera, flight.alignment.photometric.scale);
+                recorder.emplace(recording->path(), world.camera,
+                                 flight.alignment.photometric.scale);
             }
             recorder->add(exposed);
         };
@@ -130,7 +130,9 @@ void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const Flight
         set.flights = flyMany(set.plan, world, flight, count, options.jobs, interrupted, onFlight,
                               &set == &sets.front() ? record : OnExposure{});
     }
-    if (recorder) recorder->finish();
+    if (!recorder) return;
+    recorder->finish();
+    recording->commit();
 }
 
 void printFailure(const FlightSet& set) {
@@ -169,20 +171,15 @@ void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::pat
     fmt::print("report: {}\n", (folder / "report.html").string());
 }
 
-std::filesystem::path folderFor(const FlyOptions& options, const Config& config) {
+FolderTransaction folderFor(const FlyOptions& options, const Config& config) {
     const std::filesystem::path plan = config.fly.plan;
     const CommandOptions& common = options;
     CommandOptions named = common;
     if (!plan.empty()) {  // named as the plan, not as "config"
         named.config = plan.parent_path().filename().string() + ".";
     }
-    const auto folder = resultFolder(
-        named, "fly", {options.config, plan, config.sceneFile, config.mapFile, config.fly.map});
-    for (const char* stale :
-         {"trajectory.tum", "trajectory.cov", "trajectory.ov", "groundtruth.tum"}) {
-        std::filesystem::remove(folder / stale);
-    }
-    return folder;
+    return beginResult(named, "fly",
+                       {options.config, plan, config.sceneFile, config.mapFile, config.fly.map});
 }
 
 /// The config's own plan is the first one: what it is compared with is no success.
@@ -209,10 +206,12 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     flight.pilot.isFree = [&world, radius = config.robotRadius](const Eigen::Vector3d& p_w) {
         return world.clearance(p_w) >= radius;
     };
-    const NoEmptyFolder noEmptyRecording(options.record);
-    const NoEmptyFolder noEmptyFolder(options.out);
-    if (!options.record.empty()) prepareRecordFolder(options.record);
-    const auto folder = folderFor(options, config);  // an earlier result ends here
+    std::optional<FolderTransaction> recording;
+    if (!options.record.empty()) {
+        checkRecordFolder(options.record);
+        recording.emplace(options.record);
+    }
+    FolderTransaction folder = folderFor(options, config);
 
     std::vector<FlightSet> sets;
     {
@@ -225,18 +224,20 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
             .camera = config.camera.camera(),
             .T_b_c = config.camera.T_b_c(),
             .noise = config.fly.camera == "real" ? realNoise() : assumedNoise(config.photometric)};
-        flyAll(sets, flightWorld, flight, options, config.fly.flights, line, interrupted);
+        flyAll(sets, flightWorld, flight, options, recording ? &*recording : nullptr,
+               config.fly.flights, line, interrupted);
     }
     const bool stopped = interrupted;
     nlohmann::json result = flyResult(config, sets, flight, stopped);
     result["time"]["total_s"] = watch.seconds();
-    writeFlyReport(folder, config, world, sets, options.commandLine, result);
-    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+    writeFlyReport(folder.path(), config, world, sets, options.commandLine, result);
+    writeFileAtomically(folder.path() / "result.json", result.dump(2) + "\n");
+    folder.commit();
 
     if (options.json)
         fmt::print("{}\n", result.dump(2));
     else if (!options.quiet)
-        printSummary(sets, folder);
+        printSummary(sets, folder.target());
     if (stopped) return kInterrupted;
     return hasArrived(sets) ? kDone : kNoAnswer;
 }

@@ -186,7 +186,7 @@ int runInfo(const InfoOptions& options) {
     const Place place = placeOf(options, config);
     const World world(config);
     PlanningProblem run(config, world);
-    const auto folder = resultFolder(options, "info", {config.sceneFile, config.mapFile});
+    FolderTransaction folder = beginResult(options, "info", {config.sceneFile, config.mapFile});
 
     const Grids grids = lookAround(options, config, height, place.yaw.value_or(0.), run);
     const Camera camera = config.camera.camera();
@@ -198,15 +198,16 @@ int runInfo(const InfoOptions& options) {
     auto figures = heatMaps(grids, placeText(config, height, place.yaw.value_or(0.)));
     for (NamedFigure& figure : viewFigures(view, config)) figures.push_back(std::move(figure));
     ReportData report = reportOf(options, config, world, place, result);
-    writeResultFolder(folder, report, figures);
+    writeResultFolder(folder.path(), report, figures);
     result["time"]["total_s"] = watch.seconds();
-    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+    writeFileAtomically(folder.path() / "result.json", result.dump(2) + "\n");
+    folder.commit();
     if (options.json) {
         fmt::print("{}\n", result.dump(2));
     } else if (!options.quiet) {
         fmt::print("information trace {:.4g}, smallest eigenvalue {:.4g}\nreport: {}\n",
                    Lambda.trace(), result["view"]["min_eigenvalue"].get<double>(),
-                   (folder / "report.html").string());
+                   (folder.target() / "report.html").string());
     }
     return kDone;
 }

@@ -19,6 +19,7 @@
 #include "commands/sweep_command.hpp"
 #include "config/config_keys.hpp"
 #include "io/error.hpp"
+#include "io/folder_transaction.hpp"
 #include "io/stopwatch.hpp"
 #include "io/yaml_reader.hpp"
 #include "map/octree_file.hpp"
@@ -31,20 +32,27 @@ using namespace photonav;
 
 std::atomic<bool> interrupted{false};
 std::atomic<double> interruptedAt{0.};
+volatile std::sig_atomic_t interruptedBy = 0;
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
 const Stopwatch running;
 
 constexpr double kSameInterrupt = 0.2;  // [s]
 
-/// The first Ctrl-C lets the command finish its files, the second one does not. timeout(1) sends
-/// its signal twice, to the process and to its group: that is one.
-void onInterrupt(int) {
+/// The exit code that a shell gives a program that a signal ended.
+int exitCodeOf(int signal) { return 128 + signal; }
+static_assert(kInterrupted == 128 + SIGINT);
+
+/// The first Ctrl-C, or SIGTERM as Slurm and systemd send it, lets the command finish its files,
+/// the second one does not. timeout(1) sends its signal twice, to the process and to its group:
+/// that is one.
+void onInterrupt(int signal) {
     const double now = running.seconds();
     double first = 0.;
     if (interruptedAt.compare_exchange_strong(first, now)) {
+        interruptedBy = signal;
         interrupted = true;
     } else if (now - first > kSameInterrupt) {
-        std::_Exit(kInterrupted);
+        std::_Exit(exitCodeOf(signal));
     }
 }
 
@@ -203,6 +211,7 @@ Command reportCommand(CLI::App& app) {
     parser->add_option("folder", *folder, "result folder")->required();
     return {parser, [folder] {
                 writeReport(*folder / "report.html", readReportJson(*folder / "report.json"));
+                Manifest::renew(*folder, "report.html");
                 fmt::print("report: {}\n", (*folder / "report.html").string());
                 return static_cast<int>(kDone);
             }};
@@ -234,7 +243,9 @@ int run(int argc, char** argv) {
         "report.html and config.yaml (complete, re-runnable) into their folder (--out);\n"
         "compare writes tables, figures and result.json, reference its table alone.\n"
         "photonav COMMAND --help lists the options of a command, photonav keys those of a config.\n"
-        "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by Ctrl-C.");
+        "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by Ctrl-C, 143 "
+        "by\n"
+        "SIGTERM, with the results so far.");
     Invocation invocation{"photonav", interrupted};
     for (int i = 1; i < argc; ++i) invocation.commandLine += std::string(" ") + argv[i];
 
@@ -257,7 +268,11 @@ int run(int argc, char** argv) {
         return kBadInput;
     }
     for (const Command& command : commands) {
-        if (command.parser->parsed()) return command.run();
+        if (!command.parser->parsed()) continue;
+        const int code = command.run();
+        if (code != kInterrupted) return code;
+        fmt::print(stderr, "photonav: interrupted; what was done until then is kept\n");
+        return exitCodeOf(interruptedBy);
     }
     return kBadInput;
 }
@@ -266,6 +281,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     std::signal(SIGINT, onInterrupt);
+    std::signal(SIGTERM, onInterrupt);
     ompl::msg::noOutputHandler();
     try {
         return run(argc, argv);

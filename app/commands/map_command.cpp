@@ -30,12 +30,6 @@ constexpr const char* kConvergence = "convergence.png";
 
 std::string comparisonName(std::size_t i) { return fmt::format("comparison_{}.png", i); }
 
-/// Of an earlier map in the same folder.
-void removeFigures(const fs::path& folder) {
-    fs::remove(folder / kConvergence);
-    for (std::size_t i = 0; i < kCompared; ++i) fs::remove(folder / comparisonName(i));
-}
-
 ReportFigure figureOf(const ConvergenceFigure& convergence) {
     return {fmt::format("Depth from the images: {} of {} reference images, the depth found, the "
                         "state of every pixel (grey: still open), and the error where depth was "
@@ -103,8 +97,7 @@ void writeMaps(const fs::path& folder, const TexturedOcTree& map, const Trajecto
 MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& interrupted) {
     Stopwatch watch;
     const Recording recording = openForMap(options);
-    const NoEmptyFolder noEmptyFolder(options.out);
-    claimFolder(options.out, {options.dataset, options.cameraFile});
+    FolderTransaction folder = beginResult(options.out, {options.dataset, options.cameraFile});
     json time{{"read_s", watch.lap()}};
 
     TexturedOcTree map(options.resolution);
@@ -113,8 +106,7 @@ MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& inte
     time["fuse_s"] = run.fuseSeconds;
     time["fuse_per_frame_s"] = run.fuseSeconds / double(std::max<std::size_t>(1, run.frames));
     watch.lap();
-    removeFigures(options.out);  // not before: a recording that is refused leaves an old map whole
-    writeMaps(options.out, map, run.trajectory);
+    writeMaps(folder.path(), map, run.trajectory);
     time["write_s"] = watch.lap();
 
     compareFrames(options, recording, map, interrupted, run);
@@ -128,8 +120,9 @@ MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& inte
     report.exitCode = run.interrupted                            ? kInterrupted
                       : report.result["voxels"]["occupied"] == 0 ? kNoAnswer
                                                                  : kDone;
-    writeMapReport(options, report.result, recording, map, run);
-    writeFileAtomically(options.out / "result.json", report.result.dump(2) + "\n");
+    writeMapReport(folder.path(), options, report.result, recording, map, run);
+    writeFileAtomically(folder.path() / "result.json", report.result.dump(2) + "\n");
+    folder.commit();
     return report;
 }
 

@@ -57,7 +57,7 @@ MapReport runMapInfo(const CommandOptions& options) {
         throw InputError("--set", "", "is for a planning problem, not for a map");
     }
     const auto map = loadTexturedOcTree(options.config);
-    const fs::path folder = resultFolder(options, "info");
+    FolderTransaction folder = beginResult(options, "info");
     MapReport report;
     report.result = {{"schema", 1},
                      {"command", "info"},
@@ -76,8 +76,9 @@ MapReport runMapInfo(const CommandOptions& options) {
     page.tables = {report.summary};
     std::vector<NamedFigure> figures;
     if (report.result["voxels"]["occupied"] > 0) figures.push_back(overview(*map, page.title));
-    writeResultFolder(folder, page, figures);
-    writeFileAtomically(folder / "result.json", report.result.dump(2) + "\n");
+    writeResultFolder(folder.path(), page, figures);
+    writeFileAtomically(folder.path() / "result.json", report.result.dump(2) + "\n");
+    folder.commit();
     return report;
 }
 

@@ -77,7 +77,7 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     const World world(config);
     PlanningProblem run(config, world);
     run.checkPlaces();
-    const auto folder = resultFolder(options, "plan", {config.sceneFile, config.mapFile});
+    FolderTransaction folder = beginResult(options, "plan", {config.sceneFile, config.mapFile});
     if (!world.hasTexture()) {
         fmt::print(stderr,
                    "photonav: warning: {}: no cell of the map has a grey value; planning without "
@@ -107,15 +107,16 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     const auto recorded = compareWithImages(config, world, outcome);
     if (recorded) result["recorded_frames"] = toJson(*recorded);
     result["time"]["total_s"] = watch.seconds();
-    writePlanReport(folder, config, world, run, outcome, baseline, recorded, evolutions,
+    writePlanReport(folder.path(), config, world, run, outcome, baseline, recorded, evolutions,
                     options.commandLine, result);
     result["time"]["total_s"] = watch.seconds();
-    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+    writeFileAtomically(folder.path() / "result.json", result.dump(2) + "\n");
+    folder.commit();
 
     if (options.json)
         fmt::print("{}\n", result.dump(2));
     else if (!options.quiet)
-        printSummary(outcome, baseline, options.audit, folder, watch.seconds());
+        printSummary(outcome, baseline, options.audit, folder.target(), watch.seconds());
     if (stopped) return kInterrupted;
     return outcome.path ? kDone : kNoAnswer;
 }

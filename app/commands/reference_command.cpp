@@ -5,13 +5,24 @@
 #include <fmt/ranges.h>
 
 #include "commands/command_io.hpp"
-#include "commands/result_folder.hpp"
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
 #include "problem/planning_problem.hpp"
 #include "sweep/reference_table.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
 namespace {
+
+/// Makes a folder and checks that files can be written there, before any work is done.
+void prepareFolder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw InputError(folder.string(), "", "cannot be made: " + error.message());
+    const fs::path probe = folder / ".probe";
+    writeFileAtomically(probe, "");
+    fs::remove(probe, error);
+}
 
 Config loadReferenceConfig(const ReferenceOptions& options) {
     std::vector<std::string> overrides = options.overrides;

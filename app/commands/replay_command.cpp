@@ -79,12 +79,8 @@ KeyTable keysOf(ReplayCommandOptions& options) {
 ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
     const Replay replay(options);
-    const NoEmptyFolder noEmptyFolder(options.out);
-    claimFolder(options.out, {options.dataset, options.cameraFile, options.mapFile});
-    for (const char* stale :
-         {"result.json", "strips.png", "top_view.png", "groundtruth.tum", "calibration.yaml"}) {
-        fs::remove(options.out / stale);
-    }
+    FolderTransaction folder =
+        beginResult(options.out, {options.dataset, options.cameraFile, options.mapFile});
 
     const Sequence& sequence = replay.recording().sequence;
     const ReplayRun run = replay.run([&] { return interrupted.load(); },
@@ -108,12 +104,14 @@ ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bo
                       {"load_images_s", run.loadSeconds},
                       {"track_s", run.trackSeconds}};
     if (options.calibrate) {
-        result["calibration"] = calibrateReplay(options.out, run, replay.map().octree != nullptr);
+        result["calibration"] = calibrateReplay(folder.path(), run, replay.map().octree != nullptr);
     }
     report.summary = replaySummary(result);
-    writeReplayTables(options.out, run, errors);
-    writeReplayReport(options, configOf(options, replay), result, replay, run, errors);
-    writeFileAtomically(options.out / "result.json", result.dump(2) + "\n");
+    writeReplayTables(folder.path(), run, errors);
+    writeReplayReport(folder.path(), options, configOf(options, replay), result, replay, run,
+                      errors);
+    writeFileAtomically(folder.path() / "result.json", result.dump(2) + "\n");
+    folder.commit();
     return report;
 }
 

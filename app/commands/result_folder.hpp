@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The folder that a command writes its results to. Files are replaced or removed only in a folder
-// that an earlier result made.
+// The folder that a command writes its results to.
 #pragma once
 
 #include <filesystem>
@@ -8,39 +7,22 @@
 #include <vector>
 
 #include "commands/command_io.hpp"
+#include "io/folder_transaction.hpp"
 
 namespace photonav {
 
-using InputPaths = std::vector<std::filesystem::path>;  ///< files and folders; empty ones count not
+using InputPaths = std::vector<std::filesystem::path>;  ///< files and folders; empty ones are none
 
-/// Makes a folder and checks that files can be written there, before any work is done.
-/// @throws InputError otherwise
-void prepareFolder(const std::filesystem::path& folder);
-
-/// prepareFolder() for results: marks the folder as one of this program.
+/// Begins the result at a folder; it is there once it is committed.
 /// @param inputs what this run reads
-/// @throws InputError also when the folder is or contains an input, and when it holds a file of a
-///         name that results have although no result made the folder
-void claimFolder(const std::filesystem::path& folder, const InputPaths& inputs);
+/// @throws InputError also when the folder is or contains an input
+FolderTransaction beginResult(
+    const std::filesystem::path& folder, const InputPaths& inputs,
+    FolderTransaction::Unfinished unfinished = FolderTransaction::Unfinished::removed);
 
-/// The folder of the options, or the default one, claimed: nothing of an earlier run is left that
-/// this one might not write.
+/// The same at the folder of the options, or at out/<command>-<config name>.
 /// @param inputs besides the config
-std::filesystem::path resultFolder(const CommandOptions& options, const std::string& command,
-                                   InputPaths inputs = {});
-
-/// A run without a result leaves no new, empty folder behind. To be made before the folder is: one
-/// that is there already, or a link to one, stays.
-class NoEmptyFolder {
-  public:
-    explicit NoEmptyFolder(std::filesystem::path folder);
-    ~NoEmptyFolder();
-    NoEmptyFolder(const NoEmptyFolder&) = delete;
-    NoEmptyFolder& operator=(const NoEmptyFolder&) = delete;
-
-  private:
-    std::filesystem::path folder_;
-    bool isNew_;
-};
+FolderTransaction beginResult(const CommandOptions& options, const std::string& command,
+                              InputPaths inputs = {});
 
 }  // namespace photonav

@@ -44,7 +44,7 @@ ReportTable summaryOf(const json& result) {
              {"fusion", fmt::format("{:.1f} s", result["time"]["fuse_s"].get<double>())}}};
 }
 
-void writeScanReport(const ScanCommandOptions& options, const json& result,
+void writeScanReport(const fs::path& folder, const ScanCommandOptions& options, const json& result,
                      const ReportTable& summary, const TexturedOcTree& map) {
     ReportData report;
     report.title = "Map of " + fs::path(options.scans).lexically_normal().filename().string();
@@ -56,7 +56,7 @@ void writeScanReport(const ScanCommandOptions& options, const json& result,
     report.tables = {summary};
     std::vector<NamedFigure> figures;
     if (!result["stations"].empty()) figures.push_back(overview(map, report.title));
-    writeResultFolder(options.out, report, figures);
+    writeResultFolder(folder, report, figures);
 }
 
 /// Of this process, so far.
@@ -70,8 +70,7 @@ long peakMegabytes() {
 
 MapReport runScanMap(const ScanCommandOptions& options, const std::atomic<bool>& interrupted) {
     const std::vector<Scan> scans = openScans(options);  // all headers, before any work
-    const NoEmptyFolder noEmptyFolder(options.out);      // a refused scan leaves nothing
-    claimFolder(options.out, {options.scans});
+    FolderTransaction folder = beginResult(options.out, {options.scans});
 
     const Stopwatch watch;
     TexturedOcTree map(options.resolution);
@@ -90,14 +89,15 @@ MapReport runScanMap(const ScanCommandOptions& options, const std::atomic<bool>&
                      {"voxels", voxelsJson(map)},
                      {"time", {{"fuse_s", watch.seconds()}}}};
     report.summary = summaryOf(report.result);
-    saveTexturedOcTree(map, (options.out / "map.ot").string());
-    saveColorOcTree(map, (options.out / "map_color.ot").string());
-    saveBinaryOcTree(map, (options.out / "map.bt").string());
-    writeScanReport(options, report.result, report.summary, map);
+    saveTexturedOcTree(map, (folder.path() / "map.ot").string());
+    saveColorOcTree(map, (folder.path() / "map_color.ot").string());
+    saveBinaryOcTree(map, (folder.path() / "map.bt").string());
+    writeScanReport(folder.path(), options, report.result, report.summary, map);
     const long peak = peakMegabytes();  // all work is done, the report is written
     report.result["peak_memory_mb"] = peak;
     report.summary.rows.emplace_back("peak memory", fmt::format("{} MB", peak));
-    writeFileAtomically(options.out / "result.json", report.result.dump(2) + "\n");
+    writeFileAtomically(folder.path() / "result.json", report.result.dump(2) + "\n");
+    folder.commit();
     return report;
 }
 

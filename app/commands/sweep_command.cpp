@@ -94,13 +94,14 @@ void sortRuns(std::vector<SweepRun>& runs, const std::vector<SweepItem>& items) 
 
 /// The last step of every sweep: sort, report, print.
 int conclude(const SweepOptions& options, const Config& config, const World& world,
-             const fs::path& folder, SweepOutcome outcome, const ReferenceCosts& reference,
+             FolderTransaction& folder, SweepOutcome outcome, const ReferenceCosts& reference,
              const Stopwatch& watch) {
     sortRuns(outcome.runs, sweepItems(config));
     outcome.commandLine = options.commandLine;
     outcome.seconds = watch.seconds();
     const nlohmann::json result = sweepResult(config, outcome, reference);
-    writeSweepReport(folder, config, world, outcome, reference, result);
+    writeSweepReport(folder.path(), config, world, outcome, reference, result);
+    folder.commit();
     if (options.json) {
         fmt::print("{}\n", result.dump(2));
     } else if (!options.quiet) {
@@ -112,7 +113,7 @@ int conclude(const SweepOptions& options, const Config& config, const World& wor
         }
         for (const auto& [reason, runs] : failures) fmt::print("{} ({} runs)\n", reason, runs);
         fmt::print("{} of {} runs, {}\nreport: {}\n", outcome.runs.size(), outcome.asked,
-                   durationText(outcome.seconds), (folder / "report.html").string());
+                   durationText(outcome.seconds), (folder.target() / "report.html").string());
     }
     if (outcome.interrupted) return kInterrupted;
     return result["status"] == "done" ? kDone : kNoAnswer;
@@ -127,14 +128,10 @@ ReferenceCosts referenceOf(const Config& config) {
     }
 }
 
-/// The folder's runs so far, or a new file where there are none. Which runs are wanted may have
-/// changed, what they depend on may not.
-SweepJournal openJournal(const SweepOptions& options, const fs::path& folder,
-                         const SweepHeader& header) {
-    if (!options.resume || !fs::exists(folder / SweepJournal::kFileName)) {
-        return SweepJournal::create(folder, header);
-    }
-    SweepJournal journal = SweepJournal::read(folder);
+/// @throws InputError unless the runs are those of this sweep. Which runs are wanted may have
+/// changed,
+///         what they depend on may not.
+void checkIsSame(const SweepJournal& journal, const SweepHeader& header) {
     const std::string file = journal.file().string();
     const std::string changed =
         difference(runIdentity(header.identity), runIdentity(journal.header().identity));
@@ -146,8 +143,27 @@ SweepJournal openJournal(const SweepOptions& options, const fs::path& folder,
                          fmt::format("holds shard {}, not {}", toString(journal.header().shard),
                                      toString(header.shard)));
     }
-    if (journal.header().config != header.config) journal.replaceHeader(header);
-    return journal;
+}
+
+/// The runs so far, of a sweep that was killed or of one that ended, or a new file where there are
+/// none.
+SweepJournal openJournal(const SweepOptions& options, const FolderTransaction& folder,
+                         const SweepHeader& header) {
+    const auto hasRuns = [](const fs::path& path) {
+        return fs::exists(path / SweepJournal::kFileName);
+    };
+    const bool wasKilled = hasRuns(folder.path());
+    if (wasKilled && !options.resume) {
+        throw InputError(folder.path().string(), "",
+                         fmt::format("holds {} runs of a sweep that was killed: go on with "
+                                     "--resume, or remove that folder",
+                                     SweepJournal::read(folder.path()).runs().size()));
+    }
+    const fs::path source = wasKilled ? folder.path() : folder.target();
+    if (!options.resume || !hasRuns(source)) return SweepJournal::create(folder.path(), header);
+    SweepJournal journal = SweepJournal::read(source);
+    checkIsSame(journal, header);
+    return SweepJournal::create(folder.path(), header, journal.runs());
 }
 
 fs::path sweepFolder(const SweepOptions& options, const std::string& name,
@@ -160,19 +176,11 @@ fs::path sweepFolder(const SweepOptions& options, const std::string& name,
     return folder;
 }
 
-/// The folder, prepared; one that is resumed is known by its journal.
-void claimSweepFolder(const SweepOptions& options, const Config& config, const fs::path& folder) {
-    if (options.resume && fs::exists(folder / SweepJournal::kFileName)) return;
+FolderTransaction beginSweep(const SweepOptions& options, const Config& config,
+                             const fs::path& folder) {
     InputPaths inputs{config.sceneFile, config.mapFile, config.sweep.reference, options.config};
     inputs.insert(inputs.end(), options.merge.begin(), options.merge.end());
-    claimFolder(folder, inputs);
-}
-
-/// Results of an earlier sweep; the runs are the journal's.
-void removeOldResults(const fs::path& folder) {
-    for (const char* stale : {"result.json", "runs.csv", "summary.csv", "report.html"}) {
-        fs::remove(folder / stale);
-    }
+    return beginResult(folder, inputs, FolderTransaction::Unfinished::kept);
 }
 
 int runAll(const SweepOptions& options, const std::atomic<bool>& interrupted) {
@@ -183,12 +191,10 @@ int runAll(const SweepOptions& options, const std::atomic<bool>& interrupted) {
     const World world(config);
     PlanningProblem(config, world).checkPlaces();
     const std::string name = nameOf(options.config);
-    const fs::path folder = sweepFolder(options, name, shard);
-    claimSweepFolder(options, config, folder);
+    FolderTransaction folder = beginSweep(options, config, sweepFolder(options, name, shard));
     const auto items = itemsOf(shard, sweepItems(config));
     SweepJournal journal =
         openJournal(options, folder, {name, toYaml(config), sweepIdentity(config), shard});
-    removeOldResults(folder);
 
     const auto open = journal.missing(items);
     {
@@ -281,21 +287,22 @@ SweepJournal gather(const std::vector<SweepJournal>& shards, const std::vector<S
                     const fs::path& folder) {
     SweepHeader header = shards.front().header();
     header.shard = {};
-    SweepJournal whole = SweepJournal::create(folder, header);
+    std::vector<SweepRun> runs;
     for (const SweepJournal& shard : shards) {
-        for (const SweepRun& run : shard.runsOf(items)) whole.append(run);
+        const auto own = shard.runsOf(items);
+        runs.insert(runs.end(), own.begin(), own.end());
     }
-    return whole;
+    return SweepJournal::create(folder, header, std::move(runs));
 }
 
 int mergeShards(const SweepOptions& options) {
     const Stopwatch watch;
     const auto shards = readShards(options.merge);
     const std::string name = shards.front().header().name;
-    const fs::path folder = sweepFolder(options, name, {});
+    const fs::path target = sweepFolder(options, name, {});
     for (const std::string& shard : options.merge) {
         std::error_code noFolder;  // none yet: no shard's
-        if (fs::equivalent(shard, folder, noFolder)) {
+        if (fs::equivalent(shard, target, noFolder)) {
             throw InputError("--merge", shard, "the result needs another folder (--out)");
         }
     }
@@ -304,11 +311,8 @@ int mergeShards(const SweepOptions& options) {
     const World world(config);
     const auto items = sweepItems(config);
     checkComplete(options, shards, items);
-    claimSweepFolder(
-        options, config,
-        folder);  // an earlier result there stays until nothing can be refused any more
-    removeOldResults(folder);
-    const SweepJournal whole = gather(shards, items, folder);
+    FolderTransaction folder = beginSweep(options, config, target);
+    const SweepJournal whole = gather(shards, items, folder.path());
     return conclude(options, config, world, folder,
                     {name, "", {}, whole.runs(), items.size(), false, 0.}, reference, watch);
 }

@@ -200,8 +200,9 @@ ReportTable mapSummary(const json& result) {
     return table;
 }
 
-void writeMapReport(const MapCommandOptions& options, const json& result,
-                    const Recording& recording, const TexturedOcTree& map, const MapRun& run) {
+void writeMapReport(const std::filesystem::path& folder, const MapCommandOptions& options,
+                    const json& result, const Recording& recording, const TexturedOcTree& map,
+                    const MapRun& run) {
     ReportData report;
     report.title = "Map of " + fs::path(options.dataset).lexically_normal().filename().string();
     report.subtitle = "A textured OctoMap, and its predictions at the recorded poses.";
@@ -216,7 +217,7 @@ void writeMapReport(const MapCommandOptions& options, const json& result,
     }
     report.fieldOfView = fieldOfView(recording.sequence.camera);
     report.tables = {mapSummary(result)};
-    writeResultFolder(options.out, report, run.figures);
+    writeResultFolder(folder, report, run.figures);
 }
 
 }  // namespace photonav

@@ -33,7 +33,8 @@ nlohmann::json mapResult(const MapCommandOptions& options, const Recording& reco
 ReportTable mapSummary(const nlohmann::json& result);
 
 /// Writes the figures, config.yaml, report.json and report.html.
-void writeMapReport(const MapCommandOptions& options, const nlohmann::json& result,
-                    const Recording& recording, const TexturedOcTree& map, const MapRun& run);
+void writeMapReport(const std::filesystem::path& folder, const MapCommandOptions& options,
+                    const nlohmann::json& result, const Recording& recording,
+                    const TexturedOcTree& map, const MapRun& run);
 
 }  // namespace photonav

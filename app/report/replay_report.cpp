@@ -198,9 +198,9 @@ ReportTable replaySummary(const json& result) {
     return table;
 }
 
-void writeReplayReport(const ReplayCommandOptions& options, const std::string& config,
-                       const json& result, const Replay& replay, const ReplayRun& run,
-                       const ReplayErrors& errors) {
+void writeReplayReport(const std::filesystem::path& folder, const ReplayCommandOptions& options,
+                       const std::string& config, const json& result, const Replay& replay,
+                       const ReplayRun& run, const ReplayErrors& errors) {
     const std::string name =
         (fs::path(options.dataset) / "").lexically_normal().parent_path().filename().string();
     ReportData report;
@@ -224,7 +224,7 @@ void writeReplayReport(const ReplayCommandOptions& options, const std::string& c
         report.start = report.paths[0].points.front().position;
         report.goal = report.paths[0].points.back().position;
     }
-    writeResultFolder(options.out, report, figuresOf(run, errors, report.paths, name));
+    writeResultFolder(folder, report, figuresOf(run, errors, report.paths, name));
 }
 
 }  // namespace photonav

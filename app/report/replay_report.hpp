@@ -13,8 +13,8 @@ ReportTable replaySummary(const nlohmann::json& result);
 
 /// Writes config.yaml, errors.png, strips.png, top_view.png, report.json and report.html.
 /// @param config as YAML, complete
-void writeReplayReport(const ReplayCommandOptions& options, const std::string& config,
-                       const nlohmann::json& result, const Replay& replay, const ReplayRun& run,
-                       const ReplayErrors& errors);
+void writeReplayReport(const std::filesystem::path& folder, const ReplayCommandOptions& options,
+                       const std::string& config, const nlohmann::json& result,
+                       const Replay& replay, const ReplayRun& run, const ReplayErrors& errors);
 
 }  // namespace photonav

@@ -6,7 +6,9 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
+#include <stdexcept>
 
 #include "geometry/constants.hpp"
 #include "io/atomic_file.hpp"
@@ -21,9 +23,13 @@ namespace {
 
 constexpr int kJournalSchema = 1;
 
+/// @throws std::exception for what no run gives
 SweepRun runFrom(const json& line) {
     const auto number = [&](const char* key) {
-        return line.at(key).is_null() ? kNone : line.at(key).get<double>();
+        if (line.at(key).is_null()) return kNone;
+        const auto value = line.at(key).get<double>();
+        if (!(value >= 0.)) throw std::out_of_range(key);  // costs, lengths and traces
+        return value;
     };
     SweepRun run{{line.at("planner"), line.at("alpha"), line.at("seed")},
                  number("cost"),
@@ -32,9 +38,10 @@ SweepRun runFrom(const json& line) {
                  number("goal_trace"),
                  line.at("vertices"),
                  line.at("views"),
-                 line.at("seconds"),
+                 number("seconds"),
                  line.at("status"),
                  {}};
+    if (run.isSolved() != std::isfinite(run.cost)) throw std::out_of_range("cost");
     for (const json& p : line.at("path")) run.path.emplace_back(p.at(0), p.at(1), p.at(2));
     return run;
 }
@@ -130,11 +137,15 @@ json toJson(const SweepRun& run) {
             {"status", run.status}};
 }
 
-SweepJournal SweepJournal::create(const fs::path& folder, const SweepHeader& header) {
+SweepJournal SweepJournal::create(const fs::path& folder, const SweepHeader& header,
+                                  std::vector<SweepRun> runs) {
     SweepJournal journal(folder / kFileName);
-    if (fs::exists(journal.file_)) fs::rename(journal.file_, journal.file_.string() + "~");
+    std::string text = lineOf(header).dump() + "\n";
+    for (const SweepRun& run : runs) text += lineOf(run).dump() + "\n";
+    writeFileAtomically(journal.file_, text);
     journal.header_ = header;
-    journal.write(lineOf(header));
+    journal.runs_ = std::move(runs);
+    journal.size_ = text.size();
     return journal;
 }
 
@@ -143,14 +154,16 @@ SweepJournal SweepJournal::read(const fs::path& folder) {
     std::ifstream stream(journal.file_);
     if (!stream) throw InputError(journal.file_.string(), "", "no such file; is this a sweep?");
     int number = 0;
+    std::set<SweepItem> known;
     for (std::string text; std::getline(stream, text) && !stream.eof();) {
         ++number;
         try {
             const json line = json::parse(text);
-            if (number == 1)
+            if (number == 1) {
                 journal.header_ = headerFrom(line);
-            else
-                journal.runs_.push_back(runFrom(line));
+            } else if (SweepRun run = runFrom(line); known.insert(run.item).second) {
+                journal.runs_.push_back(std::move(run));
+            }
         } catch (const std::exception&) {
             throw InputError(journal.file_.string(), fmt::format("line {}", number),
                              "not a run of this version of photonav sweep");
@@ -174,15 +187,6 @@ void SweepJournal::write(const json& line) {
 void SweepJournal::append(const SweepRun& run) {
     write(lineOf(run));
     runs_.push_back(run);
-}
-
-void SweepJournal::replaceHeader(const SweepHeader& header) {
-    std::string text = lineOf(header).dump() + "\n";
-    for (const SweepRun& run : runs_) text += lineOf(run).dump() + "\n";
-    stream_.close();
-    writeFileAtomically(file_, text);
-    header_ = header;
-    size_ = text.size();
 }
 
 std::vector<SweepRun> SweepJournal::runsOf(const std::vector<SweepItem>& items) const {

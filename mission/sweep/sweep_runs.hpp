@@ -49,22 +49,20 @@ struct SweepHeader {
 };
 
 /// runs.jsonl: the header and one line per run, in the order they ended. Lines are only added, and
-/// each is flushed: a killed sweep loses the runs in progress.
+/// each is flushed: a killed sweep loses the runs in progress. An item has one run.
 class SweepJournal {
   public:
     static constexpr const char* kFileName = "runs.jsonl";
 
-    /// Begins a new file; an earlier one is kept as runs.jsonl~.
+    /// Begins a file with the runs done so far. One that is there stays whole until then.
     /// @throws InputError if it cannot be written
-    static SweepJournal create(const std::filesystem::path& folder, const SweepHeader& header);
+    static SweepJournal create(const std::filesystem::path& folder, const SweepHeader& header,
+                               std::vector<SweepRun> runs = {});
 
-    /// Reads the file of a folder; a last line that was cut is dropped.
-    /// @throws InputError if it is missing or not ours
+    /// Reads the file of a folder; a last line that was cut is dropped, and so is a second run of
+    /// an item.
+    /// @throws InputError if it is missing or not ours, and for numbers that no run gives
     static SweepJournal read(const std::filesystem::path& folder);
-
-    /// Puts another header before the same runs. The old file stays whole until that is done.
-    /// @throws InputError if it cannot be written
-    void replaceHeader(const SweepHeader& header);
 
     /// @throws InputError if it cannot be written
     void append(const SweepRun& run);

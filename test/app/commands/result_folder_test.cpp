@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results replace and remove files only in folders that results made.
+// Results replace folders that results made, and nothing else.
 #include "commands/result_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -23,40 +23,11 @@ void write(const fs::path& file, const std::string& text) {
 
 std::string complaint(const fs::path& folder, const InputPaths& inputs = {}) {
     try {
-        claimFolder(folder, inputs);
+        beginResult(folder, inputs);
     } catch (const InputError& error) {
         return error.what();
     }
     return "";
-}
-
-TEST(ResultFolder, FilesOfOthersAreNotReplaced) {
-    const TemporaryFolder folder;
-    for (const char* name : {"path.tum", "result.json", "report.html", "runs.jsonl", "map.ot"}) {
-        const fs::path own = folder.path() / "own";
-        write(own / name, "{}");
-        const std::string text = complaint(own);
-        EXPECT_NE(text.find((own / name).string() + ": would be replaced"), std::string::npos)
-            << text;
-        EXPECT_EQ(test::contentOf(own / name), "{}");
-        EXPECT_FALSE(fs::exists(own / ".photonav"));
-        fs::remove_all(own);
-    }
-}
-
-TEST(ResultFolder, FoldersOfResultsAreUsedAgain) {
-    const TemporaryFolder folder;
-    const fs::path marked = folder.path() / "marked";
-    EXPECT_EQ(complaint(marked), "");
-    write(marked / "path.tum", "");
-    EXPECT_EQ(complaint(marked), "");
-    const fs::path older = folder.path() / "older";
-    write(older / "path.tum", "");
-    write(older / "result.json", R"({"schema": 1, "command": "plan", "version": "0.1.0"})");
-    EXPECT_EQ(complaint(older), "");
-    const fs::path notes = folder.path() / "notes";
-    write(notes / "notes.txt", "");
-    EXPECT_EQ(complaint(notes), "");
 }
 
 TEST(ResultFolder, NeitherIsNorContainsAnInput) {
@@ -78,22 +49,31 @@ TEST(ResultFolder, ACommandRefusesAFolderOfSomeoneElse) {
     const auto run = photonav("plan " PHOTONAV_SOURCE_DIR "/config/two_textures.yaml --out " +
                               (folder.path() / "mine").string());
     EXPECT_EQ(run.exitCode, 2);
-    EXPECT_NE(run.output.find("mine/trace.png: would be replaced"), std::string::npos)
+    EXPECT_NE(run.output.find("mine/trace.png: is not as an earlier result wrote it"), std::string::npos)
         << run.output;
     EXPECT_EQ(test::contentOf(folder.path() / "mine/trace.png"), "mine");
 }
 
-TEST(ResultFolder, NothingIsLeftOfARunWithoutResult) {
+TEST(ResultFolder, ARunWithFewerFilesLeavesNoneOfAnEarlierOne) {
     const TemporaryFolder folder;
-    const fs::path made = folder.path() / "new";
-    const fs::path old = folder.path() / "old";
-    fs::create_directories(old);
-    for (const fs::path& path : {made, old}) {
-        const NoEmptyFolder guard(path);
-        claimFolder(path, {});
-    }
-    EXPECT_FALSE(fs::exists(made));
-    EXPECT_TRUE(fs::is_empty(old));
+    const std::string plan = "plan " PHOTONAV_SOURCE_DIR
+                             "/config/two_textures.yaml --quiet --set planner.vertices=60 --out " +
+                             (folder.path() / "out").string();
+    ASSERT_LE(photonav(plan + " --evolution").exitCode, 1);
+    EXPECT_TRUE(fs::exists(folder.path() / "out/tree_evolution.png"));
+    ASSERT_LE(photonav(plan).exitCode, 1);
+    EXPECT_TRUE(fs::exists(folder.path() / "out/report.html"));
+    EXPECT_FALSE(fs::exists(folder.path() / "out/tree_evolution.png"));
+}
+
+TEST(ResultFolder, AReportThatWasRebuiltIsStillOurs) {
+    const TemporaryFolder folder;
+    const std::string out = (folder.path() / "out").string();
+    const std::string info =
+        "info " PHOTONAV_SOURCE_DIR "/config/two_textures.yaml --quiet --out " + out;
+    ASSERT_EQ(photonav(info).exitCode, 0);
+    ASSERT_EQ(photonav("report " + out).exitCode, 0);
+    EXPECT_EQ(photonav(info).exitCode, 0);
 }
 
 }  // namespace

@@ -67,6 +67,16 @@ class SweepCommand : public testing::Test {
         return whole.str();
     }
 
+    /// As a sweep is when it was killed after `count` runs. @return the lines left whole
+    std::string killAfter(const std::string& name, int count) const {
+        const std::string kept = cutAfter(name, count);
+        const fs::path unfinished = folder_ / (name + ".unfinished");
+        fs::create_directories(unfinished);
+        fs::rename(folder_ / name / "runs.jsonl", unfinished / "runs.jsonl");
+        fs::remove_all(folder_ / name);
+        return kept;
+    }
+
     test::TemporaryFolder temporary_;
     fs::path folder_ = temporary_.path();
 };
@@ -189,8 +199,10 @@ TEST_F(SweepCommand, ShardsThatDoNotMatchAreRefused) {
 TEST_F(SweepCommand, AKilledSweepResumesWhereItWas) {
     ASSERT_EQ(sweep("out", "").exitCode, 0);
     const json whole = runs("out");
-    const std::string kept = cutAfter("out", 5);
+    const std::string kept = killAfter("out", 5);
+    expectBadInput(sweep("out", ""), "out.unfinished: holds 5 runs of a sweep that was killed");
     ASSERT_EQ(sweep("out", "--resume --jobs 2").exitCode, 0);
+    EXPECT_FALSE(fs::exists(folder_ / "out.unfinished"));
     EXPECT_EQ(runs("out"), whole);
     EXPECT_TRUE(test::contentOf(folder_ / "out/runs.jsonl").starts_with(kept));  // not run again
     ASSERT_EQ(sweep("fresh", "--resume").exitCode, 0);  // nothing there: from the start
@@ -229,8 +241,8 @@ TEST_F(SweepCommand, CtrlCKeepsTheRunsDone) {
     // Interrupted as soon as the header and two runs are there.
     const Execution run = execute(fmt::format(
         "{{ {} sweep {} --set planner.vertices=150 --alpha 0.5 --runs 1000000 --planners rrt_star"
-        " --out {} --quiet & until [ $(cat {}/runs.jsonl 2>/dev/null | wc -l) -gt 2 ]; do"
-        " sleep 0.05; done; kill -INT $!; wait $!; }}",
+        " --out {} --quiet & until [ $(cat {}.unfinished/runs.jsonl 2>/dev/null | wc -l) -gt 2 ];"
+        " do sleep 0.05; done; kill -INT $!; wait $!; }}",
         PHOTONAV_BINARY, config("two_textures"), at("out"), at("out")));
     EXPECT_EQ(run.exitCode, 130) << run.output;
     const json r = result("out");

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/folder_transaction.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "io/atomic_file.hpp"
+#include "io/error.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kFirstLine = "photonav files 1";
+
+std::uint32_t checksumOf(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::vector<char> block(1U << 20U);
+    uLong sum = crc32(0L, Z_NULL, 0);
+    while (stream) {
+        stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+        sum = crc32(sum, reinterpret_cast<const Bytef*>(block.data()),
+                    static_cast<uInt>(stream.gcount()));
+    }
+    return static_cast<std::uint32_t>(sum);
+}
+
+/// Files and links of a folder and its subfolders, relative, sorted, the manifest left out.
+std::vector<fs::path> namesIn(const fs::path& folder) {
+    std::vector<fs::path> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (!entry.is_symlink() && entry.is_directory()) continue;
+        const fs::path name = entry.path().lexically_relative(folder);
+        if (name != Manifest::kFileName) names.push_back(name);
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+void removeEmptyFolders(const fs::path& folder) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+        if (!entry.is_symlink() && entry.is_directory()) removeEmptyFolders(entry.path());
+    }
+    fs::remove(folder, ignored);  // fails unless it is empty
+}
+
+/// Waits until a file or folder is on the disk.
+void synchronise(const fs::path& path) {
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool failed = file < 0 || fsync(file) != 0;
+    const int reason = errno;
+    if (file >= 0) close(file);
+    if (failed) {
+        throw InputError(path.string(), "",
+                         std::string("cannot be written: ") + std::strerror(reason));
+    }
+}
+
+void synchroniseAll(const fs::path& folder) {
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (!entry.is_symlink()) synchronise(entry.path());
+    }
+    synchronise(folder);
+}
+
+/// The folder that a path leads to; it and its last parents need not exist.
+fs::path resolve(const fs::path& path) {
+    const fs::path whole = fs::weakly_canonical(fs::absolute(path) / "");
+    return whole.has_filename() ? whole : whole.parent_path();
+}
+
+[[noreturn]] void refuse(const fs::path& folder, const std::string& reason) {
+    throw InputError(folder.string(), "", reason);
+}
+
+/// What stands in the way of replacing a folder.
+void checkTarget(const fs::path& target, const fs::path& resolved) {
+    std::error_code error;
+    const fs::file_status status = fs::status(resolved, error);
+    if (status.type() == fs::file_type::not_found) return;
+    if (!fs::is_directory(status)) refuse(target, "is no folder");
+    const fs::path here = fs::current_path(error);
+    if (!error && resolved.lexically_relative(here) == ".") {
+        refuse(target, "is the current directory; give a folder in it");
+    }
+    struct stat own {};
+    struct stat parent {};
+    if (stat(resolved.c_str(), &own) == 0 && stat(resolved.parent_path().c_str(), &parent) == 0 &&
+        own.st_dev != parent.st_dev) {
+        refuse(target, "is a mount point; give a folder in it");
+    }
+    if (const auto file = Manifest::read(resolved).foreignFile(resolved)) {
+        refuse(target / *file, "is not as an earlier result wrote it; give another folder");
+    }
+}
+
+}  // namespace
+
+Manifest::File Manifest::describe(const fs::path& folder, const fs::path& name) {
+    const fs::path file = folder / name;
+    if (!fs::is_regular_file(fs::symlink_status(file))) return {name, 0, 0};
+    return {name, fs::file_size(file), checksumOf(file)};
+}
+
+Manifest Manifest::of(const fs::path& folder) {
+    Manifest manifest;
+    for (const fs::path& name : namesIn(folder)) manifest.files_.push_back(describe(folder, name));
+    return manifest;
+}
+
+Manifest Manifest::read(const fs::path& folder) {
+    Manifest manifest;
+    const fs::path file = folder / kFileName;
+    std::ifstream stream(file);
+    std::string line;
+    if (!stream || !std::getline(stream, line)) return manifest;
+    const auto fail = [&] { throw InputError(file.string(), "", "is damaged"); };
+    if (line != kFirstLine) fail();
+    while (std::getline(stream, line)) {
+        std::istringstream fields(line);
+        File entry{};
+        std::string name;
+        fields >> entry.size >> std::hex >> entry.checksum;
+        if (!fields || fields.get() != ' ' || !std::getline(fields, name)) fail();
+        entry.name = name;
+        manifest.files_.push_back(std::move(entry));
+    }
+    return manifest;
+}
+
+std::string Manifest::text() const {
+    std::string text = std::string(kFirstLine) + "\n";
+    for (const File& file : files_) {
+        text += fmt::format("{} {:08x} {}\n", file.size, file.checksum, file.name.string());
+    }
+    return text;
+}
+
+std::optional<fs::path> Manifest::foreignFile(const fs::path& folder) const {
+    for (const fs::path& name : namesIn(folder)) {
+        const auto listed = std::find_if(files_.begin(), files_.end(),
+                                         [&](const File& file) { return file.name == name; });
+        if (listed == files_.end() || *listed != describe(folder, name)) return name;
+    }
+    return {};
+}
+
+void Manifest::renew(const fs::path& folder, const fs::path& name) {
+    Manifest manifest = read(folder);
+    const auto place =
+        std::lower_bound(manifest.files_.begin(), manifest.files_.end(), name,
+                         [](const File& file, const fs::path& n) { return file.name < n; });
+    if (manifest.empty()) return;
+    if (place != manifest.files_.end() && place->name == name) {
+        *place = describe(folder, name);
+    } else {
+        manifest.files_.insert(place, describe(folder, name));
+    }
+    writeFileAtomically(folder / kFileName, manifest.text());
+}
+
+void Manifest::removeFiles(const fs::path& folder) const {
+    std::error_code ignored;
+    for (const File& file : files_) fs::remove(folder / file.name, ignored);
+}
+
+FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinished)
+    : target_(target),
+      resolved_(resolve(target)),
+      working_(resolved_.string() + ".unfinished"),
+      unfinished_(unfinished) {
+    checkTarget(target_, resolved_);
+    lock();
+    const bool isReplaced =
+        !Manifest::read(working_).empty();  // the process ended before it was removed
+    if (isReplaced || unfinished_ == Unfinished::removed) removeLeftovers();
+}
+
+/// The lock is on the manifest, which moves with the folder: a folder that another process has just
+/// put in place is not ours, and the next try makes a new one.
+void FolderTransaction::lock() {
+    const fs::path file = working_ / Manifest::kFileName;
+    for (;;) {
+        std::error_code error;
+        fs::create_directories(working_, error);
+        if (error) refuse(target_, "cannot be made: " + error.message());
+        lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        if (lock_ < 0 && errno == ENOENT) continue;
+        if (lock_ < 0) refuse(target_, std::string("cannot be made: ") + std::strerror(errno));
+        if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+            const bool isHeld = errno == EWOULDBLOCK;
+            const std::string reason = std::strerror(errno);
+            close(lock_);
+            refuse(target_, isHeld ? "another photonav is writing it" : "not locked: " + reason);
+        }
+        struct stat locked {};
+        struct stat there {};
+        if (fstat(lock_, &locked) == 0 && stat(file.c_str(), &there) == 0 &&
+            locked.st_ino == there.st_ino && locked.st_dev == there.st_dev) {
+            return;
+        }
+        close(lock_);
+    }
+}
+
+void FolderTransaction::removeLeftovers() const {
+    for (const auto& entry : fs::directory_iterator(working_)) {
+        if (entry.path().filename() != Manifest::kFileName) fs::remove_all(entry.path());
+    }
+}
+
+FolderTransaction::~FolderTransaction() {
+    if (isOpen_ && unfinished_ == Unfinished::removed) {
+        std::error_code ignored;
+        fs::remove_all(working_, ignored);
+    } else if (isOpen_) {  // nothing to go on with
+        std::error_code error;
+        if (fs::exists(working_, error) && namesIn(working_).empty()) {
+            fs::remove_all(working_, error);
+        }
+    }
+    close(lock_);
+}
+
+void FolderTransaction::commit() {
+    const std::string manifest = Manifest::of(working_).text();
+    const auto length = static_cast<ssize_t>(manifest.size());
+    if (ftruncate(lock_, 0) != 0 || pwrite(lock_, manifest.data(), manifest.size(), 0) != length) {
+        throw InputError((working_ / Manifest::kFileName).string(), "",
+                         std::string("cannot be written: ") + std::strerror(errno));
+    }
+    synchroniseAll(working_);
+    const Unfinished before = std::exchange(unfinished_, Unfinished::kept);
+    checkTarget(target_, resolved_);  // as it was at the beginning?
+    exchange();
+    unfinished_ = before;
+    isOpen_ = false;
+    synchronise(resolved_.parent_path());
+    removeReplaced();
+}
+
+/// In one step where the file system can, else in two with the earlier folder aside.
+void FolderTransaction::exchange() {
+    const auto fail = [&](int reason) {
+        refuse(target_, fmt::format("cannot be replaced: {}; the result is in {}",
+                                    std::strerror(reason), working_.string()));
+    };
+    if (!fs::exists(resolved_)) {
+        if (std::rename(working_.c_str(), resolved_.c_str()) != 0) fail(errno);
+        return;
+    }
+    if (renameat2(AT_FDCWD, working_.c_str(), AT_FDCWD, resolved_.c_str(), RENAME_EXCHANGE) == 0) {
+        return;
+    }
+    if (errno != EINVAL && errno != ENOSYS) fail(errno);
+    const std::string aside = resolved_.string() + ".replaced";
+    if (std::rename(resolved_.c_str(), aside.c_str()) != 0) fail(errno);
+    if (std::rename(working_.c_str(), resolved_.c_str()) != 0) {
+        const int reason = errno;
+        static_cast<void>(std::rename(aside.c_str(), resolved_.c_str()));
+        fail(reason);
+    }
+    static_cast<void>(std::rename(aside.c_str(), working_.c_str()));
+}
+
+/// The folder that was the target is now where the working folder was.
+void FolderTransaction::removeReplaced() const {
+    std::error_code ignored;
+    if (!fs::exists(working_, ignored)) return;
+    Manifest::read(working_).removeFiles(working_);
+    fs::remove(working_ / Manifest::kFileName, ignored);
+    removeEmptyFolders(working_);
+}
+
+}  // namespace photonav

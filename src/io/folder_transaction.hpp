@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Results are there as a whole or not at all, whatever happens while they are made.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace photonav {
+
+/// The files that a program wrote into a folder: kept there as `.photonav`, one line each with
+/// size, checksum and name. What it does not list, or what was changed since, belongs to the user.
+class Manifest {
+  public:
+    static constexpr const char* kFileName = ".photonav";
+
+    /// The files of a folder and its subfolders, as they are now.
+    static Manifest of(const std::filesystem::path& folder);
+
+    /// That of an earlier run; empty where there is none.
+    /// @throws InputError when it is damaged
+    static Manifest read(const std::filesystem::path& folder);
+
+    std::string text() const;
+    bool empty() const { return files_.empty(); }
+
+    /// A file of the folder that is not listed or was changed since; nothing when all are listed.
+    std::optional<std::filesystem::path> foreignFile(const std::filesystem::path& folder) const;
+
+    /// Removes the files that are listed.
+    void removeFiles(const std::filesystem::path& folder) const;
+
+    /// Takes a file up that the program has written again. Does nothing without a manifest.
+    static void renew(const std::filesystem::path& folder, const std::filesystem::path& name);
+
+  private:
+    struct File {
+        std::filesystem::path name;  // relative to the folder
+        std::uintmax_t size;         // [bytes]
+        std::uint32_t checksum;      // CRC-32
+        bool operator==(const File&) const = default;
+    };
+    static File describe(const std::filesystem::path& folder, const std::filesystem::path& name);
+
+    std::vector<File> files_;  // sorted by name
+};
+
+/// Replaces a folder as a whole. Files are written into a working folder beside it,
+/// NAME.unfinished; commit() exchanges the two in one step. Until then, and when the program is
+/// killed or the disk is full, an earlier folder stays as it was. One process at a time: the
+/// working folder is locked.
+class FolderTransaction {
+  public:
+    /// What happens to a working folder that was not committed, and to one that a killed process
+    /// left: resumable work is kept and found again.
+    enum class Unfinished { removed, kept };
+
+    /// @param target need not exist; a link to a folder stays a link
+    /// @throws InputError when the target holds files that no manifest of ours lists, is the
+    /// current
+    ///         directory, a mount point or no folder, when another process writes it, and when the
+    ///         working folder cannot be made
+    explicit FolderTransaction(const std::filesystem::path& target,
+                               Unfinished unfinished = Unfinished::removed);
+    ~FolderTransaction();
+    FolderTransaction(const FolderTransaction&) = delete;
+    FolderTransaction& operator=(const FolderTransaction&) = delete;
+
+    /// Where results will be, as it was given.
+    const std::filesystem::path& target() const { return target_; }
+    /// Where to write until commit().
+    const std::filesystem::path& path() const { return working_; }
+
+    /// Writes everything to the disk, then puts the working folder in the target's place.
+    /// @throws InputError when that cannot be done; the working folder is kept then
+    void commit();
+
+  private:
+    void lock();
+    void removeLeftovers() const;
+    void exchange();
+    void removeReplaced() const;
+
+    std::filesystem::path target_;    // as given
+    std::filesystem::path resolved_;  // absolute, links followed
+    std::filesystem::path working_;   // beside it
+    Unfinished unfinished_;
+    int lock_ = -1;  // file descriptor of the working folder's manifest
+    bool isOpen_ = true;
+};
+
+}  // namespace photonav

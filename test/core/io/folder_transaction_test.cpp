@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A folder is replaced as a whole or not at all, and only what was written before is replaced.
+#include "io/folder_transaction.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <functional>
+
+#include "io/error.hpp"
+#include "temporary_folder.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+using test::contentOf;
+using test::TemporaryFolder;
+using Unfinished = FolderTransaction::Unfinished;
+
+void write(const fs::path& file, const std::string& text) {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+}
+
+void commit(const fs::path& folder, const std::string& file, const std::string& text) {
+    FolderTransaction transaction(folder);
+    write(transaction.path() / file, text);
+    transaction.commit();
+}
+
+std::string complaint(const fs::path& folder) {
+    try {
+        const FolderTransaction transaction(folder);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::size_t entries(const fs::path& folder) {
+    return std::distance(fs::directory_iterator(folder), {});
+}
+
+class FolderTransactionTest : public testing::Test {
+  protected:
+    const TemporaryFolder temporary_;
+    const fs::path target_ = temporary_.path() / "target";
+};
+
+TEST_F(FolderTransactionTest, ReplacesTheFolderAsAWhole) {
+    commit(target_, "old.txt", "old");
+    FolderTransaction transaction(target_);
+    write(transaction.path() / "sub/new.txt", "new");
+    EXPECT_EQ(contentOf(target_ / "old.txt"), "old");  // until it is committed
+    transaction.commit();
+    EXPECT_FALSE(fs::exists(target_ / "old.txt"));
+    EXPECT_EQ(contentOf(target_ / "sub/new.txt"), "new");
+    EXPECT_EQ(entries(temporary_.path()), 1U);
+}
+
+TEST_F(FolderTransactionTest, LeavesNothingBehindWhenItIsNotCommitted) {
+    commit(target_, "old.txt", "old");
+    {
+        const FolderTransaction transaction(target_);
+        write(transaction.path() / "new.txt", "new");
+    }
+    EXPECT_EQ(contentOf(target_ / "old.txt"), "old");
+    EXPECT_EQ(entries(temporary_.path()), 1U);
+}
+
+TEST_F(FolderTransactionTest, RefusesFilesThatItDidNotWrite) {
+    write(target_ / "notes.txt", "mine");
+    EXPECT_NE(complaint(target_).find("target/notes.txt: is not as an earlier result wrote it"),
+              std::string::npos);
+    EXPECT_EQ(contentOf(target_ / "notes.txt"), "mine");
+    fs::remove(target_ / "notes.txt");
+    EXPECT_EQ(complaint(target_), "");  // empty
+    commit(target_, "config.yaml", "a: 1");
+    EXPECT_EQ(complaint(target_), "");
+    write(target_ / "config.yaml", "a: 2");  // edited
+    EXPECT_NE(complaint(target_), "");
+}
+
+TEST_F(FolderTransactionTest, KeepsTheResultWhenSomeoneWroteIntoTheFolderMeanwhile) {
+    commit(target_, "old.txt", "old");
+    FolderTransaction transaction(target_);
+    write(transaction.path() / "new.txt", "new");
+    write(target_ / "notes.txt", "mine");
+    EXPECT_THROW(transaction.commit(), InputError);
+    EXPECT_EQ(contentOf(target_ / "notes.txt"), "mine");
+    EXPECT_EQ(contentOf(transaction.path() / "new.txt"), "new");
+}
+
+TEST_F(FolderTransactionTest, TakesUpWhatWasWrittenAgain) {
+    commit(target_, "report.html", "one");
+    write(target_ / "report.html", "two");
+    Manifest::renew(target_, "report.html");
+    EXPECT_EQ(complaint(target_), "");
+}
+
+TEST_F(FolderTransactionTest, OneProcessWritesAFolderAtATime) {
+    const FolderTransaction first(target_);
+    EXPECT_NE(complaint(target_).find("another photonav is writing it"), std::string::npos);
+    EXPECT_TRUE(fs::exists(first.path()));
+}
+
+TEST_F(FolderTransactionTest, FollowsLinksAndRefusesWhatIsNoFolder) {
+    commit(target_, "old.txt", "old");
+    const fs::path link = temporary_.path() / "link";
+    fs::create_directory_symlink(target_, link);
+    commit(link / "", "new.txt", "new");
+    EXPECT_TRUE(fs::is_symlink(link));
+    EXPECT_EQ(contentOf(target_ / "new.txt"), "new");
+    write(temporary_.path() / "file", "");
+    EXPECT_NE(complaint(temporary_.path() / "file").find("file: is no folder"), std::string::npos);
+    EXPECT_NE(complaint(".").find("is the current directory"), std::string::npos);
+    EXPECT_NE(complaint("/proc").find("is a mount point"), std::string::npos);
+    EXPECT_NE(complaint("/proc/x").find("/proc/x: cannot be made"), std::string::npos);
+}
+
+/// Runs `work` in a process that is killed when it has ended its work.
+void inKilledProcess(const std::function<void()>& work) {
+    const pid_t child = fork();
+    if (child == 0) {
+        work();
+        std::raise(SIGKILL);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status));
+}
+
+TEST_F(FolderTransactionTest, AKilledProcessLeavesTheEarlierFolder) {
+    commit(target_, "old.txt", "old");
+    const fs::path unfinished = target_.string() + ".unfinished";
+    for (const Unfinished policy : {Unfinished::removed, Unfinished::kept}) {
+        inKilledProcess([&] {
+            const FolderTransaction transaction(target_, policy);
+            write(transaction.path() / "runs.txt", "1");
+        });
+        EXPECT_EQ(contentOf(target_ / "old.txt"), "old");
+        {
+            const FolderTransaction next(target_, policy);
+            EXPECT_EQ(fs::exists(next.path() / "runs.txt"), policy == Unfinished::kept);
+        }
+        EXPECT_EQ(fs::exists(unfinished), policy == Unfinished::kept);
+    }
+}
+
+TEST_F(FolderTransactionTest, WhatWasReplacedIsNotTakenForUnfinishedWork) {
+    // As if killed between the exchange and the removal of the folder that was replaced.
+    commit(target_, "old.txt", "old");
+    fs::rename(target_, target_.string() + ".unfinished");
+    commit(target_, "new.txt", "new");
+    EXPECT_EQ(contentOf(target_ / "new.txt"), "new");
+    EXPECT_EQ(entries(temporary_.path()), 1U);
+    EXPECT_EQ(entries(target_), 2U);
+}
+
+}  // namespace
+}  // namespace photonav
