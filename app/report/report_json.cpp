@@ -4,6 +4,7 @@
 
 #include "io/error.hpp"
 #include "io/image_bytes.hpp"
+#include "io/json_nesting.hpp"
 #include "report/base64.hpp"
 #include "report/report.hpp"
 
@@ -13,6 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kSchema = 1;
+constexpr std::size_t kMostDepth = 100;  // of nested lists in a report, which has about ten
 constexpr std::string_view kPngPrefix = "data:image/png;base64,";
 static_assert(std::endian::native == std::endian::little,
               "arrays are stored as they lie in memory");
@@ -103,6 +105,7 @@ std::string reportJson(const ReportData& data) {
 std::string readReportJson(const std::filesystem::path& file) {
     const auto bytes = readBytes(file.string());
     std::string text(bytes.begin(), bytes.end());
+    if (nestingDepth(text) > kMostDepth) throw InputError(file.string(), "", "nested too deep");
     const json content = json::parse(text, nullptr, false);
     if (content.is_discarded())
         throw InputError(file.string(), "", "not JSON, or only a part of it");

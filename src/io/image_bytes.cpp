@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -57,7 +59,80 @@ std::vector<std::uint8_t> soundPng(Bytes encoded) {
     return {};
 }
 
+std::uint64_t littleEndian(Bytes four) {
+    return std::uint64_t{four[0]} | std::uint64_t{four[1]} << 8 | std::uint64_t{four[2]} << 16 |
+           std::uint64_t{four[3]} << 24;
+}
+
+std::optional<ImageSize> sizeOfPng(Bytes encoded) {
+    if (encoded.size() < 24) return {};
+    return ImageSize{bigEndian(encoded.subspan(16, 4)), bigEndian(encoded.subspan(20, 4))};
+}
+
+/// Segments: 0xFF, a marker, a length; the one that begins the frame has the size.
+std::optional<ImageSize> sizeOfJpeg(Bytes encoded) {
+    for (std::size_t at = 2; at + 9 <= encoded.size();) {
+        if (encoded[at] != 0xFF) return {};
+        const unsigned marker = encoded[at + 1];
+        if (marker == 0xFF) {  // padding
+            ++at;
+            continue;
+        }
+        const bool isFrame =
+            marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+        const auto twoBytes = [&](std::size_t i) {
+            return std::uint64_t{encoded[i]} << 8 | encoded[i + 1];
+        };
+        if (isFrame) return ImageSize{twoBytes(at + 7), twoBytes(at + 5)};
+        at += 2 + twoBytes(at + 2);
+    }
+    return {};
+}
+
+/// Width and height are signed; a height below zero begins at the top.
+std::optional<ImageSize> sizeOfBmp(Bytes encoded) {
+    if (encoded.size() < 26) return {};
+    if (littleEndian(encoded.subspan(14, 4)) < 40) return {};  // OS/2's header
+    const auto length = [&](std::size_t at) {
+        return static_cast<std::uint64_t>(std::abs(
+            std::int64_t{static_cast<std::int32_t>(littleEndian(encoded.subspan(at, 4)))}));
+    };
+    return ImageSize{length(18), length(22)};
+}
+
+/// Numbers in text, with comments between them.
+std::optional<ImageSize> sizeOfPnm(Bytes encoded) {
+    std::array<std::uint64_t, 2> numbers{};
+    std::size_t at = 2;
+    for (std::uint64_t& number : numbers) {
+        while (at < encoded.size() && (std::isspace(encoded[at]) != 0 || encoded[at] == '#')) {
+            if (encoded[at] == '#') {
+                while (at < encoded.size() && encoded[at] != '\n') ++at;
+            } else {
+                ++at;
+            }
+        }
+        std::size_t digits = 0;
+        for (; at < encoded.size() && std::isdigit(encoded[at]) != 0; ++at, ++digits) {
+            number = 10 * number + (encoded[at] - '0');
+            if (digits > 9) return {};
+        }
+        if (digits == 0) return {};
+    }
+    return ImageSize{numbers[0], numbers[1]};
+}
+
 }  // namespace
+
+std::optional<ImageSize> declaredSize(Bytes encoded) {
+    if (startsWith(encoded, kPng)) return sizeOfPng(encoded);
+    if (startsWith(encoded, kJpeg)) return sizeOfJpeg(encoded);
+    if (startsWith(encoded, std::array<std::uint8_t, 2>{'B', 'M'})) return sizeOfBmp(encoded);
+    for (const std::uint8_t kind : {'2', '3', '5', '6'}) {
+        if (startsWith(encoded, std::array<std::uint8_t, 2>{'P', kind})) return sizeOfPnm(encoded);
+    }
+    return {};
+}
 
 std::vector<std::uint8_t> readBytes(const std::string& file) {
     std::ifstream in(file, std::ios::binary);

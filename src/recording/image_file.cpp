@@ -18,13 +18,17 @@ namespace {
 cv::Mat readImage(const std::string& file, int flags, const Camera& camera,
                   const std::string& source) {
     const auto bytes = soundImage(readBytes(file));
-    cv::Mat image = bytes.empty() ? cv::Mat() : cv::imdecode(bytes, flags);
-    if (image.empty()) throw InputError(file, "", "not an image, or damaged");
-    if (image.cols != int(camera.width) || image.rows != int(camera.height)) {
+    const auto checkSize = [&](std::uint64_t width, std::uint64_t height) {
+        if (width == camera.width && height == camera.height) return;
         throw InputError(file, "",
-                         fmt::format("{}x{} pixels, not the {}x{} of {}", image.cols, image.rows,
+                         fmt::format("{}x{} pixels, not the {}x{} of {}", width, height,
                                      camera.width, camera.height, source));
-    }
+    };
+    const auto size = declaredSize(bytes);
+    if (size) checkSize(size->width, size->height);  // before anything is decoded
+    cv::Mat image = size ? cv::imdecode(bytes, flags) : cv::Mat();
+    if (image.empty()) throw InputError(file, "", "not an image, or damaged");
+    checkSize(image.cols, image.rows);
     return image;
 }
 

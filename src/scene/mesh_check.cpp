@@ -4,15 +4,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <deque>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "io/error.hpp"
+#include "io/image_bytes.hpp"
+#include "io/json_nesting.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr std::size_t kMostJsonDepth = 200;
+constexpr unsigned kMostNodeDepth = 500;  // of a node in a scene; real scenes have tens
 
 std::string lowerCase(std::string text) {
     for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -22,42 +31,73 @@ std::string lowerCase(std::string text) {
 std::size_t binarySize(const std::string& type) {
     if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
     if (type == "short" || type == "ushort" || type == "int16" || type == "uint16") return 2;
-    return type == "double" || type == "float64" ? 8 : 4;
+    if (type == "double" || type == "float64") return 8;
+    const bool isKnown = type == "int" || type == "uint" || type == "float" || type == "int32" ||
+                         type == "uint32" || type == "float32";
+    return isKnown ? 4 : 0;
 }
 
-/// The least that elements take: in text a digit and a blank each, of lists their length only.
-void checkPly(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    const double size = static_cast<double>(fs::file_size(file));
-    double least = 0.;
-    double count = 0.;
-    bool isText = false;
-    std::string line;
-    std::string element;
-    while (std::getline(in, line)) {
-        std::istringstream words(line);
-        std::string word;
-        std::string type;
-        words >> word >> type;
-        if (word == "format") isText = type == "ascii";
-        if (word == "element") {
-            element = type;
-            if (!(words >> count) || count < 0.) {
-                throw InputError(file, "element " + element, "not a number of elements");
-            }
+/// What a PLY header says, line by line.
+class PlyHeader {
+  public:
+    explicit PlyHeader(const std::string& file)
+        : file_(file), size_(static_cast<double>(fs::file_size(file))) {}
+
+    void check() {
+        std::ifstream in(file_, std::ios::binary);
+        std::string line;
+        std::getline(in, line);
+        if (line.substr(0, 3) != "ply") throw InputError(file_, "", "does not begin with 'ply'");
+        while (std::getline(in, line)) {
+            std::istringstream words(line);
+            std::string word;
+            words >> word;
+            if (word == "format") readFormat(words);
+            if (word == "element") readElement(words);
+            if (word == "property") readProperty(words);
+            if (word != "end_header") continue;
+            if (format_.empty()) throw InputError(file_, "format", "missing");
+            return;
         }
-        if (word == "property") {
-            if (type == "list") words >> type;
-            least += count * (isText ? 2. : static_cast<double>(binarySize(type)));
-            if (least > size + 2.) {
-                throw InputError(
-                    file, "element " + element,
-                    fmt::format("{:.0f} of them do not fit into {:.0f} bytes", count, size));
-            }
-        }
-        if (word == "end_header") return;
+        throw InputError(file_, "end_header", "missing");
     }
-}
+
+  private:
+    void readFormat(std::istream& words) {
+        words >> format_;
+        if (format_ == "ascii" || format_ == "binary_little_endian" ||
+            format_ == "binary_big_endian") {
+            return;
+        }
+        throw InputError(file_, "format", fmt::format("'{}' is not known", format_));
+    }
+
+    void readElement(std::istream& words) {
+        words >> element_;
+        if (words >> count_ && count_ >= 0. && count_ == std::floor(count_)) return;
+        throw InputError(file_, "element " + element_, "not a number of elements");
+    }
+
+    /// The least that elements take: in text a digit and a blank each, of lists their length only.
+    void readProperty(std::istream& words) {
+        std::string type;
+        words >> type;
+        if (type == "list") words >> type;
+        if (binarySize(type) == 0) {
+            throw InputError(file_, "element " + element_,
+                             fmt::format("property of unknown type '{}'", type));
+        }
+        least_ += count_ * (format_ == "ascii" ? 2. : static_cast<double>(binarySize(type)));
+        if (least_ <= size_ + 2.) return;
+        throw InputError(file_, "element " + element_,
+                         fmt::format("{:.0f} of them do not fit into {:.0f} bytes", count_, size_));
+    }
+
+    std::string file_;
+    double size_;  // [bytes]
+    double least_ = 0., count_ = 0.;
+    std::string format_, element_;
+};
 
 void checkObj(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
@@ -74,12 +114,58 @@ void checkObj(const std::string& file) {
     }
 }
 
+/// The JSON of a .gltf, or of the first chunk of a .glb.
+std::string gltfJson(const std::string& file, bool isBinary) {
+    const std::vector<std::uint8_t> bytes = readBytes(file);
+    if (!isBinary) return {bytes.begin(), bytes.end()};
+    constexpr std::size_t kHeader = 20;  // magic, version, length; length and type of the chunk
+    if (bytes.size() < kHeader) throw InputError(file, "", "too short for a header");
+    std::uint32_t length = 0;
+    std::memcpy(&length, &bytes[12], sizeof(length));
+    if (length > bytes.size() - kHeader) throw InputError(file, "", "is cut short");
+    return {bytes.begin() + kHeader, bytes.begin() + kHeader + length};
+}
+
+/// Assimp follows nodes by recursion, whatever their depth, and in circles.
+void checkGltf(const std::string& file, bool isBinary) {
+    const std::string text = gltfJson(file, isBinary);
+    if (nestingDepth(text) > kMostJsonDepth) {
+        throw InputError(file, "", fmt::format("JSON nested deeper than {}", kMostJsonDepth));
+    }
+    const auto root = nlohmann::json::parse(text, nullptr, false);
+    if (!root.is_object() || !root.contains("nodes") || !root["nodes"].is_array()) return;
+    const auto& nodes = root["nodes"];
+    std::vector<unsigned> depth(nodes.size(), 1);
+    std::deque<std::size_t> open;
+    for (std::size_t i = 0; i < nodes.size(); ++i) open.push_back(i);
+    while (!open.empty()) {
+        const std::size_t i = open.front();
+        open.pop_front();
+        if (!nodes[i].is_object() || !nodes[i].contains("children")) continue;
+        for (const auto& entry : nodes[i]["children"]) {
+            if (!entry.is_number_unsigned() || entry.get<std::size_t>() >= nodes.size()) {
+                throw InputError(file, fmt::format("nodes[{}].children", i), "no such node");
+            }
+            const auto child = entry.get<std::size_t>();
+            if (depth[child] > depth[i]) continue;
+            depth[child] = depth[i] + 1;
+            if (depth[child] > kMostNodeDepth) {
+                throw InputError(
+                    file, "nodes",
+                    fmt::format("nested deeper than {}, or in a circle", kMostNodeDepth));
+            }
+            open.push_back(child);
+        }
+    }
+}
+
 }  // namespace
 
 void checkMeshFile(const std::string& file) {
     const std::string extension = lowerCase(fs::path(file).extension().string());
-    if (extension == ".ply") checkPly(file);
+    if (extension == ".ply") PlyHeader(file).check();
     if (extension == ".obj") checkObj(file);
+    if (extension == ".gltf" || extension == ".glb") checkGltf(file, extension == ".glb");
 }
 
 }  // namespace photonav

@@ -122,6 +122,8 @@ class MeshReader {
         triangle.texture = surface.texture;
         for (unsigned k = 0; k < 3; ++k) {
             const unsigned vertex = face.mIndices[k];
+            if (vertex >= mesh.mNumVertices)
+                throw InputError(file_, "", "a face has no such vertex");
             const aiVector3D& p = mesh.mVertices[vertex];
             triangle.corners[k] = (T_w_mesh * Eigen::Vector3d(p.x, p.y, p.z)).cast<float>();
             triangle.uv[k] = coordinates(mesh, vertex, surface);
@@ -238,7 +240,8 @@ Scene loadMesh(const std::string& file, const MeshOptions& options) {
     std::vector<std::string> files;  // outlives the importer, which owns the RememberingFiles
     Assimp::Importer importer;
     importer.SetIOHandler(new RememberingFiles(files));  // NOLINT(cppcoreguidelines-owning-memory)
-    const aiScene* input = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType);
+    const aiScene* input = importer.ReadFile(
+        file, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType);
     if (input == nullptr || input->mRootNode == nullptr) {
         std::string reason = importer.GetErrorString();
         std::replace(reason.begin(), reason.end(), '\n', ' ');

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/texture.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
@@ -12,6 +14,8 @@
 
 namespace photonav {
 namespace {
+
+constexpr double kMostPixels = 1e8;  // of an image file: 400 MB once it is decoded
 
 void demand(bool condition, const char* what) {
     if (!condition) throw std::invalid_argument(what);
@@ -262,7 +266,13 @@ ImageF readGrey(const std::string& file, const std::array<double, 3>& factor) {
 ImageF decodeGrey(std::span<const std::uint8_t> encoded, const std::string& name,
                   const std::array<double, 3>& factor) {
     const auto bytes = soundImage(encoded);
-    const cv::Mat image = bytes.empty() ? cv::Mat() : cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+    const auto size = declaredSize(bytes);
+    if (size && size->width * size->height > kMostPixels) {
+        throw InputError(name, "",
+                         fmt::format("{}x{} pixels: textures have at most {:.0f} million",
+                                     size->width, size->height, 1e-6 * kMostPixels));
+    }
+    const cv::Mat image = size ? cv::imdecode(bytes, cv::IMREAD_UNCHANGED) : cv::Mat();
     if (image.empty()) throw InputError(name, "", "not an image, or damaged");
     return greyOf(image, factor);
 }

@@ -43,6 +43,32 @@ TEST(ImageBytes, NothingIsLeftOfWhatIsCutOrDamaged) {
     EXPECT_TRUE(soundImage({}).empty());
 }
 
+TEST(ImageBytes, SizesAreReadFromHeaders) {
+    for (const char* extension : {".png", ".jpg", ".bmp", ".ppm"}) {
+        const auto size = declaredSize(encoded(extension));
+        ASSERT_TRUE(size) << extension;
+        EXPECT_EQ(size->width, 50U) << extension;
+        EXPECT_EQ(size->height, 40U) << extension;
+    }
+    EXPECT_FALSE(declaredSize(std::span(encoded(".png")).first(20)));
+    EXPECT_FALSE(declaredSize({}));
+}
+
+TEST(ImageBytes, WhatIsTooLargeIsNotDecoded) {
+    cv::Mat1b image(12000, 12000, std::uint8_t{0});
+    std::vector<std::uint8_t> png;
+    cv::imencode(".png", image, png);
+    const std::string complaint = [&] {
+        try {
+            decodeGrey(png, "big.png");
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    }();
+    EXPECT_EQ(complaint, "big.png: 12000x12000 pixels: textures have at most 100 million");
+}
+
 /// Legal, of no use to us, and what libpng likes to comment on: gone before it is decoded.
 TEST(ImageBytes, ChunksThatAreNoPictureAreLeftOut) {
     auto png = encoded(".png");

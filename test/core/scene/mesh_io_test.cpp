@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/mesh_io.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -188,6 +189,37 @@ TEST(MeshIo, HeadersAndLibrariesAreNotTrusted) {
     const auto obj =
         folder.write("box.obj", "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     EXPECT_EQ(complaint(obj), obj + ": mtllib: no such file 'gone.mtl'");
+}
+
+/// Assimp reads wild indices, and follows nodes by recursion.
+TEST(MeshIo, IndicesAndNodesAreNotTrusted) {
+    const TemporaryFolder folder;
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\n";
+    const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n";
+    for (const char* face : {"3 0 1 1000000\n", "3 0 1 -1\n", "4 0 1 2 77777777\n"}) {
+        const auto wild = folder.write("wild.ply", head + "end_header\n" + vertices + face);
+        EXPECT_EQ(complaint(wild).rfind(wild + ": ", 0), 0U) << complaint(wild);
+    }
+    const auto endless = folder.write("endless.ply", head);
+    EXPECT_EQ(complaint(endless), endless + ": end_header: missing");
+    const auto typed = folder.write("typed.ply",
+                                    "ply\nformat ascii 1.0\nelement vertex 3\n"
+                                    "property quaternion x\nend_header\n");
+    EXPECT_NE(complaint(typed).find("unknown type 'quaternion'"), std::string::npos);
+
+    std::string nodes = R"({"children": [1]})";
+    for (int i = 1; i < 100000; ++i) nodes += fmt::format(", {{\"children\": [{}]}}", i + 1);
+    const std::string scene = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes":
+ [0]}], "nodes": [)";
+    const auto deep = folder.write("deep.gltf", scene + nodes + ", {}]}");
+    EXPECT_EQ(complaint(deep), deep + ": nodes: nested deeper than 500, or in a circle");
+    const auto circle =
+        folder.write("circle.gltf", scene + R"({"children": [1]}, {"children": [0]}]})");
+    EXPECT_EQ(complaint(circle), circle + ": nodes: nested deeper than 500, or in a circle");
+    const auto brackets = folder.write("brackets.gltf", std::string(200000, '['));
+    EXPECT_EQ(complaint(brackets), brackets + ": JSON nested deeper than 200");
 }
 
 TEST(MeshIo, SomeDegenerateTrianglesAreDropped) {

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+
+namespace photonav {
+
+/// How deep arrays and objects are nested in JSON text. Programs that read or write JSON by
+/// recursion run out of stack where that is 1e5.
+inline std::size_t nestingDepth(std::string_view json) {
+    std::size_t depth = 0, most = 0;
+    bool inString = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (inString) {
+            if (c == '\\') ++i;
+            inString = c != '"';
+            continue;
+        }
+        inString = c == '"';
+        if (c == '[' || c == '{') most = std::max(most, ++depth);
+        if ((c == ']' || c == '}') && depth > 0) --depth;
+    }
+    return most;
+}
+
+}  // namespace photonav
