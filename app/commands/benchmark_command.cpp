@@ -12,6 +12,7 @@
 #include "report/plan_report.hpp"
 #include "report/sweep_figures.hpp"
 #include "report/sweep_report.hpp"
+#include "result/json_values.hpp"
 #include "sweep/planner_benchmark.hpp"
 
 namespace photonav {
@@ -105,7 +106,7 @@ void writeReport(const fs::path& folder, const BenchmarkOptions& options, const 
           {"Cost of the best path over time, a line per run of the planners that minimise it.",
            costOverTimeFigure("Best cost over time", config.sweep.planners, comparable(outcome))
                .png()}}});
-    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+    writeFileAtomically(folder / "result.json", jsonText(result));
 }
 
 }  // namespace
@@ -141,7 +142,7 @@ int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& inter
     writeReport(folder.path(), options, config, world, outcome, result);
     folder.commit();
     if (options.json) {
-        fmt::print("{}\n", result.dump(2));
+        fmt::print("{}", jsonText(result));
     } else if (!options.quiet) {
         fmt::print("{}\nlog: {}\nreport: {}\n",
                    sweepTable(config.sweep, summarize(config.sweep, outcome.runs, {})),

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "io/error.hpp"
+#include "result/json_values.hpp"
 
 namespace photonav {
 namespace {
@@ -44,7 +45,7 @@ void addOutput(CLI::App& parser, OutputOptions output, const std::string& defaul
 void printOutput(const OutputOptions& output, const nlohmann::json& result,
                  const ReportTable& summary, const std::vector<std::string>& files) {
     if (output.json) {
-        fmt::print("{}\n", result.dump(2));
+        fmt::print("{}", jsonText(result));
         return;
     }
     if (output.quiet) return;

@@ -14,6 +14,7 @@
 #include "mapping/tracking_map.hpp"
 #include "problem/planned_path.hpp"
 #include "report/fly_report.hpp"
+#include "result/json_values.hpp"
 
 namespace photonav {
 namespace {
@@ -231,11 +232,11 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     nlohmann::json result = flyResult(config, sets, flight, stopped);
     result["time"]["total_s"] = watch.seconds();
     writeFlyReport(folder.path(), config, world, sets, options.commandLine, result);
-    writeFileAtomically(folder.path() / "result.json", result.dump(2) + "\n");
+    writeFileAtomically(folder.path() / "result.json", jsonText(result));
     folder.commit();
 
     if (options.json)
-        fmt::print("{}\n", result.dump(2));
+        fmt::print("{}", jsonText(result));
     else if (!options.quiet)
         printSummary(sets, folder.target());
     if (stopped) return kInterrupted;

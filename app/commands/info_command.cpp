@@ -200,10 +200,10 @@ int runInfo(const InfoOptions& options) {
     ReportData report = reportOf(options, config, world, place, result);
     writeResultFolder(folder.path(), report, figures);
     result["time"]["total_s"] = watch.seconds();
-    writeFileAtomically(folder.path() / "result.json", result.dump(2) + "\n");
+    writeFileAtomically(folder.path() / "result.json", jsonText(result));
     folder.commit();
     if (options.json) {
-        fmt::print("{}\n", result.dump(2));
+        fmt::print("{}", jsonText(result));
     } else if (!options.quiet) {
         fmt::print("information trace {:.4g}, smallest eigenvalue {:.4g}\nreport: {}\n",
                    Lambda.trace(), result["view"]["min_eigenvalue"].get<double>(),

@@ -121,7 +121,7 @@ MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& inte
                       : report.result["voxels"]["occupied"] == 0 ? kNoAnswer
                                                                  : kDone;
     writeMapReport(folder.path(), options, report.result, recording, map, run);
-    writeFileAtomically(folder.path() / "result.json", report.result.dump(2) + "\n");
+    writeFileAtomically(folder.path() / "result.json", jsonText(report.result));
     folder.commit();
     return report;
 }

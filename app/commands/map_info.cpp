@@ -11,6 +11,7 @@
 #include "io/error.hpp"
 #include "map/octree_file.hpp"
 #include "report/map_report.hpp"
+#include "result/json_values.hpp"
 
 namespace photonav {
 namespace {
@@ -77,7 +78,7 @@ MapReport runMapInfo(const CommandOptions& options) {
     std::vector<NamedFigure> figures;
     if (report.result["voxels"]["occupied"] > 0) figures.push_back(overview(*map, page.title));
     writeResultFolder(folder.path(), page, figures);
-    writeFileAtomically(folder.path() / "result.json", report.result.dump(2) + "\n");
+    writeFileAtomically(folder.path() / "result.json", jsonText(report.result));
     folder.commit();
     return report;
 }

@@ -13,6 +13,7 @@
 #include "problem/planning_problem.hpp"
 #include "problem/tree_evolution.hpp"
 #include "report/plan_report.hpp"
+#include "result/json_values.hpp"
 
 namespace photonav {
 namespace {
@@ -24,6 +25,7 @@ void printSummary(const PlanOutcome& outcome, const std::optional<EvaluatedPath>
                    path.meanTrace, path.goalTrace, path.cost);
     };
     if (!outcome.path) fmt::print("no path found with {} vertices\n", outcome.vertices);
+    if (outcome.path && !outcome.isSolved()) fmt::print("failed: the cost is not finite\n");
     if (outcome.path || baseline) {
         fmt::print("{:<16} {:>10} {:>12} {:>12} {:>10}\n", "planner", "length", "mean trace",
                    "goal trace", "cost");
@@ -110,15 +112,15 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     writePlanReport(folder.path(), config, world, run, outcome, baseline, recorded, evolutions,
                     options.commandLine, result);
     result["time"]["total_s"] = watch.seconds();
-    writeFileAtomically(folder.path() / "result.json", result.dump(2) + "\n");
+    writeFileAtomically(folder.path() / "result.json", jsonText(result));
     folder.commit();
 
     if (options.json)
-        fmt::print("{}\n", result.dump(2));
+        fmt::print("{}", jsonText(result));
     else if (!options.quiet)
         printSummary(outcome, baseline, options.audit, folder.target(), watch.seconds());
     if (stopped) return kInterrupted;
-    return outcome.path ? kDone : kNoAnswer;
+    return outcome.isSolved() ? kDone : kNoAnswer;
 }
 
 }  // namespace photonav

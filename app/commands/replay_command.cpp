@@ -110,7 +110,7 @@ ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bo
     writeReplayTables(folder.path(), run, errors);
     writeReplayReport(folder.path(), options, configOf(options, replay), result, replay, run,
                       errors);
-    writeFileAtomically(folder.path() / "result.json", result.dump(2) + "\n");
+    writeFileAtomically(folder.path() / "result.json", jsonText(result));
     folder.commit();
     return report;
 }

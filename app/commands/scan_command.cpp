@@ -12,6 +12,7 @@
 #include "mapping/map_config.hpp"
 #include "mapping/scan_map.hpp"
 #include "report/map_report.hpp"
+#include "result/json_values.hpp"
 
 namespace photonav {
 namespace {
@@ -96,7 +97,7 @@ MapReport runScanMap(const ScanCommandOptions& options, const std::atomic<bool>&
     const long peak = peakMegabytes();  // all work is done, the report is written
     report.result["peak_memory_mb"] = peak;
     report.summary.rows.emplace_back("peak memory", fmt::format("{} MB", peak));
-    writeFileAtomically(folder.path() / "result.json", report.result.dump(2) + "\n");
+    writeFileAtomically(folder.path() / "result.json", jsonText(report.result));
     folder.commit();
     return report;
 }

@@ -13,6 +13,7 @@
 #include "io/stopwatch.hpp"
 #include "problem/planning_problem.hpp"
 #include "report/sweep_report.hpp"
+#include "result/json_values.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -103,7 +104,7 @@ int conclude(const SweepOptions& options, const Config& config, const World& wor
     writeSweepReport(folder.path(), config, world, outcome, reference, result);
     folder.commit();
     if (options.json) {
-        fmt::print("{}\n", result.dump(2));
+        fmt::print("{}", jsonText(result));
     } else if (!options.quiet) {
         fmt::print("{}\n",
                    sweepTable(config.sweep, summarize(config.sweep, outcome.runs, reference)));

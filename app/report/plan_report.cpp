@@ -172,9 +172,10 @@ json planResult(const Config& config, const PlanOutcome& outcome,
     json result{{"schema", 1},
                 {"command", "plan"},
                 {"version", PHOTONAV_VERSION},
-                {"status", interrupted    ? "interrupted"
-                           : outcome.path ? "done"
-                                          : "no path"},
+                {"status", interrupted          ? "interrupted"
+                           : outcome.isSolved() ? "done"
+                           : outcome.path       ? "failed"
+                                                : "no path"},
                 {"seed", config.seed},
                 {"planner", config.planner},
                 {"information", config.viewModel.name},

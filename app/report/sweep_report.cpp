@@ -176,7 +176,7 @@ void writeSweepReport(const fs::path& folder, const Config& config, const World&
                         {"The cheapest path of " + config.sweep.planners.front() +
                              " for every alpha, from above.",
                          topViewFigure(pathsView(config, world, report.paths)).png()}}});
-    writeFileAtomically(folder / "result.json", result.dump(2) + "\n");
+    writeFileAtomically(folder / "result.json", jsonText(result));
 }
 
 std::string sweepTable(const SweepConfig& config, const std::vector<SweepCell>& cells) {

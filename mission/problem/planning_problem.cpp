@@ -90,7 +90,8 @@ void PlanningProblem::checkPlace(const std::string& key, const Place& place) con
 }
 
 std::string PlanningProblem::statusOf(const PlanOutcome& outcome) const {
-    return outcome.path ? "done" : reasonForNoPath(outcome.vertices, outcome.iterations);
+    if (!outcome.path) return reasonForNoPath(outcome.vertices, outcome.iterations);
+    return outcome.isSolved() ? "done" : "failed: the cost of the path is not a finite number";
 }
 
 std::string PlanningProblem::reasonForNoPath(std::size_t vertices, std::size_t iterations) const {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -46,6 +47,9 @@ struct PlanOutcome {
     std::vector<PlanProgress> progress;
     std::vector<TreeSegment> tree;
     Audit audit;  ///< of the tree, and of the path's cost
+
+    /// A path whose cost is a number: where noise or information are absurd, it overflows.
+    bool isSolved() const { return path && std::isfinite(path->cost); }
 };
 
 inline const std::atomic<bool> kNotInterrupted{false};

@@ -13,6 +13,14 @@ nlohmann::json orNull(const std::optional<double>& value) {
     return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
+std::string jsonText(const nlohmann::json& value) {
+    return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string jsonLine(const nlohmann::json& value) {
+    return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
 nlohmann::json cameraJson(const Camera& camera) {
     return {{"width", camera.width}, {"height", camera.height}, {"fx", camera.fx()},
             {"fy", camera.fy()},     {"cx", camera.cx()},       {"cy", camera.cy()}};

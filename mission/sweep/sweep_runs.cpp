@@ -140,8 +140,8 @@ json toJson(const SweepRun& run) {
 SweepJournal SweepJournal::create(const fs::path& folder, const SweepHeader& header,
                                   std::vector<SweepRun> runs) {
     SweepJournal journal(folder / kFileName);
-    std::string text = lineOf(header).dump() + "\n";
-    for (const SweepRun& run : runs) text += lineOf(run).dump() + "\n";
+    std::string text = jsonLine(lineOf(header));
+    for (const SweepRun& run : runs) text += jsonLine(lineOf(run));
     writeFileAtomically(journal.file_, text);
     journal.header_ = header;
     journal.runs_ = std::move(runs);
@@ -180,7 +180,7 @@ void SweepJournal::write(const json& line) {
         fs::resize_file(file_, size_, ignored);
         stream_.open(file_, std::ios::app);
     }
-    stream_ << line.dump() + "\n" << std::flush;
+    stream_ << jsonLine(line) << std::flush;
     if (!stream_) throw InputError(file_.string(), "", "cannot be written");
 }
 
