@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include "geometry/constants.hpp"
+#include "io/number.hpp"
 
 namespace photonav {
 namespace {
 
 constexpr double kTiny = 1e-6;
+constexpr double kFarthest = 1e5;  // of lengths [m]
+constexpr double kLargest = 1e12;  // of weights: what is larger overflows in products
 
 Place readPlace(YamlMap& root, const std::string& key, const Eigen::AlignedBox3d& bounds) {
     if (!root.has(key)) root.fail(key, "missing");
@@ -119,7 +122,7 @@ void addFlight(KeyTable& keys, Config& c) {
     keys.count({"seed", "", "of all random numbers"}, c.seed, {1., 4294967295.});
     keys.beginSection("robot");
     keys.number({"radius", "m", "of the sphere that must stay free"}, c.robotRadius,
-                {0., kInfinity});
+                {0., kFarthest});
     keys.number(
         {"clearance_resolution", "m", "cells that a scene is sampled into to measure clearance"},
         c.clearanceResolution, {1e-3, 10.});
@@ -146,7 +149,7 @@ void addCamera(KeyTable& keys, Config& c) {
         c.photometric.sigma, {kTiny, 1.});
     keys.number({"information_scale", "",
                  "factor on the information: neighbouring pixels are not independent"},
-                c.photometric.scale, {0., kInfinity});
+                c.photometric.scale, {0., kLargest});
     keys.count({"stride", "pixels", "use every n-th row and column"}, c.photometric.stride,
                {1., 64.});
 }
@@ -164,9 +167,9 @@ void addNoise(KeyTable& keys, Config& c) {
                  "contrast of a corner; for `feature_reprojection` and `feature_count`"},
                 c.viewModel.features.threshold, {1. / 255., 1.});
     keys.number({"pixel_sigma", "pixels", "standard deviation of a tracked corner"},
-                c.viewModel.features.pixelSigma, {kTiny, kInfinity});
+                c.viewModel.features.pixelSigma, {kTiny, kLargest});
     keys.number({"reference_count", "corners", "that halve the penalty of a view"},
-                c.viewModel.features.referenceCount, {kTiny, kInfinity});
+                c.viewModel.features.referenceCount, {kTiny, kLargest});
 }
 
 /// What the planner optimises.
@@ -179,27 +182,26 @@ void addObjective(KeyTable& keys, Config& c) {
                 {0., 1.});
     keys.number(
         {"kappa", "1/m", "metres of detour that 1 m of flight at tr(Sigma) = 1 m^2 is worth"},
-        c.belief.kappa, {0., kInfinity});
-    keys.number({"ds", "m", "longest distance flown between views"}, c.belief.ds,
-                {1e-3, kInfinity});
+        c.belief.kappa, {0., kLargest});
+    keys.number({"ds", "m", "longest distance flown between views"}, c.belief.ds, {1e-3, kLargest});
     keys.flag({"view_at_start", "", "plans count the view from the start, which a flight takes"},
               c.belief.viewAtStart);
     keys.choice({"cost", "", "by the metre flown, or per vertex (the paper's)"}, c.belief.cost,
                 {"integral", "per_vertex"});
     keys.number({"characteristic_length", "m", "weighs rad^2 against m^2 in the trace"},
-                c.belief.characteristicLength, {0., kInfinity});
+                c.belief.characteristicLength, {0., kFarthest});
     keys.number({"rotation_weight", "m/rad",
                  "turning by 1 rad costs as much as flying so many metres "
                  "([with a heading](planner.md#with-a-heading))"},
-                c.rotationWeight, {0., kInfinity});
+                c.rotationWeight, {0., kLargest});
     keys.number(
         {"penalty_kappa", "", "replaces `planner.kappa` for `feature_count` and `map_uncertainty`"},
-        c.viewModel.kappa, {0., kInfinity});
+        c.viewModel.kappa, {0., kLargest});
     keys.number({"map_prior_sigma", "",
                  "standard deviation of log depth before the first view (`map_uncertainty`)"},
-                c.viewModel.mapPriorSigma, {0., kInfinity});
+                c.viewModel.mapPriorSigma, {0., kLargest});
     keys.number({"view_pitch", "m", "edge of a cell of the grid of views, see below"},
-                c.field.positionPitch, {kTiny, kInfinity});
+                c.field.positionPitch, {kTiny, kFarthest});
     keys.number({"view_rotation_pitch", "rad", "the same of its rotations"}, c.field.rotationPitch,
                 {kTiny, 3.2});
 }
@@ -215,11 +217,11 @@ void addSearch(KeyTable& keys, Config& c) {
     keys.count({"shortcut", "", "changes tried by the descent; 0: none (`belief_rrt_star`)"},
                c.search.shortcut, {0., 1e9});
     keys.number({"range", "m", "longest motion added; 0: a fifth of the space's extent"},
-                c.growth.range, {0., kInfinity});
+                c.growth.range, {0., kFarthest});
     keys.number({"goal_bias", "", "share of samples drawn at the goal until it is reached"},
                 c.growth.goalBias, {1e-4, 1.});
     keys.number({"rewire_factor", "", "on the connection radius of RRT*"}, c.growth.rewireFactor,
-                {kTiny, kInfinity});
+                {kTiny, kLargest});
     keys.flag({"compare_with_rrt_star", "", "`plan` also runs RRT*"}, c.compareWithRrtStar);
 }
 
@@ -230,13 +232,8 @@ std::optional<double> mountDegrees(const std::string& mount) {
     if (mount == "down") return 90.;
     if (mount == "front45") return 45.;
     if (mount == "forward") return 0.;
-    try {
-        std::size_t used = 0;
-        const double degrees = std::stod(mount, &used);
-        if (used == mount.size() && degrees >= -90. && degrees <= 90.) return degrees;
-    } catch (const std::exception&) {
-    }
-    return std::nullopt;
+    const std::optional<double> degrees = numberIn(mount);
+    return degrees && std::abs(*degrees) <= 90. ? degrees : std::nullopt;
 }
 
 const std::vector<std::string>& plannerNames() {

@@ -47,12 +47,12 @@ void addKeys(KeyTable& keys, FlyConfig& c) {
     keys.number({"scale", "",
                  "factor on the information of an image; none: `camera.information_scale`, a "
                  "quarter of it with a real camera"},
-                c.scale, {1e-12, kInfinity});
+                c.scale, {1e-12, 1e12});
     keys.number({"sigma_floor", "m",
                  "least standard deviation of an aligned position; none: that of the map's cells"},
-                c.floorTranslation, {0., kInfinity});
+                c.floorTranslation, {0., 1e3});
     keys.number({"sigma_floor_rotation", "rad", "the same of an aligned rotation"}, c.floorRotation,
-                {0., kInfinity});
+                {0., 1e3});
 }
 
 }  // namespace photonav

@@ -146,13 +146,17 @@ void KeyTable::choice(const KeyWords& words, std::string& value,
 }
 
 void KeyTable::variances(const KeyWords& words, Matrix6& value) {
+    constexpr double kLargest = 1e6;  // a kilometre, or any heading at all
     add({.words = words,
-         .allowed = ">= 0",
+         .allowed = textOf({0., kLargest}),
          .read =
              [&value, name = words.name](YamlMap& map) {
                  Vector6 variances = value.diagonal();
                  map.readVector<6>(name, variances);
                  if ((variances.array() < 0.).any()) map.fail(name, "negative variance");
+                 if ((variances.array() > kLargest).any()) {
+                     map.fail(name, fmt::format("variance above {}", kLargest));
+                 }
                  value = variances.asDiagonal();
              },
          .value =

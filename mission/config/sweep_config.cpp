@@ -86,9 +86,9 @@ void readPaper(YamlMap& sweep, std::vector<PaperRow>& rows) {
             if (!map.has(key)) map.fail(key, "missing");
         }
         map.readNumber("alpha", row.alpha, 0., 1.);
-        map.readNumber("length", row.length, 0., kInfinity);
-        map.readNumber("mean_trace", row.meanTrace, 0., kInfinity);
-        map.readNumber("goal_trace", row.goalTrace, 0., kInfinity);
+        map.readNumber("length", row.length, 0., 1e12);
+        map.readNumber("mean_trace", row.meanTrace, 0., 1e12);
+        map.readNumber("goal_trace", row.goalTrace, 0., 1e12);
         map.finish();
     }
 }
@@ -127,7 +127,7 @@ void addKeys(KeyTable& keys, SweepConfig& c) {
               .read = [&c](YamlMap& map) { readPaper(map, c.paper); },
               .value = [&c] { return nodeOf(c.paper); }});
     keys.number({"paper_trace_unit", "m^2 + rad^2", "value of a printed trace of 1"},
-                c.paperTraceUnit, {1e-12, kInfinity});
+                c.paperTraceUnit, {1e-12, 1e12});
 }
 
 std::vector<double> parseAlphas(const std::string& text) {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "geometry/constants.hpp"
+#include "io/number.hpp"
 #include "problem/planning_problem.hpp"
 
 namespace photonav {
@@ -98,7 +99,7 @@ class Session {
                      kNone,
                      ours.vertices(),
                      ours.model().field().views(),
-                     std::stod(properties.at("time REAL")),
+                     toNumber(properties.at("time REAL")),
                      plan_.reasonForNoPath(ours.vertices(), ours.iterations()),
                      {}};
         properties["seed INTEGER"] = std::to_string(run.item.seed);
@@ -138,8 +139,8 @@ class Session {
             BenchmarkCurve& curve = curves.emplace_back();
             curve.planner = item(i).planner;
             for (const auto& sample : planner.runsProgressData.at(i % config_.sweep.runs)) {
-                curve.seconds.push_back(std::stod(sample.at("time REAL")));
-                curve.cost.push_back(std::stod(sample.at("best cost REAL")));
+                curve.seconds.push_back(toNumber(sample.at("time REAL")));
+                curve.cost.push_back(toNumber(sample.at("best cost REAL")));
             }
         }
         return curves;

@@ -12,6 +12,7 @@
 #include "geometry/se3.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "io/number.hpp"
 #include "space/flight_space.hpp"
 
 namespace photonav {
@@ -67,24 +68,24 @@ void ReferenceTable::read() {
     notes_.clear();
     if (!fs::exists(file_)) return;
     notes_ = readCsv(file_, kColumns, 9, [&](const std::vector<std::string>& f) {
-        const double alpha = std::stod(f[0]);
+        const double alpha = toNumber(f[0]);
         rows_[keyOf(alpha)] = {.alpha = alpha,
-                               .cost = std::stod(f[1]),
-                               .length = std::stod(f[2]),
-                               .meanTrace = std::stod(f[3]),
-                               .goalTrace = std::stod(f[4]),
+                               .cost = toNumber(f[1]),
+                               .length = toNumber(f[2]),
+                               .meanTrace = toNumber(f[3]),
+                               .goalTrace = toNumber(f[4]),
                                .planner = f[5],
-                               .vertices = static_cast<unsigned>(std::stoul(f[6])),
-                               .labels = static_cast<unsigned>(std::stoul(f[7])),
-                               .seed = static_cast<std::uint32_t>(std::stoul(f[8])),
+                               .vertices = toNumber<unsigned>(f[6]),
+                               .labels = toNumber<unsigned>(f[7]),
+                               .seed = toNumber<std::uint32_t>(f[8]),
                                .waypoints = {}};
     });
     readCsv(pathsFile(), kPathColumns, 5, [&](const std::vector<std::string>& f) {
         Pose T_w_b = Pose::Identity();
-        T_w_b.translation() << std::stod(f[1]), std::stod(f[2]), std::stod(f[3]);
+        T_w_b.translation() << toNumber(f[1]), toNumber(f[2]), toNumber(f[3]);
         T_w_b.linear() =
-            Eigen::AngleAxisd(std::stod(f[4]), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-        rows_.at(keyOf(std::stod(f[0]))).waypoints.push_back(T_w_b);
+            Eigen::AngleAxisd(toNumber(f[4]), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+        rows_.at(keyOf(toNumber(f[0]))).waypoints.push_back(T_w_b);
     });
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -179,12 +181,14 @@ bool PointCloudFile::readRow(std::istream& stream, const Element& element,
     if (encoding_ == Encoding::ascii) {
         std::string line;
         if (!std::getline(stream, line)) return false;
-        const char* at = line.c_str();
+        const char* at = line.data();
+        const char* const end = at + line.size();
         for (double& value : row) {
-            char* end = nullptr;
-            value = std::strtod(at, &end);  // reads "nan", which streams do not
-            if (end == at) fail("not a point: '" + line.substr(0, 60) + "'");
-            at = end;
+            at = std::find_if_not(at, end, [](unsigned char c) { return std::isspace(c) != 0; });
+            if (at != end && *at == '+') ++at;
+            const auto [next, error] = std::from_chars(at, end, value);  // reads "nan" as well
+            if (error != std::errc{}) fail("not a point: '" + line.substr(0, 60) + "'");
+            at = next;
         }
         return true;
     }
