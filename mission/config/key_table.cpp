@@ -146,7 +146,7 @@ void KeyTable::choice(const KeyWords& words, std::string& value,
 }
 
 void KeyTable::variances(const KeyWords& words, Matrix6& value) {
-    constexpr double kLargest = 1e6;  // a kilometre, or any heading at all
+    static constexpr double kLargest = 1e6;  // a kilometre, or any heading at all
     add({.words = words,
          .allowed = textOf({0., kLargest}),
          .read =

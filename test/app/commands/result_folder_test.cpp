@@ -49,7 +49,8 @@ TEST(ResultFolder, ACommandRefusesAFolderOfSomeoneElse) {
     const auto run = photonav("plan " PHOTONAV_SOURCE_DIR "/config/two_textures.yaml --out " +
                               (folder.path() / "mine").string());
     EXPECT_EQ(run.exitCode, 2);
-    EXPECT_NE(run.output.find("mine/trace.png: is not as an earlier result wrote it"), std::string::npos)
+    EXPECT_NE(run.output.find("mine/trace.png: is not as an earlier result wrote it"),
+              std::string::npos)
         << run.output;
     EXPECT_EQ(test::contentOf(folder.path() / "mine/trace.png"), "mine");
 }

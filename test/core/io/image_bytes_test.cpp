@@ -50,7 +50,8 @@ TEST(ImageBytes, SizesAreReadFromHeaders) {
         EXPECT_EQ(size->width, 50U) << extension;
         EXPECT_EQ(size->height, 40U) << extension;
     }
-    EXPECT_FALSE(declaredSize(std::span(encoded(".png")).first(20)));
+    const auto png = encoded(".png");
+    EXPECT_FALSE(declaredSize(std::span(png).first(20)));
     EXPECT_FALSE(declaredSize({}));
 }
 
