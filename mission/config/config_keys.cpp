@@ -183,7 +183,8 @@ void addObjective(KeyTable& keys, Config& c) {
     keys.number(
         {"kappa", "1/m", "metres of detour that 1 m of flight at tr(Sigma) = 1 m^2 is worth"},
         c.belief.kappa, {0., kLargest});
-    keys.number({"ds", "m", "longest distance flown between views"}, c.belief.ds, {1e-3, kLargest});
+    keys.number({"ds", "m", "longest distance flown between views"}, c.belief.ds,
+                {1e-3, kFarthest});
     keys.flag({"view_at_start", "", "plans count the view from the start, which a flight takes"},
               c.belief.viewAtStart);
     keys.choice({"cost", "", "by the metre flown, or per vertex (the paper's)"}, c.belief.cost,

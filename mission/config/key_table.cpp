@@ -18,7 +18,7 @@ std::string textOf(Range range) {
     if (range.min == 0. && std::isinf(range.max)) return ">= 0";
     if (std::isinf(range.min)) return "";
     if (std::isinf(range.max)) return fmt::format(">= {}", range.min);
-    return fmt::format("{} to {}", range.min, range.max);
+    return fmt::format("{} to {}", numberText(range.min), numberText(range.max));
 }
 
 /// For a cell of a Markdown table.
@@ -155,7 +155,7 @@ void KeyTable::variances(const KeyWords& words, Matrix6& value) {
                  map.readVector<6>(name, variances);
                  if ((variances.array() < 0.).any()) map.fail(name, "negative variance");
                  if ((variances.array() > kLargest).any()) {
-                     map.fail(name, fmt::format("variance above {}", kLargest));
+                     map.fail(name, fmt::format("variance above {}", numberText(kLargest)));
                  }
                  value = variances.asDiagonal();
              },

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <numeric>
 
+#include "io/number.hpp"
+
 namespace photonav {
 namespace {
 
@@ -78,11 +80,16 @@ void YamlMap::readNumbers(const std::string& key, std::vector<double>& value, st
     }
 }
 
+std::string numberText(double value) {
+    const std::string text = fmt::format("{:g}", value);
+    return numberIn(text) == value ? text : fmt::format("{}", value);
+}
+
 void YamlMap::readNumber(const std::string& key, double& value, double least, double most) {
     read(key, value);
     if (!(value >= least && value <= most)) {
-        fail(key, std::isfinite(most) ? fmt::format("{} is outside [{}, {}]", value, least, most)
-                                      : fmt::format("{} is below {}", value, least));
+        fail(key,
+             fmt::format("{} is outside [{}, {}]", value, numberText(least), numberText(most)));
     }
     if (!std::isfinite(value)) fail(key, "not a finite number");
 }

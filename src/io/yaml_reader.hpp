@@ -18,6 +18,9 @@ namespace photonav {
 /// The candidate closest to `word` by edit distance, or "" when none is near.
 std::string nearestWord(std::string_view word, const std::vector<std::string>& candidates);
 
+/// The shortest text of a number: "1e+12", not twelve zeros.
+std::string numberText(double value);
+
 /// Loads a YAML file. @throws InputError when it is missing or does not parse.
 YAML::Node loadYaml(const std::string& file);
 

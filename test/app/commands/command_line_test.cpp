@@ -107,16 +107,12 @@ TEST_F(CommandLine, RrtStarRendersNoViewWhilePlanning) {
 }
 
 TEST_F(CommandLine, NoPathIsExitCodeOneWithResults) {
-    fs::create_directories(folder_);
-    std::ofstream(folder_ / ".photonav") << "";
-    std::ofstream(folder_ / "tree_evolution.png") << "of an earlier run";
     const Execution run = plan("--set planner.vertices=2");  // the goal is not among the first two
     EXPECT_EQ(run.exitCode, 1) << run.output;
     EXPECT_EQ(result()["status"], "no path");
     EXPECT_TRUE(result()["path"].empty());
     EXPECT_TRUE(fs::exists(folder_ / "report.html"));
     EXPECT_FALSE(fs::exists(folder_ / "information.png"));  // nothing to look for
-    EXPECT_FALSE(fs::exists(folder_ / "tree_evolution.png"));
 }
 
 /// A map of a small recording, and a config for planning in it.

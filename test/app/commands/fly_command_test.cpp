@@ -155,10 +155,11 @@ TEST_F(FlyCommand, TheConfigOfAFlownPlanFliesThatPlan) {
 
 TEST_F(FlyCommand, WhatWasNeverFlownHasNoErrors) {
     // Interrupted as soon as the folder is there: long before a flight has ended.
-    const Execution run = execute(fmt::format(
-        "{{ {} fly {} {} --flights 1000 --quiet --out {} & until [ -d {} ]; do sleep 0.02; done;"
-        " kill -INT $!; wait $!; }}",
-        PHOTONAV_BINARY, config("two_textures"), kQuickFlight, at("out"), at("out")));
+    const Execution run = execute(
+        fmt::format("{{ {} fly {} {} --flights 1000 --quiet --out {} & until [ -d {}.unfinished ]; "
+                    "do sleep 0.02; done;"
+                    " kill -INT $!; wait $!; }}",
+                    PHOTONAV_BINARY, config("two_textures"), kQuickFlight, at("out"), at("out")));
     EXPECT_EQ(run.exitCode, 130) << run.output;
     const json r = result("out");
     EXPECT_EQ(r["status"], "interrupted");
@@ -206,8 +207,8 @@ TEST_F(FlyCommand, RejectsBadInput) {
     };
     expect(fly("x", "--blackout 3"), "--blackout: expected 2 numbers, found 1");
     expect(fly("x", "--flights 0"), "--flights");
-    expect(fly("x", "--scale 0"), "--scale: 0 is below 1e-12");
-    expect(fly("x", "--sigma-floor -1"), "--sigma-floor: -1 is below 0");
+    expect(fly("x", "--scale 0"), "--scale: 0 is outside [1e-12, 1e+12]");
+    expect(fly("x", "--sigma-floor -1"), "--sigma-floor: -1 is outside [0, 1000]");
     expect(fly("x", "--record /proc/x"), "/proc/x: cannot be made");
     fs::create_directories(folder_ / "old" / "rgb");
     fs::create_directories(folder_ / "x");

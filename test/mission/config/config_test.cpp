@@ -171,9 +171,9 @@ TEST(Config, ComplaintsNameKeyAndReason) {
     expectComplaint("planner.information=sift", "planner.information", "feature_count");
     expectComplaint("features.threshold=2", "features.threshold", "outside");
     expectComplaint("features.treshold=0.1", "features.treshold", "did you mean 'threshold'");
-    expectComplaint("planner.penalty_kappa=-1", "planner.penalty_kappa", "below");
+    expectComplaint("planner.penalty_kappa=-1", "planner.penalty_kappa", "outside");
     expectComplaint("planner.vertices=2.5", "planner.vertices", "whole number");
-    expectComplaint("planner.ds=0", "planner.ds", "below");
+    expectComplaint("planner.ds=0", "planner.ds", "outside");
     expectComplaint("noise.initial=[-1, 0, 0, 0, 0, 0]", "noise.initial", "negative variance");
     expectComplaint("noise.motion=[1, 0, 0]", "noise.motion", "6 numbers, found 3");
     expectComplaint("noise.motion=[.nan, 0, 0, 0, 0, 0]", "noise.motion", "finite");
