@@ -66,7 +66,8 @@ bool checkDepths(const MapOptions& options, const Sequence& sequence, const View
 
 Recording openForMap(const MapOptions& options) {
     checkOptions(options);
-    RecordingOptions asked = options;
+    const RecordingOptions& given = options;
+    RecordingOptions asked = given;
     asked.needsDepth = options.depth == "recorded";
     return readRecording(asked);
 }

@@ -44,7 +44,8 @@ void checkOptions(const ReplayOptions& options) {
 }
 
 Recording openRecording(const ReplayOptions& options) {
-    RecordingOptions asked = options;
+    const RecordingOptions& given = options;
+    RecordingOptions asked = given;
     asked.forgiving = true;
     asked.needsDepth = options.odometry;
     Recording recording = readRecording(asked);

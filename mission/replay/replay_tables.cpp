@@ -23,7 +23,7 @@ const char* nameOf(FrameStatus status) {
 }
 
 /// Quoted: file names and verdicts may have commas.
-std::string quoted(const std::string& text) {
+std::string csvField(const std::string& text) {
     std::string result = "\"";
     for (const char c : text) result += c == '"' ? "\"\"" : std::string(1, c);
     return result + "\"";
@@ -50,7 +50,7 @@ std::string row(const ReplayedFrame& frame, const JudgedFrame* judged) {
     } else {
         line += ",,,,,";
     }
-    return line + "," + quoted(frame.words) + "\n";
+    return line + "," + csvField(frame.words) + "\n";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "geometry/camera.hpp"
@@ -18,7 +19,7 @@ struct View {
 
 /// The 8-bit level of a grey value in [0, 1], as cameras and image files hold it: the nearest one.
 inline std::uint8_t greyLevel(float grey) {
-    return static_cast<std::uint8_t>(255.F * std::clamp(grey, 0.F, 1.F) + 0.5F);
+    return static_cast<std::uint8_t>(std::lrint(255.F * std::clamp(grey, 0.F, 1.F)));
 }
 
 /// A model of the world from which views can be rendered. Implementations: MeshRenderer,

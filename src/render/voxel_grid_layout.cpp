@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Array3i;
 
-constexpr double kMaxCells = 2147483647.;
+constexpr double kMaxGridCells = 2147483647.;
 
 /// Extends the box by the leaves below a node; skips nodes that cannot extend it.
 void extendBox(const TexturedOcTree& map, const TexturedOcTreeNode& node, const Array3i& lowest,
@@ -43,7 +43,7 @@ double cellsIn(const CellBox& box) { return (box.high - box.low).cast<double>().
 /// The space to allocate for a box: a quarter larger on those sides where `held` was too small.
 CellBox roomFor(const CellBox& box, const CellBox& held) {
     CellBox room = wholeBricks(box);
-    if (cellsIn(room) > kMaxCells) {
+    if (cellsIn(room) > kMaxGridCells) {
         const Array3i size = box.high - box.low;
         throw std::invalid_argument(
             fmt::format("voxel view: the map's bounding box has {} x {} x {} "
@@ -55,7 +55,7 @@ CellBox roomFor(const CellBox& box, const CellBox& held) {
     const Array3i spare = ((box.high - box.low) / 4).max(8);
     const CellBox more = wholeBricks({(box.low < held.low).select(box.low - spare, held.low),
                                       (box.high > held.high).select(box.high + spare, held.high)});
-    return cellsIn(more) > kMaxCells ? room : more;
+    return cellsIn(more) > kMaxGridCells ? room : more;
 }
 
 /// Copies the rows of a dense array into one of another layout.
