@@ -263,7 +263,7 @@ TEST_P(EveryPlanner, ProgressCanBeReadFromAnotherThread) {
     grow(*planner, treeOf(200));
     isDone = true;
     reader.join();
-    EXPECT_GT(planner->vertices(), 100U);
+    EXPECT_GE(planner->vertices(), treeOf(200));
 }
 
 TEST_P(EveryPlanner, AnUnreachableGoalIsAStatusNotAnException) {
