@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <set>
 #include <stdexcept>
 
@@ -106,9 +107,12 @@ void runItems(const Config& config, const World& world, const std::vector<SweepI
               const std::function<void(const SweepRun&)>& onRun) {
     using tbb::filter_mode;
     std::size_t next = 0;
+    std::exception_ptr
+        failure;  // of onRun; kept, as TBB loses the runs that wait when it is thrown
+    std::atomic<bool> hasFailed{false};
     const auto take = tbb::make_filter<void, std::size_t>(
         filter_mode::serial_in_order, [&](tbb::flow_control& control) -> std::size_t {
-            if (next < items.size() && !interrupted) return next++;
+            if (next < items.size() && !interrupted && !hasFailed) return next++;
             control.stop();
             return next;
         });
@@ -117,10 +121,17 @@ void runItems(const Config& config, const World& world, const std::vector<SweepI
         [&](std::size_t i) { return runItem(config, world, items[i], interrupted); });
     const auto report = tbb::make_filter<std::optional<SweepRun>, void>(
         filter_mode::serial_out_of_order, [&](const std::optional<SweepRun>& done) {
-            if (done) onRun(*done);
+            if (!done || hasFailed) return;
+            try {
+                onRun(*done);
+            } catch (...) {
+                failure = std::current_exception();
+                hasFailed = true;
+            }
         });
     tbb::task_arena threads(static_cast<int>(jobs));
     threads.execute([&] { tbb::parallel_pipeline(jobs, take & run & report); });
+    if (failure) std::rethrow_exception(failure);
 }
 
 json toJson(const SweepRun& run) {

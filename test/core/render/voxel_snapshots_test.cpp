@@ -143,10 +143,10 @@ TEST(VoxelSnapshots, NeverChangeWhileTheyAreHeld) {
         T_c_w = randomPose(random);
     } while (viewOf(*snapshots.current(), T_c_w).depth.getMaxValue() == 0.F);
     std::vector<std::shared_ptr<const VoxelRenderer>> held;
-    std::vector<View> views;
+    std::vector<std::shared_ptr<const View>> views;
     for (int step = 0; step < 20; ++step) {
         held.push_back(snapshots.current());
-        views.push_back(viewOf(*held.back(), T_c_w));
+        views.push_back(std::make_shared<View>(viewOf(*held.back(), T_c_w)));
         for (int i = 0; i < 4; ++i) edit(edited, random, 12 + step);
         snapshots.update(edited.map, edited.takeChange());
         if (step % 4 == 3) {  // some are given back and used again
@@ -154,10 +154,10 @@ TEST(VoxelSnapshots, NeverChangeWhileTheyAreHeld) {
             views.erase(views.begin() + 1);
         }
         for (std::size_t i = 0; i < held.size(); ++i) {
-            ASSERT_TRUE(areEqual(viewOf(*held[i], T_c_w), views[i])) << step << ' ' << i;
+            ASSERT_TRUE(areEqual(viewOf(*held[i], T_c_w), *views[i])) << step << ' ' << i;
         }
     }
-    EXPECT_FALSE(areEqual(views.front(), views.back()));
+    EXPECT_FALSE(areEqual(*views.front(), *views.back()));
     expectEqualViews(*snapshots.current(), VoxelRenderer(edited.map, UnknownPolicy::free), random);
 }
 
