@@ -12,7 +12,6 @@
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "report/plan_report.hpp"
-#include "result/json_values.hpp"
 #include "sweep/sweep_plan.hpp"
 
 namespace photonav {
@@ -214,8 +213,7 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
         if (interrupted) break;
     }
     result["interrupted"] = interrupted.load();
-    writeFileAtomically(folder.path() / "result.json", jsonText(result));
-    folder.commit();
+    commitResult(folder, result);
     if (interrupted) return kInterrupted;
     return anyPath ? kDone : kNoAnswer;
 }

@@ -8,7 +8,6 @@
 #include "commands/result_folder.hpp"
 #include "estimation/calibration.hpp"
 #include "flight/flight_recorder.hpp"
-#include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "mapping/tracking_map.hpp"
@@ -232,8 +231,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     nlohmann::json result = flyResult(config, sets, flight, stopped);
     result["time"]["total_s"] = watch.seconds();
     writeFlyReport(folder.path(), config, world, sets, options.commandLine, result);
-    writeFileAtomically(folder.path() / "result.json", jsonText(result));
-    folder.commit();
+    commitResult(folder, result);
 
     if (options.json)
         fmt::print("{}", jsonText(result));

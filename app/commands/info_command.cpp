@@ -8,7 +8,6 @@
 #include "commands/result_folder.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
-#include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "recording/image_file.hpp"
@@ -200,8 +199,7 @@ int runInfo(const InfoOptions& options) {
     ReportData report = reportOf(options, config, world, place, result);
     writeResultFolder(folder.path(), report, figures);
     result["time"]["total_s"] = watch.seconds();
-    writeFileAtomically(folder.path() / "result.json", jsonText(result));
-    folder.commit();
+    commitResult(folder, result);
     if (options.json) {
         fmt::print("{}", jsonText(result));
     } else if (!options.quiet) {

@@ -9,7 +9,6 @@
 
 #include "commands/command_io.hpp"
 #include "commands/result_folder.hpp"
-#include "io/atomic_file.hpp"
 #include "io/stopwatch.hpp"
 #include "map/octree_file.hpp"
 #include "mapping/view_difference.hpp"
@@ -121,8 +120,7 @@ MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& inte
                       : report.result["voxels"]["occupied"] == 0 ? kNoAnswer
                                                                  : kDone;
     writeMapReport(folder.path(), options, report.result, recording, map, run);
-    writeFileAtomically(folder.path() / "result.json", jsonText(report.result));
-    folder.commit();
+    commitResult(folder, report.result);
     return report;
 }
 

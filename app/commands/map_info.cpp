@@ -7,11 +7,9 @@
 #include <cmath>
 
 #include "commands/result_folder.hpp"
-#include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "map/octree_file.hpp"
 #include "report/map_report.hpp"
-#include "result/json_values.hpp"
 
 namespace photonav {
 namespace {
@@ -78,8 +76,7 @@ MapReport runMapInfo(const CommandOptions& options) {
     std::vector<NamedFigure> figures;
     if (report.result["voxels"]["occupied"] > 0) figures.push_back(overview(*map, page.title));
     writeResultFolder(folder.path(), page, figures);
-    writeFileAtomically(folder.path() / "result.json", jsonText(report.result));
-    folder.commit();
+    commitResult(folder, report.result);
     return report;
 }
 

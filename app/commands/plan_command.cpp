@@ -7,7 +7,6 @@
 
 #include "commands/plan_progress.hpp"
 #include "commands/result_folder.hpp"
-#include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "problem/planning_problem.hpp"
@@ -112,8 +111,7 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     writePlanReport(folder.path(), config, world, run, outcome, baseline, recorded, evolutions,
                     options.commandLine, result);
     result["time"]["total_s"] = watch.seconds();
-    writeFileAtomically(folder.path() / "result.json", jsonText(result));
-    folder.commit();
+    commitResult(folder, result);
 
     if (options.json)
         fmt::print("{}", jsonText(result));

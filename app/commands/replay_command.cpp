@@ -110,8 +110,7 @@ ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bo
     writeReplayTables(folder.path(), run, errors);
     writeReplayReport(folder.path(), options, configOf(options, replay), result, replay, run,
                       errors);
-    writeFileAtomically(folder.path() / "result.json", jsonText(result));
-    folder.commit();
+    commitResult(folder, result);
     return report;
 }
 

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "result/json_values.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -37,6 +39,11 @@ FolderTransaction beginResult(const CommandOptions& options, const std::string& 
     }
     inputs.emplace_back(options.config);
     return beginResult(folder, inputs);
+}
+
+void commitResult(FolderTransaction& folder, const nlohmann::json& result) {
+    writeFileAtomically(folder.path() / "result.json", jsonText(result));
+    folder.commit();
 }
 
 }  // namespace photonav

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -24,5 +25,8 @@ FolderTransaction beginResult(
 /// @param inputs besides the config
 FolderTransaction beginResult(const CommandOptions& options, const std::string& command,
                               InputPaths inputs = {});
+
+/// Writes result.json, the last file of a result, and commits the folder.
+void commitResult(FolderTransaction& folder, const nlohmann::json& result);
 
 }  // namespace photonav

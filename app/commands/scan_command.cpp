@@ -6,13 +6,11 @@
 
 #include "commands/command_io.hpp"
 #include "commands/result_folder.hpp"
-#include "io/atomic_file.hpp"
 #include "io/stopwatch.hpp"
 #include "map/octree_file.hpp"
 #include "mapping/map_config.hpp"
 #include "mapping/scan_map.hpp"
 #include "report/map_report.hpp"
-#include "result/json_values.hpp"
 
 namespace photonav {
 namespace {
@@ -97,8 +95,7 @@ MapReport runScanMap(const ScanCommandOptions& options, const std::atomic<bool>&
     const long peak = peakMegabytes();  // all work is done, the report is written
     report.result["peak_memory_mb"] = peak;
     report.summary.rows.emplace_back("peak memory", fmt::format("{} MB", peak));
-    writeFileAtomically(folder.path() / "result.json", jsonText(report.result));
-    folder.commit();
+    commitResult(folder, report.result);
     return report;
 }
 

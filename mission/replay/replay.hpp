@@ -29,8 +29,8 @@ class Replay {
     /// Of all depths in a few images spread over the recording [m]; nothing when there are none.
     const std::optional<double>& medianDepth() const { return medianDepth_; }
 
-    /// Tracks the recording from its first image on. Odometry is laid on the true pose where it
-    /// begins.
+    /// Tracks the recording from its first image on. The path of odometry is moved so that its
+    /// first pose is the true one.
     /// @param isStopped asked before every frame; the run ends with the frames that were tracked
     /// @param progress called after every frame with the number done
     /// @throws InputError when none of the first ten frames can be loaded, with the reason of the

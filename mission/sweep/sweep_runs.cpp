@@ -2,12 +2,13 @@
 #include "sweep/sweep_runs.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_pipeline.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
+#include <mutex>
 #include <set>
 #include <stdexcept>
 
@@ -105,33 +106,20 @@ std::optional<SweepRun> runItem(const Config& config, const World& world, const 
 void runItems(const Config& config, const World& world, const std::vector<SweepItem>& items,
               unsigned jobs, const std::atomic<bool>& interrupted,
               const std::function<void(const SweepRun&)>& onRun) {
-    using tbb::filter_mode;
-    std::size_t next = 0;
-    std::exception_ptr
-        failure;  // of onRun; kept, as TBB loses the runs that wait when it is thrown
-    std::atomic<bool> hasFailed{false};
-    const auto take = tbb::make_filter<void, std::size_t>(
-        filter_mode::serial_in_order, [&](tbb::flow_control& control) -> std::size_t {
-            if (next < items.size() && !interrupted && !hasFailed) return next++;
-            control.stop();
-            return next;
-        });
-    const auto run = tbb::make_filter<std::size_t, std::optional<SweepRun>>(
-        filter_mode::parallel,
-        [&](std::size_t i) { return runItem(config, world, items[i], interrupted); });
-    const auto report = tbb::make_filter<std::optional<SweepRun>, void>(
-        filter_mode::serial_out_of_order, [&](const std::optional<SweepRun>& done) {
-            if (!done || hasFailed) return;
-            try {
-                onRun(*done);
-            } catch (...) {
-                failure = std::current_exception();
-                hasFailed = true;
-            }
-        });
+    std::atomic<std::size_t> next{0};  // in the order of the items, however many threads there are
+    std::mutex mutex;                  // of onRun
+    const auto work = [&](unsigned) {
+        while (!interrupted && !tbb::is_current_task_group_canceling()) {
+            const std::size_t i = next++;
+            if (i >= items.size()) return;
+            const auto run = runItem(config, world, items[i], interrupted);
+            if (!run) return;
+            const std::lock_guard lock(mutex);
+            onRun(*run);
+        }
+    };
     tbb::task_arena threads(static_cast<int>(jobs));
-    threads.execute([&] { tbb::parallel_pipeline(jobs, take & run & report); });
-    if (failure) std::rethrow_exception(failure);
+    threads.execute([&] { tbb::parallel_for(0U, jobs, 1U, work, tbb::simple_partitioner{}); });
 }
 
 json toJson(const SweepRun& run) {

@@ -150,10 +150,14 @@ std::string Manifest::text() const {
     return text;
 }
 
+std::vector<Manifest::File>::const_iterator Manifest::placeOf(const fs::path& name) const {
+    return std::lower_bound(files_.begin(), files_.end(), name,
+                            [](const File& file, const fs::path& n) { return file.name < n; });
+}
+
 std::optional<fs::path> Manifest::foreignFile(const fs::path& folder) const {
     for (const fs::path& name : namesIn(folder)) {
-        const auto listed = std::find_if(files_.begin(), files_.end(),
-                                         [&](const File& file) { return file.name == name; });
+        const auto listed = placeOf(name);
         if (listed == files_.end() || *listed != describe(folder, name)) return name;
     }
     return {};
@@ -161,10 +165,9 @@ std::optional<fs::path> Manifest::foreignFile(const fs::path& folder) const {
 
 void Manifest::renew(const fs::path& folder, const fs::path& name) {
     Manifest manifest = read(folder);
-    const auto place =
-        std::lower_bound(manifest.files_.begin(), manifest.files_.end(), name,
-                         [](const File& file, const fs::path& n) { return file.name < n; });
     if (manifest.empty()) return;
+    const auto place =
+        manifest.files_.begin() + (manifest.placeOf(name) - manifest.files_.cbegin());
     if (place != manifest.files_.end() && place->name == name) {
         *place = describe(folder, name);
     } else {

@@ -41,6 +41,8 @@ class Manifest {
         std::uint32_t checksum;      // CRC-32
         bool operator==(const File&) const = default;
     };
+    /// Of the first file with this name or a later one.
+    std::vector<File>::const_iterator placeOf(const std::filesystem::path& name) const;
     static File describe(const std::filesystem::path& folder, const std::filesystem::path& name);
 
     std::vector<File> files_;  // sorted by name

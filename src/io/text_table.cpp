@@ -3,25 +3,21 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 
 #include "io/error.hpp"
+#include "io/number.hpp"
 
 namespace photonav {
 
 double TextRow::number(std::size_t column) const {
     const std::string& field = fields_[column];
-    double value = 0.;
-    const char* first = field.data() + (field.starts_with('+') ? 1 : 0);
-    const auto [end, error] = std::from_chars(first, field.data() + field.size(), value);
-    if (error != std::errc() || end != field.data() + field.size()) {
-        fail(fmt::format("'{}' is not a number", field));
-    }
-    if (!std::isfinite(value)) fail(fmt::format("'{}' is not a finite number", field));
-    return value;
+    const std::optional<double> value = numberIn(field);
+    if (!value) fail(fmt::format("'{}' is not a number", field));
+    if (!std::isfinite(*value)) fail(fmt::format("'{}' is not a finite number", field));
+    return *value;
 }
 
 InputError TextRow::error(const std::string& reason) const {

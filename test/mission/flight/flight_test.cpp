@@ -175,8 +175,8 @@ TEST_F(Flight, IsFoundAgainWhereTheEstimateIsWrong) {
               0.05);
 }
 
-/// The plan turns where a carpet comes into view. Who is half a metre beside it sees it not, knows
-/// that from the belief, and looks for it around.
+/// The plan turns where a carpet comes into view. A robot half a metre beside that place does not
+/// see the carpet. Its belief is wide enough to tell, and the pilot searches around the place.
 TEST_F(Flight, LooksAroundForAViewThatItMissed) {
     Scene scene;
     addPlane(scene, {-10., -10., 0.}, {20., 0., 0.}, {0., 20., 0.},
