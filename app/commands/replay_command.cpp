@@ -88,7 +88,7 @@ ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bo
                                          if (options.progress)
                                              options.progress(done, sequence.frames.size());
                                      });
-    const ReplayErrors errors = judge(run);
+    const ReplayErrors errors = evaluate(run);
 
     ReplayReport report;
     report.exitCode = run.interrupted ? kInterrupted : isLostForGood(run) ? kNoAnswer : kDone;

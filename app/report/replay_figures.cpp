@@ -35,7 +35,7 @@ Curves curvesOf(const ReplayRun& run, const ReplayErrors& errors) {
         c.positionSigma.emplace_back(t, std::sqrt(variance.head<3>().sum()));
         c.rotationSigma.emplace_back(t, std::sqrt(variance.tail<3>().sum()) / kDegree);
     }
-    for (const JudgedFrame& frame : errors.judged) {
+    for (const EvaluatedFrame& frame : errors.frames) {
         const double t = frame.pair.timestamp - start;
         c.positionError.emplace_back(t, frame.positionError);
         c.rotationError.emplace_back(t, frame.rotationError / kDegree);

@@ -103,12 +103,13 @@ std::vector<NamedFigure> figuresOf(const ReplayRun& run, const ReplayErrors& err
                                    const std::vector<DrawnPath>& paths, const std::string& name) {
     std::vector<NamedFigure> figures;
     if (!paths.empty()) {
-        const std::string caption = run.laidOn ? fmt::format(
-                                                     "From above. The estimate is placed at the "
-                                                     "true pose of image {}, not aligned as a "
-                                                     "whole.",
-                                                     *run.laidOn)
-                                               : "From above.";
+        const std::string caption = run.alignedFrame
+                                        ? fmt::format(
+                                              "From above. The estimate is placed at the "
+                                              "true pose of image {}, not aligned as a "
+                                              "whole.",
+                                              *run.alignedFrame)
+                                        : "From above.";
         figures.push_back({"top_view.png", {caption, topView(paths, name)}});
     }
     if (!run.frames.empty()) {
@@ -146,7 +147,7 @@ std::string neesText(const json& result) {
 TableRows errorRows(const json& result) {
     if (result["judged"] == 0) return {{"errors", "not known: no tracked image has a true pose"}};
     const auto& rpe = result["rpe"];
-    const bool isLaidLater = result["laid_on_frame"].is_number() && result["laid_on_frame"] > 0;
+    const bool isLaidLater = result["aligned_frame"].is_number() && result["aligned_frame"] > 0;
     const std::string nees = result["nees_per_dof"].is_number() ? neesText(result)
                              : isLaidLater
                                  ? "not known: the first image has no true pose (--frames)"

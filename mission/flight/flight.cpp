@@ -39,10 +39,10 @@ PilotOptions pilotOptions(const FlightOptions& options) {
 }
 
 /// Compares a flight with the truth as it goes on.
-class Judge {
+class FlightEvaluator {
   public:
-    Judge(const FlightWorld& world, const FlightOptions& options, const PlannedView& goal,
-          const SimulatedRobot& robot)
+    FlightEvaluator(const FlightWorld& world, const FlightOptions& options, const PlannedView& goal,
+                    const SimulatedRobot& robot)
         : world_(world),
           options_(options),
           goal_(goal),
@@ -79,8 +79,8 @@ class Judge {
     FlightResult result_;
 };
 
-void Judge::onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker,
-                   const Pilot& pilot) {
+void FlightEvaluator::onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker,
+                             const Pilot& pilot) {
     const Eigen::Vector3d p_w = robot_.T_w_b().translation();
     result_.way += (p_w - std::exchange(before_w_, p_w)).norm();
     result_.leastClearance = std::min(result_.leastClearance, world_.clearance(p_w));
@@ -103,7 +103,7 @@ void Judge::onStep(const std::vector<TrackedFrame>& tracked, const Tracker& trac
     }
 }
 
-bool Judge::hasEnded(const Tracker& tracker, const Pilot& pilot) {
+bool FlightEvaluator::hasEnded(const Tracker& tracker, const Pilot& pilot) {
     const double time = robot_.time();
     if (result_.leastClearance < options_.bodyRadius) return endAs(FlightEnd::collided);
     if (pilot.hasGivenUp(tracker, time)) return endAs(FlightEnd::lost);
@@ -112,7 +112,7 @@ bool Judge::hasEnded(const Tracker& tracker, const Pilot& pilot) {
     return endAs(goalError() <= options_.arrivalTolerance ? FlightEnd::arrived : FlightEnd::astray);
 }
 
-FlightResult Judge::finish(const Tracker& tracker, FlightEnd end) {
+FlightResult FlightEvaluator::finish(const Tracker& tracker, FlightEnd end) {
     result_.end = end;
     result_.duration = robot_.time();
     result_.lost = tracker.loss().lostTime(robot_.time());
@@ -150,7 +150,7 @@ FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
                          drawStart(start, world.T_b_c, options.seed), world.noise, options.robot,
                          options.seed);
     Tracker tracker(world.map, robot.camera(), start, trackerOptions(world, options));
-    Judge judge(world, options, plan.back(), robot);
+    FlightEvaluator evaluator(world, options, plan.back(), robot);
     BodyVelocity command;
     for (double seconds = 0.;; seconds = options.timeStep) {
         const Observation observation = robot.fly(command, seconds);
@@ -158,10 +158,10 @@ FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
         for (std::size_t i = 0; i < tracked.size(); ++i) {
             pilot.observe(tracker, tracked[i], observation.frames[i].view.intensity);
         }
-        judge.onStep(tracked, tracker, pilot);
+        evaluator.onStep(tracked, tracker, pilot);
         if (onExposure && robot.exposed()) onExposure(*robot.exposed());
-        if (isStopped && isStopped()) return judge.finish(tracker, FlightEnd::stopped);
-        if (judge.hasEnded(tracker, pilot)) return judge.finish(tracker, judge.end());
+        if (isStopped && isStopped()) return evaluator.finish(tracker, FlightEnd::stopped);
+        if (evaluator.hasEnded(tracker, pilot)) return evaluator.finish(tracker, evaluator.end());
         command = pilot.command(tracker, observation.time, options.timeStep);
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plan flown in closed loop by a simulated robot, and judged by the truth.
+// A plan flown in closed loop by a simulated robot, evaluated against the ground truth.
 #pragma once
 
 #include <functional>

@@ -90,8 +90,8 @@ UncertainPose startOf(const ReplayOptions& options, const Sequence& sequence) {
         start.mean = parsePose(options.start).inverse();
         if (options.odometry && sequence.hasPoses()) {
             throw InputError("--start", "",
-                             "not with --odometry of a recording with ground truth: it is laid on "
-                             "that where it begins");
+                             "not with --odometry of a recording with ground truth: it begins at the "
+                             "first true pose");
         }
     } else if (!options.odometry) {
         if (!sequence.frames[0].hasPose) {
@@ -210,7 +210,7 @@ ReplayTracker Replay::makeTracker() const {
 ReplayRun Replay::run(const std::function<bool()>& isStopped,
                       const std::function<void(std::size_t)>& progress) const {
     ReplayRun run = replay(recording_, makeTracker(), isStopped, progress);
-    if (options_.odometry) layOnTruth(run);
+    if (options_.odometry) alignToTruth(run);
     return run;
 }
 

@@ -13,7 +13,7 @@
 namespace photonav {
 
 /// A recording with what it is tracked in, checked and ready to run. What a run amounts to:
-/// judge() in replay_errors.hpp, the rest in replay_result.hpp, replay_tables.hpp and
+/// evaluate() in replay_errors.hpp, the rest in replay_result.hpp, replay_tables.hpp and
 /// replay_calibration.hpp.
 class Replay {
   public:

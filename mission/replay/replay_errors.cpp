@@ -6,10 +6,10 @@
 namespace photonav {
 namespace {
 
-JudgedFrame judgeFrame(const ReplayRun& run, std::size_t i, bool beginsTrue) {
+EvaluatedFrame evaluateFrame(const ReplayRun& run, std::size_t i, bool beginsTrue) {
     const ReplayedFrame& frame = run.frames[i];
     const UncertainPose& belief = frame.tracked.T_c_w;
-    JudgedFrame result;
+    EvaluatedFrame result;
     result.frame = i;
     result.pair = {frame.index, frame.timestamp, belief.mean.inverse(), frame.truth_c_w->inverse()};
     const PoseErrors errors = absoluteErrors({result.pair});
@@ -24,7 +24,7 @@ JudgedFrame judgeFrame(const ReplayRun& run, std::size_t i, bool beginsTrue) {
 
 }  // namespace
 
-ReplayErrors judge(const ReplayRun& run) {
+ReplayErrors evaluate(const ReplayRun& run) {
     ReplayErrors errors;
     const auto first = firstRead(run);
     const bool beginsTrue = !run.odometry || (first != run.frames.end() && first->truth_c_w);
@@ -32,8 +32,8 @@ ReplayErrors judge(const ReplayRun& run) {
     for (std::size_t i = 0; i < run.frames.size(); ++i) {
         const ReplayedFrame& frame = run.frames[i];
         if (frame.status != FrameStatus::tracked || !frame.truth_c_w) continue;
-        errors.judged.push_back(judgeFrame(run, i, beginsTrue));
-        pairs.push_back(errors.judged.back().pair);
+        errors.frames.push_back(evaluateFrame(run, i, beginsTrue));
+        pairs.push_back(errors.frames.back().pair);
     }
     if (pairs.empty()) return errors;
     if (run.odometry) {

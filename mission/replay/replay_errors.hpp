@@ -11,7 +11,7 @@
 namespace photonav {
 
 /// A tracked frame whose true pose is known.
-struct JudgedFrame {
+struct EvaluatedFrame {
     std::size_t frame = 0;  ///< index into ReplayRun::frames
     PosePair pair;
     double positionError = 0.;  ///< distance of the camera centres, not aligned [m]
@@ -23,12 +23,12 @@ struct JudgedFrame {
     std::optional<double> nees;
 };
 
-/// Errors of a run. Odometry is judged after a rigid alignment of its positions to the true ones
+/// Errors of a run. Odometry is evaluated after a rigid alignment of its positions to the true ones
 /// (absolute errors only; relative ones need none, NEES is of the belief as it is).
 struct ReplayErrors {
-    std::vector<JudgedFrame> judged;
+    std::vector<EvaluatedFrame> frames;
     PoseErrors absolute, perFrame, perSecond, perMetre;
 };
-ReplayErrors judge(const ReplayRun& run);
+ReplayErrors evaluate(const ReplayRun& run);
 
 }  // namespace photonav

@@ -39,7 +39,7 @@ json summaryJson(const PoseErrors& errors) {
 
 std::vector<double> neesOf(const ReplayErrors& errors) {
     std::vector<double> all;
-    for (const JudgedFrame& frame : errors.judged) {
+    for (const EvaluatedFrame& frame : errors.frames) {
         if (frame.nees) all.push_back(*frame.nees);
     }
     return all;
@@ -171,7 +171,7 @@ json replayResult(const Sequence& sequence, const ReplayRun& run, const ReplayEr
     const auto lost = count(run, FrameStatus::lost);
     const double looked = tracked > 0 ? double(tracked + lost) : 0.;
     const ErrorSummary absolute = summarise(errors.absolute.translation);
-    const bool judged = !errors.judged.empty();
+    const bool evaluated = !errors.frames.empty();
     const std::vector<double> nees = neesOf(errors);
     const double none = std::numeric_limits<double>::quiet_NaN();
     const auto degenerate = std::count_if(run.frames.begin(), run.frames.end(), [](const auto& f) {
@@ -192,13 +192,13 @@ json replayResult(const Sequence& sequence, const ReplayRun& run, const ReplayEr
             {"keyframes", keyframes.size()},
             {"lost_intervals", intervalsJson(lostIntervals(run))},
             {"gaps", intervalsJson(gaps(sequence))},
-            {"judged", errors.judged.size()},
-            {"laid_on_frame", run.laidOn ? json(*run.laidOn) : json(nullptr)},
-            {"ate_rmse_m", judged ? json(absolute.rmse) : json(nullptr)},
-            {"ate_max_m", judged ? json(absolute.max) : json(nullptr)},
-            {"ate_median_m", judged ? json(absolute.median) : json(nullptr)},
+            {"judged", errors.frames.size()},
+            {"aligned_frame", run.alignedFrame ? json(*run.alignedFrame) : json(nullptr)},
+            {"ate_rmse_m", evaluated ? json(absolute.rmse) : json(nullptr)},
+            {"ate_max_m", evaluated ? json(absolute.max) : json(nullptr)},
+            {"ate_median_m", evaluated ? json(absolute.median) : json(nullptr)},
             {"ate_rotation_rmse_deg",
-             judged ? json(kDegrees * summarise(errors.absolute.rotation).rmse) : json(nullptr)},
+             evaluated ? json(kDegrees * summarise(errors.absolute.rotation).rmse) : json(nullptr)},
             {"ate_alignment", run.odometry ? "SE(3), by the positions" : "none"},
             {"rpe",
              {{"frame", summaryJson(errors.perFrame)},

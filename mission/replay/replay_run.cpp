@@ -147,7 +147,7 @@ std::vector<ReplayedFrame>::const_iterator firstRead(const ReplayRun& run) {
     });
 }
 
-void layOnTruth(ReplayRun& run) {
+void alignToTruth(ReplayRun& run) {
     auto tie = firstRead(run);
     if (tie == run.frames.end()) return;
     if (!tie->truth_c_w) {
@@ -156,7 +156,7 @@ void layOnTruth(ReplayRun& run) {
         });
         if (tie == run.frames.end()) return;
     }
-    run.laidOn = tie->index;
+    run.alignedFrame = tie->index;
     const Pose T_estimate_truth = tie->tracked.T_c_w.mean.inverse() * *tie->truth_c_w;
     for (ReplayedFrame& frame : run.frames) {
         frame.tracked.T_c_w.mean = frame.tracked.T_c_w.mean * T_estimate_truth;

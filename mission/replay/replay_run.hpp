@@ -41,8 +41,8 @@ struct ReplayRun {
     double scale = 1.;      ///< factor on the information of the alignments that was in use
     std::vector<ReplayedFrame> frames;
     std::vector<ReplayStrip> strips;
-    std::optional<std::size_t> laidOn;  ///< frame at which layOnTruth() made estimate and truth one
-    std::string stopped;                ///< why it ended before the last frame; empty: it did not
+    std::optional<std::size_t> alignedFrame;  ///< at which alignToTruth() set the estimate
+    std::string stopped;  ///< why it ended before the last frame; empty: it did not
     bool interrupted = false;
     double loadSeconds = 0.;   ///< images, and depth from stereo
     double trackSeconds = 0.;  ///< everything else
@@ -64,6 +64,6 @@ std::vector<ReplayedFrame>::const_iterator firstRead(const ReplayRun& run);
 
 /// Odometry estimates motions only: moves all of its poses so that they begin at the truth, or,
 /// where the first image has no true pose, agree with it at the first tracked image that has one.
-void layOnTruth(ReplayRun& run);
+void alignToTruth(ReplayRun& run);
 
 }  // namespace photonav

@@ -29,7 +29,7 @@ std::string csvField(const std::string& text) {
     return result + "\"";
 }
 
-std::string row(const ReplayedFrame& frame, const JudgedFrame* judged) {
+std::string row(const ReplayedFrame& frame, const EvaluatedFrame* evaluated) {
     const std::optional<double>& keyframe = frame.tracked.keyframe;
     std::string line =
         fmt::format("{},{:.6f},{},{}", frame.index, frame.timestamp, nameOf(frame.status),
@@ -42,11 +42,11 @@ std::string row(const ReplayedFrame& frame, const JudgedFrame* judged) {
                             a.overlap, a.residual.rms, a.residual.unexplained, a.exposure.gain,
                             a.exposure.offset, 1e3 * frame.seconds);
     }
-    if (judged) {
-        line += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{}", judged->positionError,
-                            judged->rotationError / kDegree, judged->positionSigma,
-                            judged->rotationSigma / kDegree,
-                            judged->nees ? fmt::format("{:.6g}", *judged->nees) : "");
+    if (evaluated) {
+        line += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{}", evaluated->positionError,
+                            evaluated->rotationError / kDegree, evaluated->positionSigma,
+                            evaluated->rotationSigma / kDegree,
+                            evaluated->nees ? fmt::format("{:.6g}", *evaluated->nees) : "");
     } else {
         line += ",,,,,";
     }
@@ -71,12 +71,12 @@ void writeReplayTables(const std::filesystem::path& folder, const ReplayRun& run
         "offset,"
         "time_ms,position_error_m,rotation_error_deg,position_sigma_m,rotation_sigma_deg,"
         "nees_per_dof,verdict\n";
-    auto judged = errors.judged.begin();
+    auto evaluated = errors.frames.begin();
     Trajectory truth;
     for (std::size_t i = 0; i < run.frames.size(); ++i) {
-        const bool isJudged = judged != errors.judged.end() && judged->frame == i;
-        csv += row(run.frames[i], isJudged ? &*judged : nullptr);
-        if (isJudged) ++judged;
+        const bool hasTruth = evaluated != errors.frames.end() && evaluated->frame == i;
+        csv += row(run.frames[i], hasTruth ? &*evaluated : nullptr);
+        if (hasTruth) ++evaluated;
         if (run.frames[i].truth_c_w) {
             truth.push_back({run.frames[i].timestamp, run.frames[i].truth_c_w->inverse()});
         }

@@ -14,9 +14,9 @@ int main(int argc, char** argv) {
     try {
         const photonav::Replay replay(options);
         const photonav::ReplayRun run = replay.run();
-        const photonav::ReplayErrors errors = photonav::judge(run);
+        const photonav::ReplayErrors errors = photonav::evaluate(run);
         std::cout << photonav::verdictOf(run) << '\n';
-        for (const photonav::JudgedFrame& frame : errors.judged) {
+        for (const photonav::EvaluatedFrame& frame : errors.frames) {
             std::cout << frame.pair.timestamp << ": off by " << frame.positionError << " m, sigma "
                       << frame.positionSigma << " m\n";
         }

@@ -17,9 +17,9 @@ struct HoleMargin {
     int rows = 0;
 };
 
-/// Of pixels within three standard deviations of a hole's border nobody knows whether they show the
-/// hole, whose content is unknown: what they differ by says nothing about the pose. No more than an
-/// alignment can converge from, since it begins closer to the right place.
+/// Pixels within three standard deviations of a hole's border may show the hole, whose content is
+/// unknown, so that their difference from the prediction is no evidence about the pose. The margin
+/// is at most the basin of convergence of an alignment.
 /// @param covariance of the camera's pose (camera frame, left)
 /// @param depth mean of the view [m]
 HoleMargin holeMargin(const Matrix6& covariance, const Camera& camera, double depth);

@@ -93,7 +93,7 @@ bool Pilot::isMissed(const UncertainPose& belief) const {
     const PlannedView& waypoint = route_.lastWaypoint();
     const double planned = widestSigma({waypoint.T_w_b, waypoint.covariance});
     const double sigma = widestSigma(belief);
-    return sigma > options_.route.mostTolerance && std::sqrt(2.) * planned < sigma;
+    return sigma > options_.route.maxTolerance && std::sqrt(2.) * planned < sigma;
 }
 
 void Pilot::beginSearch(const Tracker& tracker, double time) {
@@ -111,7 +111,7 @@ void Pilot::continueSearch(const Tracker& tracker, double time) {
     const bool isTooLong = time - *searchSince_ > options_.giveUpTime;
     if (!searched_ || isTooLong || !isMissed(belief)) return endSearch();
     const Eigen::Vector3d p_w = bodyOf(belief.mean).translation();
-    if ((p_w - searched_->translation()).norm() > options_.route.leastTolerance) return;
+    if ((p_w - searched_->translation()).norm() > options_.route.minTolerance) return;
     search_.visited(*searched_);
     searched_ = search_.nearest(belief, route_.lastWaypoint().T_w_b);
 }

@@ -19,8 +19,8 @@ Route::Route(std::vector<PlannedView> plan, const Pose& T_b_c, const RouteOption
 
 bool Route::isReached(const UncertainPose& belief) const {
     const double sigma = std::sqrt(belief.covariance.topLeftCorner<3, 3>().trace());
-    const double tolerance = std::clamp(options_.toleranceSigmas * sigma, options_.leastTolerance,
-                                        options_.mostTolerance);
+    const double tolerance =
+        std::clamp(options_.toleranceSigmas * sigma, options_.minTolerance, options_.maxTolerance);
     const Pose T_w_b = bodyOf(belief.mean);
     const double distance = (T_w_b.translation() - target().T_w_b.translation()).norm();
     // Of the headings: tilt cannot be commanded.

@@ -23,8 +23,8 @@ struct RouteOptions {
     /// A waypoint counts as reached within this many standard deviations of the believed position,
     /// but not below or above these distances [m], and within `yawTolerance` [rad].
     double toleranceSigmas = 1.;
-    double leastTolerance = 0.05;
-    double mostTolerance = 0.2;
+    double minTolerance = 0.05;
+    double maxTolerance = 0.2;
     double yawTolerance = 0.1;
 };
 

@@ -22,8 +22,8 @@ struct LossOptions {
     /// little else supports its pose.
     double maxUnexplainedShare = 0.5;
     /// Without odometry, standard deviations at which a lost belief stops growing [m], [rad].
-    double mostTranslation = 1.;
-    double mostRotation = 0.5;
+    double maxTranslation = 1.;
+    double maxRotation = 0.5;
 };
 
 /// Whether an alignment leaves no direction wide that the loss has widened. An image of a surface

@@ -226,8 +226,8 @@ void Tracker::miss(const View& view, const Pose& stayed, TrackedFrame& frame) {
 
 UncertainPose Tracker::bounded(UncertainPose belief) const {
     Vector6 most;
-    most << Eigen::Vector3d::Constant(options_.loss.mostTranslation),
-        Eigen::Vector3d::Constant(options_.loss.mostRotation);
+    most << Eigen::Vector3d::Constant(options_.loss.maxTranslation),
+        Eigen::Vector3d::Constant(options_.loss.maxRotation);
     const Vector6 sigma = belief.covariance.diagonal().cwiseMax(1e-30).cwiseSqrt();
     const Vector6 factor = most.cwiseQuotient(sigma).cwiseMin(1.);
     belief.covariance = factor.asDiagonal() * belief.covariance * factor.asDiagonal();

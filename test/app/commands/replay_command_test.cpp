@@ -204,7 +204,7 @@ TEST(ReplaySummary, NamesWhatIsNotRight) {
                    {"skipped", json::array()},
                    {"gaps", json::array()},
                    {"judged", 9},
-                   {"laid_on_frame", 0},
+                   {"aligned_frame", 0},
                    {"ate_rmse_m", 0.01},
                    {"ate_max_m", 0.02},
                    {"ate_rotation_rmse_deg", 0.1},

@@ -297,6 +297,30 @@ MapChange editCells(TexturedOcTree& map, std::mt19937& random, int reach) {
     return change;
 }
 
+/// A single obstacle that comes and goes: its influence ends at maxDistance, not before.
+TEST(DistanceMap, UpdatesReachAsFarAsTheDistance) {
+    const AlignedBox3d bounds(Vector3d::Constant(-1.), Vector3d::Constant(1.));
+    const DistanceMap::Options options{.maxDistance = 0.6, .unknown = UnknownPolicy::free};
+    TexturedOcTree map(0.05);
+    DistanceMap updated(map, bounds, options);
+    for (const int at : {0, -9, 13, 4}) {
+        for (const bool isOccupied : {true, false}) {
+            const Eigen::Array3i cell(at, at / 2, -at), key = cell + kKeyOfZero;
+            map.setNodeValue(octomap::OcTreeKey(key.x(), key.y(), key.z()),
+                             isOccupied ? 1.F : -1.F);
+            MapChange change{.resolution = 0.05};
+            change.occupancy.push_back(cell.unaryExpr([](int i) { return i >> 2; }));
+            updated.update(map, change);
+            const DistanceMap fresh(map, bounds, options);
+            for (int i = 0; i < 40 * 40 * 40; ++i) {
+                const Eigen::Array3d index(i % 40, i / 40 % 40, i / 1600);
+                const Vector3d p = ((index - 20. + 0.5) * 0.05).matrix();
+                ASSERT_EQ(updated.clearance(p), fresh.clearance(p)) << p.transpose();
+            }
+        }
+    }
+}
+
 TEST(DistanceMap, UpdatesEqualMapsMadeAnewToTheBit) {
     const AlignedBox3d bounds(Vector3d(-1.13, -0.71, -0.4), Vector3d(1.6, 0.9, 0.52));
     const auto value = [](double range, std::mt19937& random) {

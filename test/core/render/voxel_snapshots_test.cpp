@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <random>
 #include <thread>
 
@@ -159,6 +160,34 @@ TEST(VoxelSnapshots, NeverChangeWhileTheyAreHeld) {
     }
     EXPECT_FALSE(areEqual(*views.front(), *views.back()));
     expectEqualViews(*snapshots.current(), VoxelRenderer(edited.map, UnknownPolicy::free), random);
+}
+
+/// A renderer that was held during several updates misses all of them when it is used again.
+TEST(VoxelSnapshots, CatchUpWithAllUpdatesTheyMissed) {
+    for (const int missed : {1, 2, 3, 7, 12}) {
+        EditedMap edited;
+        for (int y = -40; y < 40; ++y) {
+            for (int x = -40; x < 40; ++x) edited.set({x, y, 0}, true, 0.5F, 63U);
+        }
+        edited.takeChange();
+        VoxelSnapshots snapshots(edited.map, UnknownPolicy::free);
+        const auto paint = [&](int square) {  // squares of 4 x 4 cells, one after the other
+            for (int i = 0; i < 16; ++i) {
+                edited.set({4 * square - 20 + i % 4, i / 4, 0}, true, 0.9F, 63U);
+            }
+            snapshots.update(edited.map, edited.takeChange());
+        };
+        auto held = snapshots.current();
+        for (int square = 0; square < missed; ++square) paint(square);
+        held.reset();
+        paint(missed);  // in the renderer that was held
+        Pose T_w_c = cameraMount(std::numbers::pi / 2);
+        T_w_c.translation() = Eigen::Vector3d(0.2, 0.1, 2.);
+        const View expected =
+            viewOf(VoxelRenderer(edited.map, UnknownPolicy::free), T_w_c.inverse());
+        EXPECT_GT(expected.intensity.getMaxValue(), 0.8F);
+        EXPECT_TRUE(areEqual(viewOf(*snapshots.current(), T_w_c.inverse()), expected)) << missed;
+    }
 }
 
 TEST(VoxelSnapshots, OutliveTheirMaker) {

@@ -29,7 +29,7 @@ class ReplayFixture : public testing::Test {
     nlohmann::json run() {
         const Replay replay(options);
         replayed = replay.run();
-        return replayResult(replay.recording().sequence, replayed, judge(replayed));
+        return replayResult(replay.recording().sequence, replayed, evaluate(replayed));
     }
     Trajectory estimate() const { return meansOf(beliefsOf(replayed)); }
 

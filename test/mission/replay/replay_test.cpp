@@ -204,7 +204,7 @@ TEST_F(ReplayFixture, TheStartCanBeGiven) {
     EXPECT_TRUE(result["ate_rmse_m"].is_null());
     EXPECT_TRUE(result["nees_per_dof"].is_null());
     EXPECT_TRUE(estimate()[8].T_w_c.isApprox(flight.T_w_c(8), 5e-3));
-    writeReplayTables(folder.path(), replayed, judge(replayed));
+    writeReplayTables(folder.path(), replayed, evaluate(replayed));
     EXPECT_TRUE(fs::exists(folder.path() / "trajectory.tum"));
     EXPECT_FALSE(fs::exists(folder.path() / "groundtruth.tum"));
 }

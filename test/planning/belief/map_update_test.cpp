@@ -192,6 +192,46 @@ TEST(FieldUpdate, AnObstacleWhereNoSurfaceWasMakesAViewStale) {
     EXPECT_FALSE(field->current(entry).isZero);
 }
 
+TEST(FieldUpdate, GreyValuesJustOutsideTheImageCount) {
+    // At the image's border grey values are interpolated with those of cells that no ray meets.
+    TexturedOcTree map(kCell);
+    const auto set = [&](int y, int z, float grey) {
+        const auto key = [](int i) { return static_cast<octomap::key_type>(kKeyOfZero + i); };
+        auto* node = map.setNodeValue(octomap::OcTreeKey(key(20), key(y), key(z)), 1.F, true);
+        for (FaceTexture& face : node->faces) face = {grey, 1.F};
+    };
+    const int reach = 48;  // a wall across the camera's axis
+    for (int z = -reach; z < reach; ++z) {
+        for (int y = -reach; y < reach; ++y) set(y, z, (y * 7 + z * 3) % 5 < 2 ? 0.2F : 0.7F);
+    }
+    map.updateInnerOccupancy();
+    const auto views = [&] { return std::make_shared<VoxelRenderer>(map, UnknownPolicy::free); };
+    std::vector<Pose> poses(8, Pose::Identity());
+    for (int i = 0; i < 8; ++i) poses[i].translation().y() = kCell * i / 2.;
+    int touched = 0;
+    for (int brick = -reach / 4; brick < reach / 4; ++brick) {  // a column of bricks at a time
+        const auto field = fieldOf(views(), 0.);
+        std::vector<const InformationField::Entry*> entries;
+        for (const Pose& pose : poses) entries.push_back(&field->at(pose));
+        MapChange change;
+        change.resolution = kCell;
+        for (int z = -reach; z < reach; ++z) {
+            for (int i = 0; i < 4; ++i) set(4 * brick + i, z, (z + brick) % 2 == 0 ? 0.1F : 0.9F);
+            change.texture.emplace_back(5, brick, z >> 2);
+        }
+        map.updateInnerOccupancy();
+        change.normalize();
+        field->update(views(), change);
+        const auto fresh = fieldOf(views(), 0.);
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            const bool isSame = entries[i]->information == fresh->at(poses[i]).information;
+            EXPECT_TRUE(isSame || entries[i]->isStale) << "bricks " << brick << ", pose " << i;
+            touched += isSame ? 0 : 1;
+        }
+    }
+    EXPECT_GT(touched, 20);
+}
+
 TEST(FieldUpdate, MotionsTakeUpWhatTheMapHasBecome) {
     // Grey values on the floor appear: a motion propagated before informs as a new one does.
     TexturedOcTree map(0.1);

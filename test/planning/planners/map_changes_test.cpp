@@ -282,5 +282,66 @@ TEST_P(ChangingMap, PathsAreValidAndAuditedAfterAnySequenceOfChanges) {
     EXPECT_GT(kept, 10) << "of 30";
 }
 
+/// A planner above a changing world of walls.
+struct PlannerBetweenWalls {
+    explicit PlannerBetweenWalls(const std::string& name)
+        : problem(problemIn(Scene::flat)), world(problem.bounds) {
+        problem.clearance = world.clearance();
+        if (name == "rrt_star") problem.belief.alpha = 1.;
+        planner = problem.planner(name);
+        if (name == "belief_rrt_star") planner->params().setParam("shortcut", "0");
+        grow(*planner, 200);
+    }
+
+    Problem problem;
+    ChangingWorld world;
+    std::shared_ptr<BeliefPlanner> planner;
+};
+
+class ChangedPlanner : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Planners, ChangedPlanner,
+                         testing::Values("rrt_star", "pa_rrt_star", "rrbt", "belief_rrt_star"));
+
+TEST_P(ChangedPlanner, VerticesInAWallAreRemoved) {
+    PlannerBetweenWalls problem(GetParam());
+    const std::size_t before = problem.planner->vertices();
+    problem.planner->mapChanged(
+        problem.world.fill({Vector3d(2., 3., 0.), Vector3d(6., 6., 4.)}, true));
+    EXPECT_LT(problem.planner->vertices(), before - 15);  // of 200 in 64 m^2
+    grow(*problem.planner, 250);
+    for (const TreeNode& node : problem.planner->tree()) {
+        EXPECT_TRUE(problem.planner->getSpaceInformation()->isValid(node.state));
+    }
+}
+
+TEST(ChangedBeliefRRTstar, SearchesAfterAChangeFindWhatASearchAnewFinds) {
+    PlannerBetweenWalls problem("belief_rrt_star");
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> at(0., 6.);
+    for (int step = 0; step < 12; ++step) {
+        SCOPED_TRACE(step);
+        const Vector3d low(at(random), at(random), 0.);
+        const Eigen::AlignedBox3d wall(low, low + Vector3d(2., 0.4, 4.));
+        problem.planner->mapChanged(problem.world.fill(wall, true));
+        problem.planner->mapChanged(problem.world.fill(wall, false));
+        grow(*problem.planner, 200);  // where vertices were removed, numbers are used again
+        const double cost = problem.planner->bestCost();
+        MapChange nothing{.resolution = 0.2};
+        nothing.occupancy.emplace_back(1000, 1000, 0);  // far away
+        problem.planner->mapChanged(nothing);
+        grow(*problem.planner, 200);
+        EXPECT_NEAR(problem.planner->bestCost(), cost, 1e-9);
+    }
+}
+
+TEST(ChangedBeliefRRTstar, GrowsOnAfterAChangeUntilTheTimeIsOver) {
+    PlannerBetweenWalls problem("belief_rrt_star");
+    problem.planner->mapChanged(
+        problem.world.fill({Vector3d(2., 3., 0.), Vector3d(6., 6., 4.)}, true));
+    problem.planner->params().setParam("max_vertices", "300");
+    problem.planner->solve(600.);  // ends by its vertices
+    EXPECT_GE(problem.planner->vertices(), 300U);
+}
+
 }  // namespace
 }  // namespace photonav::test
