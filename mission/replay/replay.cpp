@@ -89,9 +89,10 @@ UncertainPose startOf(const ReplayOptions& options, const Sequence& sequence) {
     if (!options.start.empty()) {
         start.mean = parsePose(options.start).inverse();
         if (options.odometry && sequence.hasPoses()) {
-            throw InputError("--start", "",
-                             "not with --odometry of a recording with ground truth: it begins at the "
-                             "first true pose");
+            throw InputError(
+                "--start", "",
+                "not with --odometry of a recording with ground truth: it begins at the "
+                "first true pose");
         }
     } else if (!options.odometry) {
         if (!sequence.frames[0].hasPose) {

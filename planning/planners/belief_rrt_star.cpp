@@ -52,7 +52,6 @@ void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near,
     }
     roadmap_.of(&fresh).front()->isFree = true;
     if (fresh.index < promising_.size()) promising_[fresh.index] = true;
-    if (fresh.index + 1 < vertices_.size()) toGo_ = {};  // the number was that of a removed vertex
     isSearchDue_ = true;
     if (fresh.isGoal && bestCost() == kInfinity) offerCheckedPath(fresh);
     const double growth = path_.empty() ? kSearchGrowthWithoutPath : kSearchGrowth;
@@ -253,7 +252,6 @@ std::vector<Vertex*> BeliefRRTstar::invalidate(const ChangedSpace& changed,
 
 /// The result of the last search belongs to another map: the next solve() searches again.
 void BeliefRRTstar::renewBeliefs() {
-    toGo_ = {};
     settled_.clear();
     labelsOf_.clear();
     promising_.clear();

@@ -284,13 +284,13 @@ TEST_P(ChangingMap, PathsAreValidAndAuditedAfterAnySequenceOfChanges) {
 
 /// A planner above a changing world of walls.
 struct PlannerBetweenWalls {
-    explicit PlannerBetweenWalls(const std::string& name)
+    explicit PlannerBetweenWalls(const std::string& name, std::size_t vertices = 200)
         : problem(problemIn(Scene::flat)), world(problem.bounds) {
         problem.clearance = world.clearance();
         if (name == "rrt_star") problem.belief.alpha = 1.;
         planner = problem.planner(name);
         if (name == "belief_rrt_star") planner->params().setParam("shortcut", "0");
-        grow(*planner, 200);
+        grow(*planner, vertices);
     }
 
     Problem problem;
@@ -317,11 +317,11 @@ TEST_P(ChangedPlanner, VerticesInAWallAreRemoved) {
 TEST(ChangedBeliefRRTstar, SearchesAfterAChangeFindWhatASearchAnewFinds) {
     PlannerBetweenWalls problem("belief_rrt_star");
     std::mt19937 random(3);
-    std::uniform_real_distribution<double> at(0., 6.);
+    std::uniform_real_distribution<double> at(0., 4.);
     for (int step = 0; step < 12; ++step) {
         SCOPED_TRACE(step);
         const Vector3d low(at(random), at(random), 0.);
-        const Eigen::AlignedBox3d wall(low, low + Vector3d(2., 0.4, 4.));
+        const Eigen::AlignedBox3d wall(low, low + Vector3d(4., 4., 4.));
         problem.planner->mapChanged(problem.world.fill(wall, true));
         problem.planner->mapChanged(problem.world.fill(wall, false));
         grow(*problem.planner, 200);  // where vertices were removed, numbers are used again
@@ -334,13 +334,20 @@ TEST(ChangedBeliefRRTstar, SearchesAfterAChangeFindWhatASearchAnewFinds) {
     }
 }
 
-TEST(ChangedBeliefRRTstar, GrowsOnAfterAChangeUntilTheTimeIsOver) {
-    PlannerBetweenWalls problem("belief_rrt_star");
-    problem.planner->mapChanged(
-        problem.world.fill({Vector3d(2., 3., 0.), Vector3d(6., 6., 4.)}, true));
-    problem.planner->params().setParam("max_vertices", "300");
-    problem.planner->solve(600.);  // ends by its vertices
-    EXPECT_GE(problem.planner->vertices(), 300U);
+TEST(ChangedBeliefRRTstar, AChangedRoadmapIsSearchedBeforeItGrows) {
+    PlannerBetweenWalls problem("belief_rrt_star", 80);
+    const auto path = problem.planner->getProblemDefinition()->getSolutionPath();
+    const auto& states = path->as<ompl::geometric::PathGeometric>()->getStates();
+    ASSERT_GT(states.size(), 2U);
+    Vector3d corner = problem.problem.space().position(states[states.size() / 2]);
+    corner.z() = 0.;
+    const Vector3d size(0.3, 0.3, 4.);
+    problem.planner->mapChanged(problem.world.fill({corner - size, corner + size}, true));
+    ASSERT_EQ(problem.planner->bestCost(), kInfinity);
+    const std::size_t last = problem.planner->iterations() + 1;
+    problem.planner->solve(
+        ob::PlannerTerminationCondition([&] { return problem.planner->iterations() >= last; }));
+    EXPECT_LT(problem.planner->bestCost(), kInfinity);
 }
 
 }  // namespace
