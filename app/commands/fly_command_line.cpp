@@ -4,7 +4,7 @@
 #include "commands/command_line.hpp"
 #include "commands/fly_command.hpp"
 #include "config/config_keys.hpp"
-#include "replay/replay_calibration.hpp"
+#include "replay/calibration_file.hpp"
 
 namespace photonav {
 namespace {

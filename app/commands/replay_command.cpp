@@ -5,6 +5,7 @@
 #include "commands/result_folder.hpp"
 #include "io/atomic_file.hpp"
 #include "io/stopwatch.hpp"
+#include "replay/calibration_file.hpp"
 #include "replay/replay.hpp"
 #include "replay/replay_calibration.hpp"
 #include "replay/replay_config.hpp"

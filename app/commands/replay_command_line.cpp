@@ -3,7 +3,7 @@
 
 #include "commands/command_line.hpp"
 #include "commands/replay_command.hpp"
-#include "replay/replay_calibration.hpp"
+#include "replay/calibration_file.hpp"
 
 namespace photonav {
 namespace {

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include "estimation/calibration.hpp"
 #include "evaluation/averages.hpp"
 #include "io/error.hpp"
+#include "io/number.hpp"
 
 namespace photonav {
 namespace {
@@ -59,18 +59,13 @@ Recording openRecording(const ReplayOptions& options) {
 }
 
 Pose parsePose(const std::string& text) {
-    std::istringstream in(text);
-    Eigen::Matrix<double, 7, 1> v;
-    for (int i = 0; i < 7; ++i) {
-        char comma = ',';
-        if (i > 0) in >> comma;
-        in >> v[i];
-        if (!in || comma != ',') {
-            throw InputError("--start", "", fmt::format("'{}' is not x,y,z,qx,qy,qz,qw", text));
-        }
+    const auto numbers = numbersIn(text, ',');
+    if (!numbers || numbers->size() != 7) {
+        throw InputError("--start", "", fmt::format("'{}' is not x,y,z,qx,qy,qz,qw", text));
     }
+    const Eigen::Map<const Eigen::Matrix<double, 7, 1>> v(numbers->data());
     const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
-    if (!(in >> std::ws).eof() || !v.allFinite() || std::abs(q.norm() - 1.) > 0.1) {
+    if (!(std::abs(q.norm() - 1.) <= 0.1)) {
         throw InputError("--start", "",
                          fmt::format("'{}' is not x,y,z,qx,qy,qz,qw with a unit quaternion", text));
     }

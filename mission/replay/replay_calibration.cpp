@@ -1,20 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replay/replay_calibration.hpp"
 
-#include <fmt/format.h>
-
-#include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
-#include "io/yaml_reader.hpp"
 
 namespace photonav {
-namespace {
-
-const std::vector<std::string> kModes{"odometry", "map"};
-
-const std::string& modeOf(bool odometry) { return kModes[odometry ? 0 : 1]; }
-
-}  // namespace
 
 std::vector<AlignmentError> alignmentErrors(const ReplayRun& run) {
     std::vector<AlignmentError> errors;
@@ -42,42 +31,6 @@ std::optional<Calibration> calibrationOf(const ReplayRun& run, bool floorOnly) {
     const auto errors = alignmentErrors(run);
     if (errors.size() < kLeastForCalibration) return {};
     return floorOnly ? calibrateFloor(errors, run.scale) : calibrate(errors);
-}
-
-std::string toYaml(const Calibration& c, bool odometry) {
-    std::string text = fmt::format(
-        "# Single alignments: NEES per degree of freedom {:.3g} before, {:.3g} with\n"
-        "# photonav replay ... --scale {:.3g} --sigma-floor {:.3g} --sigma-floor-rotation {:.3g}\n"
-        "mode: {}\nscale: {:.3g}\nsigma_floor: {:.3g}  # m\nsigma_floor_rotation: {:.3g}  # rad\n",
-        c.neesBefore, c.neesAfter, c.scale, c.floorTranslation, c.floorRotation, modeOf(odometry),
-        c.scale, c.floorTranslation, c.floorRotation);
-    if (c.correlationTime > 1.) {
-        text += fmt::format(
-            "# Over as many images errors are alike: photonav fly, which averages images, divides\n"
-            "# the factor by it.\ncorrelation_time: {:.3g}\n",
-            c.correlationTime);
-    }
-    return text;
-}
-
-Calibration readCalibration(const std::string& file, bool odometry) {
-    YamlMap yaml(file, loadYaml(file));
-    Calibration c;
-    for (const char* key : {"scale", "sigma_floor", "sigma_floor_rotation"}) {
-        if (!yaml.has(key)) yaml.fail(key, "missing");
-    }
-    std::string mode = modeOf(odometry);
-    yaml.readChoice("mode", mode, kModes);
-    if (mode != modeOf(odometry)) {
-        yaml.fail("mode", fmt::format("is {}: alignments to {} are not worth the same", mode,
-                                      odometry ? "a keyframe" : "a map"));
-    }
-    yaml.readNumber("scale", c.scale, 1e-12, kInfinity);
-    yaml.readNumber("sigma_floor", c.floorTranslation, 0., kInfinity);
-    yaml.readNumber("sigma_floor_rotation", c.floorRotation, 0., kInfinity);
-    yaml.readNumber("correlation_time", c.correlationTime, 1., kInfinity);
-    yaml.finish();
-    return c;
 }
 
 }  // namespace photonav

@@ -4,7 +4,7 @@
 #include "app/executable.hpp"
 #include "flight_dataset.hpp"
 #include "recording/trajectory.hpp"
-#include "replay/replay_calibration.hpp"
+#include "replay/calibration_file.hpp"
 #include "report/replay_report.hpp"
 
 namespace photonav {
