@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "commands/result_folder.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
 #include "io/error.hpp"
+#include "io/number.hpp"
 #include "io/stopwatch.hpp"
 #include "recording/image_file.hpp"
 #include "report/plan_report.hpp"
@@ -33,21 +32,13 @@ constexpr std::array<Direction, 6> kDirections{
 
 /// "x,y,z" or "x,y,z,yaw".
 Place parsePlace(const std::string& text) {
-    std::vector<double> numbers;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        double number = 0.;
-        const auto [last, error] = std::from_chars(text.data() + begin, text.data() + end, number);
-        if (error != std::errc{} || last != text.data() + end || !std::isfinite(number)) break;
-        numbers.push_back(number);
-        begin = end + 1;
-        if (end == text.size() && (numbers.size() == 3 || numbers.size() == 4)) {
-            Place place{Eigen::Vector3d(numbers.data()), std::nullopt};
-            if (numbers.size() == 4) place.yaw = numbers[3];
-            return place;
-        }
+    const auto numbers = numbersIn(text, ',');
+    if (!numbers || (numbers->size() != 3 && numbers->size() != 4)) {
+        throw InputError("--at", text, "expected x,y,z or x,y,z,yaw");
     }
-    throw InputError("--at", text, "expected x,y,z or x,y,z,yaw");
+    Place place{Eigen::Vector3d(numbers->data()), std::nullopt};
+    if (numbers->size() == 4) place.yaw = (*numbers)[3];
+    return place;
 }
 
 Pose bodyAt(const Place& place) {

@@ -5,36 +5,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include "config/config_keys.hpp"
 #include "geometry/constants.hpp"
+#include "io/number.hpp"
 
 namespace photonav {
 namespace {
 
 constexpr std::size_t kMaxAlphas = 10000;
-
-double parseNumber(const std::string& text) {
-    double value = 0.;
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc() || stop != end || !std::isfinite(value)) {
-        throw InputError("--alpha", "", "'" + text + "' is not a number");
-    }
-    return value;
-}
-
-std::vector<double> parseNumbers(const std::string& text, char separator) {
-    std::vector<double> numbers;
-    std::istringstream stream(text);
-    for (std::string field; std::getline(stream, field, separator);) {
-        numbers.push_back(parseNumber(field));
-    }
-    return numbers;
-}
 
 std::vector<double> range(double first, double last, double step) {
     if (!(step > 0.)) throw InputError("--alpha", "", "the step must be positive");
@@ -131,16 +111,12 @@ void addKeys(KeyTable& keys, SweepConfig& c) {
 }
 
 std::vector<double> parseAlphas(const std::string& text) {
-    if (text.find(':') == std::string::npos) {
-        const auto alphas = parseNumbers(text, ',');
-        if (alphas.empty()) throw InputError("--alpha", "", "no value");
-        return alphas;
-    }
-    const auto numbers = parseNumbers(text, ':');
-    if (numbers.size() != 3) {
+    const bool isRange = text.find(':') != std::string::npos;
+    const auto numbers = numbersIn(text, isRange ? ':' : ',');
+    if (!numbers || (isRange && numbers->size() != 3)) {
         throw InputError("--alpha", "", "expected first:last:step or a list, found '" + text + "'");
     }
-    return range(numbers[0], numbers[1], numbers[2]);
+    return isRange ? range((*numbers)[0], (*numbers)[1], (*numbers)[2]) : *numbers;
 }
 
 }  // namespace photonav

@@ -4,15 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
-#include <sstream>
 
 #include "dataset/stereo_recording.hpp"
 #include "evaluation/averages.hpp"
 #include "io/error.hpp"
+#include "io/number.hpp"
 #include "recording/floor_plane.hpp"
 #include "recording/sequence_euroc.hpp"
 #include "recording/sequence_tum.hpp"
@@ -25,13 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kFloorFrames = 30;
 constexpr unsigned kFloorColumns = 32;
-
-std::optional<std::size_t> parseIndex(const std::string& text) {
-    std::size_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return {};
-    return value;
-}
 
 /// What the depth images show below the camera, from frames spread over the recording.
 struct Seen {
@@ -183,14 +175,11 @@ std::optional<Eigen::Vector3d> parseUp(const std::string& text) {
     if (std::find(axes.begin(), axes.end(), text) != axes.end()) {
         return worldUpRotation(text).transpose() * Eigen::Vector3d::UnitZ();
     }
-    std::istringstream stream(text);
-    Eigen::Vector3d up;
-    char comma = ',';
-    stream >> up.x() >> comma;
-    if (comma == ',') stream >> up.y() >> comma;
-    if (comma == ',') stream >> up.z();
-    if (!stream || !(stream >> std::ws).eof() || !(up.norm() > 1e-9)) return {};
-    return up.normalized();
+    const auto numbers = numbersIn(text, ',');
+    if (!numbers || numbers->size() != 3) return {};
+    const Eigen::Vector3d up(numbers->data());
+    if (!(up.cwiseAbs().maxCoeff() > 1e-9)) return {};
+    return up.stableNormalized();
 }
 
 std::pair<std::size_t, std::size_t> parseFrames(const std::string& text, std::size_t count) {
@@ -198,8 +187,8 @@ std::pair<std::size_t, std::size_t> parseFrames(const std::string& text, std::si
     const auto colon = text.find(':');
     const std::string before = text.substr(0, colon);
     const std::string after = colon == std::string::npos ? "" : text.substr(colon + 1);
-    const auto first = before.empty() ? 0 : parseIndex(before);
-    const auto end = after.empty() ? count : parseIndex(after);
+    const auto first = before.empty() ? 0 : numberIn<std::size_t>(before);
+    const auto end = after.empty() ? count : numberIn<std::size_t>(after);
     if (colon == std::string::npos || !first || !end) {
         throw InputError("--frames", "", fmt::format("'{}' is not a range first:end", text));
     }

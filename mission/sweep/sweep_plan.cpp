@@ -3,13 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <set>
 
+#include "io/number.hpp"
 #include "io/yaml_reader.hpp"
 #include "scene/scene.hpp"
 
@@ -77,14 +78,11 @@ std::vector<SweepItem> sweepItems(const Config& config) {
 }
 
 SweepShard parseShard(const std::string& text) {
-    SweepShard shard;
-    const char* end = text.data() + text.size();
-    const auto index = std::from_chars(text.data(), end, shard.index);
-    if (index.ec == std::errc() && index.ptr != end && *index.ptr == '/') {
-        const auto count = std::from_chars(index.ptr + 1, end, shard.count);
-        const bool isNumber = count.ec == std::errc() && count.ptr == end;
-        if (isNumber && shard.index >= 1 && shard.index <= shard.count) return shard;
-    }
+    const std::size_t slash = std::min(text.find('/'), text.size());
+    const auto k = numberIn<unsigned>(std::string_view(text).substr(0, slash));
+    const auto n =
+        numberIn<unsigned>(std::string_view(text).substr(std::min(slash + 1, text.size())));
+    if (k && n && *k >= 1 && *k <= *n) return {*k, *n};
     throw InputError("--shard", "",
                      "'" + text + "' is not k/n with k from 1 to n, for example 2/4");
 }

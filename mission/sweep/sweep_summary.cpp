@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numeric>
 #include <sstream>
 
 #include "geometry/constants.hpp"
 #include "io/error.hpp"
+#include "io/number.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
@@ -30,15 +30,10 @@ std::vector<std::string> fieldsOf(std::string line) {
     return fields;
 }
 
-double numberIn(const std::vector<std::string>& fields, std::size_t column, const std::string& file,
+double numberOf(const std::vector<std::string>& fields, std::size_t column, const std::string& file,
                 int line) {
-    double value = kNone;
-    if (column < fields.size()) {
-        const std::string& text = fields[column];
-        const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) value = kNone;
-    }
-    if (std::isfinite(value)) return value;
+    const auto value = column < fields.size() ? numberIn(fields[column]) : std::nullopt;
+    if (value && std::isfinite(*value)) return *value;
     throw InputError(file, fmt::format("line {}", line), "expected a number in every column");
 }
 
@@ -84,9 +79,9 @@ ReferenceCosts::ReferenceCosts(const std::string& file) {
         ++number;
         if (line.empty()) continue;
         const auto fields = fieldsOf(line);
-        const double value = numberIn(fields, cost, file, number);
+        const double value = numberOf(fields, cost, file, number);
         if (value <= 0.) throw InputError(file, fmt::format("line {}", number), "cost <= 0");
-        costs_[numberIn(fields, alpha, file, number)] = value;
+        costs_[numberOf(fields, alpha, file, number)] = value;
     }
 }
 

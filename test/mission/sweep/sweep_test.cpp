@@ -47,6 +47,7 @@ TEST(SweepAlphas, RangesIncludeTheirEndAndAreRound) {
     EXPECT_EQ(parseAlphas("0:1:0.4"), (std::vector<double>{0., 0.4, 0.8}));
     EXPECT_EQ(parseAlphas("0.3:0.3:0.1"), (std::vector<double>{0.3}));
     EXPECT_EQ(parseAlphas("0.7,0.1"), (std::vector<double>{0.7, 0.1}));
+    EXPECT_EQ(parseAlphas("+0.7, 0.1"), (std::vector<double>{0.7, 0.1}));
     for (const char* bad : {"", "0.1:0.9", "0.9:0.1:0.1", "0:1:0", "0:1:-1", "0:1:1e-9", "a",
                             "0.1,"
                             "b"}) {
@@ -71,6 +72,7 @@ TEST(SweepShards, PartitionTheRuns) {
     std::set<SweepItem> unique(gathered.begin(), gathered.end());
     EXPECT_EQ(unique, std::set<SweepItem>(items.begin(), items.end()));
     EXPECT_EQ(gathered.size(), items.size());
+    EXPECT_EQ(parseShard("+2/4"), (SweepShard{2, 4}));
     for (const char* bad : {"", "1", "0/2", "3/2", "1/0", "1/2/3", "a/b", "-1/2", "1/"}) {
         EXPECT_TRUE(reasonOf([&] { parseShard(bad); }).starts_with("--shard: ")) << bad;
     }
