@@ -11,9 +11,21 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <stdexcept>
 
 #include "io/error.hpp"
 #include "scene/mesh_check.hpp"
+
+/// Debian's assimp is built with assertions, which end the program where a file breaks what an
+/// importer takes for granted. Here they end the import: the library calls this definition in place
+/// of its own.
+namespace Assimp {
+ASSIMP_API void aiAssertViolation(const char* expression, const char* /*file*/, int /*line*/);
+
+void aiAssertViolation(const char* expression, const char* /*file*/, int /*line*/) {
+    throw std::runtime_error(std::string("the file breaks a rule of its format: ") + expression);
+}
+}  // namespace Assimp
 
 namespace photonav {
 namespace {

@@ -222,6 +222,20 @@ TEST(MeshIo, IndicesAndNodesAreNotTrusted) {
     EXPECT_EQ(complaint(brackets), brackets + ": JSON nested deeper than 200");
 }
 
+/// Debian's assimp asserts that every face has a corner.
+TEST(MeshIo, AFaceWithoutCornersDoesNotEndTheProgram) {
+    const TemporaryFolder folder;
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n";
+    for (const char* face : {"0\n", "x\n"}) {
+        const auto file = folder.write("face.ply", head + face);
+        EXPECT_TRUE(complaint(file).starts_with(file + ": the file breaks a rule of its format"))
+            << complaint(file);
+    }
+}
+
 TEST(MeshIo, SomeDegenerateTrianglesAreDropped) {
     const TemporaryFolder folder;
     const auto file =
