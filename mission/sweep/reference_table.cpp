@@ -82,7 +82,7 @@ void ReferenceTable::read() {
     });
     readCsv(pathsFile(), kPathColumns, 5, [&](const std::vector<std::string>& f) {
         Pose T_w_b = Pose::Identity();
-        T_w_b.translation() << toNumber(f[1]), toNumber(f[2]), toNumber(f[3]);
+        T_w_b.translation() = Eigen::Vector3d(toNumber(f[1]), toNumber(f[2]), toNumber(f[3]));
         T_w_b.linear() =
             Eigen::AngleAxisd(toNumber(f[4]), Eigen::Vector3d::UnitZ()).toRotationMatrix();
         rows_.at(keyOf(toNumber(f[0]))).waypoints.push_back(T_w_b);

@@ -143,7 +143,7 @@ Pose groundtruthFrame(const fs::path& folder, StereoSequence& sequence) {
 StampedPose parseGroundtruth(const TextRow& row) {
     StampedPose pose;
     pose.timestamp = kNanosecond * row.number(0);
-    pose.T_w_c.translation() << row.number(1), row.number(2), row.number(3);
+    pose.T_w_c.translation() = Eigen::Vector3d(row.number(1), row.number(2), row.number(3));
     const Eigen::Quaterniond q(row.number(4), row.number(5), row.number(6), row.number(7));
     if (std::abs(q.norm() - 1.) > 0.1) {
         row.fail(fmt::format("quaternion of norm {:.3g}, expected 1", q.norm()));

@@ -112,6 +112,10 @@ TEST_F(EurocSequence, RejectsTablesThatCannotBeUsed) {
         {"state_groundtruth_estimate0/data.csv", "no pose within 0.02 s", "1403715276.8"});
     writeText(mav / "state_groundtruth_estimate0/data.csv", "1,0,0,0,x,0,0,0\n");
     expectRejected({"data.csv", "line 1", "'x' is not a number"});
+    for (const char* row : {"1,0,x,0,1,0,0,0\n", "1,0,0,x,1,0,0,0\n"}) {  // inside the position
+        writeText(mav / "state_groundtruth_estimate0/data.csv", row);
+        expectRejected({"data.csv", "line 1", "'x' is not a number"});
+    }
     writeText(mav / "state_groundtruth_estimate0/data.csv", "1,0,0\n");
     expectRejected({"data.csv", "line 1", "expected 8 fields, found 3"});
     writeText(mav / "cam1/data.csv", "17,17.png\n");

@@ -114,12 +114,14 @@ TEST_F(ReferenceFiles, NameTheLineThatIsWrong) {
     std::ofstream(file_) << "# a note\n"
                             "alpha,cost,length,mean_trace,goal_trace,planner,vertices,labels,seed\n"
                             "0.1,cheap,1,1,1,rrt_star,1,1,1\n";
-    try {
-        ReferenceTable(file_).read();
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("line 3"), std::string::npos) << error.what();
-    }
+    const auto complaint = [&] {
+        return test::messageOf<InputError>([&] { ReferenceTable(file_).read(); });
+    };
+    EXPECT_NE(complaint().find("table.csv: line 3"), std::string::npos) << complaint();
+    std::ofstream(file_) << "alpha,cost,length,mean_trace,goal_trace,planner,vertices,labels,seed\n"
+                            "0.1,1,1,1,1,rrt_star,1,1,1\n";
+    std::ofstream(folder_.path() / "table_paths.csv") << "alpha,x,y,z,yaw\n0.1,0,far,0,0\n";
+    EXPECT_NE(complaint().find("table_paths.csv: line 2"), std::string::npos) << complaint();
 }
 
 }  // namespace
