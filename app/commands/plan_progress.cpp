@@ -15,12 +15,11 @@ std::optional<double> RemainingGrowth::seconds() const {
     if (count >= vertices_) return {};
     const auto half = std::ranges::find_if(
         history_, [&](const PlanProgress& p) { return 2 * p.vertices >= now.vertices; });
-    double power = 1.;
-    if (half->vertices < now.vertices && half->seconds > 0.) {
-        power = std::log(now.seconds / half->seconds) /
-                std::log(count / static_cast<double>(half->vertices));
-    }
-    constexpr double kSteepest = 3.;
+    const bool isSearched = std::isfinite(half->cost);
+    if (!isSearched || half->vertices >= now.vertices || half->seconds <= 0.) return {};
+    const double power = std::log(now.seconds / half->seconds) /
+                         std::log(count / static_cast<double>(half->vertices));
+    constexpr double kSteepest = 2.;
     return now.seconds * (std::pow(vertices_ / count, std::clamp(power, 1., kSteepest)) - 1.);
 }
 
@@ -30,10 +29,12 @@ std::string progressText(const PlanProgress& progress, unsigned vertices,
                                  ? fmt::format("best cost {:.3f}", progress.cost)
                                  : "no path yet";
     const auto rest = growth.seconds();
-    return fmt::format(
-        "{} of {} vertices, {}, {} views, {}", progress.vertices, vertices, cost, progress.views,
-        rest ? fmt::format("about {:.0f} s to the last search", *rest)
-             : fmt::format("last search and descent, {:.0f} s so far", progress.seconds));
+    const std::string soFar = fmt::format("{:.0f} s so far", progress.seconds);
+    const std::string time = progress.vertices >= vertices ? "last search and descent, " + soFar
+                             : rest ? fmt::format("about {:.0f} s to the last search", *rest)
+                                    : soFar;
+    return fmt::format("{} of {} vertices, {}, {} views, {}", progress.vertices, vertices, cost,
+                       progress.views, time);
 }
 
 }  // namespace photonav

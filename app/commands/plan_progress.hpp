@@ -11,7 +11,8 @@
 namespace photonav {
 
 /// Predicts when the last vertex will be added: the time of growth follows a power of the number of
-/// vertices, which is fitted from half the present number on. The last search and the descent,
+/// vertices, which is fitted from half the present number on. Until a first path is found and
+/// searched, growth takes next to no time and predicts nothing. The last search and the descent,
 /// which follow, are not part of it: their duration is not known before.
 class RemainingGrowth {
   public:
@@ -19,7 +20,8 @@ class RemainingGrowth {
 
     void add(const PlanProgress& progress) { history_.push_back(progress); }
 
-    /// Until the last vertex [s]; nothing without progress and after the last vertex.
+    /// Until the last vertex [s]; nothing while no path was known at half the present number of
+    /// vertices, and after the last vertex.
     std::optional<double> seconds() const;
 
   private:

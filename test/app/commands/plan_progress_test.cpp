@@ -26,12 +26,28 @@ TEST(PlanProgress, TheTimeLeftFollowsThePowerOfTheGrowth) {
     }
 }
 
+/// Growth alone takes microseconds per vertex, until a first path is found and searched.
+TEST(PlanProgress, TheFirstSearchIsNoMeasureOfTheGrowth) {
+    RemainingGrowth growth(2500);
+    growth.add({50, 0.001, kInfinity, 0});
+    growth.add({100, 0.002, kInfinity, 0});
+    growth.add({150, 0.5, 20., 0});
+    EXPECT_FALSE(growth.seconds());
+    growth.add({200, 0.6, 20., 0});
+    EXPECT_FALSE(growth.seconds());
+    growth.add({300, 0.8, 20., 0});
+    EXPECT_LT(growth.seconds().value(), 100.);
+    EXPECT_NEAR(growthTo(1000, 4000, 5.).seconds().value(), 15., 1e-9);  // of 1 s: power 2
+}
+
 TEST(PlanProgress, NoTimeIsPromisedForTheLastSearchAndTheDescent) {
     EXPECT_FALSE(RemainingGrowth(100).seconds());
     EXPECT_FALSE(growthTo(1000, 1000, 1.).seconds());
-    const std::string growing =
-        progressText({500, 0.5, kInfinity, 7}, 1000, growthTo(500, 1000, 1.));
-    EXPECT_EQ(growing, "500 of 1000 vertices, no path yet, 7 views, about 0 s to the last search");
+    const std::string growing = progressText({500, 0.5, 4., 7}, 1000, growthTo(500, 1000, 1.));
+    EXPECT_EQ(growing,
+              "500 of 1000 vertices, best cost 4.000, 7 views, about 0 s to the last search");
+    const std::string early = progressText({500, 2., kInfinity, 7}, 1000, RemainingGrowth(1000));
+    EXPECT_EQ(early, "500 of 1000 vertices, no path yet, 7 views, 2 s so far");
     const std::string last = progressText({1000, 11., 3.25, 7}, 1000, growthTo(1000, 1000, 1.));
     EXPECT_EQ(last,
               "1000 of 1000 vertices, best cost 3.250, 7 views, last search and descent, 11 s so "
