@@ -2,6 +2,7 @@
 #include "flight/flight.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "geometry/constants.hpp"
@@ -10,6 +11,19 @@
 
 namespace photonav {
 namespace {
+
+void check(const FlightWorld& world) {
+    const auto require = [](bool isGiven, const char* what) {
+        if (!isGiven) throw std::invalid_argument(std::string("flight: the world has no ") + what);
+    };
+    require(world.truth != nullptr, "true views");
+    require(world.map != nullptr, "map");
+    require(world.clearance != nullptr, "clearance");
+}
+
+ImageNoise noiseOf(const FlightWorld& world, const FlightOptions& options) {
+    return world.noise ? world.noise : assumedNoise(options.alignment.photometric);
+}
 
 UncertainPose beliefAtStart(const std::vector<PlannedView>& plan, const FlightWorld& world,
                             const FlightOptions& options) {
@@ -144,11 +158,12 @@ std::string nameOf(FlightEnd end) {
 FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
                  const FlightOptions& options, const std::function<bool()>& isStopped,
                  const OnExposure& onExposure) {
+    check(world);
     Pilot pilot(plan, world.map, world.camera, world.T_b_c, pilotOptions(options));
     const UncertainPose start = beliefAtStart(plan, world, options);
     SimulatedRobot robot(world.truth, world.camera, world.T_b_c,
-                         drawStart(start, world.T_b_c, options.seed), world.noise, options.robot,
-                         options.seed);
+                         drawStart(start, world.T_b_c, options.seed), noiseOf(world, options),
+                         options.robot, options.seed);
     Tracker tracker(world.map, robot.camera(), start, trackerOptions(world, options));
     FlightEvaluator evaluator(world, options, plan.back(), robot);
     BodyVelocity command;

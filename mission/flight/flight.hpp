@@ -11,14 +11,15 @@
 
 namespace photonav {
 
-/// The true world, the map that was planned in, and obstacles.
+/// The true world, the map that was planned in, and obstacles. All of it must be given, except the
+/// noise.
 struct FlightWorld {
     std::shared_ptr<const ViewSource> truth;
     std::shared_ptr<const ViewSource> map;
     std::function<double(const Eigen::Vector3d& p_w)> clearance;  ///< of the true world [m]
     Camera camera;
     Pose T_b_c = Pose::Identity();
-    ImageNoise noise;
+    ImageNoise noise;  ///< empty: assumedNoise() of the photometric options of alignment
 };
 
 struct FlightOptions {
@@ -75,7 +76,8 @@ struct FlightResult {
 using OnExposure = std::function<void(const Exposed& exposed)>;
 
 /// Flies a plan: robot -> tracker -> pilot -> robot. Everything random follows from options.seed.
-/// @param plan at least two views @throws std::invalid_argument otherwise
+/// @param plan at least two views
+/// @throws std::invalid_argument for a shorter plan, or a world without truth, map or clearance
 /// @param isStopped asked now and then
 FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
                  const FlightOptions& options, const std::function<bool()>& isStopped = {},

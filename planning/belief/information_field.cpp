@@ -115,6 +115,7 @@ void InformationField::evaluate(const Cell& cell, Entry& entry, ViewExtent& exte
 
 void InformationField::update(std::shared_ptr<const ViewSource> views, const MapChange& change) {
     if (source_ == nullptr) return;
+    if (views == nullptr) throw std::invalid_argument("information field: no views of the map");
     source_ = std::move(views);
     ++epoch_;
     const ChangedBricks changed(change);

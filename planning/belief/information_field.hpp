@@ -70,6 +70,7 @@ class InformationField {
     /// The camera is assumed to be within the map's bounding box, or the unknown space on the way
     /// to it to be free.
     /// @param views of the map after the change
+    /// @throws std::invalid_argument without views, for a field over a map
     void update(std::shared_ptr<const ViewSource> views, const MapChange& change);
 
     std::uint32_t epoch() const { return epoch_; }  ///< number of updates so far

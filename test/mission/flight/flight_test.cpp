@@ -58,6 +58,26 @@ TEST_F(Flight, ArrivesByItsImagesAlone) {
     }
 }
 
+TEST_F(Flight, ImagesHaveTheAssumedNoiseWithoutAnyOther) {
+    const FlightResult assumed = fly(plan, world, options);
+    world.noise = {};
+    const FlightResult byDefault = fly(plan, world, options);
+    EXPECT_EQ(byDefault.duration, assumed.duration);
+    EXPECT_EQ(byDefault.goalError, assumed.goalError);
+}
+
+TEST_F(Flight, NamesWhatIsMissing) {
+    const FlightWorld complete = world;
+    world.clearance = {};
+    EXPECT_THROW(fly(plan, world, options), std::invalid_argument);
+    world = complete;
+    world.truth = {};
+    EXPECT_THROW(fly(plan, world, options), std::invalid_argument);
+    world = complete;
+    world.map = {};
+    EXPECT_THROW(fly(plan, world, options), std::invalid_argument);
+}
+
 /// Tilt cannot be commanded, and a tilted view of the goal looks like one from beside it.
 TEST_F(Flight, TheGoalsImageDoesNotLeadABodyAstrayThatHangsAskew) {
     Vector6 motion = options.robot.body.odometryNoise.diagonal();

@@ -19,6 +19,11 @@ Matrix6 growsAlongX(const Pose& T_c_w) {
     return (1. + T_c_w.inverse().translation().x()) * Matrix6::Identity();
 }
 
+class Nothing : public ViewSource {
+  public:
+    void render(const Camera&, const Pose&, View&) const override {}
+};
+
 TEST(InformationField, CountsViewsAndHits) {
     InformationField field(growsAlongX, Pose::Identity(), {});
     field.at(bodyAt(1.01, 0.));
@@ -29,6 +34,13 @@ TEST(InformationField, CountsViewsAndHits) {
     EXPECT_EQ(field.cacheHits(), 1U);
     field.clear();
     EXPECT_EQ(field.views() + field.cacheHits(), 0U);
+}
+
+TEST(InformationField, AMapIsReplacedByAMapOnly) {
+    const Camera camera = makeCamera(8, 8, 1.);
+    InformationField field(std::make_shared<Nothing>(), camera, photometricModel(camera, {}),
+                           Pose::Identity(), {});
+    EXPECT_THROW(field.update(nullptr, {}), std::invalid_argument);
 }
 
 TEST(InformationField, ValueDoesNotDependOnTheOrderOfQueries) {
