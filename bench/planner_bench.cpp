@@ -18,8 +18,7 @@
 #include <numbers>
 #include <string_view>
 
-#include "planners/belief_rrt_star.hpp"
-#include "planners/perception_rrt_star.hpp"
+#include "planners/planner_table.hpp"
 
 namespace {
 
@@ -51,10 +50,10 @@ struct Bench {
         return definition;
     }
 
-    std::unique_ptr<BeliefPlanner> planner(const std::string& name, std::uint32_t seed,
+    std::shared_ptr<BeliefPlanner> planner(const std::string& name, std::uint32_t seed,
                                            unsigned maxVertices = kVertices) const {
         BeliefOptions options;
-        options.alpha = name == "rrt_star" ? 1. : 0.1;
+        options.alpha = 0.1;
         options.initialCovariance.diagonal() << .1, .1, .05, 1e-5, 1e-5, 1e-4;
         options.motionNoise.diagonal() << 1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-4;
         const auto model = std::make_shared<BeliefModel>(
@@ -65,10 +64,7 @@ struct Bench {
         GrowthOptions growth;
         growth.seed = seed;
         growth.maxVertices = maxVertices;
-        if (name == "belief_rrt_star") {
-            return std::make_unique<BeliefRRTstar>(si, model, SearchOptions{}, growth);
-        }
-        return std::make_unique<PerceptionRRTstar>(si, model, growth);
+        return makePlanner(name, si, model, {}, growth);
     }
 };
 

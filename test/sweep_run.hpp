@@ -20,15 +20,17 @@ struct SampleSweep {
     std::vector<SweepRun> runs;
 
     SampleSweep() {
-        config.planners = {"a", "b", "rrt_star"};
+        config.planners = {"pa_rrt_star", "belief_rrt_star", "rrt_star"};
         config.alphas = {0.05, 0.15};
         config.paper = {{0.15, 40.45, 7.75, 9.25}};
         const double none = std::numeric_limits<double>::quiet_NaN();
-        SweepRun lost = makeRun({"a", 0.15, 2}, none, none, none);
+        SweepRun lost = makeRun({"pa_rrt_star", 0.15, 2}, none, none, none);
         lost.goalTrace = none;
         lost.status = "no path";
-        runs = {makeRun({"a", 0.15, 1}, 3., 10., 0.2), lost, makeRun({"b", 0.05, 1}, 5., 11., 0.3),
-                makeRun({"b", 0.05, 2}, 7., 13., 0.1), makeRun({"rrt_star", 0.15, 1}, 9., 8., 0.4)};
+        runs = {makeRun({"pa_rrt_star", 0.15, 1}, 3., 10., 0.2), lost,
+                makeRun({"belief_rrt_star", 0.05, 1}, 5., 11., 0.3),
+                makeRun({"belief_rrt_star", 0.05, 2}, 7., 13., 0.1),
+                makeRun({"rrt_star", 0.15, 1}, 9., 8., 0.4)};
     }
 };
 

@@ -11,6 +11,7 @@
 #include "figures/top_view.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "planners/planner_table.hpp"
 #include "report/plan_report.hpp"
 #include "sweep/sweep_plan.hpp"
 
@@ -147,7 +148,7 @@ json writeScenario(const Config& config, const World& world, const std::vector<C
 }  // namespace
 
 std::string CompareMethod::label() const {
-    if (planner == "rrt_star") return planner;
+    if (!usesViews(planner)) return planner;
     return planner + ", " + information;
 }
 
@@ -168,12 +169,11 @@ CompareRun runMethod(const Config& config, const World& world, const CompareMeth
                      std::uint32_t seed, const std::atomic<bool>& interrupted) {
     Config own = config;
     own.seed = seed;
-    own.planner = "belief_rrt_star";  // whose cost has the config's alpha: all are judged by it
     own.viewModel.name = method.information;
     if (method.maxVertices > 0) own.vertices = std::min(own.vertices, method.maxVertices);
-    PlanningProblem run(own, world);
-    PlanOutcome outcome = run.solve(method.planner, interrupted, [](const auto&) {});
-    const std::string status = run.statusOf(outcome);
+    PlanningProblem problem(own, world);
+    PlanOutcome outcome = problem.solve(method.planner, interrupted);
+    const std::string status = problem.statusOf(outcome);
     return {method.label(), seed, std::move(outcome), status};
 }
 

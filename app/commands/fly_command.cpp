@@ -11,6 +11,7 @@
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "mapping/tracking_map.hpp"
+#include "planners/planner_table.hpp"
 #include "problem/planned_path.hpp"
 #include "report/fly_report.hpp"
 #include "result/json_values.hpp"
@@ -67,7 +68,7 @@ FlightOptions flightOptions(const Config& config, double resolution) {
 }
 
 /// The config's planner first, then RRT* if it is to be compared with.
-std::vector<FlightSet> planAll(const Config& config, PlanningProblem& run, ProgressLine& line,
+std::vector<FlightSet> planAll(const Config& config, PlanningProblem& problem, ProgressLine& line,
                                const std::atomic<bool>& interrupted) {
     std::vector<FlightSet> sets;
     const auto add = [&](EvaluatedPath path) {
@@ -76,18 +77,18 @@ std::vector<FlightSet> planAll(const Config& config, PlanningProblem& run, Progr
     };
     const auto solve = [&](const std::string& name) {
         line.show("planning: " + name);
-        auto outcome = run.solve(name, interrupted, [&](const PlanProgress& progress) {
+        auto outcome = problem.solve(name, interrupted, [&](const PlanProgress& progress) {
             line.show(fmt::format("planning: {}, {} of {} vertices", name, progress.vertices,
                                   config.vertices));
         });
         if (outcome.path) add(std::move(*outcome.path));
     };
     if (!config.fly.plan.empty()) {
-        add(readPlannedPath(config.fly.plan, run));
+        add(readPlannedPath(config.fly.plan, problem));
     } else {
         solve(config.planner);
     }
-    const bool isCompared = config.compareWithRrtStar && config.planner != "rrt_star";
+    const bool isCompared = config.compareWithRrtStar && usesViews(config.planner);
     if (!sets.empty() && isCompared && !interrupted) solve("rrt_star");
     return sets;
 }
@@ -200,9 +201,9 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
         config.fly.map.empty() ? TrackingMap{} : loadTrackingMap(config.fly.map);
     FlightOptions flight = flightOptions(config, map.resolution());
     const World world(config);
-    PlanningProblem run(config, world);
-    run.checkPlaces();
-    flight.initialCovariance = run.initialCovariance();
+    PlanningProblem problem(config, world, alphaOf(config.planner, config.belief.alpha));
+    problem.checkPlaces();
+    flight.initialCovariance = problem.initialCovariance();
     flight.pilot.isFree = [&world, radius = config.robotRadius](const Eigen::Vector3d& p_w) {
         return world.clearance(p_w) >= radius;
     };
@@ -216,7 +217,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     std::vector<FlightSet> sets;
     {
         ProgressLine line(options.quiet);
-        sets = planAll(config, run, line, interrupted);
+        sets = planAll(config, problem, line, interrupted);
         const FlightWorld flightWorld{
             .truth = world.sharedViews(),
             .map = map.views ? map.views : world.sharedViews(),

@@ -144,15 +144,15 @@ double heightOf(const InfoOptions& options, const Config& config) {
 }
 
 Grids lookAround(const InfoOptions& options, const Config& config, double height, double yaw,
-                 PlanningProblem& run) {
+                 PlanningProblem& problem) {
     ProgressLine line(options.quiet);
     line.show("looking around");
     const Eigen::AlignedBox2d area(config.bounds.min().head<2>(), config.bounds.max().head<2>());
-    const Matrix6& prior = run.initialCovariance();
+    const Matrix6& prior = problem.initialCovariance();
     return {area, height,
-            viewGrid(run, area, height, yaw, options.cells,
+            viewGrid(problem, area, height, yaw, options.cells,
                      [](const Matrix6& gain) { return gain.trace(); }),
-            viewGrid(run, area, height, yaw, options.cells, [&](const Matrix6& gain) {
+            viewGrid(problem, area, height, yaw, options.cells, [&](const Matrix6& gain) {
                 return std::sqrt(updateCovariance(prior, gain).topLeftCorner<3, 3>().trace());
             })};
 }
@@ -175,10 +175,10 @@ int runInfo(const InfoOptions& options) {
     const double height = heightOf(options, config);
     const Place place = placeOf(options, config);
     const World world(config);
-    PlanningProblem run(config, world);
+    PlanningProblem problem(config, world);
     FolderTransaction folder = beginResult(options, "info", {config.sceneFile, config.mapFile});
 
-    const Grids grids = lookAround(options, config, height, place.yaw.value_or(0.), run);
+    const Grids grids = lookAround(options, config, height, place.yaw.value_or(0.), problem);
     const Camera camera = config.camera.camera();
     View view;
     world.views().render(camera, (bodyAt(place) * config.camera.T_b_c()).inverse(), view);

@@ -9,6 +9,7 @@
 #include "commands/result_folder.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
+#include "planners/planner_table.hpp"
 #include "problem/planning_problem.hpp"
 #include "problem/tree_evolution.hpp"
 #include "report/plan_report.hpp"
@@ -53,7 +54,7 @@ std::optional<RecordedComparison> compareWithImages(const Config& config, const 
 }
 
 /// At every 1, 2 and 5 times a power of ten, up to the number of vertices.
-std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, PlanningProblem& run,
+std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, PlanningProblem& problem,
                                     std::size_t vertices, const std::atomic<bool>& interrupted) {
     std::vector<std::size_t> stages;
     for (std::size_t ten = 10; ten < vertices; ten *= 10) {
@@ -65,7 +66,7 @@ std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, Plann
     std::vector<TreeEvolution> evolutions;
     evolutions.reserve(planners.size());
     for (const std::string& planner : planners) {
-        evolutions.push_back(growInStages(run, planner, stages, interrupted));
+        evolutions.push_back(growInStages(problem, planner, stages, interrupted));
     }
     return evolutions;
 }
@@ -76,8 +77,8 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
     const Config config = loadConfig(options.config, options.overrides);
     const World world(config);
-    PlanningProblem run(config, world);
-    run.checkPlaces();
+    PlanningProblem problem(config, world, alphaOf(config.planner, config.belief.alpha));
+    problem.checkPlaces();
     FolderTransaction folder = beginResult(options, "plan", {config.sceneFile, config.mapFile});
     if (!world.hasTexture()) {
         fmt::print(stderr,
@@ -91,24 +92,24 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     {
         ProgressLine line(options.quiet);
         RemainingGrowth growth(config.vertices);
-        outcome = run.solve(config.planner, interrupted, [&](const PlanProgress& progress) {
+        outcome = problem.solve(config.planner, interrupted, [&](const PlanProgress& progress) {
             growth.add(progress);
             line.show(progressText(progress, config.vertices, growth));
         });
-        if (config.compareWithRrtStar && config.planner != "rrt_star" && !interrupted) {
+        if (config.compareWithRrtStar && usesViews(config.planner) && !interrupted) {
             line.show("RRT* for comparison");
-            baseline = run.solve("rrt_star", interrupted).path;
+            baseline = problem.solve("rrt_star", interrupted).path;
         }
     }
     std::vector<TreeEvolution> evolutions;
     if (options.evolution)
-        evolutions = growthOf({"rrt_star", config.planner}, run, config.vertices, interrupted);
+        evolutions = growthOf({"rrt_star", config.planner}, problem, config.vertices, interrupted);
     const bool stopped = interrupted;
     nlohmann::json result = planResult(config, outcome, baseline, stopped);
     const auto recorded = compareWithImages(config, world, outcome);
     if (recorded) result["recorded_frames"] = toJson(*recorded);
     result["time"]["total_s"] = watch.seconds();
-    writePlanReport(folder.path(), config, world, run, outcome, baseline, recorded, evolutions,
+    writePlanReport(folder.path(), config, world, problem, outcome, baseline, recorded, evolutions,
                     options.commandLine, result);
     result["time"]["total_s"] = watch.seconds();
     commitResult(folder, result);

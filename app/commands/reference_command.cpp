@@ -33,9 +33,7 @@ Config loadReferenceConfig(const ReferenceOptions& options) {
     if (options.planners) overrides.push_back("sweep.planners=[" + *options.planners + "]");
     overrides.push_back(fmt::format("planner.vertices={}", options.vertices));
     overrides.push_back(fmt::format("planner.labels={}", options.labels));
-    Config config = loadConfig(options.config, overrides);
-    config.planner = "belief_rrt_star";  // whose cost is the one with the config's alpha
-    return config;
+    return loadConfig(options.config, overrides);
 }
 
 std::vector<Pose> waypointsOf(const EvaluatedPath& path) {
@@ -53,10 +51,10 @@ class Search {
            ReferenceTable& table, const std::atomic<bool>& interrupted)
         : options_(options),
           config_(std::move(config)),
-          run_(config_, world),
+          problem_(config_, world),
           table_(table),
           interrupted_(interrupted) {
-        run_.checkPlaces();
+        problem_.checkPlaces();
     }
 
     /// The path known so far may be of another problem, or not at its best yet.
@@ -69,8 +67,8 @@ class Search {
     }
 
     void plan(const std::string& planner, std::uint32_t seed) {
-        config_.seed = seed;
-        const PlanOutcome outcome = run_.solve(planner, interrupted_, [](const auto&) {});
+        const PlanOutcome outcome =
+            problem_.solve(problem_.makePlanner(planner, seed), interrupted_);
         if (!outcome.path) return;
         descend(waypointsOf(*outcome.path), {.alpha = config_.belief.alpha,
                                              .planner = planner,
@@ -81,8 +79,8 @@ class Search {
 
   private:
     void descend(const std::vector<Pose>& waypoints, ReferencePath path) {
-        const DescentOptions descent{.moves = options_.moves, .seed = config_.seed};
-        const auto descended = run_.descend(waypoints, descent, interrupted_);
+        const DescentOptions descent{.moves = options_.moves, .seed = path.seed};
+        const auto descended = problem_.descend(waypoints, descent, interrupted_);
         if (!descended) return;
         path.cost = descended->cost;
         path.length = descended->length;
@@ -94,7 +92,7 @@ class Search {
 
     const ReferenceOptions& options_;
     Config config_;
-    PlanningProblem run_;
+    PlanningProblem problem_;
     ReferenceTable& table_;
     const std::atomic<bool>& interrupted_;
 };

@@ -100,14 +100,14 @@ TopView topView(const Config& config, const World& world, const PlanOutcome& out
     return view;
 }
 
-HeatMap heatMap(const Config& config, PlanningProblem& run) {
+HeatMap heatMap(const Config& config, PlanningProblem& problem) {
     const double height = config.start.position.z();
     const double yaw = config.start.yaw.value_or(0.);
     HeatMap map;
     map.title = "Information of one view at " + placeText(config, height, yaw);
     map.label = "trace of the Fisher information";
     map.area = areaOf(config);
-    map.values = viewGrid(run, map.area, height, yaw, kHeatMapCells,
+    map.values = viewGrid(problem, map.area, height, yaw, kHeatMapCells,
                           [](const Matrix6& information) { return information.trace(); });
     map.logScale = true;
     return map;
@@ -216,8 +216,8 @@ json planResult(const Config& config, const PlanOutcome& outcome,
 
 namespace {
 
-std::vector<NamedFigure> planFigures(const Config& config, const World& world, PlanningProblem& run,
-                                     const PlanOutcome& outcome,
+std::vector<NamedFigure> planFigures(const Config& config, const World& world,
+                                     PlanningProblem& problem, const PlanOutcome& outcome,
                                      const std::optional<RecordedComparison>& recorded,
                                      const std::vector<DrawnPath>& paths) {
     std::vector<NamedFigure> figures{
@@ -231,7 +231,7 @@ std::vector<NamedFigure> planFigures(const Config& config, const World& world, P
                                 : "Trace of the Fisher information of one view, over the area, "
                                   "with the heading of "
                                   "the start; along the paths the heading changes.",
-                            heatMapFigure(heatMap(config, run)).png()}});
+                            heatMapFigure(heatMap(config, problem)).png()}});
     }
     if (config.bounds.sizes().z() > 0. && world.hasTexture()) {
         figures.push_back(
@@ -274,7 +274,7 @@ ReportData problemReport(const Config& config, const World& world, const std::st
 }
 
 void writePlanReport(const fs::path& folder, const Config& config, const World& world,
-                     PlanningProblem& run, const PlanOutcome& outcome,
+                     PlanningProblem& problem, const PlanOutcome& outcome,
                      const std::optional<EvaluatedPath>& baseline,
                      const std::optional<RecordedComparison>& recorded,
                      const std::vector<TreeEvolution>& evolutions, const std::string& commandLine,
@@ -294,7 +294,7 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
     report.progress = outcome.progress;
 
     std::vector<NamedFigure> figures =
-        planFigures(config, world, run, outcome, recorded, report.paths);
+        planFigures(config, world, problem, outcome, recorded, report.paths);
     if (!evolutions.empty()) {
         const TopView map = topView(config, world, outcome, {});
         figures.push_back(
@@ -324,7 +324,7 @@ void writeResultFolder(const fs::path& folder, ReportData& report,
     writeReport(folder / "report.html", text);
 }
 
-Eigen::ArrayXXd viewGrid(PlanningProblem& run, const Eigen::AlignedBox2d& area, double height,
+Eigen::ArrayXXd viewGrid(PlanningProblem& problem, const Eigen::AlignedBox2d& area, double height,
                          double yaw, int cells,
                          const std::function<double(const Matrix6&)>& value) {
     const double step = area.sizes().maxCoeff() / cells;
@@ -338,8 +338,8 @@ Eigen::ArrayXXd viewGrid(PlanningProblem& run, const Eigen::AlignedBox2d& area, 
         for (int j = 0; j < ny; ++j) {
             T_w_b.translation() << area.min().x() + (i + 0.5) * area.sizes().x() / nx,
                 area.min().y() + (j + 0.5) * area.sizes().y() / ny, height;
-            if (run.isFlyable(T_w_b.translation())) {
-                values(i, j) = value(run.informationAt(T_w_b));
+            if (problem.isFlyable(T_w_b.translation())) {
+                values(i, j) = value(problem.informationAt(T_w_b));
             }
         }
     }

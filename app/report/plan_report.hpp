@@ -24,7 +24,7 @@ nlohmann::json planResult(const Config& config, const PlanOutcome& outcome,
 /// there is a recording to compare with; tree_evolution.png and an animation in the page if there
 /// are evolutions.
 void writePlanReport(const std::filesystem::path& folder, const Config& config, const World& world,
-                     PlanningProblem& run, const PlanOutcome& outcome,
+                     PlanningProblem& problem, const PlanOutcome& outcome,
                      const std::optional<EvaluatedPath>& baseline,
                      const std::optional<RecordedComparison>& recorded,
                      const std::vector<TreeEvolution>& evolutions, const std::string& commandLine,
@@ -62,7 +62,7 @@ std::string placeText(const Config& config, double height, double yaw);
 /// A value of the view from every cell of a horizontal grid; NaN where the robot cannot be.
 /// @param cells about how many along the longer side
 /// @param value of the view's Fisher information (camera frame)
-Eigen::ArrayXXd viewGrid(PlanningProblem& run, const Eigen::AlignedBox2d& area, double height,
+Eigen::ArrayXXd viewGrid(PlanningProblem& problem, const Eigen::AlignedBox2d& area, double height,
                          double yaw, int cells, const std::function<double(const Matrix6&)>& value);
 
 }  // namespace photonav

@@ -78,9 +78,6 @@ struct Config {
     std::uint32_t seed = 1;
 };
 
-/// Names that `planner.name` accepts.
-const std::vector<std::string>& plannerNames();
-
 /// Names that `planner.information` accepts: information about the pose (photometric,
 /// feature_reprojection, none), or a penalty in its place (feature_count, map_uncertainty).
 const std::vector<std::string>& viewModelNames();

@@ -5,6 +5,7 @@
 
 #include "geometry/constants.hpp"
 #include "io/number.hpp"
+#include "planners/planner_table.hpp"
 
 namespace photonav {
 namespace {
@@ -235,12 +236,6 @@ std::optional<double> mountDegrees(const std::string& mount) {
     if (mount == "forward") return 0.;
     const std::optional<double> degrees = numberIn(mount);
     return degrees && std::abs(*degrees) <= 90. ? degrees : std::nullopt;
-}
-
-const std::vector<std::string>& plannerNames() {
-    static const std::vector<std::string> names{"belief_rrt_star", "pa_rrt_star", "rrbt",
-                                                "rrt_star"};
-    return names;
 }
 
 const std::vector<std::string>& viewModelNames() {

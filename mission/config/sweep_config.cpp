@@ -10,6 +10,7 @@
 #include "config/config_keys.hpp"
 #include "geometry/constants.hpp"
 #include "io/number.hpp"
+#include "planners/planner_table.hpp"
 
 namespace photonav {
 namespace {

@@ -42,7 +42,7 @@ PlanSource findPlan(const std::string& argument) {
     return {config.string(), result};
 }
 
-EvaluatedPath readPlannedPath(const fs::path& resultFile, PlanningProblem& run) {
+EvaluatedPath readPlannedPath(const fs::path& resultFile, PlanningProblem& problem) {
     std::ifstream stream(resultFile, std::ios::binary);
     if (!stream) throw InputError(resultFile.string(), "", "cannot be read");
     const json result = json::parse(stream, nullptr, false);
@@ -59,7 +59,7 @@ EvaluatedPath readPlannedPath(const fs::path& resultFile, PlanningProblem& run) 
         throw InputError(resultFile.string(), "path", "not as photonav plan writes it");
     }
     if (waypoints.size() < 2) throw InputError(resultFile.string(), "path", "no path was found");
-    return run.evaluate(result.value("planner", "plan"), waypoints);
+    return problem.evaluate(result.value("planner", "plan"), waypoints);
 }
 
 }  // namespace photonav

@@ -21,6 +21,6 @@ PlanSource findPlan(const std::string& argument);
 
 /// The path of a result.json, judged anew.
 /// @throws InputError naming file and key for a result of another command or without a path
-EvaluatedPath readPlannedPath(const std::filesystem::path& resultFile, PlanningProblem& run);
+EvaluatedPath readPlannedPath(const std::filesystem::path& resultFile, PlanningProblem& problem);
 
 }  // namespace photonav

@@ -11,9 +11,8 @@
 #include "geometry/se3.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
-#include "planners/belief_rrt_star.hpp"
-#include "planners/perception_rrt_star.hpp"
-#include "planners/rrbt.hpp"
+#include "planners/path_descent.hpp"
+#include "planners/planner_table.hpp"
 #include "problem/tree_evolution.hpp"
 
 namespace photonav {
@@ -37,6 +36,11 @@ std::vector<const ob::State*> solutionOf(const BeliefPlanner& planner) {
     return {states.begin(), states.end()};
 }
 
+Config withAlpha(Config config, double alpha) {
+    config.belief.alpha = alpha;
+    return config;
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector2d> EvaluatedPath::fromAbove() const {
@@ -48,8 +52,9 @@ std::vector<Eigen::Vector2d> EvaluatedPath::fromAbove() const {
     return positions;
 }
 
-PlanningProblem::PlanningProblem(const Config& config, const World& world)
-    : config_(config),
+PlanningProblem::PlanningProblem(const Config& config, const World& world,
+                                 std::optional<double> alpha)
+    : config_(withAlpha(config, alpha.value_or(config.belief.alpha))),
       world_(world),
       space_(config.space, config.bounds, config.rotationWeight, config.start.yaw.value_or(0.)),
       si_(makeSpaceInformation(
@@ -58,20 +63,16 @@ PlanningProblem::PlanningProblem(const Config& config, const World& world)
       field_(makeField("photometric")),
       plannersField_(config.viewModel.name == "photometric" ? field_
                                                             : makeField(config.viewModel.name)),
-      evaluator_(makeModel(field_, config.planner == "rrt_star" ? 1. : config.belief.alpha)) {}
+      evaluator_(makeModel(field_)) {}
 
 PlanningProblem::PlanningProblem(const PlanningProblem& other, double alpha)
-    : config_([&] {
-          Config config = other.config_;
-          config.belief.alpha = alpha;
-          return config;
-      }()),
+    : config_(withAlpha(other.config_, alpha)),
       world_(other.world_),
       space_(other.space_),
       si_(other.si_),
       field_(other.field_),
       plannersField_(other.plannersField_),
-      evaluator_(makeModel(field_, alpha)) {}
+      evaluator_(makeModel(field_)) {}
 
 void PlanningProblem::checkPlaces() const {
     checkPlace("start", config_.start);
@@ -103,9 +104,14 @@ std::string PlanningProblem::reasonForNoPath(std::size_t vertices, std::size_t i
 }
 
 PlanOutcome PlanningProblem::solve(const std::string& name, const std::atomic<bool>& interrupted,
-                                   const std::function<void(const PlanProgress&)>& onProgress) {
+                                   const OnPlanProgress& onProgress) {
+    return solve(makePlanner(name), interrupted, onProgress);
+}
+
+PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner,
+                                   const std::atomic<bool>& interrupted,
+                                   const OnPlanProgress& onProgress) {
     const Stopwatch watch;
-    const auto planner = makePlanner(name);
     const BeliefModel& model = planner->model();
     PlanOutcome outcome;
     const auto progress = [&] {
@@ -150,23 +156,15 @@ PlanOutcome PlanningProblem::solve(const std::string& name, const std::atomic<bo
     return outcome;
 }
 
-std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& name) const {
+std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(
+    const std::string& name, std::optional<std::uint32_t> seed) const {
     GrowthOptions growth = config_.growth;
-    growth.seed = config_.seed;
+    growth.seed = seed.value_or(config_.seed);
     growth.obstacleReach = config_.robotRadius;
     growth.maxVertices = config_.vertices;
     growth.maxIterations = kMaxSamples * config_.vertices;
-    const auto model = makeModel(plannersField_, name == "rrt_star" ? 1. : config_.belief.alpha);
-    std::shared_ptr<BeliefPlanner> planner;
-    if (name == "belief_rrt_star") {
-        planner = std::make_shared<BeliefRRTstar>(si_, model, config_.search, growth);
-    } else if (name == "rrbt") {
-        planner = std::make_shared<RRBT>(si_, model, growth);
-    } else if (name == "pa_rrt_star" || name == "rrt_star") {
-        planner = std::make_shared<PerceptionRRTstar>(si_, model, growth);
-    } else {
-        throw std::invalid_argument("no planner named " + name);
-    }
+    auto planner =
+        photonav::makePlanner(name, si_, makeModel(plannersField_), config_.search, growth);
     planner->setProblemDefinition(definition());
     planner->setup();
     return planner;
@@ -195,10 +193,9 @@ std::shared_ptr<InformationField> PlanningProblem::makeField(const std::string& 
     return field(photometricModel(camera, config_.photometric));
 }
 
-std::shared_ptr<BeliefModel> PlanningProblem::makeModel(std::shared_ptr<InformationField> field,
-                                                        double alpha) const {
+std::shared_ptr<BeliefModel> PlanningProblem::makeModel(
+    std::shared_ptr<InformationField> field) const {
     BeliefOptions options = config_.belief;
-    options.alpha = alpha;
     if (field->hasPenalties()) options.kappa = config_.viewModel.kappa;
     return std::make_shared<BeliefModel>(space_, std::move(field), options);
 }
@@ -238,6 +235,12 @@ std::optional<EvaluatedPath> PlanningProblem::descend(const std::vector<Pose>& w
 
 EvaluatedPath PlanningProblem::evaluate(const BeliefPlanner& planner) {
     return evaluate(planner.getName(), solutionOf(planner));
+}
+
+EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
+                                        ompl::geometric::PathGeometric& path) {
+    const auto& states = path.getStates();
+    return evaluate(planner, std::vector<const ob::State*>(states.begin(), states.end()));
 }
 
 EvaluatedPath PlanningProblem::evaluate(const std::string& planner,

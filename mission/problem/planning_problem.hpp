@@ -2,6 +2,8 @@
 // From a config to a planner, and to a path with beliefs.
 #pragma once
 
+#include <ompl/geometric/PathGeometric.h>
+
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -18,7 +20,7 @@ namespace photonav {
 struct EvaluatedPath {
     std::string planner;
     std::vector<BeliefPoint> points;
-    double cost = 0.;       ///< with the config's alpha and kappa
+    double cost = 0.;       ///< with the problem's alpha, and the config's kappa
     double length = 0.;     ///< of the positions [m]
     double meanTrace = 0.;  ///< integral of the trace over the distance flown, divided by it
     double goalTrace = 0.;  ///< after the last view
@@ -34,6 +36,8 @@ struct PlanProgress {
     double cost = 0.;  ///< the planner's own; infinite: no path yet
     std::size_t views = 0;
 };
+
+using OnPlanProgress = std::function<void(const PlanProgress&)>;
 
 using TreeSegment = std::array<Eigen::Vector3f, 2>;  ///< end points in w [m]
 
@@ -62,7 +66,9 @@ inline const std::atomic<bool> kNotInterrupted{false};
 class PlanningProblem {
   public:
     /// @param world must outlive it
-    PlanningProblem(const Config& config, const World& world);
+    /// @param alpha of the cost; default: the config's, whatever its planner. The cost that the
+    ///        planner of a config minimises, for rrt_star the length, has alphaOf(its name, ...).
+    PlanningProblem(const Config& config, const World& world, std::optional<double> alpha = {});
     /// The same problem with another trade-off, over the same views.
     PlanningProblem(const PlanningProblem& other, double alpha);
 
@@ -73,7 +79,12 @@ class PlanningProblem {
     /// @param onProgress called now and then while planning
     PlanOutcome solve(const std::string& planner,
                       const std::atomic<bool>& interrupted = kNotInterrupted,
-                      const std::function<void(const PlanProgress&)>& onProgress = {});
+                      const OnPlanProgress& onProgress = {});
+    /// Grows a planner of makePlanner() as far as its parameters allow: a new one, or once more one
+    /// that was told of a change.
+    PlanOutcome solve(const std::shared_ptr<BeliefPlanner>& planner,
+                      const std::atomic<bool>& interrupted = kNotInterrupted,
+                      const OnPlanProgress& onProgress = {});
 
     /// "done", or why there is no path.
     std::string statusOf(const PlanOutcome& outcome) const;
@@ -100,16 +111,17 @@ class PlanningProblem {
     const ompl::base::SpaceInformationPtr& spaceInformation() const { return si_; }
     /// Start and goal.
     ompl::base::ProblemDefinitionPtr definition() const;
+    const FlightSpace& space() const { return space_; }
     /// A planner that is set up for it.
     /// @param name one of plannerNames() @throws std::invalid_argument for any other
-    std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name) const;
-    /// Beliefs of these options over the photometric views of this problem.
-    std::shared_ptr<BeliefModel> makeBeliefs(const BeliefOptions& options) const {
-        return std::make_shared<BeliefModel>(space_, field_, options);
-    }
+    /// @param seed default: the config's
+    std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
+                                               std::optional<std::uint32_t> seed = {}) const;
     const Config& config() const { return config_; }
     /// Evaluates the solution of a planner that has one.
     EvaluatedPath evaluate(const BeliefPlanner& planner);
+    /// Evaluates a path of any planner of OMPL.
+    EvaluatedPath evaluate(const std::string& planner, ompl::geometric::PathGeometric& path);
     /// Clears the cached views. Planners made before must be cleared, or not be used again.
     void forgetViews() {
         field_->clear();
@@ -119,8 +131,7 @@ class PlanningProblem {
   private:
     void checkPlace(const std::string& key, const Place& place) const;
     std::shared_ptr<InformationField> makeField(const std::string& viewModel) const;
-    std::shared_ptr<BeliefModel> makeModel(std::shared_ptr<InformationField> field,
-                                           double alpha) const;
+    std::shared_ptr<BeliefModel> makeModel(std::shared_ptr<InformationField> field) const;
     EvaluatedPath evaluate(const std::string& planner,
                            const std::vector<const ompl::base::State*>& path);
 

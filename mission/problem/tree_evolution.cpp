@@ -7,10 +7,10 @@
 
 namespace photonav {
 namespace ob = ompl::base;
-TreeEvolution growInStages(PlanningProblem& run, const std::string& name,
+TreeEvolution growInStages(PlanningProblem& problem, const std::string& name,
                            const std::vector<std::size_t>& vertices,
                            const std::atomic<bool>& interrupted) {
-    const auto planner = run.makePlanner(name);
+    const auto planner = problem.makePlanner(name);
     const FlightSpace& space = planner->model().space();
     TreeEvolution evolution{planner->getName(), {}};
     for (const std::size_t stop : vertices) {
@@ -24,7 +24,7 @@ TreeEvolution growInStages(PlanningProblem& run, const std::string& name,
         for (const ob::State* state : path->as<ompl::geometric::PathGeometric>()->getStates()) {
             stage.path.push_back(space.position(state));
         }
-        stage.cost = run.evaluate(*planner).cost;
+        stage.cost = problem.evaluate(*planner).cost;
     }
     return evolution;
 }

@@ -23,8 +23,8 @@ struct TreeEvolution {
 
 /// Grows a planner in stages with these numbers of vertices (in rising order). solve() ends at
 /// every stage, and belief_rrt_star then searches its roadmap. Its last stage therefore differs
-/// slightly from a run without stages.
-TreeEvolution growInStages(PlanningProblem& run, const std::string& planner,
+/// slightly from a problem without stages.
+TreeEvolution growInStages(PlanningProblem& problem, const std::string& planner,
                            const std::vector<std::size_t>& vertices,
                            const std::atomic<bool>& interrupted);
 

@@ -163,9 +163,7 @@ BenchmarkOutcome benchmarkPlanners(const Config& config, const World& world,
                                    const BenchmarkLimits& limits,
                                    const std::atomic<bool>& interrupted,
                                    const std::function<void(const SweepItem&)>& onRun) {
-    Config own = config;
-    own.planner = "belief_rrt_star";  // whose cost is the one with the config's alpha
-    return Session(own, world, interrupted, onRun).run(limits);
+    return Session(config, world, interrupted, onRun).run(limits);
 }
 
 }  // namespace photonav

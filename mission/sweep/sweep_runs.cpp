@@ -17,7 +17,6 @@ std::optional<SweepRun> runItem(const Config& config, const World& world, const 
     Config own = config;
     own.belief.alpha = item.alpha;
     own.seed = item.seed;
-    own.planner = "belief_rrt_star";  // whose cost is the one with this alpha
     PlanningProblem plan(own, world);
     const PlanOutcome outcome = plan.solve(item.planner, interrupted);
     if (interrupted) return std::nullopt;

@@ -11,6 +11,7 @@
 #include "geometry/constants.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
+#include "planners/planner_table.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
@@ -18,9 +19,6 @@ using nlohmann::json;
 namespace {
 
 constexpr double kSameAlpha = 1e-6;
-
-/// Whether a planner uses the information of views, as those of the published tables do.
-bool usesViews(const std::string& planner) { return planner != "rrt_star"; }
 
 std::vector<std::string> fieldsOf(std::string line) {
     if (line.ends_with('\r')) line.pop_back();

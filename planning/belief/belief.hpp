@@ -114,6 +114,7 @@ class BeliefModel {
     const FlightSpace& space() const { return space_; }
     const BeliefOptions& options() const { return options_; }
     InformationField& field() const { return *field_; }
+    const std::shared_ptr<InformationField>& sharedField() const { return field_; }
 
     std::size_t fallbacks() const { return fallbacks_; }  ///< steps for which fourth order failed
     double seconds() const { return seconds_; }           ///< spent in propagate(), views excluded

@@ -121,7 +121,8 @@ double BeliefPlanner::secondsLeft() const {
 
 bool BeliefPlanner::isGrown() const {
     return (growth_.maxVertices > 0 && vertices() >= growth_.maxVertices) ||
-           (growth_.maxIterations > 0 && iterations_ >= growth_.maxIterations) ||
+           (growth_.maxIterations > 0 &&
+            iterations_ - iterationsAtChange_ >= growth_.maxIterations) ||
            (deadline_ && secondsLeft() <= std::min(timeToFinish(), kMaxFinishShare * budget_));
 }
 
@@ -270,7 +271,7 @@ void BeliefPlanner::clear() {
     best_ = {kInfinity, {}};
     sampler_.reset();
     if (neighbours_) neighbours_->clear();
-    iterations_ = 0;
+    iterations_ = iterationsAtChange_ = 0;
     goalSamples_.clear();
     unused_.clear();
     movedRoot_.reset();

@@ -27,8 +27,8 @@ struct GrowthOptions {
     double goalBias = 0.05;     ///< share of samples drawn at the goal until it is reached
     double rewireFactor = 1.1;  ///< on the connection radius of Karaman and Frazzoli 2011
     std::uint32_t seed = 1;     ///< of everything random in the planner
-    /// Growth ends with this number of vertices, or of samples; then finish() is called. 0: no
-    /// limit but the termination condition.
+    /// Growth ends with this number of vertices, or of samples since the map or the root last
+    /// changed; then finish() is called. 0: no limit but the termination condition.
     unsigned maxVertices = 0;
     std::size_t maxIterations = 0;
     /// Obstacles farther away than this do not matter: the robot's radius, or more if the validity
@@ -210,6 +210,7 @@ class BeliefPlanner : public ompl::base::Planner {
     std::optional<Clock::time_point> deadline_;
     double budget_ = 0.;  // of the solve() that has a deadline [s]
     std::size_t iterations_ = 0;
+    std::size_t iterationsAtChange_ = 0;      // of the map or the root, the last one
     std::vector<const Vertex*> goalSamples_;  // vertices that were sampled at a goal
     std::vector<Vertex*> unused_;             // removed, to be used again
     Progress progress_;

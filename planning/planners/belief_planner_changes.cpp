@@ -20,6 +20,7 @@ double distanceToLeg(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const E
 
 void BeliefPlanner::mapChanged(const MapChange& change) {
     if (change.empty() || roots_.empty()) return;
+    iterationsAtChange_ = iterations_;
     removeColliding(ChangedSpace(change, growth_.obstacleReach));
     if (!movedRoot_) {  // the views from the starts may have changed
         for (Root& root : roots_) root.belief = rootBelief(root.vertex->state);
@@ -49,6 +50,7 @@ bool BeliefPlanner::isRoot(const Vertex& vertex) const {
 
 void BeliefPlanner::moveRoot(const ob::State* state, const Belief& belief) {
     checkValidity();
+    iterationsAtChange_ = iterations_;
     setStartOfProblem(state);
     Vertex probe;
     probe.state = const_cast<ob::State*>(state);

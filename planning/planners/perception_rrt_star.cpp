@@ -2,6 +2,7 @@
 #include "planners/perception_rrt_star.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "geometry/constants.hpp"
@@ -10,9 +11,13 @@ namespace photonav {
 
 PerceptionRRTstar::PerceptionRRTstar(const ompl::base::SpaceInformationPtr& si,
                                      const std::shared_ptr<BeliefModel>& model,
-                                     const GrowthOptions& growth)
-    : BeliefPlanner(si, model, model->options().alpha == 1. ? "rrt_star" : "pa_rrt_star", growth),
-      shortestPath_(model->options().alpha == 1.) {}
+                                     const GrowthOptions& growth, Minimises minimises)
+    : BeliefPlanner(si, model, minimises == Minimises::length ? "rrt_star" : "pa_rrt_star", growth),
+      shortestPath_(minimises == Minimises::length) {
+    if (shortestPath_ && model->options().alpha != 1.) {
+        throw std::invalid_argument("rrt_star: alpha must be 1");
+    }
+}
 
 void PerceptionRRTstar::addRoot(const Root& root) {
     tree_.resize(vertices_.size());

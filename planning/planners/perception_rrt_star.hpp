@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's Algorithm 1, and RRT* as its special case alpha = 1.
+// The paper's Algorithm 1, and RRT* as its special case without beliefs.
 #pragma once
 
 #include "planners/belief_planner.hpp"
@@ -7,12 +7,16 @@
 namespace photonav {
 
 /// Perception-aware RRT* as published (Algorithm 1): one belief per vertex, the parent with the
-/// least cost-to-come, rewiring with the beliefs of all descendants brought up to date. Where
-/// alpha = 1 no belief matters: it is the standard RRT*, and no view is ever rendered.
+/// least cost-to-come, rewiring with the beliefs of all descendants brought up to date. Minimising
+/// the length alone it is the standard RRT*, named rrt_star: no view is ever rendered.
 class PerceptionRRTstar : public BeliefPlanner {
   public:
+    enum class Minimises { lengthAndUncertainty, length };
+
+    /// @throws std::invalid_argument for the length alone unless alpha = 1
     PerceptionRRTstar(const ompl::base::SpaceInformationPtr& si,
-                      const std::shared_ptr<BeliefModel>& model, const GrowthOptions& growth = {});
+                      const std::shared_ptr<BeliefModel>& model, const GrowthOptions& growth = {},
+                      Minimises minimises = Minimises::lengthAndUncertainty);
 
     void clear() override;
     std::vector<TreeNode> tree() const override;
@@ -58,7 +62,7 @@ class PerceptionRRTstar : public BeliefPlanner {
     Branch& at(const Vertex& vertex) { return tree_[vertex.index]; }
     const Belief& belief(const Vertex& vertex) const { return tree_[vertex.index].belief; }
 
-    bool shortestPath_;        // alpha = 1
+    bool shortestPath_;        // no beliefs
     std::deque<Branch> tree_;  // by vertex
 };
 

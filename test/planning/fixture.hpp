@@ -12,6 +12,7 @@
 #include "planners/audit.hpp"
 #include "planners/belief_rrt_star.hpp"
 #include "planners/perception_rrt_star.hpp"
+#include "planners/planner_table.hpp"
 #include "planners/rrbt.hpp"
 
 namespace photonav::test {
@@ -79,26 +80,16 @@ struct Problem {
         return definition;
     }
 
-    /// "rrt_star", "pa_rrt_star", "rrbt" or "belief_rrt_star", set up on this problem.
+    /// One of plannerNames(), set up on this problem.
     std::shared_ptr<BeliefPlanner> planner(const std::string& name, unsigned labels = 5) const {
-        Problem problem = *this;
-        if (name == "rrt_star") problem.belief.alpha = 1.;
-        return planner(name, labels, problem.model());
+        return planner(name, labels, model());
     }
 
     /// The same with a model of its own.
     std::shared_ptr<BeliefPlanner> planner(const std::string& name, unsigned labels,
                                            const std::shared_ptr<BeliefModel>& model) const {
         const auto si = spaceInformation();
-        std::shared_ptr<BeliefPlanner> planner;
-        if (name == "belief_rrt_star") {
-            planner =
-                std::make_shared<BeliefRRTstar>(si, model, SearchOptions{.labels = labels}, growth);
-        } else if (name == "rrbt") {
-            planner = std::make_shared<RRBT>(si, model, growth);
-        } else {
-            planner = std::make_shared<PerceptionRRTstar>(si, model, growth);
-        }
+        auto planner = makePlanner(name, si, model, {.labels = labels}, growth);
         planner->setProblemDefinition(definition(si));
         planner->setup();
         return planner;

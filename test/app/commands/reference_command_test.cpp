@@ -28,5 +28,25 @@ TEST(ReferenceCommand, NeverMakesItsTableWorse) {
     EXPECT_NE(wrong.output.find("no_such_planner"), std::string::npos);
 }
 
+TEST(ReferenceCommand, EveryRunHasItsOwnSeed) {
+    const test::TemporaryFolder folder;
+    const auto costOf = [&](const std::string& runs) {
+        const std::string file = folder.file("table.csv");
+        const std::string command = fmt::format(
+            "reference {} --alpha 0.5 --vertices 150 --labels 2 --moves 0 --planners "
+            "belief_rrt_star --set planner.view_pitch=0.5 --set planner.shortcut=0 --from-scratch "
+            "--file {} --quiet {}",
+            config("two_textures"), file, runs);
+        EXPECT_EQ(photonav(command).exitCode, 0);
+        ReferenceTable table(file);
+        table.read();
+        return table.at(0.5)->cost;
+    };
+    const double first = costOf("--runs 1 --set seed=2");
+    const double second = costOf("--runs 1 --set seed=3");
+    ASSERT_LT(second, first);
+    EXPECT_EQ(costOf("--runs 2 --set seed=2"), second);
+}
+
 }  // namespace
 }  // namespace photonav

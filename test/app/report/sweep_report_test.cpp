@@ -17,12 +17,12 @@ TEST(SweepTables, PutThePaperBesideOurs) {
     const auto cells = summarize(config, runs, {});
     const std::string table = sweepTable(config, cells);
     EXPECT_NE(table.find("40.45"), std::string::npos) << table;
-    EXPECT_EQ(table.find("paper", table.find("rrt_star")), std::string::npos) << table;
+    EXPECT_EQ(table.find("paper", table.find("\nrrt_star")), std::string::npos) << table;
     EXPECT_NE(table.find("(traces in 0.01 "), std::string::npos) << table;
     // Without a published table: the unit that the smallest trace, 1.5e-5, can be read in.
     config.paper.clear();
-    const std::string small =
-        sweepTable(config, summarize(config, {makeRun({"a", 0.15, 1}, 3., 10., 3e-5)}, {}));
+    const std::string small = sweepTable(
+        config, summarize(config, {makeRun({"pa_rrt_star", 0.15, 1}, 3., 10., 3e-5)}, {}));
     EXPECT_NE(small.find("(traces in 0.0001 "), std::string::npos) << small;
     EXPECT_NE(small.find(" 0.15 "), std::string::npos) << small;
 }
@@ -36,18 +36,20 @@ TEST(SweepFigures, TheFrontHoldsWhatNothingBeats) {
         c.columns = {{"length", {length, 0.}}, {"mean_trace", {trace, 0.}}};
         return c;
     };
-    const std::vector<SweepCell> cells{cell("a", .1, 12., .1), cell("a", .5, 11., .2),
-                                       cell("a", .7, 11.5, .3), cell("b", .5, 1., .01),
-                                       cell("a", .9, 9., .4)};
-    EXPECT_EQ(paretoFront("a", cells), (std::vector<std::size_t>{4, 1, 0}));
+    const std::vector<SweepCell> cells{
+        cell("pa_rrt_star", .1, 12., .1), cell("pa_rrt_star", .5, 11., .2),
+        cell("pa_rrt_star", .7, 11.5, .3), cell("belief_rrt_star", .5, 1., .01),
+        cell("pa_rrt_star", .9, 9., .4)};
+    EXPECT_EQ(paretoFront("pa_rrt_star", cells), (std::vector<std::size_t>{4, 1, 0}));
 }
 
 TEST(SweepFigures, TheCheapestPathOfEveryAlphaIsDrawn) {
-    SweepRun better = makeRun({"a", 0.5, 2}, 1., 9., 0.1);
+    SweepRun better = makeRun({"pa_rrt_star", 0.5, 2}, 1., 9., 0.1);
     better.path = {{0., 0., 2.}, {3., 4., 2.}};
-    const auto paths = pathsByAlpha(
-        "a", {makeRun({"a", 0.5, 1}, 2., 9., 0.1), better, makeRun({"b", 0.5, 1}, 0.5, 9., 0.1),
-              makeRun({"a", 0.1, 1}, 2., 9., 0.1)});
+    const auto paths =
+        pathsByAlpha("pa_rrt_star", {makeRun({"pa_rrt_star", 0.5, 1}, 2., 9., 0.1), better,
+                                     makeRun({"belief_rrt_star", 0.5, 1}, 0.5, 9., 0.1),
+                                     makeRun({"pa_rrt_star", 0.1, 1}, 2., 9., 0.1)});
     ASSERT_EQ(paths.size(), 2U);
     EXPECT_EQ(paths[0].name, "alpha 0.1");
     EXPECT_DOUBLE_EQ(paths[1].points.back().distance, 5.);

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "planners/planner_table.hpp"
+#include "temporary_folder.hpp"
+
 namespace photonav {
 namespace {
 
@@ -46,7 +49,9 @@ TEST(PlanningProblem, EveryNamedPlannerIsMadeAndNoOther) {
     for (const std::string& name : plannerNames()) {
         EXPECT_EQ(problem.makePlanner(name)->getName(), name);
     }
-    EXPECT_THROW(problem.makePlanner("prm"), std::invalid_argument);
+    EXPECT_EQ(
+        test::messageOf<std::invalid_argument>([&] { problem.makePlanner("prm"); }),
+        "no planner is named prm; the names are belief_rrt_star, pa_rrt_star, rrbt, rrt_star");
 }
 
 TEST(World, HoldsWhatItWasMadeOf) {

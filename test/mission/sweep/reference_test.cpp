@@ -27,7 +27,7 @@ ReferenceTable referenceOf(const std::string& name) {
     return table;
 }
 
-Config problem(const std::string& name, double alpha) {
+Config loadProblem(const std::string& name, double alpha) {
     return loadConfig(config(name), {fmt::format("planner.alpha={}", alpha)});
 }
 
@@ -37,12 +37,12 @@ TEST(Reference, CoversEveryCellAndItsPathsCostWhatItSays) {
         const ReferenceTable table = referenceOf(name);
         EXPECT_EQ(table.alphas().size(), 10U);
         for (const double alpha : {0.05, 0.25, 0.75}) {
-            const Config config = problem(name, alpha);
+            const Config config = loadProblem(name, alpha);
             const World world(config);
-            PlanningProblem run(config, world);
+            PlanningProblem problem(config, world);
             const ReferencePath* reference = table.at(alpha);
             ASSERT_NE(reference, nullptr);
-            const auto path = run.descend(reference->waypoints, {.moves = 0}, interrupted);
+            const auto path = problem.descend(reference->waypoints, {.moves = 0}, interrupted);
             ASSERT_TRUE(path.has_value());
             EXPECT_NEAR(path->cost, reference->cost, 1e-6 * reference->cost);
             EXPECT_NEAR(path->length, reference->length, 1e-4 * reference->length);
@@ -54,16 +54,14 @@ TEST(Reference, CoversEveryCellAndItsPathsCostWhatItSays) {
 
 /// Fewer vertices and seeds than promised for the whole table, to be quick.
 TEST(Reference, TheDefaultPlannerComesWithinHalfAPercent) {
-    const std::atomic<bool> interrupted = false;
     for (const auto& [name, alpha] : {std::pair{"two_textures", 0.45}, {"stripes", 0.25}}) {
-        Config config = problem(name, alpha);
+        Config config = loadProblem(name, alpha);
         config.vertices = 1200;
         const World world(config);
-        PlanningProblem run(config, world);
+        PlanningProblem problem(config, world);
         double mean = 0.;
         for (const std::uint32_t seed : {101U, 102U}) {
-            config.seed = seed;
-            mean += 0.5 * run.solve("belief_rrt_star", interrupted, [](const auto&) {}).path->cost;
+            mean += 0.5 * problem.solve(problem.makePlanner("belief_rrt_star", seed)).path->cost;
         }
         EXPECT_LT(mean, 1.005 * referenceOf(name).at(alpha)->cost) << name;
     }

@@ -275,9 +275,10 @@ TEST_F(SweepFiles, ReferencesGiveTheExcess) {
     const std::string file = (folder_ / "best.csv").string();
     std::ofstream(file) << "alpha,cost,length,planner\n0.05,2.5,12,a\n0.15,4,11,b\n";
     const ReferenceCosts reference(file);
-    EXPECT_NEAR(reference.excess(makeRun({"a", 0.15, 1}, 4.4, 0., 0.)), 0.1, 1e-12);
-    EXPECT_TRUE(std::isnan(reference.excess(makeRun({"a", 0.25, 1}, 4.4, 0., 0.))));
-    EXPECT_TRUE(std::isnan(ReferenceCosts().excess(makeRun({"a", 0.15, 1}, 4.4, 0., 0.))));
+    EXPECT_NEAR(reference.excess(makeRun({"pa_rrt_star", 0.15, 1}, 4.4, 0., 0.)), 0.1, 1e-12);
+    EXPECT_TRUE(std::isnan(reference.excess(makeRun({"pa_rrt_star", 0.25, 1}, 4.4, 0., 0.))));
+    EXPECT_TRUE(
+        std::isnan(ReferenceCosts().excess(makeRun({"pa_rrt_star", 0.15, 1}, 4.4, 0., 0.))));
     std::ofstream(file) << "alpha,length\n0.05,2.5\n";
     EXPECT_NE(reasonOf([&] { ReferenceCosts r(file); }).find("no column cost"), std::string::npos);
     std::ofstream(file) << "alpha,cost\n0.05\n";
@@ -298,7 +299,7 @@ TEST(SweepTables, HaveThePapersRowBesideOurs) {
     EXPECT_DOUBLE_EQ(first["paper_mean_trace"].get<double>(), 0.0775);  // printed x100
     EXPECT_DOUBLE_EQ(first["paper_goal_trace"].get<double>(), 0.0925);
     const auto second = toJson(cells[1]);
-    EXPECT_EQ(second["planner"], "b");
+    EXPECT_EQ(second["planner"], "belief_rrt_star");
     EXPECT_EQ(second["length_mean"], 12.);
     EXPECT_DOUBLE_EQ(second["length_std"].get<double>(), std::sqrt(2.));
     EXPECT_TRUE(second["paper_length"].is_null());

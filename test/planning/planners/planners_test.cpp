@@ -281,6 +281,25 @@ TEST_P(EveryPlanner, AStartInCollisionIsAnInvalidStart) {
     EXPECT_EQ(grow(*planner, 100), ob::PlannerStatus::INVALID_START);
 }
 
+/// The limit on samples is to end the search for a path that does not exist, not a long flight.
+TEST_P(EveryPlanner, GrowsAgainAfterAChange) {
+    const Problem problem;
+    const auto planner = problem.planner(GetParam());
+    planner->params().setParam("max_iterations", "100");
+    const ob::PlannerTerminationCondition never([] { return false; });
+    planner->solve(never);
+    planner->solve(never);
+    EXPECT_EQ(planner->iterations(), 100U);
+    ob::ScopedState<> ahead(planner->getSpaceInformation());
+    problem.space().setState(ahead.get(), problem.start + Vector3d(0., 0.3, 0.), 0.);
+    planner->moveRoot(ahead.get(), {problem.belief.initialCovariance, 0.});
+    planner->solve(never);
+    EXPECT_EQ(planner->iterations(), 200U);
+    planner->mapChanged({.resolution = 0.1, .occupancy = {Eigen::Array3i(-100, 0, 0)}});
+    planner->solve(never);
+    EXPECT_EQ(planner->iterations(), 300U);
+}
+
 TEST(RRTstar, NeverRendersAView) {
     const auto planner = Problem{}.planner("rrt_star");
     grow(*planner, 300);
@@ -315,6 +334,19 @@ TEST(RRTstar, AgreesWithOmplOnPathLength) {
         ompls += reference.bestCost().value() / seeds;
     }
     EXPECT_NEAR(ours / ompls, 1., 0.015) << ours << " m against " << ompls << " m";
+}
+
+TEST(PerceptionRRTstar, KeepsItsBeliefsWhereOnlyTheLengthCounts) {
+    Problem problem;
+    problem.belief.alpha = 1.;
+    const auto aware = problem.planner("pa_rrt_star");
+    const auto shortest = problem.planner("rrt_star");
+    grow(*aware, 300);
+    grow(*shortest, 300);
+    EXPECT_EQ(aware->getName(), "pa_rrt_star");
+    EXPECT_GT(aware->model().field().views(), 0U);
+    EXPECT_TRUE(aware->tree().back().covariance.has_value());
+    EXPECT_DOUBLE_EQ(aware->bestCost(), shortest->bestCost());
 }
 
 TEST(PerceptionRRTstar, GoesOutOfItsWayForCertainty) {
