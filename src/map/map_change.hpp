@@ -23,11 +23,12 @@ struct MapChange {
     /// Bricks in which a cell became known, free or occupied.
     std::vector<Eigen::Array3i> occupancy{};
     /// Bricks in which the grey value of an occupied cell's face changed by more than
-    /// FusionOptions::greyTolerance since the brick was last listed here. All other changes of grey
-    /// values are smaller.
+    /// FusionOptions::greyTolerance, or a surface in it by more than surfaceTolerance, since the
+    /// brick was last listed here. All other changes of what views show are smaller.
     std::vector<Eigen::Array3i> texture{};
-    /// Bricks in which the grey value of an occupied cell's face changed at all, at the 16 bits of
-    /// a VoxelRenderer. Contains all bricks of `texture`, if the change comes from fuse().
+    /// Bricks in which the grey value of an occupied cell's face, or a surface in it, changed at
+    /// all, as exactly as a VoxelRenderer shows them. Contains all bricks of `texture`, if the
+    /// change comes from fuse().
     std::vector<Eigen::Array3i> anyTexture{};
 
     bool empty() const { return occupancy.empty() && texture.empty() && anyTexture.empty(); }

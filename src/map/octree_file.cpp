@@ -18,6 +18,10 @@ using Node = TexturedOcTreeNode;
 const std::string kOtLine = "# Octomap OcTree file";
 const std::string kBtLine = "# Octomap OcTree binary file";
 
+// Version 2 has the surfaces inside cells. A comment, since OctoMap knows no such key.
+constexpr int kVersion = 2;
+const std::string kVersionLine = "# photonav map, version ";
+
 // ---- Reading -------------------------------------------------------------------------------
 
 struct Header {
@@ -25,6 +29,7 @@ struct Header {
     std::string id;
     std::size_t nodes = 0;
     double resolution = 0.;
+    int version = 1;
 };
 
 Header readHeader(std::istream& stream, const std::string& file) {
@@ -36,6 +41,10 @@ Header readHeader(std::istream& stream, const std::string& file) {
         throw InputError(file, "", "not an OctoMap file (.ot or .bt)");
     }
     while (std::getline(stream, line) && line != "data") {
+        if (line.starts_with(kVersionLine)) {
+            std::istringstream(line.substr(kVersionLine.size())) >> header.version;
+            continue;
+        }
         std::istringstream words(line);
         std::string key;
         words >> key;
@@ -46,6 +55,10 @@ Header readHeader(std::istream& stream, const std::string& file) {
     if (!stream) throw InputError(file, "", "cut short inside its header");
     if (!(header.resolution > 0.) || !std::isfinite(header.resolution)) {
         throw InputError(file, "res", "the resolution must be positive");
+    }
+    if (header.version < 1 || header.version > kVersion) {
+        throw InputError(file, "version",
+                         "unknown; this program reads versions 1 to " + std::to_string(kVersion));
     }
     return header;
 }
@@ -117,7 +130,19 @@ class NodeReader {
     TexturedOcTree& map_;
 };
 
-void readTextured(NodeReader& reader, Node& node) {
+void readSurfaces(NodeReader& reader, Node& node) {
+    const auto inside = reader.read<std::uint8_t>();
+    for (unsigned f = 0; f < 6; ++f) {
+        if ((inside >> f & 1U) == 0) continue;
+        const auto surface = node.surfaces.obtain(f) = reader.read<FaceSurface>();
+        if (!(surface.weight > 0.F) || !std::isfinite(surface.weight)) {
+            reader.fail("damaged: the weight of a surface is not positive");
+        }
+    }
+    node.surfaces.refreshShown();
+}
+
+void readTextured(NodeReader& reader, Node& node, int version) {
     node.setLogOdds(reader.read<float>());
     const auto observed = reader.read<std::uint8_t>();
     for (unsigned f = 0; f < 6; ++f) {
@@ -128,6 +153,9 @@ void readTextured(NodeReader& reader, Node& node) {
             reader.fail("damaged: the grey value of a face is not in [0, 1]");
         }
     }
+    if ((observed >> 6U) == 0) return;
+    if (observed >> 7U != 0 || version < 2) reader.fail("damaged: a node has unknown contents");
+    readSurfaces(reader, node);
 }
 
 void readOccupancy(NodeReader& reader, Node& node) { node.setLogOdds(reader.read<float>()); }
@@ -144,6 +172,7 @@ void readColored(NodeReader& reader, Node& node) {
 void clearInnerFaces(TexturedOcTree& map, Node& node) {
     if (!map.nodeHasChildren(&node)) return;
     node.faces = {};
+    node.surfaces.clear();
     for (unsigned i = 0; i < 8; ++i) {
         if (map.nodeChildExists(&node, i)) clearInnerFaces(map, *map.getNodeChild(&node, i));
     }
@@ -156,6 +185,7 @@ void writeHeader(std::ostream& stream, const std::string& firstLine, const std::
     stream.precision(std::numeric_limits<double>::max_digits10);
     stream << firstLine
            << "\n# (feel free to add / change comments, but leave the first line as it is!)\n#\n"
+           << (id == map.getTreeType() ? kVersionLine + std::to_string(kVersion) + "\n" : "")
            << "id " << id << "\nsize " << map.size() << "\nres " << map.getResolution()
            << "\ndata\n";
 }
@@ -205,7 +235,10 @@ std::unique_ptr<TexturedOcTree> loadTexturedOcTree(const std::string& file) {
     } else if (header.id == "ColorOcTree") {
         reader.readNodes(map->obtainRoot(), 0, readColored);
     } else {
-        reader.readNodes(map->obtainRoot(), 0, readTextured);
+        const auto readPayload = [&](NodeReader& from, Node& node) {
+            readTextured(from, node, header.version);
+        };
+        reader.readNodes(map->obtainRoot(), 0, readPayload);
     }
     if (map->size() != header.nodes) {
         reader.fail("damaged: its header promises " + std::to_string(header.nodes) + " nodes");

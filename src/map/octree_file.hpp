@@ -24,7 +24,9 @@ std::unique_ptr<TexturedOcTree> loadTexturedOcTree(const std::string& file);
 // Writing replaces the file only when all of it has been written.
 // @throws InputError when the file cannot be written
 
-/// Writes the complete map, for loadTexturedOcTree() and octomap::AbstractOcTree::read().
+/// Writes the complete map, for loadTexturedOcTree() and octomap::AbstractOcTree::read(): version 2
+/// of our format (a comment in the header), with the surfaces inside cells. Files without a version
+/// are read as well; their surfaces are at the faces of the cells.
 void saveTexturedOcTree(const TexturedOcTree& map, const std::string& file);
 
 /// Writes a map for octovis and other programs: an .ot of class ColorOcTree, grey by

@@ -56,7 +56,8 @@ void FaceTexture::observe(float grey, float addedWeight, float maxWeight) {
 // NOLINTNEXTLINE(bugprone-copy-constructor-init)
 TexturedOcTreeNode::TexturedOcTreeNode(const TexturedOcTreeNode& other)
     : octomap::OcTreeNode(),  // NOLINT(readability-redundant-member-init): g++ asks for it
-      faces(other.faces) {
+      faces(other.faces),
+      surfaces(other.surfaces) {
     value = other.value;
     if (other.children == nullptr) return;
     allocChildren();
@@ -89,14 +90,16 @@ std::optional<ShownGreys> TexturedOcTreeNode::shownGreys() const {
 void TexturedOcTreeNode::copyData(const TexturedOcTreeNode& from) {
     octomap::OcTreeNode::copyData(from);
     faces = from.faces;
+    surfaces = from.surfaces;
 }
 
 bool TexturedOcTreeNode::operator==(const TexturedOcTreeNode& other) const {
-    return value == other.value && faces == other.faces;
+    return value == other.value && faces == other.faces && surfaces == other.surfaces;
 }
 
 // Occupancy, a byte that says which faces were observed, and those faces' mean and weight: most
-// nodes are free space and take five bytes.
+// nodes are free space and take five bytes. If the byte's bit kHasSurfaces is set, another one says
+// which faces have surfaces, and these follow.
 std::istream& TexturedOcTreeNode::readData(std::istream& stream) {
     std::uint8_t observed = 0;
     readRaw(stream, value);
@@ -106,18 +109,32 @@ std::istream& TexturedOcTreeNode::readData(std::istream& stream) {
         readRaw(stream, faces[f].mean);
         readRaw(stream, faces[f].weight);
     }
+    if ((observed & kHasSurfaces) == 0) return stream;
+    std::uint8_t inside = 0;
+    readRaw(stream, inside);
+    for (unsigned f = 0; f < 6; ++f) {
+        if ((inside >> f & 1U) != 0) readRaw(stream, surfaces.obtain(f));
+    }
+    surfaces.refreshShown();
     return stream;
 }
 
 std::ostream& TexturedOcTreeNode::writeData(std::ostream& stream) const {
     unsigned observed = 0;
     for (unsigned f = 0; f < 6; ++f) observed |= static_cast<unsigned>(faces[f].observed()) << f;
+    unsigned inside = 0;
+    for (unsigned f = 0; f < 6; ++f) inside |= static_cast<unsigned>(surfaces[f].observed()) << f;
+    if (inside != 0) observed |= kHasSurfaces;
     writeRaw(stream, value);
     writeRaw(stream, static_cast<std::uint8_t>(observed));
     for (const FaceTexture& face : faces) {
         if (!face.observed()) continue;
         writeRaw(stream, face.mean);
         writeRaw(stream, face.weight);
+    }
+    if (inside != 0) writeRaw(stream, static_cast<std::uint8_t>(inside));
+    for (unsigned f = 0; f < 6; ++f) {
+        if (surfaces[f].observed()) writeRaw(stream, surfaces[f]);
     }
     return stream;
 }
@@ -134,6 +151,7 @@ TexturedOcTree::TexturedOcTree(double cellSize)
 void TexturedOcTree::expandNode(TexturedOcTreeNode* node) {
     OccupancyOcTreeBase::expandNode(node);
     node->faces = {};
+    node->surfaces.clear();
 }
 
 TexturedOcTreeNode& TexturedOcTree::obtainRoot() {
@@ -149,6 +167,7 @@ struct TexturedOcTree::BrickUpdate {
     octomap::OcTreeKey corner;
     std::uint64_t missed, hit;
     const std::function<void(TexturedOcTreeNode&, unsigned)>& texture;
+    const std::function<bool(const TexturedOcTreeNode&, unsigned)>& keep;
     BrickChange& change;
 
     /// Whether a child of a node `level` levels above the cells contains cells of this update.
@@ -163,12 +182,13 @@ struct TexturedOcTree::BrickUpdate {
 
 BrickChange TexturedOcTree::updateBrick(
     const octomap::OcTreeKey& corner, std::uint64_t missed, std::uint64_t hit,
-    const std::function<void(TexturedOcTreeNode&, unsigned bit)>& texture) {
+    const std::function<void(TexturedOcTreeNode&, unsigned bit)>& texture,
+    const std::function<bool(const TexturedOcTreeNode&, unsigned bit)>& keep) {
     BrickChange change;
     if ((missed | hit) == 0) return change;
     const bool empty = root == nullptr;
     updateRecursively(obtainRoot(), empty, tree_depth,
-                      {corner, missed & ~hit, hit, texture, change}, 0);
+                      {corner, missed & ~hit, hit, texture, keep, change}, 0);
     return change;
 }
 
@@ -176,24 +196,34 @@ void TexturedOcTree::updateCell(TexturedOcTreeNode& node, bool justMade, const B
                                 unsigned bit) {
     const bool hit = (update.hit >> bit & 1U) != 0;
     const bool wasOccupied = !justMade && isNodeOccupied(node);
+    const bool hasSurface = wasOccupied && !node.surfaces.empty();
+    if (!hit && hasSurface && update.keep && update.keep(node, bit)) return;
     std::optional<ShownGreys> greys;
-    if (hit && wasOccupied) greys = node.shownGreys();
+    ShownSurfaces surfaces;
+    if (hit && wasOccupied) {
+        greys = node.shownGreys();
+        surfaces = node.surfaces.shown();
+    }
     updateNodeLogOdds(&node, hit ? prob_hit_log : prob_miss_log);
+    const bool isOccupied = isNodeOccupied(node);
     if (hit) update.texture(node, bit);
-    if (justMade || isNodeOccupied(node) != wasOccupied) {
-        update.change.occupancy = true;
+    if (!isOccupied) node.surfaces.clear();
+    BrickChange& change = update.change;
+    if (justMade || isOccupied != wasOccupied) {
+        change.occupancy = true;
     } else if (hit && wasOccupied) {
-        const float moved = difference(greys, node.shownGreys());
-        update.change.texture = update.change.texture || moved > 0.F;
-        update.change.greyChange = std::max(update.change.greyChange, moved);
+        const float painted = difference(greys, node.shownGreys());
+        const float moved = surfaceMotion(surfaces, node.surfaces.shown());
+        change.texture = change.texture || painted > 0.F || moved > 0.F;
+        change.greyChange = std::max(change.greyChange, painted);
+        change.surfaceMotion = std::max(change.surfaceMotion, moved);
     }
 }
 
-bool TexturedOcTree::accumulateDrift(const octomap::OcTreeKey& corner, float greyChange,
-                                     float tolerance) {
+bool TexturedOcTree::accumulateDrift(const octomap::OcTreeKey& corner, float change) {
     float& drift = drift_[corner];
-    drift += greyChange;
-    if (!(drift > tolerance)) return false;
+    drift += change;
+    if (!(drift > 1.F)) return false;
     drift = 0.F;
     return true;
 }

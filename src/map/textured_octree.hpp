@@ -13,6 +13,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "map/cell_surfaces.hpp"
 #include "photometry/view.hpp"
 
 namespace photonav {
@@ -41,10 +42,12 @@ struct FaceTexture {
 /// Grey values of a cell's six faces as rendered in views; 65535 is white.
 using ShownGreys = std::array<std::uint16_t, 6>;
 
-/// Log-odds occupancy and six faces. Inner nodes carry occupancy only.
+/// Log-odds occupancy, six faces and, in occupied cells, the surfaces inside. Inner nodes carry
+/// occupancy only.
 class TexturedOcTreeNode : public octomap::OcTreeNode {
   public:
     std::array<FaceTexture, 6> faces;
+    CellSurfaces surfaces;
 
     TexturedOcTreeNode() = default;
     TexturedOcTreeNode(const TexturedOcTreeNode& other);  ///< deep copy, with all children
@@ -60,6 +63,7 @@ class TexturedOcTreeNode : public octomap::OcTreeNode {
     // What OctoMap asks of a node type; pruning merges leaves only when their faces agree as well.
     void copyData(const TexturedOcTreeNode& from);
     bool operator==(const TexturedOcTreeNode& other) const;
+    static constexpr std::uint8_t kHasSurfaces = 0x40;  ///< in files: see readData()
     std::istream& readData(std::istream& stream);
     std::ostream& writeData(std::ostream& stream) const;
 };
@@ -67,8 +71,10 @@ class TexturedOcTreeNode : public octomap::OcTreeNode {
 /// What one update changed in a brick of 4 x 4 x 4 cells.
 struct BrickChange {
     bool occupancy = false;  ///< a cell became known, free or occupied
-    bool texture = false;    ///< a shown grey value changed in a cell that was already occupied
+    bool texture = false;    ///< a shown grey value or surface of a cell changed that was already
+                             ///< occupied
     float greyChange = 0.F;  ///< largest such change; 1 if there was no grey value before
+    float surfaceMotion = 0.F;  ///< largest surfaceMotion() of such a cell
 };
 
 /// An OctoMap of textured nodes, registered with OctoMap's factory as "TexturedOcTree" (so that
@@ -88,15 +94,20 @@ class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
     /// One observation of up to 64 cells: the brick of 4 x 4 x 4 cells that begins at `corner`
     /// (a multiple of four). Bit 8 * i + j of the masks is child j of child i in OctoMap's order.
     /// The same effect as updateNode() on each cell, for a fraction of the time.
+    /// A cell that becomes free loses its surfaces.
     /// @param texture called for every hit cell after its occupancy was raised
-    BrickChange updateBrick(const octomap::OcTreeKey& corner, std::uint64_t missed,
-                            std::uint64_t hit,
-                            const std::function<void(TexturedOcTreeNode&, unsigned bit)>& texture);
+    /// @param keep asked for every missed cell that is occupied and has surfaces, whether it stays
+    ///        as it is: rays may pass through a cell before its surface; may be missing
+    BrickChange updateBrick(
+        const octomap::OcTreeKey& corner, std::uint64_t missed, std::uint64_t hit,
+        const std::function<void(TexturedOcTreeNode&, unsigned bit)>& texture,
+        const std::function<bool(const TexturedOcTreeNode&, unsigned bit)>& keep = {});
 
-    /// Adds up the changes of grey values in the brick at `corner`, so that many small changes in
-    /// one direction are reported in the end.
-    /// @returns whether the sum exceeds the tolerance; the sum is then reset to zero
-    bool accumulateDrift(const octomap::OcTreeKey& corner, float greyChange, float tolerance);
+    /// Adds up the changes of what the brick at `corner` shows, so that many small changes in one
+    /// direction are reported in the end.
+    /// @param change in parts of the change that is tolerated
+    /// @returns whether the sum exceeds 1; the sum is then reset to zero
+    bool accumulateDrift(const octomap::OcTreeKey& corner, float change);
 
   private:
     struct BrickUpdate;

@@ -116,16 +116,28 @@ std::uint16_t extrapolated(const Window& window, int place) {
     return 0;
 }
 
+/// The faces that the surfaces inside a brick's cells point to.
+std::array<std::uint64_t, 6> facesInside(const BrickSurface& surface) {
+    std::array<std::uint64_t, 6> faces{};
+    for (std::uint64_t todo = surface.known; todo != 0; todo &= todo - 1) {
+        const int bit = std::countr_zero(todo);
+        for (const std::uint32_t plane : surface.inside[bit].plane) {
+            if (plane != 0) faces[SurfacePlane::codeOf(plane) - 1] |= 1ULL << bit;
+        }
+    }
+    return faces;
+}
+
 }  // namespace
 
 std::array<std::uint64_t, 6> exposedFaces(const SurfaceNeighbours& neighbours) {
     constexpr std::array<int, 3> kStride{1, 3, 9};
     const BrickSurface& surface = *neighbours[kMiddle];
-    std::array<std::uint64_t, 6> exposed;
+    std::array<std::uint64_t, 6> exposed = facesInside(surface);
     for (int f = 0; f < 6; ++f) {
         const int axis = f / 2, side = f % 2 == 1 ? 1 : -1;
         const std::uint64_t beyond = neighbours[kMiddle + side * kStride[axis]]->occupied;
-        exposed[f] = surface.known & ~fromNeighbour(surface.occupied, beyond, axis, side > 0);
+        exposed[f] |= surface.known & ~fromNeighbour(surface.occupied, beyond, axis, side > 0);
     }
     return exposed;
 }

@@ -14,11 +14,13 @@ namespace photonav {
 struct BrickSurface {
     std::uint64_t occupied = 0;
     std::uint64_t known = 0;                 ///< occupied, and some face of the cell was observed
-    std::array<std::uint64_t, 6> exposed{};  ///< known, and the cell before this face is not solid
+    std::array<std::uint64_t, 6> exposed{};  ///< known, and views may show this face
     std::array<ShownGreys, 64> grey{};       ///< of the faces of known cells; 0 elsewhere
+    std::array<ShownSurfaces, 64> inside{};  ///< of known cells: where the surface lies in them
 
     bool hasSameCells(const BrickSurface& other) const {
-        return occupied == other.occupied && known == other.known && grey == other.grey;
+        return occupied == other.occupied && known == other.known && grey == other.grey &&
+               inside == other.inside;
     }
 };
 
@@ -30,7 +32,8 @@ constexpr unsigned surfaceBit(int x, int y, int z) {
 /// one.
 using SurfaceNeighbours = std::array<const BrickSurface*, 27>;
 
-/// The faces of a brick's known cells, by face, that no occupied cell covers.
+/// The faces of a brick's known cells, by face, that no occupied cell covers or that a surface
+/// inside the cell points to.
 std::array<std::uint64_t, 6> exposedFaces(const SurfaceNeighbours& neighbours);
 
 /// Which faces of one layer of a brick are exposed, as FacePatch::valid.

@@ -61,6 +61,13 @@ struct VoxelGrid {
     std::vector<std::int32_t> patchOf;
     std::vector<FacePatch> patches;
 
+    /// Where the surface lies in the cells of a brick: entry brickTextures[brick] * kCellsPerBrick
+    /// + x + 4 y + 16 z is a SurfacePlane, 0 (rays end at the cell's faces), or, with the code
+    /// kSeveral, has an index into `several` in its low bits. Entry 0 of `several` is not used.
+    static constexpr int kCellsPerBrick = 64;
+    std::vector<std::uint32_t> planes;
+    std::vector<ShownSurfaces> several;
+
     /// Where rays may be: the box and one cell around it.
     CellBox reach() const { return box.grown(1); }
     std::size_t cellIndex(int x, int y, int z) const {

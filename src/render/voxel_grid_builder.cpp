@@ -99,6 +99,12 @@ std::uint64_t endsOf(const VoxelGrid& grid, const Array3i& brick, const BrickCon
     return content.surface.occupied | (~content.present & insideMask(grid, brick));
 }
 
+bool isSeveral(std::uint32_t plane) {
+    return SurfacePlane::codeOf(plane) == SurfacePlane::kSeveral;
+}
+
+std::uint32_t severalOf(std::uint32_t plane) { return plane & 0x1FFFFFFFU; }
+
 bool isInGrid(const VoxelGrid& grid, const Array3i& brick) {
     return (brick >= 0).all() && (brick < grid.bricks).all();
 }
@@ -112,6 +118,8 @@ VoxelGridBuilder::VoxelGridBuilder(const TexturedOcTree& map, UnknownPolicy unkn
     layOut(boundingBox(map), grid);
     grid.patches.assign(1, {});
     grid.patchOf.assign(VoxelGrid::kPatchesPerBrick, 0);
+    grid.planes.assign(VoxelGrid::kCellsPerBrick, 0);
+    grid.several.assign(1, {});
     if (unknownEndsRays_) fillBox(grid, grid.box, 0);
     Bricks changed, rewritten;
     if (map.size() > 0) {
@@ -215,10 +223,29 @@ bool VoxelGridBuilder::setSurface(std::size_t brick, const BrickSurface& surface
         textures = static_cast<std::int32_t>(surfaces_.size());
         surfaces_.emplace_back();
         grid.patchOf.resize(surfaces_.size() * VoxelGrid::kPatchesPerBrick, 0);
+        grid.planes.resize(surfaces_.size() * VoxelGrid::kCellsPerBrick, 0);
     }
     if (surfaces_[textures].hasSameCells(surface)) return false;
     surfaces_[textures] = surface;
+    setPlanes(textures, grid);
     return true;
+}
+
+void VoxelGridBuilder::setPlanes(std::int32_t textures, VoxelGrid& grid) {
+    std::uint32_t* planes = &grid.planes[std::size_t(textures) * VoxelGrid::kCellsPerBrick];
+    for (int bit = 0; bit < VoxelGrid::kCellsPerBrick; ++bit) {
+        const ShownSurfaces& inside = surfaces_[textures].inside[bit];
+        if (isSeveral(planes[bit])) freeSeveral_.push_back(severalOf(planes[bit]));
+        planes[bit] = inside.plane[0];
+        if (!inside.several()) continue;
+        if (freeSeveral_.empty()) {
+            freeSeveral_.push_back(static_cast<std::uint32_t>(grid.several.size()));
+            grid.several.emplace_back();
+        }
+        grid.several[freeSeveral_.back()] = inside;
+        planes[bit] = SurfacePlane::kSeveral << 29U | freeSeveral_.back();
+        freeSeveral_.pop_back();
+    }
 }
 
 SurfaceNeighbours VoxelGridBuilder::neighboursOf(const Array3i& brick,
@@ -297,6 +324,8 @@ void copyUpdate(const VoxelGrid& grid, const GridUpdate& update, VoxelGrid& copy
     }
     copy.patchOf.resize(grid.patchOf.size(), 0);
     copy.patches.resize(grid.patches.size());
+    copy.planes.resize(grid.planes.size(), 0);
+    copy.several.resize(grid.several.size());
     for (const Array3i& at : update.bricks) {
         const std::size_t brick = grid.brickIndex(at);
         const std::int32_t textures = copy.brickTextures[brick] = grid.brickTextures[brick];
@@ -304,6 +333,11 @@ void copyUpdate(const VoxelGrid& grid, const GridUpdate& update, VoxelGrid& copy
         for (std::size_t i = entry; i < entry + VoxelGrid::kPatchesPerBrick; ++i) {
             copy.patchOf[i] = grid.patchOf[i];
             copy.patches[grid.patchOf[i]] = grid.patches[grid.patchOf[i]];
+        }
+        const std::size_t cells = std::size_t(textures) * VoxelGrid::kCellsPerBrick;
+        for (std::size_t i = cells; i < cells + VoxelGrid::kCellsPerBrick; ++i) {
+            const std::uint32_t plane = copy.planes[i] = grid.planes[i];
+            if (isSeveral(plane)) copy.several[severalOf(plane)] = grid.several[severalOf(plane)];
         }
     }
 }

@@ -43,12 +43,14 @@ class VoxelGridBuilder {
     void grow(const CellBox& box, VoxelGrid& grid, GridUpdate& update, Bricks& toRead) const;
     void refreshPatches(const Bricks& changed, VoxelGrid& grid, Bricks& rewritten);
     bool setSurface(std::size_t brick, const BrickSurface& surface, VoxelGrid& grid);
+    void setPlanes(std::int32_t textures, VoxelGrid& grid);
     void makePatches(const SurfaceNeighbours& neighbours, std::int32_t textures, VoxelGrid& grid);
     SurfaceNeighbours neighboursOf(const Eigen::Array3i& brick, const VoxelGrid& grid) const;
 
     bool unknownEndsRays_;
     std::deque<BrickSurface> surfaces_{1};  // index as in VoxelGrid::brickTextures
     std::vector<std::int32_t> freePatches_;
+    std::vector<std::uint32_t> freeSeveral_;
 };
 
 }  // namespace photonav

@@ -96,6 +96,8 @@ bool layOut(const CellBox& box, VoxelGrid& grid) {
         grid.brickTextures.assign(std::size_t(cellsIn(room)) / 64, 0);
         grid.patchOf = old.patchOf;
         grid.patches = old.patches;
+        grid.planes = old.planes;
+        grid.several = old.several;
         copyRows(old.distance, old.size, grid.distance, grid.size, old.first - grid.first);
         copyRows(old.brickTextures, old.bricks, grid.brickTextures, grid.bricks,
                  (old.first - grid.first) / 4);

@@ -17,6 +17,10 @@ using simd::Int;
 
 constexpr int kNoFace = 3;
 
+// Planes of neighbouring cells do not meet exactly. A ray that enters a cell behind the plane that
+// faces it went through such a gap: it meets the plane up to this far before the cell [cells].
+constexpr float kGap = 0.5F;
+
 /// A vector in the grid, one lane per ray.
 template <class T>
 struct Vector3 {
@@ -51,6 +55,26 @@ struct Rays {
     Float t, tExit;
     Int axis;
     Int active;
+    Int face;  ///< that the surface met in a cell points to; kNoSurface: the ray ended at a face
+};
+
+constexpr int kNoSurface = -1;
+
+/// Rays before a plane, each in its cell: by how much they are in front of it, along the plane's
+/// axis, and how fast that changes with t.
+struct PlaneView {
+    Float height, rate;
+    Int face;
+    Int exists;
+
+    Float heightAt(const Float& after) const { return height + rate * after; }
+};
+
+/// Where rays meet the surface in a cell, after the present t.
+struct Meeting {
+    Int met;      ///< the surface, or from behind a cell with surfaces: the cell's face
+    Float after;  ///< t less the present one
+    Int face;
 };
 
 class PacketTracer {
@@ -65,16 +89,35 @@ class PacketTracer {
 
     bool inReach() const { return frame_.inReach; }
 
-    /// Renders simd::kWidth pixels from (u, v) to the right.
-    void render(unsigned u, unsigned v, Float& depth, Float& intensity) const {
-        Rays rays = start(u, v);
-        const Int hit = march(rays);
-        shade(rays, hit, depth, intensity);
+    static constexpr int kPackets = 2;  ///< traced at once: each waits for memory most of the time
+    using Packets = std::array<Rays, kPackets>;
+
+    /// Renders kPackets * simd::kWidth pixels from (u, v) to the right.
+    void render(unsigned u, unsigned v, std::array<Float, kPackets>& depth,
+                std::array<Float, kPackets>& intensity) const {
+        Packets packets;
+        for (int i = 0; i < kPackets; ++i) packets[i] = start(u + i * simd::kWidth, v);
+        const std::array<Int, kPackets> hit = march(packets);
+        for (int i = 0; i < kPackets; ++i) shade(packets[i], hit[i], depth[i], intensity[i]);
     }
 
   private:
+    /// Where rays leave their cells: at t, across the plane of one axis.
+    struct Exit {
+        Float t;
+        Int xFirst, yFirst;
+    };
+
     Rays start(unsigned u, unsigned v) const;
-    Int march(Rays& rays) const;
+    std::array<Int, kPackets> march(Packets& packets) const;
+    std::array<Int, kPackets> marchToCells(Packets& packets) const;
+    Int distances(const Rays& rays, const Int& wanted) const;
+    Int enterCells(Rays& rays, Int& inside) const;
+    Meeting meetSurfaces(const Rays& rays, const Int& planes, const Exit& exit) const;
+    Int planesOf(const Rays& rays, const Int& wanted) const;
+    Vector3<Float> fromCentre(const Rays& rays) const;
+    Exit exitOf(const Rays& rays) const;
+    static Int leaveCells(Rays& rays, const Int& leaving, const Exit& exit);
     void shade(const Rays& rays, Int hit, Float& depth, Float& intensity) const;
     void enterAxis(Rays& rays, const Float& direction, const Float& inverse, int a) const;
     static void advance(Rays& rays, const Int& radius, const Eigen::Vector3f& offset);
@@ -161,29 +204,197 @@ inline void PacketTracer::advance(Rays& rays, const Int& radius, const Eigen::Ve
     rays.active &= rays.t < rays.tExit;
 }
 
-/// @returns the lanes that ended at a cell
-Int PacketTracer::march(Rays& rays) const {
+/// VoxelGrid::distance of rays' cells.
+inline Int PacketTracer::distances(const Rays& rays, const Int& wanted) const {
     const int strideY = grid_.size.x(), strideZ = grid_.size.x() * grid_.size.y();
     const auto base = static_cast<int>(frame_.eye.x() + std::int64_t(frame_.eye.y()) * strideY +
                                        std::int64_t(frame_.eye.z()) * strideZ);
-    Int hit = simd::splat(0);
-    while (simd::any(rays.active)) {
-        const Int index = base + rays.cell.x + rays.cell.y * strideY + rays.cell.z * strideZ;
-        const Int radius = simd::gather<1>(grid_.distance.data(), index & rays.active) & 0xFF;
-        const Int ended = rays.active & (radius == 0);
-        hit |= ended;
-        rays.active &= ~ended;
-        advance(rays, radius, frame_.offset);
+    const Int index = base + rays.cell.x + rays.cell.y * strideY + rays.cell.z * strideZ;
+    return simd::gather<1>(grid_.distance.data(), index & wanted) & 0xFF;
+}
+
+/// Moves active rays to the cells where they end. @returns those that reached one
+std::array<Int, PacketTracer::kPackets> PacketTracer::marchToCells(Packets& packets) const {
+    std::array<Int, kPackets> hit{};
+    while (simd::any(packets[0].active | packets[1].active)) {
+        for (int i = 0; i < kPackets; ++i) {
+            Rays& rays = packets[i];
+            const Int radius = distances(rays, rays.active);
+            const Int ended = rays.active & (radius == 0);
+            hit[i] |= ended;
+            rays.active &= ~ended;
+            advance(rays, radius, frame_.offset);
+        }
+    }
+    return hit;
+}
+
+/// Decodes planes (SurfacePlane) and looks at them from where rays are in their cells.
+[[gnu::always_inline]] inline PlaneView viewPlane(const Int& plane, const Vector3<Float>& at,
+                                                  const Vector3<Float>& direction) {
+    const Int face = (plane >> 29 & 7) - 1;
+    const Float slopeP = simd::toFloat(plane << 23 >> 23) * SurfacePlane::kSlopeUnit;
+    const Float slopeQ = simd::toFloat(plane << 14 >> 23) * SurfacePlane::kSlopeUnit;
+    const Float offset = simd::toFloat(plane << 3 >> 21) * SurfacePlane::kOffsetUnit;
+    const Int onX = face <= 1, onZ = face >= 4;
+    const auto above = [&](const Vector3<Float>& v) {
+        const Float a = onX ? v.x : (onZ ? v.z : v.y);
+        return a - slopeP * (onX ? v.y : v.x) - slopeQ * (onZ ? v.y : v.z);
+    };
+    const Float height = above(at) - offset, rate = above(direction);
+    const Int outward = (face & 1) != 0;
+    return {outward ? height : -height, outward ? rate : -rate, face, plane != 0};
+}
+
+/// Where rays meet a single plane.
+[[gnu::always_inline]] inline Meeting meetPlane(const PlaneView& plane, const Float& toExit,
+                                                const Float& back) {
+    const Int facing = plane.rate < 0.F;
+    const Float after = plane.height / (facing ? -plane.rate : simd::splat(1.F));
+    const Int met = facing ? after <= toExit : plane.height <= 0.F;
+    return {met, simd::max(after, -back), facing ? plane.face : simd::splat(kNoSurface)};
+}
+
+/// Where rays meet planes that bound a cell's solid together.
+template <std::size_t N>
+Meeting meetPlanes(const std::array<PlaneView, N>& planes, const Int& edges, const Float& toExit,
+                   const Float& back) {
+    constexpr float kTolerance = 1e-4F;
+    Meeting best{simd::splat(0), simd::splat(1e30F), simd::splat(kNoSurface)};
+    Int anyFacing = simd::splat(0), behindAny = simd::splat(0), behindAll = simd::splat(-1);
+    for (std::size_t i = 0; i < N; ++i) {
+        Meeting one = meetPlane(planes[i], toExit, back);
+        const Int facing = planes[i].exists & (one.face >= 0);
+        Int met = facing & one.met & (one.after < best.after);
+        for (std::size_t j = 0; j < N; ++j) {
+            if (i == j) continue;
+            const int pair = static_cast<int>(i + j) - 1;
+            const Float height = planes[j].heightAt(one.after);
+            const Int convex = (edges >> pair & 1) != 0, concave = (edges >> (pair + 3) & 1) != 0;
+            met &= ~(convex & (height > kTolerance)) & ~(concave & (height < -kTolerance));
+        }
+        best.met |= met;
+        best.after = met ? one.after : best.after;
+        best.face = met ? one.face : best.face;
+        anyFacing |= facing;
+        behindAny |= planes[i].exists & one.met;
+        behindAll &= ~planes[i].exists | one.met;
+    }
+    const Int isConcave = (edges >> 3) != 0;
+    best.met |= ~anyFacing & (isConcave ? behindAny : behindAll);
+    return best;
+}
+
+Vector3<Float> PacketTracer::fromCentre(const Rays& rays) const {
+    const auto along = [&](const Float& direction, const Int& cell, float offset) {
+        return offset + rays.t * direction - simd::toFloat(cell) - 0.5F;
+    };
+    return {along(rays.direction.x, rays.cell.x, frame_.offset.x()),
+            along(rays.direction.y, rays.cell.y, frame_.offset.y()),
+            along(rays.direction.z, rays.cell.z, frame_.offset.z())};
+}
+
+/// Where rays leave their cells.
+PacketTracer::Exit PacketTracer::exitOf(const Rays& rays) const {
+    const auto time = [&](const Float& direction, const Float& inverse, const Int& cell, float o) {
+        const Int forward = direction > 0.F;
+        return (simd::toFloat(cell - forward) - o) * inverse;
+    };
+    const auto& d = rays.direction;
+    const Float x = time(d.x, rays.inverse.x, rays.cell.x, frame_.offset.x());
+    const Float y = time(d.y, rays.inverse.y, rays.cell.y, frame_.offset.y());
+    const Float z = time(d.z, rays.inverse.z, rays.cell.z, frame_.offset.z());
+    const Int xFirst = (x <= y) & (x <= z), yFirst = ~xFirst & (y <= z);
+    return {xFirst ? x : (yFirst ? y : z), xFirst, yFirst};
+}
+
+/// Moves some rays into the next cell. @returns those of them that are still in the map
+Int PacketTracer::leaveCells(Rays& rays, const Int& leaving, const Exit& exit) {
+    const auto move = [&](Int& cell, const Float& direction, const Int& crossed) {
+        const Int step = direction > 0.F ? simd::splat(1) : simd::splat(-1);
+        cell += step & crossed & leaving;
+    };
+    const Int zFirst = ~exit.xFirst & ~exit.yFirst;
+    move(rays.cell.x, rays.direction.x, exit.xFirst);
+    move(rays.cell.y, rays.direction.y, exit.yFirst);
+    move(rays.cell.z, rays.direction.z, zFirst);
+    const Int axis = (exit.yFirst & 1) + (zFirst & 2);
+    rays.axis = leaving ? axis : rays.axis;
+    rays.t = leaving ? exit.t : rays.t;
+    return leaving & (rays.t < rays.tExit);
+}
+
+/// The entries of VoxelGrid::planes of rays' cells; 0 for all but the wanted ones.
+Int PacketTracer::planesOf(const Rays& rays, const Int& wanted) const {
+    const Int x = (rays.cell.x + frame_.eye.x()) & wanted,
+              y = (rays.cell.y + frame_.eye.y()) & wanted,
+              z = (rays.cell.z + frame_.eye.z()) & wanted;
+    const Int brick = ((z >> 2) * grid_.bricks.y() + (y >> 2)) * grid_.bricks.x() + (x >> 2);
+    const Int textures = simd::gather<4>(grid_.brickTextures.data(), brick);
+    const Int bit = (x & 3) + 4 * (y & 3) + 16 * (z & 3);
+    const Int entry = textures * VoxelGrid::kCellsPerBrick + bit;
+    return simd::gather<4>(grid_.planes.data(), entry & wanted) & wanted;
+}
+
+/// Where rays in cells with these planes meet the surface.
+Meeting PacketTracer::meetSurfaces(const Rays& rays, const Int& planes, const Exit& exit) const {
+    const auto& d = rays.direction;
+    const Vector3<Float> at = fromCentre(rays);
+    const auto& inverse = rays.inverse;  // the least one is the time to cross a cell
+    const Float back = kGap * simd::min(simd::min(simd::abs(inverse.x), simd::abs(inverse.y)),
+                                        simd::abs(inverse.z));
+    const Float toExit = exit.t - rays.t;
+    const Int several = (planes >> 29 & 7) == static_cast<int>(SurfacePlane::kSeveral);
+    if (!simd::any(several)) return meetPlane(viewPlane(planes, at, d), toExit, back);
+    const Int index = (planes & 0x1FFFFFFF & several) * 4;
+    const auto part = [&](int i) { return simd::gather<4>(grid_.several.data(), index + i); };
+    return meetPlanes<3>({viewPlane(several ? part(0) : planes, at, d), viewPlane(part(1), at, d),
+                          viewPlane(part(2), at, d)},
+                         part(3), toExit, back);
+}
+
+/// Moves rays inside occupied cells to the surfaces there, or, where they miss them, into the next
+/// cell. `inside` keeps those that are in an occupied cell again; those that came out are active.
+/// @returns those that met a surface or are in a cell without
+inline Int PacketTracer::enterCells(Rays& rays, Int& inside) const {
+    const Int planes = planesOf(rays, inside);
+    const Exit exit = exitOf(rays);
+    const Meeting meeting = meetSurfaces(rays, planes, exit);
+    const Int met = inside & ((planes == 0) | meeting.met);
+    const Int moved = met & (planes != 0) & (meeting.face >= 0);
+    rays.t = moved ? rays.t + meeting.after : rays.t;
+    rays.face = moved ? meeting.face : rays.face;
+    inside = leaveCells(rays, inside & ~met, exit);
+    const Int ends = distances(rays, inside) == 0;
+    rays.active |= inside & ~ends;
+    inside &= ends;
+    return met;
+}
+
+/// @returns the lanes that ended at a surface
+std::array<Int, PacketTracer::kPackets> PacketTracer::march(Packets& packets) const {
+    std::array<Int, kPackets> hit{};
+    for (Rays& rays : packets) rays.face = simd::splat(kNoSurface);
+    while (simd::any(packets[0].active | packets[1].active)) {
+        std::array<Int, kPackets> inside = marchToCells(packets);
+        while (simd::any(inside[0] | inside[1])) {
+            for (int i = 0; i < kPackets; ++i) hit[i] |= enterCells(packets[i], inside[i]);
+        }
     }
     return hit;
 }
 
 void PacketTracer::shade(const Rays& rays, Int hit, Float& depth, Float& intensity) const {
-    hit &= rays.axis != kNoFace;
-    const Int onX = rays.axis == 0, onZ = rays.axis == 2;
+    // Nothing is seen from inside a solid.
+    hit &= rays.face >= 0 ? rays.t > 0.F : rays.axis != kNoFace;
+    const Float along =
+        rays.axis == 0 ? rays.direction.x : (rays.axis == 2 ? rays.direction.z : rays.direction.y);
+    const Int faceOfCell = 2 * rays.axis - (along < 0.F);  // a ray down hits an upper face
+    const Int face = rays.face >= 0 ? rays.face : faceOfCell;
+    const Int onX = face <= 1, onZ = face >= 4;
     const auto inCell = [&](const Float& direction, const Int& cell, int a) {
         const Float at = frame_.offset[a] + rays.t * direction - simd::toFloat(cell);
-        return simd::clamp(at, 0.F, 1.F);
+        return simd::clamp(at, -0.5F, 1.499F);  // up to the neighbouring faces' centres
     };
     const Float fx = inCell(rays.direction.x, rays.cell.x, 0);
     const Float fy = inCell(rays.direction.y, rays.cell.y, 1);
@@ -191,9 +402,7 @@ void PacketTracer::shade(const Rays& rays, Int hit, Float& depth, Float& intensi
     const Int x = (rays.cell.x + frame_.eye.x()) & hit, y = (rays.cell.y + frame_.eye.y()) & hit,
               z = (rays.cell.z + frame_.eye.z()) & hit;
 
-    // Face, its plane's coordinates p and q, and its layer in the brick.
-    const Float along = onX ? rays.direction.x : (onZ ? rays.direction.z : rays.direction.y);
-    const Int face = 2 * rays.axis - (along < 0.F);  // a ray that goes down hits an upper face
+    // The face's layer in the brick, and the coordinates p and q of its plane.
     const Int layer = (onX ? x : (onZ ? z : y)) & 3;
     const Int p = (onX ? y : x) & 3, q = (onZ ? y : z) & 3;
     const Float fp = onX ? fy : fx, fq = onZ ? fy : fz;
@@ -242,13 +451,13 @@ void VoxelRenderer::render(const Camera& camera, const Pose& T_c_w, View& view) 
         return;
     }
     for (unsigned v = 0; v < camera.height; ++v) {
-        for (unsigned u = 0; u < camera.width; u += simd::kWidth) {
-            Float depth, intensity;
+        constexpr unsigned kPixels = PacketTracer::kPackets * simd::kWidth;
+        for (unsigned u = 0; u < camera.width; u += kPixels) {
+            std::array<Float, PacketTracer::kPackets> depth, intensity;
             tracer.render(u, v, depth, intensity);
-            const std::size_t bytes =
-                sizeof(float) * std::min<std::size_t>(simd::kWidth, camera.width - u);
-            std::memcpy(view.depth[v] + u, &depth, bytes);
-            std::memcpy(view.intensity[v] + u, &intensity, bytes);
+            const std::size_t bytes = sizeof(float) * std::min(kPixels, camera.width - u);
+            std::memcpy(view.depth[v] + u, depth.data(), bytes);
+            std::memcpy(view.intensity[v] + u, intensity.data(), bytes);
         }
     }
     applyPointSpread(view);

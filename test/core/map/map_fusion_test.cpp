@@ -25,6 +25,7 @@ using Key = std::tuple<int, int, int>;  // z, y, x
 struct Cell {
     bool known = false, occupied = false;
     std::optional<ShownGreys> greys;
+    ShownSurfaces surfaces{};
 };
 
 using Cells = std::map<Key, Cell>;
@@ -39,7 +40,8 @@ Cells cellsOf(const TexturedOcTree& map) {
             const Array3i at = Array3i(first[0], first[1], first[2]) - kKeyOfZero +
                                Array3i(i % edge, i / edge % edge, i / edge / edge);
             cells[{at.z(), at.y(), at.x()}] = {true, occupied,
-                                               occupied ? leaf->shownGreys() : std::nullopt};
+                                               occupied ? leaf->shownGreys() : std::nullopt,
+                                               leaf->surfaces.shown()};
         }
     }
     return cells;
@@ -61,7 +63,7 @@ Expected compare(const Cells& before, const Cells& after) {
         const auto old = before.find(key);
         if (old == before.end() || old->second.occupied != cell.occupied) {
             expected.occupancy.insert(brickOf(key));
-        } else if (old->second.greys != cell.greys) {
+        } else if (old->second.greys != cell.greys || old->second.surfaces != cell.surfaces) {
             expected.anyTexture.insert(brickOf(key));
         }
     }

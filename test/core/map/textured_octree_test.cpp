@@ -308,7 +308,7 @@ TEST(Fuse, FacesTowardTheCameraTakeTheMeanGrey) {
     const auto* slanted = at(lone, 0.01, 0.01, 0.025);
     ASSERT_NE(slanted, nullptr);
     EXPECT_NEAR(slanted->faces[1].weight / slanted->faces[kTop].weight, 0.285 / 1.495, 1e-3);
-    EXPECT_EQ(slanted->faces[1].mean, slanted->faces[kTop].mean);
+    EXPECT_NEAR(slanted->faces[1].mean, slanted->faces[kTop].mean, 1e-6);
     EXPECT_FALSE(slanted->faces[0].observed());
     EXPECT_FALSE(slanted->faces[2].observed() || slanted->faces[3].observed());
 }

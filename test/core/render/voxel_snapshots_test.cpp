@@ -21,14 +21,23 @@ struct EditedMap {
     TexturedOcTree map{kCellSize};
     MapChange change;
 
+    /// Faces observed with an odd number have surfaces inside the cell.
     void set(const Array3i& cell, bool occupied, float grey, unsigned observedFaces) {
         const Array3i key = cell + kKeyOfZero;
         auto* node =
             map.setNodeValue(octomap::OcTreeKey(key.x(), key.y(), key.z()), occupied ? 1.F : -1.F);
         node->faces = {};
+        node->surfaces.clear();
         for (unsigned f = 0; f < 6; ++f) {
-            if ((observedFaces >> f & 1U) != 0) node->faces[f].observe(grey, 1.F);
+            if ((observedFaces >> f & 1U) == 0) continue;
+            node->faces[f].observe(grey, 1.F);
+            if (observedFaces % 2 == 0) continue;
+            Eigen::Vector3f normal(grey - 0.5F, 0.3F, 0.4F - grey);
+            normal[f / 2] = f % 2 == 1 ? 1.F : -1.F;
+            node->surfaces.obtain(f).observe({0.2F - grey / 3.F, 0.F, grey / 2.F},
+                                             normal.normalized(), 1.F, 1.F);
         }
+        node->surfaces.refreshShown();
         change.resolution = kCellSize;
         const Array3i brick = cell.unaryExpr([](int i) { return i >> 2; });
         change.occupancy.push_back(brick);
