@@ -33,7 +33,7 @@ set(folders_mission_mapping ${core} ${planning} ${tracking} result config proble
 set(folders_mission_replay ${core} ${tracking} result config dataset mapping)
 set(folders_mission_robot ${core} estimation control)
 set(folders_mission_simulation ${core} ${tracking} robot)
-set(folders_mission_flight ${core} belief ${tracking} problem robot simulation)
+set(folders_mission_flight ${core} belief ${tracking} config problem robot simulation)
 set(folders_drawing_plot io)
 set(folders_drawing_figures io geometry photometry plot)
 set(everything ${core} ${planning} ${tracking} ${mission} plot figures)

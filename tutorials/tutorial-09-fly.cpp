@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fly a plan with a body that estimates its pose from images alone, with a camera that looks
 // straight down and with one that looks 45 degrees ahead, past a poster on the floor.
-#include <ompl/base/ScopedState.h>
-
 #include <cmath>
 #include <cstdio>
 
-#include "belief/belief.hpp"
+#include "flight/flight_setup.hpp"
 #include "flight/flights.hpp"
-#include "geometry/constants.hpp"
-#include "geometry/se3.hpp"
 #include "plot/figure.hpp"
-#include "render/mesh_renderer.hpp"
+#include "problem/planning_problem.hpp"
 #include "scene/scene.hpp"
 
 using namespace photonav;
@@ -31,29 +27,20 @@ Scene paleFloor() {
     return scene;
 }
 
-BeliefOptions beliefs() {
-    BeliefOptions options;
-    options.initialCovariance.diagonal() << 0.01, 0.01, 0.01, 1e-5, 1e-5, 1e-4;
-    options.motionNoise.diagonal() << 4e-3, 4e-3, 1e-3, 4.5e-6, 4.5e-6, 1e-4;  // per metre
-    return options;
+//! [problem]
+/// 5 m straight on, with a camera that looks down or 45 degrees ahead.
+Config straightFlight(const std::string& mount) {
+    Config config;
+    config.bounds = {Eigen::Vector3d(-1., -1., 1.), Eigen::Vector3d(6., 1., 2.)};
+    config.start.position = {0., 0., 1.6};
+    config.goal.position = {5., 0., 1.6};
+    config.camera.mount = mount;
+    config.photometric = {.sigma = 0.02, .scale = 0.08};
+    config.belief.initialCovariance.diagonal() << 0.01, 0.01, 0.01, 1e-5, 1e-5, 1e-4;
+    config.belief.motionNoise.diagonal() << 4e-3, 4e-3, 1e-3, 4.5e-6, 4.5e-6, 1e-4;  // per metre
+    return config;
 }
-
-//! [plan]
-/// A straight plan of 5 m, with the beliefs predicted along it.
-std::vector<PlannedView> plan(const std::shared_ptr<const ViewSource>& map, const Camera& camera,
-                              const Pose& T_b_c, const PhotometricOptions& photometric) {
-    const FlightSpace space(StateKind::position,
-                            {Eigen::Vector3d(-1., -1., 1.), Eigen::Vector3d(6., 1., 2.)});
-    const auto field = std::make_shared<InformationField>(
-        map, camera, photometricModel(camera, photometric), T_b_c, InformationField::Options{});
-    BeliefModel model(space, field, beliefs());
-    ompl::base::ScopedState<> start(space.space());
-    ompl::base::ScopedState<> goal(space.space());
-    space.setState(start.get(), {0., 0., 1.6}, 0.);
-    space.setState(goal.get(), {5., 0., 1.6}, 0.);
-    return plannedViews(model.evaluate({start.get(), goal.get()}));
-}
-//! [plan]
+//! [problem]
 
 double sigma(const Matrix6& covariance) {
     return std::sqrt(covariance.topLeftCorner<3, 3>().trace());
@@ -64,66 +51,56 @@ double error(const FlightSample& sample) {
         .norm();
 }
 
+void print(const std::vector<FlightResult>& flights) {
+    for (const FlightResult& flight : flights) {
+        double worst = 0.;
+        for (const FlightSample& s : flight.samples) worst = std::max(worst, error(s));
+        std::printf(
+            "  %s after %4.1f s, largest error on the way %5.1f cm, %4.1f cm from the goal%s\n",
+            nameOf(flight.end).c_str(), flight.duration, 100. * worst, 100. * flight.goalError,
+            flight.photometric ? " by its image" : "");
+    }
+}
+
+void draw(Plot& plot, const std::string& mount, const Color& color,
+          const std::vector<PlannedView>& plan, const std::vector<FlightResult>& flights) {
+    Plot::Points predicted;
+    for (const PlannedView& view : plan) {
+        predicted.emplace_back(view.distance, 100. * sigma(view.covariance));
+    }
+    plot.curve(predicted, {.color = color, .width = 4., .name = "predicted σ, " + mount});
+    for (const FlightResult& flight : flights) {
+        Plot::Points errors;
+        for (const FlightSample& s : flight.samples) {
+            errors.emplace_back(s.distance, 100. * error(s));
+        }
+        plot.curve(errors, {.color = color, .width = 1., .name = "flights, " + mount});
+    }
+}
+
 }  // namespace
 
 int main() {
-    const auto floor = std::make_shared<MeshRenderer>(paleFloor());
-    const Camera camera = makeCamera(188, 120, 70. * kDegree);
-    const PhotometricOptions photometric{.sigma = 0.02, .scale = 0.08};
     Plot plot;
     plot.x = {.min = 0., .label = "distance along the plan [m]"};
     plot.y = {.min = 0., .label = "position error [cm]"};
-
-    struct Mount {
-        const char* name;
-        double belowHorizon;
-        Color color;
-    };
-    for (const auto& [name, belowHorizon, color] :
-         {Mount{"down", 90. * kDegree, {222, 79, 12}},
-          Mount{"45 degrees ahead", 45. * kDegree, {28, 108, 214}}}) {
+    for (const auto& [mount, color] :
+         {std::pair{"down", Color{222, 79, 12}}, {"front45", Color{28, 108, 214}}}) {
         //! [fly]
-        FlightWorld world;
-        world.truth = world.map = floor;
-        world.clearance = [](const Eigen::Vector3d& p_w) { return p_w.z(); };  // the floor
-        world.camera = camera;
-        world.T_b_c = cameraMount(belowHorizon);
-        world.noise = assumedNoise(photometric);
-        FlightOptions options;
-        options.robot.body.odometryNoise = beliefs().motionNoise;
-        options.alignment.photometric = photometric;
-        const std::vector<PlannedView> views = plan(floor, camera, world.T_b_c, photometric);
-        const Matrix6 toCamera = adjoint(world.T_b_c.inverse());
-        options.initialCovariance = toCamera * beliefs().initialCovariance * toCamera.transpose();
+        const Config config = straightFlight(mount);
+        const World world(paleFloor(), config);
+        PlanningProblem problem(config, world);
+        const EvaluatedPath path = problem.evaluate("straight", {config.start, config.goal});
+        const std::vector<PlannedView> plan = plannedViews(path.points);
+        FlightSetup setup = setUpFlight(problem);
         std::vector<FlightResult> flights;
-        for (options.seed = 1; options.seed <= kFlights; ++options.seed) {
-            flights.push_back(fly(views, world, options));
+        for (setup.options.seed = 1; setup.options.seed <= kFlights; ++setup.options.seed) {
+            flights.push_back(fly(plan, setup.world, setup.options));
         }
         //! [fly]
-        std::printf("camera %s\n", name);
-        for (const FlightResult& flight : flights) {
-            double worst = 0.;
-            for (const FlightSample& s : flight.samples) worst = std::max(worst, error(s));
-            std::printf(
-                "  %s after %4.1f s, largest error on the way %5.1f cm, %4.1f cm from the "
-                "goal%s\n",
-                nameOf(flight.end).c_str(), flight.duration, 100. * worst, 100. * flight.goalError,
-                flight.photometric ? " by its image" : "");
-        }
-        Plot::Points predicted;
-        for (const PlannedView& view : views) {
-            predicted.emplace_back(view.distance, 100. * sigma(view.covariance));
-        }
-        plot.curve(predicted,
-                   {.color = color, .width = 4., .name = std::string("predicted σ, ") + name});
-        for (const FlightResult& flight : flights) {
-            Plot::Points errors;
-            for (const FlightSample& s : flight.samples) {
-                errors.emplace_back(s.distance, 100. * error(s));
-            }
-            plot.curve(errors,
-                       {.color = color, .width = 1., .name = std::string("flights, ") + name});
-        }
+        std::printf("camera %s\n", mount);
+        print(flights);
+        draw(plot, mount, color, plan, flights);
     }
     Figure{"Predicted and actual errors", {{plot}}}.save("flights.png");
     std::puts("wrote flights.png");

@@ -6,11 +6,10 @@
 #include <optional>
 
 #include "commands/result_folder.hpp"
-#include "estimation/calibration.hpp"
 #include "flight/flight_recorder.hpp"
+#include "flight/flight_setup.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
-#include "mapping/tracking_map.hpp"
 #include "planners/planner_table.hpp"
 #include "problem/planned_path.hpp"
 #include "report/fly_report.hpp"
@@ -18,54 +17,6 @@
 
 namespace photonav {
 namespace {
-
-/// A map may be made of flight 0: its noise must not be that of the images flown by it.
-constexpr std::uint64_t kSeedInMaps = 1'000'003;
-/// A real camera's images are worth less than planned with: what vignetting does to them is alike
-/// in all images of a place (docs/fly.md).
-constexpr double kRealCamera = 0.25;  // of camera.information_scale
-
-/// How images are aligned: as they were planned with, or as those of a real camera.
-/// @param resolution of the map [m]; 0: a mesh
-AlignmentOptions flightAlignment(const Config& config, double resolution) {
-    const FlyConfig& fly = config.fly;
-    const bool isReal = fly.camera == "real";
-    const AlignmentOptions real = realCameraOptions(resolution);
-    AlignmentOptions alignment;
-    alignment.photometric = config.photometric;
-    alignment.photometric.stride = 1;
-    alignment.photometric.scale =
-        fly.scale.value_or((isReal ? kRealCamera : 1.) * config.photometric.scale);
-    alignment.trust.floorTranslation = fly.floorTranslation.value_or(real.trust.floorTranslation);
-    alignment.trust.floorRotation = fly.floorRotation.value_or(real.trust.floorRotation);
-    // Odometry carries what the map's noise leaves open; replays without it would drift there.
-    if (resolution > 0.) alignment.modelNoise = ModelNoise::measured;
-    if (isReal) alignment.exposure = real.exposure;
-    return alignment;
-}
-
-FlightOptions flightOptions(const Config& config, double resolution) {
-    const FlyConfig& fly = config.fly;
-    FlightOptions flight;
-    flight.robot.body.odometryNoise = config.belief.motionNoise;
-    flight.robot.body.rotationWeight = config.rotationWeight;
-    flight.robot.body.odometryFactor = fly.odometry;
-    flight.robot.camera.period = fly.rate > 0. ? 1. / fly.rate : config.belief.ds / fly.speed;
-    flight.robot.camera.latency = fly.latency;
-    flight.robot.camera.dropRate = fly.drop;
-    flight.robot.camera.blackRate = fly.black;
-    flight.robot.camera.blackoutStart = fly.blackout[0];
-    flight.robot.camera.blackoutLength = fly.blackout[1];
-    flight.pilot.servo.maxSpeed = fly.speed;
-    flight.alignment = flightAlignment(config, resolution);
-    flight.loss.blindTime =
-        fly.latency + std::max(flight.loss.blindTime, 4. * flight.robot.camera.period);
-    flight.pilot.photometricGoal = fly.photometricGoal;
-    flight.bodyRadius = fly.bodyRadius > 0. ? fly.bodyRadius : 0.5 * config.robotRadius;
-    flight.arrivalTolerance = std::max(config.robotRadius, 0.1);
-    flight.seed = config.seed + (fly.map.empty() ? 0 : kSeedInMaps);
-    return flight;
-}
 
 /// The config's planner first, then RRT* if it is to be compared with.
 std::vector<FlightSet> planAll(const Config& config, PlanningProblem& problem, ProgressLine& line,
@@ -101,16 +52,16 @@ void checkRecordFolder(const std::filesystem::path& folder) {
     }
 }
 
-void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const FlightOptions& flight,
-            const FlyOptions& options, FolderTransaction* recording, unsigned count,
-            ProgressLine& line, const std::atomic<bool>& interrupted) {
+void flyAll(std::vector<FlightSet>& sets, const FlightSetup& setup, const FlyOptions& options,
+            FolderTransaction* recording, unsigned count, ProgressLine& line,
+            const std::atomic<bool>& interrupted) {
     std::optional<FlightRecorder> recorder;  // from the first image on
     OnExposure record;
     if (recording != nullptr) {
         record = [&](const Exposed& exposed) {
             if (!recorder) {
-                recorder.emplace(recording->path(), world.camera,
-                                 flight.alignment.photometric.scale);
+                recorder.emplace(recording->path(), setup.world.camera,
+                                 setup.options.tracker.map.photometric.scale);
             }
             recorder->add(exposed);
         };
@@ -128,8 +79,8 @@ void flyAll(std::vector<FlightSet>& sets, const FlightWorld& world, const Flight
                                   set.path.planner, flown, all, arrived,
                                   each * (all - static_cast<double>(flown))));
         };
-        set.flights = flyMany(set.plan, world, flight, count, options.jobs, interrupted, onFlight,
-                              &set == &sets.front() ? record : OnExposure{});
+        set.flights = flyMany(set.plan, setup.world, setup.options, count, options.jobs,
+                              interrupted, onFlight, &set == &sets.front() ? record : OnExposure{});
     }
     if (!recorder) return;
     recorder->finish();
@@ -146,9 +97,9 @@ void printFailure(const FlightSet& set) {
 void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::path& folder) {
     if (sets.empty()) fmt::print("no path found\n");
     if (!sets.empty()) {
-        fmt::print("{:<16} {:>10} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12} {:>10} {:>10}\n",
-                   "planner", "arrived", "collisions", "error (rms)", "predicted", "believed",
-                   "NEES (median)", "NEES at goal", "lost (sum)", "goal error");
+        fmt::print("{:<16} {:>10} {:>7} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12} {:>10} {:>10}\n",
+                   "planner", "arrived", "astray", "collisions", "error (rms)", "predicted",
+                   "believed", "NEES (median)", "NEES at goal", "lost (sum)", "goal error");
     }
     for (const FlightSet& set : sets) {
         const FlightSummary s = summarise(set);
@@ -156,12 +107,12 @@ void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::pat
             fmt::print("{:<16} {:>9}\n", set.path.planner, "not flown");
             continue;
         }
-        fmt::print("{:<16} {:>10} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12.2f} {:>8.1f} s {:>10}\n",
-                   set.path.planner, fmt::format("{} of {}", s.arrived, s.flights), s.collisions,
-                   lengthText(s.positionRmse), lengthText(s.predictedSigma),
-                   lengthText(s.believedSigma),
-                   fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian), s.neesAtGoal, s.lostTime,
-                   lengthText(s.goalError));
+        fmt::print(
+            "{:<16} {:>10} {:>7} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12.2f} {:>8.1f} s {:>10}\n",
+            set.path.planner, fmt::format("{} of {}", s.arrived, s.flights), s.astray, s.collisions,
+            lengthText(s.positionRmse), lengthText(s.predictedSigma), lengthText(s.believedSigma),
+            fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian), s.neesAtGoal, s.lostTime,
+            lengthText(s.goalError));
     }
     if (!sets.empty() && !sets.front().flights.empty()) {
         const FlightSummary s = summarise(sets.front());
@@ -197,16 +148,10 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     if (!source.resultFile.empty()) {
         config.fly.plan = std::filesystem::absolute(source.resultFile).lexically_normal().string();
     }
-    const TrackingMap map =
-        config.fly.map.empty() ? TrackingMap{} : loadTrackingMap(config.fly.map);
-    FlightOptions flight = flightOptions(config, map.resolution());
     const World world(config);
     PlanningProblem problem(config, world, alphaOf(config.planner, config.belief.alpha));
     problem.checkPlaces();
-    flight.initialCovariance = problem.initialCovariance();
-    flight.pilot.isFree = [&world, radius = config.robotRadius](const Eigen::Vector3d& p_w) {
-        return world.clearance(p_w) >= radius;
-    };
+    const FlightSetup setup = setUpFlight(problem);
     std::optional<FolderTransaction> recording;
     if (!options.record.empty()) {
         checkRecordFolder(options.record);
@@ -218,18 +163,11 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     {
         ProgressLine line(options.quiet);
         sets = planAll(config, problem, line, interrupted);
-        const FlightWorld flightWorld{
-            .truth = world.sharedViews(),
-            .map = map.views ? map.views : world.sharedViews(),
-            .clearance = [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
-            .camera = config.camera.camera(),
-            .T_b_c = config.camera.T_b_c(),
-            .noise = config.fly.camera == "real" ? realNoise() : assumedNoise(config.photometric)};
-        flyAll(sets, flightWorld, flight, options, recording ? &*recording : nullptr,
-               config.fly.flights, line, interrupted);
+        flyAll(sets, setup, options, recording ? &*recording : nullptr, config.fly.flights, line,
+               interrupted);
     }
     const bool stopped = interrupted;
-    nlohmann::json result = flyResult(config, sets, flight, stopped);
+    nlohmann::json result = flyResult(config, sets, setup.options, stopped);
     result["time"]["total_s"] = watch.seconds();
     writeFlyReport(folder.path(), config, world, sets, options.commandLine, result);
     commitResult(folder, result);

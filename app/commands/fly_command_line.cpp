@@ -4,6 +4,7 @@
 #include "commands/command_line.hpp"
 #include "commands/fly_command.hpp"
 #include "config/config_keys.hpp"
+#include "flight/flight_setup.hpp"
 #include "replay/calibration_file.hpp"
 
 namespace photonav {
@@ -18,10 +19,11 @@ struct FlyArguments : FlyOptions {
 /// What was typed goes over the config, as --set would.
 void override(const CLI::App& parser, const KeyTable& keys, std::vector<std::string>& overrides) {
     if (parser.count("--calibration") > 0) {
-        const Calibration c = readCalibration(parser["--calibration"]->as<std::string>(), false);
-        overrides.push_back(fmt::format("fly.scale={}", c.scale / c.correlationTime));
-        overrides.push_back(fmt::format("fly.sigma_floor={}", c.floorTranslation));
-        overrides.push_back(fmt::format("fly.sigma_floor_rotation={}", c.floorRotation));
+        FlyConfig fly;
+        applyCalibration(readCalibration(parser["--calibration"]->as<std::string>(), false), fly);
+        overrides.push_back(fmt::format("fly.scale={}", *fly.scale));
+        overrides.push_back(fmt::format("fly.least_sigma={}", *fly.floorTranslation));
+        overrides.push_back(fmt::format("fly.least_sigma_rotation={}", *fly.floorRotation));
     }
     for (const ConfigKey& key : keys.keys()) {
         const CLI::Option* option = parser.get_option_no_throw(optionOf(key));
@@ -53,7 +55,7 @@ Command flyCommand(CLI::App& app, const Invocation& invocation) {
         ->add_option("--calibration",
                      "scale and floors from the calibration.yaml of a replay --calibrate, the "
                      "factor divided by the number of images with correlated errors; --scale, "
-                     "--sigma-floor and --sigma-floor-rotation override it")
+                     "--least-sigma and --least-sigma-rotation override it")
         ->type_name("FILE");
     parser
         ->add_option("--record", options->record, "write the first flight as a TUM RGB-D recording")

@@ -21,7 +21,7 @@ json jsonOf(const FlightResult& flight) {
             {"goal_error_m", flight.goalError},
             {"least_clearance_m", finiteOrNull(flight.leastClearance)},
             {"images", flight.images},
-            {"bad_images", flight.rejectedImages},
+            {"rejected_images", flight.rejectedImages},
             {"times_lost", flight.timesLost},
             {"lost_s", flight.lost},
             {"photometric_goal", flight.photometric},
@@ -152,6 +152,14 @@ std::string subtitleOf(const FlyConfig& fly) {
     return text + ": predicted and actual errors.";
 }
 
+/// Named after the config, or after the result folder of the plan.
+std::string titleOf(const Config& config) {
+    const fs::path plan = config.fly.plan;
+    const fs::path name =
+        plan.empty() ? fs::path(config.file).stem() : plan.parent_path().filename();
+    return name.string() + ", flown";
+}
+
 }  // namespace
 
 json flyResult(const Config& config, const std::vector<FlightSet>& sets,
@@ -175,12 +183,12 @@ json flyResult(const Config& config, const std::vector<FlightSet>& sets,
           {"body_radius_m", options.bodyRadius},
           {"arrival_tolerance_m", options.arrivalTolerance},
           {"camera", config.fly.camera},
-          {"exposure_prior", priorJson(options.alignment.exposure)},
+          {"exposure_prior", priorJson(options.tracker.map.exposure)},
           {"photometric_goal", options.pilot.photometricGoal},
           {"map", config.fly.map},
-          {"scale", options.alignment.photometric.scale},
+          {"scale", options.tracker.map.photometric.scale},
           {"floor",
-           {options.alignment.trust.floorTranslation, options.alignment.trust.floorRotation}}}},
+           {options.tracker.map.trust.floorTranslation, options.tracker.map.trust.floorRotation}}}},
         {"planners", json::array()}};
     for (const FlightSet& set : sets) result["planners"].push_back(jsonOf(set));
     return result;
@@ -190,7 +198,7 @@ void writeFlyReport(const fs::path& folder, const Config& config, const World& w
                     const std::vector<FlightSet>& sets, const std::string& commandLine,
                     const json& result) {
     ReportData report = problemReport(config, world, commandLine, result);
-    report.title = fs::path(config.file).stem().string() + ", flown";
+    report.title = titleOf(config);
     report.subtitle = subtitleOf(config.fly);
     for (std::size_t k = 0; k < sets.size(); ++k) {
         report.paths.push_back(drawnPath(sets[k].path, config.camera.T_b_c()));

@@ -48,10 +48,10 @@ void addKeys(KeyTable& keys, FlyConfig& c) {
                  "factor on the information of an image; none: `camera.information_scale`, a "
                  "quarter of it with a real camera"},
                 c.scale, {1e-12, 1e12});
-    keys.number({"sigma_floor", "m",
+    keys.number({"least_sigma", "m",
                  "least standard deviation of an aligned position; none: that of the map's cells"},
                 c.floorTranslation, {0., 1e3});
-    keys.number({"sigma_floor_rotation", "rad", "the same of an aligned rotation"}, c.floorRotation,
+    keys.number({"least_sigma_rotation", "rad", "the same of an aligned rotation"}, c.floorRotation,
                 {0., 1e3});
 }
 

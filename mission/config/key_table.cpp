@@ -249,7 +249,13 @@ std::string KeyTable::toMarkdown(const std::vector<std::string>& names) const {
     for (const std::string& name : names) {
         const bool isKnown = std::ranges::any_of(
             keys_, [&](const ConfigKey& key) { return key.section == name || key.path() == name; });
-        if (!isKnown) throw InputError(name, "", "is neither a key nor a section of a config");
+        if (isKnown) continue;
+        std::vector<std::string> known;
+        for (const ConfigKey& key : keys_) known.insert(known.end(), {key.section, key.path()});
+        const std::string near = nearestWord(name, known);
+        throw InputError(name, "",
+                         "is neither a key nor a section of a config" +
+                             (near.empty() ? "" : ", did you mean '" + near + "'?"));
     }
     std::string text = "| key | default | unit | values | |\n|---|---|---|---|---|\n";
     for (const ConfigKey& key : keys_) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "flight/flight_loop.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/gaussian.hpp"
 #include "geometry/se3.hpp"
@@ -22,7 +23,7 @@ void check(const FlightWorld& world) {
 }
 
 ImageNoise noiseOf(const FlightWorld& world, const FlightOptions& options) {
-    return world.noise ? world.noise : assumedNoise(options.alignment.photometric);
+    return world.noise ? world.noise : assumedNoise(options.tracker.map.photometric);
 }
 
 UncertainPose beliefAtStart(const std::vector<PlannedView>& plan, const FlightWorld& world,
@@ -38,18 +39,9 @@ Pose drawStart(const UncertainPose& start, const Pose& T_b_c, std::uint64_t seed
 }
 
 TrackerOptions trackerOptions(const FlightWorld& world, const FlightOptions& options) {
-    TrackerOptions tracker;
-    tracker.map = options.alignment;
-    tracker.searchPrior = true;
-    tracker.loss = options.loss;
+    TrackerOptions tracker = options.tracker;
     tracker.T_b_c = world.T_b_c;
     return tracker;
-}
-
-PilotOptions pilotOptions(const FlightOptions& options) {
-    PilotOptions pilot = options.pilot;
-    pilot.photometric = options.alignment.photometric;
-    return pilot;
 }
 
 /// Compares a flight with the truth as it goes on.
@@ -70,16 +62,14 @@ class FlightEvaluator {
                 const Pilot& pilot);
     /// Whether the flight has ended, and how.
     bool hasEnded(const Tracker& tracker, const Pilot& pilot);
-    FlightResult finish(const Tracker& tracker, FlightEnd end);
-
-    FlightEnd end() const { return end_; }
+    FlightResult finish(const Tracker& tracker);
 
   private:
     double goalError() const {
         return (robot_.T_w_b().translation() - goal_.T_w_b.translation()).norm();
     }
     bool endAs(FlightEnd end) {
-        end_ = end;
+        result_.end = end;
         return true;
     }
 
@@ -89,7 +79,6 @@ class FlightEvaluator {
     const SimulatedRobot& robot_;
     double timeLimit_;
     Eigen::Vector3d before_w_;
-    FlightEnd end_ = FlightEnd::stopped;
     FlightResult result_;
 };
 
@@ -126,8 +115,7 @@ bool FlightEvaluator::hasEnded(const Tracker& tracker, const Pilot& pilot) {
     return endAs(goalError() <= options_.arrivalTolerance ? FlightEnd::arrived : FlightEnd::astray);
 }
 
-FlightResult FlightEvaluator::finish(const Tracker& tracker, FlightEnd end) {
-    result_.end = end;
+FlightResult FlightEvaluator::finish(const Tracker& tracker) {
     result_.duration = robot_.time();
     result_.lost = tracker.loss().lostTime(robot_.time());
     result_.timesLost = tracker.loss().timesLost();
@@ -159,26 +147,20 @@ FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
                  const FlightOptions& options, const std::function<bool()>& isStopped,
                  const OnExposure& onExposure) {
     check(world);
-    Pilot pilot(plan, world.map, world.camera, world.T_b_c, pilotOptions(options));
+    Pilot pilot(plan, world.map, world.camera, world.T_b_c, options.pilot);
     const UncertainPose start = beliefAtStart(plan, world, options);
     SimulatedRobot robot(world.truth, world.camera, world.T_b_c,
                          drawStart(start, world.T_b_c, options.seed), noiseOf(world, options),
                          options.robot, options.seed);
     Tracker tracker(world.map, robot.camera(), start, trackerOptions(world, options));
     FlightEvaluator evaluator(world, options, plan.back(), robot);
-    BodyVelocity command;
-    for (double seconds = 0.;; seconds = options.timeStep) {
-        const Observation observation = robot.fly(command, seconds);
-        const std::vector<TrackedFrame> tracked = tracker.update(observation);
-        for (std::size_t i = 0; i < tracked.size(); ++i) {
-            pilot.observe(tracker, tracked[i], observation.frames[i].view.intensity);
-        }
+    flyLoop(robot, tracker, pilot, options.timeStep, [&](const std::vector<TrackedFrame>& tracked) {
         evaluator.onStep(tracked, tracker, pilot);
         if (onExposure && robot.exposed()) onExposure(*robot.exposed());
-        if (isStopped && isStopped()) return evaluator.finish(tracker, FlightEnd::stopped);
-        if (evaluator.hasEnded(tracker, pilot)) return evaluator.finish(tracker, evaluator.end());
-        command = pilot.command(tracker, observation.time, options.timeStep);
-    }
+        const bool isAborted = isStopped && isStopped();
+        return !isAborted && !evaluator.hasEnded(tracker, pilot);
+    });
+    return evaluator.finish(tracker);
 }
 
 }  // namespace photonav

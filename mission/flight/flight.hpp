@@ -19,7 +19,7 @@ struct FlightWorld {
     std::function<double(const Eigen::Vector3d& p_w)> clearance;  ///< of the true world [m]
     Camera camera;
     Pose T_b_c = Pose::Identity();
-    ImageNoise noise;  ///< empty: assumedNoise() of the photometric options of alignment
+    ImageNoise noise;  ///< empty: assumedNoise() of tracker.map.photometric
 };
 
 struct FlightOptions {
@@ -28,9 +28,8 @@ struct FlightOptions {
     Matrix6 initialCovariance = Matrix6::Zero();
     double timeStep = 0.02;  ///< of control and odometry [s]
     SimulatedRobotOptions robot;
-    AlignmentOptions alignment;  ///< of the images to the map
-    LossOptions loss;
-    PilotOptions pilot;             ///< its `photometric` is that of `alignment`
+    TrackerOptions tracker{.searchPrior = true};  ///< its camera mount is that of the world
+    PilotOptions pilot;
     double bodyRadius = 0.1;        ///< an obstacle nearer than this is a collision [m]
     double arrivalTolerance = 0.3;  ///< true distance to the goal of a flight that arrived [m]
     double timePerMetre = 6.;       ///< the flight is out of time after as much, and a minute [s]
@@ -75,7 +74,7 @@ struct FlightResult {
 /// Called for every exposure, for recordings. @param depth true
 using OnExposure = std::function<void(const Exposed& exposed)>;
 
-/// Flies a plan: robot -> tracker -> pilot -> robot. Everything random follows from options.seed.
+/// Flies a plan with flyLoop() until it ends. Everything random follows from options.seed.
 /// @param plan at least two views
 /// @throws std::invalid_argument for a shorter plan, or a world without truth, map or clearance
 /// @param isStopped asked now and then

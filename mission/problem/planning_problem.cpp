@@ -156,8 +156,8 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
     return outcome;
 }
 
-std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(
-    const std::string& name, std::optional<std::uint32_t> seed) const {
+std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& name,
+                                                            std::optional<std::uint32_t> seed) {
     GrowthOptions growth = config_.growth;
     growth.seed = seed.value_or(config_.seed);
     growth.obstacleReach = config_.robotRadius;
@@ -167,7 +167,17 @@ std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(
         photonav::makePlanner(name, si_, makeModel(plannersField_), config_.search, growth);
     planner->setProblemDefinition(definition());
     planner->setup();
+    std::erase_if(planners_, [](const auto& made) { return made.expired(); });
+    planners_.push_back(planner);
     return planner;
+}
+
+void PlanningProblem::mapChanged(const MapChange& change) {
+    field_->update(world_.sharedViews(), change);
+    if (plannersField_ != field_) plannersField_->update(world_.sharedViews(), change);
+    for (const auto& made : planners_) {
+        if (const auto planner = made.lock()) planner->mapChanged(change);
+    }
 }
 
 std::shared_ptr<InformationField> PlanningProblem::makeField(const std::string& viewModel) const {

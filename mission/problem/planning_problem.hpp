@@ -116,8 +116,13 @@ class PlanningProblem {
     /// @param name one of plannerNames() @throws std::invalid_argument for any other
     /// @param seed default: the config's
     std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
-                                               std::optional<std::uint32_t> seed = {}) const;
+                                               std::optional<std::uint32_t> seed = {});
+    /// Updates the cached views and the planners made here, once the map of the world has changed
+    /// and World::mapChanged() was called. Planners keep what is still valid: solve() goes on from
+    /// there. Call it for every problem in the world, one by one.
+    void mapChanged(const MapChange& change);
     const Config& config() const { return config_; }
+    const World& world() const { return world_; }
     /// Evaluates the solution of a planner that has one.
     EvaluatedPath evaluate(const BeliefPlanner& planner);
     /// Evaluates a path of any planner of OMPL.
@@ -142,6 +147,7 @@ class PlanningProblem {
     std::shared_ptr<InformationField> field_;          // photometric, of evaluator_
     std::shared_ptr<InformationField> plannersField_;  // of the planner
     std::shared_ptr<BeliefModel> evaluator_;
+    std::vector<std::weak_ptr<BeliefPlanner>> planners_;  // made here
 };
 
 }  // namespace photonav

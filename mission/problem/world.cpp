@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
+#include <utility>
 
 #include "io/error.hpp"
 #include "map/octree_file.hpp"
@@ -33,6 +35,20 @@ void outlineSteps(ImageF& picture, const ImageF& depth) {
     }
 }
 
+bool isTextured(const TexturedOcTree& map) {
+    for (auto cell = map.begin_leafs(); cell != map.end_leafs(); ++cell) {
+        if (cell->meanGrey()) return true;
+    }
+    return false;
+}
+
+Eigen::AlignedBox3d extentOf(const TexturedOcTree& map) {
+    Eigen::AlignedBox3d box;
+    map.getMetricMin(box.min().x(), box.min().y(), box.min().z());
+    map.getMetricMax(box.max().x(), box.max().y(), box.max().z());
+    return box;
+}
+
 }  // namespace
 
 World::World(const Config& config) {
@@ -42,10 +58,14 @@ World::World(const Config& config) {
             config.mapFile + ": not there; this config's map is made by " + config.mapMadeBy);
     }
     try {
-        if (config.mapFile.empty())
-            loadScene(config);
-        else
-            loadMap(config);
+        if (config.mapFile.empty()) {
+            useScene(loadScene(config.sceneFile), config);
+        } else {
+            const std::shared_ptr<TexturedOcTree> map = loadTexturedOcTree(config.mapFile);
+            hasTexture_ = isTextured(*map);
+            views_ = std::make_shared<VoxelRenderer>(*map, config.unknownToCamera);
+            useMap(map, config);
+        }
     } catch (const InputError& error) {
         throw InputError(config.file, config.mapFile.empty() ? "scene.file" : "map.file",
                          error.what());
@@ -54,8 +74,16 @@ World::World(const Config& config) {
     }
 }
 
-void World::loadScene(const Config& config) {
-    auto renderer = std::make_unique<MeshRenderer>(photonav::loadScene(config.sceneFile));
+World::World(Scene scene, const Config& config) { useScene(std::move(scene), config); }
+
+World::World(std::shared_ptr<const TexturedOcTree> map, const Config& config)
+    : snapshots_(std::in_place, *map, config.unknownToCamera) {
+    views_ = snapshots_->current();
+    useMap(std::move(map), config);
+}
+
+void World::useScene(Scene scene, const Config& config) {
+    auto renderer = std::make_unique<MeshRenderer>(std::move(scene));
     scene_ = &renderer->scene();
     extent_ = scene_->boundingBox();
     distances_ =
@@ -64,19 +92,20 @@ void World::loadScene(const Config& config) {
     views_ = std::move(renderer);
 }
 
-void World::loadMap(const Config& config) {
-    const std::shared_ptr<TexturedOcTree> map = loadTexturedOcTree(config.mapFile);
-    hasTexture_ = false;
-    for (auto cell = map->begin_leafs(); cell != map->end_leafs() && !hasTexture_; ++cell) {
-        hasTexture_ = cell->meanGrey().has_value();
-    }
-    views_ = std::make_shared<VoxelRenderer>(*map, config.unknownToCamera);
+void World::useMap(std::shared_ptr<const TexturedOcTree> map, const Config& config) {
     distances_ = DistanceMap(*map, config.bounds,
                              {.maxDistance = reach(config.robotRadius, map->getResolution()),
                               .unknown = config.unknownToPlanner});
-    map->getMetricMin(extent_.min().x(), extent_.min().y(), extent_.min().z());
-    map->getMetricMax(extent_.max().x(), extent_.max().y(), extent_.max().z());
-    map_ = map;
+    extent_ = extentOf(*map);
+    map_ = std::move(map);
+}
+
+void World::mapChanged(const MapChange& change) {
+    if (!snapshots_) throw std::logic_error("world: only a map of the program's own can change");
+    if (change.empty()) return;
+    distances_.update(*map_, change);
+    views_ = snapshots_->update(*map_, change);
+    extent_ = extentOf(*map_);
 }
 
 ImageF World::pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const {

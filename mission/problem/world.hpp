@@ -3,10 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "config/config.hpp"
 #include "map/distance_map.hpp"
 #include "photometry/view.hpp"
+#include "render/voxel_snapshots.hpp"
 #include "scene/scene.hpp"
 
 namespace photonav {
@@ -16,6 +18,19 @@ class World {
     /// Loads the scene or map of the config.
     /// @throws InputError when it cannot be read, or is too large for the resolution asked for
     explicit World(const Config& config);
+    /// A scene of the program's own, in the bounds of the config.
+    World(Scene scene, const Config& config);
+    /// A map of the program's own, in the bounds of the config. It may change and gain texture:
+    /// tell mapChanged().
+    /// @throws std::invalid_argument for a map that is too large
+    World(std::shared_ptr<const TexturedOcTree> map, const Config& config);
+
+    /// Updates clearance and views after a change of the program's own map, at a cost that grows
+    /// with the change. Nothing else may use the world meanwhile. Every planning problem in it must
+    /// be told next: PlanningProblem::mapChanged().
+    /// @param change everything that changed since the last call
+    /// @throws std::logic_error for a world made otherwise
+    void mapChanged(const MapChange& change);
 
     const ViewSource& views() const { return *views_; }
     /// The same with shared ownership.
@@ -35,10 +50,11 @@ class World {
     ImageF pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const;
 
   private:
-    void loadScene(const Config& config);
-    void loadMap(const Config& config);
+    void useScene(Scene scene, const Config& config);
+    void useMap(std::shared_ptr<const TexturedOcTree> map, const Config& config);
 
     std::shared_ptr<const ViewSource> views_;
+    std::optional<VoxelSnapshots> snapshots_;  // that views_ is of, where the map may change
     bool hasTexture_ = true;
     DistanceMap distances_;
     Eigen::AlignedBox3d extent_;

@@ -20,8 +20,8 @@ const std::string& modeOf(bool odometry) { return kModes[odometry ? 0 : 1]; }
 std::string toYaml(const Calibration& c, bool odometry) {
     std::string text = fmt::format(
         "# Single alignments: NEES per degree of freedom {:.3g} before, {:.3g} with\n"
-        "# photonav replay ... --scale {:.3g} --sigma-floor {:.3g} --sigma-floor-rotation {:.3g}\n"
-        "mode: {}\nscale: {:.3g}\nsigma_floor: {:.3g}  # m\nsigma_floor_rotation: {:.3g}  # rad\n",
+        "# photonav replay ... --scale {:.3g} --least-sigma {:.3g} --least-sigma-rotation {:.3g}\n"
+        "mode: {}\nscale: {:.3g}\nleast_sigma: {:.3g}  # m\nleast_sigma_rotation: {:.3g}  # rad\n",
         c.neesBefore, c.neesAfter, c.scale, c.floorTranslation, c.floorRotation, modeOf(odometry),
         c.scale, c.floorTranslation, c.floorRotation);
     if (c.correlationTime > 1.) {
@@ -36,7 +36,7 @@ std::string toYaml(const Calibration& c, bool odometry) {
 Calibration readCalibration(const std::string& file, bool odometry) {
     YamlMap yaml(file, loadYaml(file));
     Calibration c;
-    for (const char* key : {"scale", "sigma_floor", "sigma_floor_rotation"}) {
+    for (const char* key : {"scale", "least_sigma", "least_sigma_rotation"}) {
         if (!yaml.has(key)) yaml.fail(key, "missing");
     }
     std::string mode = modeOf(odometry);
@@ -46,8 +46,8 @@ Calibration readCalibration(const std::string& file, bool odometry) {
                                       odometry ? "a keyframe" : "a map"));
     }
     yaml.readNumber("scale", c.scale, 1e-12, kInfinity);
-    yaml.readNumber("sigma_floor", c.floorTranslation, 0., kInfinity);
-    yaml.readNumber("sigma_floor_rotation", c.floorRotation, 0., kInfinity);
+    yaml.readNumber("least_sigma", c.floorTranslation, 0., kInfinity);
+    yaml.readNumber("least_sigma_rotation", c.floorRotation, 0., kInfinity);
     yaml.readNumber("correlation_time", c.correlationTime, 1., kInfinity);
     yaml.finish();
     return c;

@@ -34,8 +34,8 @@ void checkOptions(const ReplayOptions& options) {
     const auto isFloor = [](const std::optional<double>& x) {
         return !x || (std::isfinite(*x) && *x >= 0.);
     };
-    require(isFloor(options.floorTranslation), "--sigma-floor", "must be a number, not negative");
-    require(isFloor(options.floorRotation), "--sigma-floor-rotation",
+    require(isFloor(options.floorTranslation), "--least-sigma", "must be a number, not negative");
+    require(isFloor(options.floorRotation), "--least-sigma-rotation",
             "must be a number, not negative");
     require(options.minOverlap > 0. && options.minOverlap < 1., "--min-overlap",
             "must be between 0 and 1");

@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "mapping/tracking_map.hpp"
+#include "problem/tracking_map.hpp"
 #include "replay/replay_options.hpp"
 #include "replay/replay_run.hpp"
 

@@ -27,10 +27,10 @@ void addKeys(KeyTable& keys, ReplayOptions& o) {
                  "factor on the information of an image; none: that of camera.yaml in a map, else "
                  "the tracker's"},
                 o.scale, kPositive);
-    keys.number({"sigma_floor", "m",
+    keys.number({"least_sigma", "m",
                  "least standard deviation of an aligned position; none: the tracker's"},
                 o.floorTranslation, kNotNegative);
-    keys.number({"sigma_floor_rotation", "rad", "the same of an aligned rotation"}, o.floorRotation,
+    keys.number({"least_sigma_rotation", "rad", "the same of an aligned rotation"}, o.floorRotation,
                 kNotNegative);
     keys.number({"min_overlap", "", "least share of an image that the model must cover"},
                 o.minOverlap, {1e-12, 1. - 1e-12});

@@ -28,12 +28,33 @@ ImageF asModelled(const ImageF& observed, const Exposure& exposure) {
 Pilot::Pilot(std::vector<PlannedView> plan, std::shared_ptr<const ViewSource> map,
              const Camera& camera, const Pose& T_b_c, const PilotOptions& options)
     : map_(std::move(map)),
+      camera_(camera),
       T_b_c_(T_b_c),
       options_(options),
       route_(std::move(plan), T_b_c, options.route),
       servo_(T_b_c, options.servo),
-      goalServo_(*map_, camera, T_b_c, route_.goal().T_w_b, {.photometric = options.photometric}),
+      goalServo_(servoToGoal()),
       search_(map_, camera, T_b_c, options.photometric, options.isFree) {}
+
+PhotometricServo Pilot::servoToGoal() const {
+    return {*map_, camera_, T_b_c_, route_.goal().T_w_b, {.photometric = options_.photometric}};
+}
+
+void Pilot::setPlan(std::vector<PlannedView> plan) {
+    route_ = Route(std::move(plan), T_b_c_, options_.route);
+    goalServo_ = servoToGoal();
+    if (searchSince_) endSearch();
+    leaveImage();
+    atGoalSince_.reset();
+    hasMissedGoal_ = hasServoedOnImage_ = false;
+}
+
+void Pilot::setMap(std::shared_ptr<const ViewSource> map) {
+    map_ = std::move(map);
+    goalServo_ = servoToGoal();
+    search_ = ViewSearch(map_, camera_, T_b_c_, options_.photometric, options_.isFree);
+    leaveImage();
+}
 
 void Pilot::observe(const Tracker& tracker, const TrackedFrame& tracked, const ImageF& image) {
     if (searchSince_) continueSearch(tracker, tracked.time);
@@ -83,7 +104,7 @@ BodyVelocity Pilot::decide(const Tracker& tracker, double time) {
     }
     if (route_.isAtGoal() && !searchSince_) {
         atGoalSince_ = time;
-        isResigned_ = isMissed(belief);
+        hasMissedGoal_ = isMissed(belief);
     }
     return servo_.toward(belief.mean, route_.cameraAt(target));
 }
@@ -91,15 +112,15 @@ BodyVelocity Pilot::decide(const Tracker& tracker, double time) {
 /// Whether the belief is too wide for waypoints to be reached, and was not to be at the last one.
 bool Pilot::isMissed(const UncertainPose& belief) const {
     const PlannedView& waypoint = route_.lastWaypoint();
-    const double planned = widestSigma({waypoint.T_w_b, waypoint.covariance});
-    const double sigma = widestSigma(belief);
+    const double planned = widestSigma(waypoint.covariance);
+    const double sigma = widestSigma(belief.covariance);
     return sigma > options_.route.maxTolerance && std::sqrt(2.) * planned < sigma;
 }
 
 void Pilot::beginSearch(const Tracker& tracker, double time) {
     searchSince_ = time;
     searched_ = tracker.loss().isLost()
-                    ? whereToFindItself(tracker)
+                    ? viewToRelocalize(tracker)
                     : search_.nearest(tracker.belief(), route_.lastWaypoint().T_w_b);
     if (!searched_ && !tracker.loss().isLost()) endSearch();
 }
@@ -123,7 +144,7 @@ void Pilot::endSearch() {
 
 /// The last view that determined the pose, unless one that should narrow the belief lies nearer
 /// ahead on the route: none.
-std::optional<Pose> Pilot::whereToFindItself(const Tracker& tracker) const {
+std::optional<Pose> Pilot::viewToRelocalize(const Tracker& tracker) const {
     const UncertainPose belief = tracker.loss().widened(tracker.belief());
     const Eigen::Vector3d p_w = bodyOf(belief.mean).translation();
     const Pose certain = bodyOf(tracker.lastCertainView());
@@ -138,7 +159,7 @@ std::optional<Pose> Pilot::whereToFindItself(const Tracker& tracker) const {
 }
 
 bool Pilot::hasArrived(const Tracker& tracker, double time) const {
-    if (!atGoalSince_ || isResigned_ || tracker.loss().isLost()) return false;
+    if (!atGoalSince_ || hasMissedGoal_ || tracker.loss().isLost()) return false;
     const double waited = time - *atGoalSince_;
     return onImage_ ? smallSteps_ >= kPhotometricImages || waited > kPhotometricTime
                     : waited > kSettleTime;
@@ -146,7 +167,7 @@ bool Pilot::hasArrived(const Tracker& tracker, double time) const {
 
 bool Pilot::hasGivenUp(const Tracker& tracker, double time) const {
     const auto since = tracker.loss().since();
-    return isResigned_ || (since && time - *since > options_.hoverTime + options_.giveUpTime);
+    return hasMissedGoal_ || (since && time - *since > options_.hoverTime + options_.giveUpTime);
 }
 
 }  // namespace photonav

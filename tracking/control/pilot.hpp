@@ -40,6 +40,11 @@ class Pilot {
     Pilot(std::vector<PlannedView> plan, std::shared_ptr<const ViewSource> map,
           const Camera& camera, const Pose& T_b_c, const PilotOptions& options);
 
+    /// Flies another plan from now on. @throws std::invalid_argument below two views
+    void setPlan(std::vector<PlannedView> plan);
+    /// Exchanges the map; the plan stays.
+    void setMap(std::shared_ptr<const ViewSource> map);
+
     /// An image was tracked: for servoing on the goal's.
     void observe(const Tracker& tracker, const TrackedFrame& tracked, const ImageF& image);
 
@@ -61,12 +66,14 @@ class Pilot {
     void beginSearch(const Tracker& tracker, double time);
     void continueSearch(const Tracker& tracker, double time);
     void endSearch();
-    std::optional<Pose> whereToFindItself(const Tracker& tracker) const;
+    std::optional<Pose> viewToRelocalize(const Tracker& tracker) const;
     Pose bodyOf(const Pose& T_c_w) const { return T_c_w.inverse() * T_b_c_.inverse(); }
     void approachOnImage(const ImageF& image, const Pose& T_w_b);
     void leaveImage();
+    PhotometricServo servoToGoal() const;
 
     std::shared_ptr<const ViewSource> map_;
+    Camera camera_;
     Pose T_b_c_;
     PilotOptions options_;
     Route route_;
@@ -75,7 +82,7 @@ class Pilot {
     ViewSearch search_;
     std::optional<double> searchSince_;  ///< [s]
     std::optional<Pose> searched_;       ///< body pose to search from; none: the route goes on
-    bool isResigned_ = false;            ///< at the goal, but not for certain
+    bool hasMissedGoal_ = false;         ///< at the goal, but not for certain
     BodyVelocity command_;
     std::optional<double> atGoalSince_;    ///< [s]
     std::optional<BodyVelocity> onImage_;  ///< wanted by the goal's image

@@ -19,20 +19,19 @@ struct WidestDirection {
     double variance = 0.;  // [m^2]
 };
 
-WidestDirection widestDirection(const UncertainPose& T_c_w) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
-        T_c_w.covariance.topLeftCorner<3, 3>());
+WidestDirection widestDirection(const Matrix6& covariance) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance.topLeftCorner<3, 3>());
     return {solver.eigenvectors().col(2), std::max(0., solver.eigenvalues()[2])};
 }
 
 }  // namespace
 
-double widestSigma(const UncertainPose& T_c_w) {
-    return std::sqrt(widestDirection(T_c_w).variance);
+double widestSigma(const Matrix6& covariance) {
+    return std::sqrt(widestDirection(covariance).variance);
 }
 
 bool ViewSearch::narrows(const UncertainPose& belief, const Pose& T_w_b) const {
-    const WidestDirection widest = widestDirection(belief);
+    const WidestDirection widest = widestDirection(belief.covariance);
     Vector6 axis = Vector6::Zero();
     axis.head<3>() = widest.axis_c;
     View view;
@@ -52,7 +51,7 @@ std::optional<Pose> ViewSearch::nearest(const UncertainPose& belief, const Pose&
     if (!isFree_) return {};
     const Eigen::Vector3d from_w = (T_b_c_ * belief.mean).inverse().translation();
     const double step = 0.25 * footprint(T_w_b);
-    const int rings = 4 + static_cast<int>(kSearchedSigmas * widestSigma(belief) / step);
+    const int rings = 4 + static_cast<int>(kSearchedSigmas * widestSigma(belief.covariance) / step);
     for (int ring = 0; ring <= rings; ++ring) {
         for (int i = 0; i < (ring > 0 ? kDirections : 1); ++i) {
             const double angle = 2. * std::numbers::pi * i / kDirections;

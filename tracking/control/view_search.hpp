@@ -13,7 +13,8 @@
 namespace photonav {
 
 /// Standard deviation of the position along its widest direction [m].
-double widestSigma(const UncertainPose& T_c_w);
+/// @param covariance of T_c_w, camera frame
+double widestSigma(const Matrix6& covariance);
 
 /// Views that would narrow a belief, wherever in it the camera truly is.
 class ViewSearch {

@@ -18,7 +18,7 @@ class Flight : public ::testing::Test {
         world.clearance = [](const Eigen::Vector3d&) { return 1.; };
         world.camera = makeCamera(94, 60, 1.2);
         world.T_b_c = cameraMount(kDown);
-        world.noise = assumedNoise(options.alignment.photometric);
+        world.noise = assumedNoise(options.tracker.map.photometric);
         Vector6 initial;
         initial << 1e-2, 1e-2, 1e-3, 1e-5, 1e-5, 1e-4;
         Vector6 motion;

@@ -2,8 +2,12 @@
 #include "problem/planning_problem.hpp"
 
 #include <gtest/gtest.h>
+#include <ompl/base/ScopedState.h>
 
+#include "geometry/camera.hpp"
+#include "map/map_fusion.hpp"
 #include "planners/planner_table.hpp"
+#include "render/mesh_renderer.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {
@@ -45,13 +49,86 @@ TEST(PlanningProblem, PathsAreEvaluatedByWaypointsToo) {
 TEST(PlanningProblem, EveryNamedPlannerIsMadeAndNoOther) {
     const Config config = smallProblem(0.5);
     const World world(config);
-    const PlanningProblem problem(config, world);
+    PlanningProblem problem(config, world);
     for (const std::string& name : plannerNames()) {
         EXPECT_EQ(problem.makePlanner(name)->getName(), name);
     }
     EXPECT_EQ(
         test::messageOf<std::invalid_argument>([&] { problem.makePlanner("prm"); }),
         "no planner is named prm; the names are belief_rrt_star, pa_rrt_star, rrbt, rrt_star");
+}
+
+/// A wall, seen from where the body starts.
+MapChange fuseWall(TexturedOcTree& map, const Config& config) {
+    Scene wall;
+    addBox(wall, {4., 1., 0.}, {4.2, 3., 3.}, addTexture(wall, valueNoise({})));
+    const Camera camera = makeCamera(94, 60, 1.2);
+    Pose T_w_b = Pose::Identity();
+    T_w_b.translation() = config.start.position;
+    const Pose T_c_w = (T_w_b * cameraMount(0.)).inverse();
+    View view;
+    MeshRenderer(wall).render(camera, T_c_w, view);
+    return fuse(map, view, camera, T_c_w);
+}
+
+/// With a camera that looks ahead, to see the wall.
+Config emptySpace() {
+    Config config;
+    config.bounds = {Eigen::Vector3d(0., 0., 1.), Eigen::Vector3d(8., 4., 1.)};
+    config.start.position = {1., 2., 1.};
+    config.goal.position = {7., 2., 1.};
+    config.vertices = 150;
+    config.camera = {.mount = "forward", .width = 48, .height = 32};
+    config.unknownToPlanner = UnknownPolicy::free;
+    return config;
+}
+
+TEST(PlanningProblem, FollowsAMapThatChanges) {
+    const Config config = emptySpace();
+    const auto map = std::make_shared<TexturedOcTree>(0.1);
+    World world(map, config);
+    PlanningProblem problem(config, world);
+    for (const std::string& name : plannerNames()) problem.makePlanner(name);  // and dropped
+    const auto planner = problem.makePlanner("belief_rrt_star");
+    const PlanOutcome before = problem.solve(planner);
+    ASSERT_TRUE(before.isSolved());
+
+    const MapChange change = fuseWall(*map, config);
+    world.mapChanged(change);
+    problem.mapChanged(change);
+    const PlanOutcome after = problem.solve(planner);
+    ASSERT_TRUE(after.isSolved());
+    EXPECT_GT(after.path->length, before.path->length + 0.2);
+    EXPECT_GT(after.path->points.front().information.trace(), 0.);
+
+    const World fresh(map, config);
+    PlanningProblem judge(config, fresh);
+    std::vector<Place> waypoints;
+    for (const BeliefPoint& point : after.path->points) {
+        EXPECT_GT(fresh.clearance(point.T_w_b.translation()), config.robotRadius);
+        if (point.isWaypoint) waypoints.push_back({point.T_w_b.translation(), {}});
+    }
+    EXPECT_EQ(judge.evaluate("again", waypoints).cost, after.path->cost);
+    EXPECT_EQ(world.extent().max(), fresh.extent().max());
+}
+
+TEST(PlanningProblem, EvaluatesPathsOfOtherPlanners) {
+    const Config config = smallProblem(0.5);
+    const World world(config);
+    PlanningProblem problem(config, world);
+    ompl::geometric::PathGeometric path(problem.spaceInformation());
+    ompl::base::ScopedState<> state(problem.spaceInformation());
+    for (const Place& place : {config.start, config.goal}) {
+        problem.space().setState(state.get(), place.position, 0.);
+        path.append(state.get());
+    }
+    EXPECT_EQ(problem.evaluate("straight", path).cost,
+              problem.evaluate("straight", {config.start, config.goal}).cost);
+}
+
+TEST(World, OnlyAMapOfTheProgramsOwnCanChange) {
+    World world(smallProblem(0.1));
+    EXPECT_THROW(world.mapChanged({}), std::logic_error);
 }
 
 TEST(World, HoldsWhatItWasMadeOf) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapping/tracking_map.hpp"
+#include "problem/tracking_map.hpp"
 
 #include "map/octree_file.hpp"
 #include "render/mesh_renderer.hpp"

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/flight_setup.hpp"
+
+#include <algorithm>
+
+#include "problem/tracking_map.hpp"
+
+namespace photonav {
+namespace {
+
+/// A map may be made of flight 0: its noise must not be that of the images flown by it.
+constexpr std::uint64_t kSeedInMaps = 1'000'003;
+/// A real camera's images are worth less than planned with: what vignetting does to them is alike
+/// in all images of a place (docs/fly.md).
+constexpr double kRealCamera = 0.25;  // of camera.information_scale
+
+/// How images are aligned: as they were planned with, or as those of a real camera.
+/// @param resolution of the map [m]; 0: a mesh
+AlignmentOptions alignmentOptions(const Config& config, double resolution) {
+    const FlyConfig& fly = config.fly;
+    const bool isReal = fly.camera == "real";
+    const AlignmentOptions real = realCameraOptions(resolution);
+    AlignmentOptions alignment;
+    alignment.photometric = config.photometric;
+    alignment.photometric.stride = 1;
+    alignment.photometric.scale =
+        fly.scale.value_or((isReal ? kRealCamera : 1.) * config.photometric.scale);
+    alignment.trust.floorTranslation = fly.floorTranslation.value_or(real.trust.floorTranslation);
+    alignment.trust.floorRotation = fly.floorRotation.value_or(real.trust.floorRotation);
+    // Odometry carries what the map's noise leaves open; replays without it would drift there.
+    if (resolution > 0.) alignment.modelNoise = ModelNoise::measured;
+    if (isReal) alignment.exposure = real.exposure;
+    return alignment;
+}
+
+SimulatedRobotOptions robotOptions(const Config& config) {
+    const FlyConfig& fly = config.fly;
+    SimulatedRobotOptions robot;
+    robot.body.odometryNoise = config.belief.motionNoise;
+    robot.body.rotationWeight = config.rotationWeight;
+    robot.body.odometryFactor = fly.odometry;
+    robot.camera.period = fly.rate > 0. ? 1. / fly.rate : config.belief.ds / fly.speed;
+    robot.camera.latency = fly.latency;
+    robot.camera.dropRate = fly.drop;
+    robot.camera.blackRate = fly.black;
+    robot.camera.blackoutStart = fly.blackout[0];
+    robot.camera.blackoutLength = fly.blackout[1];
+    return robot;
+}
+
+FlightOptions flightOptions(const Config& config, double resolution) {
+    const FlyConfig& fly = config.fly;
+    FlightOptions flight;
+    flight.robot = robotOptions(config);
+    flight.tracker.map = alignmentOptions(config, resolution);
+    double& blindTime = flight.tracker.loss.blindTime;
+    blindTime = fly.latency + std::max(blindTime, 4. * flight.robot.camera.period);
+    flight.pilot.servo.maxSpeed = fly.speed;
+    flight.pilot.photometric = flight.tracker.map.photometric;
+    flight.pilot.photometricGoal = fly.photometricGoal;
+    flight.bodyRadius = fly.bodyRadius > 0. ? fly.bodyRadius : 0.5 * config.robotRadius;
+    flight.arrivalTolerance = std::max(config.robotRadius, 0.1);
+    flight.seed = config.seed + (fly.map.empty() ? 0 : kSeedInMaps);
+    return flight;
+}
+
+}  // namespace
+
+FlightSetup setUpFlight(const PlanningProblem& problem) {
+    const Config& config = problem.config();
+    const World& world = problem.world();
+    const TrackingMap map =
+        config.fly.map.empty() ? TrackingMap{} : loadTrackingMap(config.fly.map);
+    FlightSetup setup;
+    setup.world = {
+        .truth = world.sharedViews(),
+        .map = map.views ? map.views : world.sharedViews(),
+        .clearance = [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
+        .camera = config.camera.camera(),
+        .T_b_c = config.camera.T_b_c(),
+        .noise = config.fly.camera == "real" ? realNoise() : assumedNoise(config.photometric)};
+    setup.options = flightOptions(config, map.resolution());
+    setup.options.initialCovariance = problem.initialCovariance();
+    setup.options.pilot.isFree = [&world, radius = config.robotRadius](const Eigen::Vector3d& p_w) {
+        return world.clearance(p_w) >= radius;
+    };
+    return setup;
+}
+
+void applyCalibration(const Calibration& calibration, FlyConfig& fly) {
+    fly.scale = calibration.scale / calibration.correlationTime;
+    fly.floorTranslation = calibration.floorTranslation;
+    fly.floorRotation = calibration.floorRotation;
+}
+
+}  // namespace photonav

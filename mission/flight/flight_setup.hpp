@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a planning problem to the flights of its plans.
+#pragma once
+
+#include "estimation/calibration.hpp"
+#include "flight/flight.hpp"
+#include "problem/planning_problem.hpp"
+
+namespace photonav {
+
+struct FlightSetup {
+    FlightWorld world;
+    FlightOptions options;
+};
+
+/// World and options of flights under the conditions that the config of the problem describes, its
+/// section `fly` above all: camera, odometry, start, obstacles, noise and the map to track in.
+///
+///     const FlightSetup setup = setUpFlight(problem);
+///     const FlightResult flight =
+///         fly(plannedViews(outcome.path->points), setup.world, setup.options);
+///
+/// @param problem its world must outlive the setup
+/// @throws InputError for a map that cannot be read
+FlightSetup setUpFlight(const PlanningProblem& problem);
+
+/// Sets scale and floors of alignments as calibrated. The factor is divided by the number of images
+/// with correlated errors, because a tracker averages images.
+void applyCalibration(const Calibration& calibration, FlyConfig& fly);
+
+}  // namespace photonav

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/flight_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include "geometry/se3.hpp"
+#include "tracking/rooms.hpp"
+
+namespace photonav {
+namespace {
+
+using test::kDown;
+
+/// Moves as commanded, with an image at every step: no part of the simulation.
+class ObedientRobot : public Robot {
+  public:
+    explicit ObedientRobot(std::shared_ptr<const ViewSource> world) : world_(std::move(world)) {}
+
+    Observation fly(const BodyVelocity& command, double seconds) override {
+        Vector6 motion = Vector6::Zero();
+        motion.head<3>() = seconds * command.linear;
+        motion[5] = seconds * command.yawRate;
+        const Pose T_now_next = expSE3(motion);
+        T_w_b = T_w_b * T_now_next;
+        time_ += seconds;
+        Observation observation{.time = time_, .T_next_now = UncertainPose{T_now_next.inverse()}};
+        observation.T_next_now->covariance = 1e-6 * Matrix6::Identity();
+        CameraFrame& frame = observation.frames.emplace_back();
+        frame.time = time_;
+        world_->render(camera_, (T_w_b * T_b_c_).inverse(), frame.view);
+        return observation;
+    }
+    const Camera& camera() const override { return camera_; }
+    const Pose& T_b_c() const override { return T_b_c_; }
+
+    Pose T_w_b = Pose::Identity();
+
+  private:
+    std::shared_ptr<const ViewSource> world_;
+    Camera camera_ = makeCamera(47, 30, 1.2);
+    Pose T_b_c_ = cameraMount(kDown);
+    double time_ = 0.;
+};
+
+std::vector<PlannedView> straightTo(double x) {
+    std::vector<PlannedView> plan(2);
+    for (PlannedView& view : plan) {
+        view.T_w_b.translation().z() = 2.;
+        view.isWaypoint = true;
+    }
+    plan.back().T_w_b.translation().x() = x;
+    plan.back().distance = std::abs(x);
+    return plan;
+}
+
+class FlightLoop : public ::testing::Test {
+  protected:
+    FlightLoop() {
+        robot.T_w_b.translation() << 0.05, 0.02, 2.;
+        UncertainPose start{(straightTo(1.).front().T_w_b * robot.T_b_c()).inverse()};
+        start.covariance = 1e-3 * Matrix6::Identity();
+        TrackerOptions options;
+        options.T_b_c = robot.T_b_c();
+        tracker.emplace(floor, robot.camera(), start, options);
+        pilot.emplace(straightTo(1.), floor, robot.camera(), robot.T_b_c(), PilotOptions{});
+    }
+
+    /// @return duration of the flight [s]
+    double flyToGoal() {
+        double time = 0.;
+        flyLoop(robot, *tracker, *pilot, 0.1, [&](const std::vector<TrackedFrame>& tracked) {
+            time = tracked.back().time;
+            return !pilot->hasArrived(*tracker, time) && time < 60.;
+        });
+        return time;
+    }
+
+    std::shared_ptr<const ViewSource> floor =
+        std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    ObedientRobot robot{floor};
+    std::optional<Tracker> tracker;
+    std::optional<Pilot> pilot;
+};
+
+TEST_F(FlightLoop, FliesAnyRobot) {
+    EXPECT_LT(flyToGoal(), 30.);
+    EXPECT_LT((robot.T_w_b.translation() - Eigen::Vector3d(1., 0., 2.)).norm(), 0.05);
+}
+
+TEST_F(FlightLoop, GoesOnWithAnotherPlanAndMap) {
+    flyToGoal();
+    pilot->setPlan(straightTo(-0.5));
+    const auto map =
+        std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    pilot->setMap(map);
+    tracker->setMap(map);
+    EXPECT_FALSE(pilot->hasServoedOnImage());
+    EXPECT_LT(flyToGoal(), 60.);
+    EXPECT_LT((robot.T_w_b.translation() - Eigen::Vector3d(-0.5, 0., 2.)).norm(), 0.05);
+}
+
+TEST_F(FlightLoop, TimeMustPass) {
+    EXPECT_THROW(flyLoop(robot, *tracker, *pilot, 0., [](const auto&) { return false; }),
+                 std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace photonav
