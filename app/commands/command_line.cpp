@@ -49,7 +49,9 @@ void printOutput(const OutputOptions& output, const nlohmann::json& result,
         return;
     }
     if (output.quiet) return;
-    for (const auto& [label, value] : summary.rows) fmt::print("{:<42}{}\n", label, value);
+    std::size_t width = 0;
+    for (const auto& row : summary.rows) width = std::max(width, row.first.size() + 2);
+    for (const auto& [label, value] : summary.rows) fmt::print("{:<{}}{}\n", label, width, value);
     for (const std::string& file : files) {
         fmt::print("{}: {}\n", std::filesystem::path(file).stem().string(),
                    (output.out / file).string());

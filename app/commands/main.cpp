@@ -3,10 +3,13 @@
 // *_command_line.cpp.
 #include <fmt/format.h>
 #include <ompl/util/Console.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
+#include <regex>
 
 #include "commands/benchmark_command.hpp"
 #include "commands/command_line.hpp"
@@ -182,6 +185,12 @@ Command referenceCommand(CLI::App& app) {
     return {parser, [options] { return runReference(*options, interrupted); }};
 }
 
+/// The words of Markdown links alone: a terminal cannot follow links to pages of the docs.
+std::string withoutLinks(const std::string& markdown) {
+    static const std::regex link(R"(\[([^\]]*)\]\([^)]*\))");
+    return std::regex_replace(markdown, link, "$1");
+}
+
 Command keysCommand(CLI::App& app) {
     auto names = std::make_shared<std::vector<std::string>>();
     auto command = std::make_shared<std::string>("plan");
@@ -200,7 +209,9 @@ Command keysCommand(CLI::App& app) {
                                       : *command == "scans"  ? keysOf(scans)
                                       : *command == "replay" ? keysOf(replay)
                                                              : keysOf(config);
-                fmt::print("{}", keys.toMarkdown(*names));
+                const std::string table = keys.toMarkdown(*names);
+                const bool isTerminal = isatty(STDOUT_FILENO) == 1;
+                fmt::print("{}", isTerminal ? withoutLinks(table) : table);
                 return static_cast<int>(kDone);
             }};
 }
@@ -210,6 +221,10 @@ Command reportCommand(CLI::App& app) {
     CLI::App* parser = app.add_subcommand("report", "Rebuild report.html of a result folder.");
     parser->add_option("folder", *folder, "result folder")->required();
     return {parser, [folder] {
+                if (!std::filesystem::exists(*folder / "report.json")) {
+                    throw InputError(folder->string(), "",
+                                     "not a result folder of photonav: no report.json");
+                }
                 writeReport(*folder / "report.html", readReportJson(*folder / "report.json"));
                 Manifest::renew(*folder, "report.html");
                 fmt::print("report: {}\n", (*folder / "report.html").string());
@@ -217,18 +232,37 @@ Command reportCommand(CLI::App& app) {
             }};
 }
 
+std::string withNearest(const std::string& complaint, const std::string& word,
+                        const std::vector<std::string>& names) {
+    const std::string near = nearestWord(word, names);
+    return near.empty() ? complaint : fmt::format("{}, did you mean '{}'?", complaint, near);
+}
+
+std::vector<std::string> optionsOf(const CLI::App& parser) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : parser.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    return names;
+}
+
 /// What was typed in place of a command or an option, when that is what is wrong.
 std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
-    const std::vector<std::string> unknown = app.remaining();
-    const bool isCommandMissing = error.get_exit_code() == int(CLI::ExitCodes::RequiredError) &&
-                                  app.get_subcommands().empty();
-    if (!isCommandMissing || unknown.empty()) return error.what();
+    const auto code = static_cast<CLI::ExitCodes>(error.get_exit_code());
+    const std::vector<std::string> unknown = app.remaining(true);
+    const bool isUnknown =
+        code == CLI::ExitCodes::ExtrasError || code == CLI::ExitCodes::RequiredError;
+    if (!isUnknown || unknown.empty()) return error.what();
+    const std::string& word = unknown.front();
+    const std::vector<CLI::App*> chosen = app.get_subcommands();
+    if (word.starts_with('-')) {
+        const CLI::App& parser = chosen.empty() ? app : *chosen.front();
+        return withNearest(word + ": no such option", word, optionsOf(parser));
+    }
+    if (!chosen.empty()) return error.what();
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-    const std::string near = nearestWord(unknown.front(), names);
-    return fmt::format("{}: no such {}{}", unknown.front(),
-                       unknown.front().starts_with('-') ? "option" : "command",
-                       near.empty() ? "" : fmt::format(", did you mean '{}'?", near));
+    return withNearest(word + ": no such command", word, names);
 }
 
 int run(int argc, char** argv) {
@@ -238,14 +272,6 @@ int run(int argc, char** argv) {
         "photonav"};
     app.set_version_flag("--version", PHOTONAV_VERSION);
     app.require_subcommand(1);
-    app.footer(
-        "plan, fly, sweep, benchmark, info, map and replay write result.json, figures,\n"
-        "report.html and config.yaml (complete, re-runnable) into their folder (--out);\n"
-        "compare writes tables, figures and result.json, reference its table alone.\n"
-        "photonav COMMAND --help lists the options of a command, photonav keys those of a config.\n"
-        "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by Ctrl-C, 143 "
-        "by\n"
-        "SIGTERM, with the results so far.");
     Invocation invocation{"photonav", interrupted};
     for (int i = 1; i < argc; ++i) invocation.commandLine += std::string(" ") + argv[i];
 
@@ -260,6 +286,15 @@ int run(int argc, char** argv) {
                               replayCommand(app, invocation),
                               reportCommand(app),
                               keysCommand(app)};
+    app.footer(  // after the commands, which would inherit it
+
+        "plan, fly, sweep, benchmark, info, map and replay write result.json, figures,\n"
+        "report.html and config.yaml (complete, re-runnable) into their folder (--out);\n"
+        "compare writes tables, figures and result.json, reference its table alone.\n"
+        "photonav COMMAND --help lists the options of a command, photonav keys those of a config.\n"
+        "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by Ctrl-C, 143 "
+        "by\n"
+        "SIGTERM, with the results so far.");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

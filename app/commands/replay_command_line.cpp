@@ -27,7 +27,7 @@ void addOptions(CLI::App& parser, ReplayArguments& options) {
     parser
         .add_option("--calibration", options.calibration,
                     "scale and floors from the calibration.yaml of a --calibrate; --scale, "
-                    "--sigma-floor and --sigma-floor-rotation override it")
+                    "--least-sigma and --least-sigma-rotation override it")
         ->type_name("FILE");
     addOutput(parser, {options.out, options.quiet, options.json}, "out/replay-<dataset>");
 }

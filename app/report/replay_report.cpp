@@ -39,7 +39,7 @@ std::string relative(const json& rpe) {
 
 std::string calibrationText(const json& c) {
     std::string text = fmt::format(
-        "--scale {:.3g} --sigma-floor {:.3g} --sigma-floor-rotation {:.3g} (NEES of single "
+        "--scale {:.3g} --least-sigma {:.3g} --least-sigma-rotation {:.3g} (NEES of single "
         "alignments {:.3g}, "
         "then {:.3g}",
         c["scale"].get<double>(), c["floor"][0].get<double>(), c["floor"][1].get<double>(),

@@ -17,6 +17,11 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
+/// "1 seed", "2 seeds".
+std::string counted(std::size_t count, const std::string& noun, const std::string& rest = "") {
+    return fmt::format("{} {}{}{}", count, noun, count == 1 ? "" : "s", rest);
+}
+
 constexpr const char* kBlank = "-";  // in the table
 
 const std::vector<std::string> kRunKeys{"planner", "alpha",      "seed",       "cost",
@@ -161,9 +166,10 @@ void writeSweepReport(const fs::path& folder, const Config& config, const World&
     ReportData report = problemReport(config, world, outcome.commandLine, result);
     report.title = outcome.name;
     report.subtitle =
-        fmt::format("{} runs of {} vertices: {} planners, {} values of alpha, {} seeds",
-                    outcome.runs.size(), config.vertices, config.sweep.planners.size(),
-                    config.sweep.alphas.size(), config.sweep.runs);
+        fmt::format("{} of {} vertices: {}, {}, {}", counted(outcome.runs.size(), "run"),
+                    config.vertices, counted(config.sweep.planners.size(), "planner"),
+                    counted(config.sweep.alphas.size(), "value", " of alpha"),
+                    counted(config.sweep.runs, "seed"));
     report.paths = pathsByAlpha(config.sweep.planners.front(), outcome.runs);
 
     writeFileAtomically(folder / "runs.csv", toCsv(result["runs"], kRunKeys));

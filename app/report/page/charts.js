@@ -83,13 +83,13 @@ function createCharts(onPick) {
       label: path.name, borderColor: path.color, backgroundColor: path.color,
       data: path.points.filter((point) => typeof point[key] === 'number' && (!log || point[key] > 0))
           .map((point) => ({x: point.distance, y: point[key]})),
-    }));
+    })).filter((curve) => curve.data.length > 0);
   }
 
   function drawAll(log) {
     charts.splice(0).forEach((chart) => chart.destroy());
     if (paths.length) {
-      draw('trace-chart', curvesOf('trace', log), 'distance [m]', 'trace [m² + L² rad²]', {log});
+      draw('trace-chart', curvesOf('trace', log), 'distance [m]', 'trace [m² + rad²]', {log});
       draw('cost-chart', curvesOf('cost', false), 'distance [m]', 'cost');
     }
     const progress = data.progress.filter((step) => typeof step.cost === 'number')

@@ -226,7 +226,10 @@ TEST_F(CommandLine, BadInputIsOneLineAndExitCodeTwo) {
         expectBadInput(run, "photonav: --seed: ");
         expectBadInput(photonav(std::string(command) + " x.yaml --seed 0"), "photonav: --seed: ");
     }
-    expectBadInput(photonav("report " + folder_.string()), "report.json");
+    expectBadInput(photonav("plan --bar"), "--bar: no such option");
+    expectBadInput(plan("--audits"), "--audits: no such option, did you mean '--audit'?");
+    expectBadInput(photonav("keys planner.kap"), "did you mean 'planner.kappa'?");
+    expectBadInput(photonav("report " + folder_.string()), "not a result folder of photonav");
     expectBadInput(
         photonav("info " + config("two_textures") + " --at 1,2 --out " + folder_.string()), "--at");
 }
@@ -256,6 +259,14 @@ TEST_F(CommandLine, HelpTeaches) {
     EXPECT_EQ(run.exitCode, 0);
     for (const char* word : {"plan", "info", "map", "report", "Exit codes", "two_textures.yaml"}) {
         EXPECT_NE(run.output.find(word), std::string::npos) << word;
+    }
+}
+
+TEST_F(CommandLine, HelpOfACommandIsAboutThatCommand) {
+    for (const char* command : {"plan", "keys", "report", "fly"}) {
+        const Execution run = photonav(std::string(command) + " --help");
+        EXPECT_EQ(run.exitCode, 0);
+        EXPECT_EQ(run.output.find("Exit codes"), std::string::npos) << run.output;
     }
 }
 

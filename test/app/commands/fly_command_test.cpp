@@ -55,11 +55,13 @@ TEST_F(FlyCommand, FliesBothPlannersAndWritesWhatOthersRead) {
              {"collisions", "position_rmse_m", "predicted_sigma_m", "nees_per_dof", "lost_s"}) {
             EXPECT_TRUE(planner[key].is_number()) << key;
         }
+        EXPECT_TRUE(planner["each"][0]["rejected_images"].is_number());
     }
     // Whether the shortest path arrives does not count.
     const bool hasArrived = a["planners"][0]["arrived"].get<int>() > 0;
     EXPECT_EQ(run.exitCode, hasArrived ? 0 : 1);
     EXPECT_NE(run.output.find("NEES at goal"), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("astray"), std::string::npos) << run.output;
     for (const char* name : {"report.html", "errors.png", "nees.png", "top_view.png", "config.yaml",
                              "trajectory.cov", "trajectory.ov"}) {
         EXPECT_TRUE(fs::exists(folder_ / "a" / name)) << name;
@@ -98,12 +100,12 @@ TEST_F(FlyCommand, FliesThePlanOfAResultFolder) {
 
 TEST_F(FlyCommand, ItsConfigRepeatsTheRun) {
     std::ofstream(folder_ / "calibration.yaml")
-        << "scale: 0.2\nsigma_floor: 0.01\nsigma_floor_rotation: 0.001\ncorrelation_time: 4\n";
+        << "scale: 0.2\nleast_sigma: 0.01\nleast_sigma_rotation: 0.001\ncorrelation_time: 4\n";
     ASSERT_NE(fly("a",
                   "--flights 2 --seed 3 --camera real --odometry 4 --latency 0.1 --rate 5"
                   " --blackout 3,0.2 --drop 0.1 --speed 0.8 --no-photometric-goal"
                   " --calibration " +
-                      at("calibration.yaml") + " --sigma-floor-rotation 0.004 --map " +
+                      at("calibration.yaml") + " --least-sigma-rotation 0.004 --map " +
                       PHOTONAV_SOURCE_DIR + "/config/scenes/two_textures.yaml")
                   .exitCode,
               2);
@@ -208,7 +210,7 @@ TEST_F(FlyCommand, RejectsBadInput) {
     expect(fly("x", "--blackout 3"), "--blackout: expected 2 numbers, found 1");
     expect(fly("x", "--flights 0"), "--flights");
     expect(fly("x", "--scale 0"), "--scale: 0 is outside [1e-12, 1e+12]");
-    expect(fly("x", "--sigma-floor -1"), "--sigma-floor: -1 is outside [0, 1000]");
+    expect(fly("x", "--least-sigma -1"), "--least-sigma: -1 is outside [0, 1000]");
     expect(fly("x", "--record /proc/x"), "/proc/x: cannot be made");
     fs::create_directories(folder_ / "old" / "rgb");
     fs::create_directories(folder_ / "x");
@@ -222,15 +224,15 @@ TEST_F(FlyCommand, RejectsBadInput) {
         std::ofstream(folder_ / "calibration.yaml") << text;
         return fly("x", "--calibration " + at("calibration.yaml"));
     };
-    expect(calibration("sigma_floor: 0.01\n"), "calibration.yaml: scale: missing");
-    expect(calibration("scale: 1\n"), "calibration.yaml: sigma_floor: missing");
-    expect(calibration("scale: 1\nsigma_floor_rotation: 0\nsigma_floor: [0.01, 0.005]\n"),
-           "calibration.yaml: sigma_floor: ");
+    expect(calibration("least_sigma: 0.01\n"), "calibration.yaml: scale: missing");
+    expect(calibration("scale: 1\n"), "calibration.yaml: least_sigma: missing");
+    expect(calibration("scale: 1\nleast_sigma_rotation: 0\nleast_sigma: [0.01, 0.005]\n"),
+           "calibration.yaml: least_sigma: ");
     expect(calibration("scale: [\n"), "calibration.yaml");
-    expect(calibration("scale: 1\nsigma_floor: 0\nsigma_floor_rotation: 0\nmode: odometry\n"),
+    expect(calibration("scale: 1\nleast_sigma: 0\nleast_sigma_rotation: 0\nmode: odometry\n"),
            "calibration.yaml: mode: is odometry");
     expect(
-        calibration("scale: 1\nsigma_floor: 0\nsigma_floor_rotation: 0\ncorrelation_time: 0.5\n"),
+        calibration("scale: 1\nleast_sigma: 0\nleast_sigma_rotation: 0\ncorrelation_time: 0.5\n"),
         "calibration.yaml: correlation_time: ");
     expect(photonav("fly " + at("")), "not a result of photonav plan");
     fs::create_directories(folder_ / "no");
