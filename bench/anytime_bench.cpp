@@ -13,13 +13,12 @@
 #include <vector>
 
 #include "problem/planning_problem.hpp"
+#include "thread_time.hpp"
 
 namespace {
 
 using namespace photonav;
 namespace ob = ompl::base;
-
-double processSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Costs of one planner's best paths after each of the times; infinite: none yet.
 using Curve = std::vector<double>;

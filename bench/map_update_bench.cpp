@@ -18,6 +18,7 @@
 #include "render/mesh_renderer.hpp"
 #include "render/voxel_snapshots.hpp"
 #include "scene/scene.hpp"
+#include "thread_time.hpp"
 
 using namespace photonav;
 
@@ -118,14 +119,9 @@ View noisyView(const MeshRenderer& scene, const Camera& camera, const Pose& T_c_
 
 /// Processor time, so that other programs on the machine matter little.
 double milliseconds(const auto& work) {
-    const auto now = [] {
-        timespec time;
-        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-        return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-    };
-    const double begin = now();
+    const double begin = threadTime();
     work();
-    return now() - begin;
+    return threadTime() - begin;
 }
 
 double quantile(std::vector<double> values, double q) {

@@ -19,6 +19,7 @@
 #include <string_view>
 
 #include "planners/planner_table.hpp"
+#include "thread_time.hpp"
 
 namespace {
 
@@ -124,8 +125,6 @@ double residentMegabytes() {
 double exponent(const std::vector<double>& x, const std::vector<double>& y) {
     return std::log(y.back() / y.front()) / std::log(x.back() / x.front());
 }
-
-double processSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// A row of the table: time and memory of a fresh planner at each size, and their exponents.
 void printGrowth(const Bench& bench, const std::string& name, unsigned maxVertices) {

@@ -3,6 +3,9 @@
 
 #include <ctime>
 
+/// Processor time of this process [s]; other programs are not counted.
+inline double processSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
 /// Processor time of this thread [ms]; other programs are not counted.
 inline double threadTime() {
     timespec now{};

@@ -10,14 +10,10 @@ find_package(assimp 5 REQUIRED)
 find_package(ompl 1.5 REQUIRED)
 find_package(yaml-cpp 0.7 REQUIRED)
 find_package(nlohmann_json 3 REQUIRED)
-find_package(CLI11 2 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(TBB REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(Boost 1.74 REQUIRED)  # Math, headers only
-
-find_library(CAIRO_LIBRARY cairo REQUIRED)
-find_path(CAIRO_INCLUDE_DIR cairo.h PATH_SUFFIXES cairo REQUIRED)
 
 # Packages that export variables instead of targets, wrapped so that they read alike.
 function(_photonav_wrap name includes libraries)
@@ -39,5 +35,4 @@ _photonav_wrap(photonav_visp "${_visp_cxx20};${VISP_INCLUDE_DIRS}" "${VISP_LIBRA
 _photonav_wrap(photonav_octomap "${OCTOMAP_INCLUDE_DIRS}" "${OCTOMAP_LIBRARIES}")
 _photonav_wrap(photonav_ompl "${OMPL_INCLUDE_DIRS}" "${OMPL_LIBRARIES}")
 _photonav_wrap(photonav_opencv "${OpenCV_INCLUDE_DIRS}" "opencv_core;opencv_calib3d;opencv_features2d;opencv_imgproc;opencv_imgcodecs")
-_photonav_wrap(photonav_cairo "${CAIRO_INCLUDE_DIR}" "${CAIRO_LIBRARY}")
 _photonav_wrap(photonav_embree "${EMBREE_INCLUDE_DIRS}" "embree")

@@ -22,6 +22,12 @@ struct Method {
     double width;  // of its line [pixels]
 };
 
+std::vector<Method> methods() {
+    return {{"Algorithm 1", "pa_rrt_star", 1, plannerColor("pa_rrt_star"), 5.},
+            {"search, 1 label", "belief_rrt_star", 1, {38, 140, 122}, 3.},
+            {"search, 5 labels", "belief_rrt_star", 5, plannerColor("belief_rrt_star"), 3.}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -37,11 +43,7 @@ int main(int argc, char** argv) try {
     plot.picture(greyPicture(world.pictureFromAbove(area, 2., 1. / 24.)), area, true);
 
     std::puts("planner               length [m]  mean trace  goal trace [0.01 m^2]    cost");
-    const std::vector<Method> methods = {
-        {"Algorithm 1", "pa_rrt_star", 1, plannerColor("pa_rrt_star"), 5.},
-        {"search, 1 label", "belief_rrt_star", 1, {38, 140, 122}, 3.},
-        {"search, 5 labels", "belief_rrt_star", 5, plannerColor("belief_rrt_star"), 3.}};
-    for (const auto& [name, planner, labels, color, width] : methods) {
+    for (const auto& [name, planner, labels, color, width] : methods()) {
         config.search.labels = labels;
         const EvaluatedPath path = PlanningProblem(config, world).solve(planner).path.value();
         std::printf("%-20s %11.2f  %10.2f  %10.2f  %16.3f\n", name, path.length,

@@ -9,7 +9,7 @@
 #include "io/atomic_file.hpp"
 #include "io/stopwatch.hpp"
 #include "problem/planning_problem.hpp"
-#include "report/plan_report.hpp"
+#include "report/problem_report.hpp"
 #include "report/sweep_figures.hpp"
 #include "report/sweep_report.hpp"
 #include "result/json_values.hpp"
@@ -21,11 +21,7 @@ using nlohmann::json;
 namespace {
 
 Config loadBenchmarkConfig(const BenchmarkOptions& options) {
-    std::vector<std::string> overrides = options.overrides;
-    if (options.planners) overrides.push_back("sweep.planners=[" + *options.planners + "]");
-    if (options.runs) overrides.push_back(fmt::format("sweep.runs={}", *options.runs));
-    if (options.seed) overrides.push_back("seed=" + *options.seed);
-    Config config = loadConfig(options.config, overrides);
+    Config config = loadConfig(options.config, options.lists.after(options.overrides));
     checkSeeds(config, config.sweep.runs);
     config.sweep.alphas = {config.belief.alpha};
     return config;

@@ -6,15 +6,14 @@
 #include <optional>
 
 #include "commands/command_io.hpp"
+#include "commands/sweep_lists.hpp"
 
 namespace photonav {
 
 struct BenchmarkOptions : CommandOptions {
-    std::optional<std::string> planners;  ///< "a,b,c", instead of the config's sweep.planners
-    std::optional<unsigned> runs;         ///< per planner, instead of the config's sweep.runs
-    std::optional<std::string> seed;      ///< the first one, instead of the config's
-    double interval = 0.01;               ///< between samples of the progress [s]
-    double timeLimit = 600.;              ///< of a run [s]; runs end with their vertices before
+    SweepLists lists;         ///< without alphas
+    double interval = 0.01;   ///< between samples of the progress [s]
+    double timeLimit = 600.;  ///< of a run [s]; runs end with their vertices before
 };
 
 /// Runs every planner with the config's alpha and writes benchmark.log (OMPL's format, for

@@ -12,7 +12,7 @@
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "planners/planner_table.hpp"
-#include "report/plan_report.hpp"
+#include "report/problem_report.hpp"
 #include "sweep/sweep_plan.hpp"
 
 namespace photonav {

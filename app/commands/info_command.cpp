@@ -10,7 +10,7 @@
 #include "io/number.hpp"
 #include "io/stopwatch.hpp"
 #include "recording/image_file.hpp"
-#include "report/plan_report.hpp"
+#include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {

@@ -131,10 +131,11 @@ Command sweepCommand(CLI::App& app, const Invocation& invocation) {
     CLI::App* parser = app.add_subcommand(
         "sweep", "Compare planners over alpha and seeds: the table of the paper.");
     addCommon(*parser, *options, false);
-    parser->add_option("--alpha", options->alphas, "first:last:step or a,b,c")->type_name("ALPHAS");
-    parser->add_option("--planners", options->planners, "a,b,c")->type_name("NAMES");
-    parser->add_option("--runs", options->runs, "seeds per planner and alpha");
-    addSeed(*parser, options->seed, "the first seed");
+    parser->add_option("--alpha", options->lists.alphas, "first:last:step or a,b,c")
+        ->type_name("ALPHAS");
+    parser->add_option("--planners", options->lists.planners, "a,b,c")->type_name("NAMES");
+    parser->add_option("--runs", options->lists.runs, "seeds per planner and alpha");
+    addSeed(*parser, options->lists.seed, "the first seed");
     parser->add_option("--jobs", options->jobs, "threads")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
@@ -151,9 +152,9 @@ Command benchmarkCommand(CLI::App& app, const Invocation& invocation) {
     CLI::App* parser =
         app.add_subcommand("benchmark", "Run planners in OMPL's benchmark, for its tools to read.");
     addCommon(*parser, *options);
-    parser->add_option("--planners", options->planners, "a,b,c")->type_name("NAMES");
-    parser->add_option("--runs", options->runs, "seeds per planner");
-    addSeed(*parser, options->seed, "the first seed");
+    parser->add_option("--planners", options->lists.planners, "a,b,c")->type_name("NAMES");
+    parser->add_option("--runs", options->lists.runs, "seeds per planner");
+    addSeed(*parser, options->lists.seed, "the first seed");
     parser->add_option("--interval", options->interval, "between samples of the progress [s]")
         ->check(CLI::Range(1e-3, 1e3))
         ->capture_default_str();
@@ -169,8 +170,9 @@ Command referenceCommand(CLI::App& app) {
         app.add_subcommand("reference", "Compute near-optimal reference paths (takes hours).");
     parser->add_option("config", options->config, "YAML file of the planning problem")->required();
     addOverrides(*parser, options->overrides);
-    parser->add_option("--alpha", options->alphas, "first:last:step or a,b,c")->type_name("ALPHAS");
-    parser->add_option("--planners", options->planners, "a,b,c")->type_name("NAMES");
+    parser->add_option("--alpha", options->lists.alphas, "first:last:step or a,b,c")
+        ->type_name("ALPHAS");
+    parser->add_option("--planners", options->lists.planners, "a,b,c")->type_name("NAMES");
     parser->add_option("--runs", options->runs, "seeds per planner and alpha")
         ->capture_default_str();
     parser->add_option("--vertices", options->vertices, "of each run")->capture_default_str();

@@ -25,12 +25,7 @@ void prepareFolder(const fs::path& folder) {
 }
 
 Config loadReferenceConfig(const ReferenceOptions& options) {
-    std::vector<std::string> overrides = options.overrides;
-    if (options.alphas) {
-        overrides.push_back(
-            fmt::format("sweep.alphas=[{}]", fmt::join(parseAlphas(*options.alphas), ", ")));
-    }
-    if (options.planners) overrides.push_back("sweep.planners=[" + *options.planners + "]");
+    std::vector<std::string> overrides = options.lists.after(options.overrides);
     overrides.push_back(fmt::format("planner.vertices={}", options.vertices));
     overrides.push_back(fmt::format("planner.labels={}", options.labels));
     return loadConfig(options.config, overrides);

@@ -7,14 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "commands/sweep_lists.hpp"
+
 namespace photonav {
 
 struct ReferenceOptions {
-    std::string config;                   ///< YAML file
-    std::vector<std::string> overrides;   ///< key.path=value
-    std::optional<std::string> alphas;    ///< as for a sweep; default: the config's
-    std::optional<std::string> planners;  ///< as for a sweep; default: the config's
-    unsigned runs = 10;                   ///< seeds per planner and alpha
+    std::string config;                  ///< YAML file
+    std::vector<std::string> overrides;  ///< key.path=value
+    SweepLists lists;                    ///< of alphas and planners; default: the config's
+    unsigned runs = 10;                  ///< seeds per planner and alpha
     unsigned vertices = 20000;
     unsigned labels = 20;
     unsigned moves = 200000;   ///< tried by the descent from each path

@@ -19,17 +19,9 @@ namespace photonav {
 namespace fs = std::filesystem;
 namespace {
 
-/// The config with the command line's wishes. Lists are what `--set` would take.
+/// The config, with what was typed in place of its values.
 Config loadSweepConfig(const SweepOptions& options, const std::string& file) {
-    std::vector<std::string> overrides = options.overrides;
-    if (options.alphas) {
-        overrides.push_back(
-            fmt::format("sweep.alphas=[{}]", fmt::join(parseAlphas(*options.alphas), ", ")));
-    }
-    if (options.planners) overrides.push_back("sweep.planners=[" + *options.planners + "]");
-    if (options.runs) overrides.push_back(fmt::format("sweep.runs={}", *options.runs));
-    if (options.seed) overrides.push_back("seed=" + *options.seed);
-    Config config = loadConfig(file, overrides);
+    Config config = loadConfig(file, options.lists.after(options.overrides));
     checkSeeds(config, config.sweep.runs);
     return config;
 }
@@ -130,8 +122,7 @@ ReferenceCosts referenceOf(const Config& config) {
 }
 
 /// @throws InputError unless the runs are those of this sweep. Which runs are wanted may have
-/// changed,
-///         what they depend on may not.
+///         changed, what they depend on may not.
 void checkIsSame(const SweepJournal& journal, const SweepHeader& header) {
     const std::string file = journal.file().string();
     const std::string changed =

@@ -6,18 +6,16 @@
 #include <optional>
 
 #include "commands/command_io.hpp"
+#include "commands/sweep_lists.hpp"
 
 namespace photonav {
 
 struct SweepOptions : CommandOptions {
-    std::optional<std::string> alphas;    ///< "first:last:step" or "a,b,c", instead of the config's
-    std::optional<std::string> planners;  ///< "a,b,c", instead of the config's
-    std::optional<unsigned> runs;         ///< seeds, instead of the config's
-    std::optional<std::string> seed;      ///< the first one, instead of the config's
-    unsigned jobs = 1;                    ///< threads
-    std::optional<std::string> shard;     ///< "k/n"
-    std::vector<std::string> merge;       ///< folders of shards: no runs, only the table
-    bool resume = false;                  ///< go on with what the result folder holds, or extend it
+    SweepLists lists;                  ///< typed, instead of the config's
+    unsigned jobs = 1;                 ///< threads
+    std::optional<std::string> shard;  ///< "k/n"
+    std::vector<std::string> merge;    ///< folders of shards: no runs, only the table
+    bool resume = false;               ///< go on with what the result folder holds, or extend it
 };
 
 /// Runs all combinations and writes runs.jsonl, runs.csv, summary.csv, sweep.png, pareto.png,

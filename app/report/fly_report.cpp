@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "recording/belief_trajectory.hpp"
 #include "report/fly_figures.hpp"
-#include "report/plan_report.hpp"
+#include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
@@ -161,6 +163,11 @@ std::string titleOf(const Config& config) {
 }
 
 }  // namespace
+
+std::string lengthText(double metres) {
+    return std::abs(metres) < 0.1 ? fmt::format("{:.3g} mm", 1e3 * metres)
+                                  : fmt::format("{:.3f} m", metres);
+}
 
 json flyResult(const Config& config, const std::vector<FlightSet>& sets,
                const FlightOptions& options, bool interrupted) {

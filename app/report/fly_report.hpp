@@ -19,4 +19,7 @@ void writeFlyReport(const std::filesystem::path& folder, const Config& config, c
                     const std::vector<FlightSet>& sets, const std::string& commandLine,
                     const nlohmann::json& result);
 
+/// "0.537 m", "3.75 mm".
+std::string lengthText(double metres);
+
 }  // namespace photonav

@@ -8,7 +8,7 @@
 
 #include "commands/map_command.hpp"
 #include "mapping/recording_map.hpp"
-#include "report/plan_report.hpp"
+#include "report/problem_report.hpp"
 
 namespace photonav {
 

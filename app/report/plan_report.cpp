@@ -3,16 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
 #include "commands/command_io.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
 #include "figures/perspective.hpp"
 #include "figures/trace.hpp"
-#include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
-#include "io/atomic_file.hpp"
 #include "recording/image_file.hpp"
 #include "recording/trajectory.hpp"
 #include "report/comparison_images.hpp"
@@ -23,9 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-constexpr std::size_t kMaxViews = 60;       // pictures in the report
-constexpr double kPicturePixel = 0.025;     // of the top view's background [m]
-constexpr double kMaxPicturePixels = 800.;  // along its longer side
+constexpr std::size_t kMaxViews = 60;  // pictures in the report
 constexpr int kHeatMapCells = 28;
 
 const char* spaceName(StateKind kind) {
@@ -58,10 +52,6 @@ json jsonOf(const EvaluatedPath& path) {
             {"mean_trace", path.meanTrace}, {"goal_trace", path.goalTrace}};
 }
 
-UncertainPose belief(const BeliefPoint& point, const Pose& T_b_c) {
-    return {(point.T_w_b * T_b_c).inverse(), point.covariance};
-}
-
 /// The predicted views at the waypoints, and the contributions of their pixels.
 std::vector<ReportView> waypointViews(const EvaluatedPath& path, const Config& config,
                                       const World& world) {
@@ -83,13 +73,6 @@ std::vector<ReportView> waypointViews(const EvaluatedPath& path, const Config& c
                                        contributionImage(view, camera, config.photometric)))});
     }
     return views;
-}
-
-Eigen::AlignedBox2d areaOf(const Config& config) {
-    Eigen::AlignedBox2d area(config.bounds.min().head<2>(), config.bounds.max().head<2>());
-    area.min().array() -= config.robotRadius;
-    area.max().array() += config.robotRadius;
-    return area;
 }
 
 TopView topView(const Config& config, const World& world, const PlanOutcome& outcome,
@@ -134,37 +117,6 @@ void writeTrajectory(const fs::path& file, const EvaluatedPath& path, const Pose
 }
 
 }  // namespace
-
-std::string placeText(const Config& config, double height, double yaw) {
-    if (config.space == StateKind::position) return fmt::format("{:.2f} m", height);
-    return fmt::format("{:.2f} m, heading {:.0f} deg", height, yaw / kDegree);
-}
-
-DrawnPath drawnPath(const EvaluatedPath& path, const Pose& T_b_c) {
-    DrawnPath result{path.planner, plannerColor(path.planner)};
-    for (const BeliefPoint& point : path.points) {
-        result.points.push_back(
-            makePathPoint(belief(point, T_b_c), point.trace, point.length, point.cost));
-    }
-    return result;
-}
-
-void describeWorld(const World& world, ReportData& report) {
-    if (world.scene() != nullptr) report.mesh = makeReportMesh(*world.scene());
-    if (world.map() != nullptr) report.voxels = makeReportVoxels(*world.map());
-}
-
-TopView viewFromAbove(const Config& config, const World& world,
-                      const std::vector<DrawnPath>& paths) {
-    TopView view;
-    view.area = areaOf(config);
-    const double pixel = std::max(kPicturePixel, view.area.sizes().maxCoeff() / kMaxPicturePixels);
-    view.background = world.pictureFromAbove(view.area, config.bounds.max().z(), pixel);
-    view.paths = paths;
-    view.start = config.start.position;
-    view.goal = config.goal.position;
-    return view;
-}
 
 json planResult(const Config& config, const PlanOutcome& outcome,
                 const std::optional<EvaluatedPath>& baseline, bool interrupted) {
@@ -261,18 +213,6 @@ std::vector<NamedFigure> planFigures(const Config& config, const World& world,
 
 }  // namespace
 
-ReportData problemReport(const Config& config, const World& world, const std::string& commandLine,
-                         const json& result) {
-    ReportData report;
-    report.commandLine = commandLine;
-    report.result = result;
-    report.config = toYaml(config);
-    report.start = config.start.position;
-    report.goal = config.goal.position;
-    describeWorld(world, report);
-    return report;
-}
-
 void writePlanReport(const fs::path& folder, const Config& config, const World& world,
                      PlanningProblem& problem, const PlanOutcome& outcome,
                      const std::optional<EvaluatedPath>& baseline,
@@ -310,40 +250,6 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
     }
     if (outcome.path) writeTrajectory(folder / "path.tum", *outcome.path, T_b_c);
     writeResultFolder(folder, report, figures);
-}
-
-void writeResultFolder(const fs::path& folder, ReportData& report,
-                       const std::vector<NamedFigure>& figures) {
-    for (const NamedFigure& named : figures) {
-        writeFileAtomically(folder / named.name, named.figure.image);
-        report.figures.push_back(named.figure);
-    }
-    if (!report.config.empty()) writeFileAtomically(folder / "config.yaml", report.config);
-    const std::string text = reportJson(report);
-    writeFileAtomically(folder / "report.json", text);
-    writeReport(folder / "report.html", text);
-}
-
-Eigen::ArrayXXd viewGrid(PlanningProblem& problem, const Eigen::AlignedBox2d& area, double height,
-                         double yaw, int cells,
-                         const std::function<double(const Matrix6&)>& value) {
-    const double step = area.sizes().maxCoeff() / cells;
-    const int nx = std::max(1, static_cast<int>(std::lround(area.sizes().x() / step)));
-    const int ny = std::max(1, static_cast<int>(std::lround(area.sizes().y() / step)));
-    Eigen::ArrayXXd values =
-        Eigen::ArrayXXd::Constant(nx, ny, std::numeric_limits<double>::quiet_NaN());
-    Pose T_w_b = Pose::Identity();
-    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    for (int i = 0; i < nx; ++i) {
-        for (int j = 0; j < ny; ++j) {
-            T_w_b.translation() << area.min().x() + (i + 0.5) * area.sizes().x() / nx,
-                area.min().y() + (j + 0.5) * area.sizes().y() / ny, height;
-            if (problem.isFlyable(T_w_b.translation())) {
-                values(i, j) = value(problem.informationAt(T_w_b));
-            }
-        }
-    }
-    return values;
 }
 
 }  // namespace photonav

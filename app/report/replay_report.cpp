@@ -11,7 +11,7 @@
 
 #include "figures/top_view.hpp"
 #include "replay/replay_tables.hpp"
-#include "report/plan_report.hpp"
+#include "report/problem_report.hpp"
 #include "report/replay_figures.hpp"
 
 namespace photonav {

@@ -119,4 +119,16 @@ void writeReport(const std::filesystem::path& file, std::string_view content) {
     writeFileAtomically(file, page);
 }
 
+void writeResultFolder(const std::filesystem::path& folder, ReportData& report,
+                       const std::vector<NamedFigure>& figures) {
+    for (const NamedFigure& named : figures) {
+        writeFileAtomically(folder / named.name, named.figure.image);
+        report.figures.push_back(named.figure);
+    }
+    if (!report.config.empty()) writeFileAtomically(folder / "config.yaml", report.config);
+    const std::string text = reportJson(report);
+    writeFileAtomically(folder / "report.json", text);
+    writeReport(folder / "report.html", text);
+}
+
 }  // namespace photonav

@@ -103,4 +103,16 @@ std::string readReportJson(const std::filesystem::path& file);
 /// @throws InputError if it cannot be written
 void writeReport(const std::filesystem::path& file, std::string_view content);
 
+/// A figure and the file it goes to.
+struct NamedFigure {
+    std::string name;
+    ReportFigure figure;
+};
+
+/// Writes the figures (also into the report), config.yaml (unless the report has none), report.json
+/// and report.html. result.json comes last and is the command's: where it is, the folder is
+/// complete.
+void writeResultFolder(const std::filesystem::path& folder, ReportData& report,
+                       const std::vector<NamedFigure>& figures);
+
 }  // namespace photonav

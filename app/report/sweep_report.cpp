@@ -8,7 +8,7 @@
 
 #include "geometry/constants.hpp"
 #include "io/atomic_file.hpp"
-#include "report/plan_report.hpp"
+#include "report/problem_report.hpp"
 #include "report/sweep_figures.hpp"
 #include "result/json_values.hpp"
 

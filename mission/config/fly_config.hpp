@@ -26,7 +26,7 @@ struct FlyConfig {
     std::optional<double> scale;             ///< factor on the information of an image
     std::optional<double> floorTranslation;  ///< least standard deviations of an alignment [m]
     std::optional<double> floorRotation;     ///< [rad]; without these three the defaults of camera
-                                             ///< and map: flightAlignment()
+                                             ///< and map: setUpFlight()
 };
 
 }  // namespace photonav

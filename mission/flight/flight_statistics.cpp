@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/flight_statistics.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
@@ -91,11 +89,6 @@ PositionError positionError(const FlightSample& sample, std::span<const PlannedV
             .error = (believed - sample.T_c_w.inverse().translation()).norm(),
             .believed = positionSigma(sample.belief.covariance),
             .predicted = predictedSigma(plan, sample.distance)};
-}
-
-std::string lengthText(double metres) {
-    return std::abs(metres) < 0.1 ? fmt::format("{:.3g} mm", 1e3 * metres)
-                                  : fmt::format("{:.3f} m", metres);
 }
 
 std::optional<double> neesPerDof(const FlightSample& sample) {

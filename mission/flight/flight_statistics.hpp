@@ -58,7 +58,4 @@ struct FlightSummary {
 };
 FlightSummary summarise(std::span<const FlightResult> flights, std::span<const PlannedView> plan);
 
-/// "0.537 m", "3.75 mm".
-std::string lengthText(double metres);
-
 }  // namespace photonav

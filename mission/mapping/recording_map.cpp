@@ -67,9 +67,9 @@ bool checkDepths(const MapOptions& options, const Sequence& sequence, const View
 Recording openForMap(const MapOptions& options) {
     checkOptions(options);
     const RecordingOptions& given = options;
-    RecordingOptions asked = given;
-    asked.needsDepth = options.depth == "recorded";
-    return readRecording(asked);
+    RecordingOptions reading = given;
+    reading.needsDepth = options.depth == "recorded";
+    return readRecording(reading);
 }
 
 FusedRecording fuseRecording(TexturedOcTree& map, const Recording& recording,

@@ -26,7 +26,7 @@ struct FusedRecording {
     double fuseSeconds = 0.;
 };
 
-/// Who follows the fusion; either may be missing.
+/// Called during the fusion; either may be empty.
 struct FusionCalls {
     /// After each frame with the number done and the number there are.
     std::function<void(std::size_t done, std::size_t total)> progress;

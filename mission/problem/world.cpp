@@ -109,8 +109,7 @@ void World::mapChanged(const MapChange& change) {
 }
 
 ImageF World::pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const {
-    // Small tiles, each rendered by a camera right above it, scaled for the lowest
-    // surface.
+    // Small tiles, each rendered by a camera right above it, scaled for the lowest surface.
     constexpr unsigned kTile = 16;
     const auto pixels = [&](double extent) {
         return static_cast<unsigned>(std::ceil(extent / pixelSize / kTile)) * kTile;

@@ -26,8 +26,8 @@ std::string toYaml(const Calibration& c, bool odometry) {
         c.scale, c.floorTranslation, c.floorRotation);
     if (c.correlationTime > 1.) {
         text += fmt::format(
-            "# Over as many images errors are alike: photonav fly, which averages images, divides\n"
-            "# the factor by it.\ncorrelation_time: {:.3g}\n",
+            "# Images whose errors are correlated: photonav fly, which averages images, divides\n"
+            "# the factor by this number.\ncorrelation_time: {:.3g}\n",
             c.correlationTime);
     }
     return text;

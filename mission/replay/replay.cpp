@@ -45,10 +45,10 @@ void checkOptions(const ReplayOptions& options) {
 
 Recording openRecording(const ReplayOptions& options) {
     const RecordingOptions& given = options;
-    RecordingOptions asked = given;
-    asked.forgiving = true;
-    asked.needsDepth = options.odometry;
-    Recording recording = readRecording(asked);
+    RecordingOptions reading = given;
+    reading.forgiving = true;
+    reading.needsDepth = options.odometry;
+    Recording recording = readRecording(reading);
     if (options.up != "z" && !recording.sequence.hasPoses()) {
         throw InputError("--up", "", "the recording has no true poses to turn");
     }

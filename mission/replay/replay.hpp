@@ -12,8 +12,8 @@
 
 namespace photonav {
 
-/// A recording with what it is tracked in, checked and ready to run. What a run amounts to:
-/// evaluate() in replay_errors.hpp, the rest in replay_result.hpp, replay_tables.hpp and
+/// A recording and the map it is tracked in, checked and ready to run. Errors of a run are computed
+/// by evaluate() in replay_errors.hpp, other results in replay_result.hpp, replay_tables.hpp and
 /// replay_calibration.hpp.
 class Replay {
   public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a replay amounts to in numbers and words.
+// The result of a replay, in numbers and words.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -68,7 +68,7 @@ void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, Repla
     frame.status = frame.tracked.lost ? FrameStatus::lost : FrameStatus::tracked;
     const Alignment& alignment = frame.tracked.alignment;
     frame.words = frame.tracked.lost && !isLost(alignment.verdict)
-                      ? fmt::format("lost: nothing certain to be seen ({})",
+                      ? fmt::format("lost: the view does not determine the pose ({})",
                                     describe(alignment, tracker.trust))
                       : describe(alignment, tracker.trust);
 }

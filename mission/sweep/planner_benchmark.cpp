@@ -112,10 +112,7 @@ class Session {
         samples_.push_back(sample);
         if (planner.getProblemDefinition()->hasExactSolution()) {
             const EvaluatedPath path = plan_.evaluate(ours);
-            run.cost = path.cost;
-            run.length = path.length;
-            run.meanTrace = path.meanTrace;
-            run.goalTrace = path.goalTrace;
+            setPath(run, path);
             run.status = "done";
             properties["cost REAL"] = std::to_string(path.cost);
             properties["path length REAL"] = std::to_string(path.length);

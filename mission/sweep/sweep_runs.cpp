@@ -8,7 +8,6 @@
 #include <mutex>
 
 #include "geometry/constants.hpp"
-#include "problem/planning_problem.hpp"
 
 namespace photonav {
 
@@ -30,15 +29,18 @@ std::optional<SweepRun> runItem(const Config& config, const World& world, const 
                  outcome.planSeconds,
                  plan.statusOf(outcome),
                  {}};
-    if (!outcome.path) return run;
-    run.cost = outcome.path->cost;
-    run.length = outcome.path->length;
-    run.meanTrace = outcome.path->meanTrace;
-    run.goalTrace = outcome.path->goalTrace;
-    for (const BeliefPoint& point : outcome.path->points) {
+    if (outcome.path) setPath(run, *outcome.path);
+    return run;
+}
+
+void setPath(SweepRun& run, const EvaluatedPath& path) {
+    run.cost = path.cost;
+    run.length = path.length;
+    run.meanTrace = path.meanTrace;
+    run.goalTrace = path.goalTrace;
+    for (const BeliefPoint& point : path.points) {
         if (point.isWaypoint) run.path.push_back(point.T_w_b.translation());
     }
-    return run;
 }
 
 void runItems(const Config& config, const World& world, const std::vector<SweepItem>& items,

@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "problem/world.hpp"
+#include "problem/planning_problem.hpp"
 #include "sweep/sweep_journal.hpp"
 
 namespace photonav {
@@ -23,5 +23,8 @@ std::optional<SweepRun> runItem(const Config& config, const World& world, const 
 void runItems(const Config& config, const World& world, const std::vector<SweepItem>& items,
               unsigned jobs, const std::atomic<bool>& interrupted,
               const std::function<void(const SweepRun&)>& onRun);
+
+/// Stores what a run has found.
+void setPath(SweepRun& run, const EvaluatedPath& path);
 
 }  // namespace photonav

@@ -43,7 +43,6 @@ class BeliefRRTstar : public BeliefPlanner {
     std::vector<TreeNode> tree() const override;
 
     unsigned shortcutsTried() const { return shortcutsTried_; }
-    unsigned shortcutsTaken() const { return shortcutsTaken_; }
 
   private:
     struct Label {

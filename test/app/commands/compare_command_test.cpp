@@ -29,7 +29,8 @@ TEST(Compare, EveryMethodOnceJudgedByTheSameBeliefs) {
         byMethod[r["method"]] = r;
         EXPECT_EQ(r["seed"], 7);
     }
-    // The planner that goes by what judges sees its own cost; one that sees nothing does not.
+    // A planner whose information model is that of the evaluation gets its own cost; one without
+    // views does not.
     const auto& ours = byMethod["belief_rrt_star, photometric"];
     EXPECT_NEAR(ours["cost"], ours["planner_cost"], 1e-9);
     const auto& blind = byMethod["belief_rrt_star, none"];

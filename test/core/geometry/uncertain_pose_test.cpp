@@ -407,7 +407,7 @@ TEST(Update, GoesBothWaysInSmallSteps) {
 
 // --- Boundaries -------------------------------------------------------------------------------
 
-TEST(IsCovariance, TellsGoodFromBad) {
+TEST(IsCovariance, AcceptsCovariancesOnly) {
     std::srand(14);
     EXPECT_TRUE(isCovariance(Matrix6::Zero()));
     EXPECT_TRUE(isCovariance(randomCovariance(0.3, 1e-4)));

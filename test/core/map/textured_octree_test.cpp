@@ -75,7 +75,7 @@ class MapFile : public ::testing::Test {
     std::filesystem::path folder_;
 };
 
-TEST_F(MapFile, KeepsEverythingTheMapKnows) {
+TEST_F(MapFile, KeepsTheWholeMap) {
     const TexturedOcTree map = carpetMap();
     saveTexturedOcTree(map, file("map.ot"));
     const auto read = loadTexturedOcTree(file("map.ot"));
@@ -247,7 +247,7 @@ TEST(TexturedOcTree, BrickUpdateEqualsSingleUpdates) {
     EXPECT_TRUE(bricks == singles);
 }
 
-TEST(Fuse, TellsFreeOccupiedAndUnknownApart) {
+TEST(Fuse, SeparatesFreeOccupiedAndUnknownCells) {
     const auto [camera, T_c_w, view] = overCarpet(0.01, 1.52);
     TexturedOcTree map(0.05);
     fuse(map, view, camera, T_c_w);

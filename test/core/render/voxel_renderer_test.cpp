@@ -140,7 +140,7 @@ Agreement compareWithReference(TexturedOcTree& map, UnknownPolicy unknown, const
     return agreement;
 }
 
-TEST(VoxelRenderer, SeesWhatAPlainRaySees) {
+TEST(VoxelRenderer, AgreesWithPlainRayCasting) {
     const Camera camera = makeCamera(61, 47, 1.4);
     std::mt19937 random(11);
     Agreement all;

@@ -205,7 +205,7 @@ TEST(ShippedScenes, TwoTexturesTellNothingOverWhiteAndEverythingOverTexture) {
     EXPECT_GT(box.max().y(), 9.5 + 1.7);
 }
 
-TEST(ShippedScenes, EachStripedAreaTellsOneDirectionOnly) {
+TEST(ShippedScenes, EachStripedAreaInformsOneDirectionOnly) {
     const MeshRenderer renderer = shipped("stripes");
     // Looking down, the camera's x axis is the world's -y, its y axis the world's -x.
     constexpr int kAlongWorldY = 0;

@@ -79,7 +79,7 @@ TEST_F(Flight, NamesWhatIsMissing) {
 }
 
 /// Tilt cannot be commanded, and a tilted view of the goal looks like one from beside it.
-TEST_F(Flight, TheGoalsImageDoesNotLeadABodyAstrayThatHangsAskew) {
+TEST_F(Flight, ATiltedBodyReachesTheGoalOnItsImage) {
     Vector6 motion = options.robot.body.odometryNoise.diagonal();
     motion.segment<2>(3).setConstant(2e-4);
     options.robot.body.odometryNoise = motion.asDiagonal();
@@ -244,7 +244,7 @@ TEST_F(Flight, EndsInACollision) {
     EXPECT_LT(flight.leastClearance, options.bodyRadius);
 }
 
-TEST_F(Flight, BelievesToHaveArrivedOverWhite) {
+TEST_F(Flight, EndsAstrayOverWhite) {
     world.truth = world.map = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
     options.robot.body.odometryFactor = 100.;
     const FlightResult flight = fly(plan, world, options);

@@ -107,7 +107,7 @@ TEST(CostToGo, NoFlightCostsLess) {
     }
 }
 
-TEST(CostToGo, KnowsThatUncertaintyStaysUntilSomethingIsSeen) {
+TEST(CostToGo, ChargesUncertaintyUntilTheFirstInformativeView) {
     Problem problem;
     Grid grid(problem);
     Vertex& start = grid.at(6, 2);  // 1 m from the stripes, 3 m from the texture

@@ -345,7 +345,7 @@ TEST(TrackerWithOdometry, StripesEndNoLossAlongThem) {
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(black).lost);
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(*bars, here).lost);
 
-    // Who was as uncertain along them before is no worse off.
+    // A belief that was as wide along the bars before the loss is not rejected.
     const Eigen::Vector3d along_c = here.linear().col(1);
     UncertainPose wide = narrow(here);
     wide.covariance.topLeftCorner<3, 3>() += along_c * along_c.transpose();
