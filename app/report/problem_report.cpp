@@ -10,6 +10,7 @@
 #include "geometry/constants.hpp"
 
 namespace photonav {
+using nlohmann::json;
 namespace {
 
 constexpr double kPicturePixel = 0.025;     // of the top view's background [m]

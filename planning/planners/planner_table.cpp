@@ -66,6 +66,7 @@ Model withAlpha(const Model& model, double alpha) {
 const std::vector<std::string>& plannerNames() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> all;
+        all.reserve(kPlanners.size());
         for (const PlannerEntry& entry : kPlanners) all.emplace_back(entry.name);
         return all;
     }();
