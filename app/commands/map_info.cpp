@@ -8,6 +8,7 @@
 
 #include "commands/result_folder.hpp"
 #include "io/error.hpp"
+#include "io/reading.hpp"
 #include "map/octree_file.hpp"
 #include "report/map_report.hpp"
 
@@ -74,7 +75,8 @@ MapReport runMapInfo(const CommandOptions& options) {
     page.voxels = makeReportVoxels(*map);
     page.tables = {report.summary};
     std::vector<NamedFigure> figures;
-    if (report.result["voxels"]["occupied"] > 0) figures.push_back(overview(*map, page.title));
+    if (report.result["voxels"]["occupied"] > 0)
+        figures.push_back(reading(options.config, [&] { return overview(*map, page.title); }));
     writeResultFolder(folder.path(), page, figures);
     commitResult(folder, report.result);
     return report;

@@ -5,6 +5,7 @@
 #include "io/error.hpp"
 #include "io/image_bytes.hpp"
 #include "io/json_nesting.hpp"
+#include "io/reading.hpp"
 #include "report/base64.hpp"
 #include "report/report.hpp"
 
@@ -56,6 +57,16 @@ json treeToJson(const DrawnTree& tree) {
     return {{"name", tree.name}, {"color", hexColor(tree.color)}, {"edges", packed(tree.edges)}};
 }
 
+void checkReport(const std::string& file, const std::string& text) {
+    if (nestingDepth(text) > kMostDepth) throw InputError(file, "", "nested too deep");
+    const json content = json::parse(text, nullptr, false);
+    if (content.is_discarded()) throw InputError(file, "", "not JSON, or only a part of it");
+    if (!content.is_object() || !content.contains("schema"))
+        throw InputError(file, "schema", "missing; is this a report of photonav?");
+    if (content["schema"] != kSchema)
+        throw InputError(file, "schema", "written by another version of photonav");
+}
+
 }  // namespace
 
 std::string reportJson(const ReportData& data) {
@@ -103,17 +114,12 @@ std::string reportJson(const ReportData& data) {
 }
 
 std::string readReportJson(const std::filesystem::path& file) {
-    const auto bytes = readBytes(file.string());
-    std::string text(bytes.begin(), bytes.end());
-    if (nestingDepth(text) > kMostDepth) throw InputError(file.string(), "", "nested too deep");
-    const json content = json::parse(text, nullptr, false);
-    if (content.is_discarded())
-        throw InputError(file.string(), "", "not JSON, or only a part of it");
-    if (!content.is_object() || !content.contains("schema"))
-        throw InputError(file.string(), "schema", "missing; is this a report of photonav?");
-    if (content["schema"] != kSchema)
-        throw InputError(file.string(), "schema", "written by another version of photonav");
-    return text;
+    return reading(file.string(), [&] {
+        const auto bytes = readBytes(file.string());
+        const std::string text(bytes.begin(), bytes.end());
+        checkReport(file.string(), text);
+        return text;
+    });
 }
 
 }  // namespace photonav

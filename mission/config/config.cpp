@@ -5,6 +5,7 @@
 
 #include "config/config_keys.hpp"
 #include "geometry/constants.hpp"
+#include "io/reading.hpp"
 #include "map/octree_file.hpp"
 
 namespace photonav {
@@ -65,6 +66,19 @@ void checkSource(YamlMap& root) {
     }
 }
 
+Config readConfig(const std::string& file, const std::vector<std::string>& overrides) {
+    checkIsPlanningProblem(file);
+    Config config;
+    config.file = file;
+    const KeyTable keys = keysOf(config);
+    const YAML::Node node = loadYaml(file);
+    for (const auto& text : overrides) applyOverride(keys, node, text);
+    YamlMap root(file, node);
+    checkSource(root);
+    keys.read(root);
+    return config;
+}
+
 }  // namespace
 
 Camera CameraConfig::camera() const { return makeCamera(width, height, hfov * kDegree); }
@@ -79,16 +93,7 @@ BeliefOptions defaultBelief() {
 }
 
 Config loadConfig(const std::string& file, const std::vector<std::string>& overrides) {
-    checkIsPlanningProblem(file);
-    Config config;
-    config.file = file;
-    const KeyTable keys = keysOf(config);
-    const YAML::Node node = loadYaml(file);
-    for (const auto& text : overrides) applyOverride(keys, node, text);
-    YamlMap root(file, node);
-    checkSource(root);
-    keys.read(root);
-    return config;
+    return reading(file, [&] { return readConfig(file, overrides); });
 }
 
 std::string toYaml(const Config& config) {

@@ -10,6 +10,8 @@
 #include <map>
 #include <utility>
 
+#include "io/reading.hpp"
+
 namespace photonav {
 namespace fs = std::filesystem;
 namespace {
@@ -227,8 +229,10 @@ void KeyTable::read(YamlMap& root) const {
 }
 
 void KeyTable::read(const std::string& file) const {
-    YamlMap root(file, loadYaml(file));
-    read(root);
+    reading(file, [&] {
+        YamlMap root(file, loadYaml(file));
+        read(root);
+    });
 }
 
 std::string KeyTable::toYaml() const {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "io/reading.hpp"
 #include "recording/sequence.hpp"
 
 namespace photonav {
@@ -40,7 +41,8 @@ struct Recording {
 
     RecordedFrame load(std::size_t frame) const {
         const Sequence::Entry& entry = sequence.frames.at(frame);
-        return {entry.T_c_w, view(frame), entry.timestamp};
+        return {entry.T_c_w, reading(entry.colourFile, [&] { return view(frame); }),
+                entry.timestamp};
     }
 };
 

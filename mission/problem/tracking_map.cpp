@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "problem/tracking_map.hpp"
 
+#include "io/reading.hpp"
 #include "map/octree_file.hpp"
 #include "render/mesh_renderer.hpp"
 #include "render/voxel_renderer.hpp"
@@ -8,16 +9,18 @@
 namespace photonav {
 
 TrackingMap loadTrackingMap(const std::string& file) {
-    TrackingMap map;
-    if (isOcTreeFile(file)) {
-        map.octree = loadTexturedOcTree(file);
-        map.views = std::make_shared<VoxelRenderer>(*map.octree, UnknownPolicy::free);
+    return reading(file, [&] {
+        TrackingMap map;
+        if (isOcTreeFile(file)) {
+            map.octree = loadTexturedOcTree(file);
+            map.views = std::make_shared<VoxelRenderer>(*map.octree, UnknownPolicy::free);
+            return map;
+        }
+        const auto renderer = std::make_shared<MeshRenderer>(loadScene(file));
+        map.scene = {renderer, &renderer->scene()};
+        map.views = renderer;
         return map;
-    }
-    const auto renderer = std::make_shared<MeshRenderer>(loadScene(file));
-    map.scene = {renderer, &renderer->scene()};
-    map.views = renderer;
-    return map;
+    });
 }
 
 }  // namespace photonav

@@ -71,6 +71,9 @@ World::World(const Config& config) {
                          error.what());
     } catch (const std::invalid_argument& error) {  // too large a grid for these bounds
         throw InputError(config.file, "bounds", error.what());
+    } catch (const std::bad_alloc&) {
+        throw InputError(config.file, "bounds",
+                         "the world within them needs more memory than there is");
     }
 }
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "geometry/constants.hpp"
+#include "io/reading.hpp"
 #include "io/yaml_reader.hpp"
 
 namespace photonav {
@@ -14,6 +14,26 @@ namespace {
 const std::vector<std::string> kModes{"odometry", "map"};
 
 const std::string& modeOf(bool odometry) { return kModes[odometry ? 0 : 1]; }
+
+Calibration readKeys(const std::string& file, bool odometry) {
+    YamlMap yaml(file, loadYaml(file));
+    Calibration c;
+    for (const char* key : {"scale", "least_sigma", "least_sigma_rotation"}) {
+        if (!yaml.has(key)) yaml.fail(key, "missing");
+    }
+    std::string mode = modeOf(odometry);
+    yaml.readChoice("mode", mode, kModes);
+    if (mode != modeOf(odometry)) {
+        yaml.fail("mode", fmt::format("is {}: alignments to {} are not worth the same", mode,
+                                      odometry ? "a keyframe" : "a map"));
+    }
+    yaml.readNumber("scale", c.scale, 1e-12, 1e12);
+    yaml.readNumber("least_sigma", c.floorTranslation, 0., 1e6);
+    yaml.readNumber("least_sigma_rotation", c.floorRotation, 0., 1e6);
+    yaml.readNumber("correlation_time", c.correlationTime, 1., 1e9);
+    yaml.finish();
+    return c;
+}
 
 }  // namespace
 
@@ -34,23 +54,7 @@ std::string toYaml(const Calibration& c, bool odometry) {
 }
 
 Calibration readCalibration(const std::string& file, bool odometry) {
-    YamlMap yaml(file, loadYaml(file));
-    Calibration c;
-    for (const char* key : {"scale", "least_sigma", "least_sigma_rotation"}) {
-        if (!yaml.has(key)) yaml.fail(key, "missing");
-    }
-    std::string mode = modeOf(odometry);
-    yaml.readChoice("mode", mode, kModes);
-    if (mode != modeOf(odometry)) {
-        yaml.fail("mode", fmt::format("is {}: alignments to {} are not worth the same", mode,
-                                      odometry ? "a keyframe" : "a map"));
-    }
-    yaml.readNumber("scale", c.scale, 1e-12, kInfinity);
-    yaml.readNumber("least_sigma", c.floorTranslation, 0., kInfinity);
-    yaml.readNumber("least_sigma_rotation", c.floorRotation, 0., kInfinity);
-    yaml.readNumber("correlation_time", c.correlationTime, 1., kInfinity);
-    yaml.finish();
-    return c;
+    return reading(file, [&] { return readKeys(file, odometry); });
 }
 
 }  // namespace photonav

@@ -13,6 +13,7 @@
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
+#include "io/reading.hpp"
 #include "space/flight_space.hpp"
 
 namespace photonav {
@@ -30,7 +31,7 @@ long keyOf(double alpha) { return std::lround(alpha * 1e6); }
 template <typename Row>
 std::vector<std::string> readCsv(const fs::path& file, const std::string& header,
                                  std::size_t columns, Row row) {
-    std::ifstream stream(file);
+    std::ifstream stream = openToRead(file.string());
     if (!stream) throw InputError(file.string(), "", "cannot be read");
     std::vector<std::string> notes;
     std::string line;
@@ -47,6 +48,8 @@ std::vector<std::string> readCsv(const fs::path& file, const std::string& header
         try {
             if (fields.size() != columns) throw std::invalid_argument("columns");
             row(fields);
+        } catch (const std::bad_alloc&) {
+            throw InputError(file.string(), "", "needs more memory than there is");
         } catch (const std::exception&) {
             throw InputError(file.string(), fmt::format("line {}", number),
                              "expected numbers for " + header);
@@ -64,6 +67,10 @@ fs::path ReferenceTable::pathsFile() const {
 }
 
 void ReferenceTable::read() {
+    reading(file_.string(), [&] { readFiles(); });
+}
+
+void ReferenceTable::readFiles() {
     rows_.clear();
     notes_.clear();
     if (!fs::exists(file_)) return;

@@ -44,6 +44,7 @@ class ReferenceTable {
 
   private:
     std::filesystem::path pathsFile() const;
+    void readFiles();
 
     std::filesystem::path file_;
     std::vector<std::string> notes_;

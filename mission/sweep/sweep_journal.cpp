@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
 
 #include "geometry/constants.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "io/reading.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
@@ -19,6 +21,15 @@ namespace {
 
 constexpr int kJournalSchema = 1;
 
+/// A whole number that the type can hold. @throws std::exception for others
+template <typename Number>
+Number whole(const json& value) {
+    if (!value.is_number_unsigned()) throw std::invalid_argument("not a whole number");
+    const auto number = value.get<std::uint64_t>();
+    if (number > std::numeric_limits<Number>::max()) throw std::out_of_range("too large");
+    return static_cast<Number>(number);
+}
+
 /// @throws std::exception for what no run gives
 SweepRun runFrom(const json& line) {
     const auto number = [&](const char* key) {
@@ -27,13 +38,13 @@ SweepRun runFrom(const json& line) {
         if (!(value >= 0.)) throw std::out_of_range(key);  // costs, lengths and traces
         return value;
     };
-    SweepRun run{{line.at("planner"), line.at("alpha"), line.at("seed")},
+    SweepRun run{{line.at("planner"), line.at("alpha"), whole<std::uint32_t>(line.at("seed"))},
                  number("cost"),
                  number("length"),
                  number("mean_trace"),
                  number("goal_trace"),
-                 line.at("vertices"),
-                 line.at("views"),
+                 whole<std::size_t>(line.at("vertices")),
+                 whole<std::size_t>(line.at("views")),
                  number("seconds"),
                  line.at("status"),
                  {}};
@@ -47,7 +58,7 @@ SweepHeader headerFrom(const json& line) {
     return {line.at("name"),
             line.at("config"),
             line.at("identity"),
-            {line.at("shard").at(0), line.at("shard").at(1)}};
+            {whole<unsigned>(line.at("shard").at(0)), whole<unsigned>(line.at("shard").at(1))}};
 }
 
 json lineOf(const SweepHeader& header) {
@@ -94,8 +105,12 @@ SweepJournal SweepJournal::create(const fs::path& folder, const SweepHeader& hea
 }
 
 SweepJournal SweepJournal::read(const fs::path& folder) {
+    return reading((folder / kFileName).string(), [&] { return readLines(folder); });
+}
+
+SweepJournal SweepJournal::readLines(const fs::path& folder) {
     SweepJournal journal(folder / kFileName);
-    std::ifstream stream(journal.file_);
+    std::ifstream stream = openToRead(journal.file_.string());
     if (!stream) throw InputError(journal.file_.string(), "", "no such file; is this a sweep?");
     int number = 0;
     std::set<SweepItem> known;
@@ -108,6 +123,8 @@ SweepJournal SweepJournal::read(const fs::path& folder) {
             } else if (SweepRun run = runFrom(line); known.insert(run.item).second) {
                 journal.runs_.push_back(std::move(run));
             }
+        } catch (const std::bad_alloc&) {
+            throw;
         } catch (const std::exception&) {
             throw InputError(journal.file_.string(), fmt::format("line {}", number),
                              "not a run of this version of photonav sweep");

@@ -65,6 +65,7 @@ class SweepJournal {
 
   private:
     explicit SweepJournal(std::filesystem::path file) : file_(std::move(file)) {}
+    static SweepJournal readLines(const std::filesystem::path& folder);
     void write(const nlohmann::json& line);
 
     std::filesystem::path file_;

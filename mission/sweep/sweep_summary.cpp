@@ -11,6 +11,7 @@
 #include "geometry/constants.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
+#include "io/reading.hpp"
 #include "planners/planner_table.hpp"
 #include "result/json_values.hpp"
 
@@ -57,7 +58,7 @@ Statistic statisticOf(const std::vector<double>& values) {
 }
 
 ReferenceCosts::ReferenceCosts(const std::string& file) {
-    std::ifstream stream(file);
+    std::ifstream stream = openToRead(file);
     if (!stream) throw InputError(file, "", "cannot be read");
     std::string line;
     int number = 1;

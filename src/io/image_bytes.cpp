@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "io/error.hpp"
+#include "io/reading.hpp"
 
 namespace photonav {
 namespace {
@@ -135,7 +136,7 @@ std::optional<ImageSize> declaredSize(Bytes encoded) {
 }
 
 std::vector<std::uint8_t> readBytes(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in = openToRead(file);
     if (!in || std::filesystem::is_directory(file)) throw InputError(file, "", "no such file");
     return {std::istreambuf_iterator<char>(in), {}};
 }

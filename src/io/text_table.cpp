@@ -3,12 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
+#include <string_view>
 
 #include "io/error.hpp"
 #include "io/number.hpp"
+#include "io/reading.hpp"
 
 namespace photonav {
 
@@ -26,19 +27,27 @@ InputError TextRow::error(const std::string& reason) const {
 
 namespace {
 
-std::vector<std::string> splitAtBlanks(const std::string& text) {
-    std::istringstream words(text);
+constexpr std::string_view kBlanks = " \t\r\n\v\f";
+
+std::vector<std::string> splitAtBlanks(std::string_view text) {
     std::vector<std::string> fields;
-    for (std::string word; words >> word;) fields.push_back(word);
-    return fields;
+    for (;;) {
+        const std::size_t begin = text.find_first_not_of(kBlanks);
+        if (begin == std::string_view::npos) return fields;
+        text.remove_prefix(begin);
+        const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
+        fields.emplace_back(text.substr(0, end));
+        text.remove_prefix(end);
+    }
 }
 
-std::vector<std::string> splitAtCommas(const std::string& text) {
+/// A comma at the end of a line ends its last field.
+std::vector<std::string> splitAtCommas(std::string_view text) {
     std::vector<std::string> fields;
-    std::istringstream in(text);
-    for (std::string field; std::getline(in, field, ',');) {
-        const auto words = splitAtBlanks(field);
-        fields.push_back(fmt::format("{}", fmt::join(words, " ")));
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find(','), text.size());
+        fields.push_back(fmt::format("{}", fmt::join(splitAtBlanks(text.substr(0, end)), " ")));
+        text.remove_prefix(std::min(end + 1, text.size()));
     }
     if (fields.size() == 1 && fields[0].empty()) fields.clear();
     return fields;
@@ -47,7 +56,7 @@ std::vector<std::string> splitAtCommas(const std::string& text) {
 template <class Split>
 std::vector<TextRow> readRows(const std::string& file, const Split& split, std::size_t least,
                               std::size_t most, std::vector<InputError>* badRows) {
-    std::ifstream in(file);
+    std::ifstream in = openToRead(file);
     if (!in) throw InputError(file, "", "no such file");
     std::vector<TextRow> rows;
     std::string text;

@@ -15,6 +15,7 @@
 #include "io/error.hpp"
 #include "io/image_bytes.hpp"
 #include "io/json_nesting.hpp"
+#include "io/reading.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -44,7 +45,7 @@ class PlyHeader {
         : file_(file), size_(static_cast<double>(fs::file_size(file))) {}
 
     void check() {
-        std::ifstream in(file_, std::ios::binary);
+        std::ifstream in = openToRead(file_);
         std::string line;
         std::getline(in, line);
         if (line.substr(0, 3) != "ply") throw InputError(file_, "", "does not begin with 'ply'");
@@ -100,7 +101,7 @@ class PlyHeader {
 };
 
 void checkObj(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in = openToRead(file);
     std::string line;
     while (std::getline(in, line)) {
         if (!line.starts_with("mtllib ")) continue;

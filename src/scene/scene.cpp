@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "io/reading.hpp"
 #include "scene/mesh_io.hpp"
 #include "scene/scene_yaml.hpp"
 
@@ -76,8 +77,10 @@ Eigen::AlignedBox3d Scene::boundingBox() const {
 }
 
 Scene loadScene(const std::string& file) {
-    const auto extension = std::filesystem::path(file).extension();
-    return extension == ".yaml" || extension == ".yml" ? loadSceneYaml(file) : loadMesh(file);
+    return reading(file, [&] {
+        const auto extension = std::filesystem::path(file).extension();
+        return extension == ".yaml" || extension == ".yml" ? loadSceneYaml(file) : loadMesh(file);
+    });
 }
 
 std::uint32_t addTexture(Scene& scene, Texture texture) {

@@ -228,6 +228,28 @@ TEST_F(SweepFiles, ACutLineIsDroppedAndWrittenOver) {
               std::string::npos);
 }
 
+TEST_F(SweepFiles, NumbersThatNoRunGivesAreRefused) {
+    SweepJournal::create(folder_, {"name", "", {}, {}},
+                         {makeRun({"rrt_star", 0.5, 7}, 1., 2., 3.)});
+    const fs::path file = folder_ / SweepJournal::kFileName;
+    const std::string good = test::contentOf(file);
+    for (const auto& [number, other] : {std::pair{"\"seed\":7", "\"seed\":1e308"},
+                                        {"\"seed\":7", "\"seed\":4294967296"},
+                                        {"\"seed\":7", "\"seed\":-1"},
+                                        {"\"cost\":1.0", "\"cost\":-1.0"},
+                                        {"\"vertices\":100", "\"vertices\":1e30"},
+                                        {"\"views\":40", "\"views\":0.5"}}) {
+        std::string bad = good;
+        ASSERT_NE(bad.find(number), std::string::npos) << bad;
+        bad.replace(bad.find(number), std::string(number).size(), other);
+        std::ofstream(file) << bad;
+        EXPECT_NE(reasonOf([&] { SweepJournal::read(folder_); }).find("line 2"), std::string::npos)
+            << other;
+    }
+    std::ofstream(file) << good;
+    EXPECT_EQ(SweepJournal::read(folder_).runs().size(), 1U);
+}
+
 Config smallSweep() {
     return loadConfig(scenario("two_textures"),
                       {"planner.vertices=60", "planner.view_pitch=0.5", "sweep.runs=2",

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/reading.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "temporary_folder.hpp"
+
+namespace photonav {
+namespace {
+
+TEST(Reading, NamesTheFileWhateverIsThrown) {
+    const auto complaint = [](auto read) {
+        return test::messageOf<InputError>([&] { reading("a.ot", read); });
+    };
+    EXPECT_EQ(complaint([]() -> int { throw std::bad_alloc(); }),
+              "a.ot: needs more memory than there is");
+    EXPECT_EQ(complaint([]() -> int { throw std::out_of_range("no\nsuch node"); }),
+              "a.ot: no\\nsuch node");
+    EXPECT_EQ(complaint([]() -> int { throw InputError("b.png", "", "damaged"); }),
+              "b.png: damaged");
+    EXPECT_EQ(reading("a.ot", [] { return 3; }), 3);
+}
+
+}  // namespace
+}  // namespace photonav
