@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "geometry/constants.hpp"
+#include "io/reading.hpp"
 #include "io/text_table.hpp"
 #include "io/yaml_reader.hpp"
 #include "recording/image_file.hpp"
@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kNanosecond = 1e-9;
+constexpr double kFarthestSensor = 1e3;  // from the body [m]
 
 fs::path mavFolder(const std::string& folder) {
     const fs::path inside = fs::path(folder) / "mav0";
@@ -33,7 +34,8 @@ Pose rigidPose(const YamlMap& yaml, const std::vector<double>& rows) {
     const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
     const bool isRotation =
         (R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < 1e-2 && R.determinant() > 0.;
-    if (!isRotation || T.row(3) != Eigen::RowVector4d(0., 0., 0., 1.)) {
+    const bool isNear = T.topRightCorner<3, 1>().cwiseAbs().maxCoeff() <= kFarthestSensor;
+    if (!isRotation || !isNear || T.row(3) != Eigen::RowVector4d(0., 0., 0., 1.)) {
         yaml.fail("T_BS.data", "not a rigid motion");
     }
     Pose pose = Pose::Identity();
@@ -77,11 +79,16 @@ DistortedCamera readCamera(const fs::path& folder) {
     result.camera.width = static_cast<unsigned>(size[0]);
     result.camera.height = static_cast<unsigned>(size[1]);
     const auto k = requiredNumbers(yaml, "intrinsics", 4);
-    if (k[0] < 0.005 * size[0] || k[1] < 0.005 * size[1]) {
-        yaml.fail("intrinsics", "the focal lengths are not those of a camera");
+    for (int i = 0; i < 2; ++i) {
+        if (!(k[i] >= 0.005 * size[i] && k[i] <= 1e9 && std::abs(k[2 + i]) <= 10. * size[i])) {
+            yaml.fail("intrinsics", "not those of a camera");
+        }
     }
     result.camera.intrinsics = vpCameraParameters(k[0], k[1], k[2], k[3]);
     const auto d = requiredNumbers(yaml, "distortion_coefficients", 4);
+    if (!(Eigen::Map<const Eigen::Vector4d>(d.data()).cwiseAbs().maxCoeff() <= 1e3)) {
+        yaml.fail("distortion_coefficients", "not those of a lens");
+    }
     result.distortion = Eigen::Map<const Eigen::Vector4d>(d.data());
     result.T_b_c = readMount(yaml);
     return result;
@@ -141,15 +148,9 @@ Pose groundtruthFrame(const fs::path& folder, StereoSequence& sequence) {
 }
 
 StampedPose parseGroundtruth(const TextRow& row) {
-    StampedPose pose;
-    pose.timestamp = kNanosecond * row.number(0);
-    pose.T_w_c.translation() = Eigen::Vector3d(row.number(1), row.number(2), row.number(3));
-    const Eigen::Quaterniond q(row.number(4), row.number(5), row.number(6), row.number(7));
-    if (std::abs(q.norm() - 1.) > 0.1) {
-        row.fail(fmt::format("quaternion of norm {:.3g}, expected 1", q.norm()));
-    }
-    pose.T_w_c.linear() = q.normalized().toRotationMatrix();
-    return pose;
+    return poseOfRow(row, kNanosecond * row.number(0),
+                     {row.number(1), row.number(2), row.number(3)},
+                     {row.number(4), row.number(5), row.number(6), row.number(7)});
 }
 
 void addPoses(const fs::path& folder, const EurocOptions& options, StereoSequence& sequence) {
@@ -177,14 +178,7 @@ void addPoses(const fs::path& folder, const EurocOptions& options, StereoSequenc
                     sequence.frames.front().timestamp, sequence.frames.back().timestamp));
 }
 
-}  // namespace
-
-bool isEurocFolder(const std::string& folder) {
-    return fs::is_directory(fs::path(folder) / "mav0") ||
-           fs::is_directory(fs::path(folder) / "cam0");
-}
-
-StereoSequence readEurocSequence(const std::string& folder, const EurocOptions& options) {
+StereoSequence readEurocTables(const std::string& folder, const EurocOptions& options) {
     if (!fs::is_directory(folder)) throw InputError(folder, "", "no such folder");
     const fs::path mav = mavFolder(folder);
     for (const char* camera : {"cam0", "cam1"}) {
@@ -207,6 +201,17 @@ StereoSequence readEurocSequence(const std::string& folder, const EurocOptions& 
     }
     addPoses(mav / "state_groundtruth_estimate0", options, sequence);
     return sequence;
+}
+
+}  // namespace
+
+bool isEurocFolder(const std::string& folder) {
+    return fs::is_directory(fs::path(folder) / "mav0") ||
+           fs::is_directory(fs::path(folder) / "cam0");
+}
+
+StereoSequence readEurocSequence(const std::string& folder, const EurocOptions& options) {
+    return reading(folder, [&] { return readEurocTables(folder, options); });
 }
 
 StereoImages loadStereo(const StereoSequence& sequence, std::size_t index) {

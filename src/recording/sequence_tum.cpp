@@ -8,9 +8,10 @@
 #include <filesystem>
 #include <functional>
 
-#include "geometry/constants.hpp"
+#include "io/reading.hpp"
 #include "io/text_table.hpp"
 #include "io/yaml_reader.hpp"
+#include "recording/association.hpp"
 #include "recording/image_file.hpp"
 #include "recording/time_order.hpp"
 #include "recording/trajectory.hpp"
@@ -61,36 +62,11 @@ std::vector<Pair> readAssociation(const fs::path& folder, const std::string& nam
                           forgiving, sequence);
 }
 
-/// Index of the depth image of every colour image, or -1: closest pairs first, as the benchmark's
-/// associate.py.
-std::vector<int> associate(const std::vector<StampedFile>& colour,
-                           const std::vector<StampedFile>& depth, double tolerance) {
-    struct Candidate {
-        double difference;
-        int colour;
-        int depth;
-    };
-    std::vector<Candidate> candidates;
-    for (std::size_t i = 0; i < colour.size(); ++i) {
-        const double time = colour[i].timestamp;
-        auto j =
-            std::lower_bound(depth.begin(), depth.end(), time - tolerance,
-                             [](const StampedFile& file, double t) { return file.timestamp < t; });
-        for (; j != depth.end() && j->timestamp <= time + tolerance; ++j) {
-            candidates.push_back({std::abs(j->timestamp - time), static_cast<int>(i),
-                                  static_cast<int>(j - depth.begin())});
-        }
-    }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const auto& a, const auto& b) { return a.difference < b.difference; });
-    std::vector<int> partner(colour.size(), -1);
-    std::vector<bool> taken(depth.size(), false);
-    for (const auto& candidate : candidates) {
-        if (partner[candidate.colour] >= 0 || taken[candidate.depth]) continue;
-        partner[candidate.colour] = candidate.depth;
-        taken[candidate.depth] = true;
-    }
-    return partner;
+std::vector<double> timesOf(const std::vector<StampedFile>& files) {
+    std::vector<double> times;
+    times.reserve(files.size());
+    for (const StampedFile& file : files) times.push_back(file.timestamp);
+    return times;
 }
 
 std::vector<Pair> readPairs(const fs::path& folder, const TumOptions& options, Sequence& sequence) {
@@ -107,7 +83,7 @@ std::vector<Pair> readPairs(const fs::path& folder, const TumOptions& options, S
     if (options.needsDepth || fs::exists(folder / "depth.txt")) {
         depth = readFileList(folder, "depth.txt", options.forgiving, sequence);
     }
-    const auto partner = associate(colour, depth, tolerance);
+    const auto partner = associate(timesOf(colour), timesOf(depth), tolerance);
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < colour.size(); ++i) {
         if (partner[i] >= 0) {
@@ -157,9 +133,9 @@ void readCamera(const std::string& file, Sequence& sequence) {
     readPixels("width", sequence.camera.width);
     readPixels("height", sequence.camera.height);
     sequence.camera.intrinsics = readIntrinsics(yaml, sequence.camera);
-    yaml.readNumber("depth_scale", sequence.depthScale, 1e-6, kInfinity);
+    yaml.readNumber("depth_scale", sequence.depthScale, 1e-6, 1e12);
     if (yaml.has("information_scale")) {
-        yaml.readNumber("information_scale", sequence.informationScale.emplace(), 1e-6, kInfinity);
+        yaml.readNumber("information_scale", sequence.informationScale.emplace(), 1e-6, 1e12);
     }
     if (yaml.has("depth_camera")) {
         YamlMap depthCamera = yaml.map("depth_camera");
@@ -230,11 +206,8 @@ void addPoses(const std::string& groundtruth, const std::vector<Pair>& pairs,
     }
 }
 
-}  // namespace
-
-Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
+Sequence readTumTables(const std::string& folder, const TumOptions& options) {
     if (!fs::is_directory(folder)) throw InputError(folder, "", "no such folder");
-    if (fs::is_empty(folder)) throw InputError(folder, "", "the folder is empty");
     Sequence sequence;
     const std::string inFolder = (fs::path(folder) / "camera.yaml").string();
     if (!options.cameraFile.empty() || fs::exists(inFolder)) {
@@ -250,6 +223,12 @@ Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
     if (!options.needsDepth) forgetMissingDepth(pairs);
     addPoses((fs::path(folder) / "groundtruth.txt").string(), pairs, options, sequence);
     return sequence;
+}
+
+}  // namespace
+
+Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
+    return reading(folder, [&] { return readTumTables(folder, options); });
 }
 
 RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {

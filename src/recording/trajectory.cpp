@@ -16,28 +16,30 @@
 namespace photonav {
 namespace {
 
-constexpr double kFarthest = 1e8;  // [m]; more than twice around the earth
+constexpr double kFarthestPosition = 1e8;  // [m]; more than twice around the earth
 
 StampedPose parsePose(const TextRow& row) {
     std::array<double, 8> v{};
     for (std::size_t i = 0; i < v.size(); ++i) v[i] = row.number(i);
-    Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
-    if (q.norm() < 1e-6) row.fail("quaternion of zero norm");
-    if (std::abs(q.norm() - 1.) > 0.1) {
-        row.fail(fmt::format("quaternion of norm {:.3g}, expected 1", q.norm()));
-    }
-    const Eigen::Vector3d position(v[1], v[2], v[3]);
-    if (position.norm() > kFarthest) {
-        row.fail(fmt::format("position {:.3g} m from the origin", position.norm()));
-    }
-    StampedPose pose;
-    pose.timestamp = v[0];
-    pose.T_w_c.linear() = q.normalized().toRotationMatrix();
-    pose.T_w_c.translation() = position;
-    return pose;
+    return poseOfRow(row, v[0], {v[1], v[2], v[3]}, {v[7], v[4], v[5], v[6]});
 }
 
 }  // namespace
+
+StampedPose poseOfRow(const TextRow& row, double timestamp, const Eigen::Vector3d& position,
+                      const Eigen::Quaterniond& rotation) {
+    if (!(std::abs(rotation.norm() - 1.) <= 0.1)) {
+        row.fail(fmt::format("quaternion of norm {:.3g}, expected 1", rotation.norm()));
+    }
+    if (!(position.norm() <= kFarthestPosition)) {
+        row.fail(fmt::format("position {:.3g} m from the origin", position.stableNorm()));
+    }
+    StampedPose pose;
+    pose.timestamp = timestamp;
+    pose.T_w_c.linear() = rotation.normalized().toRotationMatrix();
+    pose.T_w_c.translation() = position;
+    return pose;
+}
 
 Trajectory readTrajectory(const std::string& file, std::vector<InputError>* badRows) {
     return trajectoryOf(file, readTable(file, 8, badRows), parsePose, badRows);

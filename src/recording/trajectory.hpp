@@ -29,6 +29,11 @@ using Trajectory = std::vector<StampedPose>;  ///< timestamps never decrease
 ///        of them than poses the first is thrown
 Trajectory readTrajectory(const std::string& file, std::vector<InputError>* badRows = nullptr);
 
+/// A pose of a row. @throws InputError naming the line for a position beyond 1e8 m, and for a
+/// quaternion whose norm is not within 0.1 of 1
+StampedPose poseOfRow(const TextRow& row, double timestamp, const Eigen::Vector3d& position,
+                      const Eigen::Quaterniond& rotation);
+
 /// The same of the rows of any table.
 Trajectory trajectoryOf(const std::string& file, const std::vector<TextRow>& rows,
                         const std::function<StampedPose(const TextRow&)>& parse,

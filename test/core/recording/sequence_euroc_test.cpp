@@ -116,6 +116,8 @@ TEST_F(EurocSequence, RejectsTablesThatCannotBeUsed) {
         writeText(mav / "state_groundtruth_estimate0/data.csv", row);
         expectRejected({"data.csv", "line 1", "'x' is not a number"});
     }
+    writeText(mav / "state_groundtruth_estimate0/data.csv", "1,1e308,0,0,1,0,0,0\n");
+    expectRejected({"data.csv", "line 1", "position 1e+308 m from the origin"});
     writeText(mav / "state_groundtruth_estimate0/data.csv", "1,0,0\n");
     expectRejected({"data.csv", "line 1", "expected 8 fields, found 3"});
     writeText(mav / "cam1/data.csv", "17,17.png\n");

@@ -76,7 +76,7 @@ TEST(Trajectory, RejectsDamagedFilesByLine) {
     expectRejected(good + "2 0 1e30 0 0 0 0 1\n", "line 4", "1e+30 m from the origin");
     expectRejected(good + "2 0 x 0 0 0 0 1\n", "line 4", "'x' is not a number");
     expectRejected(good + "2 0 1,5 0 0 0 0 1\n", "line 4", "'1,5' is not a number");
-    expectRejected(good + "2 0 0 0 0 0 0 0\n", "line 4", "zero norm");
+    expectRejected(good + "2 0 0 0 0 0 0 0\n", "line 4", "quaternion of norm 0");
     expectRejected(good + "2 0 0 0 0 0 3 1\n", "line 4", "norm 3.16");
     expectRejected(good + "2 0 0 0 0 0 1\n", "line 4", "expected 8 fields, found 7");
     expectRejected(good + "0.5 0 0 0 0 0 0 1\n", "line 4", "smaller than the one before");
