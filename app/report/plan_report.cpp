@@ -124,10 +124,7 @@ json planResult(const Config& config, const PlanOutcome& outcome,
     json result{{"schema", 1},
                 {"command", "plan"},
                 {"version", PHOTONAV_VERSION},
-                {"status", interrupted          ? "interrupted"
-                           : outcome.isSolved() ? "done"
-                           : outcome.path       ? "failed"
-                                                : "no path"},
+                {"status", interrupted ? "interrupted" : outcome.status()},
                 {"seed", config.seed},
                 {"planner", config.planner},
                 {"information", config.viewModel.name},

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/report.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
-#include <stdexcept>
 #include <string_view>
 
 #include "io/atomic_file.hpp"
@@ -32,33 +28,6 @@ std::string escapedForScript(std::string_view text) {
     return escaped;
 }
 
-struct VoxelSum {
-    Eigen::Vector3d center;
-    double grey = 0.0;
-    double count = 0.0;
-};
-
-/// Mean grey value of the voxels in each cell of a grid of edge length `size`.
-ReportVoxels coarsened(const std::vector<Eigen::Vector3f>& centers,
-                       const std::vector<std::uint8_t>& grey, double size) {
-    std::map<std::array<long, 3>, VoxelSum> cells;
-    for (std::size_t i = 0; i < centers.size(); ++i) {
-        const Eigen::Vector3d cell = (centers[i].cast<double>() / size).array().floor();
-        VoxelSum& sum =
-            cells[{std::lround(cell.x()), std::lround(cell.y()), std::lround(cell.z())}];
-        sum.center = (cell.array() + 0.5) * size;
-        sum.grey += grey[i];
-        sum.count += 1.0;
-    }
-    ReportVoxels voxels;
-    voxels.size = size;
-    for (const auto& [index, sum] : cells) {
-        for (int k = 0; k < 3; ++k) voxels.centers.push_back(static_cast<float>(sum.center[k]));
-        voxels.grey.push_back(static_cast<std::uint8_t>(std::lround(sum.grey / sum.count)));
-    }
-    return voxels;
-}
-
 }  // namespace
 
 ReportMesh makeReportMesh(const Scene& scene) {
@@ -74,41 +43,9 @@ ReportMesh makeReportMesh(const Scene& scene) {
     return mesh;
 }
 
-ReportVoxels makeReportVoxels(const std::vector<Eigen::Vector3f>& centers,
-                              const std::vector<std::uint8_t>& grey, double size,
-                              std::size_t limit) {
-    if (centers.size() != grey.size() || size <= 0.0)
-        throw std::invalid_argument("makeReportVoxels: one grey value per voxel of positive size");
-    ReportVoxels voxels{{}, grey, size};
-    for (const Eigen::Vector3f& center : centers)
-        voxels.centers.insert(voxels.centers.end(), center.data(), center.data() + 3);
-    while (voxels.grey.size() > limit) voxels = coarsened(centers, grey, size *= 2.0);
-    return voxels;
-}
-
 Eigen::Vector2d fieldOfView(const Camera& camera) {
     return {2. * std::atan(0.5 * camera.width / camera.fx()),
             2. * std::atan(0.5 * camera.height / camera.fy())};
-}
-
-ReportVoxels makeReportVoxels(const TexturedOcTree& map) {
-    std::vector<Eigen::Vector3f> centers;
-    std::vector<std::uint8_t> grey;
-    const double size = map.getResolution();
-    for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
-        if (!map.isNodeOccupied(*leaf)) continue;
-        const std::uint8_t level = greyLevel(leaf->meanGrey().value_or(0.5F));
-        const int cells = static_cast<int>(std::lround(leaf.getSize() / size));  // of a pruned leaf
-        const Eigen::Vector3d corner(leaf.getX(), leaf.getY(), leaf.getZ());
-        for (int z = 0; z < cells; ++z)
-            for (int y = 0; y < cells; ++y)
-                for (int x = 0; x < cells; ++x) {
-                    const Eigen::Array3d cell = Eigen::Array3d(x, y, z) + 0.5 - 0.5 * cells;
-                    centers.emplace_back((corner.array() + size * cell).cast<float>());
-                    grey.push_back(level);
-                }
-    }
-    return makeReportVoxels(centers, grey, size);
 }
 
 void writeReport(const std::filesystem::path& file, std::string_view content) {

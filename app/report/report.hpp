@@ -80,15 +80,10 @@ Eigen::Vector2d fieldOfView(const Camera& camera);
 /// The scene as the page draws it: textures as PNG of at most 2048 pixels a side.
 ReportMesh makeReportMesh(const Scene& scene);
 
-/// The voxels as the page draws them. Beyond `limit`, eight neighbours become one of twice the size
-/// and their mean grey value, until they are few enough.
-/// @param size edge length [m]
-ReportVoxels makeReportVoxels(const std::vector<Eigen::Vector3f>& centers,
-                              const std::vector<std::uint8_t>& grey, double size,
-                              std::size_t limit = 400000);
-
 /// The occupied cells of a map with the mean grey value of their faces (0.5 where never observed).
-ReportVoxels makeReportVoxels(const TexturedOcTree& map);
+/// Beyond `limit`, eight neighbours become one voxel of twice the size and their mean grey value,
+/// until they are few enough.
+ReportVoxels makeReportVoxels(const TexturedOcTree& map, std::size_t limit = 400000);
 
 /// The JSON that the page draws, the content of report.json: large arrays as base64 of
 /// little-endian float32, uint32 or uint8, pictures as base64 of PNG.

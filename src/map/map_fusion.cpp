@@ -458,6 +458,7 @@ MapChange fuseScan(TexturedOcTree& map, const ScanPoints& points,
             Vector3d ray = Vector3d::Zero();
             if (scanner) ray = point.p_w - *scanner;
             const double range = ray.norm();
+            if (!std::isfinite(range)) throw std::invalid_argument("fuse: a point is too far");
             if (range <= maxRange)
                 visit(Vector3d(toCells * point.p_w), point.grey, true);
             else

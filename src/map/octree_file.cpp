@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map/octree_file.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +11,7 @@
 
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "io/reading.hpp"
 
 namespace photonav {
 namespace {
@@ -53,8 +56,10 @@ Header readHeader(std::istream& stream, const std::string& file) {
         if (key == "res") words >> header.resolution;
     }
     if (!stream) throw InputError(file, "", "cut short inside its header");
-    if (!(header.resolution > 0.) || !std::isfinite(header.resolution)) {
-        throw InputError(file, "res", "the resolution must be positive");
+    if (!(header.resolution >= kFinestCell && header.resolution <= kCoarsestCell)) {
+        throw InputError(file, "res",
+                         fmt::format("{} m is not the size of a cell: {} to {} m",
+                                     header.resolution, kFinestCell, kCoarsestCell));
     }
     if (header.version < 1 || header.version > kVersion) {
         throw InputError(file, "version",
@@ -67,8 +72,10 @@ Header readHeader(std::istream& stream, const std::string& file) {
 /// data ends early; here every read is checked.
 class NodeReader {
   public:
-    NodeReader(std::istream& stream, const std::string& file, TexturedOcTree& map)
-        : stream_(stream), file_(file), map_(map) {}
+    /// @param promised number of nodes
+    NodeReader(std::istream& stream, const std::string& file, std::size_t promised,
+               TexturedOcTree& map)
+        : stream_(stream), file_(file), promised_(promised), map_(map) {}
 
     /// Nodes of an .ot: a payload that depends on the class, then a bit for every child.
     template <class ReadPayload>
@@ -78,7 +85,7 @@ class NodeReader {
         const auto children = read<std::uint8_t>();
         for (unsigned i = 0; i < 8; ++i) {
             if ((children >> i & 1U) == 0) continue;
-            checkDepth(depth);
+            checkNext(depth);
             readNodes(*map_.createNodeChild(&node, i), depth + 1, readPayload);
         }
     }
@@ -89,7 +96,7 @@ class NodeReader {
         for (unsigned i = 0; i < 8; ++i) {
             const unsigned kind = children >> 2 * i & 3U;
             if (kind == 0) continue;
-            checkDepth(depth);
+            checkNext(depth);
             Node& child = *map_.createNodeChild(&node, i);
             child.setLogOdds(kind == 1 ? map_.getClampingThresMinLog()
                                        : map_.getClampingThresMaxLog());
@@ -111,6 +118,7 @@ class NodeReader {
     }
 
     void checkEnd() const {
+        if (map_.size() != promised_) failCount();
         if (stream_.peek() != std::istream::traits_type::eof()) {
             fail("damaged: goes on after its last node");
         }
@@ -121,12 +129,19 @@ class NodeReader {
     }
 
   private:
-    void checkDepth(unsigned depth) const {
+    /// Before a child is made of a node at this depth.
+    void checkNext(unsigned depth) const {
         if (depth >= map_.getTreeDepth()) fail("damaged: nodes below the cells");
+        if (map_.size() >= promised_) failCount();
+    }
+
+    [[noreturn]] void failCount() const {
+        fail(fmt::format("damaged: its header promises {} nodes", promised_));
     }
 
     std::istream& stream_;
     const std::string& file_;
+    std::size_t promised_;
     TexturedOcTree& map_;
 };
 
@@ -178,6 +193,43 @@ void clearInnerFaces(TexturedOcTree& map, Node& node) {
     }
 }
 
+std::unique_ptr<TexturedOcTree> readOcTree(const std::string& file) {
+    std::ifstream stream = openToRead(file);
+    if (!stream || std::filesystem::is_directory(file)) {
+        throw InputError(file, "", "cannot be opened");
+    }
+    const Header header = readHeader(stream, file);
+    auto map = std::make_unique<TexturedOcTree>(header.resolution);
+    NodeReader reader(stream, file, header.nodes, *map);
+    const bool known = header.binary ? header.id == "OcTree"
+                                     : header.id == map->getTreeType() || header.id == "OcTree" ||
+                                           header.id == "ColorOcTree";
+    if (!known) {
+        throw InputError(file, "id",
+                         "a map of class \"" + header.id + "\"" + (header.binary ? " (.bt)" : "") +
+                             "; TexturedOcTree, ColorOcTree and OcTree can be read");
+    }
+    if (header.nodes == 0) {
+        reader.checkEnd();
+        return map;
+    }
+    if (header.binary) {
+        reader.readBinaryNodes(map->obtainRoot(), 0);
+    } else if (header.id == "OcTree") {
+        reader.readNodes(map->obtainRoot(), 0, readOccupancy);
+    } else if (header.id == "ColorOcTree") {
+        reader.readNodes(map->obtainRoot(), 0, readColored);
+    } else {
+        const auto readPayload = [&](NodeReader& from, Node& node) {
+            readTextured(from, node, header.version);
+        };
+        reader.readNodes(map->obtainRoot(), 0, readPayload);
+    }
+    reader.checkEnd();
+    clearInnerFaces(*map, map->obtainRoot());
+    return map;
+}
+
 // ---- Writing -------------------------------------------------------------------------------
 
 void writeHeader(std::ostream& stream, const std::string& firstLine, const std::string& id,
@@ -209,43 +261,7 @@ void writeColored(std::ostream& stream, const TexturedOcTree& map, const Node& n
 }  // namespace
 
 std::unique_ptr<TexturedOcTree> loadTexturedOcTree(const std::string& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || std::filesystem::is_directory(file)) {
-        throw InputError(file, "", "cannot be opened");
-    }
-    const Header header = readHeader(stream, file);
-    auto map = std::make_unique<TexturedOcTree>(header.resolution);
-    NodeReader reader(stream, file, *map);
-    const bool known = header.binary ? header.id == "OcTree"
-                                     : header.id == map->getTreeType() || header.id == "OcTree" ||
-                                           header.id == "ColorOcTree";
-    if (!known) {
-        throw InputError(file, "id",
-                         "a map of class \"" + header.id + "\"" + (header.binary ? " (.bt)" : "") +
-                             "; TexturedOcTree, ColorOcTree and OcTree can be read");
-    }
-    if (header.nodes == 0) {
-        reader.checkEnd();
-        return map;
-    }
-    if (header.binary) {
-        reader.readBinaryNodes(map->obtainRoot(), 0);
-    } else if (header.id == "OcTree") {
-        reader.readNodes(map->obtainRoot(), 0, readOccupancy);
-    } else if (header.id == "ColorOcTree") {
-        reader.readNodes(map->obtainRoot(), 0, readColored);
-    } else {
-        const auto readPayload = [&](NodeReader& from, Node& node) {
-            readTextured(from, node, header.version);
-        };
-        reader.readNodes(map->obtainRoot(), 0, readPayload);
-    }
-    if (map->size() != header.nodes) {
-        reader.fail("damaged: its header promises " + std::to_string(header.nodes) + " nodes");
-    }
-    reader.checkEnd();
-    clearInnerFaces(*map, map->obtainRoot());
-    return map;
+    return reading(file, [&] { return readOcTree(file); });
 }
 
 bool isOcTreeFile(const std::string& file) {

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "io/error.hpp"
+#include "io/reading.hpp"
 #include "scene/texture.hpp"
 
 namespace photonav {
@@ -40,6 +41,10 @@ double decode(const char* bytes, unsigned size, bool isReal, bool isSigned) {
     }
 }
 
+bool isEcho(const Eigen::Vector3d& p_w) {
+    return p_w.allFinite() && p_w.cwiseAbs().maxCoeff() <= 1e8;
+}
+
 }  // namespace
 
 unsigned PointCloudFile::Element::rowBytes() const {
@@ -47,14 +52,21 @@ unsigned PointCloudFile::Element::rowBytes() const {
 }
 
 PointCloudFile::PointCloudFile(std::string file) : file_(std::move(file)) {
-    std::ifstream stream(file_, std::ios::binary);
-    if (!stream || !std::filesystem::is_regular_file(file_)) fail("no such file");
-    readHeader(stream);
-    locateColumns();
-    readScanner(stream);
+    reading(file_, [&] {
+        std::ifstream stream = openToRead(file_);
+        if (!stream || !std::filesystem::is_regular_file(file_)) fail("no such file");
+        readHeader(stream);
+        locateColumns();
+        readScanner(stream);
+    });
 }
 
 void PointCloudFile::fail(const std::string& reason) const { throw InputError(file_, "", reason); }
+
+void PointCloudFile::failCut(std::uint64_t points) const {
+    fail("cut short: " + std::to_string(points) + " of " + std::to_string(vertices_.count) +
+         " points");
+}
 
 void PointCloudFile::readHeader(std::istream& stream) {
     std::string text;
@@ -146,8 +158,7 @@ void PointCloudFile::locateColumns() {
     const std::uint64_t bytes =
         std::filesystem::file_size(file_) - static_cast<std::uint64_t>(firstVertex_);
     if (vertices_.count > bytes / vertices_.rowBytes()) {
-        fail("cut short: " + std::to_string(bytes / vertices_.rowBytes()) + " of " +
-             std::to_string(vertices_.count) + " points");
+        failCut(bytes / vertices_.rowBytes());
     }
 }
 
@@ -158,7 +169,9 @@ void PointCloudFile::readScanner(std::istream& stream) {
     if (camera.hasLists) return;
     std::vector<double> row;
     if (encoding_ == Encoding::ascii) {
-        for (std::uint64_t i = 0; i < vertices_.count; ++i) readRow(stream, vertices_, row);
+        for (std::uint64_t i = 0; i < vertices_.count; ++i) {
+            if (!readRow(stream, vertices_, row)) failCut(i);
+        }
     } else {
         stream.seekg(firstVertex_ +
                      static_cast<std::streamoff>(vertices_.count * vertices_.rowBytes()));
@@ -171,7 +184,7 @@ void PointCloudFile::readScanner(std::istream& stream) {
         if (column == kNoColumn) return;
         eye[i] = row[column];
     }
-    if (!eye.allFinite()) fail("camera: the scanner's place is not finite");
+    if (!isEcho(eye)) fail("camera: the scanner's place is not within 1e8 m");
     scanner_ = eye;
 }
 
@@ -217,16 +230,19 @@ float PointCloudFile::greyOf(const std::vector<double>& row) const {
 }
 
 void PointCloudFile::read(const std::function<void(const ScanPoint&)>& visit) const {
-    std::ifstream stream(file_, std::ios::binary);
+    reading(file_, [&] { readPoints(visit); });
+}
+
+void PointCloudFile::readPoints(const std::function<void(const ScanPoint&)>& visit) const {
+    std::ifstream stream = openToRead(file_);
     stream.seekg(firstVertex_);
     std::vector<double> row;
     for (std::uint64_t i = 0; i < vertices_.count; ++i) {
         if (!readRow(stream, vertices_, row)) {
-            fail("cut short: " + std::to_string(i) + " of " + std::to_string(vertices_.count) +
-                 " points");
+            failCut(i);
         }
         const ScanPoint point{{row[position_[0]], row[position_[1]], row[position_[2]]}, 0.F};
-        if (point.p_w.allFinite()) visit({point.p_w, greyOf(row)});
+        if (isEcho(point.p_w)) visit({point.p_w, greyOf(row)});
     }
 }
 

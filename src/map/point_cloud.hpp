@@ -23,7 +23,8 @@ struct ScanPoint {
 /// is kept in memory, so that files of any size can be read.
 ///
 /// Colours are `red green blue` (8-bit, or real in [0, 1]), converted to grey like textures;
-/// without them, `intensity` is used. Points that are not finite (no echo) are skipped. The
+/// without them, `intensity` is used. Points that are not finite or farther from the origin than
+/// 1e8 m (no echo) are skipped. The
 /// position of the scanner is read from the `camera` element that PCL writes (view_px, view_py,
 /// view_pz).
 class PointCloudFile {
@@ -58,6 +59,7 @@ class PointCloudFile {
     };
 
     void readHeader(std::istream& stream);
+    void readPoints(const std::function<void(const ScanPoint&)>& visit) const;
     void readProperty(std::istream& line, Element& element) const;
     void locateColumns();
     void readScanner(std::istream& stream);
@@ -66,6 +68,7 @@ class PointCloudFile {
     bool readRow(std::istream& stream, const Element& element, std::vector<double>& row) const;
     float greyOf(const std::vector<double>& row) const;
     [[noreturn]] void fail(const std::string& reason) const;
+    [[noreturn]] void failCut(std::uint64_t points) const;
 
     std::string file_;
     Encoding encoding_ = Encoding::ascii;

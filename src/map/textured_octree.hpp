@@ -18,6 +18,10 @@
 
 namespace photonav {
 
+/// Edges of cells that a map can have [m]: from a tenth of a millimetre, of which OctoMap's 16
+/// levels make 6.5 m.
+inline constexpr double kFinestCell = 1e-4, kCoarsestCell = 100.;
+
 inline constexpr int kKeyOfZero = 32768;  ///< OctoMap's key of the cell that begins at the origin
 
 /// How cells that no ray has visited are treated. Every function that needs this takes it as an

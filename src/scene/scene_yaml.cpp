@@ -16,7 +16,8 @@ constexpr double kSmallest = 1e-6;  // [m]: what counts as a positive length
 /// Reads one scene file: textures by name first, then the surfaces that refer to them.
 class SceneReader {
   public:
-    explicit SceneReader(const std::string& file) : file_(file), root_(file, loadYaml(file)) {
+    SceneReader(const std::string& file, double mostTexels)
+        : file_(file), root_(file, loadYaml(file)), texelsLeft_(mostTexels) {
         scene_.files = {file};
     }
 
@@ -42,7 +43,9 @@ class SceneReader {
     void readBox(YamlMap& map);
     void readWall(YamlMap& map);
     std::uint32_t textureNamed(YamlMap& map, const std::string& key);
-    static double readTexel(YamlMap& map);
+    double readTexel(YamlMap& map, const Eigen::Vector2d& size);
+    void spend(const YamlMap& map, const std::string& key, const Eigen::Vector2d& size,
+               double texel);
 
     /// Turns a complaint of a maker into one about this entry of the file.
     template <typename Make>
@@ -58,6 +61,7 @@ class SceneReader {
     YamlMap root_;
     unsigned seed_ = 1;
     std::vector<std::string> names_;
+    double texelsLeft_;
     Scene scene_;
 };
 
@@ -71,10 +75,21 @@ void requireVector(YamlMap& map, const std::string& key, Eigen::Matrix<double, N
     map.readVector(key, value);
 }
 
-double SceneReader::readTexel(YamlMap& map) {
+/// @param size of the texture that has such texels [m]
+double SceneReader::readTexel(YamlMap& map, const Eigen::Vector2d& size) {
     double texel = 0.01;
     map.readNumber("texel", texel, 1e-4, kInfinity);
+    spend(map, "texel", size, texel);
     return texel;
+}
+
+void SceneReader::spend(const YamlMap& map, const std::string& key, const Eigen::Vector2d& size,
+                        double texel) {
+    texelsLeft_ -= (size / texel).cwiseMax(1.).prod();
+    if (texelsLeft_ >= 0.) return;
+    map.fail(key,
+             "with this the scene's textures have too many texels: make them coarser or let "
+             "them repeat");
 }
 
 void SceneReader::readTexture(YamlMap& map) {
@@ -110,7 +125,10 @@ Texture SceneReader::readNoise(YamlMap& map) {
     map.readNumbers("amplitudes", options.amplitudes, 0, kMostCells);
     readGrey(map, "mean", options.mean);
     map.read("seed", options.seed);
-    options.texel = readTexel(map);
+    options.texel = readTexel(map, options.size);
+    for (const double cell : options.cells) {
+        if (cell > 0.) spend(map, "cells", options.size, cell);
+    }
     return valueNoise(options);
 }
 
@@ -124,7 +142,7 @@ Texture SceneReader::readStripes(YamlMap& map) {
     readGrey(map, "dark", options.dark);
     readGrey(map, "light", options.light);
     options.alongV = direction == "v";
-    options.texel = readTexel(map);
+    options.texel = readTexel(map, {2. * options.width, 0.});
     return stripes(options);
 }
 
@@ -134,7 +152,7 @@ Texture SceneReader::readChecker(YamlMap& map) {
     map.readNumber("soft_edge", options.softEdge, 0., options.cell);
     readGrey(map, "dark", options.dark);
     readGrey(map, "light", options.light);
-    options.texel = readTexel(map);
+    options.texel = readTexel(map, {2. * options.cell, 2. * options.cell});
     return checker(options);
 }
 
@@ -148,7 +166,9 @@ Texture SceneReader::readImage(YamlMap& map) {
         map.fail("file", fmt::format("no such image '{}'", path.string()));
     }
     scene_.files.push_back(path.string());
-    return imageTexture(path.string(), width);
+    Texture texture = imageTexture(path.string(), width);
+    spend(map, "file", {texture.image.getWidth(), texture.image.getHeight()}, 1.);
+    return texture;
 }
 
 Texture SceneReader::readPatches(YamlMap& map) {
@@ -164,7 +184,7 @@ Texture SceneReader::readPatches(YamlMap& map) {
         entry.finish();
         patches.push_back(patch);
     }
-    return patchedTexture(scene_.textures[base], patches, size, readTexel(map));
+    return patchedTexture(scene_.textures[base], patches, size, readTexel(map, size));
 }
 
 std::uint32_t SceneReader::textureNamed(YamlMap& map, const std::string& key) {
@@ -229,6 +249,8 @@ void SceneReader::readWall(YamlMap& map) {
 
 }  // namespace
 
-Scene loadSceneYaml(const std::string& file) { return SceneReader(file).read(); }
+Scene loadSceneYaml(const std::string& file, double mostTexels) {
+    return SceneReader(file, mostTexels).read();
+}
 
 }  // namespace photonav

@@ -27,7 +27,9 @@ namespace photonav {
 ///       - {footprint: [[0, 0], [10, 0], [10, 10]], height: 2.5, thickness: 0.1, bottom: 0,
 ///          closed: false, texture: bars}
 ///
+/// @param mostTexels of all textures together; a scene that asks for more is refused before they
+/// are made
 /// @throws InputError naming file, key and reason
-Scene loadSceneYaml(const std::string& file);
+Scene loadSceneYaml(const std::string& file, double mostTexels = kMostTexels);
 
 }  // namespace photonav

@@ -15,8 +15,6 @@
 namespace photonav {
 namespace {
 
-constexpr double kMostPixels = 1e8;  // of an image file: 400 MB once it is decoded
-
 void demand(bool condition, const char* what) {
     if (!condition) throw std::invalid_argument(what);
 }
@@ -101,10 +99,8 @@ double encodeSrgb(double linear) {
 ImageF greyOf(const cv::Mat& file, const std::array<double, 3>& factor) {
     const double maximum = file.depth() == CV_16U ? 65535. : 255.;
     const bool floating = file.depth() == CV_32F || file.depth() == CV_64F;
-    cv::Mat image;
-    file.convertTo(image, CV_32F, floating ? 1. : 1. / maximum);
-    const int channels = image.channels();
-    ImageF grey(static_cast<unsigned>(image.rows), static_cast<unsigned>(image.cols));
+    const int channels = file.channels();
+    ImageF grey(static_cast<unsigned>(file.rows), static_cast<unsigned>(file.cols));
     std::array<float, 16 * 255 + 1> decode{};  // 8-bit values fall on every 16th entry
     for (std::size_t i = 0; i < decode.size(); ++i) {
         decode[i] = static_cast<float>(decodeSrgb(static_cast<double>(i) / (decode.size() - 1.)));
@@ -114,9 +110,11 @@ ImageF greyOf(const cv::Mat& file, const std::array<double, 3>& factor) {
         const auto low = std::min<std::size_t>(static_cast<std::size_t>(scaled), decode.size() - 2);
         return decode[low] + (decode[low + 1] - decode[low]) * (scaled - static_cast<float>(low));
     };
-    for (int v = 0; v < image.rows; ++v) {
-        const auto* row = image.ptr<float>(v);
-        for (int u = 0; u < image.cols; ++u) {
+    cv::Mat line;
+    for (int v = 0; v < file.rows; ++v) {
+        file.row(v).convertTo(line, CV_32F, floating ? 1. : 1. / maximum);
+        const auto* row = line.ptr<float>();
+        for (int u = 0; u < file.cols; ++u) {
             const float* p = row + static_cast<std::ptrdiff_t>(u) * channels;
             const bool colour = channels >= 3;
             const float b = linear(p[0]);
@@ -267,10 +265,11 @@ ImageF decodeGrey(std::span<const std::uint8_t> encoded, const std::string& name
                   const std::array<double, 3>& factor) {
     const auto bytes = soundImage(encoded);
     const auto size = declaredSize(bytes);
-    if (size && size->width * size->height > kMostPixels) {
+    if (size &&
+        static_cast<double>(size->width) * static_cast<double>(size->height) > kMostTexels) {
         throw InputError(name, "",
                          fmt::format("{}x{} pixels: textures have at most {:.0f} million",
-                                     size->width, size->height, 1e-6 * kMostPixels));
+                                     size->width, size->height, 1e-6 * kMostTexels));
     }
     const cv::Mat image = size ? cv::imdecode(bytes, cv::IMREAD_UNCHANGED) : cv::Mat();
     if (image.empty()) throw InputError(name, "", "not an image, or damaged");

@@ -12,6 +12,9 @@
 
 namespace photonav {
 
+/// Texels of an image file, and of all textures of a procedural scene together: 400 MB.
+inline constexpr double kMostTexels = 1e8;
+
 /// A grey texture in [0, 1] (display-referred: what an 8-bit camera would store, divided by 255).
 /// Texture coordinates (u, v) in [0, 1) span the image, v downward from its first row; it repeats.
 struct Texture {

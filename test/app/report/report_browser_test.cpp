@@ -139,14 +139,13 @@ TEST_F(ReportBrowserTest, ClickAndKeySelectWaypointsAndIdlePageRests) {
 TEST_F(ReportBrowserTest, MapOfVoxelsWithoutPathIsDrawn) {
     ReportData data;
     data.title = "A map";
-    std::vector<Eigen::Vector3f> centers;
-    std::vector<std::uint8_t> grey;
+    data.voxels.size = 0.05;
     for (int i = 0; i < 40; ++i)
         for (int j = 0; j < 40; ++j) {
-            centers.emplace_back(0.05F * i, 0.05F * j, 0.05F * ((i / 8 + j / 8) % 2));
-            grey.push_back(static_cast<std::uint8_t>(6 * i));
+            for (const int k : {i, j, (i / 8 + j / 8) % 2})
+                data.voxels.centers.push_back(0.05F * k);
+            data.voxels.grey.push_back(static_cast<std::uint8_t>(6 * i));
         }
-    data.voxels = makeReportVoxels(centers, grey, 0.05);
     const Outcome outcome = open(data);
     expectNoErrors(outcome);
     EXPECT_EQ(published(outcome.dom, "canvas"), "drawn");

@@ -55,7 +55,7 @@ TEST(Base64, KnownValues) {  // RFC 4648
 
 TEST(ReportJson, HoldsTheNumbersAsTheyAre) {
     ReportData data = sampleReport();
-    data.voxels = makeReportVoxels({{0.F, 0.F, 0.F}, {1.F, 0.F, 0.F}}, {10, 200}, 0.05);
+    data.voxels = {{0.F, 0.F, 0.F, 1.F, 0.F, 0.F}, {10, 200}, 0.05};
     data.figures = {{"A figure.", "png"}};
     data.paths[0].points[0].trace = std::numeric_limits<double>::quiet_NaN();
     data.result["planners"] = {"rrt_star"};
@@ -111,19 +111,31 @@ TEST_F(ReportTest, UnwritableFolderIsRefusedAndNothingIsLeft) {
 }
 
 TEST(ReportVoxels, CoarsenedWhenTooMany) {
-    std::vector<Eigen::Vector3f> centers;
-    std::vector<std::uint8_t> grey;
-    for (int i = 0; i < 16; ++i)
+    TexturedOcTree map(0.05);
+    for (int i = 0; i < 16; ++i) {
         for (int j = 0; j < 16; ++j) {
-            centers.emplace_back(0.05F * (i + 0.5F), 0.05F * (j + 0.5F), 0.025F);
-            grey.push_back(i < 8 ? 40 : 200);
+            const auto at = [](int k) { return 0.05F * (static_cast<float>(k) + 0.5F); };
+            map.updateNode(octomap::point3d(at(i), at(j), 0.025F), true)->faces[5] = {
+                i < 8 ? 0.2F : 0.8F, 1.F};
         }
-    EXPECT_EQ(makeReportVoxels(centers, grey, 0.05).grey.size(), 256U);
-    const ReportVoxels coarse = makeReportVoxels(centers, grey, 0.05, 70);
+    }
+    EXPECT_EQ(makeReportVoxels(map).grey.size(), 256U);
+    const ReportVoxels coarse = makeReportVoxels(map, 70);
     EXPECT_EQ(coarse.grey.size(), 64U);
     EXPECT_DOUBLE_EQ(coarse.size, 0.1);
-    EXPECT_EQ(std::count(coarse.grey.begin(), coarse.grey.end(), 40), 32);
+    EXPECT_EQ(std::count(coarse.grey.begin(), coarse.grey.end(), greyLevel(0.2F)), 32);
     EXPECT_FLOAT_EQ(coarse.centers[0], 0.05F);
+}
+
+/// One leaf of 65536 cells a side, which a file of 60 bytes can hold, and a cell beside others.
+TEST(ReportVoxels, ALeafIsExpandedAtTheSizeThatIsDrawn) {
+    TexturedOcTree map(0.1);
+    map.obtainRoot().setLogOdds(1.F);
+    const ReportVoxels drawn = makeReportVoxels(map);
+    EXPECT_EQ(drawn.grey.size(), 262144U);
+    EXPECT_DOUBLE_EQ(drawn.size, 102.4);
+    EXPECT_FLOAT_EQ(drawn.centers[0], -3276.8F + 51.2F);
+    EXPECT_EQ(makeReportVoxels(map, 1).size, 6553.6);
 }
 
 TEST(ReportVoxels, OccupiedCellsOfAMap) {

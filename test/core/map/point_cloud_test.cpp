@@ -94,6 +94,9 @@ TEST(PointCloud, LeavesOutWhatHasNoEcho) {
         "n.ply", header("ascii", 3, kXyz + kRgb) + "nan 0 0 1 1 1\n0 0 inf 1 1 1\n1 1 1 1 1 1\n");
     EXPECT_EQ(pointsOf(file).size(), 1U);
     EXPECT_EQ(PointCloudFile(file).size(), 3U);
+    const auto far =
+        folder.write("f.ply", header("ascii", 2, kXyz + kRgb) + "1e38 0 0 1 1 1\n1 1 1 1 1 1\n");
+    EXPECT_EQ(pointsOf(far).size(), 1U);
 }
 
 TEST(PointCloud, SaysWhatIsWrongWithAFile) {
@@ -114,6 +117,9 @@ TEST(PointCloud, SaysWhatIsWrongWithAFile) {
     rejects(header("ascii", 2, kXyz + kRgb) + "0 0 0 1 1 1\n", "cut short: 1 of 2");
     rejects(header("ascii", 1, kXyz + kRgb) + "0 0 zero 1 1 1\n", "not a point");
     rejects(header("binary_little_endian", 1000000000, kXyz + kRgb) + "12345", "cut short: 0 of");
+    rejects("ply\nformat ascii 1.0\nelement vertex 1000000000000000000\n" + kXyz + kRgb +
+                "element camera 1\nproperty float view_px\nend_header\n0 0 0 1 1 1\n",
+            "cut short: 1 of 1000000000000000000 points");
     rejects(header("middle_endian", 1, kXyz + kRgb), "middle_endian");
     rejects(header("ascii", 1, "property quad x\n"), "unknown type 'quad'");
     EXPECT_NE(readingError(folder.file("none.ply")).find("no such file"), std::string::npos);
@@ -163,6 +169,11 @@ TEST(FuseScan, FartherThanTheRangeThereIsOnlyFreeSpace) {
         visit({{1e6, 0., 0.}, 0.F});
     };
     EXPECT_THROW(fuseScan(map, far, Eigen::Vector3d::Zero().eval(), 1e9), std::invalid_argument);
+    const auto farther = [](const std::function<void(const ScanPoint&)>& visit) {
+        visit({{1e308, 0., 0.}, 0.F});  // the length of the ray overflows
+    };
+    EXPECT_THROW(fuseScan(map, farther, Eigen::Vector3d(-1e308, 0., 0.), 1.),
+                 std::invalid_argument);
 }
 
 }  // namespace

@@ -178,6 +178,25 @@ TEST_F(MapFile, DamagedOrForeignFilesAreNamed) {
     EXPECT_NE(complaint("deep.ot").find("below the cells"), std::string::npos);
 }
 
+TEST_F(MapFile, HeadersThatCannotBeAreRefusedBeforeTheirNodesAreRead) {
+    const auto ofHeader = [&](const std::string& size, const std::string& resolution) {
+        std::ofstream(file("map.ot"), std::ios::binary)
+            << "# Octomap OcTree file\nid OcTree\nsize " << size << "\nres " << resolution
+            << "\ndata\n"
+            << std::string(5, '\xFF');
+        return complaint("map.ot");
+    };
+    for (const char* resolution : {"1e-300", "1e300", "1e-5", "1000", "nan", "-1", "0", "x"}) {
+        EXPECT_NE(ofHeader("1", resolution).find("map.ot: res: "), std::string::npos) << resolution;
+    }
+    // The children of a node that the header does not have are not made.
+    std::ofstream(file("more.ot"), std::ios::binary)
+        << "# Octomap OcTree file\nid OcTree\nsize 1\nres 0.1\ndata\n"
+        << std::string("\0\0\0\0\xFF", 5);
+    EXPECT_NE(complaint("more.ot").find("promises 1 nodes (after 1 nodes)"), std::string::npos)
+        << complaint("more.ot");
+}
+
 TEST_F(MapFile, EmptyMapsAreMaps) {
     const TexturedOcTree map(0.1);
     saveTexturedOcTree(map, file("map.ot"));

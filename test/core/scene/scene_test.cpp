@@ -10,6 +10,7 @@
 #include "io/error.hpp"
 #include "photometry/photometric.hpp"
 #include "render/mesh_renderer.hpp"
+#include "scene/scene_yaml.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {
@@ -165,6 +166,27 @@ TEST(SceneYaml, ComplaintsNameFileKeyAndReason) {
               std::string::npos);
     EXPECT_NE(complaint("textures: [{name: a, type: uniform, grey: .nan}]").find("grey"),
               std::string::npos);
+}
+
+TEST(SceneYaml, TexturesOfAllTheMemoryAreRefusedBeforeTheyAreMade) {
+    const TemporaryFolder folder;
+    const auto complaint = [&](const std::string& texture) {
+        const std::string file = folder.write(
+            "scene.yaml",
+            "textures: [{name: a, " + texture + "}]\n" +
+                "planes: [{corner: [0, 0, 0], u: [1, 0, 0], v: [0, 1, 0], texture: a}]");
+        const std::string message = messageOf<InputError>([&] { loadSceneYaml(file, 1e4); });
+        return message.empty() ? message : message.substr(file.size() + 2);
+    };
+    EXPECT_EQ(complaint("type: noise, size: [1, 0.9]"), "");
+    for (const char* large : {"type: noise, size: [1, 1.1]", "type: checker, cell: 0.6",
+                              "type: stripes, width: 60", "type: noise, size: [1e308, 1e308]"}) {
+        EXPECT_TRUE(
+            complaint(large).starts_with("textures[0].texel: with this the scene's textures"))
+            << complaint(large);
+    }
+    EXPECT_TRUE(complaint("type: noise, size: [1, 1], texel: 1, cells: [0.001]")
+                    .starts_with("textures[0].cells: "));
 }
 
 TEST(SceneYaml, ImagesAreFoundBesideTheFile) {
