@@ -9,7 +9,9 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <new>
 #include <regex>
+#include <string_view>
 
 #include "commands/benchmark_command.hpp"
 #include "commands/command_line.hpp"
@@ -36,6 +38,7 @@ using namespace photonav;
 std::atomic<bool> interrupted{false};
 std::atomic<double> interruptedAt{0.};
 volatile std::sig_atomic_t interruptedBy = 0;
+std::atomic<bool> hasOwnFiles{false};  // of a command that writes no result folder
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
 const Stopwatch running;
 
@@ -45,18 +48,34 @@ constexpr double kSameInterrupt = 0.2;  // [s]
 int exitCodeOf(int signal) { return 128 + signal; }
 static_assert(kInterrupted == 128 + SIGINT);
 
-/// The first Ctrl-C, or SIGTERM as Slurm and systemd send it, lets the command finish its files,
-/// the second one does not. timeout(1) sends its signal twice, to the process and to its group:
-/// that is one.
+/// Writes without a lock or a buffer, as a signal handler must.
+void say(std::string_view text) {
+    static_cast<void>(!write(STDERR_FILENO, text.data(), text.size()));
+}
+
+/// The first Ctrl-C, or SIGTERM as Slurm and systemd send it, lets the command finish its files, or
+/// ends it at once where there are none yet; the second one always does. timeout(1) sends its
+/// signal twice, to the process and to its group: that is one. A command that has not ended a
+/// second later says so.
 void onInterrupt(int signal) {
     const double now = running.seconds();
     double first = 0.;
-    if (interruptedAt.compare_exchange_strong(first, now)) {
-        interruptedBy = signal;
-        interrupted = true;
-    } else if (now - first > kSameInterrupt) {
+    if (!interruptedAt.compare_exchange_strong(first, now)) {
+        if (now - first > kSameInterrupt) std::_Exit(exitCodeOf(signal));
+        return;
+    }
+    interruptedBy = signal;
+    interrupted = true;
+    if (!hasOwnFiles && !FolderTransaction::isAnyOpen()) {
+        say("photonav: interrupted before there was any result\n");
         std::_Exit(exitCodeOf(signal));
     }
+    alarm(1);
+}
+
+void onAlarm(int /*signal*/) {
+    say("photonav: interrupted; finishing what is begun and writing the results so far (once more "
+        "to stop at once, which keeps an earlier result as it was)\n");
 }
 
 Command planCommand(CLI::App& app, const Invocation& invocation) {
@@ -113,13 +132,15 @@ Command infoCommand(CLI::App& app, const Invocation& invocation) {
     addCommon(*parser, *options);
     parser->get_option("config")->description(
         "YAML file of the planning problem; or a map (.ot, .bt), to see what it holds");
-    parser->add_option("--height", options->height, "of the heat map [m] (default: the start's)");
+    parser->add_option("--height", options->height, "of the heat map [m] (default: the start's)")
+        ->check(CLI::Range(-1e5, 1e5));
     parser->add_option("--at", options->at, "x,y,z[,yaw] of the single view (default: the start)");
     parser->add_option("--cells", options->cells, "along the longer side of the heat map")
         ->check(CLI::Range(1, 2000))
         ->capture_default_str();
     return {parser, [options, parser] {
-                std::signal(SIGINT, SIG_DFL);  // seconds of work, nothing to keep
+                std::signal(SIGINT, SIG_DFL);  // nothing to keep at any time
+                std::signal(SIGTERM, SIG_DFL);
                 if (!isOcTreeFile(options->config)) return runInfo(*options);
                 return describeMap(*parser, *options);
             }};
@@ -174,17 +195,26 @@ Command referenceCommand(CLI::App& app) {
         ->type_name("ALPHAS");
     parser->add_option("--planners", options->lists.planners, "a,b,c")->type_name("NAMES");
     parser->add_option("--runs", options->runs, "seeds per planner and alpha")
+        ->check(CLI::Range(0, 1000000))
         ->capture_default_str();
-    parser->add_option("--vertices", options->vertices, "of each run")->capture_default_str();
-    parser->add_option("--labels", options->labels, "per vertex")->capture_default_str();
+    parser->add_option("--vertices", options->vertices, "of each run")
+        ->check(CLI::Range(2, 100000000))
+        ->capture_default_str();
+    parser->add_option("--labels", options->labels, "per vertex")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
     parser->add_option("--moves", options->moves, "tried by the descent from each path")
+        ->check(CLI::Range(0, 1000000000))
         ->capture_default_str();
     parser->add_option("--file", options->file,
                        "the table (default: reference/<config>.csv beside the config)");
     parser->add_flag("--from-scratch", options->fromScratch,
                      "do not start from the paths of the table");
     parser->add_flag("--quiet", options->quiet, "no progress, no summary");
-    return {parser, [options] { return runReference(*options, interrupted); }};
+    return {parser, [options] {
+                hasOwnFiles = true;
+                return runReference(*options, interrupted);
+            }};
 }
 
 /// The words of Markdown links alone: a terminal cannot follow links to pages of the docs.
@@ -319,11 +349,22 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
     std::signal(SIGINT, onInterrupt);
     std::signal(SIGTERM, onInterrupt);
+    std::signal(SIGALRM, onAlarm);
     ompl::msg::noOutputHandler();
+    const std::string command = argc > 1 ? argv[1] : "";
+    const auto fail = [](int code, std::string_view reason) {
+        fmt::print(stderr, "photonav: {}\n", oneLine(reason));
+        return code;
+    };
     try {
         return run(argc, argv);
+    } catch (const InputError& error) {
+        return fail(kBadInput, error.what());
+    } catch (const std::filesystem::filesystem_error& error) {
+        return fail(kBadInput, error.path1().string() + ": " + error.code().message());
+    } catch (const std::bad_alloc&) {
+        return fail(kNoAnswer, command + ": needs more memory than there is");
     } catch (const std::exception& error) {
-        fmt::print(stderr, "photonav: {}\n", error.what());
-        return kBadInput;
+        return fail(kNoAnswer, command + ": " + error.what());
     }
 }

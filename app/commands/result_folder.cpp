@@ -12,9 +12,7 @@ namespace fs = std::filesystem;
 namespace {
 
 bool isInside(const fs::path& path, const fs::path& folder) {
-    const fs::path way =
-        fs::weakly_canonical(fs::absolute(path))
-            .lexically_relative((fs::weakly_canonical(fs::absolute(folder)) / "").parent_path());
+    const fs::path way = resolvedFolder(path).lexically_relative(resolvedFolder(folder));
     return !way.empty() && *way.begin() != "..";
 }
 

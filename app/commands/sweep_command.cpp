@@ -10,6 +10,7 @@
 #include "commands/result_folder.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "io/reading.hpp"
 #include "io/stopwatch.hpp"
 #include "problem/planning_problem.hpp"
 #include "report/sweep_report.hpp"
@@ -115,7 +116,8 @@ int conclude(const SweepOptions& options, const Config& config, const World& wor
 ReferenceCosts referenceOf(const Config& config) {
     if (config.sweep.reference.empty()) return {};
     try {
-        return ReferenceCosts(config.sweep.reference);
+        return reading(config.sweep.reference,
+                       [&] { return ReferenceCosts(config.sweep.reference); });
     } catch (const InputError& error) {
         throw InputError(config.file, "sweep.reference", error.what());
     }
@@ -215,6 +217,9 @@ std::vector<SweepJournal> readShards(const std::vector<std::string>& folders) {
     std::vector<SweepJournal> shards;
     std::map<unsigned, std::string> folderOf;
     for (const std::string& folder : folders) {
+        if (FolderTransaction::isBeingWritten(folder)) {
+            throw InputError("--merge", folder, "another photonav is writing it");
+        }
         SweepJournal& journal = shards.emplace_back(SweepJournal::read(folder));
         const SweepHeader& first = shards.front().header();
         const SweepHeader& header = journal.header();

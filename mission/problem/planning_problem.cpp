@@ -91,16 +91,14 @@ void PlanningProblem::checkPlace(const std::string& key, const Place& place) con
 }
 
 std::string PlanningProblem::statusOf(const PlanOutcome& outcome) const {
-    if (!outcome.path) return reasonForNoPath(outcome.vertices, outcome.iterations);
-    return outcome.isSolved() ? "done" : "failed: the cost of the path is not a finite number";
-}
-
-std::string PlanningProblem::reasonForNoPath(std::size_t vertices, std::size_t iterations) const {
-    if (vertices >= config_.vertices) {
-        return fmt::format("no path: the goal was not reached by {} vertices", vertices);
+    const std::string status = outcome.status();
+    if (outcome.isSolved()) return status;
+    if (outcome.path) return status + ": the cost of the path is not a finite number";
+    if (outcome.vertices >= config_.vertices) {
+        return fmt::format("{}: the goal was not reached by {} vertices", status, outcome.vertices);
     }
-    return fmt::format("no path: {} vertices after {} samples, then given up", vertices,
-                       iterations);
+    return fmt::format("{}: {} vertices after {} samples, then given up", status, outcome.vertices,
+                       outcome.iterations);
 }
 
 PlanOutcome PlanningProblem::solve(const std::string& name, const std::atomic<bool>& interrupted,

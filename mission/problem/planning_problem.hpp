@@ -54,6 +54,8 @@ struct PlanOutcome {
 
     /// A path whose cost is a number: where noise or information are absurd, it overflows.
     bool isSolved() const { return path && std::isfinite(path->cost); }
+    /// In a word or two: "done", "failed" or "no path".
+    std::string status() const { return isSolved() ? "done" : path ? "failed" : "no path"; }
 };
 
 inline const std::atomic<bool> kNotInterrupted{false};
@@ -86,10 +88,8 @@ class PlanningProblem {
                       const std::atomic<bool>& interrupted = kNotInterrupted,
                       const OnPlanProgress& onProgress = {});
 
-    /// "done", or why there is no path.
+    /// The status of an outcome and, unless it is done, the reason: "no path: ...".
     std::string statusOf(const PlanOutcome& outcome) const;
-    /// Why a tree of this size does not reach the goal.
-    std::string reasonForNoPath(std::size_t vertices, std::size_t iterations) const;
 
     /// The best path found by descent from these waypoints (of the body).
     /// @return nothing if the motions between them are not free

@@ -92,6 +92,9 @@ class Session {
 
     void record(ob::Planner& planner, ompl::tools::Benchmark::RunProperties& properties) {
         const auto& ours = dynamic_cast<const BeliefPlanner&>(planner);
+        PlanOutcome noPath;  // unless one is found below
+        noPath.vertices = ours.vertices();
+        noPath.iterations = ours.iterations();
         SweepRun run{item(outcome_.runs.size()),
                      kNone,
                      kNone,
@@ -100,7 +103,7 @@ class Session {
                      ours.vertices(),
                      ours.model().field().views(),
                      toNumber(properties.at("time REAL")),
-                     plan_.reasonForNoPath(ours.vertices(), ours.iterations()),
+                     plan_.statusOf(noPath),
                      {}};
         properties["seed INTEGER"] = std::to_string(run.item.seed);
         properties["vertices INTEGER"] = std::to_string(run.vertices);

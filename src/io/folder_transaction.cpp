@@ -19,6 +19,7 @@
 
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "io/reading.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -27,7 +28,7 @@ namespace {
 constexpr const char* kFirstLine = "photonav files 1";
 
 std::uint32_t checksumOf(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
+    std::ifstream stream = openToRead(file.string());
     std::vector<char> block(1U << 20U);
     uLong sum = crc32(0L, Z_NULL, 0);
     while (stream) {
@@ -77,12 +78,6 @@ void synchroniseAll(const fs::path& folder) {
     synchronise(folder);
 }
 
-/// The folder that a path leads to; it and its last parents need not exist.
-fs::path resolve(const fs::path& path) {
-    const fs::path whole = fs::weakly_canonical(fs::absolute(path) / "");
-    return whole.has_filename() ? whole : whole.parent_path();
-}
-
 [[noreturn]] void refuse(const fs::path& folder, const std::string& reason) {
     throw InputError(folder.string(), "", reason);
 }
@@ -108,7 +103,20 @@ void checkTarget(const fs::path& target, const fs::path& resolved) {
     }
 }
 
+/// Beside a folder.
+fs::path workingFolderOf(const fs::path& resolved) { return resolved.string() + ".unfinished"; }
+
 }  // namespace
+
+void FileDescriptor::reset(int number) {
+    if (number_ >= 0) close(number_);
+    number_ = number;
+}
+
+fs::path resolvedFolder(const fs::path& path) {
+    const fs::path whole = fs::weakly_canonical(fs::absolute(path) / "");
+    return whole.has_filename() ? whole : whole.parent_path();
+}
 
 Manifest::File Manifest::describe(const fs::path& folder, const fs::path& name) {
     const fs::path file = folder / name;
@@ -125,7 +133,7 @@ Manifest Manifest::of(const fs::path& folder) {
 Manifest Manifest::read(const fs::path& folder) {
     Manifest manifest;
     const fs::path file = folder / kFileName;
-    std::ifstream stream(file);
+    std::ifstream stream = openToRead(file.string());
     std::string line;
     if (!stream || !std::getline(stream, line)) return manifest;
     const auto fail = [&] { throw InputError(file.string(), "", "is damaged"); };
@@ -183,14 +191,24 @@ void Manifest::removeFiles(const fs::path& folder) const {
 
 FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinished)
     : target_(target),
-      resolved_(resolve(target)),
-      working_(resolved_.string() + ".unfinished"),
+      resolved_(resolvedFolder(target)),
+      working_(workingFolderOf(resolved_)),
       unfinished_(unfinished) {
     checkTarget(target_, resolved_);
     lock();
     const bool isReplaced =
         !Manifest::read(working_).empty();  // the process ended before it was removed
     if (isReplaced || unfinished_ == Unfinished::removed) removeLeftovers();
+    ++open_;
+}
+
+bool FolderTransaction::isBeingWritten(const fs::path& target) {
+    const fs::path file = workingFolderOf(resolvedFolder(target)) / Manifest::kFileName;
+    const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
+    if (descriptor < 0) return false;
+    const bool isLocked = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    close(descriptor);
+    return isLocked;
 }
 
 /// The lock is on the manifest, which moves with the folder: a folder that another process has just
@@ -201,22 +219,21 @@ void FolderTransaction::lock() {
         std::error_code error;
         fs::create_directories(working_, error);
         if (error) refuse(target_, "cannot be made: " + error.message());
-        lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        if (lock_ < 0 && errno == ENOENT) continue;
-        if (lock_ < 0) refuse(target_, std::string("cannot be made: ") + std::strerror(errno));
-        if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+        lock_.reset(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
+        if (lock_.get() < 0 && errno == ENOENT) continue;
+        if (lock_.get() < 0)
+            refuse(target_, std::string("cannot be made: ") + std::strerror(errno));
+        if (flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) {
             const bool isHeld = errno == EWOULDBLOCK;
             const std::string reason = std::strerror(errno);
-            close(lock_);
             refuse(target_, isHeld ? "another photonav is writing it" : "not locked: " + reason);
         }
         struct stat locked {};
         struct stat there {};
-        if (fstat(lock_, &locked) == 0 && stat(file.c_str(), &there) == 0 &&
+        if (fstat(lock_.get(), &locked) == 0 && stat(file.c_str(), &there) == 0 &&
             locked.st_ino == there.st_ino && locked.st_dev == there.st_dev) {
             return;
         }
-        close(lock_);
     }
 }
 
@@ -227,22 +244,21 @@ void FolderTransaction::removeLeftovers() const {
 }
 
 FolderTransaction::~FolderTransaction() {
-    if (isOpen_ && unfinished_ == Unfinished::removed) {
-        std::error_code ignored;
-        fs::remove_all(working_, ignored);
-    } else if (isOpen_) {  // nothing to go on with
-        std::error_code error;
-        if (fs::exists(working_, error) && namesIn(working_).empty()) {
-            fs::remove_all(working_, error);
+    --open_;
+    if (!isOpen_) return;
+    try {
+        if (unfinished_ == Unfinished::removed || namesIn(working_).empty()) {
+            fs::remove_all(working_);
         }
+    } catch (const std::exception&) {  // the next one at this place removes it
     }
-    close(lock_);
 }
 
 void FolderTransaction::commit() {
     const std::string manifest = Manifest::of(working_).text();
     const auto length = static_cast<ssize_t>(manifest.size());
-    if (ftruncate(lock_, 0) != 0 || pwrite(lock_, manifest.data(), manifest.size(), 0) != length) {
+    if (ftruncate(lock_.get(), 0) != 0 ||
+        pwrite(lock_.get(), manifest.data(), manifest.size(), 0) != length) {
         throw InputError((working_ / Manifest::kFileName).string(), "",
                          std::string("cannot be written: ") + std::strerror(errno));
     }
@@ -282,11 +298,13 @@ void FolderTransaction::exchange() {
 
 /// The folder that was the target is now where the working folder was.
 void FolderTransaction::removeReplaced() const {
-    std::error_code ignored;
-    if (!fs::exists(working_, ignored)) return;
-    Manifest::read(working_).removeFiles(working_);
-    fs::remove(working_ / Manifest::kFileName, ignored);
-    removeEmptyFolders(working_);
+    try {
+        if (!fs::exists(working_)) return;
+        Manifest::read(working_).removeFiles(working_);
+        fs::remove(working_ / Manifest::kFileName);
+        removeEmptyFolders(working_);
+    } catch (const std::exception&) {  // the new one is in place; the next one removes this
+    }
 }
 
 }  // namespace photonav

@@ -2,12 +2,17 @@
 // Results are there as a whole or not at all, whatever happens while they are made.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace photonav {
+
+/// The file or folder that a path leads to, absolute, links followed, without a closing slash; it
+/// and its last parents need not exist.
+std::filesystem::path resolvedFolder(const std::filesystem::path& path);
 
 /// The files that a program wrote into a folder: kept there as `.photonav`, one line each with
 /// size, checksum and name. What it does not list, or what was changed since, belongs to the user.
@@ -48,6 +53,21 @@ class Manifest {
     std::vector<File> files_;  // sorted by name
 };
 
+/// Of an open file, which it closes.
+class FileDescriptor {
+  public:
+    FileDescriptor() = default;
+    FileDescriptor(const FileDescriptor&) = delete;
+    FileDescriptor& operator=(const FileDescriptor&) = delete;
+    ~FileDescriptor() { reset(); }
+
+    int get() const { return number_; }
+    void reset(int number = -1);
+
+  private:
+    int number_ = -1;
+};
+
 /// Replaces a folder as a whole. Files are written into a working folder beside it,
 /// NAME.unfinished; commit() exchanges the two in one step. Until then, and when the program is
 /// killed or the disk is full, an earlier folder stays as it was. One process at a time: the
@@ -78,6 +98,13 @@ class FolderTransaction {
     /// @throws InputError when that cannot be done; the working folder is kept then
     void commit();
 
+    /// Whether this process has one: before, there is nothing to keep when it is interrupted. May
+    /// be called in a signal handler.
+    static bool isAnyOpen() { return open_ > 0; }
+
+    /// Whether another process is writing this folder.
+    static bool isBeingWritten(const std::filesystem::path& target);
+
   private:
     void lock();
     void removeLeftovers() const;
@@ -88,8 +115,9 @@ class FolderTransaction {
     std::filesystem::path resolved_;  // absolute, links followed
     std::filesystem::path working_;   // beside it
     Unfinished unfinished_;
-    int lock_ = -1;  // file descriptor of the working folder's manifest
+    FileDescriptor lock_;  // of the working folder's manifest
     bool isOpen_ = true;
+    static inline std::atomic<int> open_{0};
 };
 
 }  // namespace photonav

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/executable.hpp"
+#include "io/stopwatch.hpp"
 #include "tum_dataset.hpp"
 
 namespace photonav {
@@ -252,6 +253,26 @@ TEST_F(CommandLine, CtrlCKeepsTheBestPathSoFar) {
     EXPECT_EQ(WEXITSTATUS(status), 124);  // timeout's own: it sent the signal
     EXPECT_EQ(result()["status"], "interrupted");
     EXPECT_FALSE(result()["path"].empty());
+}
+
+/// The texture of this scene takes seconds.
+TEST_F(CommandLine, CtrlCBeforeThereIsAResultEndsAtOnce) {
+    fs::create_directories(folder_);
+    const fs::path scene = folder_ / "scene.yaml";
+    std::ofstream(scene)
+        << "textures: [{name: a, type: noise, size: [99, 99], cells: [9, 8, 7, 6]}]\n"
+           "planes: [{corner: [0, 0, 0], u: [9, 0, 0], v: [0, 9, 0], texture: a}]\n";
+    const Stopwatch watch;
+    const std::string command = "timeout -s INT 0.7 " + std::string(PHOTONAV_BINARY) + " plan " +
+                                config("two_textures") + " --set scene.file=" + scene.string() +
+                                " --out " + (folder_ / "out").string() + " 2> " +
+                                (folder_ / "said").string();
+    const int status = std::system(command.c_str());  // NOLINT(cert-env33-c)
+    EXPECT_EQ(WEXITSTATUS(status), 124);              // timeout's own: it sent the signal
+    EXPECT_LT(watch.seconds(), 3.);
+    EXPECT_EQ(test::contentOf(folder_ / "said"),
+              "photonav: interrupted before there was any result\n");
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
 TEST_F(CommandLine, HelpTeaches) {

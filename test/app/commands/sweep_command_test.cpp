@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "app/executable.hpp"
+#include "io/folder_transaction.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {
@@ -186,6 +187,10 @@ TEST_F(SweepCommand, ShardsThatDoNotMatchAreRefused) {
     expectBadInput(photonav(fmt::format("sweep {} --merge {} {} --out {}", config("two_textures"),
                                         at("1of2"), at("2of2"), at("m"))),
                    "instead of");
+    {
+        const FolderTransaction running(folder_ / "2of2");
+        expectBadInput(merge({"1of2", "2of2"}), "2of2: another photonav is writing it");
+    }
     cutAfter("2of2", 0);
     expectBadInput(merge({"1of2", "2of2"}), "1 runs are missing");
     expectBadInput(merge({"1of2", "2of2"}, "new"), "1 runs are missing");

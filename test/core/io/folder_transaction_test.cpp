@@ -108,6 +108,22 @@ TEST_F(FolderTransactionTest, OneProcessWritesAFolderAtATime) {
     EXPECT_TRUE(fs::exists(first.path()));
 }
 
+TEST_F(FolderTransactionTest, IsSeenByOthersUntilItEnds) {
+    const auto isSeen = [&] {
+        EXPECT_EQ(FolderTransaction::isAnyOpen(), FolderTransaction::isBeingWritten(target_));
+        return FolderTransaction::isAnyOpen();
+    };
+    EXPECT_FALSE(isSeen());
+    {
+        FolderTransaction first(target_);
+        EXPECT_TRUE(isSeen());
+        first.commit();
+    }
+    EXPECT_FALSE(isSeen());
+    { const FolderTransaction unfinished(target_, Unfinished::kept); }
+    EXPECT_FALSE(isSeen());
+}
+
 TEST_F(FolderTransactionTest, FollowsLinksAndRefusesWhatIsNoFolder) {
     commit(target_, "old.txt", "old");
     const fs::path link = temporary_.path() / "link";

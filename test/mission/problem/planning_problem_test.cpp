@@ -5,6 +5,7 @@
 #include <ompl/base/ScopedState.h>
 
 #include "geometry/camera.hpp"
+#include "geometry/constants.hpp"
 #include "map/map_fusion.hpp"
 #include "planners/planner_table.hpp"
 #include "render/mesh_renderer.hpp"
@@ -44,6 +45,23 @@ TEST(PlanningProblem, PathsAreEvaluatedByWaypointsToo) {
     EXPECT_EQ(positions.front(), Eigen::Vector2d(config.start.position.head<2>()));
     EXPECT_EQ(positions.back(), Eigen::Vector2d(config.goal.position.head<2>()));
     EXPECT_NEAR(path.length, std::hypot(6., 4.) + std::hypot(4., 5.), 1e-9);
+}
+
+/// Absurd noise or information can overflow the cost of a path that is there.
+TEST(PlanningProblem, APathWhoseCostIsNotFiniteHasFailed) {
+    const Config config = smallProblem(0.5);
+    const World world(config);
+    const PlanningProblem problem(config, world);
+    PlanOutcome outcome;
+    outcome.vertices = 150;
+    EXPECT_EQ(problem.statusOf(outcome), "no path: the goal was not reached by 150 vertices");
+    for (const double cost : {kInfinity, kNone}) {
+        outcome.path.emplace().cost = cost;
+        EXPECT_EQ(outcome.status(), "failed");
+        EXPECT_EQ(problem.statusOf(outcome), "failed: the cost of the path is not a finite number");
+    }
+    outcome.path->cost = 9.;
+    EXPECT_EQ(problem.statusOf(outcome), "done");
 }
 
 TEST(PlanningProblem, EveryNamedPlannerIsMadeAndNoOther) {
