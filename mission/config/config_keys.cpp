@@ -36,6 +36,9 @@ Eigen::AlignedBox3d readBounds(YamlMap& root) {
     if (!box.min().allFinite() || !box.max().allFinite()) {
         root.fail("bounds", "not a finite number");
     }
+    if (box.min().minCoeff() < -kFarthest || box.max().maxCoeff() > kFarthest) {
+        root.fail("bounds", fmt::format("farther than {} m from the origin", kFarthest));
+    }
     if (box.isEmpty()) root.fail("bounds", "the first corner must be the lower one");
     if (box.sizes().isZero(0.)) root.fail("bounds", "a point leaves nothing to plan");
     return box;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/recording_config.hpp"
 
-#include "geometry/constants.hpp"
-
 namespace photonav {
 
 void addKeys(KeyTable& keys, RecordingOptions& options) {
@@ -13,9 +11,9 @@ void addKeys(KeyTable& keys, RecordingOptions& options) {
               options.up);
     keys.count({"every", "", "use every n-th frame"}, options.every, {1., 1e9});
     keys.number({"tolerance", "s", "largest difference of timestamps"}, options.tolerance,
-                {1e-9, kInfinity});
+                {1e-9, 1e5});
     keys.number({"depth_scale", "1/m", "depth image value of one metre; none: the dataset's"},
-                options.depthScale, {1e-6, kInfinity});
+                options.depthScale, {1e-6, 1e12});
     keys.text({"frames", "", "\"a:b\": only the frames from a on and before b"}, options.frames);
     keys.choice(
         {"stereo", "",

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/map_config.hpp"
 
+#include <fmt/format.h>
+
 #include "dataset/recording_config.hpp"
 #include "depth/depth_filter.hpp"
-#include "geometry/constants.hpp"
+#include "map/textured_octree.hpp"
 
 namespace photonav {
 namespace {
+
+constexpr double kFarthestRange = 1e5;  // of ranges [m]
 
 bool hasKey(const std::string& file, const char* key) {
     const YAML::Node node = loadYaml(file);
@@ -14,7 +18,7 @@ bool hasKey(const std::string& file, const char* key) {
 }
 
 void addResolution(KeyTable& keys, double& resolution) {
-    keys.number({"resolution", "m", "edge of a cell"}, resolution, {1e-6, kInfinity});
+    keys.number({"resolution", "m", "edge of a cell"}, resolution, {kFinestCell, kCoarsestCell});
 }
 
 }  // namespace
@@ -32,16 +36,16 @@ KeyTable keysOf(MapOptions& options) {
               options.depth);
     addResolution(keys, options.resolution);
     keys.add({.words = {"min_range", "m", "nearest depth entered; monocular: 0.5"},
-              .allowed = ">= 0",
+              .allowed = fmt::format("0 to {}", kFarthestRange),
               .read =
                   [&options](YamlMap& map) {
                       double& range = options.fusion.minRange;
                       range = defaultMinRange(options.depth);
-                      map.readNumber("min_range", range, 0., kInfinity);
+                      map.readNumber("min_range", range, 0., kFarthestRange);
                   },
               .value = [&options] { return yamlNumber(options.fusion.minRange); }});
     keys.number({"max_range", "m", "farthest surface entered"}, options.fusion.maxRange,
-                {0., kInfinity});
+                {0., kFarthestRange});
     return keys;
 }
 
@@ -50,13 +54,17 @@ KeyTable keysOf(ScanMapOptions& options) {
     keys.requiredFile({"scans", "", "point cloud (.ply), or a folder with one per station"},
                       options.scans);
     addResolution(keys, options.resolution);
-    keys.number({"max_range", "m", "farthest point entered"}, options.maxRange, {0., kInfinity});
+    keys.number({"max_range", "m", "farthest point entered"}, options.maxRange,
+                {0., kFarthestRange});
     keys.add({.words = {"scanner", "m", "position of the scanner, where the file does not have it"},
               .allowed = "`[x, y, z]`",
               .read =
                   [&options](YamlMap& map) {
                       if (map.has("scanner")) {
                           map.readVector("scanner", options.scanner.emplace());
+                          if (options.scanner->cwiseAbs().maxCoeff() > kFarthestRange) {
+                              map.fail("scanner", "is too far from the origin");
+                          }
                       }
                   },
               .value =

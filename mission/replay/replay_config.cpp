@@ -2,13 +2,12 @@
 #include "replay/replay_config.hpp"
 
 #include "dataset/recording_config.hpp"
-#include "geometry/constants.hpp"
 
 namespace photonav {
 namespace {
 
-constexpr Range kPositive{1e-12, kInfinity};
-constexpr Range kNotNegative{0., kInfinity};
+constexpr Range kPositive{1e-12, 1e12};
+constexpr Range kNotNegative{0., 1e6};
 
 }  // namespace
 
