@@ -4,5 +4,5 @@
 #include "scene/scene_yaml.hpp"
 
 void photonav::fuzz::run(std::string_view input) {
-    check([&] { requireFinite(loadSceneYaml(write("scene.yaml", input))); });
+    check([&] { requireFinite(loadSceneYaml(write("scene.yaml", input), 1e5)); });
 }
