@@ -29,7 +29,8 @@ void photonav::fuzz::run(std::string_view input) {
         MapOptions map;
         ScanMapOptions scans;
         ReplayOptions replay;
-        if (choice < 2) readCalibration(file, choice == 0);
+        if (choice < 2)
+            readCalibration(file, choice == 0 ? std::nullopt : std::optional(MapKind::cells));
         if (choice == 2) readKeys(map, file);
         if (choice == 3) readKeys(scans, file);
         if (choice == 4) readKeys(replay, file);

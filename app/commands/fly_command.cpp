@@ -12,6 +12,7 @@
 #include "io/stopwatch.hpp"
 #include "planners/planner_table.hpp"
 #include "problem/planned_path.hpp"
+#include "replay/calibration_file.hpp"
 #include "report/fly_report.hpp"
 #include "result/json_values.hpp"
 
@@ -152,6 +153,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     PlanningProblem problem(config, world, alphaOf(config.planner, config.belief.alpha));
     problem.checkPlaces();
     const FlightSetup setup = setUpFlight(problem);
+    if (!options.calibration.empty()) readCalibration(options.calibration, setup.map);
     std::optional<FolderTransaction> recording;
     if (!options.record.empty()) {
         checkRecordFolder(options.record);

@@ -17,10 +17,11 @@ struct FlyArguments : FlyOptions {
 };
 
 /// What was typed goes over the config, as --set would.
-void override(const CLI::App& parser, const KeyTable& keys, std::vector<std::string>& overrides) {
-    if (parser.count("--calibration") > 0) {
+void override(const CLI::App& parser, const KeyTable& keys, FlyOptions& options) {
+    std::vector<std::string>& overrides = options.overrides;
+    if (!options.calibration.empty()) {
         FlyConfig fly;
-        applyCalibration(readCalibration(parser["--calibration"]->as<std::string>(), false), fly);
+        applyCalibration(readCalibration(options.calibration), fly);
         overrides.push_back(fmt::format("fly.scale={}", *fly.scale));
         overrides.push_back(fmt::format("fly.least_sigma={}", *fly.floorTranslation));
         overrides.push_back(fmt::format("fly.least_sigma_rotation={}", *fly.floorRotation));
@@ -52,7 +53,7 @@ Command flyCommand(CLI::App& app, const Invocation& invocation) {
     addSeed(*parser, options->seed, "of all random numbers");
     addKeyOptions(*parser, options->keys, {"plan"});  // the positional argument
     parser
-        ->add_option("--calibration",
+        ->add_option("--calibration", options->calibration,
                      "scale and floors from the calibration.yaml of a replay --calibrate, the "
                      "factor divided by the number of images with correlated errors; --scale, "
                      "--least-sigma and --least-sigma-rotation override it")
@@ -62,7 +63,7 @@ Command flyCommand(CLI::App& app, const Invocation& invocation) {
         ->type_name("DIR");
     return {parser, [options, parser, &interrupted = invocation.interrupted] {
                 if (!options->seed.empty()) options->overrides.push_back("seed=" + options->seed);
-                override(*parser, options->keys, options->overrides);
+                override(*parser, options->keys, *options);
                 return runFly(*options, interrupted);
             }};
 }

@@ -11,6 +11,7 @@
 #include "commands/result_folder.hpp"
 #include "io/stopwatch.hpp"
 #include "map/octree_file.hpp"
+#include "map/surface_cloud.hpp"
 #include "mapping/view_difference.hpp"
 #include "render/voxel_renderer.hpp"
 #include "report/comparison_images.hpp"
@@ -56,7 +57,7 @@ void compareFrames(const MapCommandOptions& options, const Recording& recording,
                    const TexturedOcTree& map, const std::atomic<bool>& interrupted, MapRun& run) {
     if (options.compareEvery < 1) return;
     const Sequence& sequence = recording.sequence;
-    const VoxelRenderer renderer(map, UnknownPolicy::occupied);
+    const VoxelRenderer renderer(map, options.unknownToCamera);
     const auto step = std::size_t(options.compareEvery);
     const std::size_t count = (sequence.frames.size() + step - 1) / step;
     std::size_t pictures = 0;
@@ -88,6 +89,7 @@ void writeMaps(const fs::path& folder, const TexturedOcTree& map, const Trajecto
     saveTexturedOcTree(map, (folder / "map.ot").string());
     saveColorOcTree(map, (folder / "map_color.ot").string());
     saveBinaryOcTree(map, (folder / "map.bt").string());
+    saveSurfaceCloud(map, (folder / "surfaces.ply").string());
     writeTrajectory((folder / "trajectory.tum").string(), trajectory);
 }
 

@@ -29,11 +29,12 @@ struct MapReport {
 };
 
 /// Maps a dataset and writes into options.out: map.ot (TexturedOcTree), map_color.ot (ColorOcTree,
-/// for octovis), map.bt, trajectory.tum (camera to world, of the frames used, in the map's world),
-/// config.yaml (with it `plan` finds the frames again), result.json, comparison_N.png (observed,
-/// predicted and difference of up to four frames), with depth from the images alone convergence.png
-/// (what a few references have learned of every pixel), report.json and report.html. The world of
-/// the map has z up: `up` states how the recorded world was turned.
+/// for octovis), map.bt, surfaces.ply (points with normals), trajectory.tum (camera to world, of
+/// the frames used, in the map's world), config.yaml (with it `plan` finds the frames again),
+/// result.json, comparison_N.png (observed, predicted and difference of up to four frames), with
+/// depth from the images alone convergence.png (what a few references have learned of every pixel),
+/// report.json and report.html. The world of the map has z up: `up` states how the recorded world
+/// was turned.
 /// @param interrupted checked between frames; what is there then is written, without comparison
 /// @throws InputError for a dataset that cannot be used, an option out of range ("--every") and a
 ///         folder that cannot be written, the last before any work is done; no new folder is left

@@ -50,10 +50,12 @@ json datasetJson(const Replay& replay) {
 
 /// Fits a calibration, and writes it if there is enough to fit it to. @returns its entry of
 /// result.json
-json calibrateReplay(const fs::path& folder, const ReplayRun& run, bool floorOnly) {
+json calibrateReplay(const fs::path& folder, const ReplayRun& run, MapKind map) {
+    const bool floorOnly = !run.odometry && map != MapKind::mesh;
     const auto calibration = calibrationOf(run, floorOnly);
     if (!calibration) return nullptr;
-    writeFileAtomically(folder / "calibration.yaml", toYaml(*calibration, run.odometry));
+    writeFileAtomically(folder / "calibration.yaml",
+                        toYaml(*calibration, run.odometry ? std::nullopt : std::optional(map)));
     return {{"scale", calibration->scale},
             {"floor", {calibration->floorTranslation, calibration->floorRotation}},
             {"correlation_time", calibration->correlationTime},
@@ -105,7 +107,7 @@ ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bo
                       {"load_images_s", run.loadSeconds},
                       {"track_s", run.trackSeconds}};
     if (options.calibrate) {
-        result["calibration"] = calibrateReplay(folder.path(), run, replay.map().octree != nullptr);
+        result["calibration"] = calibrateReplay(folder.path(), run, replay.map().kind);
     }
     report.summary = replaySummary(result);
     writeReplayTables(folder.path(), run, errors);

@@ -3,7 +3,6 @@
 
 #include "commands/command_line.hpp"
 #include "commands/replay_command.hpp"
-#include "replay/calibration_file.hpp"
 
 namespace photonav {
 namespace {
@@ -13,7 +12,6 @@ namespace fs = std::filesystem;
 struct ReplayArguments : ReplayCommandOptions {
     bool quiet = false;
     bool json = false;
-    std::string calibration;  ///< file that says what scale and floors were not typed
     KeyTable keys = keysOf(static_cast<ReplayCommandOptions&>(*this));
 };
 
@@ -36,15 +34,6 @@ int run(const CLI::App& parser, ReplayArguments& options, const std::atomic<bool
     if (fs::path(options.dataset).extension() == ".yaml") {
         refuseOptionsBeside(options.dataset, parser);
         options.keys.read(std::string(options.dataset));
-    }
-    if (!options.calibration.empty()) {
-        const Calibration calibration = readCalibration(options.calibration, options.odometry);
-        const auto give = [](std::optional<double>& option, double value) {
-            if (!option) option = value;
-        };
-        give(options.scale, calibration.scale);
-        give(options.floorTranslation, calibration.floorTranslation);
-        give(options.floorRotation, calibration.floorRotation);
     }
     if (options.out.empty()) options.out = "out/replay-" + folderName(options.dataset);
     ProgressLine line(options.quiet);

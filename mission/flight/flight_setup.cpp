@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "problem/tracking_map.hpp"
-
 namespace photonav {
 namespace {
 
@@ -79,6 +77,7 @@ FlightSetup setUpFlight(const PlanningProblem& problem) {
         .camera = config.camera.camera(),
         .T_b_c = config.camera.T_b_c(),
         .noise = config.fly.camera == "real" ? realNoise() : assumedNoise(config.photometric)};
+    setup.map = map.kind;
     setup.options = flightOptions(config, map.resolution());
     setup.options.initialCovariance = problem.initialCovariance();
     setup.options.pilot.isFree = [&world, radius = config.robotRadius](const Eigen::Vector3d& p_w) {

@@ -5,12 +5,14 @@
 #include "estimation/calibration.hpp"
 #include "flight/flight.hpp"
 #include "problem/planning_problem.hpp"
+#include "problem/tracking_map.hpp"
 
 namespace photonav {
 
 struct FlightSetup {
     FlightWorld world;
     FlightOptions options;
+    MapKind map = MapKind::mesh;  ///< that is tracked in; the world itself counts as a mesh
 };
 
 /// World and options of flights under the conditions that the config of the problem describes, its

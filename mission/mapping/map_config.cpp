@@ -46,6 +46,10 @@ KeyTable keysOf(MapOptions& options) {
               .value = [&options] { return yamlNumber(options.fusion.minRange); }});
     keys.number({"max_range", "m", "farthest surface entered"}, options.fusion.maxRange,
                 {0., kFarthestRange});
+    keys.choice({"unknown_to_camera", "",
+                 "how the views that the map is judged by treat cells that no ray has visited, as "
+                 "`map.unknown_to_camera` of a plan"},
+                options.unknownToCamera, {"free", "occupied"});
     return keys;
 }
 

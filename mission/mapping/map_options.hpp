@@ -14,6 +14,8 @@ struct MapOptions : RecordingOptions {
     double resolution = 0.05;  ///< edge of a cell [m]
     FusionOptions fusion;
     std::string depth = "recorded";  ///< or "monocular": from the images, with their poses
+    UnknownPolicy unknownToCamera =
+        UnknownPolicy::free;  ///< in the views that the map is judged by
 };
 
 /// Nearest depth entered when nothing else is asked for [m].

@@ -13,6 +13,7 @@ TrackingMap loadTrackingMap(const std::string& file) {
         TrackingMap map;
         if (isOcTreeFile(file)) {
             map.octree = loadTexturedOcTree(file);
+            map.kind = map.octree->hasSurfaces() ? MapKind::surfaces : MapKind::cells;
             map.views = std::make_shared<VoxelRenderer>(*map.octree, UnknownPolicy::free);
             return map;
         }

@@ -11,10 +11,16 @@
 
 namespace photonav {
 
+/// What decides how far images of a model err: a mesh, cells whose surfaces are seen at their
+/// faces, or cells with surfaces inside.
+enum class MapKind { mesh, cells, surfaces };
+
 struct TrackingMap {
     std::shared_ptr<const ViewSource> views;       ///< what images are compared with
     std::shared_ptr<const TexturedOcTree> octree;  ///< that they are views of, or
     std::shared_ptr<const Scene> scene;            ///< a mesh
+
+    MapKind kind = MapKind::mesh;
 
     /// Size of its cells [m]; 0: a mesh.
     double resolution() const { return octree ? octree->getResolution() : 0.; }

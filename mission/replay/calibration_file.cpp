@@ -11,38 +11,62 @@
 namespace photonav {
 namespace {
 
-const std::vector<std::string> kModes{"odometry", "map"};
+constexpr const char* kOdometry = "odometry";
+constexpr const char* kAnyMap = "map";  // of files before maps had kinds
 
-const std::string& modeOf(bool odometry) { return kModes[odometry ? 0 : 1]; }
+const char* modeOf(std::optional<MapKind> map) {
+    if (!map) return kOdometry;
+    if (*map == MapKind::mesh) return "mesh";
+    return *map == MapKind::cells ? "cells" : "surfaces";
+}
 
-Calibration readKeys(const std::string& file, bool odometry) {
-    YamlMap yaml(file, loadYaml(file));
-    Calibration c;
+struct CalibrationFile {
+    Calibration calibration;
+    std::string mode;  ///< empty: not said
+};
+
+CalibrationFile readFile(YamlMap& yaml) {
+    static const std::vector<std::string> kModes{kOdometry, "mesh", "cells", "surfaces", kAnyMap};
+    CalibrationFile file;
+    Calibration& c = file.calibration;
     for (const char* key : {"scale", "least_sigma", "least_sigma_rotation"}) {
         if (!yaml.has(key)) yaml.fail(key, "missing");
     }
-    std::string mode = modeOf(odometry);
-    yaml.readChoice("mode", mode, kModes);
-    if (mode != modeOf(odometry)) {
-        yaml.fail("mode", fmt::format("is {}: alignments to {} are not worth the same", mode,
-                                      odometry ? "a keyframe" : "a map"));
+    if (yaml.has("mode")) {
+        file.mode = kOdometry;
+        yaml.readChoice("mode", file.mode, kModes);
     }
     yaml.readNumber("scale", c.scale, 1e-12, 1e12);
     yaml.readNumber("least_sigma", c.floorTranslation, 0., 1e6);
     yaml.readNumber("least_sigma_rotation", c.floorRotation, 0., 1e6);
     yaml.readNumber("correlation_time", c.correlationTime, 1., 1e9);
     yaml.finish();
-    return c;
+    return file;
+}
+
+/// The calibration of a file, refused if it is of another kind.
+Calibration readOfKind(const std::string& file, std::optional<MapKind> map) {
+    YamlMap yaml(file, loadYaml(file));
+    const CalibrationFile read = readFile(yaml);
+    const std::string wanted = modeOf(map);
+    if (read.mode.empty() || read.mode == wanted) return read.calibration;
+    if (read.mode == kAnyMap && map) {
+        yaml.fail("mode", fmt::format("does not say of which kind of map; calibrate again in this "
+                                      "one, of kind {}",
+                                      wanted));
+    }
+    yaml.fail("mode", fmt::format("is {}: alignments to {} err otherwise (mode {})", read.mode,
+                                  map ? "this kind of map" : "keyframes", wanted));
 }
 
 }  // namespace
 
-std::string toYaml(const Calibration& c, bool odometry) {
+std::string toYaml(const Calibration& c, std::optional<MapKind> map) {
     std::string text = fmt::format(
         "# Single alignments: NEES per degree of freedom {:.3g} before, {:.3g} with\n"
         "# photonav replay ... --scale {:.3g} --least-sigma {:.3g} --least-sigma-rotation {:.3g}\n"
         "mode: {}\nscale: {:.3g}\nleast_sigma: {:.3g}  # m\nleast_sigma_rotation: {:.3g}  # rad\n",
-        c.neesBefore, c.neesAfter, c.scale, c.floorTranslation, c.floorRotation, modeOf(odometry),
+        c.neesBefore, c.neesAfter, c.scale, c.floorTranslation, c.floorRotation, modeOf(map),
         c.scale, c.floorTranslation, c.floorRotation);
     if (c.correlationTime > 1.) {
         text += fmt::format(
@@ -53,8 +77,15 @@ std::string toYaml(const Calibration& c, bool odometry) {
     return text;
 }
 
-Calibration readCalibration(const std::string& file, bool odometry) {
-    return reading(file, [&] { return readKeys(file, odometry); });
+Calibration readCalibration(const std::string& file) {
+    return reading(file, [&] {
+        YamlMap yaml(file, loadYaml(file));
+        return readFile(yaml).calibration;
+    });
+}
+
+Calibration readCalibration(const std::string& file, std::optional<MapKind> map) {
+    return reading(file, [&] { return readOfKind(file, map); });
 }
 
 }  // namespace photonav

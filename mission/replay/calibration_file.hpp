@@ -2,17 +2,25 @@
 // The calibration of a tracker as a file, which a replay writes and replays and flights read.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "estimation/calibration.hpp"
+#include "problem/tracking_map.hpp"
 
 namespace photonav {
 
 /// For the command line, and as YAML that readCalibration() reads back.
-std::string toYaml(const Calibration& calibration, bool odometry);
+/// @param map that images were aligned to; none: to keyframes (odometry)
+std::string toYaml(const Calibration& calibration, std::optional<MapKind> map);
 
 /// Factor, floor and correlation time of such a file.
-/// @throws InputError naming file, key and reason, also for a file of the other mode
-Calibration readCalibration(const std::string& file, bool odometry);
+/// @throws InputError naming file, key and reason
+Calibration readCalibration(const std::string& file);
+
+/// The same, of alignments to this kind of map, or to keyframes. A file that does not say what it
+/// is of is taken as it is.
+/// @throws InputError as above, and for a file of another kind
+Calibration readCalibration(const std::string& file, std::optional<MapKind> map);
 
 }  // namespace photonav

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "estimation/calibration.hpp"
 #include "evaluation/averages.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
+#include "mapping/map_config.hpp"
+#include "replay/calibration_file.hpp"
 
 namespace photonav {
 namespace {
@@ -43,9 +46,35 @@ void checkOptions(const ReplayOptions& options) {
             fmt::format("must be at least {}", kLeastWidth));
 }
 
+/// Scale and floors that the options leave open.
+void applyCalibration(std::optional<MapKind> map, ReplayOptions& options) {
+    const Calibration calibration = readCalibration(options.calibration, map);
+    options.scale = options.scale.value_or(calibration.scale);
+    options.floorTranslation = options.floorTranslation.value_or(calibration.floorTranslation);
+    options.floorRotation = options.floorRotation.value_or(calibration.floorRotation);
+}
+
+/// What points up in the recording that a map was made of, as it is noted beside the map. A floor
+/// fitted to another part of it would turn the recording against the map.
+std::string upOfMap(const std::string& mapFile) {
+    const std::filesystem::path config =
+        std::filesystem::path(mapFile).parent_path() / "config.yaml";
+    if (!std::filesystem::exists(config) || !isMapConfig(config.string())) {
+        throw InputError(
+            "--up", "floor",
+            fmt::format("the map's own is taken, but there is no {} of a recorded map; "
+                        "give an axis or x,y,z",
+                        config.string()));
+    }
+    MapOptions map;
+    readMapConfig(config.string(), map);
+    return map.up;
+}
+
 Recording openRecording(const ReplayOptions& options) {
     const RecordingOptions& given = options;
     RecordingOptions reading = given;
+    if (options.up == "floor" && !options.odometry) reading.up = upOfMap(options.mapFile);
     reading.forgiving = true;
     reading.needsDepth = options.odometry;
     Recording recording = readRecording(reading);
@@ -179,6 +208,9 @@ Replay::Replay(const ReplayOptions& options) : options_(options) {
     if (!options_.odometry) {
         map_ = loadTrackingMap(options_.mapFile);
         options_.startSigma = options_.startSigma.value_or(kStartSigma);
+    }
+    if (!options_.calibration.empty()) {
+        applyCalibration(options_.odometry ? std::nullopt : std::optional(map_.kind), options_);
     }
     start_ = startOf(options_, recording_.sequence);
     alignment_ = alignmentOf(options_, recording_.sequence, map_.resolution());

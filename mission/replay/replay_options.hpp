@@ -14,10 +14,11 @@ inline constexpr double kStartSigma = 0.05;  ///< in a map, when nothing else is
 
 /// Either `mapFile` or `odometry`.
 struct ReplayOptions : RecordingOptions {
-    std::string mapFile;    ///< localise in this textured octree (.ot), mesh or scene
-    bool odometry = false;  ///< instead: no map, from image to image
-    std::string start;      ///< "x,y,z,qx,qy,qz,qw" of the first frame's camera, in the map's
-                            ///< world (z up); empty: the ground truth's
+    std::string mapFile;      ///< localise in this textured octree (.ot), mesh or scene
+    bool odometry = false;    ///< instead: no map, from image to image
+    std::string calibration;  ///< file for what the scale and the floors below leave open
+    std::string start;        ///< "x,y,z,qx,qy,qz,qw" of the first frame's camera, in the map's
+                              ///< world (z up); empty: the ground truth's
     /// Standard deviation of the start, per axis [m] and [rad]; only in a map: odometry is exact
     /// where it begins.
     std::optional<double> startSigma;

@@ -220,6 +220,13 @@ void TexturedOcTree::updateCell(TexturedOcTreeNode& node, bool justMade, const B
     }
 }
 
+bool TexturedOcTree::hasSurfaces() const {
+    for (auto leaf = begin_leafs(); leaf != end_leafs(); ++leaf) {
+        if (!leaf->surfaces.empty()) return true;
+    }
+    return false;
+}
+
 bool TexturedOcTree::accumulateDrift(const octomap::OcTreeKey& corner, float change) {
     float& drift = drift_[corner];
     drift += change;

@@ -107,6 +107,9 @@ class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
         const std::function<void(TexturedOcTreeNode&, unsigned bit)>& texture,
         const std::function<bool(const TexturedOcTreeNode&, unsigned bit)>& keep = {});
 
+    /// Whether a cell has surfaces inside.
+    bool hasSurfaces() const;
+
     /// Adds up the changes of what the brick at `corner` shows, so that many small changes in one
     /// direction are reported in the end.
     /// @param change in parts of the change that is tolerated

@@ -94,7 +94,7 @@ TEST_F(ReplayCommand, CalibrationMakesCovariancesTrue) {
     const json fitted = result["calibration"];
     EXPECT_GE(fitted["correlation_time"], 1.);
     EXPECT_NEAR(fitted["nees_after"].get<double>(), 1., 0.3);
-    const Calibration read = readCalibration((options.out / "calibration.yaml").string(), false);
+    const Calibration read = readCalibration((options.out / "calibration.yaml").string());
     EXPECT_NEAR(read.scale, fitted["scale"].get<double>(), 0.01 * read.scale);
     EXPECT_NEAR(read.floorTranslation, fitted["floor"][0].get<double>(), 1e-4);
     EXPECT_NEAR(read.floorRotation, fitted["floor"][1].get<double>(), 1e-4);

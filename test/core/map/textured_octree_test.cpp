@@ -5,6 +5,7 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -13,10 +14,14 @@
 #include "io/error.hpp"
 #include "map/map_fusion.hpp"
 #include "map/octree_file.hpp"
+#include "map/point_cloud.hpp"
+#include "map/surface_cloud.hpp"
+#include "temporary_folder.hpp"
 
 namespace photonav {
 namespace {
 
+using test::contentOf;
 using test::floorView;
 using test::kDown;
 using test::lookDown;
@@ -153,6 +158,41 @@ TEST_F(MapFile, CutShortAnywhereOrTooLongIsAnError) {
         std::ofstream(file("long"), std::ios::binary) << all << '\n';
         EXPECT_NE(complaint("long").find("after its last node"), std::string::npos);
     }
+}
+
+TEST_F(MapFile, HasAVersionAndOldFilesLoad) {
+    saveTexturedOcTree(carpetMap(), file("map.ot"));
+    const std::string now = contentOf(file("map.ot"));
+    const std::string line = "# photonav map, version 2\n";
+    ASSERT_NE(now.find(line), std::string::npos);
+    const auto withLine = [&](std::string content, const std::string& other) {
+        std::ofstream(file("changed.ot"), std::ios::binary)
+            << content.replace(content.find(line), line.size(), other);
+    };
+    withLine(now, "# photonav map, version 3\n");
+    EXPECT_NE(complaint("changed.ot").find("version: unknown"), std::string::npos);
+    withLine(now, "");
+    EXPECT_NE(complaint("changed.ot").find("unknown contents"), std::string::npos);
+
+    TexturedOcTree old = carpetMap();
+    for (auto leaf = old.begin_leafs(); leaf != old.end_leafs(); ++leaf) leaf->surfaces.clear();
+    saveTexturedOcTree(old, file("old.ot"));
+    withLine(contentOf(file("old.ot")), "");
+    EXPECT_TRUE(*loadTexturedOcTree(file("changed.ot")) == old);
+}
+
+TEST_F(MapFile, ExportsSurfacesAsPoints) {
+    const TexturedOcTree map = carpetMap();
+    saveSurfaceCloud(map, file("surfaces.ply"));
+    const PointCloudFile cloud(file("surfaces.ply"));
+    EXPECT_GT(cloud.size(), 100U);
+    cloud.read([](const ScanPoint& point) { ASSERT_NEAR(point.p_w.z(), 0.02, 1e-3); });
+    const std::string content = contentOf(file("surfaces.ply"));
+    const std::size_t first = content.find("end_header\n") + 11;
+    ASSERT_EQ(content.size(), first + 27 * cloud.size());
+    std::array<float, 3> normal{};
+    std::memcpy(normal.data(), content.data() + first + 12, 12);
+    EXPECT_NEAR(normal[2], 1.F, 1e-3);
 }
 
 TEST_F(MapFile, DamagedOrForeignFilesAreNamed) {

@@ -25,7 +25,7 @@ TEST_F(ReplayFixture, LocalisesWithoutDepthImages) {
     EXPECT_TRUE(result["depth_density"].is_null());
     EXPECT_FALSE(Replay(options).medianDepth());
     options.up = "floor";
-    expectRejected({"--up: floor", "no depth images"});
+    expectRejected({"--up: floor", "the map's own is taken", "config.yaml"});
     options.up = "z";
     options.depthScale = 5000.;
     expectRejected({"--depth-scale", "no depth images"});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replay/replay.hpp"
 
+#include <fmt/format.h>
+
 #include "map/octree_file.hpp"
 #include "mapping/recording_map.hpp"
 #include "mission/replay/replay_fixture.hpp"
@@ -113,6 +115,15 @@ TEST_F(ReplayInMap, LocalisesInTheMapOfItsOwnFirstHalf) {
     EXPECT_EQ(result["frames"], 6);
     EXPECT_EQ(result["tracked"], 6);
     EXPECT_LT(result["ate_rmse_m"].get<double>(), 0.02);
+}
+
+TEST_F(ReplayInMap, UpFromTheFloorIsTheMapsOwn) {
+    useMap();
+    options.up = "floor";
+    expectRejected({"--up: floor", "the map's own is taken"});
+    writeText(folder.path() / "config.yaml",
+              fmt::format("dataset: {}\nup: 0.1,0,1\n", data.string()));
+    EXPECT_EQ(Replay(options).recording().up, *parseUp("0.1,0,1"));
 }
 
 TEST_F(ReplayInMap, LocalisesInAMapMadeWithoutDepthImages) {
