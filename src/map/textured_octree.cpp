@@ -87,6 +87,15 @@ std::optional<ShownGreys> TexturedOcTreeNode::shownGreys() const {
     return greys;
 }
 
+ShownWeights TexturedOcTreeNode::shownWeights() const {
+    ShownWeights weights{};
+    for (unsigned f = 0; f < 6; ++f) {
+        if (!faces[f].observed()) continue;
+        weights[f] = static_cast<std::uint8_t>(std::clamp(1 + std::ilogb(faces[f].weight), 1, 15));
+    }
+    return weights;
+}
+
 void TexturedOcTreeNode::copyData(const TexturedOcTreeNode& from) {
     octomap::OcTreeNode::copyData(from);
     faces = from.faces;
@@ -199,9 +208,11 @@ void TexturedOcTree::updateCell(TexturedOcTreeNode& node, bool justMade, const B
     const bool hasSurface = wasOccupied && !node.surfaces.empty();
     if (!hit && hasSurface && update.keep && update.keep(node, bit)) return;
     std::optional<ShownGreys> greys;
+    ShownWeights weights{};
     ShownSurfaces surfaces;
     if (hit && wasOccupied) {
         greys = node.shownGreys();
+        weights = node.shownWeights();
         surfaces = node.surfaces.shown();
     }
     updateNodeLogOdds(&node, hit ? prob_hit_log : prob_miss_log);
@@ -214,7 +225,8 @@ void TexturedOcTree::updateCell(TexturedOcTreeNode& node, bool justMade, const B
     } else if (hit && wasOccupied) {
         const float painted = difference(greys, node.shownGreys());
         const float moved = surfaceMotion(surfaces, node.surfaces.shown());
-        change.texture = change.texture || painted > 0.F || moved > 0.F;
+        const bool weighed = weights != node.shownWeights();
+        change.texture = change.texture || painted > 0.F || moved > 0.F || weighed;
         change.greyChange = std::max(change.greyChange, painted);
         change.surfaceMotion = std::max(change.surfaceMotion, moved);
     }

@@ -46,6 +46,10 @@ struct FaceTexture {
 /// Grey values of a cell's six faces as rendered in views; 65535 is white.
 using ShownGreys = std::array<std::uint16_t, 6>;
 
+/// How much the six greys are worth against those of cells in front and behind: 0 where the face
+/// was never observed, else 1 + log2 of its weight, rounded down.
+using ShownWeights = std::array<std::uint8_t, 6>;
+
 /// Log-odds occupancy, six faces and, in occupied cells, the surfaces inside. Inner nodes carry
 /// occupancy only.
 class TexturedOcTreeNode : public octomap::OcTreeNode {
@@ -63,6 +67,7 @@ class TexturedOcTreeNode : public octomap::OcTreeNode {
     /// The grey values that views show for an occupied cell: a face that was never observed takes
     /// meanGrey(). Nothing when no face was ever observed.
     std::optional<ShownGreys> shownGreys() const;
+    ShownWeights shownWeights() const;
 
     // What OctoMap asks of a node type; pruning merges leaves only when their faces agree as well.
     void copyData(const TexturedOcTreeNode& from);

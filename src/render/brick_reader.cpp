@@ -20,6 +20,7 @@ void readLeaf(const TexturedOcTree& map, const TexturedOcTreeNode& leaf, const A
         if (!greys) continue;
         content.surface.known |= 1ULL << bit;
         content.surface.grey[bit] = *greys;
+        content.surface.weight[bit] = leaf.shownWeights();
         content.surface.inside[bit] = leaf.surfaces.shown();
     }
 }

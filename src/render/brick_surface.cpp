@@ -39,7 +39,25 @@ constexpr int kWindow = 8;  // cells along each side of a window
 /// Grey values at p, q = -2 ... 5 of a layer, and which of them are known: bit 8 * (q + 2) + p + 2.
 struct Window {
     std::array<std::uint16_t, kWindow * kWindow> grey;
+    std::array<std::uint32_t, kWindow * kWindow> weight;
     std::uint64_t known = 0;
+
+    /// Merges by weight: a surface near the border of two layers is observed in both, and has to
+    /// look alike from both. Equal values stay as they are.
+    void add(int place, std::uint16_t value, std::uint32_t addedWeight) {
+        const std::uint64_t bit = 1ULL << place;
+        if ((known & bit) == 0) {
+            known |= bit;
+            grey[place] = value;
+            weight[place] = addedWeight;
+            return;
+        }
+        const std::uint32_t total = weight[place] + addedWeight;
+        const std::uint64_t sum = std::uint64_t{grey[place]} * weight[place] +
+                                  std::uint64_t{value} * addedWeight + total / 2;
+        grey[place] = static_cast<std::uint16_t>(sum / total);
+        weight[place] = total;
+    }
 };
 
 /// The coordinates of a layer: p and q run along the axes that are not its normal.
@@ -79,8 +97,7 @@ struct WindowOverlap {
 constexpr std::array<WindowOverlap, 3> kOverlap{WindowOverlap(0), WindowOverlap(1),
                                                 WindowOverlap(2)};
 
-/// Adds the exposed faces in and around one layer, -1 to 4, of the middle brick, where the window
-/// has none yet.
+/// Adds the exposed faces in and around one layer, -1 to 4, of the middle brick.
 void addExposedGreys(const SurfaceNeighbours& neighbours, int face, int layer, Window& window) {
     constexpr std::array<int, 3> kStride{1, 3, 9};
     const int axis = face / 2, shift = (layer & 3) * kLayerShift[axis];
@@ -89,10 +106,9 @@ void addExposedGreys(const SurfaceNeighbours& neighbours, int face, int layer, W
         const BrickSurface& surface = *middle[brick.offset];
         std::uint64_t todo = surface.exposed[face] >> shift & brick.cells;
         for (; todo != 0; todo &= todo - 1) {
-            const int bit = std::countr_zero(todo), place = brick.place[bit];
-            if ((window.known >> place & 1U) != 0) continue;
-            window.known |= 1ULL << place;
-            window.grey[place] = surface.grey[bit + shift][face];
+            const int bit = std::countr_zero(todo), cell = bit + shift;
+            window.add(brick.place[bit], surface.grey[cell][face],
+                       1U << surface.weight[cell][face]);
         }
     }
 }
@@ -152,9 +168,8 @@ FacePatch makePatch(const SurfaceNeighbours& neighbours, int face, int layer, st
     const int outward = face % 2 == 1 ? 1 : -1;
     Window window;
     addExposedGreys(neighbours, face, layer, window);
-    for (const int step : {outward, -outward}) {
-        if (~window.known != 0) addExposedGreys(neighbours, face, layer + step, window);
-    }
+    addExposedGreys(neighbours, face, layer + outward, window);
+    addExposedGreys(neighbours, face, layer - outward, window);
     FacePatch patch;
     patch.valid = valid;
     for (int q = 0; q < FacePatch::kSide; ++q) {
