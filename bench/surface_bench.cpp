@@ -68,7 +68,7 @@ MadeMap makeMap(const MeshRenderer& mesh, const World& world, double resolution,
             addNoise(view, world.depthNoise, random);
             const double begin = threadTime();
             fuse(made.map, view, camera, T_c_s * world.T_s_w,
-                 {.maxRange = 8., .surfaces = surfaces});
+                 {.maxRange = std::min(8., 300. * resolution), .surfaces = surfaces});
             made.fuse += threadTime() - begin;
         }
     }
