@@ -26,7 +26,7 @@ void average(std::array<std::int16_t, 3>& mean, const Vector3f& value, float sha
 }
 
 /// A surface of a cell: point and unit normal.
-struct Surface {
+struct SeenSurface {
     unsigned face;
     Vector3f point, normal;
 };
@@ -40,7 +40,7 @@ int valueOf(std::uint32_t plane, unsigned bits, unsigned shift) {
     return static_cast<std::int32_t>(plane << (32U - bits - shift)) >> (32U - bits);
 }
 
-std::uint32_t planeOf(const Surface& s) {
+std::uint32_t planeOf(const SeenSurface& s) {
     int a = 0;
     s.normal.cwiseAbs().maxCoeff(&a);
     const int p = a == 0 ? 1 : 0, q = a == 2 ? 1 : 2;
@@ -54,7 +54,7 @@ std::uint32_t planeOf(const Surface& s) {
 
 /// The heaviest surfaces of a cell that differ, in the order of their faces. @returns how many
 unsigned distinctSurfaces(const std::array<FaceSurface, 6>& cell,
-                          std::array<Surface, ShownSurfaces::kMost>& found) {
+                          std::array<SeenSurface, ShownSurfaces::kMost>& found) {
     std::array<float, 6> weight{};
     for (unsigned f = 0; f < 6; ++f) weight[f] = cell[f].weight;
     const float least = kLeastWeightShare * *std::ranges::max_element(weight);
@@ -64,7 +64,7 @@ unsigned distinctSurfaces(const std::array<FaceSurface, 6>& cell,
         if (*heaviest <= 0.F || *heaviest < least) break;
         const auto face = static_cast<unsigned>(heaviest - weight.begin());
         const Vector3f normal = cell[face].meanNormal();
-        const Surface surface{face, cell[face].meanPoint(), normal.normalized()};
+        const SeenSurface surface{face, cell[face].meanPoint(), normal.normalized()};
         *heaviest = 0.F;
         const bool isNew = normal.squaredNorm() > 1e-6F &&
                            std::none_of(found.begin(), found.begin() + count, [&](const auto& s) {
@@ -78,7 +78,7 @@ unsigned distinctSurfaces(const std::array<FaceSurface, 6>& cell,
 }
 
 /// Bit of ShownSurfaces::edges for a pair, by how their points lie to each other's planes.
-std::uint32_t edgeOf(const Surface& a, const Surface& b, unsigned pair) {
+std::uint32_t edgeOf(const SeenSurface& a, const SeenSurface& b, unsigned pair) {
     if (a.normal.dot(b.normal) < kOppositeCosine) return 0;
     const float bend = (a.normal - b.normal).dot(b.point - a.point);
     return 1U << (bend < 0.F ? pair : pair + 3U);
@@ -122,7 +122,7 @@ bool CellSurfaces::operator==(const CellSurfaces& other) const {
 void CellSurfaces::refreshShown() {
     if (!content_) return;
     ShownSurfaces& shown = content_->shown = {};
-    std::array<Surface, ShownSurfaces::kMost> found;
+    std::array<SeenSurface, ShownSurfaces::kMost> found;
     const unsigned count = distinctSurfaces(content_->faces, found);
     for (unsigned i = 0; i < count; ++i) {
         shown.plane[i] = planeOf(found[i]);

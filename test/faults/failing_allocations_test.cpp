@@ -164,9 +164,9 @@ TEST(FailingAllocations, OfReadersOfRecordings) {
 TEST(FailingAllocations, OfReadersOfResults) {
     const TemporaryFolder folder;
     const std::string calibration = folder.write(
-        "calibration.yaml", "mode: map\nscale: 0.5\nleast_sigma: 0\nleast_sigma_rotation: 0\n");
+        "calibration.yaml", "mode: mesh\nscale: 0.5\nleast_sigma: 0\nleast_sigma_rotation: 0\n");
     expectAllOrOneLine(calibration,
-                       [&] { return readCalibration(calibration, false).scale == 0.5; });
+                       [&] { return readCalibration(calibration, MapKind::mesh).scale == 0.5; });
     const std::string table =
         std::string(PHOTONAV_SOURCE_DIR) + "/config/reference/two_textures.csv";
     ReferenceTable reference(table);

@@ -7,6 +7,7 @@
 
 #include "alignment/alignment.hpp"
 #include "geometry/se3.hpp"
+#include "render/area_sensor.hpp"
 #include "render/mesh_renderer.hpp"
 
 namespace photonav::test {
@@ -52,6 +53,13 @@ inline Vector6 errorOf(const Alignment& a, const Pose& truth) {
 
 inline constexpr double kDown = std::numbers::pi / 2.;
 inline constexpr double kOblique = std::numbers::pi / 4.;
+
+/// A photograph: not by the renderer that predicts views, and without noise.
+inline View photographed(const ViewSource& world, const Camera& camera, const Pose& T_c_w) {
+    View view;
+    AreaSensor(world).render(camera, T_c_w, view);
+    return view;
+}
 
 inline ImageF noisy(const ImageF& image, double sigma, std::mt19937_64& random) {
     std::normal_distribution<float> noise(0.F, static_cast<float>(sigma));

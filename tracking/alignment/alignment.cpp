@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "alignment/residual_covariance.hpp"
+
 namespace photonav {
 
 namespace {
@@ -136,29 +138,28 @@ Vector6 posteriorStep(const Spectrum& s, const PoseEquations& equations, const V
 }
 
 void conclude(Alignment& a, const NormalEquations& equations, std::size_t pixels,
-              const PhotometricOptions& photometric,
-              const std::optional<ExposurePrior>& exposurePrior,
+              const MeasuredInformation& image, double sigma, bool isExposureEstimated,
               const std::optional<Matrix6>& prior, const TrustOptions& options) {
     a.overlap = equations.count / static_cast<double>(pixels);
     a.residual = statisticsOf(equations, a.exposure);
     a.meanDepth = equations.meanInverseDepth > 0. ? 1. / equations.meanInverseDepth : 1.;
-    a.information = poseEquations(equations, photometric, exposurePrior).information;
+    a.information = image.equations.information;
     const Spectrum s = spectrum(a.information, a.meanDepth);
     a.eigenvalues = s.values;
     a.directions = s.directions;
-    const Matrix6 covariance =
-        prior ? updateCovariance(*prior, a.information) : covarianceWithoutPrior(s);
+    const Matrix6 covariance = prior ? posteriorCovariance(*prior, a.information, image.repeating)
+                                     : covarianceWithoutPrior(s);
     a.covariance = withFloor(covariance, options.floorTranslation, options.floorRotation);
     const double least = 1. / (options.openSigma * options.openSigma);
     const int open = static_cast<int>((s.values.array() < least).count());
     a.openDirections = axesOf(s.directions, open);
 
-    const double noise = options.residualSigmas * photometric.sigma;
+    const double noise = options.residualSigmas * sigma;
     if (a.overlap < options.minOverlap) {
         a.verdict = Verdict::lostOverlap;
     } else if (a.residual.rms > noise && a.residual.unexplained > options.maxUnexplained) {
         a.verdict = Verdict::lostResidual;
-    } else if (exposurePrior && isAtLimit(a.exposure.gain, options.maxGain)) {
+    } else if (isExposureEstimated && isAtLimit(a.exposure.gain, options.maxGain)) {
         a.verdict = Verdict::lostExposure;
     } else if (!isLost(a.verdict)) {
         a.verdict = open > 0 ? Verdict::degenerate : Verdict::converged;

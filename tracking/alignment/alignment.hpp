@@ -88,7 +88,7 @@ struct Alignment {
     /// Left perturbation, camera frame, (rho, phi). Open directions without a prior get one mean
     /// depth and one radian of standard deviation.
     Matrix6 covariance = Matrix6::Zero();
-    /// Lambda of the image alone, same frame; where a model can be rendered, by measuredSlope().
+    /// Information of the image alone, same frame, by measuredInformation().
     Matrix6 information = Matrix6::Zero();
     Exposure exposure;
     int iterations = 0;  ///< views compared, over all levels
@@ -148,12 +148,15 @@ Vector6 imageStep(const Spectrum& spectrum, const Vector6& right, double minEige
 Vector6 posteriorStep(const Spectrum& spectrum, const PoseEquations& equations, const Vector6& e,
                       const Matrix6& P, double damping);
 
+struct MeasuredInformation;
+
 /// Completes an alignment from the equations of its last iterate: statistics, information,
 /// covariance and verdict.
+/// @param image what the image tells about the pose
+/// @param sigma noise of the image [grey value]
 /// @param prior transported covariance at alignment.T_c_w, if there is one
 void conclude(Alignment& alignment, const NormalEquations& equations, std::size_t pixels,
-              const PhotometricOptions& photometric,
-              const std::optional<ExposurePrior>& exposurePrior,
+              const MeasuredInformation& image, double sigma, bool isExposureEstimated,
               const std::optional<Matrix6>& prior, const TrustOptions& options);
 
 /// The covariance raised where it is below floor (eigenvalues relative to the floor, clipped at 1).

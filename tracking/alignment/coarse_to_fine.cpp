@@ -54,6 +54,7 @@ class Search {
   private:
     bool descend();
     bool measureSlope();
+    MeasuredInformation measured();
     bool improve(double& damping);
     Iterate evaluate(const Pose& T_c_w, const Exposure& exposure);
     void adaptLoss(double below);
@@ -80,12 +81,14 @@ class Search {
     Matrix6 slope_ = Matrix6::Identity();  ///< M of measuredSlope()
     Iterate at_;
     int iterations_ = 0;
-    bool done_ = false;  ///< with this level, as the last step was small
+    bool isCompared_ = false;  ///< at_ is the last comparison
+    bool done_ = false;        ///< with this level, as the last step was small
 };
 
 Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
     Iterate at{T_c_w, exposure, comparison_.compare(level_, T_c_w, exposure, loss_)};
     ++iterations_;
+    isCompared_ = true;
     if (prior_) {
         at.fromPrior = deviation(T_c_w, prior_->mean);
         at.priorTerm = squaredDistance(at.fromPrior, transported(prior_->covariance, at.fromPrior));
@@ -156,6 +159,7 @@ bool Search::improve(double& damping) {
         const double after = cost(next, pixels);
         const bool better = after <= (1. + kCostNoise) * before;
         done_ = isSmall(xi, equations.information);
+        isCompared_ = better;
         if (better) {
             at_ = next;
             // A step that gains less than the noise of the cost raises the damping: where
@@ -195,6 +199,19 @@ bool Search::measureSlope() {
     return true;
 }
 
+/// What the image tells by its residuals; the pose becomes that at which image, weighted by it,
+/// and prior agree.
+MeasuredInformation Search::measured() {
+    if (!isCompared_) at_ = evaluate(at_.T_c_w, at_.exposure);
+    const MeasuredInformation image = respondingBy(
+        slope_, measuredInformation(comparison_.blocks(level_, at_.T_c_w, at_.exposure, loss_),
+                                    at_.equations, options_.photometric, options_.exposure,
+                                    options_.modelErrors, comparison_.sinceModel(at_.T_c_w)));
+    at_.T_c_w = expSE3(step(image.equations, 0.)) * at_.T_c_w;
+    if (prior_) at_.fromPrior = deviation(at_.T_c_w, prior_->mean);
+    return image;
+}
+
 Alignment Search::run(const Pose& T_start) {
     at_.T_c_w = T_start;
     bool converged = false;
@@ -210,6 +227,9 @@ Alignment Search::run(const Pose& T_start) {
         converged = descend();
         if (isSmall(logSE3(at_.T_c_w * before.inverse()), equations().information)) break;
     }
+    MeasuredInformation image{equations(), Matrix6::Zero()};
+    level_ = 0;
+    if (options_.measureCovariance && converged && at_.equations.count > 0.) image = measured();
     Alignment result;
     result.T_c_w = at_.T_c_w;
     result.exposure = at_.exposure;
@@ -218,8 +238,9 @@ Alignment Search::run(const Pose& T_start) {
     if (prior_ && at_.priorTerm > options_.trust.maxPriorDistance) {
         result.verdict = Verdict::lostImplausible;
     }
-    conclude(result, confined(at_.equations, slope_), comparison_.pixels(), options_.photometric,
-             options_.exposure, transportedPrior(), options_.trust);
+    conclude(result, confined(at_.equations, slope_), comparison_.pixels(), image,
+             options_.photometric.sigma, options_.exposure.has_value(), transportedPrior(),
+             options_.trust);
     result.residual.robustSigma = comparison_.robustSigma();
     return result;
 }

@@ -4,7 +4,8 @@
 
 #include <functional>
 
-#include "alignment/alignment.hpp"
+#include "alignment/image_pyramid.hpp"
+#include "alignment/residual_covariance.hpp"
 
 namespace photonav {
 
@@ -17,12 +18,21 @@ struct AlignmentOptions {
     RobustWeight robust = RobustWeight::none;
     /// Estimate gain and offset of the observed image as well, with this prior (by default: none).
     std::optional<ExposurePrior> exposure;
+    /// Point spread of the images, standard deviation [pixels]: kRenderedBlur where they are as
+    /// blurred as rendered views, kAreaBlur for a sensor without defocus whose pixels average over
+    /// their area. Image and rendered view are compared at the same sharpness.
+    double blur = kRenderedBlur;
     int levels = 4;           ///< of the pyramid, each half the size; fewer when images are small
     int maxIterations = 25;   ///< views rendered per level and descent
     double coarseStep = 0.3;  ///< every level but the finest ends below this step [its pixels]
     /// The finest level ends below this step [standard deviations, given the residuals]. At the
     /// edges of surfaces visibility changes from pixel to pixel, which keeps steps at about 0.3.
     double fineStep = 0.3;
+    /// Errors of model and camera that repeat from image to image.
+    ModelErrors modelErrors;
+    /// Covariance from the residuals (residual_covariance.hpp); else from `photometric.sigma` and
+    /// `scale`.
+    bool measureCovariance = false;
     bool measureSlope = true;  ///< where a model can be rendered (measured_slope.hpp)
 };
 
@@ -41,6 +51,11 @@ class Comparison {
     /// The normal equations at a pose; xi is its left perturbation.
     virtual NormalEquations compare(std::size_t level, const Pose& T_c_w, const Exposure& exposure,
                                     const Loss& loss) = 0;
+    /// The last comparison by blocks of the image; arguments as they were.
+    virtual std::vector<ImageBlock> blocks(std::size_t level, const Pose& T_c_w,
+                                           const Exposure& exposure, const Loss& loss) = 0;
+    /// Motion since the image that the model's depth was measured with; identity for maps.
+    virtual Pose sinceModel(const Pose& /*T_c_w*/) const { return Pose::Identity(); }
     /// Robust standard deviation of the residuals of the last comparison.
     virtual double robustSigma() const = 0;
     /// A function that takes the view predicted at one pose as the observed image and compares it

@@ -15,6 +15,10 @@ class DenseAligner::RenderedModel : public Comparison {
   public:
     RenderedModel(const ViewSource& model, const Camera& full, const AlignmentOptions& options)
         : options_(options), model_(model) {
+        // The same information by pixels of less noise, which is correlated.
+        const double noise = noiseAfterWidening(-widening());
+        options_.photometric.sigma *= noise;
+        options_.photometric.scale *= noise * noise;
         Camera c = full;
         for (int l = 0; l < std::max(1, options.levels); ++l) {
             levels_.push_back({c,
@@ -31,7 +35,7 @@ class DenseAligner::RenderedModel : public Comparison {
         if (image.getWidth() != camera(0).width || image.getHeight() != camera(0).height) {
             throw std::invalid_argument("alignment: image and camera differ in size");
         }
-        levels_[0].observed = image;
+        levels_[0].observed = widened(image, -widening());
         for (std::size_t l = 1; l < levels_.size(); ++l) {
             levels_[l].observed = halvedAsRendered(levels_[l - 1].observed);
         }
@@ -60,6 +64,11 @@ class DenseAligner::RenderedModel : public Comparison {
         return at.compare(predicted_, at.observed, exposure, loss);
     }
 
+    std::vector<ImageBlock> blocks(std::size_t level, const Pose&, const Exposure& exposure,
+                                   const Loss& loss) override {
+        return levels_[level].compare.blocks(exposure, loss);
+    }
+
     AgainstPrediction predictionAsImage(std::size_t level, const Pose& T_image_w) override {
         return [this, level, T_image_w, isRendered = false](const Pose& T_c_w) mutable {
             Level& at = levels_[level];
@@ -80,8 +89,16 @@ class DenseAligner::RenderedModel : public Comparison {
         HoleMargin margin;
     };
 
+    /// Variance by which images are blurrier than rendered views; negative: sharper [pixels^2].
+    double widening() const {
+        return options_.blur * options_.blur - kRenderedBlur * kRenderedBlur;
+    }
+
     void render(const Level& level, const Pose& T_c_w, View& view) const {
         model_.render(level.camera, T_c_w, view);
+        if (&level == levels_.data() && widening() > 0.) {
+            view.intensity = widened(view.intensity, widening());
+        }
         widenHoles(view, level.margin);
     }
 

@@ -21,9 +21,9 @@ void GradientNoise::add(double x, double y, double w) {
     ++points_;
 }
 
-void GradientNoise::subtractFrom(NormalEquations& e, const Eigen::Vector2d& notShared, double most,
-                                 const Vector6& unit) const {
-    if (points_ < 1. || e.count < 1.) return;
+Matrix8 GradientNoise::subtractFrom(NormalEquations& e, const Eigen::Vector2d& notShared,
+                                    double most, const Vector6& unit) const {
+    if (points_ < 1. || e.count < 1.) return Matrix8::Identity();
     const auto variance = [&](double sum) {
         return kNoiseMargin * std::clamp(sum / e.count, kMinNoise, most);
     };
@@ -33,12 +33,13 @@ void GradientNoise::subtractFrom(NormalEquations& e, const Eigen::Vector2d& notS
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(e.AtA.topLeftCorner<6, 6>(),
                                                                    noise);
     const Vector6 kept = 1. - solver.eigenvalues().array().max(1.).inverse();
-    if (!kept.allFinite()) return;  // fewer points than unknowns
+    if (!kept.allFinite()) return Matrix8::Identity();  // fewer points than unknowns
     Matrix8 D = Matrix8::Identity();
     D.topLeftCorner<6, 6>() =
         solver.eigenvectors() * kept.asDiagonal() * solver.eigenvectors().transpose() * noise;
     e.AtA = D.transpose() * e.AtA * D;
     e.Atr = D.transpose() * e.Atr;
+    return D;
 }
 
 }  // namespace photonav

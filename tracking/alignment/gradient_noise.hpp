@@ -27,8 +27,9 @@ class GradientNoise {
     /// @param most variance of a component of g, if g were only noise; slightly more is subtracted,
     ///        to allow for chance
     /// @param unit factors by which J's columns are to be multiplied
-    void subtractFrom(NormalEquations& e, const Eigen::Vector2d& notShared, double most,
-                      const Vector6& unit) const;
+    /// @return D, with which the equations became D^T AtA D and D^T Atr
+    Matrix8 subtractFrom(NormalEquations& e, const Eigen::Vector2d& notShared, double most,
+                         const Vector6& unit) const;
 
   private:
     Matrix6 ofX_ = Matrix6::Zero(), ofY_ = Matrix6::Zero();

@@ -21,6 +21,35 @@ Camera halved(const Camera& camera) {
                                centre(camera.cy()))};
 }
 
+double noiseAfterWidening(double variance) {
+    const double side = 0.5 * std::clamp(variance, 0., 0.5), middle = 1. - 2. * side;
+    return middle * middle + 2. * side * side;  // of both axes
+}
+
+ImageF widened(const ImageF& image, double variance) {
+    const auto side = static_cast<float>(0.5 * std::clamp(variance, 0., 0.5));
+    const float middle = 1.F - 2.F * side;
+    const unsigned width = image.getWidth(), height = image.getHeight();
+    if (side == 0.F || width < 2) return image;
+    ImageF result(height, width);
+    std::vector<float> column(width);
+    for (unsigned v = 0; v < height; ++v) {
+        const float* row = image[v];
+        const float* above = image[v > 0 ? v - 1 : 0];
+        const float* below = image[std::min(v + 1, height - 1)];
+        for (unsigned u = 0; u < width; ++u) {
+            column[u] = middle * row[u] + side * (above[u] + below[u]);
+        }
+        float* out = result[v];
+        for (unsigned u = 1; u + 1 < width; ++u) {
+            out[u] = middle * column[u] + side * (column[u - 1] + column[u + 1]);
+        }
+        out[0] = (1.F - side) * column[0] + side * column[1];
+        out[width - 1] = (1.F - side) * column[width - 1] + side * column[width - 2];
+    }
+    return result;
+}
+
 ImageF halvedAsRendered(const ImageF& image) {
     const int width = static_cast<int>(image.getWidth());
     const int height = static_cast<int>(image.getHeight());

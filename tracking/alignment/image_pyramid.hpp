@@ -14,6 +14,18 @@ inline constexpr unsigned kMinSide = 12;  ///< pixels: smaller images get no lev
 /// column is dropped.
 Camera halved(const Camera& camera);
 
+/// Point spreads, standard deviation [pixels]: of a square pixel, and of rendered views
+/// (applyPointSpread()).
+inline constexpr double kAreaBlur = 0.2887;
+inline constexpr double kRenderedBlur = 0.7071;
+
+/// The image with its point spread widened. A kernel of 3 x 3 pixels; borders repeat.
+/// @param variance of the additional spread [pixels^2], at most 0.5: more is taken as that
+ImageF widened(const ImageF& image, double variance);
+
+/// Standard deviation of white noise after widened(), by that before.
+double noiseAfterWidening(double variance);
+
 /// Half the size with the sharpness of a view rendered at that size: the binomial filter of 8 taps
 /// (variance 7/4) turns the point spread of the large image (variance 1/2 of its pixels) into pixel
 /// average and point spread of the small one (variance 1/4 + 4 * 1/2). Borders repeat.

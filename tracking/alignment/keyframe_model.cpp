@@ -14,7 +14,8 @@ namespace photonav {
 namespace {
 
 /// The same equations for a perturbation on the left: exp(eta^) T = T exp(xi^), eta = Ad(T) xi.
-NormalEquations onTheLeft(NormalEquations e, const Pose& T) {
+template <class Equations>
+Equations onTheLeft(Equations e, const Pose& T) {
     Matrix8 M = Matrix8::Identity();
     M.topLeftCorner<6, 6>() = adjoint(T.inverse());
     e.AtA = M.transpose() * e.AtA * M;
@@ -86,6 +87,16 @@ class KeyframeModel::Points : public Comparison {
         const Pose T_c_k = T_c_w * T_k_w_.inverse();
         return onTheLeft(levels_[level].compare(observed_[level], T_c_k, exposure, loss), T_c_k);
     }
+
+    std::vector<ImageBlock> blocks(std::size_t level, const Pose& T_c_w, const Exposure& exposure,
+                                   const Loss& loss) override {
+        const Pose T_c_k = sinceModel(T_c_w);
+        auto blocks = levels_[level].blocks(observed_[level], T_c_k, exposure, loss);
+        for (ImageBlock& block : blocks) block = onTheLeft(block, T_c_k);
+        return blocks;
+    }
+
+    Pose sinceModel(const Pose& T_c_w) const override { return T_c_w * T_k_w_.inverse(); }
 
   private:
     bool fits(const ImageF& image) const {

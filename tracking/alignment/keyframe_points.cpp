@@ -139,31 +139,43 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
         const float z = view.depth.bitmap[i];
         inverse[i] = z > 0.F ? 1.F / z : kNoSurface;
     }
-    Row row(width);
-    for (unsigned v = 1; v + 1 < camera.height; ++v) {
-        const float* W = &inverse[std::size_t(v) * width];
-        const float* aboveW = W - width;
-        const float* belowW = W + width;
-        const float* I = view.intensity[v];
-        const float* above = view.intensity[v - 1];
-        const float* below = view.intensity[v + 1];
-        row.intensity = I;
-        row.y = static_cast<float>((v - camera.cy()) / camera.fy());
-        for (unsigned u = 1; u + 1 < width; ++u) {
-            const float horizontal = std::abs(W[u - 1] + W[u + 1] - 2.F * W[u]);
-            const float vertical = std::abs(aboveW[u] + belowW[u] - 2.F * W[u]);
-            const float du = I[u + 1] - I[u - 1];
-            const float dv = below[u] - above[u];
-            row.inverseDepth[u] = W[u];
-            row.gx[u] = du;
-            row.gy[u] = aspect * dv;
-            row.used[u] = (W[u] >= nearerThan) & (W[u] <= fartherThan) &
-                          (std::max(horizontal, vertical) <= jump * W[u]) & (I[u] > dark) &
-                          (I[u] < 1.F - dark) & (du * du + dv * dv >= least);
+    const unsigned side = ImageBlock::side(camera);
+    std::vector<Row> band(side, Row(width));
+    for (unsigned top = 1; top + 1 < camera.height; top += side) {
+        const unsigned bottom = std::min(top + side, camera.height - 1);
+        for (unsigned v = top; v < bottom; ++v) {
+            Row& row = band[v - top];
+            const float* W = &inverse[std::size_t(v) * width];
+            const float* aboveW = W - width;
+            const float* belowW = W + width;
+            const float* I = view.intensity[v];
+            const float* above = view.intensity[v - 1];
+            const float* below = view.intensity[v + 1];
+            row.intensity = I;
+            row.y = static_cast<float>((v - camera.cy()) / camera.fy());
+            for (unsigned u = 1; u + 1 < width; ++u) {
+                const float horizontal = std::abs(W[u - 1] + W[u + 1] - 2.F * W[u]);
+                const float vertical = std::abs(aboveW[u] + belowW[u] - 2.F * W[u]);
+                const float du = I[u + 1] - I[u - 1];
+                const float dv = below[u] - above[u];
+                row.inverseDepth[u] = W[u];
+                row.gx[u] = du;
+                row.gy[u] = aspect * dv;
+                row.used[u] = (W[u] >= nearerThan) & (W[u] <= fartherThan) &
+                              (std::max(horizontal, vertical) <= jump * W[u]) & (I[u] > dark) &
+                              (I[u] < 1.F - dark) & (du * du + dv * dv >= least);
+            }
         }
-        append(row, width);
+        for (unsigned left = 1; left + 1 < width; left += side) {
+            blockBegin_.push_back(size_);
+            blockIndex_.emplace_back(left / side, top / side);
+            const unsigned right = std::min(left + side, width - 1);
+            for (unsigned v = top; v < bottom; ++v) append(band[v - top], left, right);
+        }
     }
-    const std::size_t padded = (size_ + kWidth - 1) / kWidth * kWidth;
+    blockBegin_.push_back(size_);
+    // A block is read by whole vectors from where it begins.
+    const std::size_t padded = (size_ + 2 * kWidth - 1) / kWidth * kWidth;
     double sum = 0.;
     for (std::size_t i = 0; i < size_; ++i) sum += w_[i];
     meanInverseDepth_ = size_ > 0 ? sum / static_cast<double>(size_) : 0.;
@@ -173,13 +185,13 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
     for (std::size_t i = 0; i < size_; i += kNoiseEvery) noise_.add(x_[i], y_[i], w_[i]);
 }
 
-/// Writes every pixel; a pixel that is not used is overwritten by the next one. This avoids
-/// branches that cannot be predicted.
-void PointSet::append(const Row& row, unsigned width) {
+/// Columns left to right - 1. Writes every pixel; a pixel that is not used is overwritten by the
+/// next one. This avoids branches that cannot be predicted.
+void PointSet::append(const Row& row, unsigned left, unsigned right) {
     std::size_t n = size_;
     const auto perColumn = static_cast<float>(1. / camera_.fx());
     const auto centre = static_cast<float>(camera_.cx());
-    for (unsigned u = 1; u + 1 < width; ++u) {
+    for (unsigned u = left; u < right; ++u) {
         x_[n] = (static_cast<float>(u) - centre) * perColumn;
         y_[n] = row.y;
         w_[n] = row.inverseDepth[u];
@@ -191,18 +203,64 @@ void PointSet::append(const Row& row, unsigned width) {
     size_ = n;
 }
 
+/// Where points of a keyframe are in another image, and what they differ by.
+struct PointSet::Projection {
+    Projection(const PointSet& keyframe, const ImageF& image, const Pose& T_c_k,
+               const Exposure& exposure)
+        : points(keyframe),
+          observed(image),
+          R(T_c_k.linear().cast<float>()),
+          t(T_c_k.translation().cast<float>()),
+          fx(static_cast<float>(keyframe.camera_.fx())),
+          fy(static_cast<float>(keyframe.camera_.fy())),
+          cx(static_cast<float>(keyframe.camera_.cx())),
+          cy(static_cast<float>(keyframe.camera_.cy())),
+          gain(static_cast<float>(exposure.gain)),
+          offset(static_cast<float>(exposure.offset)),
+          right(static_cast<float>(keyframe.camera_.width) - 1.001F),
+          bottom(static_cast<float>(keyframe.camera_.height) - 1.001F) {}
+
+    struct Points {
+        ProductSums::Columns columns;
+        Float r, gx, gy, inverseDepth;
+        Float du, dv;  ///< gradient of the image there [grey value per pixel]
+        Int inView;
+    };
+    Points operator()(std::size_t k) const {
+        const Float x = at(&points.x_[k]), y = at(&points.y_[k]), w = at(&points.w_[k]);
+        const Float px = R(0, 0) * x + R(0, 1) * y + (R(0, 2) + t[0] * w);
+        const Float py = R(1, 0) * x + R(1, 1) * y + (R(1, 2) + t[1] * w);
+        const Float pz = R(2, 0) * x + R(2, 1) * y + (R(2, 2) + t[2] * w);
+        const Float inverse = 1.F / pz;
+        const Float u = fx * px * inverse + cx;
+        const Float v = fy * py * inverse + cy;
+        const Int inView = (pz > 0.01F) & (u >= 0.F) & (u < right) & (v >= 0.F) & (v < bottom);
+        const Float I = at(&points.intensity_[k]);
+        const Sample seen = bilinear(observed, inView ? u : Float{}, inView ? v : Float{});
+        const Float gx = at(&points.gx_[k]), gy = at(&points.gy_[k]);
+        const Float s = x * gx + y * gy;
+        return {{gx * w, gy * w, s * w, y * s + gy, x * s + gx, x * gy - y * gx, I},
+                seen.grey - (gain * I + offset),
+                gx,
+                gy,
+                inverse,
+                seen.du,
+                seen.dv,
+                inView};
+    }
+
+    const PointSet& points;
+    const ImageF& observed;
+    Eigen::Matrix3f R;
+    Eigen::Vector3f t;
+    float fx, fy, cx, cy, gain, offset, right, bottom;
+};
+
 NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
                                   const Exposure& exposure, const Loss& loss) {
-    const Eigen::Matrix3f R = T_c_k.linear().cast<float>();
-    const Eigen::Vector3f t = T_c_k.translation().cast<float>();
-    const auto fx = static_cast<float>(camera_.fx()), fy = static_cast<float>(camera_.fy());
-    const auto cx = static_cast<float>(camera_.cx()), cy = static_cast<float>(camera_.cy());
-    const auto gain = static_cast<float>(exposure.gain);
-    const auto offset = static_cast<float>(exposure.offset);
-    const float right = static_cast<float>(camera_.width) - 1.001F;
-    const float bottom = static_cast<float>(camera_.height) - 1.001F;
-
-    const float aspect = fy / fx;
+    const Projection project(*this, observed, T_c_k, exposure);
+    const Eigen::Matrix3f& R = project.R;
+    const float aspect = project.fy / project.fx;
     Float noiseX{}, noiseY{};
 
     ProductSums sums(loss, kChunk);
@@ -212,31 +270,17 @@ NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
         sums.beginRow();
         const bool keep = begin / kChunk % kSampleEvery == 0;
         for (std::size_t i = begin; i < std::min(begin + kChunk, vectors); ++i) {
-            const std::size_t k = i * kWidth;
-            const Float x = at(&x_[k]), y = at(&y_[k]), w = at(&w_[k]);
-            const Float px = R(0, 0) * x + R(0, 1) * y + (R(0, 2) + t[0] * w);
-            const Float py = R(1, 0) * x + R(1, 1) * y + (R(1, 2) + t[1] * w);
-            const Float pz = R(2, 0) * x + R(2, 1) * y + (R(2, 2) + t[2] * w);
-            const Float inverse = 1.F / pz;
-            const Float u = fx * px * inverse + cx;
-            const Float v = fy * py * inverse + cy;
-            const Int inView = (pz > 0.01F) & (u >= 0.F) & (u < right) & (v >= 0.F) & (v < bottom);
-            const Float I = at(&intensity_[k]);
-            const Sample seen = bilinear(observed, inView ? u : Float{}, inView ? v : Float{});
-            const Float r = seen.grey - (gain * I + offset);
-            const Float gx = at(&gx_[k]), gy = at(&gy_[k]);
+            const auto p = project(i * kWidth);
             // Noise is the difference to the observed gradient, rotated into the keyframe.
-            const Float perPixel = inView ? 2.F / gain * inverse : Float{};
-            const Float du = perPixel * seen.du, dv = perPixel * aspect * seen.dv;
-            noiseX += gx * ((inView ? gx : Float{}) - (R(0, 0) * du + R(1, 0) * dv));
-            noiseY += gy * ((inView ? gy : Float{}) - (R(0, 1) * du + R(1, 1) * dv));
-            const Float s = x * gx + y * gy;
-            sums.add({gx * w, gy * w, s * w, y * s + gy, x * s + gx, x * gy - y * gx, I}, r,
-                     inView);
+            const Float perPixel = p.inView ? 2.F / project.gain * p.inverseDepth : Float{};
+            const Float du = perPixel * p.du, dv = perPixel * aspect * p.dv;
+            noiseX += p.gx * ((p.inView ? p.gx : Float{}) - (R(0, 0) * du + R(1, 0) * dv));
+            noiseY += p.gy * ((p.inView ? p.gy : Float{}) - (R(0, 1) * du + R(1, 1) * dv));
+            sums.add(p.columns, p.r, p.inView);
             if (keep) {
                 residualSample_.resize(residualSample_.size() + kWidth);
                 simd::store(&residualSample_[residualSample_.size() - kWidth],
-                            inView ? r : simd::splat(kUnused));
+                            p.inView ? p.r : simd::splat(kUnused));
             }
         }
         sums.endRow();
@@ -244,9 +288,34 @@ NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
     const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
-    noise_.subtractFrom(equations, {simd::sum(noiseX), simd::sum(noiseY)}, maxNoise_,
-                        unit.head<6>());
+    withoutNoise_ = noise_.subtractFrom(equations, {simd::sum(noiseX), simd::sum(noiseY)},
+                                        maxNoise_, unit.head<6>());
     return equations;
+}
+
+std::vector<ImageBlock> PointSet::blocks(const ImageF& observed, const Pose& T_c_k,
+                                         const Exposure& exposure, const Loss& loss) const {
+    const Projection project(*this, observed, T_c_k, exposure);
+    const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
+    std::vector<ImageBlock> blocks;
+    for (std::size_t block = 0; block + 1 < blockBegin_.size(); ++block) {
+        const std::size_t begin = blockBegin_[block], end = blockBegin_[block + 1];
+        if (begin == end) continue;
+        ProductSums sums(loss, (end - begin) / kWidth + 1);
+        sums.beginRow();
+        for (std::size_t k = begin; k < end; k += kWidth) {
+            const auto p = project(k);
+            sums.add(p.columns, p.r, p.inView & (simd::ramp() < static_cast<float>(end - k)));
+        }
+        sums.endRow();
+        const NormalEquations e = sums.result(unit);
+        if (e.count < 1.) continue;
+        ImageBlock& added = blocks.emplace_back();
+        added.AtA = withoutNoise_.transpose() * e.AtA * withoutNoise_;
+        added.Atr = withoutNoise_.transpose() * e.Atr;
+        added.index = blockIndex_[block];
+    }
+    return blocks;
 }
 
 }  // namespace photonav

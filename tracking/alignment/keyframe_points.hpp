@@ -31,6 +31,11 @@ class PointSet {
     NormalEquations compare(const ImageF& observed, const Pose& T_c_k, const Exposure& exposure,
                             const Loss& loss);
 
+    /// The equations of compare() by blocks of the keyframe's image, after it and with its
+    /// arguments.
+    std::vector<ImageBlock> blocks(const ImageF& observed, const Pose& T_c_k,
+                                   const Exposure& exposure, const Loss& loss) const;
+
     const Camera& camera() const { return camera_; }
     std::size_t size() const { return size_; }
     /// Robust standard deviation of a sample of the residuals of the last comparison.
@@ -38,7 +43,8 @@ class PointSet {
 
   private:
     struct Row;
-    void append(const Row& row, unsigned width);
+    struct Projection;
+    void append(const Row& row, unsigned left, unsigned right);
 
     Camera camera_;
     std::size_t size_ = 0;
@@ -48,6 +54,9 @@ class PointSet {
     /// Structure of arrays, padded to whole vectors with points that are never in view: normalised
     /// coordinates, inverse depth [1/m], grey value, gradient as J has it (per pixel / 2).
     std::vector<float> x_, y_, w_, intensity_, gx_, gy_;
+    std::vector<std::size_t> blockBegin_;  ///< first point of each ImageBlock; the end at the back
+    std::vector<Eigen::Array2i> blockIndex_;
+    Matrix8 withoutNoise_ = Matrix8::Identity();  ///< of GradientNoise, last comparison
     std::vector<float> residualSample_;
 };
 

@@ -46,6 +46,36 @@ Int counts(const RowInput& in, std::size_t index, float jump, float saturation) 
            (I < 1.F - saturation);
 }
 
+/// By central differences over two pixels, of used pixels.
+struct Gradient {
+    Float x, y;
+};
+Gradient gradientAt(const std::vector<float>& intensity, std::size_t i, std::size_t pitch,
+                    float aspect, const Int& used) {
+    const Float zero = simd::splat(0.F);
+    return {used ? at(intensity, i + 1) - at(intensity, i - 1) : zero,
+            used ? aspect * (at(intensity, i + pitch) - at(intensity, i - pitch)) : zero};
+}
+
+/// Columns of A for pixels (u, v), (u + 1, v) ..., but for columnUnits().
+struct Kernel {
+    explicit Kernel(const Camera& c)
+        : camera(c),
+          aspect(static_cast<float>(c.fy() / c.fx())),
+          perColumn(static_cast<float>(1. / c.fx())) {}
+
+    ProductSums::Columns columns(unsigned u, unsigned v, const Gradient& g, const Float& w,
+                                 const Float& I) const {
+        const auto y = static_cast<float>((v - camera.cy()) / camera.fy());
+        const Float x = (simd::ramp() + static_cast<float>(u - camera.cx())) * perColumn;
+        const Float s = x * g.x + y * g.y;
+        return {g.x * w, g.y * w, s * w, y * s + g.y, x * s + g.x, x * g.y - y * g.x, I};
+    }
+
+    const Camera& camera;
+    float aspect, perColumn;
+};
+
 }  // namespace
 
 double robustSigmaOf(const std::vector<float>& residuals) {
@@ -126,56 +156,95 @@ GradientNoise ViewComparison::pointsSeen() const {
     return noise;
 }
 
+std::vector<ImageBlock> ViewComparison::blocks(const Exposure& exposure, const Loss& loss) const {
+    const unsigned side = ImageBlock::side(camera_);
+    const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
+    const Kernel kernel(camera_);
+    std::vector<ImageBlock> blocks;
+    for (unsigned top = 1; top + 1 < camera_.height; top += side) {
+        const unsigned bottom = std::min(top + side, camera_.height - 1);
+        for (unsigned left = 1; left + 1 < camera_.width; left += side) {
+            const unsigned right = std::min(left + side, camera_.width - 1);
+            ProductSums sums(loss, std::size_t(side) * side / kWidth);
+            sums.beginRow();
+            for (unsigned v = top; v < bottom; ++v) {
+                for (unsigned u = left; u < right; u += kWidth) {
+                    const std::size_t i = v * pitch_ + u;
+                    const Float r = at(residual_, i);
+                    const Int used = r < kUnused;
+                    const Gradient g = gradientAt(intensity_, i, pitch_, kernel.aspect, used);
+                    sums.add(kernel.columns(u, v, g, at(inverseDepth_, i), at(intensity_, i)), r,
+                             used);
+                }
+            }
+            sums.endRow();
+            const NormalEquations e = sums.result(unit);
+            if (e.count < 1.) continue;
+            blocks.push_back({withoutNoise_.transpose() * e.AtA * withoutNoise_,
+                              withoutNoise_.transpose() * e.Atr,
+                              {left / side, top / side},
+                              normalAt((left + right) / 2, (top + bottom) / 2)});
+        }
+    }
+    return blocks;
+}
+
+/// Of the plane through a pixel and its neighbours, 1/z = a x + b y + c, away from the camera.
+Eigen::Vector3d ViewComparison::normalAt(unsigned u, unsigned v) const {
+    const std::size_t i =
+        std::clamp(v, 1U, camera_.height - 2) * pitch_ + std::clamp(u, 1U, camera_.width - 2);
+    const double x = (u - camera_.cx()) / camera_.fx(), y = (v - camera_.cy()) / camera_.fy();
+    const auto w = [&](std::size_t k) { return static_cast<double>(inverseDepth_[k]); };
+    const double least = std::min({w(i), w(i - 1), w(i + 1), w(i - pitch_), w(i + pitch_)});
+    if (least <= 0.) return Eigen::Vector3d::Zero();
+    const double a = 0.5 * camera_.fx() * (w(i + 1) - w(i - 1));
+    const double b = 0.5 * camera_.fy() * (w(i + pitch_) - w(i - pitch_));
+    return Eigen::Vector3d(a, b, w(i) - a * x - b * y).normalized();
+}
+
 NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& observed,
                                            const Exposure& exposure, const Loss& loss) {
     load(predicted, observed);
     const RowInput in{intensity_, inverseDepth_, observed_, pitch_};
     const auto jump = static_cast<float>(photometric_.depthJump);
     const auto saturation = static_cast<float>(photometric_.saturation);
-    const auto aspect = static_cast<float>(camera_.fy() / camera_.fx());
     const auto gain = static_cast<float>(exposure.gain);
     const auto offset = static_cast<float>(exposure.offset);
-    const float perColumn = static_cast<float>(1. / camera_.fx());
+    const Kernel kernel(camera_);
+    const float aspect = kernel.aspect;
 
     ProductSums sums(loss, pitch_ / kWidth);
     Float notSharedX{}, notSharedY{};
     const bool isNoisy = noise_ == ModelNoise::measured;
     for (unsigned v = 1; v + 1 < camera_.height; ++v) {
-        const auto y = static_cast<float>((v - camera_.cy()) / camera_.fy());
         sums.beginRow();
         for (unsigned u = 1; u + 1 < camera_.width; u += kWidth) {
             const std::size_t i = v * pitch_ + u;
             const Int used = counts(in, i, jump, saturation);
             const Float I = at(intensity_, i);
             const Float r = at(observed_, i) - (gain * I + offset);
-            const Float w = at(inverseDepth_, i);
-            const Float gx =
-                used ? at(intensity_, i + 1) - at(intensity_, i - 1) : simd::splat(0.F);
-            const Float gy =
-                used ? aspect * (at(intensity_, i + pitch_) - at(intensity_, i - pitch_))
-                     : simd::splat(0.F);
-            const Float x = (simd::ramp() + (static_cast<float>(u - camera_.cx()))) * perColumn;
-            const Float s = x * gx + y * gy;
+            const Gradient g = gradientAt(intensity_, i, pitch_, aspect, used);
             if (isNoisy) {
                 const Float du = at(observed_, i + 1) - at(observed_, i - 1);
                 const Float dv = at(observed_, i + pitch_) - at(observed_, i - pitch_);
-                notSharedX += gx * (gx - du / gain);
-                notSharedY += gy * (gy - aspect * dv / gain);
+                notSharedX += g.x * (g.x - du / gain);
+                notSharedY += g.y * (g.y - aspect * dv / gain);
             }
             simd::store(&residual_[i], used ? r : simd::splat(kUnused));
-            sums.add({gx * w, gy * w, s * w, y * s + gy, x * s + gx, x * gy - y * gx, I}, r, used);
+            sums.add(kernel.columns(u, v, g, at(inverseDepth_, i), I), r, used);
         }
         sums.endRow();
     }
     const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
+    withoutNoise_.setIdentity();
     if (isNoisy) {
         // A map's grey values are means of many. Other differences between map and image, as
         // between cells, must not be taken for noise.
         const double most = kMaxNoise * photometric_.sigma * photometric_.sigma;
-        pointsSeen().subtractFrom(equations, {simd::sum(notSharedX), simd::sum(notSharedY)}, most,
-                                  unit.head<6>());
+        withoutNoise_ = pointsSeen().subtractFrom(
+            equations, {simd::sum(notSharedX), simd::sum(notSharedY)}, most, unit.head<6>());
     }
     return equations;
 }

@@ -2,6 +2,9 @@
 // The normal equations of Gauss-Newton at one pose, from one pass over an image pair.
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "photometry/photometric.hpp"
 
 namespace photonav {
@@ -43,6 +46,19 @@ struct NormalEquations {
     double meanInverseDepth = 0.;  ///< over the surfaces in view [1/m]; 0: none
 };
 
+/// The part of NormalEquations that comes from one block of the image.
+struct ImageBlock {
+    /// Edge of a block [pixels], a multiple of eight: about a 24th of the image's width.
+    static unsigned side(const Camera& camera) {
+        return 8 * std::max(1U, (camera.width + 96) / 192);
+    }
+
+    Matrix8 AtA = Matrix8::Zero();
+    Vector8 Atr = Vector8::Zero();
+    Eigen::Array2i index = Eigen::Array2i::Zero();     ///< column and row of the block
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the surface, camera frame; 0: unknown
+};
+
 class GradientNoise;
 
 /// Whether the prediction has noise whose gradients are to be subtracted (GradientNoise).
@@ -64,9 +80,13 @@ class ViewComparison {
     /// 1.4826 times the median of |r| of the last call; 0 when no pixel counted.
     double robustSigma() const;
 
+    /// The equations of the last call by blocks of the image.
+    std::vector<ImageBlock> blocks(const Exposure& exposure, const Loss& loss) const;
+
   private:
     void load(const View& predicted, const ImageF& observed);
     GradientNoise pointsSeen() const;
+    Eigen::Vector3d normalAt(unsigned u, unsigned v) const;
 
     Camera camera_;
     PhotometricOptions photometric_;
@@ -75,6 +95,7 @@ class ViewComparison {
     std::vector<float> intensity_, inverseDepth_, observed_;
     std::vector<float> residual_;  ///< kUnused where a pixel does not count
     double meanInverseDepth_ = 0.;
+    Matrix8 withoutNoise_ = Matrix8::Identity();  ///< of GradientNoise, last comparison
 };
 
 /// 1.4826 times the median of |r| over the values below 2 (larger ones mark unused pixels).

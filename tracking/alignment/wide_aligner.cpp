@@ -113,20 +113,24 @@ double informationRatio(const Alignment& a, const UncertainPose& prior) {
 
 Camera quartered(const Camera& camera) { return halved(halved(camera)); }
 
+/// To find where to begin.
+AlignmentOptions unmeasured(AlignmentOptions options) {
+    options.measureSlope = options.measureCovariance = false;
+    return options;
+}
+
 /// For images of a quarter of the size, with the same information as the whole image.
 AlignmentOptions forSmall(AlignmentOptions options) {
     options.levels = 1;
     options.maxIterations = 10;
-    options.measureSlope = false;  // to find where to begin
     options.photometric.scale *= 16.;
     return options;
 }
 
 /// On coarser levels all starts would converge to the same pose: beside white, a strip of texture
 /// is averaged away.
-AlignmentOptions forNear(AlignmentOptions options, bool measureSlope) {
+AlignmentOptions forNear(AlignmentOptions options) {
     options.levels = 2;
-    options.measureSlope = measureSlope;
     return options;
 }
 
@@ -168,9 +172,9 @@ WideAligner::WideAligner(const ViewSource& model, const Camera& camera,
                          const AlignmentOptions& options)
     : model_(model),
       aligner_(model, camera, options),
-      small_(model, quartered(camera), forSmall(options)),
-      near_(model, camera, forNear(options, false)),
-      final_(model, camera, forNear(options, options.measureSlope)) {}
+      small_(model, quartered(camera), forSmall(unmeasured(options))),
+      near_(model, camera, forNear(unmeasured(options))),
+      final_(model, camera, forNear(options)) {}
 
 /// Poses within the prior whose views, at a quarter of the size, are most similar to the image.
 std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const UncertainPose& prior,

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "control/body_velocity.hpp"
+#include "geometry/types.hpp"
 
 namespace photonav {
 

@@ -23,7 +23,7 @@ class ObedientRobot : public Robot {
         const Pose T_now_next = expSE3(motion);
         T_w_b = T_w_b * T_now_next;
         time_ += seconds;
-        Observation observation{.time = time_, .T_next_now = UncertainPose{T_now_next.inverse()}};
+        Observation observation{time_, UncertainPose{T_now_next.inverse()}, {}};
         observation.T_next_now->covariance = 1e-6 * Matrix6::Identity();
         CameraFrame& frame = observation.frames.emplace_back();
         frame.time = time_;

@@ -31,6 +31,11 @@ class Prescribed : public Comparison {
         return e;
     }
 
+    std::vector<ImageBlock> blocks(std::size_t, const Pose&, const Exposure&,
+                                   const Loss&) override {
+        return {};
+    }
+
     AgainstPrediction predictionAsImage(std::size_t, const Pose& T_image_w) override {
         ++slopes;
         return [=, this](const Pose& T_c_w) {

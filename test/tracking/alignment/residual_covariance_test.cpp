@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Covariances of alignments to photographs, which the model did not make.
+#include "alignment/residual_covariance.hpp"
+
+#include <gtest/gtest.h>
+
+#include "alignment/dense_aligner.hpp"
+#include "alignment/keyframe_model.hpp"
+#include "alignment/keyframe_points.hpp"
+#include "tracking/rooms.hpp"
+
+namespace photonav {
+namespace {
+
+using test::cameraAt;
+using test::kDown;
+using test::kOblique;
+using test::room;
+
+AlignmentOptions forPhotographs() {
+    AlignmentOptions options;
+    options.blur = kAreaBlur;
+    options.measureCovariance = true;
+    return options;
+}
+
+/// What happens to an image besides the noise that the options know of.
+using Disturbance = std::function<void(ImageF& image, std::mt19937_64& random)>;
+
+/// NEES per degree of freedom, mean over alignments without a prior.
+double neesWith(const AlignmentOptions& options, const Disturbance& disturb, const Camera& camera) {
+    DenseAligner aligner(room(), camera, options);
+    std::mt19937_64 random(7);
+    constexpr int kCount = 50;
+    double sum = 0.;
+    for (int i = 0; i < kCount; ++i) {
+        const Pose truth = cameraAt({1.5 + 0.01 * i, 2. + 0.03 * i, 1.5}, kOblique, 0.05 * i);
+        ImageF image = test::photographed(room(), camera, truth).intensity;
+        disturb(image, random);
+        const Pose start = expSE3(test::randomTwist(0.02, 0.01, random)) * truth;
+        const Alignment a = aligner.align(image, start);
+        EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
+        const Vector6 xi = test::errorOf(a, truth);
+        sum += xi.dot(a.covariance.ldlt().solve(xi)) / (6. * kCount);
+    }
+    return sum;
+}
+
+void addNoise(ImageF& image, std::mt19937_64& random) { image = test::noisy(image, 0.03, random); }
+
+void addLightFromTheSide(ImageF& image, std::mt19937_64& random) {
+    for (unsigned v = 0; v < image.getHeight(); ++v) {
+        for (unsigned u = 0; u < image.getWidth(); ++u) {
+            image[v][u] *= 0.95F + 0.1F * static_cast<float>(u) / image.getWidth();
+        }
+    }
+    addNoise(image, random);
+}
+
+/// Whatever the images suffer from; the noise that the options assume is another one.
+TEST(ResidualCovariance, IsConsistentWithoutBeingToldTheNoise) {
+    for (const Camera& camera : {makeCamera(94, 60, 1.2), makeCamera(188, 120, 1.2)}) {
+        const double noise = neesWith(forPhotographs(), addNoise, camera);
+        const double exact = neesWith(
+            forPhotographs(), [](ImageF&, auto&) {}, camera);
+        const double light = neesWith(forPhotographs(), addLightFromTheSide, camera);
+        std::cout << "NEES per dof: noise " << noise << ", exact " << exact << ", light " << light
+                  << '\n';
+        EXPECT_GT(noise, 0.6);
+        EXPECT_LT(noise, 1.3);
+        EXPECT_GT(exact, 0.1);  // a thousandth of white is assumed at least
+        EXPECT_LT(exact, 1.3);
+        EXPECT_GT(light, 0.2);
+        EXPECT_LT(light, 1.3);
+        AlignmentOptions assumed = forPhotographs();
+        assumed.measureCovariance = false;
+        EXPECT_GT(neesWith(assumed, addLightFromTheSide, camera), 5.);
+    }
+}
+
+/// Bars along world y, seen at an angle: they do not inform about y, however small the residuals
+/// are.
+TEST(ResidualCovariance, EdgesDoNotInformAlongThemselves) {
+    const MeshRenderer bars(test::floorOf(stripes({.width = 0.5, .softEdge = 0.05})));
+    DenseAligner aligner(bars, makeCamera(188, 120, 1.2217), forPhotographs());
+    for (const double turned : {0., 0.01, 0.03, 0.1}) {
+        UncertainPose prior;
+        prior.mean = cameraAt({0.13, 0.2, 2.}, kDown, kDown + turned);
+        Vector6 sigmas;
+        sigmas << 0.02, 0.5, 0.05, 0.005, 0.005, 0.01;
+        prior.covariance = sigmas.cwiseAbs2().asDiagonal();
+        const View view = test::photographed(bars, aligner.camera(), prior.mean);
+        const Alignment a = aligner.align(view.intensity, prior);
+        EXPECT_EQ(describe(a), "degenerate along y");
+        const Eigen::Vector3d y_c = prior.mean.linear().col(1);
+        const double along = y_c.dot(a.information.topLeftCorner<3, 3>() * y_c);
+        EXPECT_LT(along, 1. / (0.5 * 0.5)) << turned;  // that of the prior
+    }
+}
+
+/// The blocks of an image add up to the whole.
+TEST(ResidualCovariance, BlocksAddUp) {
+    const Camera camera = makeCamera(188, 120, 1.2);
+    const Pose pose = cameraAt({1.6, 3., 1.6}, kOblique, 0.1);
+    const View view = test::photographed(room(), camera, pose);
+    std::mt19937_64 random(3);
+    const ImageF image = test::noisy(view.intensity, 0.02, random);
+    const Exposure exposure{1.1, -0.02};
+    const Loss loss{RobustWeight::huber, 0.02};
+    const auto expectSum = [](const std::vector<ImageBlock>& blocks, const NormalEquations& all) {
+        EXPECT_GT(blocks.size(), 200U);
+        Matrix8 AtA = Matrix8::Zero();
+        Vector8 Atr = Vector8::Zero();
+        for (const ImageBlock& block : blocks) {
+            AtA += block.AtA;
+            Atr += block.Atr;
+        }
+        EXPECT_LT((AtA - all.AtA).norm(), 1e-5 * all.AtA.norm());
+        EXPECT_LT((Atr - all.Atr).norm(), 1e-4 * all.Atr.norm());
+    };
+    ViewComparison compare(camera, {});
+    const NormalEquations all = compare(view, image, exposure, loss);
+    expectSum(compare.blocks(exposure, loss), all);
+    KeyframeOptions options;
+    options.minGradient = 0.;
+    PointSet points(view, camera, options);
+    const Pose moved = expSE3(0.01 * Vector6::Ones());
+    const NormalEquations ofPoints = points.compare(image, moved, exposure, loss);
+    expectSum(points.blocks(image, moved, exposure, loss), ofPoints);
+}
+
+TEST(ResidualCovariance, RepeatingErrorsDoNotAverageOut) {
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> normal;
+    Matrix6 root;
+    for (double& value : root.reshaped()) value = 0.01 * normal(random);
+    const Matrix6 repeating = root * root.transpose();
+    const Matrix6 information = (repeating + 1e-6 * Matrix6::Identity()).inverse();
+    Matrix6 belief = 0.01 * Matrix6::Identity();
+    for (int image = 0; image < 50; ++image) {
+        belief = posteriorCovariance(belief, information, repeating);
+    }
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(
+        belief, repeating + 1e-9 * Matrix6::Identity());
+    EXPECT_GT(solver.eigenvalues().minCoeff(), 0.9);
+    EXPECT_LT(solver.eigenvalues().maxCoeff(), 1.5);
+    // A belief that is narrower already stays so.
+    const Matrix6 narrow = 1e-8 * Matrix6::Identity();
+    const Matrix6 after = posteriorCovariance(narrow, information, repeating);
+    EXPECT_LT((after - narrow).norm(), 0.1 * narrow.norm());
+    // Without such errors it is the filter's update.
+    const Matrix6 prior = 0.01 * Matrix6::Identity();
+    EXPECT_TRUE(posteriorCovariance(prior, information, Matrix6::Zero())
+                    .isApprox(updateCovariance(prior, information)));
+}
+
+TEST(ResidualCovariance, TakesTheSmallerOrLargerVarianceAlongSharedAxes) {
+    const Vector6 a = (Vector6() << 1., 2., 3., 4., 5., 6.).finished();
+    const Vector6 b = Vector6::Constant(3.5);
+    EXPECT_TRUE(
+        smaller(a.asDiagonal(), b.asDiagonal()).isApprox(Matrix6(a.cwiseMin(b).asDiagonal())));
+    EXPECT_TRUE(
+        larger(a.asDiagonal(), b.asDiagonal()).isApprox(Matrix6(a.cwiseMax(b).asDiagonal())));
+}
+
+/// A surface that is off by 2 cm along its normal moves the pose by as much.
+TEST(ResidualCovariance, ErrorsOfSurfacesAreErrorsOfThePose) {
+    const MeshRenderer floor(test::floorOf(valueNoise({.seed = 4})));
+    AlignmentOptions options = forPhotographs();
+    const Pose truth = cameraAt({0., 0., 2.}, kDown);
+    const Camera camera = makeCamera(94, 60, 1.2);
+    const ImageF image = test::photographed(floor, camera, truth).intensity;
+    const auto height = [&] {
+        DenseAligner aligner(floor, camera, options);
+        return std::sqrt(aligner.align(image, truth).covariance(2, 2));
+    };
+    EXPECT_LT(height(), 0.002);
+    options.modelErrors.surface = 0.02;
+    EXPECT_NEAR(height(), 0.02, 0.002);
+}
+
+}  // namespace
+}  // namespace photonav

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "alignment/residual_covariance.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "geometry/se3.hpp"
+
+namespace photonav {
+namespace {
+
+using Eigen::MatrixXd;
+
+/// Least eigenvalue of H, its diagonal scaled to ones, that sums in single precision can tell from
+/// zero.
+constexpr double kOpen = 1e-6;
+constexpr double kOpenSigma = 10.;     // of directions that the image leaves open [m], [rad]
+constexpr double kExposureStep = 0.3;  // as in poseEquations()
+constexpr double kPixelNoise = 1e-3;   // least standard deviation of a pixel: 8 bits
+constexpr double kLightLength = 0.25;  // correlation length of the gain [image widths]
+
+/// H after eliminating the exposure, in coordinates y (x = V y) of the directions that the image
+/// observes.
+struct Observed {
+    Eigen::Matrix<double, 8, 6> E =
+        Eigen::Matrix<double, 8, 6>::Identity();  ///< x -> (x, exposure)
+    MatrixXd V;                                   ///< columns: directions observed
+    MatrixXd solve;                               ///< H^-1: b -> y, for b of size 6
+    MatrixXd toY;                                 ///< y of x, for x = V y
+    MatrixXd open;                             ///< columns: directions not observed, of unit length
+    Matrix8 scatterOfPrior = Matrix8::Zero();  ///< the exposure is as wrong as its prior says
+
+    Observed(Matrix8 H, const PhotometricOptions& photometric,
+             const std::optional<ExposurePrior>& prior) {
+        if (prior) {
+            const double noise = photometric.sigma * photometric.sigma / photometric.scale;
+            const double most = 1. / (kExposureStep * kExposureStep);
+            H.diagonal().tail<2>() +=
+                noise * prior->information().cwiseMax(Eigen::Vector2d::Constant(most));
+            scatterOfPrior.diagonal().tail<2>() = noise * noise * prior->information();
+            E.bottomRows<2>() = -H.bottomRightCorner<2, 2>().inverse() * H.bottomLeftCorner<2, 6>();
+        }
+        const Matrix6 pose = E.transpose() * H * E;
+        const Vector6 unit = pose.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+        const Eigen::SelfAdjointEigenSolver<Matrix6> solver(unit.asDiagonal() * pose *
+                                                            unit.asDiagonal());
+        const auto missing = (solver.eigenvalues().array() < kOpen).count();
+        V = unit.asDiagonal() * solver.eigenvectors().rightCols(6 - missing);
+        solve = solver.eigenvalues().tail(6 - missing).cwiseInverse().asDiagonal() * V.transpose();
+        toY = solve * pose;
+        open = (unit.asDiagonal() * solver.eigenvectors().leftCols(missing)).colwise().normalized();
+    }
+};
+
+/// Columns: s_b.
+MatrixXd scoresOf(const std::vector<ImageBlock>& blocks, const Matrix8& inverse, const Vector8& x) {
+    MatrixXd scores(8, blocks.size());
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        const Matrix8 without = Matrix8::Identity() - blocks[b].AtA * inverse;
+        scores.col(static_cast<Eigen::Index>(b)) =
+            without.partialPivLu().solve(blocks[b].Atr - blocks[b].AtA * x);
+    }
+    return scores;
+}
+
+/// Covariance of what has been drawn as often as there are columns. Estimated from few, it is too
+/// small for as many dimensions as often as too large, and its inverse is too large in the mean:
+/// by n / (n - d - 1), with the number n of columns that count.
+MatrixXd covarianceOf(const MatrixXd& draws) {
+    const MatrixXd covariance = draws * draws.transpose();
+    const auto d = static_cast<double>(draws.rows());
+    const MatrixXd solved = covariance.ldlt().solve(draws);
+    const double squares = draws.cwiseProduct(solved).colwise().sum().squaredNorm();
+    const double n = d * d / squares;
+    return n / std::max(n - d - 1., 1.) * covariance;
+}
+
+/// What varies slowly over the image: the blocks' gains, and their variance.
+class Light {
+  public:
+    /// @param x the step to the minimum of the image alone
+    Light(const std::vector<ImageBlock>& blocks, const Vector8& x) : blocks_(blocks) {
+        for (const ImageBlock& block : blocks) size_ = size_.max(block.index + 1);
+        std::vector<const ImageBlock*> at(std::size_t(size_.prod()), nullptr);
+        for (const ImageBlock& block : blocks) at[number(block.index)] = &block;
+        double product = 0., weight = 0.;
+        for (const ImageBlock& block : blocks) {
+            for (const Eigen::Array2i& step : {Eigen::Array2i(1, 0), Eigen::Array2i(0, 1)}) {
+                const Eigen::Array2i next = block.index + step;
+                if ((next >= size_).any() || at[number(next)] == nullptr) continue;
+                const ImageBlock& other = *at[number(next)];
+                const double w = std::min(block.AtA(6, 6), other.AtA(6, 6));
+                product += w * gain(block, x) * gain(other, x);
+                weight += w;
+            }
+        }
+        variance_ = weight > 0. ? std::max(0., product / weight) : 0.;
+    }
+
+    double variance() const { return variance_; }
+
+    /// sum_ab k_ab h_a h_b^T with h the effect of a gain on Atr, and k_ab the covariance of the
+    /// gains. Independent bumps exp(-|p - c|^2 / l^2), a length l apart, with variances of 2 / pi
+    /// of the gain's, add up to correlations of about exp(-|p - q|^2 / (2 l^2)).
+    Matrix8 scatter() const {
+        const double length = kLightLength * size_.x();  // [blocks]
+        const Eigen::Array2i nodes = (size_.cast<double>() / length).ceil().cast<int>() + 3;
+        std::vector<Vector8> pull(std::size_t(nodes.prod()), Vector8::Zero());
+        for (const ImageBlock& block : blocks_) {
+            const Eigen::Array2d at = (block.index.cast<double>() + 0.5) / length + 1.;
+            for (int j = 0; j < nodes.y(); ++j) {
+                const double byRow = std::exp(-std::pow(at.y() - j, 2));
+                if (byRow < 1e-3) continue;
+                for (int i = 0; i < nodes.x(); ++i) {
+                    const double bump = byRow * std::exp(-std::pow(at.x() - i, 2));
+                    pull[std::size_t(j) * nodes.x() + i] += bump * block.AtA.col(6);
+                }
+            }
+        }
+        Matrix8 sum = Matrix8::Zero();
+        for (const Vector8& p : pull) sum += p * p.transpose();
+        return 2. / EIGEN_PI * variance_ * sum;
+    }
+
+  private:
+    std::size_t number(const Eigen::Array2i& index) const {
+        return std::size_t(index.y()) * size_.x() + index.x();
+    }
+    /// By the residuals of the block alone.
+    static double gain(const ImageBlock& block, const Vector8& x) {
+        return (block.Atr - block.AtA * x)[6] / std::max(block.AtA(6, 6), 1e-12);
+    }
+
+    const std::vector<ImageBlock>& blocks_;
+    Eigen::Array2i size_ = Eigen::Array2i::Zero();  // blocks
+    double variance_ = 0.;
+};
+
+/// All surfaces displaced along their normals by the same distance.
+Matrix8 scatterBySurface(const std::vector<ImageBlock>& blocks, double sigma) {
+    Vector8 sum = Vector8::Zero();
+    for (const ImageBlock& block : blocks) sum += block.AtA.leftCols<3>() * block.normal;
+    return sigma * sigma * sum * sum.transpose();
+}
+
+/// Of a translation and a rotation that are wrong by a share of them.
+Matrix6 ofScale(double share, const Pose& motion) {
+    const Vector6 xi = logSE3(motion);
+    Vector6 variance;
+    variance << Eigen::Vector3d::Constant(xi.head<3>().squaredNorm()),
+        Eigen::Vector3d::Constant(xi.tail<3>().squaredNorm());
+    return (share * share * variance).asDiagonal();
+}
+
+template <class Choose>
+Matrix6 combined(const Matrix6& a, const Matrix6& b, const Choose& choose) {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(a, b);
+    const Matrix6 axes = b * solver.eigenvectors();  // b = axes axes^T, a = axes diag axes^T
+    const Vector6 variances = solver.eigenvalues().unaryExpr(choose);
+    return axes * variances.asDiagonal() * axes.transpose();
+}
+
+}  // namespace
+
+MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
+                                        const NormalEquations& all,
+                                        const PhotometricOptions& photometric,
+                                        const std::optional<ExposurePrior>& prior,
+                                        const ModelErrors& errors, const Pose& toModel) {
+    const Observed seen(all.AtA, photometric, prior);
+    MeasuredInformation result;
+    result.repeating = kOpenSigma * kOpenSigma * seen.open * seen.open.transpose();
+    if (seen.V.cols() == 0) return result;
+    const Matrix8 inverse = seen.E * seen.V * seen.solve * seen.E.transpose();
+    const Vector8 x = inverse * all.Atr;
+
+    const auto covariance = [&](const Matrix8& scatter) -> MatrixXd {  // of y
+        return seen.solve * (seen.E.transpose() * scatter * seen.E) * seen.solve.transpose();
+    };
+    const MatrixXd repeating =
+        covariance(Light(blocks, x).scatter() + scatterBySurface(blocks, errors.surface)) +
+        seen.toY * ofScale(errors.depthScale, toModel) * seen.toY.transpose();
+    const MatrixXd whole =
+        repeating + covarianceOf(seen.solve * seen.E.transpose() * scoresOf(blocks, inverse, x)) +
+        covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * all.AtA);
+    if (!whole.allFinite()) return result;
+    result.repeating += seen.V * repeating * seen.V.transpose();
+    PoseEquations& equations = result.equations;
+    equations.information = seen.toY.transpose() * whole.ldlt().solve(seen.toY);
+    equations.information =
+        0.5 * (equations.information + equations.information.transpose()).eval();
+    equations.right = equations.information * x.head<6>();
+    return result;
+}
+
+MeasuredInformation respondingBy(const Matrix6& M, const MeasuredInformation& image) {
+    constexpr double kNoResponse = 1e-3;  // a response as small leaves a direction open
+    const Matrix6 inverse = (M + kNoResponse * Matrix6::Identity()).inverse();
+    MeasuredInformation result = image;
+    result.equations.information = M.transpose() * image.equations.information * M;
+    result.equations.right = M.transpose() * image.equations.right;
+    result.repeating = inverse * image.repeating * inverse.transpose();
+    return result;
+}
+
+Matrix6 smaller(const Matrix6& a, const Matrix6& b) {
+    return combined(a, b, [](double variance) { return std::min(variance, 1.); });
+}
+
+Matrix6 larger(const Matrix6& a, const Matrix6& b) {
+    return combined(a, b, [](double variance) { return std::max(variance, 1.); });
+}
+
+Matrix6 posteriorCovariance(const Matrix6& prior, const Matrix6& information,
+                            const Matrix6& repeating) {
+    const Matrix6 updated = updateCovariance(prior, information);
+    if (repeating.isZero(0.)) return updated;
+    constexpr double kNegligible = 1e-10;  // makes them definite [m^2], [rad^2]
+    const Matrix6 negligible = kNegligible * Matrix6::Identity();
+    const Matrix6 reached = smaller(prior, repeating + negligible) + 1e-3 * negligible;
+    return larger(updated, reached);
+}
+
+}  // namespace photonav
