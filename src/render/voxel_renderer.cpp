@@ -55,10 +55,10 @@ struct Rays {
     Float t, tExit;
     Int axis;
     Int active;
-    Int face;  ///< that the surface met in a cell points to; kNoSurface: the ray ended at a face
+    Int face;  ///< that the surface met in a cell points to; kNoPlane: the ray ended at a face
 };
 
-constexpr int kNoSurface = -1;
+constexpr int kNoPlane = -1;
 
 /// Rays before a plane, each in its cell: by how much they are in front of it, along the plane's
 /// axis, and how fast that changes with t.
@@ -252,7 +252,7 @@ std::array<Int, PacketTracer::kPackets> PacketTracer::marchToCells(Packets& pack
     const Int facing = plane.rate < 0.F;
     const Float after = plane.height / (facing ? -plane.rate : simd::splat(1.F));
     const Int met = facing ? after <= toExit : plane.height <= 0.F;
-    return {met, simd::max(after, -back), facing ? plane.face : simd::splat(kNoSurface)};
+    return {met, simd::max(after, -back), facing ? plane.face : simd::splat(kNoPlane)};
 }
 
 /// Where rays meet planes that bound a cell's solid together.
@@ -260,7 +260,7 @@ template <std::size_t N>
 Meeting meetPlanes(const std::array<PlaneView, N>& planes, const Int& edges, const Float& toExit,
                    const Float& back) {
     constexpr float kTolerance = 1e-4F;
-    Meeting best{simd::splat(0), simd::splat(1e30F), simd::splat(kNoSurface)};
+    Meeting best{simd::splat(0), simd::splat(1e30F), simd::splat(kNoPlane)};
     Int anyFacing = simd::splat(0), behindAny = simd::splat(0), behindAll = simd::splat(-1);
     for (std::size_t i = 0; i < N; ++i) {
         Meeting one = meetPlane(planes[i], toExit, back);
@@ -374,7 +374,7 @@ inline Int PacketTracer::enterCells(Rays& rays, Int& inside) const {
 /// @returns the lanes that ended at a surface
 std::array<Int, PacketTracer::kPackets> PacketTracer::march(Packets& packets) const {
     std::array<Int, kPackets> hit{};
-    for (Rays& rays : packets) rays.face = simd::splat(kNoSurface);
+    for (Rays& rays : packets) rays.face = simd::splat(kNoPlane);
     while (simd::any(packets[0].active | packets[1].active)) {
         std::array<Int, kPackets> inside = marchToCells(packets);
         while (simd::any(inside[0] | inside[1])) {
