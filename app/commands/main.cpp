@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <new>
-#include <regex>
 #include <string_view>
 
 #include "commands/benchmark_command.hpp"
@@ -219,8 +218,15 @@ Command referenceCommand(CLI::App& app) {
 
 /// The words of Markdown links alone: a terminal cannot follow links to pages of the docs.
 std::string withoutLinks(const std::string& markdown) {
-    static const std::regex link(R"(\[([^\]]*)\]\([^)]*\))");
-    return std::regex_replace(markdown, link, "$1");
+    std::string text;
+    std::size_t end = 0;
+    for (std::size_t middle = 0; (middle = markdown.find("](", end)) != std::string::npos;) {
+        const std::size_t begin = markdown.rfind('[', middle), close = markdown.find(')', middle);
+        if (begin == std::string::npos || begin < end || close == std::string::npos) break;
+        text += markdown.substr(end, begin - end) + markdown.substr(begin + 1, middle - begin - 1);
+        end = close + 1;
+    }
+    return text + markdown.substr(end);
 }
 
 Command keysCommand(CLI::App& app) {
