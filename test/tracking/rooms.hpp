@@ -46,6 +46,15 @@ inline Pose cameraAt(const Eigen::Vector3d& position_w, double belowHorizon, dou
     return (T_w_b * cameraMount(belowHorizon)).inverse();
 }
 
+/// Above bars along world y, turned a little against them; y is hardly known.
+inline UncertainPose aboveBars(double turned) {
+    Vector6 sigmas;
+    sigmas << 0.02, 0.5, 0.05, 0.005, 0.005, 0.01;
+    constexpr double kDownward = std::numbers::pi / 2.;
+    return {cameraAt({0.13, 0.2, 2.}, kDownward, kDownward + turned),
+            sigmas.cwiseAbs2().asDiagonal()};
+}
+
 /// The twist from an estimate to the truth, in the camera.
 inline Vector6 errorOf(const Alignment& a, const Pose& truth) {
     return logSE3(truth * a.T_c_w.inverse());

@@ -13,9 +13,6 @@ namespace photonav {
 
 namespace {
 
-/// Largest standard deviation of a step of the exposure, which keeps uniform images solvable.
-constexpr double kExposureSigma = 0.3;
-
 ResidualStatistics statisticsOf(const NormalEquations& e, const Exposure& exposure) {
     ResidualStatistics s;
     if (e.count < 1.) return s;
@@ -172,11 +169,7 @@ Matrix6 withFloor(const Matrix6& covariance, double translation, double rotation
     Vector6 floor;
     floor << Eigen::Vector3d::Constant(std::max(translation, kNegligible)),
         Eigen::Vector3d::Constant(std::max(rotation, kNegligible));
-    const Vector6 inverse = floor.cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(inverse.asDiagonal() * covariance *
-                                                        inverse.asDiagonal());
-    const Matrix6 V = floor.asDiagonal() * solver.eigenvectors();
-    return V * solver.eigenvalues().cwiseMax(1.).asDiagonal() * V.transpose();
+    return larger(covariance, floor.cwiseAbs2().asDiagonal());
 }
 
 double squaredDistance(const Vector6& e, const Matrix6& covariance) {

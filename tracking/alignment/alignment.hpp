@@ -88,7 +88,8 @@ struct Alignment {
     /// Left perturbation, camera frame, (rho, phi). Open directions without a prior get one mean
     /// depth and one radian of standard deviation.
     Matrix6 covariance = Matrix6::Zero();
-    /// Information of the image alone, same frame, by measuredInformation().
+    /// Information of the image alone, same frame: Lambda, or by measuredInformation(); where a
+    /// model can be rendered, corrected by measuredSlope().
     Matrix6 information = Matrix6::Zero();
     Exposure exposure;
     int iterations = 0;  ///< views compared, over all levels
@@ -111,6 +112,9 @@ inline bool isUninformative(const Alignment& alignment) {
 
 /// The verdict in words: "converged", "degenerate along x, yaw", "lost: overlap 0.12 below 0.20".
 std::string describe(const Alignment& alignment, const TrustOptions& options = {});
+
+/// Largest standard deviation of a step of the exposure, which keeps uniform images solvable.
+inline constexpr double kExposureSigma = 0.3;
 
 /// Fisher information of the camera pose and its right side b = J^T r / sigma^2, exposure
 /// eliminated: the step from the image alone solves information * xi = b.

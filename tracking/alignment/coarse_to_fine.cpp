@@ -57,6 +57,7 @@ class Search {
     MeasuredInformation measured();
     bool improve(double& damping);
     Iterate evaluate(const Pose& T_c_w, const Exposure& exposure);
+    void relateToPrior(Iterate& at) const;
     void adaptLoss(double below);
     double cost(const Iterate& at, double pixels) const;
     PoseEquations equations() const {
@@ -89,11 +90,14 @@ Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
     Iterate at{T_c_w, exposure, comparison_.compare(level_, T_c_w, exposure, loss_)};
     ++iterations_;
     isCompared_ = true;
-    if (prior_) {
-        at.fromPrior = deviation(T_c_w, prior_->mean);
-        at.priorTerm = squaredDistance(at.fromPrior, transported(prior_->covariance, at.fromPrior));
-    }
+    relateToPrior(at);
     return at;
+}
+
+void Search::relateToPrior(Iterate& at) const {
+    if (!prior_) return;
+    at.fromPrior = deviation(at.T_c_w, prior_->mean);
+    at.priorTerm = squaredDistance(at.fromPrior, transported(prior_->covariance, at.fromPrior));
 }
 
 /// -2 log likelihood of image and priors, scaled to `pixels` pixels, because iterates use different
@@ -208,7 +212,7 @@ MeasuredInformation Search::measured() {
                                     at_.equations, options_.photometric, options_.exposure,
                                     options_.modelErrors, comparison_.sinceModel(at_.T_c_w)));
     at_.T_c_w = expSE3(step(image.equations, 0.)) * at_.T_c_w;
-    if (prior_) at_.fromPrior = deviation(at_.T_c_w, prior_->mean);
+    relateToPrior(at_);
     return image;
 }
 
@@ -228,7 +232,6 @@ Alignment Search::run(const Pose& T_start) {
         if (isSmall(logSE3(at_.T_c_w * before.inverse()), equations().information)) break;
     }
     MeasuredInformation image{equations(), Matrix6::Zero()};
-    level_ = 0;
     if (options_.measureCovariance && converged && at_.equations.count > 0.) image = measured();
     Alignment result;
     result.T_c_w = at_.T_c_w;

@@ -15,7 +15,6 @@ using Eigen::MatrixXd;
 /// zero.
 constexpr double kOpen = 1e-6;
 constexpr double kOpenSigma = 10.;     // of directions that the image leaves open [m], [rad]
-constexpr double kExposureStep = 0.3;  // as in poseEquations()
 constexpr double kPixelNoise = 1e-3;   // least standard deviation of a pixel: 8 bits
 constexpr double kLightLength = 0.25;  // correlation length of the gain [image widths]
 
@@ -34,7 +33,7 @@ struct Observed {
              const std::optional<ExposurePrior>& prior) {
         if (prior) {
             const double noise = photometric.sigma * photometric.sigma / photometric.scale;
-            const double most = 1. / (kExposureStep * kExposureStep);
+            const double most = 1. / (kExposureSigma * kExposureSigma);
             H.diagonal().tail<2>() +=
                 noise * prior->information().cwiseMax(Eigen::Vector2d::Constant(most));
             scatterOfPrior.diagonal().tail<2>() = noise * noise * prior->information();

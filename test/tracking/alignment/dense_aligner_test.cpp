@@ -122,11 +122,7 @@ TEST(DenseAligner, EdgesSayNothingAlongThemselves) {
     options.photometric.scale = 0.08;
     DenseAligner aligner(bars, makeCamera(188, 120, 1.2217), options);
     for (const double askew : {0., 0.01, 0.03, 0.1}) {
-        UncertainPose prior;
-        prior.mean = cameraAt({0.13, 0.2, 2.}, kDown, kDown + askew);
-        Vector6 sigmas;
-        sigmas << 0.02, 0.5, 0.05, 0.005, 0.005, 0.01;
-        prior.covariance = sigmas.cwiseAbs2().asDiagonal();
+        const UncertainPose prior = test::aboveBars(askew);
         View view;
         bars.render(aligner.camera(), prior.mean, view);
         const Alignment a = aligner.align(view.intensity, prior);

@@ -84,11 +84,7 @@ TEST(ResidualCovariance, EdgesDoNotInformAlongThemselves) {
     const MeshRenderer bars(test::floorOf(stripes({.width = 0.5, .softEdge = 0.05})));
     DenseAligner aligner(bars, makeCamera(188, 120, 1.2217), forPhotographs());
     for (const double turned : {0., 0.01, 0.03, 0.1}) {
-        UncertainPose prior;
-        prior.mean = cameraAt({0.13, 0.2, 2.}, kDown, kDown + turned);
-        Vector6 sigmas;
-        sigmas << 0.02, 0.5, 0.05, 0.005, 0.005, 0.01;
-        prior.covariance = sigmas.cwiseAbs2().asDiagonal();
+        const UncertainPose prior = test::aboveBars(turned);
         const View view = test::photographed(bars, aligner.camera(), prior.mean);
         const Alignment a = aligner.align(view.intensity, prior);
         EXPECT_EQ(describe(a), "degenerate along y");
