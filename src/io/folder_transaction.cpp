@@ -60,22 +60,23 @@ void removeEmptyFolders(const fs::path& folder) {
 }
 
 /// Waits until a file or folder is on the disk.
-void synchronise(const fs::path& path) {
+/// @param reported in an error
+void synchronise(const fs::path& path, const fs::path& reported) {
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
     const bool failed = file < 0 || fsync(file) != 0;
     const int reason = errno;
     if (file >= 0) close(file);
     if (failed) {
-        throw InputError(path.string(), "",
+        throw InputError(reported.string(), "",
                          std::string("cannot be written: ") + std::strerror(reason));
     }
 }
 
 void synchroniseAll(const fs::path& folder) {
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        if (!entry.is_symlink()) synchronise(entry.path());
+        if (!entry.is_symlink()) synchronise(entry.path(), entry.path());
     }
-    synchronise(folder);
+    synchronise(folder, folder);
 }
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& reason) {
@@ -268,7 +269,7 @@ void FolderTransaction::commit() {
     exchange();
     unfinished_ = before;
     isOpen_ = false;
-    synchronise(resolved_.parent_path());
+    synchronise(resolved_.parent_path(), target_);
     removeReplaced();
 }
 

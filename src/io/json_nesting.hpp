@@ -9,11 +9,11 @@ namespace photonav {
 
 /// How deep arrays and objects are nested in JSON text. Programs that read or write JSON by
 /// recursion run out of stack where that is 1e5.
-inline std::size_t nestingDepth(std::string_view json) {
+inline std::size_t nestingDepth(std::string_view text) {
     std::size_t depth = 0, most = 0;
     bool inString = false;
-    for (std::size_t i = 0; i < json.size(); ++i) {
-        const char c = json[i];
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
         if (inString) {
             if (c == '\\') ++i;
             inString = c != '"';

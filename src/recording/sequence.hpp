@@ -41,6 +41,12 @@ struct Sequence {
     bool needsDepth = true;      ///< false: a depth image that cannot be used is as none
     /// Factor on the photometric information that the noise of these images asks for, if known.
     std::optional<double> informationScale;
+    /// Point spread of the colour images, standard deviation [pixels]; none: that of pixels which
+    /// average over their area.
+    std::optional<double> blur;
+    /// Relative error of depth that repeats from image to image: a wrong scale, or depth images
+    /// that do not fit the colour images.
+    double depthError = 0.;
     std::vector<Entry> frames;  ///< in order of time
     std::size_t recorded = 0;   ///< images that the dataset lists
     std::vector<Skipped> skipped;

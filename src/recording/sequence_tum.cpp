@@ -137,6 +137,8 @@ void readCamera(const std::string& file, Sequence& sequence) {
     if (yaml.has("information_scale")) {
         yaml.readNumber("information_scale", sequence.informationScale.emplace(), 1e-6, 1e12);
     }
+    if (yaml.has("blur")) yaml.readNumber("blur", sequence.blur.emplace(), 0., 10.);
+    yaml.readNumber("depth_error", sequence.depthError, 0., 1.);
     if (yaml.has("depth_camera")) {
         YamlMap depthCamera = yaml.map("depth_camera");
         sequence.depthIntrinsics = readIntrinsics(depthCamera, sequence.camera);

@@ -29,9 +29,10 @@ struct TumOptions {
 ///   first file lies in a folder `depth`), whose pairs are taken as they are;
 /// - `groundtruth.txt`: the pose at the time of the colour image (see poseAt);
 /// - `camera.yaml` when there: width, height, fx, fy, cx, cy [pixels], depth_scale (default 5000),
-///   information_scale (none), and for depth images that are not registered to the colour images
-///   `depth_camera` with its own fx, fy, cx, cy. Without it the benchmark's Kinect is assumed:
-///   640x480, 525, 525, 319.5, 239.5.
+///   information_scale (none), blur (point spread [pixels]), depth_error (0; relative,
+///   of its scale and registration), and for depth images that are not registered to the colour
+///   images `depth_camera` with its own fx, fy, cx, cy. Without it the benchmark's Kinect is
+///   assumed: 640x480, 525, 525, 319.5, 239.5.
 /// Images without partner or pose are listed as skipped.
 /// @throws InputError naming file, line or key, and reason; also when no frame is left, or no pose
 ///         belongs to any frame. Timestamps may repeat but never decrease.

@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include "render/interruptible_views.hpp"
+
 namespace photonav {
 
 AreaSensor::AreaSensor(const ViewSource& world, unsigned samples)
@@ -11,6 +13,13 @@ AreaSensor::AreaSensor(const ViewSource& world, unsigned samples)
 }
 
 void AreaSensor::render(const Camera& camera, const Pose& T_c_w, View& view) const {
+    // In bands, or the rays of a large image would take several gigabytes.
+    const std::size_t pixels = 2 * kBandPixels / (std::size_t{samples_} * samples_);
+    const auto average = [&](const Camera& band, View& part) { renderAtOnce(band, T_c_w, part); };
+    renderInBands(camera, pixels, average, view);
+}
+
+void AreaSensor::renderAtOnce(const Camera& camera, const Pose& T_c_w, View& view) const {
     const unsigned n = samples_;
     const auto centre = [n](double c) { return n * (c + 0.5) - 0.5; };
     const Camera fine{n * camera.width, n * camera.height,

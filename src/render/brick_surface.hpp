@@ -25,10 +25,6 @@ struct BrickSurface {
     }
 };
 
-constexpr unsigned surfaceBit(int x, int y, int z) {
-    return static_cast<unsigned>((x & 3) | (y & 3) << 2 | (z & 3) << 4);
-}
-
 /// A brick and its 26 neighbours, x fastest; a brick without a surface is represented by an empty
 /// one.
 using SurfaceNeighbours = std::array<const BrickSurface*, 27>;

@@ -27,6 +27,9 @@ struct CellBox {
     Eigen::Array3i high = Eigen::Array3i::Zero();
 
     bool empty() const { return (low >= high).any(); }
+    bool contains(const CellBox& other) const {
+        return (other.low >= low).all() && (other.high <= high).all();
+    }
     CellBox grown(int cells) const { return {low - cells, high + cells}; }
     CellBox clippedTo(const CellBox& other) const {
         return {low.max(other.low), high.min(other.high)};
@@ -37,12 +40,20 @@ struct CellBox {
     }
 };
 
+/// A box of cells that do not end rays, stored with a brick that holds some of them.
+struct EmptyBox {
+    static constexpr int kFurthest = 252;  ///< reaches so many cells beyond the brick's first one
+
+    std::array<std::uint8_t, 3> before{};  ///< 3 + cells of the box before the brick's first
+    std::uint8_t restEnds = 0;  ///< 128: all cells of the brick that are not in the box end rays
+    std::array<std::uint8_t, 3> after{};  ///< cells from the brick's first one to the box's end
+    std::uint8_t unused = 0;              ///< 8 bytes, which rays read as two words
+};
+
 /// Whole bricks of 4 x 4 x 4 cells that hold the map's bounding box and a border of at least one
 /// cell, x fastest, counted from `first`. Plain data; VoxelGridBuilder fills and changes it.
 struct VoxelGrid {
     static constexpr int kPatchesPerBrick = 6 * 4;  ///< face, then layer along its normal
-    static constexpr std::uint8_t kMaxDistance =
-        32;  ///< [cells]; larger distances are stored as this
 
     double resolution = 1.;                          ///< [m]
     Eigen::Array3i first = Eigen::Array3i::Zero();   ///< world index of cell (0, 0, 0)
@@ -50,10 +61,12 @@ struct VoxelGrid {
     Eigen::Array3i bricks = Eigen::Array3i::Zero();  ///< size / 4
     CellBox box;                                     ///< the map's bounding box; outside it is free
 
-    /// Chessboard distance [cells] to the nearest cell that ends a ray: all closer cells are empty.
-    /// 0: this cell ends rays. Valid in the box and one cell around it. Four bytes are readable at
-    /// every cell.
-    std::vector<std::uint8_t> distance;
+    /// Per brick, the cells that end rays: bit x + 4 y + 16 z.
+    std::vector<std::uint64_t> ends;
+
+    /// Per brick, the box that rays in its cells leave in one step, as large as could be found; of
+    /// size 0 where there is none. Outside the box, rays go from cell to cell.
+    std::vector<EmptyBox> boxes;
 
     /// Textures of a brick: entry brickTextures[brick] * kPatchesPerBrick + 4 * face + layer of
     /// patchOf is an index into patches. Brick textures 0 and patch 0 are empty.
@@ -68,18 +81,24 @@ struct VoxelGrid {
     std::vector<std::uint32_t> planes;
     std::vector<ShownSurfaces> several;
 
-    /// Where rays may be: the box and one cell around it.
-    CellBox reach() const { return box.grown(1); }
-    std::size_t cellIndex(int x, int y, int z) const {
-        return (std::size_t(z) * size.y() + y) * size.x() + x;
-    }
     std::size_t brickIndex(const Eigen::Array3i& brick) const {
         return (std::size_t(brick.z()) * bricks.y() + brick.y()) * bricks.x() + brick.x();
     }
 };
 
-/// Computes VoxelGrid::distance in a box from which of its cells end rays (those with distance 0)
-/// and from the distances around the box, which must be correct.
-void measureDistances(VoxelGrid& grid, const CellBox& within);
+constexpr unsigned surfaceBit(int x, int y, int z) {
+    return static_cast<unsigned>((x & 3) | (y & 3) << 2 | (z & 3) << 4);
+}
+
+inline CellBox cellsOf(const Eigen::Array3i& brick) { return {4 * brick, 4 * brick + 4}; }
+
+/// The cells of a brick that lie in a box, bit x + 4 y + 16 z.
+std::uint64_t cellsInside(const CellBox& box, const Eigen::Array3i& brick);
+
+/// The bricks that hold cells of a box.
+inline CellBox bricksOf(const CellBox& box) {
+    const auto quarter = [](int i) { return i >> 2; };
+    return {box.low.unaryExpr(quarter), (box.high + 3).unaryExpr(quarter)};
+}
 
 }  // namespace photonav

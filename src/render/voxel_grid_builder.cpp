@@ -4,78 +4,17 @@
 #include <algorithm>
 #include <bit>
 #include <stdexcept>
+#include <utility>
 
 #include "map/brick_leaves.hpp"
 #include "render/brick_reader.hpp"
+#include "render/voxel_boxes.hpp"
 #include "render/voxel_grid_layout.hpp"
 
 namespace photonav {
 namespace {
 
 using Eigen::Array3i;
-
-CellBox cellsOf(const Array3i& brick) { return {4 * brick, 4 * brick + 4}; }
-
-/// The cells of a brick that lie in the map's bounding box.
-std::uint64_t insideMask(const VoxelGrid& grid, const Array3i& brick) {
-    const CellBox part = cellsOf(brick).clippedTo(grid.box);
-    if (part.empty()) return 0;
-    const Array3i low = part.low - 4 * brick, high = part.high - 4 * brick;
-    if ((low == 0).all() && (high == 4).all()) return ~0ULL;
-    std::uint64_t mask = 0;
-    for (int z = low.z(); z < high.z(); ++z) {
-        for (int y = low.y(); y < high.y(); ++y) {
-            for (int x = low.x(); x < high.x(); ++x) mask |= 1ULL << surfaceBit(x, y, z);
-        }
-    }
-    return mask;
-}
-
-constexpr int kInfluence =
-    VoxelGrid::kMaxDistance - 1;  // a cell changes distances within this [cells]
-
-/// Adds cells to a few boxes that together contain everything that changed, such that few other
-/// cells are recomputed. (A box may be recomputed before its neighbour: the values that it reads
-/// from there before they are updated lie in both boxes.)
-void addToBoxes(const CellBox& cells, const CellBox& within, std::vector<CellBox>& boxes) {
-    const auto cellsToMeasure = [&](const CellBox& box) {
-        const CellBox measured = box.grown(kInfluence).clippedTo(within);
-        return (measured.high - measured.low).cast<double>().prod();
-    };
-    const double alone = cellsToMeasure(cells);
-    double least = alone;
-    CellBox* best = nullptr;
-    for (CellBox& box : boxes) {
-        CellBox both = box;
-        both.extend(cells);
-        const double more = cellsToMeasure(both) - cellsToMeasure(box);
-        if (more > least) continue;
-        least = more;
-        best = &box;
-    }
-    if (best != nullptr) {
-        best->extend(cells);
-    } else {
-        boxes.push_back(cells);
-    }
-}
-
-/// Marks the cells of a brick that end rays. @returns whether a cell changed
-bool setEnds(VoxelGrid& grid, const Array3i& brick, std::uint64_t ends) {
-    bool changed = false;
-    for (int row = 0; row < 16; ++row) {
-        std::uint8_t* cells =
-            grid.distance.data() +
-            grid.cellIndex(4 * brick.x(), 4 * brick.y() + (row & 3), 4 * brick.z() + (row >> 2));
-        for (int x = 0; x < 4; ++x, ends >>= 1U) {
-            const bool endsHere = (ends & 1U) != 0;
-            if (endsHere == (cells[x] == 0)) continue;
-            cells[x] = endsHere ? std::uint8_t{0} : VoxelGrid::kMaxDistance;
-            changed = true;
-        }
-    }
-    return changed;
-}
 
 /// The map's bounding box after a change, in world indices.
 CellBox extendedBox(const TexturedOcTree& map, const MapChange& change, const VoxelGrid& grid) {
@@ -96,7 +35,7 @@ CellBox extendedBox(const TexturedOcTree& map, const MapChange& change, const Vo
 std::uint64_t endsOf(const VoxelGrid& grid, const Array3i& brick, const BrickContent& content,
                      bool unknownEndsRays) {
     if (!unknownEndsRays) return content.surface.occupied;
-    return content.surface.occupied | (~content.present & insideMask(grid, brick));
+    return content.surface.occupied | (~content.present & cellsInside(grid.box, brick));
 }
 
 bool isSeveral(std::uint32_t plane) {
@@ -111,22 +50,24 @@ bool isInGrid(const VoxelGrid& grid, const Array3i& brick) {
 
 }  // namespace
 
-VoxelGridBuilder::VoxelGridBuilder(const TexturedOcTree& map, UnknownPolicy unknown,
-                                   VoxelGrid& grid)
-    : unknownEndsRays_(unknown == UnknownPolicy::occupied) {
+VoxelGridBuilder::VoxelGridBuilder(const TexturedOcTree& map, UnknownPolicy policy, VoxelGrid& grid)
+    : unknownEndsRays_(policy == UnknownPolicy::occupied) {
     grid.resolution = map.getResolution();
     layOut(boundingBox(map), grid);
     grid.patches.assign(1, {});
     grid.patchOf.assign(VoxelGrid::kPatchesPerBrick, 0);
     grid.planes.assign(VoxelGrid::kCellsPerBrick, 0);
     grid.several.assign(1, {});
-    if (unknownEndsRays_) fillBox(grid, grid.box, 0);
-    Bricks changed, rewritten;
+    Bricks unknown, changed, rewritten;
+    if (unknownEndsRays_) addBricks(grid.box, unknown);
+    for (const Array3i& brick : unknown) {
+        grid.ends[grid.brickIndex(brick)] = cellsInside(grid.box, brick);
+    }
     if (map.size() > 0) {
         readAll(map, *map.getRoot(), Array3i::Constant(-kKeyOfZero) - grid.first, 2 * kKeyOfZero,
                 grid, changed);
     }
-    measureDistances(grid, grid.reach());
+    findBoxes(grid);
     refreshPatches(changed, grid, rewritten);
 }
 
@@ -147,10 +88,9 @@ void VoxelGridBuilder::readAll(const TexturedOcTree& map, const TexturedOcTreeNo
         for (int y = 0; y < edge / 4; ++y) {
             for (int x = 0; x < edge / 4; ++x) {
                 const Array3i brick = first + Array3i(x, y, z);
-                setEnds(grid, brick, endsOf(grid, brick, content, unknownEndsRays_));
-                if (setSurface(grid.brickIndex(brick), content.surface, grid)) {
-                    changed.push_back(brick);
-                }
+                const std::size_t index = grid.brickIndex(brick);
+                grid.ends[index] = endsOf(grid, brick, content, unknownEndsRays_);
+                if (setSurface(index, content.surface, grid)) changed.push_back(brick);
             }
         }
     }
@@ -164,56 +104,54 @@ GridUpdate VoxelGridBuilder::update(const TexturedOcTree& map, const MapChange& 
         throw std::invalid_argument("voxel view: the change is of a map of another resolution");
     }
     Bricks toRead;
-    grow(extendedBox(map, change, grid), grid, update, toRead);
+    update.laidOutAnew = grow(extendedBox(map, change, grid), grid, toRead);
     for (const Array3i& brick : change.bricks()) toRead.emplace_back(brick - grid.first / 4);
 
-    std::vector<CellBox> ends;
+    std::vector<ChangedBrick> changedEnds;
     Bricks changed;
     for (const Array3i& brick : toRead) {
         if (!isInGrid(grid, brick)) continue;
+        const std::size_t index = grid.brickIndex(brick);
         const BrickContent content = readBrick(map, Array3i(brick + grid.first / 4));
-        if (setEnds(grid, brick, endsOf(grid, brick, content, unknownEndsRays_))) {
-            addToBoxes(cellsOf(brick), grid.reach(), ends);
-        }
-        if (setSurface(grid.brickIndex(brick), content.surface, grid)) changed.push_back(brick);
+        const std::uint64_t ends = endsOf(grid, brick, content, unknownEndsRays_);
+        const std::uint64_t before = std::exchange(grid.ends[index], ends);
+        if (before != ends) changedEnds.push_back({brick, before});
+        if (setSurface(index, content.surface, grid)) changed.push_back(brick);
     }
-    for (const CellBox& box : ends) {
-        update.cells.push_back(box.grown(kInfluence).clippedTo(grid.reach()));
-        measureDistances(grid, update.cells.back());
+    if (update.laidOutAnew) {
+        findBoxes(grid);
+    } else {
+        update.boxes = updateBoxes(grid, changedEnds);
     }
     refreshPatches(changed, grid, update.bricks);
     return update;
 }
 
 /// Extends the grid to the map's new bounding box. New cells are unknown: obstacles, if unknown
-/// cells end rays. Distances are computed axis after axis: every step adds a slab to a box, and the
-/// shortest path between two cells of a box stays inside it.
-void VoxelGridBuilder::grow(const CellBox& box, VoxelGrid& grid, GridUpdate& update,
-                            Bricks& toRead) const {
-    CellBox before{grid.box.low + grid.first, grid.box.high + grid.first};
-    if ((box.low == before.low).all() && (box.high == before.high).all()) return;
-    update.laidOutAnew = layOut(box, grid);
-    before = {before.low - grid.first, before.high - grid.first};
-    if (before.empty()) {  // all of it is new
-        update.cells.push_back(grid.reach());
-        if (unknownEndsRays_) addBricks(grid.box, toRead);
-        return;
+/// cells end rays. @returns whether the grid was laid out anew
+bool VoxelGridBuilder::grow(const CellBox& box, VoxelGrid& grid, Bricks& toRead) const {
+    const CellBox before{grid.box.low + grid.first, grid.box.high + grid.first};
+    if ((box.low == before.low).all() && (box.high == before.high).all()) return false;
+    const bool laidOutAnew = layOut(box, grid);
+    if (!unknownEndsRays_) return laidOutAnew;
+    if (before.empty()) {
+        addBricks(grid.box, toRead);
+        return laidOutAnew;
     }
-    CellBox done = before;
+    CellBox done{before.low - grid.first, before.high - grid.first};
     const auto add = [&](int axis, int from, int to) {
         if (from >= to) return;
         CellBox slab = done;
         slab.low[axis] = from;
         slab.high[axis] = to;
         done.extend(slab);
-        update.cells.push_back(slab.grown(1));
-        if (unknownEndsRays_) addBricks(slab, toRead);
+        addBricks(slab, toRead);
     };
     for (int axis = 0; axis < 3; ++axis) {
         add(axis, grid.box.low[axis], done.low[axis]);
         add(axis, done.high[axis], grid.box.high[axis]);
     }
-    for (const CellBox& slab : update.cells) measureDistances(grid, slab);
+    return laidOutAnew;
 }
 
 bool VoxelGridBuilder::setSurface(std::size_t brick, const BrickSurface& surface, VoxelGrid& grid) {
@@ -313,13 +251,13 @@ void VoxelGridBuilder::makePatches(const SurfaceNeighbours& neighbours, std::int
 
 void copyUpdate(const VoxelGrid& grid, const GridUpdate& update, VoxelGrid& copy) {
     copy.box = grid.box;
-    for (const CellBox& box : update.cells) {
-        const int length = box.high.x() - box.low.x();
-        for (int z = box.low.z(); z < box.high.z(); ++z) {
-            for (int y = box.low.y(); y < box.high.y(); ++y) {
-                const std::size_t row = grid.cellIndex(box.low.x(), y, z);
-                std::copy_n(grid.distance.data() + row, length, copy.distance.data() + row);
-            }
+    const CellBox& boxes = update.boxes;
+    for (int z = boxes.low.z(); z < boxes.high.z(); ++z) {
+        for (int y = boxes.low.y(); y < boxes.high.y(); ++y) {
+            const std::size_t row = grid.brickIndex({boxes.low.x(), y, z});
+            const int length = boxes.high.x() - boxes.low.x();
+            std::copy_n(grid.ends.data() + row, length, copy.ends.data() + row);
+            std::copy_n(grid.boxes.data() + row, length, copy.boxes.data() + row);
         }
     }
     copy.patchOf.resize(grid.patchOf.size(), 0);

@@ -15,7 +15,7 @@ namespace photonav {
 /// The parts of a grid that an update has rewritten, for updating copies of the grid.
 struct GridUpdate {
     bool laidOutAnew = false;            ///< the whole grid: copies must be made anew
-    std::vector<CellBox> cells;          ///< distances
+    CellBox boxes;                       ///< bricks: which cells end rays, and empty boxes
     std::vector<Eigen::Array3i> bricks;  ///< textures
 };
 
@@ -40,7 +40,7 @@ class VoxelGridBuilder {
 
     void readAll(const TexturedOcTree& map, const TexturedOcTreeNode& node,
                  const Eigen::Array3i& lowest, int edge, VoxelGrid& grid, Bricks& changed);
-    void grow(const CellBox& box, VoxelGrid& grid, GridUpdate& update, Bricks& toRead) const;
+    bool grow(const CellBox& box, VoxelGrid& grid, Bricks& toRead) const;
     void refreshPatches(const Bricks& changed, VoxelGrid& grid, Bricks& rewritten);
     bool setSurface(std::size_t brick, const BrickSurface& surface, VoxelGrid& grid);
     void setPlanes(std::int32_t textures, VoxelGrid& grid);

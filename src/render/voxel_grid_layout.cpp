@@ -32,10 +32,8 @@ void extendBox(const TexturedOcTree& map, const TexturedOcTreeNode& node, const 
 
 /// The whole bricks around a box.
 CellBox wholeBricks(const CellBox& box) {
-    const auto floored = [](const Array3i& cell) -> Array3i {
-        return cell.unaryExpr([](int i) { return i & ~3; });
-    };
-    return {floored(box.low), floored(box.high + 3)};
+    const CellBox bricks = bricksOf(box);
+    return {4 * bricks.low, 4 * bricks.high};
 }
 
 double cellsIn(const CellBox& box) { return (box.high - box.low).cast<double>().prod(); }
@@ -92,36 +90,25 @@ bool layOut(const CellBox& box, VoxelGrid& grid) {
         grid.first = room.low;
         grid.size = room.high - room.low;
         grid.bricks = grid.size / 4;
-        grid.distance.assign(std::size_t(cellsIn(room)) + 3, VoxelGrid::kMaxDistance);
+        grid.ends.assign(std::size_t(cellsIn(room)) / 64, 0);
         grid.brickTextures.assign(std::size_t(cellsIn(room)) / 64, 0);
         grid.patchOf = old.patchOf;
         grid.patches = old.patches;
         grid.planes = old.planes;
         grid.several = old.several;
-        copyRows(old.distance, old.size, grid.distance, grid.size, old.first - grid.first);
-        copyRows(old.brickTextures, old.bricks, grid.brickTextures, grid.bricks,
-                 (old.first - grid.first) / 4);
+        const Array3i offset = (old.first - grid.first) / 4;
+        copyRows(old.ends, old.bricks, grid.ends, grid.bricks, offset);
+        copyRows(old.brickTextures, old.bricks, grid.brickTextures, grid.bricks, offset);
     }
     grid.box = {box.low - grid.first, box.high - grid.first};
     return !fits;
 }
 
-void fillBox(VoxelGrid& grid, const CellBox& box, std::uint8_t value) {
-    for (int z = box.low.z(); z < box.high.z(); ++z) {
-        for (int y = box.low.y(); y < box.high.y(); ++y) {
-            std::uint8_t* row = grid.distance.data() + grid.cellIndex(0, y, z);
-            std::fill(row + box.low.x(), row + box.high.x(), value);
-        }
-    }
-}
-
 void addBricks(const CellBox& box, std::vector<Array3i>& bricks) {
-    const CellBox whole = wholeBricks(box);
-    for (int z = whole.low.z(); z < whole.high.z(); z += 4) {
-        for (int y = whole.low.y(); y < whole.high.y(); y += 4) {
-            for (int x = whole.low.x(); x < whole.high.x(); x += 4) {
-                bricks.emplace_back(x / 4, y / 4, z / 4);
-            }
+    const CellBox whole = bricksOf(box);
+    for (int z = whole.low.z(); z < whole.high.z(); ++z) {
+        for (int y = whole.low.y(); y < whole.high.y(); ++y) {
+            for (int x = whole.low.x(); x < whole.high.x(); ++x) bricks.emplace_back(x, y, z);
         }
     }
 }

@@ -12,13 +12,11 @@ namespace photonav {
 CellBox boundingBox(const TexturedOcTree& map);
 
 /// Makes `box` (world indices) the box of the grid. Where it does not fit, the grid is laid out
-/// anew around it, with room to grow if it was laid out before, and keeps its cells and bricks.
+/// anew around it, with room to grow if it was laid out before, and keeps its bricks, but not their
+/// empty boxes.
 /// @returns whether it was laid out anew
 /// @throws std::invalid_argument when the box has more than 2^31 cells
 bool layOut(const CellBox& box, VoxelGrid& grid);
-
-/// Sets the distances of all cells of a box.
-void fillBox(VoxelGrid& grid, const CellBox& box, std::uint8_t value);
 
 /// Appends the bricks that hold cells of a box.
 void addBricks(const CellBox& box, std::vector<Eigen::Array3i>& bricks);
