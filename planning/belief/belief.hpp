@@ -105,6 +105,9 @@ class BeliefModel {
     /// Fisher information of the view from a body pose, in the camera frame of that pose.
     Matrix6 informationAt(const Pose& T_w_b);
 
+    /// Weighted trace of the motion noise per metre.
+    double noiseTrace() const { return trace(noiseCamera_); }
+
     /// The initial covariance before any view, camera frame.
     const Matrix6& initialCovariance() const { return initialCamera_; }
 

@@ -70,13 +70,17 @@ InformationField::InformationField(const PenaltyFormula& formula, const Pose& T_
 }
 
 const InformationField::Entry& InformationField::at(const Pose& T_w_b) {
+    return current(atAnyEpoch(T_w_b));
+}
+
+const InformationField::Entry& InformationField::atAnyEpoch(const Pose& T_w_b) {
     static const Entry kNothing{Matrix6::Zero(), true, false, 0, 0, {}};
     if (!evaluate_) return kNothing;
     const Cell cell = cellOf(T_w_b);
     if (const auto known = index_.find(cell); known != index_.end()) {
         const Entry& entry = entries_[known->second];
         cacheHits_ += entry.isStale ? 0 : 1;
-        return current(entry);
+        return entry;
     }
     Entry entry = kNothing;
     ViewExtent extent;
@@ -128,6 +132,7 @@ void InformationField::update(std::shared_ptr<const ViewSource> views, const Map
         entry.isStale = changed.any([&](const Eigen::AlignedBox3d& box) {
             return isNear(box) && extents_[entry.index].meets(camera_, T_c_w, box);
         });
+        marked_ += entry.isStale ? 1 : 0;
     }
 }
 
@@ -142,7 +147,7 @@ void InformationField::clear() {
     cells_.clear();
     extents_.clear();
     bounds_.clear();
-    views_ = cacheHits_ = 0;
+    views_ = marked_ = cacheHits_ = 0;
     seconds_ = 0.;
 }
 

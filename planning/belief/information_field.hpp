@@ -58,6 +58,9 @@ class InformationField {
     /// stays valid until clear(); update() may make the entry stale.
     const Entry& at(const Pose& T_w_b);
 
+    /// The same, but an entry that is stale is not evaluated again.
+    const Entry& atAnyEpoch(const Pose& T_w_b);
+
     /// An entry of this field, evaluated again in place if it is stale.
     const Entry& current(const Entry& entry);
 
@@ -81,6 +84,7 @@ class InformationField {
     const Pose& mount() const { return T_b_c_; }
     std::size_t size() const { return entries_.size(); }  ///< cells evaluated
     std::size_t stale() const;                            ///< of them, those that are stale
+    std::size_t marked() const { return marked_; }        ///< made stale by all updates together
     std::size_t views() const { return views_; }          ///< evaluated, repeated ones included
     std::size_t cacheHits() const { return cacheHits_; }  ///< queries answered without a view
     double seconds() const { return seconds_; }           ///< spent on views
@@ -112,6 +116,7 @@ class InformationField {
     View view_;                                // rendered last
     std::uint32_t epoch_ = 0;
     std::size_t views_ = 0;
+    std::size_t marked_ = 0;
     std::size_t cacheHits_ = 0;
     double seconds_ = 0.;
 };

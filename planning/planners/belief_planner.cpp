@@ -10,12 +10,14 @@
 
 #include "geometry/constants.hpp"
 #include "planners/path_cost_objective.hpp"
+#include "render/interruptible_views.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
 namespace {
 
 constexpr double kExploration = 0.2;     // share of the samples that are accepted anywhere
+constexpr int kMostFailures = 500;       // in a row: the updated space cannot be reached
 constexpr double kMaxFinishShare = 0.5;  // largest share of the time limit for finish()
 
 /// OMPL's nearest-neighbour tree seeds its choice of pivots by the clock, and the order of vertices
@@ -41,6 +43,7 @@ BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<
       model_(std::move(model)),
       growth_(growth),
       best_{kInfinity, {}},
+      updated_(si, model_->space()),
       objective_(std::make_shared<PathCostObjective>(si, model_)) {
     specs_.optimizingPaths = true;
     specs_.canReportIntermediateSolutions = false;
@@ -87,6 +90,17 @@ ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& pt
         rng_.setLocalSeed(growth_.seed);
     }
 
+    try {
+        growUntil(ptc);
+    } catch (const RenderingStopped&) {
+        if (best_.states.empty()) throw;
+    }
+    countRewired();
+    publishProgress();
+    return report();
+}
+
+void BeliefPlanner::growUntil(const ob::PlannerTerminationCondition& ptc) {
     begin(ptc);
     ob::ScopedState<> goalOrSample(si_);
     while (!ptc && !isGrown()) {
@@ -95,8 +109,6 @@ ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& pt
         publishProgress();
     }
     finish(ptc);
-    publishProgress();
-    return report();
 }
 
 double BeliefPlanner::range() const {
@@ -130,7 +142,11 @@ bool BeliefPlanner::isGrown() const {
 void BeliefPlanner::grow(ob::State* target, const ob::PlannerTerminationCondition& ptc) {
     const bool isGoalSample = sample(target);
     const auto extension = extend(target);
-    if (!extension) return;
+    if (!extension) {
+        if (++failures_ > kMostFailures) updated_.clear();
+        return;
+    }
+    failures_ = 0;
     Vertex& fresh = *extension->fresh;
     const bool isReached = isGoalSample && si_->distance(fresh.state, target) == 0.;
     if (isReached) goalSamples_.push_back(&fresh);
@@ -138,6 +154,7 @@ void BeliefPlanner::grow(ob::State* target, const ob::PlannerTerminationConditio
     if (fresh.isGoal) goals_.push_back(&fresh);
     connect(fresh, near(fresh, extension->nearest), ptc);
     neighbours_->add(&fresh);
+    if (++update_.verticesAdded == update_.verticesInvalidated) updated_.clear();
 }
 
 void BeliefPlanner::publishProgress() {
@@ -169,7 +186,9 @@ bool BeliefPlanner::sample(ob::State* state) {
         goal.sampleGoal(state);
         if (si_->isValid(state)) return true;
     }
-    sampler_->sampleUniform(state);
+    const bool isUpdated =
+        updated_.sample(state, sampleShares(), connectionRadius(), *sampler_, rng_);
+    if (!isUpdated) sampler_->sampleUniform(state);
     return false;
 }
 
@@ -193,17 +212,20 @@ std::optional<BeliefPlanner::Extension> BeliefPlanner::extend(const ob::State* t
     return Extension{&fresh, nearest};
 }
 
-/// Neighbours within gamma (log n / n)^(1/d) (Karaman and Frazzoli 2011), `nearest` in front.
-std::vector<Vertex*> BeliefPlanner::near(const Vertex& fresh, Vertex* nearest) const {
+/// gamma (log n / n)^(1/d) (Karaman and Frazzoli 2011).
+double BeliefPlanner::connectionRadius() const {
     const auto& space = model_->space();
     const double d = space.dimension();
     const double n = static_cast<double>(vertices());
     const double gamma =
         growth_.rewireFactor *
         std::pow(2. * (1. + 1. / d) * space.measure() / space.unitBallMeasure(), 1. / d);
-    const double radius = std::min(range(), gamma * std::pow(std::log(n) / n, 1. / d));
+    return std::min(range(), gamma * std::pow(std::log(n) / n, 1. / d));
+}
+
+std::vector<Vertex*> BeliefPlanner::near(const Vertex& fresh, Vertex* nearest) const {
     std::vector<Vertex*> neighbourhood;
-    neighbours_->nearestR(const_cast<Vertex*>(&fresh), radius, neighbourhood);
+    neighbours_->nearestR(const_cast<Vertex*>(&fresh), connectionRadius(), neighbourhood);
     const auto it = std::find(neighbourhood.begin(), neighbourhood.end(), nearest);
     if (it == neighbourhood.end())
         neighbourhood.insert(neighbourhood.begin(), nearest);
@@ -230,7 +252,10 @@ void BeliefPlanner::release(Vertex& vertex) {
 }
 
 void BeliefPlanner::remove(const std::vector<Vertex*>& vertices) {
+    update_.verticesInvalidated += vertices.size();
+    forgetParents(vertices);
     for (Vertex* vertex : vertices) {
+        updated_.addRemoved(vertex->state);
         removeEdgesOf(*vertex);
         neighbours_->remove(vertex);
         std::erase(goals_, vertex);
@@ -274,6 +299,10 @@ void BeliefPlanner::clear() {
     iterations_ = iterationsAtChange_ = 0;
     goalSamples_.clear();
     unused_.clear();
+    updated_.clear();
+    update_ = {};
+    isSolved_ = false;
+    parentsBefore_.clear();
     movedRoot_.reset();
     model_->clear();
     publishProgress();

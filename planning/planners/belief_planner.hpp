@@ -18,6 +18,7 @@
 #include "belief/belief.hpp"
 #include "geometry/constants.hpp"
 #include "planners/changed_space.hpp"
+#include "planners/updated_space.hpp"
 #include "planners/vertex.hpp"
 
 namespace photonav {
@@ -44,6 +45,15 @@ struct TreeNode {
     double cost;
     std::optional<Matrix6> covariance;  ///< of T_c_w, camera frame, left; none where the planner
                                         ///< propagates no covariances
+};
+
+/// How much of a planner an update changed: the calls of mapChanged() and moveRoot() since the last
+/// solve(), and the solve() after them.
+struct UpdateCounts {
+    std::size_t verticesInvalidated = 0;  ///< removed: in collision, or no longer reached
+    std::size_t edgesInvalidated = 0;     ///< motions that had been free and are in collision now
+    std::size_t verticesAdded = 0;        ///< by sampling
+    std::size_t verticesRewired = 0;      ///< kept, but reached from another vertex than before
 };
 
 /// Base of rrt_star, pa_rrt_star, rrbt and belief_rrt_star. Derived planners define how a new
@@ -92,6 +102,10 @@ class BeliefPlanner : public ompl::base::Planner {
     const std::optional<Belief>& movedRoot() const { return movedRoot_; }
     BeliefModel& model() const { return *model_; }
 
+    /// What the present update changed so far; of the first plan, before any update, the vertices
+    /// that were added.
+    const UpdateCounts& lastUpdate() const { return update_; }
+
     /// Every belief the planner holds, parents before children.
     virtual std::vector<TreeNode> tree() const = 0;
 
@@ -118,6 +132,10 @@ class BeliefPlanner : public ompl::base::Planner {
     /// samples; the others are accepted anywhere, so that no region is excluded for ever.
     virtual bool isPromising(const Vertex&) { return true; }
 
+    /// Where samples are drawn after an update, until as many vertices were added as it removed or
+    /// too many samples in a row have added none.
+    virtual SampleShares sampleShares() const { return {}; }
+
     /// Called when solve() begins.
     virtual void begin(const ompl::base::PlannerTerminationCondition&) {}
 
@@ -127,11 +145,18 @@ class BeliefPlanner : public ompl::base::Planner {
     /// Estimated duration of finish() [s]: growth ends that long before the deadline.
     virtual double timeToFinish() const { return 0.; }
 
+    /// By vertex index the vertex that its best belief comes from; null at a root, and where there
+    /// is no belief.
+    virtual std::vector<const Vertex*> parents() const = 0;
+
     /// Called when the map has changed: motions through changed space must be checked again.
+    struct Invalid {
+        std::vector<Vertex*> vertices;  // to be removed
+        std::size_t edges = 0;          // that had been free and are in collision now
+    };
     /// @param colliding vertices that are no longer valid
-    /// @return the vertices to be removed, those in collision included
-    virtual std::vector<Vertex*> invalidate(const ChangedSpace& changed,
-                                            std::vector<Vertex*> colliding) = 0;
+    /// @return these vertices, and what else has to go
+    virtual Invalid invalidate(const ChangedSpace& changed, std::vector<Vertex*> colliding) = 0;
 
     /// Called before a vertex is removed.
     virtual void removeEdgesOf(const Vertex& vertex) = 0;
@@ -154,8 +179,14 @@ class BeliefPlanner : public ompl::base::Planner {
         return si_->checkMotion(from.state, to.state);
     }
 
+    /// Vertices within the radius of RRT*, `nearest` in front.
+    std::vector<Vertex*> near(const Vertex& fresh, Vertex* nearest) const;
+
     /// Stores a path (start first) if it is the best so far.
     void offer(double cost, const std::vector<const ompl::base::State*>& path);
+
+    /// The best path so far, from a root on; empty if there is none.
+    const std::vector<ompl::base::State*>& bestPath() const { return best_.states; }
 
     /// Time until the deadline of solve(double) [s]; infinite without one.
     double secondsLeft() const;
@@ -184,14 +215,18 @@ class BeliefPlanner : public ompl::base::Planner {
     bool addStarts();
     bool isGrown() const;
     double range() const;
+    void growUntil(const ompl::base::PlannerTerminationCondition& ptc);
     void grow(ompl::base::State* target, const ompl::base::PlannerTerminationCondition& ptc);
     bool sample(ompl::base::State* state);
     std::optional<Extension> extend(const ompl::base::State* target);
-    std::vector<Vertex*> near(const Vertex& fresh, Vertex* nearest) const;
+    double connectionRadius() const;
     Vertex& addVertex(const ompl::base::State* state);
     void release(Vertex& vertex);
     void remove(const std::vector<Vertex*>& vertices);
     void removeColliding(const ChangedSpace& changed);
+    void beginUpdate();
+    void forgetParents(const std::vector<Vertex*>& removed);
+    void countRewired();
     bool isRoot(const Vertex& vertex) const;
     void joinRootToBest();
     void reevaluateBest();
@@ -213,6 +248,11 @@ class BeliefPlanner : public ompl::base::Planner {
     std::size_t iterationsAtChange_ = 0;      // of the map or the root, the last one
     std::vector<const Vertex*> goalSamples_;  // vertices that were sampled at a goal
     std::vector<Vertex*> unused_;             // removed, to be used again
+    UpdatedSpace updated_;                    // until it is grown again
+    int failures_ = 0;                        // samples in a row that added no vertex
+    UpdateCounts update_;
+    bool isSolved_ = false;                     // update_ has had its solve()
+    std::vector<const Vertex*> parentsBefore_;  // the update, by vertex; null: not to be compared
     Progress progress_;
     ompl::base::OptimizationObjectivePtr objective_;
 };

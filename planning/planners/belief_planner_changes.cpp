@@ -2,25 +2,17 @@
 // How a planner is updated when the map or the position of the robot changes.
 #include <algorithm>
 
+#include "geometry/segment.hpp"
 #include "planners/belief_planner.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
-namespace {
-
-/// Distance from a point to a segment [m].
-double distanceToLeg(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    const Eigen::Vector3d way = b - a;
-    const double squared = way.squaredNorm();
-    const double t = squared > 0. ? std::clamp((p - a).dot(way) / squared, 0., 1.) : 0.;
-    return (p - a - t * way).norm();
-}
-
-}  // namespace
 
 void BeliefPlanner::mapChanged(const MapChange& change) {
     if (change.empty() || roots_.empty()) return;
+    beginUpdate();
     iterationsAtChange_ = iterations_;
+    updated_.addChange(change);
     removeColliding(ChangedSpace(change, growth_.obstacleReach));
     if (!movedRoot_) {  // the views from the starts may have changed
         for (Root& root : roots_) root.belief = rootBelief(root.vertex->state);
@@ -40,7 +32,44 @@ void BeliefPlanner::removeColliding(const ChangedSpace& changed) {
         if (!changed.contains(model_->space().position(vertex.state))) continue;
         if (!si_->isValid(vertex.state)) colliding.push_back(&vertex);
     }
-    remove(invalidate(changed, std::move(colliding)));
+    const Invalid invalid = invalidate(changed, std::move(colliding));
+    update_.edgesInvalidated += invalid.edges;
+    remove(invalid.vertices);
+}
+
+/// The first change after a solve() begins an update, those that follow belong to it.
+void BeliefPlanner::beginUpdate() {
+    if (!isSolved_) return;
+    isSolved_ = false;
+    if (update_.verticesAdded >= update_.verticesInvalidated) updated_.clear();
+    update_ = {};
+    parentsBefore_ = parents();
+}
+
+/// Removed vertices are used again for other states: neither they nor their children keep the
+/// parent that they had before the update.
+void BeliefPlanner::forgetParents(const std::vector<Vertex*>& removed) {
+    static const Vertex kRemoved;
+    if (parentsBefore_.empty() || removed.empty()) return;
+    std::vector<bool> isRemoved(vertices_.size(), false);
+    for (const Vertex* vertex : removed) isRemoved[vertex->index] = true;
+    for (std::size_t i = 0; i < parentsBefore_.size(); ++i) {
+        const Vertex*& parent = parentsBefore_[i];
+        if (isRemoved[i]) parent = nullptr;
+        if (parent == nullptr || parent == &kRemoved) continue;
+        if (isRemoved[parent->index]) parent = &kRemoved;
+    }
+}
+
+void BeliefPlanner::countRewired() {
+    isSolved_ = true;
+    update_.verticesRewired = 0;
+    if (parentsBefore_.empty()) return;
+    const auto now = parents();
+    for (std::size_t i = 0; i < parentsBefore_.size(); ++i) {
+        const bool isCompared = parentsBefore_[i] != nullptr && now[i] != nullptr;
+        update_.verticesRewired += isCompared && now[i] != parentsBefore_[i] ? 1 : 0;
+    }
 }
 
 bool BeliefPlanner::isRoot(const Vertex& vertex) const {
@@ -50,6 +79,7 @@ bool BeliefPlanner::isRoot(const Vertex& vertex) const {
 
 void BeliefPlanner::moveRoot(const ob::State* state, const Belief& belief) {
     checkValidity();
+    beginUpdate();
     iterationsAtChange_ = iterations_;
     setStartOfProblem(state);
     Vertex probe;
@@ -93,7 +123,7 @@ void BeliefPlanner::joinRootToBest() {
     std::size_t next = 1;
     double least = kInfinity;
     for (std::size_t i = 1; i < states.size(); ++i) {
-        const double distance = distanceToLeg(space.position(root), at(i - 1), at(i));
+        const double distance = distanceToSegment(space.position(root), at(i - 1), at(i));
         if (distance > least) continue;
         least = distance;
         next = i;

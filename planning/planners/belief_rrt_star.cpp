@@ -17,6 +17,14 @@ constexpr double kSearchGrowth = 2.;               // of the roadmap between sea
 constexpr double kSearchGrowthWithoutPath = 1.25;  // while no search has reached the goal
 constexpr double kSearchMargin = 1.5;              // a search takes so much longer than expected
 
+constexpr double kMuchToSee = 1.5;  // times the floor: a path that costs less has much to see
+
+constexpr double kLittle = 0.02;            // of the cost: not worth another path
+constexpr double kCaution = 1.06;           // factor on the gain after a descent in vain,
+constexpr double kForgetting = 0.995;       // and after an update without one
+constexpr double kChangesOfUpdate = 0.01;   // share of the descent from the first plan
+constexpr double kFirstStepOfUpdate = 0.5;  // of that descent [m, rad]
+
 constexpr double kDominanceSlack = 0.02;  // see isDominated()
 constexpr double kMinLever = 1.;          // [m]
 constexpr double kMaxLever = 100.;        // [m]
@@ -34,15 +42,17 @@ BeliefRRTstar::BeliefRRTstar(const ob::SpaceInformationPtr& si, std::shared_ptr<
     declare("labels", options_.labels);
     declare("informed", options_.informed);
     declare("shortcut", options_.shortcut);
+    declare("commitment", options_.commitment);
     addPlannerProgressProperty("shortcuts tried INTEGER",
                                [this] { return std::to_string(shortcutsTried_); });
     addPlannerProgressProperty("shortcuts taken INTEGER",
                                [this] { return std::to_string(shortcutsTaken_); });
 }
 
-/// A roadmap that has changed is searched before it grows.
+/// A roadmap that has changed is searched before it grows, unless there is a path still.
 void BeliefRRTstar::begin(const ob::PlannerTerminationCondition& ptc) {
-    if (isSearchDue_ && !goals_.empty()) search(ptc);
+    keptCost_ = isFollowing_ ? bestCost() : kInfinity;
+    if (isSearchDue_ && !isFollowing_ && !goals_.empty()) search(ptc);
 }
 
 void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near,
@@ -104,7 +114,41 @@ bool BeliefRRTstar::isPromising(const Vertex& nearest) {
 
 void BeliefRRTstar::finish(const ob::PlannerTerminationCondition& ptc) {
     if (isSearchDue_) search(ptc);
+    if (isFollowing_) {
+        follow(ptc);
+        return;
+    }
     descend(ptc, options_.shortcut);
+    if (descent_) gain_ = descent_->cost() / pathCost_;
+}
+
+/// After an update that kept a path: works a little on that path or, if the search has found one of
+/// the roadmap that promises more, on that one.
+void BeliefRRTstar::follow(const ob::PlannerTerminationCondition& ptc) {
+    if (!path_.empty()) {
+        const double kept = bestCost();
+        descend(ptc, options_.shortcut);
+        const bool wasInVain = bestCost() >= kept;
+        gain_ = bestCost() / pathCost_ * (wasInVain ? kCaution : 1.);
+    } else if (options_.shortcut > 0) {
+        PathDescent descent = descentAt({bestPath().begin(), bestPath().end()}, kFirstStepOfUpdate);
+        descend(descent, ptc, static_cast<unsigned>(kChangesOfUpdate * options_.shortcut));
+        offer(descent.cost(), descent.path());
+        gain_ *= kForgetting;
+    }
+    if (ptc) return;
+    isFollowing_ = false;
+    limitOfUpdate_ = kInfinity;
+}
+
+/// The path that an update has kept comes from a descent, which lowers the cost of a path over the
+/// roadmap by a factor, the gain of the last descent. A path over the roadmap is of interest if
+/// a descent from it may end with a cost that is lower by more than a small share.
+double BeliefRRTstar::limitOfUpdate() const {
+    if (!isFollowing_) return kInfinity;
+    const bool hasDescents = options_.shortcut > 0;
+    const double worthIt = std::max(hasDescents ? kLittle : 0., options_.commitment);
+    return (1. - worthIt) / (hasDescents ? gain_ : 1.) * bestCost();
 }
 
 /// Estimated from the durations of the last search and of the changes so far. Before the first
@@ -127,7 +171,10 @@ void BeliefRRTstar::search(const ob::PlannerTerminationCondition& ptc) {
     roadmap_.resize(vertices_.size());
     settled_.clear();
     labelsOf_.assign(vertices_.size(), {});
-    toGo_.update(roadmap_, vertices_, goals_, *model_);
+    roadmap_.checkAll(*si_);
+    std::vector<CostToGo::Start> starts;
+    for (const Root& root : roots_) starts.push_back({root.vertex, root.belief.covariance});
+    toGo_.update(roadmap_, vertices_, goals_, *model_, starts, isMuchToSee_);
 
     Open open;
     for (const Root& root : roots_) {
@@ -172,15 +219,14 @@ void BeliefRRTstar::expand(int label, Open& open) const {
     const auto variances = toGo_.variances(belief.covariance);
     for (Roadmap::Edge* edge : roadmap_.of(vertex)) {
         Vertex* next = edge->otherEnd(vertex);
-        if (isFull(*next) || !edge->isFree.value_or(true)) continue;
+        if (isFull(*next) || !*edge->isFree) continue;
         push(open, {belief.cost + toGo_.over(*edge, *vertex, variances), label, edge, next});
     }
 }
 
-/// @return whether the edge is free, and the label neither dominated nor too costly
+/// @return whether the label is neither dominated nor too costly
 bool BeliefRRTstar::propagateTo(Candidate& candidate) {
     Roadmap::Edge& edge = *candidate.edge;
-    if (!Roadmap::isFree(edge, *si_)) return false;
     const Vertex& vertex = *candidate.vertex;
     const Belief arrival =
         propagate(settled_[candidate.parent].belief, edge.motion, candidate.vertex == edge.from);
@@ -211,6 +257,8 @@ bool BeliefRRTstar::isDominated(const Vertex& vertex, const Belief& belief) cons
 
 void BeliefRRTstar::keepPath(int label) {
     pathCost_ = settled_[label].belief.cost;
+    const Label& start = settled_.front();
+    isMuchToSee_ = pathCost_ - start.belief.cost < kMuchToSee * toGo_.floor(*start.vertex);
     std::vector<const ob::State*> path;
     for (; label >= 0; label = settled_[label].parent) {
         path.push_back(settled_[label].vertex->state);
@@ -219,35 +267,61 @@ void BeliefRRTstar::keepPath(int label) {
     if (path == path_) return;
     path_ = std::move(path);
     descent_.reset();
-    offer(pathCost_, path_);
+    offerAnother(pathCost_, path_);
+}
+
+/// A path that does not come from the one that an update has kept.
+void BeliefRRTstar::offerAnother(double cost, const std::vector<const ob::State*>& path) {
+    if (isFollowing_ && cost > (1. - options_.commitment) * keptCost_) return;
+    offer(cost, path);
 }
 
 /// Descends from the best path of the roadmap until this number of changes was tried, in all calls
 /// together.
 void BeliefRRTstar::descend(const ob::PlannerTerminationCondition& ptc, unsigned changes) {
     if (options_.shortcut == 0 || path_.empty()) return;
+    if (!descent_) descent_ = descentAt(path_, DescentOptions{}.firstStep);
+    descend(*descent_, ptc, changes);
+    offerAnother(descent_->cost(), descent_->path());
+}
+
+PathDescent BeliefRRTstar::descentAt(const std::vector<const ob::State*>& path,
+                                     double firstStep) const {
+    PathDescent descent(si_, model_, {.moves = options_.shortcut, .firstStep = firstStep});
+    const auto root = std::find_if(roots_.begin(), roots_.end(), [&](const Root& r) {
+        return si_->equalStates(r.vertex->state, path.front());
+    });
+    descent.begin(path, root->belief);
+    return descent;
+}
+
+void BeliefRRTstar::descend(PathDescent& descent, const ob::PlannerTerminationCondition& ptc,
+                            unsigned changes) {
     const auto start = std::chrono::steady_clock::now();
-    if (!descent_) {
-        descent_.emplace(si_, model_, DescentOptions{.moves = options_.shortcut});
-        const auto root = std::find_if(roots_.begin(), roots_.end(), [&](const Root& r) {
-            return r.vertex->state == path_.front();
-        });
-        descent_->begin(path_, root->belief);
-    }
-    const unsigned tried = descent_->tried();
-    const unsigned accepted = descent_->accepted();
-    descent_->descend(ptc, changes);
-    shortcutsTried_ += descent_->tried() - tried;
-    shortcutsTaken_ += descent_->accepted() - accepted;
-    offer(descent_->cost(), descent_->path());
+    const unsigned tried = descent.tried();
+    const unsigned accepted = descent.accepted();
+    descent.descend(ptc, changes);
+    shortcutsTried_ += descent.tried() - tried;
+    shortcutsTaken_ += descent.accepted() - accepted;
     descentSeconds_ +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::vector<Vertex*> BeliefRRTstar::invalidate(const ChangedSpace& changed,
-                                               std::vector<Vertex*> colliding) {
-    roadmap_.mapChanged(changed, model_->space());
-    return colliding;
+BeliefPlanner::Invalid BeliefRRTstar::invalidate(const ChangedSpace& changed,
+                                                 std::vector<Vertex*> colliding) {
+    return {std::move(colliding), roadmap_.mapChanged(changed, model_->space(), *si_)};
+}
+
+/// Of the labels of the last search. The first label that a vertex keeps is its cheapest one as far
+/// as the goal is concerned: it settled first.
+std::vector<const Vertex*> BeliefRRTstar::parents() const {
+    std::vector<const Vertex*> parents(vertices_.size(), nullptr);
+    for (std::size_t i = 0; i < labelsOf_.size(); ++i) {
+        if (labelsOf_[i].empty()) continue;
+        const int parent = settled_[labelsOf_[i].front()].parent;
+        if (parent >= 0) parents[i] = settled_[parent].vertex;
+    }
+    return parents;
 }
 
 /// The result of the last search belongs to another map: the next solve() searches again.
@@ -258,7 +332,9 @@ void BeliefRRTstar::renewBeliefs() {
     path_.clear();
     pathCost_ = kInfinity;
     descent_.reset();
-    searched_ = 0;
+    isFollowing_ = bestCost() < kInfinity;
+    limitOfUpdate_ = limitOfUpdate();
+    searched_ = isFollowing_ ? vertices() : 0;
     isSearchDue_ = true;
 }
 
@@ -276,6 +352,8 @@ void BeliefRRTstar::clear() {
     roadmap_.clear();
     renewBeliefs();
     isSearchDue_ = false;
+    gain_ = 1.;
+    isMuchToSee_ = true;
     searchSeconds_ = descentSeconds_ = 0.;
     shortcutsTried_ = shortcutsTaken_ = 0;
 }

@@ -16,6 +16,10 @@ struct SearchOptions {
     unsigned labels = 5;       ///< kept per vertex, at most
     bool informed = true;      ///< draw most samples only where a better path may pass
     unsigned shortcut = 3000;  ///< changes tried on the best path of a search, at most; 0: none
+    /// A path that an update has kept is left only for one that costs less by this share. Costs
+    /// change a little with every view of a new map, and a robot that follows each of these changes
+    /// turns to and fro. Changes of the kept path itself are always taken.
+    double commitment = 0.;
 };
 
 /// Grows the roadmap that RRT* would (same samples, same connection radius), keeps all its edges,
@@ -27,8 +31,9 @@ struct SearchOptions {
 /// The number of labels is limited and the order has a slack, so the result is the best path over
 /// the labels kept, not over all beliefs.
 ///
-/// Edges are checked for collision, and their views rendered, only when a label is about to be
-/// propagated along them.
+/// The views along an edge are rendered only when a label is about to be propagated along it. For
+/// collision all edges are checked before a search: that costs microseconds, a view a millisecond,
+/// and the bound that steers the search does not lead through walls.
 ///
 /// The planner is anytime: whenever the roadmap has doubled, it is searched, and as many changes
 /// are tried on the resulting path as the roadmap has vertices. Then growth continues. With a known
@@ -64,7 +69,9 @@ class BeliefRRTstar : public BeliefPlanner {
 
     /// Upper limit of the cost of a path over the roadmap. It includes the best path so far, so
     /// that a search finds it again.
-    double limit() const { return pathCost_ * (1. + 1e-12); }
+    double limit() const { return std::min(pathCost_, limitOfUpdate_) * (1. + 1e-12); }
+    double limitOfUpdate() const;
+    void offerAnother(double cost, const std::vector<const ompl::base::State*>& path);
 
     void addRoot(const Root&) override { isSearchDue_ = true; }
     void begin(const ompl::base::PlannerTerminationCondition& ptc) override;
@@ -72,9 +79,10 @@ class BeliefRRTstar : public BeliefPlanner {
                  const ompl::base::PlannerTerminationCondition& ptc) override;
     bool isPromising(const Vertex& nearest) override;
     void finish(const ompl::base::PlannerTerminationCondition& ptc) override;
+    SampleShares sampleShares() const override { return {.removed = 0.6, .changed = 0.2}; }
     double timeToFinish() const override;
-    std::vector<Vertex*> invalidate(const ChangedSpace& changed,
-                                    std::vector<Vertex*> colliding) override;
+    std::vector<const Vertex*> parents() const override;
+    Invalid invalidate(const ChangedSpace& changed, std::vector<Vertex*> colliding) override;
     void removeEdgesOf(const Vertex& vertex) override { roadmap_.removeEdgesOf(vertex); }
     void renewBeliefs() override;
     std::vector<Vertex*> replaceRoots(const Root& root, const std::vector<Vertex*>& near) override;
@@ -90,6 +98,11 @@ class BeliefRRTstar : public BeliefPlanner {
     bool isDominated(const Vertex& vertex, const Belief& belief) const;
     void keepPath(int label);
     void descend(const ompl::base::PlannerTerminationCondition& ptc, unsigned changes);
+    void descend(PathDescent& descent, const ompl::base::PlannerTerminationCondition& ptc,
+                 unsigned changes);
+    PathDescent descentAt(const std::vector<const ompl::base::State*>& path,
+                          double firstStep) const;
+    void follow(const ompl::base::PlannerTerminationCondition& ptc);
 
     SearchOptions options_;
     Roadmap roadmap_;
@@ -98,6 +111,11 @@ class BeliefRRTstar : public BeliefPlanner {
     std::vector<std::vector<int>> labelsOf_;      // by vertex, into settled_
     std::size_t searched_ = 0;                    // number of vertices at the last complete search
     bool isSearchDue_ = false;                    // something has changed since
+    bool isFollowing_ = false;                    // an update has kept a path
+    double keptCost_ = kInfinity;                 // of this path
+    double limitOfUpdate_ = kInfinity;            // see limitOfUpdate()
+    bool isMuchToSee_ = true;                     // along the last path
+    double gain_ = 1.;                            // see limitOfUpdate()
     std::vector<bool> promising_;                 // by vertex, from the last search while growing
     std::vector<const ompl::base::State*> path_;  // the best over the roadmap
     double pathCost_ = kInfinity;

@@ -12,10 +12,14 @@ namespace {
 
 constexpr double kMinInformation = 1e-6;  // a coordinate known to 1 km is not observed [1/m^2]
 constexpr double kSafety = 0.99;          // factor on the charge
+constexpr double kLittleCharge = 0.05;    // of the floor: not worth a view from every vertex
+
+double lengthOf(const Roadmap::Edge& edge) { return edge.motion.length; }
 
 /// Dijkstra's algorithm from the values that `distance` holds already.
+template <typename Weight>
 void findDistances(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
-                   std::vector<double>& distance) {
+                   std::vector<double>& distance, const Weight& weightOf) {
     using Entry = std::pair<double, const Vertex*>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
     for (const Vertex& vertex : vertices) {
@@ -28,8 +32,9 @@ void findDistances(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
         for (const Roadmap::Edge* edge : roadmap.of(vertex)) {
             if (!edge->isFree.value_or(true)) continue;
             double& next = distance[edge->otherEnd(vertex)->index];
-            if (length + edge->motion.length >= next) continue;
-            next = length + edge->motion.length;
+            const double arrival = length + weightOf(*edge);
+            if (arrival >= next) continue;
+            next = arrival;
             open.emplace(next, edge->otherEnd(vertex));
         }
     }
@@ -39,17 +44,38 @@ void findDistances(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
 
 void CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                       const std::vector<Vertex*>& goals, BeliefModel& model) {
+    findFloors(roadmap, vertices, goals, model);
+    if (charge_ > 0.) findObserved(roadmap, vertices);
+}
+
+void CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
+                      const std::vector<Vertex*>& goals, BeliefModel& model,
+                      const std::vector<Start>& starts, bool muchToSee) {
+    findFloors(roadmap, vertices, goals, model);
+    const bool needsViews = std::any_of(starts.begin(), starts.end(), [&](const Start& start) {
+        return reachesGoal(start) && (!muchToSee || isUncertain(start));
+    });
+    if (!needsViews) charge_ = 0.;
+    if (charge_ > 0.) findObserved(roadmap, vertices);
+}
+
+void CostToGo::findFloors(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
+                          const std::vector<Vertex*>& goals, BeliefModel& model) {
     const BeliefOptions& options = model.options();
     model_ = &model;
     alpha_ = options.alpha;
     const bool byCovariance = options.cost == CostRule::integral && !model.field().hasPenalties();
     charge_ = byCovariance ? kSafety * (1. - alpha_) * options.kappa : 0.;
-    toGoal_.assign(vertices.size(), kInfinity);
-    if (goals.empty()) toGoal_.assign(vertices.size(), 0.);
+    noise_ = 0.5 * charge_ * model.noiseTrace();
+    const double unreached = goals.empty() ? 0. : kInfinity;
+    toGoal_.assign(vertices.size(), unreached);
     for (const Vertex* goal : goals) toGoal_[goal->index] = 0.;
-    findDistances(roadmap, vertices, toGoal_);
-    if (charge_ == 0.) return;
+    floor_ = toGoal_;
+    findDistances(roadmap, vertices, toGoal_, lengthOf);
+    findDistances(roadmap, vertices, floor_, [this](const auto& edge) { return floorOf(edge); });
+}
 
+void CostToGo::findObserved(const Roadmap& roadmap, const std::deque<Vertex>& vertices) {
     observes_.clear();
     isEvaluated_.clear();
     for (const Vertex& vertex : vertices) {
@@ -64,6 +90,20 @@ void CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices
     for (int k = 0; k < kAxes; ++k) findViews(roadmap, vertices, k);
 }
 
+/// Whether the uncertainty at the start may add much to the floor.
+bool CostToGo::isUncertain(const Start& start) const {
+    if (charge_ == 0.) return false;
+    double sum = 0.;
+    for (const double variance : variances(start.covariance)) sum += variance;
+    return charge_ * sum * toGoal_[start.vertex->index] >
+           kLittleCharge * floor_[start.vertex->index];
+}
+
+double CostToGo::floorOf(const Roadmap::Edge& edge) const {
+    const double length = edge.motion.length;
+    return length * (alpha_ + noise_ * length / edge.motion.steps);
+}
+
 /// An older vertex no farther than views are apart, whose view was evaluated.
 const Vertex* CostToGo::evaluatedNear(const Roadmap& roadmap, const Vertex& vertex) const {
     for (const Roadmap::Edge* edge : roadmap.of(&vertex)) {
@@ -75,7 +115,8 @@ const Vertex* CostToGo::evaluatedNear(const Roadmap& roadmap, const Vertex& vert
 }
 
 CostToGo::Observed CostToGo::observedFrom(const Vertex& vertex) const {
-    const auto& view = model_->field().at(model_->space().bodyPose(vertex.state));
+    const auto& view = model_->field().atAnyEpoch(model_->space().bodyPose(vertex.state));
+    if (view.isStale) return {true, true, true};
     Observed observed{};
     for (int k = 0; k < kAxes; ++k) observed[k] = view.information(k, k) > kMinInformation;
     return observed;
@@ -93,36 +134,36 @@ void CostToGo::findViews(const Roadmap& roadmap, const std::deque<Vertex>& verti
             if (!observes(*edge, axis)) continue;
             toView[vertex.index] = 0.;
             viaView[vertex.index] =
-                std::min(viaView[vertex.index], edge->motion.length + toGoal_[next->index]);
+                std::min(viaView[vertex.index], floorOf(*edge) + floor_[next->index]);
         }
     }
-    findDistances(roadmap, vertices, toView);
-    findDistances(roadmap, vertices, viaView);
+    findDistances(roadmap, vertices, toView, lengthOf);
+    findDistances(roadmap, vertices, viaView, [this](const auto& edge) { return floorOf(edge); });
 }
 
 double CostToGo::from(const Vertex& vertex, const PerAxis& variance) const {
     const double length = toGoal_[vertex.index];
-    if (charge_ == 0. || length == kInfinity) return alpha_ * length;
+    const double floor = floor_[vertex.index];
+    if (charge_ == 0. || length == kInfinity) return floor;
     double unobserved = 0.;  // charge until each axis is observed, on the shortest path
     double detour = 0.;      // at least as much more for one of the axes
     for (int k = 0; k < kAxes; ++k) {
         const double toView = toView_[k][vertex.index];
         const double least = charge_ * variance[k] * std::min(toView, length);
         const double never = charge_ * variance[k] * length;
-        const double viaView =
-            toView == kInfinity
-                ? kInfinity
-                : charge_ * variance[k] * toView + alpha_ * (viaView_[k][vertex.index] - length);
+        const double viaView = toView == kInfinity ? kInfinity
+                                                   : charge_ * variance[k] * toView +
+                                                         viaView_[k][vertex.index] - floor;
         unobserved += least;
         detour = std::max(detour, std::min(viaView, never) - least);
     }
-    return alpha_ * length + unobserved + detour;
+    return floor + unobserved + detour;
 }
 
 double CostToGo::over(const Roadmap::Edge& edge, const Vertex& vertex,
                       const PerAxis& variance) const {
     PerAxis left = variance;
-    double cost = alpha_ * edge.motion.length;
+    double cost = floorOf(edge);
     if (charge_ > 0.) {
         for (int k = 0; k < kAxes; ++k) {
             if (observes(edge, k)) left[k] = 0.;

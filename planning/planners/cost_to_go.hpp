@@ -4,29 +4,52 @@
 
 #include <array>
 
+#include "geometry/constants.hpp"
+
 #include "planners/roadmap.hpp"
 
 namespace photonav {
 
-/// A lower bound on the cost-to-go over a roadmap.
+/// A lower bound on the cost-to-go over a roadmap, the sum of two parts.
 ///
-/// The distance alone gives alpha times the shortest distance. Uncertainty adds to that: the
-/// conditional variance of a position coordinate given all others (the inverse of the precision's
-/// diagonal) never falls with motion, and only a view that observes the coordinate lowers it. So it
-/// is charged at least until the nearest place with such a view, and a path by way of this place
-/// has to go on to the goal from there.
+/// The floor: what a motion costs however certain the pose is before it. Its length counts alpha,
+/// and the noise of a step is in the covariance at the end of the step, before the next view, so
+/// that it is charged over half the step. Where there is much to see the cost is hardly more.
+///
+/// The uncertainty at the start: the conditional variance of a position coordinate given all others
+/// (the inverse of the precision's diagonal) never falls with motion, and only a view that observes
+/// the coordinate lowers it. So it is charged at least until
+/// the nearest place with such a view, and a path by way of this place has to go on to the goal
+/// from there.
 ///
 /// Views not taken yet are guessed from those at the two ends of the motion: if neither end
 /// observes an axis, no view between them is assumed to. The bound can be too high where a texture
 /// lies between the vertices and is visible from none of them; it becomes right as motions get
-/// shorter. Fourth-order terms and information below the threshold are covered by 1 % of the
-/// charge.
+/// shorter. Of a view that the map has changed since, everything is assumed to be observed.
+/// Fourth-order terms and information below the threshold are covered by 1 % of the charge.
 class CostToGo {
   public:
+    /// Where a search begins, and with which covariance.
+    struct Start {
+        const Vertex* vertex;
+        Matrix6 covariance;
+    };
+
     /// Computes the bound for a roadmap as it is now, and as the field's views are now. Evaluates
-    /// the views from vertices, but skips vertices within `ds` of one already evaluated.
+    /// the views from vertices that were never evaluated, but skips vertices within `ds` of one
+    /// that was. Renders no view again.
     void update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                 const std::vector<Vertex*>& goals, BeliefModel& model);
+
+    /// The same for a search from these starts. If no goal can be reached from them, or the
+    /// uncertainty there adds little and there is `muchToSee` on the way, the bound is the floor
+    /// alone, which needs no views.
+    void update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
+                const std::vector<Vertex*>& goals, BeliefModel& model,
+                const std::vector<Start>& starts, bool muchToSee);
+
+    /// The floor of the cost from a vertex to a goal.
+    double floor(const Vertex& vertex) const { return floor_[vertex.index]; }
 
     /// Conditional variance of each position coordinate (axes of the world) given all other
     /// coordinates of the belief [m^2]; neither motion nor uninformative views reduce it.
@@ -48,6 +71,12 @@ class CostToGo {
 
     const Vertex* evaluatedNear(const Roadmap& roadmap, const Vertex& vertex) const;
     Observed observedFrom(const Vertex& vertex) const;
+    double floorOf(const Roadmap::Edge& edge) const;
+    void findFloors(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
+                    const std::vector<Vertex*>& goals, BeliefModel& model);
+    void findObserved(const Roadmap& roadmap, const std::deque<Vertex>& vertices);
+    bool reachesGoal(const Start& start) const { return floor_[start.vertex->index] < kInfinity; }
+    bool isUncertain(const Start& start) const;
     void findViews(const Roadmap& roadmap, const std::deque<Vertex>& vertices, int axis);
     bool observes(const Roadmap::Edge& edge, int axis) const {
         return observes_[edge.from->index][axis] || observes_[edge.to->index][axis];
@@ -56,11 +85,13 @@ class CostToGo {
     BeliefModel* model_ = nullptr;
     double alpha_ = 1.;
     double charge_ = 0.;              // per metre and m^2
-    std::vector<double> toGoal_;      // by vertex
+    double noise_ = 0.;               // charged per metre flown and metre of a step
+    std::vector<double> toGoal_;      // by vertex: distance
+    std::vector<double> floor_;       // by vertex: least sum of floors to a goal
     std::vector<Observed> observes_;  // by vertex
     std::vector<bool> isEvaluated_;   // by vertex; else it observes what a near one does
     std::array<std::vector<double>, kAxes> toView_;   // by vertex: distance to a view of the axis
-    std::array<std::vector<double>, kAxes> viaView_;  // by vertex: distance to the goal by there
+    std::array<std::vector<double>, kAxes> viaView_;  // by vertex: floors to the goal by there
 };
 
 }  // namespace photonav

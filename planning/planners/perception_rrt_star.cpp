@@ -127,16 +127,26 @@ bool PerceptionRRTstar::isFree(Candidate& candidate, const Vertex& fresh) const 
 }
 
 /// Vertices and motions in collision, and their subtrees (the paper's Algorithm 2).
-std::vector<Vertex*> PerceptionRRTstar::invalidate(const ChangedSpace& changed,
-                                                   std::vector<Vertex*> colliding) {
+BeliefPlanner::Invalid PerceptionRRTstar::invalidate(const ChangedSpace& changed,
+                                                     std::vector<Vertex*> colliding) {
     const FlightSpace& space = model_->space();
+    std::size_t edges = 0;
     for (Vertex& vertex : vertices_) {
         if (vertex.state == nullptr || at(vertex).parent == nullptr) continue;
         const Vertex& parent = *at(vertex).parent;
         if (!changed.touches(space.position(parent.state), space.position(vertex.state))) continue;
-        if (!motionIsFree(parent, vertex)) colliding.push_back(&vertex);
+        if (motionIsFree(parent, vertex)) continue;
+        colliding.push_back(&vertex);
+        ++edges;
     }
-    return withDescendants(colliding);
+    return {withDescendants(colliding), edges};
+}
+
+std::vector<const Vertex*> PerceptionRRTstar::parents() const {
+    std::vector<const Vertex*> parents;
+    parents.reserve(tree_.size());
+    for (const Branch& branch : tree_) parents.push_back(branch.parent);
+    return parents;
 }
 
 std::vector<Vertex*> PerceptionRRTstar::withDescendants(const std::vector<Vertex*>& vertices) {
@@ -159,12 +169,40 @@ void PerceptionRRTstar::removeEdgesOf(const Vertex& vertex) {
     if (branch.parent != nullptr) std::erase(at(*branch.parent).children, &vertex);
     for (const Vertex* child : branch.children) at(*child).parent = nullptr;
     branch = {};
+    std::replace(informed_.begin(), informed_.end(), const_cast<Vertex*>(&vertex),
+                 static_cast<Vertex*>(nullptr));
 }
 
+/// Line 7 of Algorithm 2 and line 9: the vertices whose information changed, by the views on the
+/// motion that leads to them, get the new one. Covariances are propagated through their subtrees.
 void PerceptionRRTstar::renewBeliefs() {
+    for (Vertex& vertex : vertices_) {
+        if (vertex.state != nullptr && hasStaleViews(at(vertex).motion)) {
+            informed_.push_back(&vertex);
+        }
+    }
     for (const Root& root : roots_) {
         at(*root.vertex).belief = root.belief;
         updateSubtree(*root.vertex);
+    }
+    offerBestGoal();
+}
+
+bool PerceptionRRTstar::hasStaleViews(const Motion& motion) const {
+    return std::any_of(motion.views.begin(), motion.views.end(),
+                       [](const InformationField::Entry* view) { return view->isStale; });
+}
+
+/// Lines 8 to 11 of Algorithm 2: rewires around every vertex whose information changed.
+void PerceptionRRTstar::finish(const ompl::base::PlannerTerminationCondition& ptc) {
+    while (!informed_.empty() && !ptc) {
+        Vertex* const vertex = informed_.back();
+        informed_.pop_back();
+        if (vertex == nullptr || at(*vertex).parent == nullptr) continue;
+        std::vector<Vertex*> others = near(*vertex, at(*vertex).parent);
+        std::erase(others, vertex);
+        auto candidates = candidatesOf(*vertex, others);
+        rewire(*vertex, candidates);
     }
     offerBestGoal();
 }
@@ -240,6 +278,7 @@ std::vector<Vertex*> PerceptionRRTstar::unreached(const Vertex& root) {
 void PerceptionRRTstar::clear() {
     BeliefPlanner::clear();
     tree_.clear();
+    informed_.clear();
 }
 
 std::vector<TreeNode> PerceptionRRTstar::tree() const {

@@ -7,8 +7,9 @@
 namespace photonav {
 
 /// Perception-aware RRT* as published (Algorithm 1): one belief per vertex, the parent with the
-/// least cost-to-come, rewiring with the beliefs of all descendants brought up to date. Minimising
-/// the length alone it is the standard RRT*, named rrt_star: no view is ever rendered.
+/// least cost-to-come, rewiring with the beliefs of all descendants brought up to date. A map that
+/// changes is followed as in Algorithm 2; docs/planner.md has its lines beside ours. Minimising the
+/// length alone it is the standard RRT*, named rrt_star: no view is ever rendered.
 class PerceptionRRTstar : public BeliefPlanner {
   public:
     enum class Minimises { lengthAndUncertainty, length };
@@ -42,10 +43,12 @@ class PerceptionRRTstar : public BeliefPlanner {
     }
     void connect(Vertex& fresh, const std::vector<Vertex*>& near,
                  const ompl::base::PlannerTerminationCondition& ptc) override;
-    std::vector<Vertex*> invalidate(const ChangedSpace& changed,
-                                    std::vector<Vertex*> colliding) override;
+    std::vector<const Vertex*> parents() const override;
+    Invalid invalidate(const ChangedSpace& changed, std::vector<Vertex*> colliding) override;
     void removeEdgesOf(const Vertex& vertex) override;
     void renewBeliefs() override;
+    SampleShares sampleShares() const override { return {.removed = 1.}; }
+    void finish(const ompl::base::PlannerTerminationCondition& ptc) override;
     std::vector<Vertex*> replaceRoots(const Root& root, const std::vector<Vertex*>& near) override;
     Belief propagate(const Belief& belief, Motion& motion, bool backward) override;
 
@@ -57,13 +60,15 @@ class PerceptionRRTstar : public BeliefPlanner {
     void chooseParent(Vertex& fresh, std::vector<Candidate>& candidates);
     void rewire(Vertex& fresh, std::vector<Candidate>& candidates);
     void updateSubtree(const Vertex& root);
+    bool hasStaleViews(const Motion& motion) const;
     void offerBestGoal();
     bool isFree(Candidate& candidate, const Vertex& fresh) const;
     Branch& at(const Vertex& vertex) { return tree_[vertex.index]; }
     const Belief& belief(const Vertex& vertex) const { return tree_[vertex.index].belief; }
 
-    bool shortestPath_;        // no beliefs
-    std::deque<Branch> tree_;  // by vertex
+    bool shortestPath_;              // no beliefs
+    std::deque<Branch> tree_;        // by vertex
+    std::vector<Vertex*> informed_;  // V_inf of Algorithm 2, until they are rewired
 };
 
 }  // namespace photonav

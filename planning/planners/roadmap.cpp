@@ -31,12 +31,24 @@ bool Roadmap::isFree(Edge& edge, const ompl::base::SpaceInformation& si) {
     return *edge.isFree;
 }
 
-void Roadmap::mapChanged(const ChangedSpace& changed, const FlightSpace& space) {
+std::size_t Roadmap::mapChanged(const ChangedSpace& changed, const FlightSpace& space,
+                                const ompl::base::SpaceInformation& si) {
+    std::size_t blocked = 0;
     for (Edge& edge : edges_) {
         if (edge.from == nullptr || !edge.isFree) continue;
-        if (changed.touches(space.position(edge.from->state), space.position(edge.to->state))) {
-            edge.isFree.reset();
+        if (!changed.touches(space.position(edge.from->state), space.position(edge.to->state))) {
+            continue;
         }
+        const bool wasFree = *edge.isFree;
+        edge.isFree.reset();
+        if (wasFree && !isFree(edge, si)) ++blocked;
+    }
+    return blocked;
+}
+
+void Roadmap::checkAll(const ompl::base::SpaceInformation& si) {
+    for (Edge& edge : edges_) {
+        if (edge.from != nullptr) isFree(edge, si);
     }
 }
 

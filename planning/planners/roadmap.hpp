@@ -32,8 +32,14 @@ class Roadmap {
     /// Whether an edge is free; checks it for collision when called for the first time.
     static bool isFree(Edge& edge, const ompl::base::SpaceInformation& si);
 
-    /// Marks all edges through changed space as not checked.
-    void mapChanged(const ChangedSpace& changed, const FlightSpace& space);
+    /// Checks all edges that were not checked yet.
+    void checkAll(const ompl::base::SpaceInformation& si);
+
+    /// Checks the edges through changed space again that had been free, and marks the others there
+    /// as not checked.
+    /// @return how many had been free and are not any more
+    std::size_t mapChanged(const ChangedSpace& changed, const FlightSpace& space,
+                           const ompl::base::SpaceInformation& si);
 
     /// Edges that begin or end at a vertex.
     const std::vector<Edge*>& of(const Vertex* vertex) const { return edgesOf_[vertex->index]; }

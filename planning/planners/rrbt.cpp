@@ -125,9 +125,21 @@ void RRBT::offerPath(const Node& goal) {
     offer(goal.belief.cost, path);
 }
 
-std::vector<Vertex*> RRBT::invalidate(const ChangedSpace& changed, std::vector<Vertex*> colliding) {
-    roadmap_.mapChanged(changed, model_->space());
-    return colliding;
+BeliefPlanner::Invalid RRBT::invalidate(const ChangedSpace& changed,
+                                        std::vector<Vertex*> colliding) {
+    return {std::move(colliding), roadmap_.mapChanged(changed, model_->space(), *si_)};
+}
+
+std::vector<const Vertex*> RRBT::parents() const {
+    std::vector<const Vertex*> parents(nodesOf_.size(), nullptr);
+    for (std::size_t i = 0; i < nodesOf_.size(); ++i) {
+        const Node* best = nullptr;
+        for (const Node* node : nodesOf_[i]) {
+            if (best == nullptr || node->belief.cost < best->belief.cost) best = node;
+        }
+        if (best != nullptr && best->parent != nullptr) parents[i] = best->parent->vertex;
+    }
+    return parents;
 }
 
 /// All beliefs are propagated anew over the graph, when solve() is called next.

@@ -50,8 +50,9 @@ class RRBT : public BeliefPlanner {
     void connect(Vertex& fresh, const std::vector<Vertex*>& near,
                  const ompl::base::PlannerTerminationCondition& ptc) override;
     void begin(const ompl::base::PlannerTerminationCondition& ptc) override { propagateQueue(ptc); }
-    std::vector<Vertex*> invalidate(const ChangedSpace& changed,
-                                    std::vector<Vertex*> colliding) override;
+    std::vector<const Vertex*> parents() const override;
+    Invalid invalidate(const ChangedSpace& changed, std::vector<Vertex*> colliding) override;
+    SampleShares sampleShares() const override { return {.removed = 0.6, .changed = 0.2}; }
     void removeEdgesOf(const Vertex& vertex) override { roadmap_.removeEdgesOf(vertex); }
     void renewBeliefs() override;
     std::vector<Vertex*> replaceRoots(const Root& root, const std::vector<Vertex*>& near) override;

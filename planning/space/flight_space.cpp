@@ -186,23 +186,26 @@ Pose FlightSpace::poseBetween(const ob::State* from, const ob::State* to, double
 }
 
 void FlightSpace::setState(ob::State* state, const Eigen::Vector3d& position, double yaw) const {
-    double* values = nullptr;
+    setPosition(state, position);
     if (kind_ == StateKind::se3) {
-        auto* s = state->as<ob::SE3StateSpace::StateType>();
-        s->setXYZ(position.x(), position.y(), position.z());
-        s->rotation().setAxisAngle(0., 0., 1., yaw);
-        return;
-    }
-    if (kind_ == StateKind::positionYaw) {
-        auto* s = state->as<ob::CompoundState>();
-        values = s->as<ob::RealVectorStateSpace::StateType>(0)->values;
-        auto* heading = s->as<ob::SO2StateSpace::StateType>(1);
+        state->as<ob::SE3StateSpace::StateType>()->rotation().setAxisAngle(0., 0., 1., yaw);
+    } else if (kind_ == StateKind::positionYaw) {
+        auto* heading = state->as<ob::CompoundState>()->as<ob::SO2StateSpace::StateType>(1);
         heading->value = yaw;
         space_->as<ob::CompoundStateSpace>()->getSubspace(1)->enforceBounds(heading);
-    } else {
-        values = state->as<ob::RealVectorStateSpace::StateType>()->values;
     }
-    Eigen::Map<Eigen::Vector3d>{values} = position;
+}
+
+void FlightSpace::setPosition(ob::State* state, const Eigen::Vector3d& position) const {
+    if (kind_ == StateKind::se3) {
+        state->as<ob::SE3StateSpace::StateType>()->setXYZ(position.x(), position.y(), position.z());
+        return;
+    }
+    const auto* vector =
+        kind_ == StateKind::position
+            ? state->as<ob::RealVectorStateSpace::StateType>()
+            : state->as<ob::CompoundState>()->as<ob::RealVectorStateSpace::StateType>(0);
+    Eigen::Map<Eigen::Vector3d>{vector->values} = position;
 }
 
 ob::StateSamplerPtr FlightSpace::sampler(std::uint32_t seed) const {

@@ -42,6 +42,8 @@ class FlightSpace {
     Pose poseBetween(const ompl::base::State* from, const ompl::base::State* to,
                      double fraction) const;
     void setState(ompl::base::State* state, const Eigen::Vector3d& position, double yaw) const;
+    /// Moves a state; its rotation stays.
+    void setPosition(ompl::base::State* state, const Eigen::Vector3d& position) const;
 
     /// Uniform sampler with its own seed, independent of all other random numbers in the process.
     ompl::base::StateSamplerPtr sampler(std::uint32_t seed) const;

@@ -129,7 +129,9 @@ void follow(UnknownPolicy unknown, double belowHorizon, Marks& marks) {
         if (round % 3 == 0) change.join(room.change());
         marks.entries += field->size() - field->stale();
         const auto views = std::make_shared<VoxelRenderer>(room.map, unknown);
+        const std::size_t before = field->marked() - field->stale();
         field->update(views, change);
+        EXPECT_EQ(field->marked() - field->stale(), before);
         const auto fresh = fieldOf(views, belowHorizon);
         for (std::size_t i = 0; i < poses.size(); ++i) {
             const bool isSame = entries[i]->information == fresh->at(poses[i]).information;

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "planning/fixture.hpp"
+#include "render/voxel_renderer.hpp"
 
 namespace photonav::test {
 namespace {
@@ -114,12 +115,67 @@ TEST(CostToGo, ChargesUncertaintyUntilTheFirstInformativeView) {
     const Belief root = grid.model->root(start.state);
     const double byLength = problem.belief.alpha * 8.;
     EXPECT_GT(grid.bound(start, root.covariance), 2. * byLength);
-    EXPECT_NEAR(grid.bound(start, 1e-9 * root.covariance), byLength, 1e-3);
+    // The noise of steps of 0.25 m, which are charged over half their length.
+    const double noise = 0.95 * problem.belief.kappa * 0.125 * grid.model->noiseTrace() * 8.;
+    EXPECT_NEAR(grid.bound(start, 1e-9 * root.covariance), byLength + noise, 1e-3);
     // Nothing to see anywhere: the whole way at the initial uncertainty of the position.
     problem.information = [](const Pose&) { return Matrix6::Zero().eval(); };
     Grid blind(problem);
     const double charge = 0.95 * problem.belief.kappa * 0.05 * 8.;
-    EXPECT_NEAR(blind.bound(blind.at(6, 2), root.covariance), byLength + charge, 0.02 * charge);
+    EXPECT_NEAR(blind.bound(blind.at(6, 2), root.covariance), byLength + noise + charge,
+                0.02 * charge);
+}
+
+TEST(CostToGo, NeedsViewsOnlyWhereTheStartIsUncertain) {
+    const Problem problem;
+    Grid grid(problem);
+    Vertex& start = grid.at(6, 2);
+    InformationField& field = grid.model->field();
+    const Matrix6 covariance = problem.belief.initialCovariance;
+    const auto boundFrom = [&](const Matrix6& atStart, bool muchToSee = true) {
+        field.clear();
+        grid.toGo.update(grid.roadmap, grid.vertices, {&grid.at(6, 18)}, *grid.model,
+                         {{&start, atStart}}, muchToSee);
+        return grid.bound(start, atStart);
+    };
+    const double uncertain = boundFrom(covariance);
+    EXPECT_GT(field.views(), 100U);
+    const double certain = boundFrom(1e-3 * covariance);
+    EXPECT_EQ(field.views(), 0U);
+    EXPECT_LT(certain, uncertain);
+    EXPECT_GT(certain, problem.belief.alpha * 8.);
+    boundFrom(1e-3 * covariance, false);
+    EXPECT_GT(field.views(), 100U);
+}
+
+TEST(CostToGo, AssumesThatStaleViewsObserveEverything) {
+    // Over a map without texture nothing is observed; once it has changed, everything may be.
+    TexturedOcTree map(0.2);
+    map.setNodeValue(map.coordToKey(4., 4., -0.1), 1.F);
+    const auto views = std::make_shared<VoxelRenderer>(map, UnknownPolicy::free);
+    const Camera camera = makeCamera(24, 16, 1.2);
+    Problem problem;
+    Grid grid(problem);
+    grid.model = std::make_shared<BeliefModel>(
+        problem.space(),
+        std::make_shared<InformationField>(views, camera, photometricModel(camera, {}),
+                                           problem.mount, InformationField::Options{}),
+        problem.belief);
+    const auto bound = [&] {
+        grid.toGo.update(grid.roadmap, grid.vertices, {&grid.at(6, 18)}, *grid.model);
+        return grid.bound(grid.at(6, 2), problem.belief.initialCovariance);
+    };
+    const double blind = bound();
+    const std::size_t rendered = grid.model->field().views();
+    MapChange change{.resolution = 0.2};
+    for (int x = -5; x < 20; ++x) {
+        for (int y = -5; y < 20; ++y) change.texture.emplace_back(x, y, -1);
+    }
+    change.normalize();
+    grid.model->field().update(views, change);
+    ASSERT_EQ(grid.model->field().stale(), grid.model->field().size());
+    EXPECT_LT(bound(), 0.8 * blind);
+    EXPECT_EQ(grid.model->field().views(), rendered);
 }
 
 TEST(CostToGo, IsInfiniteWhereNoGoalIsReached) {

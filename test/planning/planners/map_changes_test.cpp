@@ -5,6 +5,7 @@
 #include <ompl/base/goals/GoalState.h>
 #include <ompl/geometric/PathGeometric.h>
 
+#include <numeric>
 #include <random>
 
 #include "map/distance_map.hpp"
@@ -132,9 +133,7 @@ class ChangingFlight {
         if (isOverTexture_ && random(0., 1.) < 0.6) {
             const Eigen::Vector2d low(random(0., 6.), random(0., 6.));
             const Eigen::AlignedBox2d area(low, low + Eigen::Vector2d(2., 2.));
-            const double contrast = random(0., 1.) < 0.3 ? 0. : 0.8;
-            follow(world_.paintFloor(
-                area, [&] { return static_cast<float>(0.5 + contrast * random(-0.5, 0.5)); }));
+            paint(area, random(0., 1.) < 0.3 ? 0. : 0.8);
             return;
         }
         if (walls_.size() > 5 || (!walls_.empty() && random(0., 1.) < 0.4)) {
@@ -154,6 +153,12 @@ class ChangingFlight {
         follow(world_.fill(wall, true));
     }
 
+    /// Gives a part of the floor random grey values.
+    void paint(const Eigen::AlignedBox2d& area, double contrast) {
+        follow(world_.paintFloor(
+            area, [&] { return static_cast<float>(0.5 + contrast * random(-0.5, 0.5)); }));
+    }
+
     /// Along the path, and somewhat off it.
     void move() {
         Vector3d target = position_ + Vector3d(random(-1., 1.), random(-1., 1.), 0.);
@@ -171,6 +176,22 @@ class ChangingFlight {
         position_ = target;
         root_ = Belief{random(0.5, 2.) * problem_.belief.initialCovariance, 0.};
         planner_->moveRoot(state.get(), *root_);
+    }
+
+    /// Cost of the best path that a new planner with as many vertices finds for the problem as it
+    /// is now.
+    double costFromScratch(const std::string& name, unsigned shortcut) {
+        Problem now = problem_;
+        now.start = position_;
+        const auto planner = now.planner(name, 5, makeModel(makeField()));
+        planner->params().setParam("max_vertices", "250");
+        planner->params().setParam("shortcut", std::to_string(shortcut));
+        ob::ScopedState<> state(planner->getSpaceInformation());
+        now.space().setState(state.get(), position_, 0.);
+        if (root_) planner->moveRoot(state.get(), *root_);
+        planner->solve(
+            ob::PlannerTerminationCondition([&] { return planner->iterations() >= 5000; }));
+        return planner->bestCost();
     }
 
     /// The solution is free in the map as it is now and costs what its beliefs say; so do all
@@ -282,6 +303,59 @@ TEST_P(ChangingMap, PathsAreValidAndAuditedAfterAnySequenceOfChanges) {
     EXPECT_GT(kept, 10) << "of 30";
 }
 
+/// By how much the cost of a plan that follows random changes exceeds that of plans from scratch,
+/// relative; one value per update, in three scenes, sorted.
+std::vector<double> excessOverScratch(std::uint32_t firstSeed, std::uint32_t lastSeed) {
+    constexpr unsigned kShortcut = 1000;
+    constexpr int kUpdates = 6;
+    const std::string name = "belief_rrt_star";
+    std::vector<double> excess;
+    for (const Scene scene : {Scene::flat, Scene::withHeading, Scene::overTexture}) {
+        for (std::uint32_t seed = firstSeed; seed <= lastSeed; ++seed) {
+            ChangingFlight flight(name, scene, seed);
+            flight.planner().params().setParam("shortcut", std::to_string(kShortcut));
+            flight.plan();
+            for (int step = 0; step < kUpdates && !testing::Test::HasFailure(); ++step) {
+                flight.changeTheMap();
+                if (step % 2 == 1) flight.move();
+                flight.plan();
+                flight.check();
+                const double scratch = flight.costFromScratch(name, kShortcut);
+                if (!flight.hasPath() || scratch == kInfinity) continue;
+                excess.push_back(flight.planner().bestCost() / scratch - 1.);
+            }
+        }
+    }
+    std::sort(excess.begin(), excess.end());
+    return excess;
+}
+
+void expectLittle(const std::vector<double>& excess) {
+    const auto count = static_cast<double>(excess.size());
+    const double mean = std::accumulate(excess.begin(), excess.end(), 0.) / count;
+    const double median = excess[excess.size() / 2];
+    std::printf(
+        "%.0f updates; J above that from scratch: mean %.2f %%, median %.2f %%, 90 %% %.2f %%, "
+        "most %.2f %%\n",
+        count, 100. * mean, 100. * median, 100. * excess[excess.size() * 9 / 10],
+        100. * excess.back());
+    EXPECT_LT(mean, 0.02);
+    EXPECT_LT(median, 0.02);
+}
+
+TEST(RepairedPlan, CostsHardlyMoreThanOneFromScratch) {
+    const auto excess = excessOverScratch(11, 12);
+    ASSERT_GT(excess.size(), 25U);
+    expectLittle(excess);
+}
+
+/// Takes minutes; run it with --gtest_also_run_disabled_tests.
+TEST(RepairedPlan, DISABLED_CostsHardlyMoreInManySequences) {
+    const auto excess = excessOverScratch(1, 10);
+    ASSERT_GT(excess.size(), 140U);
+    expectLittle(excess);
+}
+
 /// A planner above a changing world of walls.
 struct PlannerBetweenWalls {
     explicit PlannerBetweenWalls(const std::string& name, std::size_t vertices = 200)
@@ -314,6 +388,128 @@ TEST_P(ChangedPlanner, VerticesInAWallAreRemoved) {
     }
 }
 
+TEST_P(ChangedPlanner, CountsWhatAnUpdateChanges) {
+    PlannerBetweenWalls problem(GetParam());
+    BeliefPlanner& planner = *problem.planner;
+    EXPECT_EQ(planner.lastUpdate().verticesAdded, planner.vertices() - 1);  // all but the start
+    EXPECT_EQ(planner.lastUpdate().verticesRewired, 0U);
+    const std::size_t before = planner.vertices();
+    const Eigen::AlignedBox3d wall(Vector3d(2., 3., 0.), Vector3d(6., 6., 4.));
+    planner.mapChanged(problem.world.fill(wall, true));
+    const std::size_t left = planner.vertices();
+    EXPECT_EQ(planner.lastUpdate().verticesInvalidated, before - left);
+    EXPECT_GT(planner.lastUpdate().edgesInvalidated, 5U);
+    EXPECT_EQ(planner.lastUpdate().verticesAdded, 0U);
+    grow(planner, 250);
+    EXPECT_EQ(planner.lastUpdate().verticesInvalidated, before - left);
+    EXPECT_EQ(planner.lastUpdate().verticesAdded, planner.vertices() - left);
+    EXPECT_GT(planner.lastUpdate().verticesRewired, 0U);
+    EXPECT_LT(planner.lastUpdate().verticesRewired, left);
+}
+
+/// The positions of a planner's vertices that have a belief.
+std::vector<Vector3d> positionsOf(const BeliefPlanner& planner) {
+    std::vector<Vector3d> positions;
+    for (const TreeNode& node : planner.tree()) {
+        positions.push_back(planner.model().space().position(node.state));
+    }
+    return positions;
+}
+
+double distanceTo(const std::vector<Vector3d>& points, const Vector3d& p) {
+    double least = kInfinity;
+    for (const Vector3d& point : points) least = std::min(least, (point - p).norm());
+    return least;
+}
+
+TEST(ChangedTree, IsGrownAgainWhereItsSubtreesWere) {
+    for (const std::string name : {"rrt_star", "pa_rrt_star"}) {
+        PlannerBetweenWalls problem(name, 300);
+        BeliefPlanner& planner = *problem.planner;
+        const auto before = positionsOf(planner);
+        planner.mapChanged(problem.world.fill({Vector3d(5., 1., 0.), Vector3d(5.4, 3., 4.)}, true));
+        const auto kept = positionsOf(planner);
+        std::vector<Vector3d> removed;
+        for (const Vector3d& p : before) {
+            if (distanceTo(kept, p) > 0.) removed.push_back(p);
+        }
+        ASSERT_GT(removed.size(), 10U);
+        ASSERT_LT(removed.size(), 150U);
+        grow(planner, 300);
+        double added = 0., nearby = 0.;
+        for (const Vector3d& p : positionsOf(planner)) {
+            if (distanceTo(kept, p) == 0.) continue;
+            ++added;
+            nearby += distanceTo(removed, p) < 1. ? 1. : 0.;
+        }
+        EXPECT_EQ(added, removed.size());
+        EXPECT_GT(nearby / added, 0.9) << name;
+    }
+}
+
+TEST(ChangedTree, VerticesWhoseInformationChangedAreRewired) {
+    ChangingFlight flight("pa_rrt_star", Scene::overTexture, 4);
+    flight.plan();
+    flight.plan();
+    BeliefPlanner& planner = flight.planner();
+    ASSERT_EQ(planner.vertices(), 250U);
+    flight.paint({Eigen::Vector2d(4., 0.), Eigen::Vector2d(8., 5.)}, 0.8);
+    const double before = planner.bestCost();
+    flight.check();
+    flight.plan();  // no vertex is added
+    flight.check();
+    EXPECT_EQ(planner.lastUpdate().verticesAdded, 0U);
+    EXPECT_GT(planner.lastUpdate().verticesRewired, 5U);
+    EXPECT_LT(planner.bestCost(), 0.99 * before);
+}
+
+TEST(ChangedBeliefRRTstar, RendersOnlyTheViewsThatItsSearchAsksFor) {
+    ChangingFlight flight("belief_rrt_star", Scene::overTexture, 5);
+    flight.paint(kFloor, 0.8);
+    flight.plan();
+    flight.plan();
+    InformationField& field = flight.planner().model().field();
+    const std::size_t views = field.views();
+    flight.paint({Eigen::Vector2d(-2., 5.), Eigen::Vector2d(3., 10.)}, 0.8);  // off the path
+    const std::size_t marked = field.stale();
+    ASSERT_GT(marked, 50U);
+    flight.plan();
+    flight.check();
+    EXPECT_LT(field.views() - views, marked / 2);
+    EXPECT_GT(field.stale(), marked / 2);
+}
+
+TEST_P(ChangedPlanner, AnUpdateThatChangesNothingCountsNothing) {
+    PlannerBetweenWalls problem(GetParam());
+    BeliefPlanner& planner = *problem.planner;
+    MapChange nothing{.resolution = 0.2};
+    nothing.occupancy.emplace_back(1000, 1000, 0);  // far away
+    planner.mapChanged(nothing);
+    grow(planner, planner.vertices());
+    planner.mapChanged(nothing);
+    grow(planner, planner.vertices());
+    const UpdateCounts& counts = planner.lastUpdate();
+    EXPECT_EQ(counts.verticesInvalidated, 0U);
+    EXPECT_EQ(counts.edgesInvalidated, 0U);
+    EXPECT_EQ(counts.verticesAdded, 0U);
+    EXPECT_EQ(counts.verticesRewired, 0U);
+}
+
+TEST_P(ChangedPlanner, AMoveBelongsToTheUpdateOfTheMapBeforeIt) {
+    PlannerBetweenWalls problem(GetParam());
+    BeliefPlanner& planner = *problem.planner;
+    planner.mapChanged(problem.world.fill({Vector3d(2., 3., 0.), Vector3d(6., 6., 4.)}, true));
+    const std::size_t invalidated = planner.lastUpdate().verticesInvalidated;
+    ob::ScopedState<> state(planner.getSpaceInformation());
+    problem.problem.space().setState(state.get(), Vector3d(1.2, 1.1, 2.), 0.);
+    planner.moveRoot(state.get(), Belief{});
+    EXPECT_GE(planner.lastUpdate().verticesInvalidated, invalidated);
+    grow(planner, 210);
+    planner.moveRoot(state.get(), Belief{});
+    EXPECT_LT(planner.lastUpdate().verticesInvalidated, invalidated);
+    EXPECT_EQ(planner.lastUpdate().verticesAdded, 0U);
+}
+
 TEST(ChangedBeliefRRTstar, SearchesAfterAChangeFindWhatASearchAnewFinds) {
     PlannerBetweenWalls problem("belief_rrt_star");
     std::mt19937 random(3);
@@ -331,6 +527,25 @@ TEST(ChangedBeliefRRTstar, SearchesAfterAChangeFindWhatASearchAnewFinds) {
         problem.planner->mapChanged(nothing);
         grow(*problem.planner, 200);
         EXPECT_NEAR(problem.planner->bestCost(), cost, 1e-9);
+    }
+}
+
+/// A way that is flown already is not left for one that is little better.
+TEST(ChangedBeliefRRTstar, LeavesAWayOnlyForOneThatIsWorthIt) {
+    const Eigen::AlignedBox3d wall(Vector3d(2., 2., 0.), Vector3d(6., 5., 4.));
+    for (const double commitment : {0., 0.9}) {
+        PlannerBetweenWalls problem("belief_rrt_star");
+        problem.planner->params().setParam("commitment", std::to_string(commitment));
+        problem.planner->mapChanged(problem.world.fill(wall, true));
+        grow(*problem.planner, 200);
+        const double around = problem.planner->bestCost();
+        problem.planner->mapChanged(problem.world.fill(wall, false));
+        grow(*problem.planner, 400);
+        if (commitment == 0.) {
+            EXPECT_LT(problem.planner->bestCost(), 0.99 * around);
+        } else {
+            EXPECT_NEAR(problem.planner->bestCost(), around, 1e-9);
+        }
     }
 }
 

@@ -99,10 +99,43 @@ TEST(Roadmap, ChecksAgainWhatPassesTheChange) {
     second.isFree = false;
     MapChange change{.resolution = 0.1};
     change.occupancy.emplace_back(14, 15, 5);  // at (5.6, 6, 2)
-    row.roadmap.mapChanged(ChangedSpace(change, 0.5), row.model->space());
+    EXPECT_EQ(row.roadmap.mapChanged(ChangedSpace(change, 0.5), row.model->space(), *row.si), 0U);
     EXPECT_TRUE(first.isFree.has_value());
     EXPECT_FALSE(second.isFree.has_value());
     EXPECT_TRUE(Roadmap::isFree(second, *row.si));
+}
+
+TEST(Roadmap, ChecksAllEdgesOnce) {
+    Row row;
+    int checks = 0;
+    Problem counted;
+    counted.clearance = [&](const Eigen::Vector3d& p) {
+        ++checks;
+        return std::abs(p.x() - 5.6);
+    };
+    const auto si = counted.spaceInformation();
+    row.roadmap.checkAll(*si);
+    EXPECT_TRUE(*row.roadmap.of(&row.vertices[0]).front()->isFree);
+    EXPECT_FALSE(*row.roadmap.of(&row.vertices[2]).front()->isFree);
+    const int once = checks;
+    row.roadmap.removeEdgesOf(row.vertices[0]);
+    row.roadmap.checkAll(*si);
+    EXPECT_EQ(checks, once);
+}
+
+TEST(Roadmap, CountsTheEdgesThatAChangeBlocks) {
+    Row row;
+    for (const unsigned i : {0U, 2U}) {
+        EXPECT_TRUE(Roadmap::isFree(*row.roadmap.of(&row.vertices[i]).front(), *row.si));
+    }
+    MapChange change{.resolution = 0.1};
+    change.occupancy.emplace_back(14, 15, 5);  // at (5.6, 6, 2)
+    Problem blocked;
+    blocked.clearance = [](const Eigen::Vector3d& p) { return std::abs(p.x() - 5.6); };
+    const auto si = blocked.spaceInformation();
+    EXPECT_EQ(row.roadmap.mapChanged(ChangedSpace(change, 0.5), row.model->space(), *si), 1U);
+    EXPECT_TRUE(*row.roadmap.of(&row.vertices[0]).front()->isFree);
+    EXPECT_FALSE(*row.roadmap.of(&row.vertices[2]).front()->isFree);
 }
 
 }  // namespace
