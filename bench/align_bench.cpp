@@ -219,7 +219,6 @@ void trackInMaps() {
     const TexturedOcTree map = mapOf(mesh);
     const VoxelRenderer voxels(map, UnknownPolicy::occupied);
     AlignmentOptions inCells;
-    inCells.trust = realCameraOptions(map.getResolution()).trust;
     inCells.modelNoise = ModelNoise::measured;
     fmt::print("188x120 images in a map, starts 2 cm and 1 degree off: median and p90 of 100\n");
     for (const auto& [name, angle] : {std::pair{"45 degrees", 0.25}, {"down", 0.5}}) {

@@ -308,7 +308,7 @@ int main(int argc, char** argv) {
         row(fmt::format("room, real camera, map of {} m", resolution), room, voxels, exposed,
             picture, count);
         flights(fmt::format("flights, real camera, map of {} m", resolution), room, voxels,
-                realCameraOptions(resolution), picture, count);
+                realCameraOptions(), picture, count);
     }
     keyframeRow("keyframe at full size, independent noise", room, 0, count);
     keyframeRow("keyframe at half size, independent noise", room, 1, count);
@@ -316,7 +316,7 @@ int main(int argc, char** argv) {
     flights("flights in room, independent noise", room, room, ideal, independentNoise, count);
     flights("flights in room, huber, independent noise", room, room, huber, independentNoise,
             count);
-    flights("flights over floor, real camera", floor, floor, realCameraOptions(0.), picture, count);
-    flights("flights in room, real camera", room, room, realCameraOptions(0.), picture, count);
+    flights("flights over floor, real camera", floor, floor, realCameraOptions(), picture, count);
+    flights("flights in room, real camera", room, room, realCameraOptions(), picture, count);
     photographTable(count / 3);
 }

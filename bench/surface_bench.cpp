@@ -133,11 +133,9 @@ void compareDepth(const View& truth, const View& seen, const Camera& camera, Res
     }
 }
 
-Result judge(const MeshRenderer& mesh, const VoxelRenderer& map, const World& world,
-             double resolution) {
+Result judge(const MeshRenderer& mesh, const VoxelRenderer& map, const World& world) {
     const Camera camera = trackingCamera();
     AlignmentOptions options;
-    options.trust = realCameraOptions(resolution).trust;
     options.modelNoise = ModelNoise::measured;
     DenseAligner aligner(map, camera, options);
     std::mt19937 random(2);
@@ -189,7 +187,7 @@ void compare(const MeshRenderer& mesh, const World& world, double resolution) {
     for (const bool surfaces : {false, true}) {
         const MadeMap made = makeMap(mesh, world, resolution, surfaces);
         const VoxelRenderer views(made.map, UnknownPolicy::free);
-        const Result r = judge(mesh, views, world, resolution);
+        const Result r = judge(mesh, views, world);
         fuseTime[surfaces] = made.fuse;
         renderTime[surfaces] = r.render;
         fmt::print(

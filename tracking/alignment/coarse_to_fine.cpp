@@ -207,10 +207,14 @@ bool Search::measureSlope() {
 /// and prior agree.
 MeasuredInformation Search::measured() {
     if (!isCompared_) at_ = evaluate(at_.T_c_w, at_.exposure);
-    const MeasuredInformation image = respondingBy(
+    MeasuredInformation image = respondingBy(
         slope_, measuredInformation(comparison_.blocks(level_, at_.T_c_w, at_.exposure, loss_),
                                     at_.equations, options_.photometric, options_.exposure,
-                                    options_.modelErrors, comparison_.sinceModel(at_.T_c_w)));
+                                    options_.modelErrors, comparison_.camera(level_),
+                                    comparison_.sinceModel(at_.T_c_w)));
+    image.equations.information *= options_.informationFactor;
+    image.equations.right *= options_.informationFactor;
+    image.repeating /= options_.informationFactor;
     at_.T_c_w = expSE3(step(image.equations, 0.)) * at_.T_c_w;
     relateToPrior(at_);
     return image;

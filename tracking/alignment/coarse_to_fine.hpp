@@ -33,6 +33,8 @@ struct AlignmentOptions {
     /// Covariance from the residuals (residual_covariance.hpp); else from `photometric.sigma` and
     /// `scale`.
     bool measureCovariance = false;
+    /// Factor on the information measured, as a calibration asks for.
+    double informationFactor = 1.;
     bool measureSlope = true;  ///< where a model can be rendered (measured_slope.hpp)
 };
 

@@ -16,7 +16,7 @@ class DenseAligner::RenderedModel : public Comparison {
     RenderedModel(const ViewSource& model, const Camera& full, const AlignmentOptions& options)
         : options_(options), model_(model) {
         // The same information by pixels of less noise, which is correlated.
-        const double noise = noiseAfterWidening(-widening());
+        const double noise = noiseAfterWidening(-widening(), options.photometric.scale);
         options_.photometric.sigma *= noise;
         options_.photometric.scale *= noise * noise;
         Camera c = full;

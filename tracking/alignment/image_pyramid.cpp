@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 namespace photonav {
 
@@ -21,9 +23,12 @@ Camera halved(const Camera& camera) {
                                centre(camera.cy()))};
 }
 
-double noiseAfterWidening(double variance) {
-    const double side = 0.5 * std::clamp(variance, 0., 0.5), middle = 1. - 2. * side;
-    return middle * middle + 2. * side * side;  // of both axes
+double noiseAfterWidening(double variance, double scale) {
+    const double added = std::clamp(variance, 0., 0.5);
+    const double side = 0.5 * added, middle = 1. - added;
+    const double ofWhite = middle * middle + 2. * side * side;  // both axes
+    const double smoothed = 1. / (4. * std::numbers::pi * scale);
+    return std::max(ofWhite, std::sqrt(smoothed / (smoothed + added)));
 }
 
 ImageF widened(const ImageF& image, double variance) {

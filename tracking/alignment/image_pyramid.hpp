@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/camera.hpp"
+#include "render/area_sensor.hpp"
 
 namespace photonav {
 
@@ -14,17 +15,17 @@ inline constexpr unsigned kMinSide = 12;  ///< pixels: smaller images get no lev
 /// column is dropped.
 Camera halved(const Camera& camera);
 
-/// Point spreads, standard deviation [pixels]: of a square pixel, and of rendered views
-/// (applyPointSpread()).
-inline constexpr double kAreaBlur = 0.2887;
-inline constexpr double kRenderedBlur = 0.7071;
+/// Point spread of rendered views, standard deviation [pixels]: that of applyPointSpread(), and
+/// about a pixel's area again by the interpolation of textures (measured against AreaSensor).
+inline constexpr double kRenderedBlur = 0.7638;
 
 /// The image with its point spread widened. A kernel of 3 x 3 pixels; borders repeat.
 /// @param variance of the additional spread [pixels^2], at most 0.5: more is taken as that
 ImageF widened(const ImageF& image, double variance);
 
-/// Standard deviation of white noise after widened(), by that before.
-double noiseAfterWidening(double variance);
+/// Standard deviation of noise after widened(), by that before. Noise correlated over an area of
+/// 1 / scale pixels, as if it had been smoothed by a Gaussian, loses less than white noise.
+double noiseAfterWidening(double variance, double scale);
 
 /// Half the size with the sharpness of a view rendered at that size: the binomial filter of 8 taps
 /// (variance 7/4) turns the point spread of the large image (variance 1/2 of its pixels) into pixel

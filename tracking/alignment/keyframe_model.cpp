@@ -27,8 +27,7 @@ Equations onTheLeft(Equations e, const Pose& T) {
 
 KeyframeOptions::KeyframeOptions() {
     alignment.photometric.scale = 0.7;
-    alignment.trust.floorTranslation = 0.0075;
-    alignment.trust.floorRotation = 0.0044;
+    alignment.measureCovariance = true;
     alignment.trust.residualSigmas = 0.;
     alignment.levels = 3;
     alignment.coarseStep = 0.3;

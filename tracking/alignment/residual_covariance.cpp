@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 constexpr double kOpen = 1e-6;
 constexpr double kOpenSigma = 10.;     // of directions that the image leaves open [m], [rad]
 constexpr double kPixelNoise = 1e-3;   // least standard deviation of a pixel: 8 bits
-constexpr double kLightLength = 0.25;  // correlation length of the gain [image widths]
+constexpr double kFieldLength = 0.25;  // correlation length of gain and displacement [image widths]
 
 /// H after eliminating the exposure, in coordinates y (x = V y) of the directions that the image
 /// observes.
@@ -74,6 +74,34 @@ MatrixXd covarianceOf(const MatrixXd& draws) {
     return n / std::max(n - d - 1., 1.) * covariance;
 }
 
+/// Scatter of Atr by a field over the image that varies slowly: sum_ab k_ab h_a h_b^T with k_ab the
+/// covariance of the field. Independent bumps exp(-|p - c|^2 / l^2), a length l apart, with
+/// variances of 2 / pi of the field's, add up to correlations of about exp(-|p - q|^2 / (2 l^2)).
+/// @param size of the image [blocks]
+/// @param effect h of a block: what one unit of the field does to its Atr
+template <class Effect>
+Matrix8 scatterOfField(const std::vector<ImageBlock>& blocks, const Eigen::Array2i& size,
+                       double variance, const Effect& effect) {
+    const double length = kFieldLength * size.x();  // [blocks]
+    const Eigen::Array2i nodes = (size.cast<double>() / length).ceil().cast<int>() + 3;
+    std::vector<Vector8> pull(std::size_t(nodes.prod()), Vector8::Zero());
+    for (const ImageBlock& block : blocks) {
+        const Eigen::Array2d at = (block.index.cast<double>() + 0.5) / length + 1.;
+        const Vector8 h = effect(block);
+        for (int j = 0; j < nodes.y(); ++j) {
+            const double byRow = std::exp(-std::pow(at.y() - j, 2));
+            if (byRow < 1e-3) continue;
+            for (int i = 0; i < nodes.x(); ++i) {
+                const double bump = byRow * std::exp(-std::pow(at.x() - i, 2));
+                pull[std::size_t(j) * nodes.x() + i] += bump * h;
+            }
+        }
+    }
+    Matrix8 sum = Matrix8::Zero();
+    for (const Vector8& p : pull) sum += p * p.transpose();
+    return 2. / EIGEN_PI * variance * sum;
+}
+
 /// What varies slowly over the image: the blocks' gains, and their variance.
 class Light {
   public:
@@ -96,30 +124,13 @@ class Light {
         variance_ = weight > 0. ? std::max(0., product / weight) : 0.;
     }
 
-    double variance() const { return variance_; }
-
-    /// sum_ab k_ab h_a h_b^T with h the effect of a gain on Atr, and k_ab the covariance of the
-    /// gains. Independent bumps exp(-|p - c|^2 / l^2), a length l apart, with variances of 2 / pi
-    /// of the gain's, add up to correlations of about exp(-|p - q|^2 / (2 l^2)).
+    /// Effect of the gains on Atr, squared.
     Matrix8 scatter() const {
-        const double length = kLightLength * size_.x();  // [blocks]
-        const Eigen::Array2i nodes = (size_.cast<double>() / length).ceil().cast<int>() + 3;
-        std::vector<Vector8> pull(std::size_t(nodes.prod()), Vector8::Zero());
-        for (const ImageBlock& block : blocks_) {
-            const Eigen::Array2d at = (block.index.cast<double>() + 0.5) / length + 1.;
-            for (int j = 0; j < nodes.y(); ++j) {
-                const double byRow = std::exp(-std::pow(at.y() - j, 2));
-                if (byRow < 1e-3) continue;
-                for (int i = 0; i < nodes.x(); ++i) {
-                    const double bump = byRow * std::exp(-std::pow(at.x() - i, 2));
-                    pull[std::size_t(j) * nodes.x() + i] += bump * block.AtA.col(6);
-                }
-            }
-        }
-        Matrix8 sum = Matrix8::Zero();
-        for (const Vector8& p : pull) sum += p * p.transpose();
-        return 2. / EIGEN_PI * variance_ * sum;
+        return scatterOfField(blocks_, size_, variance_,
+                              [](const ImageBlock& block) -> Vector8 { return block.AtA.col(6); });
     }
+
+    const Eigen::Array2i& size() const { return size_; }
 
   private:
     std::size_t number(const Eigen::Array2i& index) const {
@@ -134,6 +145,26 @@ class Light {
     Eigen::Array2i size_ = Eigen::Array2i::Zero();  // blocks
     double variance_ = 0.;
 };
+
+/// The image's content displaced by a field of a standard deviation of `sigma` pixels. A rotation
+/// of the camera displaces a block in the same way.
+Matrix8 scatterByDisplacement(const std::vector<ImageBlock>& blocks, const Eigen::Array2i& size,
+                              const Camera& camera, double sigma) {
+    const double side = ImageBlock::side(camera);
+    Matrix8 sum = Matrix8::Zero();
+    for (int axis = 0; axis < 2; ++axis) {
+        sum += scatterOfField(blocks, size, sigma * sigma, [&](const ImageBlock& block) -> Vector8 {
+            const Eigen::Array2d pixel = side * (block.index.cast<double>() + 0.5) - 0.5;
+            const double x = (pixel.x() - camera.cx()) / camera.fx();
+            const double y = (pixel.y() - camera.cy()) / camera.fy();
+            Eigen::Matrix2d byRotation;  // pixels by radians about x and y
+            byRotation << camera.fx() * x * y, -camera.fx() * (1. + x * x),
+                camera.fy() * (1. + y * y), -camera.fy() * x * y;
+            return block.AtA.middleCols<2>(3) * byRotation.inverse().col(axis);
+        });
+    }
+    return sum;
+}
 
 /// All surfaces displaced along their normals by the same distance.
 Matrix8 scatterBySurface(const std::vector<ImageBlock>& blocks, double sigma) {
@@ -165,7 +196,8 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
                                         const NormalEquations& all,
                                         const PhotometricOptions& photometric,
                                         const std::optional<ExposurePrior>& prior,
-                                        const ModelErrors& errors, const Pose& toModel) {
+                                        const ModelErrors& errors, const Camera& camera,
+                                        const Pose& toModel) {
     const Observed seen(all.AtA, photometric, prior);
     MeasuredInformation result;
     result.repeating = kOpenSigma * kOpenSigma * seen.open * seen.open.transpose();
@@ -176,8 +208,11 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
     const auto covariance = [&](const Matrix8& scatter) -> MatrixXd {  // of y
         return seen.solve * (seen.E.transpose() * scatter * seen.E) * seen.solve.transpose();
     };
+    const Light light(blocks, x);
     const MatrixXd repeating =
-        covariance(Light(blocks, x).scatter() + scatterBySurface(blocks, errors.surface)) +
+        covariance(light.scatter() +
+                   scatterByDisplacement(blocks, light.size(), camera, errors.displacement) +
+                   scatterBySurface(blocks, errors.surface)) +
         seen.toY * ofScale(errors.depthScale, toModel) * seen.toY.transpose();
     const MatrixXd whole =
         repeating + covarianceOf(seen.solve * seen.E.transpose() * scoresOf(blocks, inverse, x)) +
@@ -217,7 +252,9 @@ Matrix6 posteriorCovariance(const Matrix6& prior, const Matrix6& information,
     constexpr double kNegligible = 1e-10;  // makes them definite [m^2], [rad^2]
     const Matrix6 negligible = kNegligible * Matrix6::Identity();
     const Matrix6 reached = smaller(prior, repeating + negligible) + 1e-3 * negligible;
-    return larger(updated, reached);
+    // The larger of two covariances below the prior need not be below it: images in a row would
+    // make the belief wider and wider.
+    return smaller(larger(updated, reached), prior + negligible);
 }
 
 }  // namespace photonav

@@ -13,6 +13,9 @@ namespace photonav {
 /// Standard deviations of errors that repeat from image to image: the pose absorbs them, so that no
 /// residual shows them, and no number of images averages them out.
 struct ModelErrors {
+    /// Of the image's content, smooth over the image: what calibration leaves of the distortion of
+    /// a lens, and how rendered views differ from what a sensor averages [pixels].
+    double displacement = 0.05;
     double surface = 0.;     ///< of the surfaces along their normals [m]
     double depthScale = 0.;  ///< relative, of a depth sensor's scale and registration
 };
@@ -36,12 +39,14 @@ struct MeasuredInformation {
 /// to image. Its variance is what the gains of neighbouring blocks have in common.
 /// @param all the sum over the blocks
 /// @param prior of the exposure; none: the exposure is fixed
+/// @param camera of the comparison
 /// @param toModel motion since the model's own image, whose depth it has (keyframes); else identity
 MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
                                         const NormalEquations& all,
                                         const PhotometricOptions& photometric,
                                         const std::optional<ExposurePrior>& prior,
-                                        const ModelErrors& errors, const Pose& toModel);
+                                        const ModelErrors& errors, const Camera& camera,
+                                        const Pose& toModel);
 
 /// The same when the image responds to a displacement x as J does to M x (measuredSlope()).
 MeasuredInformation respondingBy(const Matrix6& M, const MeasuredInformation& image);

@@ -129,14 +129,17 @@ Calibration calibrateFloor(std::span<const AlignmentError> errors, double scale)
     return result;
 }
 
-AlignmentOptions realCameraOptions(double resolution) {
+AlignmentOptions photographOptions(double blur) {
     AlignmentOptions options;
+    options.measureCovariance = true;
+    options.blur = blur;
+    return options;
+}
+
+AlignmentOptions realCameraOptions(double blur) {
+    AlignmentOptions options = photographOptions(blur);
     options.exposure = {.gainSigma = 0.1, .offsetSigma = 0.003};
     options.photometric.scale = 0.65;
-    // Flights in maps of 5 and 2.5 cm, the scene about 2.5 m away.
-    const double floor = 0.015 * std::pow(resolution / 0.05, 1.3);
-    options.trust.floorTranslation = floor;
-    options.trust.floorRotation = 0.5 * floor;
     return options;
 }
 

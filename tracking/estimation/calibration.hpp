@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Making predicted covariances true: what factor on Lambda and what floor recorded errors ask for.
+// What factor on the information and what floor of the covariances recorded errors ask for.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace photonav {
 /// One alignment whose truth is known.
 struct AlignmentError {
     Vector6 xi = Vector6::Zero();           ///< deviation() of the true pose from the estimated
-    Matrix6 information = Matrix6::Zero();  ///< Lambda with scale 1, full rank
+    Matrix6 information = Matrix6::Zero();  ///< with factor 1, full rank
 };
 
 /// NEES per degree of freedom, mean over the samples: 1 when covariances are consistent, above when
@@ -22,7 +22,7 @@ double neesPerDof(std::span<const AlignmentError> errors, double scale = 1.,
                   double floorTranslation = 0., double floorRotation = 0.);
 
 struct Calibration {
-    double scale = 1.;             ///< for PhotometricOptions::scale
+    double scale = 1.;             ///< for AlignmentOptions::informationFactor
     double floorTranslation = 0.;  ///< for TrustOptions [m]; 0 when the errors ask for none
     double floorRotation = 0.;     ///< [rad]
     /// Over how many images errors stay alike: the integrated autocorrelation of the whitened
@@ -45,9 +45,11 @@ Calibration calibrate(std::span<const AlignmentError> errors);
 /// @throws std::invalid_argument below 20 samples
 Calibration calibrateFloor(std::span<const AlignmentError> errors, double scale);
 
-/// Options for images of a real camera, from the calibration in docs/tracking.md: exposure is
-/// estimated, Lambda weighs less, and the floor is that of a map.
-/// @param resolution of the map [m]; 0: a mesh as exact as the images
-AlignmentOptions realCameraOptions(double resolution);
+/// Options for images that the model did not make: covariances follow from their residuals.
+/// @param blur point spread of the images, standard deviation [pixels]
+AlignmentOptions photographOptions(double blur = kAreaBlur);
+
+/// The same for a camera with automatic exposure, which is estimated.
+AlignmentOptions realCameraOptions(double blur = kAreaBlur);
 
 }  // namespace photonav

@@ -45,6 +45,8 @@ class LossOfTracking {
     /// texture, is not: plans lead there by design.
     /// @param isMotionMeasured by odometry
     void onRejected(double time, bool isMotionMeasured);
+    /// An image arrived of what a growing map does not show yet: no reason to doubt the pose.
+    void onUnmapped(double time) { lastImage_ = time; }
     /// No further image has arrived until now.
     void onTime(double time);
 

@@ -23,6 +23,8 @@ class Tracker::MapAligner {
         return wide_ ? wide_->align(image, prior) : dense_->align(image, prior);
     }
 
+    const ViewSource& map() const { return *map_; }
+
   private:
     std::shared_ptr<const ViewSource> map_;
     std::optional<WideAligner> wide_;
@@ -90,20 +92,53 @@ void Tracker::predict(double time) {
     imageTime_ = time;
     belief_ = compound(motion, belief_);
     sinceTracked_ = compound(motion, {Pose::Identity(), sinceTracked_}).covariance;
+    if (options_.mapErrors) options_.mapErrors->propagate(motion.mean);
+}
+
+/// What the map in view owes to which keyframes.
+void Tracker::relateToMap() {
+    relation_.reset();
+    if (!map_ || !options_.mapErrors) return;
+    View view;
+    map_->map().render(camera_, belief_.mean, view);
+    relation_ = options_.mapErrors->relate(view, camera_, belief_);
+}
+
+/// The belief of the pose in the map, whose errors are not those of the pose.
+UncertainPose Tracker::priorInMap() const {
+    return {belief_.mean, relation_ ? relation_->relative : belief_.covariance};
+}
+
+/// Covariance in the world of a pose found in the map.
+Matrix6 Tracker::covarianceOf(const Match& match) {
+    if (!relation_ || match.keyframe) return match.T_c_w.covariance;
+    return match.isRelocalized ? options_.mapErrors->relocalize(*relation_, match.alignment)
+                               : options_.mapErrors->align(*relation_, match.alignment);
 }
 
 /// @param stayed where the camera was at the last image
 std::optional<Tracker::Match> Tracker::find(const View& view, const Pose& stayed,
                                             TrackedFrame& frame) {
     std::optional<Match> match;
+    relateToMap();
     if (map_) match = findInMap(view.intensity, stayed, frame);
     if (!match && keyframes_ && !keyframes_->isEmpty()) {
         match = findByKeyframes(view.intensity, stayed, frame);
     }
     if (match) return match;
+    if (isUnmapped(frame)) {
+        loss_.onUnmapped(now_);
+        return {};
+    }
     loss_.onRejected(now_, hasOdometry_);
     return map_ && hasOdometry_ && loss_.isLost() ? findInNeighbourhood(view.intensity)
                                                   : std::nullopt;
+}
+
+/// Whether an image shows what a map that is still being made does not: odometry has to do.
+bool Tracker::isUnmapped(const TrackedFrame& frame) const {
+    return options_.mapErrors && hasOdometry_ && !loss_.isLost() &&
+           frame.alignment.verdict == Verdict::lostOverlap;
 }
 
 /// Whether an image agrees with what it was aligned to. Without odometry, one that does not inform
@@ -117,14 +152,15 @@ bool Tracker::agrees(const Alignment& alignment, const AlignmentOptions& options
 
 std::optional<Tracker::Match> Tracker::findInMap(const ImageF& image, const Pose& stayed,
                                                  TrackedFrame& frame) {
-    std::vector<UncertainPose> priors{belief_};
+    std::vector<UncertainPose> priors{priorInMap()};
     if (!hasOdometry_) priors.push_back({stayed, belief_.covariance});
     for (const UncertainPose& prior : priors) {
-        const Alignment alignment = map_->align(image, prior);
+        Alignment alignment = map_->align(image, prior);
         if (&prior == &priors.front()) frame.alignment = alignment;
         if (!agrees(alignment, options_.map)) continue;
         if (isResolvedBy(alignment, prior)) {
-            return Match{alignment, {alignment.T_c_w, alignment.covariance}, {}};
+            if (relation_) alignment = MapErrors::withoutWeak(alignment, prior);
+            return Match{alignment, {alignment.T_c_w, alignment.covariance}, {}, false};
         }
     }
     return {};
@@ -144,9 +180,9 @@ bool Tracker::isResolvedBy(const Alignment& alignment, const UncertainPose& prio
 
 /// Perhaps it is not the image but the belief that is wrong.
 std::optional<Tracker::Match> Tracker::findInNeighbourhood(const ImageF& image) {
-    const Alignment alignment = map_->align(image, loss_.widened(belief_));
+    const Alignment alignment = map_->align(image, loss_.widened(priorInMap()));
     if (alignment.verdict != Verdict::converged || !agrees(alignment, options_.map)) return {};
-    return Match{alignment, {alignment.T_c_w, alignment.covariance}, {}};
+    return Match{alignment, {alignment.T_c_w, alignment.covariance}, {}, true};
 }
 
 std::optional<Tracker::Match> Tracker::findByKeyframes(const ImageF& image, const Pose& stayed,
@@ -158,7 +194,7 @@ std::optional<Tracker::Match> Tracker::findByKeyframes(const ImageF& image, cons
             !resolvesLoss(Matrix6::Zero(), sinceTracked_, alignment->covariance)) {
             return {};
         }
-        return Match{*alignment, keyframes_->beliefOf(*alignment), keyframes_->latestTime()};
+        return Match{*alignment, keyframes_->beliefOf(*alignment), keyframes_->latestTime(), false};
     };
     const UncertainPose moved{belief_.mean, sinceTracked_};
     const UncertainPose still{hasOdometry_ ? belief_.mean : stayed, sinceTracked_};
@@ -180,7 +216,7 @@ std::optional<Tracker::Match> Tracker::findByKeyframes(const ImageF& image, cons
 void Tracker::take(const View& view, const Match& match, const Pose& before, TrackedFrame& frame) {
     frame.alignment = match.alignment;
     frame.keyframe = match.keyframe;
-    belief_ = match.T_c_w;
+    belief_ = {match.T_c_w.mean, covarianceOf(match)};
     // The pose before is that of the last image tracked, images lost since then or not.
     velocity_.observe(belief_.mean * before.inverse(),
                       trackedTime_ ? frame.time - *trackedTime_ : 0.);

@@ -9,6 +9,7 @@
 #include "alignment/wide_aligner.hpp"
 #include "estimation/keyframe_chain.hpp"
 #include "estimation/loss_of_tracking.hpp"
+#include "estimation/map_errors.hpp"
 #include "estimation/measured_motion.hpp"
 #include "estimation/motion_model.hpp"
 #include "estimation/observation.hpp"
@@ -22,6 +23,9 @@ struct TrackerOptions {
     /// Align to earlier images where there is no map, or where it does not explain the image; such
     /// images need depth. None: the map alone.
     std::optional<KeyframeChainOptions> keyframes = {};
+    /// Errors of a map that is made on the same flight, at the beliefs of this tracker alone: the
+    /// belief never becomes better than the map in view. None: the map is exact.
+    std::shared_ptr<MapErrors> mapErrors = {};
     MotionNoise motion = {};  ///< where there is no odometry
     LossOptions loss = {};
     Pose T_b_c = Pose::Identity();  ///< camera mount on the body that odometry is of
@@ -75,15 +79,20 @@ class Tracker {
         Alignment alignment;
         UncertainPose T_c_w;
         std::optional<double> keyframe;
+        bool isRelocalized = false;  ///< found without the belief
     };
     class MapAligner;
 
     void predict(double time);
+    void relateToMap();
+    UncertainPose priorInMap() const;
+    Matrix6 covarianceOf(const Match& match);
     std::optional<Match> find(const View& view, const Pose& stayed, TrackedFrame& frame);
     std::optional<Match> findInMap(const ImageF& image, const Pose& stayed, TrackedFrame& frame);
     std::optional<Match> findInNeighbourhood(const ImageF& image);
     std::optional<Match> findByKeyframes(const ImageF& image, const Pose& stayed,
                                          TrackedFrame& frame);
+    bool isUnmapped(const TrackedFrame& frame) const;
     bool agrees(const Alignment& alignment, const AlignmentOptions& options) const;
     bool isResolvedBy(const Alignment& alignment, const UncertainPose& prior) const;
     void take(const View& view, const Match& match, const Pose& before, TrackedFrame& frame);
@@ -92,7 +101,8 @@ class Tracker {
 
     Camera camera_;
     TrackerOptions options_;
-    std::unique_ptr<MapAligner> map_;  ///< null: none
+    std::unique_ptr<MapAligner> map_;              ///< null: none
+    std::optional<MapErrors::Relation> relation_;  ///< of the last image to the map's errors
     std::optional<KeyframeChain> keyframes_;
     MeasuredMotion odometry_;
     MotionModel velocity_;

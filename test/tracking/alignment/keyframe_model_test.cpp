@@ -83,6 +83,7 @@ TEST(KeyframeModel, InformationIsCarriedToTheCamera) {
     options.minGradient = 0.;
     options.maxBend = kInfinity;  // the pixels that planning counts
     options.alignment.robust = RobustWeight::none;
+    options.alignment.measureCovariance = false;
     const View view = roomView(kFirst);
     KeyframeModel keyframe(view, wideCamera(), kFirst, options);
     const Alignment a = keyframe.align(view.intensity, kFirst);

@@ -7,6 +7,7 @@
 #include "alignment/dense_aligner.hpp"
 #include "alignment/keyframe_model.hpp"
 #include "alignment/keyframe_points.hpp"
+#include "estimation/calibration.hpp"
 #include "tracking/rooms.hpp"
 
 namespace photonav {
@@ -18,9 +19,8 @@ using test::kOblique;
 using test::room;
 
 AlignmentOptions forPhotographs() {
-    AlignmentOptions options;
-    options.blur = kAreaBlur;
-    options.measureCovariance = true;
+    AlignmentOptions options = photographOptions();
+    options.modelErrors.displacement = 0.;
     return options;
 }
 
@@ -78,11 +78,37 @@ TEST(ResidualCovariance, IsConsistentWithoutBeingToldTheNoise) {
     }
 }
 
+/// A lens whose distortion is known to a tenth of a pixel: the residuals hardly show what it does
+/// to the pose.
+TEST(ResidualCovariance, DistortionOfTheLensRepeats) {
+    const Camera camera = makeCamera(188, 120, 1.2);
+    const Camera longer{camera.width, camera.height,
+                        vpCameraParameters(1.002 * camera.fx(), 1.001 * camera.fy(),
+                                           camera.cx() + 0.1, camera.cy() - 0.1)};
+    AlignmentOptions options = forPhotographs();
+    const auto nees = [&] {
+        DenseAligner aligner(room(), camera, options);
+        double sum = 0.;
+        constexpr int kCount = 20;
+        for (int i = 0; i < kCount; ++i) {
+            const Pose truth = cameraAt({1.5 + 0.02 * i, 2. + 0.05 * i, 1.5}, kOblique, 0.1 * i);
+            const View view = test::photographed(room(), longer, truth);
+            const Alignment a = aligner.align(view.intensity, truth);
+            const Vector6 xi = test::errorOf(a, truth);
+            sum += xi.dot(a.covariance.ldlt().solve(xi)) / (6. * kCount);
+        }
+        return sum;
+    };
+    EXPECT_GT(nees(), 3.);
+    options.modelErrors.displacement = 0.1;
+    EXPECT_LT(nees(), 2.);
+}
+
 /// Bars along world y, seen at an angle: they do not inform about y, however small the residuals
 /// are.
 TEST(ResidualCovariance, EdgesDoNotInformAlongThemselves) {
     const MeshRenderer bars(test::floorOf(stripes({.width = 0.5, .softEdge = 0.05})));
-    DenseAligner aligner(bars, makeCamera(188, 120, 1.2217), forPhotographs());
+    DenseAligner aligner(bars, makeCamera(188, 120, 1.2217), photographOptions());
     for (const double turned : {0., 0.01, 0.03, 0.1}) {
         const UncertainPose prior = test::aboveBars(turned);
         const View view = test::photographed(bars, aligner.camera(), prior.mean);

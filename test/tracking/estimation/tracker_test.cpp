@@ -278,8 +278,10 @@ TEST(Tracker, AlignsToWhateverExplainsTheImage) {
 /// With odometry: a hovering camera that looks down, and what it sees in a map.
 class HoverOver {
   public:
-    HoverOver(std::shared_ptr<const ViewSource> map, const UncertainPose& start)
-        : map_(std::move(map)), tracker(map_, flightCamera(), start, options()) {}
+    /// @param errors of a map made on the flight; null: the map is exact
+    HoverOver(std::shared_ptr<const ViewSource> map, const UncertainPose& start,
+              std::shared_ptr<MapErrors> errors = {})
+        : map_(std::move(map)), tracker(map_, flightCamera(), start, options(std::move(errors))) {}
 
     TrackedFrame see(const ImageF& image) {
         time_ += 0.25;
@@ -296,9 +298,10 @@ class HoverOver {
     }
 
   private:
-    static TrackerOptions options() {
+    static TrackerOptions options(std::shared_ptr<MapErrors> errors) {
         TrackerOptions options;
         options.searchPrior = true;
+        options.mapErrors = std::move(errors);
         return options;
     }
     std::shared_ptr<const ViewSource> map_;
@@ -318,6 +321,27 @@ TEST(TrackerWithOdometry, AnImageThatDoesNotInformIsNoLoss) {
     HoverOver hover(white, narrow(here));
     for (int i = 0; i < 6; ++i) EXPECT_FALSE(hover.see(*white, here).lost);
     EXPECT_FALSE(hover.tracker.loss().isLost());
+}
+
+/// What a map made on the flight does not show yet is no reason to doubt the pose; nothing where a
+/// given map should show something is.
+TEST(TrackerWithOdometry, WhatItsOwnMapLacksIsNoLoss) {
+    Scene elsewhere;
+    addPlane(elsewhere, {50., 50., 0.}, {1., 0., 0.}, {0., 1., 0.},
+             addTexture(elsewhere, uniformTexture(0.5F)));
+    const auto map = std::make_shared<MeshRenderer>(std::move(elsewhere));
+    const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
+    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    HoverOver own(map, narrow(here), std::make_shared<MapErrors>(0.05));
+    HoverOver given(map, narrow(here));
+    for (int i = 0; i < 8; ++i) {
+        const TrackedFrame frame = own.see(floor, here);
+        EXPECT_TRUE(frame.lost);
+        EXPECT_GT(frame.T_c_w.covariance(0, 0), 1e-6 * (i + 1)) << "odometry alone";
+        given.see(floor, here);
+    }
+    EXPECT_FALSE(own.tracker.loss().isLost());
+    EXPECT_TRUE(given.tracker.loss().isLost());
 }
 
 /// But it does not find a camera that is lost, however narrow its belief.

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/map_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "alignment/residual_covariance.hpp"
+#include "geometry/se3.hpp"
+#include "map/map_change.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr unsigned kStride = 3;          // of the pixels looked at
+constexpr std::size_t kMostMakers = 12;  // keyframes remembered of a brick: the first ones
+constexpr double kWeakSigma = 0.005;     // standard deviation of an image alone that is too much
+                                         // [rad], translations in mean depths
+constexpr double kNegligible = 1e-6;     // share of the mean information
+constexpr double kOpenVariance = 1e3;    // of directions that an image leaves open [m^2], [rad^2]
+
+/// J of a pixel: gradient times the motion of its point in the image, both in pixels.
+Vector6 rowOf(const View& view, const Camera& camera, unsigned u, unsigned v) {
+    const ImageF& I = view.intensity;
+    const double gx = 0.5 * camera.fx() * (I[v][u + 1] - I[v][u - 1]);
+    const double gy = 0.5 * camera.fy() * (I[v + 1][u] - I[v - 1][u]);
+    const double w = 1. / view.depth[v][u];
+    const double x = (u - camera.cx()) / camera.fx(), y = (v - camera.cy()) / camera.fy();
+    const Vector6 du{{w, 0., -x * w, -x * y, x * x + 1., -y}};
+    const Vector6 dv{{0., w, -y * w, -y * y - 1., x * y, x}};
+    return gx * du + gy * dv;
+}
+
+bool isInside(const View& view, unsigned u, unsigned v) {
+    const ImageF& d = view.depth;
+    return d[v][u] > 0.F && d[v][u - 1] > 0.F && d[v][u + 1] > 0.F && d[v - 1][u] > 0.F &&
+           d[v + 1][u] > 0.F;
+}
+
+Matrix6 symmetric(const Matrix6& A) { return 0.5 * (A + A.transpose()); }
+
+/// Differences of covariances may lose definiteness by rounding.
+Matrix6 nonNegative(const Matrix6& A) {
+    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(symmetric(A));
+    return solver.eigenvectors() * solver.eigenvalues().cwiseMax(1e-14).asDiagonal() *
+           solver.eigenvectors().transpose();
+}
+
+}  // namespace
+
+/// Who made what a view shows.
+struct MapErrors::Shares {
+    struct Share {
+        int keyframe;
+        Matrix6 information = Matrix6::Zero();
+        double pixels = 0.;
+    };
+    std::vector<Share> of;
+    double pixels = 0., makers = 0.;
+    double inverseDepth = 0.;  // sum [1/m]
+};
+
+MapErrors::MapErrors(double resolution) : brick_(MapChange::kBrickEdge * resolution) {}
+
+std::uint64_t MapErrors::brickOf(const Eigen::Vector3d& p_w) const {
+    std::uint64_t key = 0;
+    for (const double x : p_w) {
+        const auto index = static_cast<std::int64_t>(std::floor(x / brick_)) + (1 << 20);
+        key = key << 21U | (static_cast<std::uint64_t>(index) & 0x1fffffU);
+    }
+    return key;
+}
+
+void MapErrors::propagate(const Pose& T_next_now) {
+    if (!poses_.empty()) cross_ = (adjoint(T_next_now) * cross_).eval();
+}
+
+MapErrors::Shares MapErrors::sharesOf(const View& map, const Camera& camera,
+                                      const Pose& T_c_w) const {
+    Shares shares;
+    if (makers_.empty()) return shares;
+    std::vector<int> at(poses_.size(), -1);  // index of a keyframe in shares.of
+    const Pose T_w_c = T_c_w.inverse();
+    for (unsigned v = 1; v + 1 < camera.height; v += kStride) {
+        for (unsigned u = 1; u + 1 < camera.width; u += kStride) {
+            if (!isInside(map, u, v)) continue;
+            const Eigen::Vector3d p_w = T_w_c * camera.unproject(u, v, map.depth[v][u]);
+            const auto found = makers_.find(brickOf(p_w));
+            if (found == makers_.end()) continue;
+            const std::vector<int>& makers = found->second;
+            const double part = 1. / static_cast<double>(makers.size());
+            const Vector6 J = rowOf(map, camera, u, v);
+            const Matrix6 information = part * J * J.transpose();
+            for (const int k : makers) {
+                if (at[k] < 0) {
+                    at[k] = static_cast<int>(shares.of.size());
+                    shares.of.push_back({k});
+                }
+                shares.of[at[k]].information += information;
+                shares.of[at[k]].pixels += part;
+            }
+            shares.pixels += 1.;
+            shares.makers += static_cast<double>(makers.size());
+            shares.inverseDepth += 1. / map.depth[v][u];
+        }
+    }
+    return shares;
+}
+
+MapErrors::Relation MapErrors::relate(const View& map, const Camera& camera,
+                                      const UncertainPose& T_c_w) const {
+    const Shares shares = sharesOf(map, camera, T_c_w.mean);
+    Relation relation;
+    relation.relative = T_c_w.covariance;
+    relation.mapWithKeyframes = Wide::Zero(6, cross_.cols());
+    if (shares.of.empty()) return relation;
+    relation.views = shares.makers / shares.pixels;
+
+    // In directions without information every pixel counts the same.
+    Matrix6 all = Matrix6::Zero();
+    for (const auto& share : shares.of) all += share.information;
+    const double depth = shares.pixels / shares.inverseDepth;
+    Vector6 unit;
+    unit << Eigen::Vector3d::Constant(1. / depth), Eigen::Vector3d::Ones();
+    const double mean = std::max(1e-12, unit.cwiseInverse().cwiseAbs2().dot(all.diagonal()) / 6.);
+    const Matrix6 least = Matrix6(kNegligible * mean * unit.cwiseAbs2().asDiagonal());
+    const Eigen::LDLT<Matrix6> solver(all + least);
+    Matrix6 cameraWithMap = Matrix6::Zero();
+    std::vector<Matrix6> M;
+    for (const auto& share : shares.of) {
+        const Matrix6 part = share.information + share.pixels / shares.pixels * least;
+        M.push_back(solver.solve(part) * adjoint(T_c_w.mean * poses_[share.keyframe].inverse()));
+        const int k = 6 * share.keyframe;
+        relation.mapWithKeyframes += M.back() * covariance_.middleRows<6>(k);
+        cameraWithMap += cross_.middleCols<6>(k) * M.back().transpose();
+    }
+    for (std::size_t i = 0; i < M.size(); ++i) {
+        relation.ofMap +=
+            relation.mapWithKeyframes.middleCols<6>(6 * shares.of[i].keyframe) * M[i].transpose();
+    }
+    relation.ofMap = nonNegative(relation.ofMap);
+    relation.withMap = cameraWithMap - relation.ofMap;
+    relation.relative =
+        nonNegative(T_c_w.covariance - cameraWithMap - cameraWithMap.transpose() + relation.ofMap);
+    return relation;
+}
+
+/// Covariance of a sum of two dependent errors.
+Matrix6 MapErrors::joined(const Relation& relation, const Matrix6& relative,
+                          const Matrix6& withMap) const {
+    return nonNegative(relation.ofMap + relative + withMap + withMap.transpose());
+}
+
+Alignment MapErrors::withoutWeak(const Alignment& alignment, const UncertainPose& T_c_w) {
+    const Spectrum s = spectrum(alignment.information, alignment.meanDepth);
+    const Vector6 kept =
+        (s.values.array() > 1. / (kWeakSigma * kWeakSigma)).select(Vector6::Ones(), 0.);
+    if (kept.minCoeff() > 0.) return alignment;
+    const Matrix6 onto = s.unit.cwiseInverse().asDiagonal() * s.directions * kept.asDiagonal() *
+                         s.directions.transpose() * s.unit.asDiagonal();
+    const Matrix6 prior = T_c_w.covariance + 1e-12 * Matrix6::Identity();
+    const Vector6 moved = deviation(alignment.T_c_w, T_c_w.mean);
+    const Vector6 right = alignment.information * moved + prior.ldlt().solve(moved);
+    Alignment strong = alignment;
+    strong.information = symmetric(onto * alignment.information * onto.transpose());
+    const Matrix6 left = Matrix6::Identity() + prior * strong.information;
+    const Vector6 xi = left.partialPivLu().solve(prior * onto * right);
+    strong.T_c_w = expSE3(xi) * T_c_w.mean;
+    strong.covariance =
+        larger(updateCovariance(prior, strong.information), symmetric(alignment.covariance));
+    return strong;
+}
+
+Matrix6 MapErrors::align(const Relation& relation, const Alignment& alignment) {
+    if (relation.views == 0.) return alignment.covariance;
+    // The noise of the few images in the map is the same in every alignment to it.
+    const Matrix6 alone =
+        (alignment.information + Matrix6::Identity() / kOpenVariance).inverse() / relation.views;
+    const Matrix6 tiny = 1e-12 * Matrix6::Identity();
+    const Matrix6 relative =
+        larger(alignment.covariance + tiny, smaller(relation.relative + tiny, symmetric(alone)));
+    const Matrix6 left =
+        (Matrix6::Identity() + relation.relative * alignment.information).inverse();
+    cross_ = (relation.mapWithKeyframes + left * (cross_ - relation.mapWithKeyframes)).eval();
+    return joined(relation, relative, left * relation.withMap);
+}
+
+Matrix6 MapErrors::relocalize(const Relation& relation, const Alignment& alignment) {
+    if (relation.views == 0.) return alignment.covariance;
+    cross_ = relation.mapWithKeyframes;
+    return joined(relation, alignment.covariance, Matrix6::Zero());
+}
+
+int MapErrors::addPose(const UncertainPose& T_c_w) {
+    const int k = static_cast<int>(poses_.size());
+    poses_.push_back(T_c_w.mean);
+    covariance_.conservativeResize(6 * k + 6, 6 * k + 6);
+    covariance_.bottomLeftCorner(6, 6 * k) = cross_;
+    covariance_.topRightCorner(6 * k, 6) = cross_.transpose();
+    covariance_.bottomRightCorner<6, 6>() = T_c_w.covariance;
+    cross_.conservativeResize(6, 6 * k + 6);
+    cross_.rightCols<6>() = T_c_w.covariance;
+    return k;
+}
+
+void MapErrors::addSurfaces(int k, const ImageF& depth, const Camera& camera) {
+    const Pose T_w_c = poses_[k].inverse();
+    for (unsigned v = 0; v < depth.getHeight(); ++v) {
+        for (unsigned u = 0; u < depth.getWidth(); ++u) {
+            if (!(depth[v][u] > 0.F)) continue;
+            auto& makers = makers_[brickOf(T_w_c * camera.unproject(u, v, depth[v][u]))];
+            const bool isNew = makers.empty() || makers.back() != k;
+            if (isNew && makers.size() < kMostMakers) makers.push_back(k);
+        }
+    }
+}
+
+}  // namespace photonav
