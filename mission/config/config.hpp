@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "belief/belief.hpp"
+#include "config/explore_config.hpp"
 #include "config/fly_config.hpp"
 #include "config/sweep_config.hpp"
 #include "geometry/camera.hpp"
 #include "map/textured_octree.hpp"
 #include "photometry/photometric.hpp"
 #include "planners/belief_rrt_star.hpp"
+#include "render/area_sensor.hpp"
 
 namespace photonav {
 
@@ -27,6 +29,7 @@ struct CameraConfig {
     double hfov = 70.;           ///< horizontal field of view [degrees]
     unsigned width = 188;
     unsigned height = 120;
+    double blur = kAreaBlur;  ///< point spread of images, standard deviation [pixels]
 
     Camera camera() const;
     Pose T_b_c() const;
@@ -74,6 +77,7 @@ struct Config {
     bool compareWithRrtStar = true;
     SweepConfig sweep;
     FlyConfig fly;
+    ExploreConfig explore;
 
     std::uint32_t seed = 1;
 };

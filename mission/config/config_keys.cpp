@@ -148,6 +148,10 @@ void addCamera(KeyTable& keys, Config& c) {
     keys.count({"width", "pixels", "of the predicted views"}, c.camera.width, {8., 8192.});
     keys.count({"height", "pixels", "of the predicted views"}, c.camera.height, {8., 8192.});
     keys.number({"hfov", "degrees", "horizontal field of view"}, c.camera.hfov, {1., 170.});
+    keys.number({"blur", "pixels",
+                 "point spread of its images, standard deviation; 0.2887: pixels that average over "
+                 "their area, without defocus. Compared at this sharpness with views of a mesh"},
+                c.camera.blur, {0., 2.});
     keys.number(
         {"sigma", "grey value", "standard deviation of the image noise, grey values in [0, 1]"},
         c.photometric.sigma, {kTiny, 1.});
@@ -257,6 +261,7 @@ KeyTable keysOf(Config& config) {
     addSearch(keys, config);
     addKeys(keys, config.sweep);
     addKeys(keys, config.fly);
+    addKeys(keys, config.explore);
     return keys;
 }
 

@@ -44,12 +44,10 @@ void addKeys(KeyTable& keys, FlyConfig& c) {
                  "of the body in collisions; 0: half of `robot.radius`, the rest is margin"},
                 c.bodyRadius, {0., 1e3});
     keys.flag({"photometric_goal", "", "servo on the goal's image at the end"}, c.photometricGoal);
-    keys.number({"scale", "",
-                 "factor on the information of an image; none: `camera.information_scale`, a "
-                 "quarter of it with a real camera"},
-                c.scale, {1e-12, 1e12});
-    keys.number({"least_sigma", "m",
-                 "least standard deviation of an aligned position; none: that of the map's cells"},
+    keys.number(
+        {"scale", "", "factor on the information that the residuals of an image say; none: 1"},
+        c.scale, {1e-12, 1e12});
+    keys.number({"least_sigma", "m", "least standard deviation of an aligned position; none: 0"},
                 c.floorTranslation, {0., 1e3});
     keys.number({"least_sigma_rotation", "rad", "the same of an aligned rotation"}, c.floorRotation,
                 {0., 1e3});

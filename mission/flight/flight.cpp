@@ -31,96 +31,59 @@ UncertainPose beliefAtStart(const std::vector<PlannedView>& plan, const FlightWo
     return {(plan.front().T_w_b * world.T_b_c).inverse(), options.initialCovariance};
 }
 
-/// Body pose drawn from the belief.
-Pose drawStart(const UncertainPose& start, const Pose& T_b_c, std::uint64_t seed) {
-    std::mt19937_64 random(seedFor(seed, 0));
-    const Pose T_c_w = expSE3(draw(rootOf(start.covariance), random)) * start.mean;
-    return T_c_w.inverse() * T_b_c.inverse();
-}
-
 TrackerOptions trackerOptions(const FlightWorld& world, const FlightOptions& options) {
     TrackerOptions tracker = options.tracker;
     tracker.T_b_c = world.T_b_c;
     return tracker;
 }
 
-/// Compares a flight with the truth as it goes on.
-class FlightEvaluator {
+/// A flight of a plan, and its end.
+class PlannedFlight {
   public:
-    FlightEvaluator(const FlightWorld& world, const FlightOptions& options, const PlannedView& goal,
-                    const SimulatedRobot& robot)
-        : world_(world),
-          options_(options),
-          goal_(goal),
+    PlannedFlight(const FlightWorld& world, const FlightOptions& options, const PlannedView& goal,
+                  const SimulatedRobot& robot)
+        : options_(options),
           robot_(robot),
           timeLimit_(60. + options.timePerMetre * goal.distance),
-          before_w_(robot.T_w_b().translation()) {
-        result_.leastClearance = kInfinity;
-    }
+          evaluator_(world, robot, goal.T_w_b.translation()) {}
 
     void onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker,
                 const Pilot& pilot);
     /// Whether the flight has ended, and how.
     bool hasEnded(const Tracker& tracker, const Pilot& pilot);
-    FlightResult finish(const Tracker& tracker);
+    FlightResult finish(const Tracker& tracker) {
+        evaluator_.finish(tracker);
+        return std::move(evaluator_.result());
+    }
 
   private:
-    double goalError() const {
-        return (robot_.T_w_b().translation() - goal_.T_w_b.translation()).norm();
-    }
     bool endAs(FlightEnd end) {
-        result_.end = end;
+        evaluator_.result().end = end;
         return true;
     }
 
-    const FlightWorld& world_;
     const FlightOptions& options_;
-    PlannedView goal_;
     const SimulatedRobot& robot_;
     double timeLimit_;
-    Eigen::Vector3d before_w_;
-    FlightResult result_;
+    FlightEvaluator evaluator_;
 };
 
-void FlightEvaluator::onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker,
-                             const Pilot& pilot) {
-    const Eigen::Vector3d p_w = robot_.T_w_b().translation();
-    result_.way += (p_w - std::exchange(before_w_, p_w)).norm();
-    result_.leastClearance = std::min(result_.leastClearance, world_.clearance(p_w));
-    if (robot_.exposed()) {
-        const UncertainPose belief = tracker.belief();
-        result_.samples.push_back(
-            {robot_.time(), pilot.route().progress(belief.mean), robot_.T_c_w(), belief});
-    }
-    for (const TrackedFrame& frame : tracked) {
-        ++result_.images;
-        result_.rejectedImages += frame.lost;
-        const auto sample =
-            std::find_if(result_.samples.rbegin(), result_.samples.rend(),
-                         [&](const FlightSample& s) { return s.time == frame.time; });
-        sample->belief = frame.T_c_w;
-        sample->distance = pilot.route().progress(frame.T_c_w.mean);
-    }
-    if (pilot.hasServoedOnImage() && !std::exchange(result_.photometric, true)) {
-        result_.goalErrorBefore = goalError();
+void PlannedFlight::onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker,
+                           const Pilot& pilot) {
+    evaluator_.onStep(tracked, tracker, pilot.route().progress(tracker.belief().mean));
+    FlightResult& result = evaluator_.result();
+    if (pilot.hasServoedOnImage() && !std::exchange(result.photometric, true)) {
+        result.goalErrorBefore = evaluator_.goalError();
     }
 }
 
-bool FlightEvaluator::hasEnded(const Tracker& tracker, const Pilot& pilot) {
+bool PlannedFlight::hasEnded(const Tracker& tracker, const Pilot& pilot) {
     const double time = robot_.time();
-    if (result_.leastClearance < options_.bodyRadius) return endAs(FlightEnd::collided);
+    if (evaluator_.result().leastClearance < options_.bodyRadius) return endAs(FlightEnd::collided);
     if (pilot.hasGivenUp(tracker, time)) return endAs(FlightEnd::lost);
     if (time > timeLimit_) return endAs(FlightEnd::outOfTime);
     if (!pilot.hasArrived(tracker, time)) return false;
-    return endAs(goalError() <= options_.arrivalTolerance ? FlightEnd::arrived : FlightEnd::astray);
-}
-
-FlightResult FlightEvaluator::finish(const Tracker& tracker) {
-    result_.duration = robot_.time();
-    result_.lost = tracker.loss().lostTime(robot_.time());
-    result_.timesLost = tracker.loss().timesLost();
-    result_.goalError = goalError();
-    return std::move(result_);
+    return endAs(evaluator_.endAtGoal(tracker, options_.arrivalTolerance));
 }
 
 }  // namespace
@@ -131,16 +94,67 @@ std::string nameOf(FlightEnd end) {
             return "arrived";
         case FlightEnd::astray:
             return "astray";
+        case FlightEnd::uncertain:
+            return "uncertain arrival";
         case FlightEnd::collided:
             return "collided";
         case FlightEnd::lost:
             return "lost";
+        case FlightEnd::noWay:
+            return "no way";
         case FlightEnd::outOfTime:
             return "out of time";
         case FlightEnd::stopped:
             break;
     }
     return "stopped";
+}
+
+Pose drawStart(const UncertainPose& start, const Pose& T_b_c, std::uint64_t seed) {
+    std::mt19937_64 random(seedFor(seed, 0));
+    const Pose T_c_w = expSE3(draw(rootOf(start.covariance), random)) * start.mean;
+    return (T_b_c * T_c_w).inverse();
+}
+
+FlightEvaluator::FlightEvaluator(const FlightWorld& world, const SimulatedRobot& robot,
+                                 const Eigen::Vector3d& goal_w)
+    : world_(world), robot_(robot), goal_w_(goal_w), before_w_(robot.T_w_b().translation()) {
+    result_.leastClearance = kInfinity;
+}
+
+void FlightEvaluator::onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker,
+                             double distance) {
+    const Eigen::Vector3d p_w = robot_.T_w_b().translation();
+    result_.way += (p_w - std::exchange(before_w_, p_w)).norm();
+    result_.leastClearance = std::min(result_.leastClearance, world_.clearance(p_w));
+    if (robot_.exposed()) {
+        result_.samples.push_back({robot_.time(), distance, robot_.T_c_w(), tracker.belief()});
+    }
+    for (const TrackedFrame& frame : tracked) {
+        ++result_.images;
+        result_.rejectedImages += frame.lost;
+        const auto sample =
+            std::find_if(result_.samples.rbegin(), result_.samples.rend(),
+                         [&](const FlightSample& s) { return s.time == frame.time; });
+        if (!frame.lost) corrections_.add(sample->belief, frame.T_c_w);
+        sample->belief = frame.T_c_w;
+    }
+}
+
+FlightEnd FlightEvaluator::endAtGoal(const Tracker& tracker, double tolerance) {
+    PositionBelief believed = bodyPosition(tracker.belief(), world_.T_b_c);
+    believed.covariance *= corrections_.varianceFactor();
+    result_.believedGoal = believed;
+    result_.arrivalProbability = probabilityWithin(believed, goal_w_, tolerance);
+    if (result_.arrivalProbability < kArrivalConfidence) return FlightEnd::uncertain;
+    return goalError() <= tolerance ? FlightEnd::arrived : FlightEnd::astray;
+}
+
+void FlightEvaluator::finish(const Tracker& tracker) {
+    result_.duration = robot_.time();
+    result_.lost = tracker.loss().lostTime(robot_.time());
+    result_.timesLost = tracker.loss().timesLost();
+    result_.goalError = goalError();
 }
 
 FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
@@ -153,14 +167,14 @@ FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
                          drawStart(start, world.T_b_c, options.seed), noiseOf(world, options),
                          options.robot, options.seed);
     Tracker tracker(world.map, robot.camera(), start, trackerOptions(world, options));
-    FlightEvaluator evaluator(world, options, plan.back(), robot);
+    PlannedFlight flight(world, options, plan.back(), robot);
     flyLoop(robot, tracker, pilot, options.timeStep, [&](const std::vector<TrackedFrame>& tracked) {
-        evaluator.onStep(tracked, tracker, pilot);
+        flight.onStep(tracked, tracker, pilot);
         if (onExposure && robot.exposed()) onExposure(*robot.exposed());
         const bool isAborted = isStopped && isStopped();
-        return !isAborted && !evaluator.hasEnded(tracker, pilot);
+        return !isAborted && !flight.hasEnded(tracker, pilot);
     });
-    return evaluator.finish(tracker);
+    return flight.finish(tracker);
 }
 
 }  // namespace photonav

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "control/pilot.hpp"
+#include "flight/arrival.hpp"
 #include "simulation/simulated_robot.hpp"
 
 namespace photonav {
@@ -31,16 +33,18 @@ struct FlightOptions {
     TrackerOptions tracker{.searchPrior = true};  ///< its camera mount is that of the world
     PilotOptions pilot;
     double bodyRadius = 0.1;        ///< an obstacle nearer than this is a collision [m]
-    double arrivalTolerance = 0.3;  ///< true distance to the goal of a flight that arrived [m]
+    double arrivalTolerance = 0.3;  ///< distance to the goal of a flight that arrived [m]
     double timePerMetre = 6.;       ///< the flight is out of time after as much, and a minute [s]
     std::uint64_t seed = 1;
 };
 
 enum class FlightEnd {
-    arrived,
-    astray,  ///< believed to be at the goal, but is not
+    arrived,    ///< claimed to be at the goal, and is
+    astray,     ///< claimed to be at the goal, but is not: a false claim
+    uncertain,  ///< the best estimate is at the goal, but not certain enough to claim an arrival
     collided,
-    lost,  ///< gave up searching
+    lost,   ///< gave up searching
+    noWay,  ///< the map that the robot made shows none
     outOfTime,
     stopped,  ///< by the caller
 };
@@ -62,13 +66,51 @@ struct FlightResult {
     double way = 0.;       ///< truly flown [m]
     double lost = 0.;      ///< time without tracking [s]
     int timesLost = 0;
-    double goalError = 0.;        ///< true distance to the goal at the end [m]
+    double goalError = 0.;  ///< true distance to the goal at the end [m]
+    /// Of a flight that ended at its believed goal: where it believed to be, wider where its last
+    /// corrections were larger than it had believed, and the probability to be there.
+    std::optional<PositionBelief> believedGoal;
+    double arrivalProbability = 0.;
     bool photometric = false;     ///< the goal was approached on its image
     double goalErrorBefore = 0.;  ///< true distance to the goal when that began [m]
     double leastClearance = 0.;   ///< truly, over the flight [m]
     int images = 0;               ///< received
     int rejectedImages = 0;       ///< of these
     std::vector<FlightSample> samples;
+
+    bool hasArrived() const { return end == FlightEnd::arrived; }
+};
+
+/// Where a flight truly begins: a body pose drawn from the belief at take-off.
+Pose drawStart(const UncertainPose& start, const Pose& T_b_c, std::uint64_t seed);
+
+/// Compares a flight with the truth as it goes on.
+class FlightEvaluator {
+  public:
+    /// @param world,robot must outlive the evaluator
+    FlightEvaluator(const FlightWorld& world, const SimulatedRobot& robot,
+                    const Eigen::Vector3d& goal_w);
+
+    /// Once after every step of the robot.
+    /// @param tracked of this step; @param distance of the sample, if the camera exposed now [m]
+    void onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker, double distance);
+    /// True distance of the body to the goal [m].
+    double goalError() const { return (robot_.T_w_b().translation() - goal_w_).norm(); }
+    /// Of a robot whose estimate is at the goal: an arrival is claimed where the belief, as wide as
+    /// the corrections by the last images ask for, is within `tolerance` [m] of the goal with
+    /// kArrivalConfidence.
+    FlightEnd endAtGoal(const Tracker& tracker, double tolerance);
+    FlightResult& result() { return result_; }
+    /// Enters what is known at the end.
+    void finish(const Tracker& tracker);
+
+  private:
+    const FlightWorld& world_;
+    const SimulatedRobot& robot_;
+    Eigen::Vector3d goal_w_;
+    Eigen::Vector3d before_w_;
+    Corrections corrections_;
+    FlightResult result_;
 };
 
 /// Called for every exposure, for recordings. @param depth true

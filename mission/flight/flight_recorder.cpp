@@ -45,7 +45,7 @@ void makeFolder(const std::filesystem::path& folder) {
 }  // namespace
 
 FlightRecorder::FlightRecorder(const std::filesystem::path& folder, const Camera& camera,
-                               double informationScale)
+                               double informationScale, double blur)
     : folder_(folder),
       pairs_("# timestamp colour timestamp depth\n"),
       poses_("# timestamp tx ty tz qx qy qz qw (true, camera to world)\n") {
@@ -53,9 +53,9 @@ FlightRecorder::FlightRecorder(const std::filesystem::path& folder, const Camera
     writeFileAtomically(
         folder_ / "camera.yaml",
         fmt::format("width: {}\nheight: {}\nfx: {}\nfy: {}\ncx: {}\ncy: {}\ndepth_scale: {}\n"
-                    "information_scale: {}\n",
+                    "information_scale: {}\nblur: {:.4g}\n",
                     camera.width, camera.height, camera.fx(), camera.fy(), camera.cx(), camera.cy(),
-                    kDepthScale, informationScale));
+                    kDepthScale, informationScale, blur));
 }
 
 void FlightRecorder::add(const Exposed& exposed) {

@@ -14,9 +14,11 @@ namespace photonav {
 /// readTumSequence() and `photonav map` read. Grey images of 8 bits, depth of 16 bits.
 class FlightRecorder {
   public:
-    /// Makes the folder. @throws InputError when it cannot be written
+    /// Makes the folder.
+    /// @param blur point spread of the images [pixels]
+    /// @throws InputError when it cannot be written
     FlightRecorder(const std::filesystem::path& folder, const Camera& camera,
-                   double informationScale);
+                   double informationScale, double blur);
 
     /// Depth 0 or beyond 13 m: none. @throws InputError when a file cannot be written
     void add(const Exposed& exposed);

@@ -2,34 +2,13 @@
 #include "flight/flight_setup.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace photonav {
 namespace {
 
 /// A map may be made of flight 0: its noise must not be that of the images flown by it.
 constexpr std::uint64_t kSeedInMaps = 1'000'003;
-/// A real camera's images are worth less than planned with: what vignetting does to them is alike
-/// in all images of a place (docs/fly.md).
-constexpr double kRealCamera = 0.25;  // of camera.information_scale
-
-/// How images are aligned: as they were planned with, or as those of a real camera.
-/// @param resolution of the map [m]; 0: a mesh
-AlignmentOptions alignmentOptions(const Config& config, double resolution) {
-    const FlyConfig& fly = config.fly;
-    const bool isReal = fly.camera == "real";
-    const AlignmentOptions real = realCameraOptions(resolution);
-    AlignmentOptions alignment;
-    alignment.photometric = config.photometric;
-    alignment.photometric.stride = 1;
-    alignment.photometric.scale =
-        fly.scale.value_or((isReal ? kRealCamera : 1.) * config.photometric.scale);
-    alignment.trust.floorTranslation = fly.floorTranslation.value_or(real.trust.floorTranslation);
-    alignment.trust.floorRotation = fly.floorRotation.value_or(real.trust.floorRotation);
-    // Odometry carries what the map's noise leaves open; replays without it would drift there.
-    if (resolution > 0.) alignment.modelNoise = ModelNoise::measured;
-    if (isReal) alignment.exposure = real.exposure;
-    return alignment;
-}
 
 SimulatedRobotOptions robotOptions(const Config& config) {
     const FlyConfig& fly = config.fly;
@@ -46,11 +25,11 @@ SimulatedRobotOptions robotOptions(const Config& config) {
     return robot;
 }
 
-FlightOptions flightOptions(const Config& config, double resolution) {
+FlightOptions flightOptions(const Config& config, const TrackingMap& map) {
     const FlyConfig& fly = config.fly;
     FlightOptions flight;
     flight.robot = robotOptions(config);
-    flight.tracker.map = alignmentOptions(config, resolution);
+    flight.tracker.map = flightAlignment(config, map.kind, map.resolution());
     double& blindTime = flight.tracker.loss.blindTime;
     blindTime = fly.latency + std::max(blindTime, 4. * flight.robot.camera.period);
     flight.pilot.servo.maxSpeed = fly.speed;
@@ -63,6 +42,27 @@ FlightOptions flightOptions(const Config& config, double resolution) {
 }
 
 }  // namespace
+
+AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellSize) {
+    const FlyConfig& fly = config.fly;
+    const bool isReal = fly.camera == "real";
+    const double defocus =
+        CameraNoiseOptions().blur;  // of the simulated real camera, as calibrated
+    AlignmentOptions alignment = isReal ? realCameraOptions(std::hypot(config.camera.blur, defocus))
+                                        : photographOptions(config.camera.blur);
+    alignment.photometric = config.photometric;
+    alignment.photometric.stride = 1;
+    alignment.informationFactor = fly.scale.value_or(1.);
+    alignment.trust.floorTranslation = fly.floorTranslation.value_or(0.);
+    alignment.trust.floorRotation = fly.floorRotation.value_or(0.);
+    if (map != MapKind::mesh) {
+        // Odometry carries what the map's noise leaves open; replays without it would drift there.
+        alignment.modelNoise = ModelNoise::measured;
+        alignment.blur = kRenderedBlur;  // texture in cells is blurred: images are used as they are
+    }
+    alignment.modelErrors.surface = surfaceError(map, cellSize);
+    return alignment;
+}
 
 FlightSetup setUpFlight(const PlanningProblem& problem) {
     const Config& config = problem.config();
@@ -78,7 +78,7 @@ FlightSetup setUpFlight(const PlanningProblem& problem) {
         .T_b_c = config.camera.T_b_c(),
         .noise = config.fly.camera == "real" ? realNoise() : assumedNoise(config.photometric)};
     setup.map = map.kind;
-    setup.options = flightOptions(config, map.resolution());
+    setup.options = flightOptions(config, map);
     setup.options.initialCovariance = problem.initialCovariance();
     setup.options.pilot.isFree = [&world, radius = config.robotRadius](const Eigen::Vector3d& p_w) {
         return world.clearance(p_w) >= radius;

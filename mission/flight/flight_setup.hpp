@@ -26,6 +26,11 @@ struct FlightSetup {
 /// @throws InputError for a map that cannot be read
 FlightSetup setUpFlight(const PlanningProblem& problem);
 
+/// How images are aligned under the conditions of the section `fly`: covariances follow from their
+/// residuals, whoever took them.
+/// @param map what images are compared with; @param cellSize of a map of cells [m]
+AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellSize);
+
 /// Sets scale and floors of alignments as calibrated. The factor is divided by the number of images
 /// with correlated errors, because a tracker averages images.
 void applyCalibration(const Calibration& calibration, FlyConfig& fly);

@@ -34,6 +34,7 @@ void countEnds(std::span<const FlightResult> flights, FlightSummary& s) {
     for (const FlightResult& flight : flights) {
         s.arrived += flight.end == FlightEnd::arrived;
         s.astray += flight.end == FlightEnd::astray;
+        s.uncertain += flight.end == FlightEnd::uncertain;
         s.collisions += flight.end == FlightEnd::collided;
         s.lost += flight.end == FlightEnd::lost;
         s.outOfTime += flight.end == FlightEnd::outOfTime;
@@ -101,6 +102,15 @@ double neesPerDof(const FlightResult& flight) {
     std::vector<double> values;
     for (const FlightSample& sample : flight.samples) append(neesPerDof(sample), values);
     return mean(values, FlightSummary::kNone);
+}
+
+double positionRmse(const FlightResult& flight) {
+    double sum = 0.;
+    for (const FlightSample& sample : flight.samples) {
+        const Eigen::Vector3d believed = sample.belief.mean.inverse().translation();
+        sum += (believed - sample.T_c_w.inverse().translation()).squaredNorm();
+    }
+    return std::sqrt(sum / static_cast<double>(flight.samples.size()));
 }
 
 std::pair<double, double> neesBounds(std::size_t samples) {

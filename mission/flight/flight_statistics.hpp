@@ -29,8 +29,11 @@ PositionError positionError(const FlightSample& sample, std::span<const PlannedV
 /// average for consistent covariances. Nothing where the belief has no error to compare with, as a
 /// start that is known exactly in some direction.
 std::optional<double> neesPerDof(const FlightSample& sample);
-/// Mean over the exposures of a flight.
+/// Mean over the exposures of a flight; NaN without any.
 double neesPerDof(const FlightResult& flight);
+/// Root mean square error of the believed position, over the exposures of a flight [m]; NaN
+/// without any.
+double positionRmse(const FlightResult& flight);
 
 /// 95 % bounds of the mean NEES per degree of freedom of so many independent samples with six
 /// degrees of freedom each, if covariances are consistent.
@@ -40,7 +43,8 @@ std::pair<double, double> neesBounds(std::size_t samples);
 struct FlightSummary {
     static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-    std::size_t flights = 0, arrived = 0, astray = 0, collisions = 0, lost = 0, outOfTime = 0;
+    std::size_t flights = 0, arrived = 0, astray = 0, uncertain = 0, collisions = 0, lost = 0,
+                outOfTime = 0;
     double positionRmse = kNone;    ///< of the believed position, over all exposures [m]
     double predictedSigma = kNone;  ///< root mean square over the same [m]
     double within3Sigma = kNone;   ///< share of the exposures with an error within 3 predicted ones

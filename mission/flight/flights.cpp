@@ -6,6 +6,8 @@
 
 #include <mutex>
 
+#include "render/interruptible_views.hpp"
+
 namespace photonav {
 
 std::vector<PlannedView> plannedViews(std::span<const BeliefPoint> path) {
@@ -23,14 +25,20 @@ std::vector<FlightResult> flyMany(const std::vector<PlannedView>& plan, const Fl
                                   const OnExposure& onExposure) {
     std::vector<FlightResult> flights(count);
     std::mutex mutex;  // of onFlight
+    const auto isStopped = [&] { return interrupted.load(); };
+    FlightWorld stoppable = world;
+    if (world.truth) stoppable.truth = std::make_shared<InterruptibleViews>(world.truth, isStopped);
+    if (world.map) stoppable.map = std::make_shared<InterruptibleViews>(world.map, isStopped);
     const auto flyOne = [&](unsigned number) {
         if (interrupted) return;
         FlightOptions own = options;
         own.seed = (options.seed << 32) + number;
         FlightResult& flight = flights[number];
-        flight = fly(
-            plan, world, own, [&] { return interrupted.load(); },
-            number == 0 ? onExposure : OnExposure{});
+        try {
+            flight = fly(plan, stoppable, own, isStopped, number == 0 ? onExposure : OnExposure{});
+        } catch (const RenderingStopped&) {
+            return;
+        }
         flight.number = number;
         if (!onFlight || flight.end == FlightEnd::stopped) return;
         const std::lock_guard lock(mutex);

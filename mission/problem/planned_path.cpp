@@ -42,7 +42,8 @@ PlanSource findPlan(const std::string& argument) {
     return {config.string(), result};
 }
 
-EvaluatedPath readPlannedPath(const fs::path& resultFile, PlanningProblem& problem) {
+EvaluatedPath readPlannedPath(const fs::path& resultFile, PlanningProblem& problem,
+                              const std::atomic<bool>& interrupted) {
     std::ifstream stream(resultFile, std::ios::binary);
     if (!stream) throw InputError(resultFile.string(), "", "cannot be read");
     const json result = json::parse(stream, nullptr, false);
@@ -59,7 +60,7 @@ EvaluatedPath readPlannedPath(const fs::path& resultFile, PlanningProblem& probl
         throw InputError(resultFile.string(), "path", "not as photonav plan writes it");
     }
     if (waypoints.size() < 2) throw InputError(resultFile.string(), "path", "no path was found");
-    return problem.evaluate(result.value("planner", "plan"), waypoints);
+    return problem.evaluate(result.value("planner", "plan"), waypoints, interrupted);
 }
 
 }  // namespace photonav

@@ -21,6 +21,7 @@ PlanSource findPlan(const std::string& argument);
 
 /// The path of a result.json, judged anew.
 /// @throws InputError naming file and key for a result of another command or without a path
-EvaluatedPath readPlannedPath(const std::filesystem::path& resultFile, PlanningProblem& problem);
+EvaluatedPath readPlannedPath(const std::filesystem::path& resultFile, PlanningProblem& problem,
+                              const std::atomic<bool>& interrupted = kNotInterrupted);
 
 }  // namespace photonav

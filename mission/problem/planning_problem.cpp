@@ -7,6 +7,7 @@
 #include <ompl/geometric/PathGeometric.h>
 
 #include <numbers>
+#include <utility>
 
 #include "geometry/se3.hpp"
 #include "io/error.hpp"
@@ -14,6 +15,7 @@
 #include "planners/path_descent.hpp"
 #include "planners/planner_table.hpp"
 #include "problem/tree_evolution.hpp"
+#include "render/interruptible_views.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
@@ -36,6 +38,21 @@ std::vector<const ob::State*> solutionOf(const BeliefPlanner& planner) {
     return {states.begin(), states.end()};
 }
 
+/// Lets a flag end what looks at `current`, until the end of the scope.
+class InterruptionScope {
+  public:
+    InterruptionScope(const std::atomic<bool>*& current, const std::atomic<bool>& flag)
+        : current_(current) {
+        current_ = &flag;
+    }
+    InterruptionScope(const InterruptionScope&) = delete;
+    InterruptionScope& operator=(const InterruptionScope&) = delete;
+    ~InterruptionScope() { current_ = &kNotInterrupted; }
+
+  private:
+    const std::atomic<bool>*& current_;
+};
+
 Config withAlpha(Config config, double alpha) {
     config.belief.alpha = alpha;
     return config;
@@ -53,9 +70,11 @@ std::vector<Eigen::Vector2d> EvaluatedPath::fromAbove() const {
 }
 
 PlanningProblem::PlanningProblem(const Config& config, const World& world,
-                                 std::optional<double> alpha)
+                                 std::optional<double> alpha, InformationModel photometric)
     : config_(withAlpha(config, alpha.value_or(config.belief.alpha))),
       world_(world),
+      photometric_(photometric ? std::move(photometric)
+                               : photometricModel(config.camera.camera(), config.photometric)),
       space_(config.space, config.bounds, config.rotationWeight, config.start.yaw.value_or(0.)),
       si_(makeSpaceInformation(
           space_, [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
@@ -68,6 +87,8 @@ PlanningProblem::PlanningProblem(const Config& config, const World& world,
 PlanningProblem::PlanningProblem(const PlanningProblem& other, double alpha)
     : config_(withAlpha(other.config_, alpha)),
       world_(other.world_),
+      interruption_(other.interruption_),
+      photometric_(other.photometric_),
       space_(other.space_),
       si_(other.si_),
       field_(other.field_),
@@ -131,7 +152,10 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
         }
         return interrupted.load();
     };
-    planner->solve(ob::PlannerTerminationCondition(isDone));
+    {
+        const InterruptionScope scope(*interruption_, interrupted);
+        planner->solve(ob::PlannerTerminationCondition(isDone));
+    }
     show(outcome.progress.emplace_back(progress()));
 
     outcome.alpha = model.options().alpha;
@@ -171,11 +195,17 @@ std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& n
 }
 
 void PlanningProblem::mapChanged(const MapChange& change) {
-    field_->update(world_.sharedViews(), change);
-    if (plannersField_ != field_) plannersField_->update(world_.sharedViews(), change);
+    const auto views = interruptibleViews();
+    field_->update(views, change);
+    if (plannersField_ != field_) plannersField_->update(views, change);
     for (const auto& made : planners_) {
         if (const auto planner = made.lock()) planner->mapChanged(change);
     }
+}
+
+std::shared_ptr<const ViewSource> PlanningProblem::interruptibleViews() const {
+    return std::make_shared<InterruptibleViews>(world_.sharedViews(),
+                                                [flag = interruption_] { return (*flag)->load(); });
 }
 
 std::shared_ptr<InformationField> PlanningProblem::makeField(const std::string& viewModel) const {
@@ -185,7 +215,7 @@ std::shared_ptr<InformationField> PlanningProblem::makeField(const std::string& 
         return std::make_shared<InformationField>(InformationFormula{}, T_b_c, config_.field);
     }
     const auto field = [&](const auto& model) {
-        return std::make_shared<InformationField>(world_.sharedViews(), camera, model, T_b_c,
+        return std::make_shared<InformationField>(interruptibleViews(), camera, model, T_b_c,
                                                   config_.field);
     };
     const FeatureOptions& features = config_.viewModel.features;
@@ -198,7 +228,7 @@ std::shared_ptr<InformationField> PlanningProblem::makeField(const std::string& 
             camera, config_.photometric,
             {.priorSigma = config_.viewModel.mapPriorSigma, .baseline = config_.belief.ds}));
     }
-    return field(photometricModel(camera, config_.photometric));
+    return field(photometric_);
 }
 
 std::shared_ptr<BeliefModel> PlanningProblem::makeModel(
@@ -252,7 +282,9 @@ EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
 }
 
 EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
-                                        const std::vector<Place>& waypoints) {
+                                        const std::vector<Place>& waypoints,
+                                        const std::atomic<bool>& interrupted) {
+    const InterruptionScope scope(*interruption_, interrupted);
     std::vector<ob::ScopedState<>> states;
     std::vector<const ob::State*> pointers;
     states.reserve(waypoints.size());

@@ -70,7 +70,9 @@ class PlanningProblem {
     /// @param world must outlive it
     /// @param alpha of the cost; default: the config's, whatever its planner. The cost that the
     ///        planner of a config minimises, for rrt_star the length, has alphaOf(its name, ...).
-    PlanningProblem(const Config& config, const World& world, std::optional<double> alpha = {});
+    /// @param photometric information of a view, in place of photometricInformation()
+    PlanningProblem(const Config& config, const World& world, std::optional<double> alpha = {},
+                    InformationModel photometric = {});
     /// The same problem with another trade-off, over the same views.
     PlanningProblem(const PlanningProblem& other, double alpha);
 
@@ -78,6 +80,7 @@ class PlanningProblem {
     void checkPlaces() const;
 
     /// Grows the planner of this name until it has the config's number of vertices.
+    /// @throws RenderingStopped when it is interrupted inside a large view, without a path so far
     /// @param onProgress called now and then while planning
     PlanOutcome solve(const std::string& planner,
                       const std::atomic<bool>& interrupted = kNotInterrupted,
@@ -98,7 +101,9 @@ class PlanningProblem {
                                          const std::atomic<bool>& interrupted);
 
     /// Evaluates a path given by its waypoints.
-    EvaluatedPath evaluate(const std::string& planner, const std::vector<Place>& waypoints);
+    /// @throws RenderingStopped when it is interrupted inside a large view
+    EvaluatedPath evaluate(const std::string& planner, const std::vector<Place>& waypoints,
+                           const std::atomic<bool>& interrupted = kNotInterrupted);
 
     /// The information of the view from a body pose, cached; for heat maps.
     Matrix6 informationAt(const Pose& T_w_b) { return evaluator_->informationAt(T_w_b); }
@@ -136,12 +141,17 @@ class PlanningProblem {
   private:
     void checkPlace(const std::string& key, const Place& place) const;
     std::shared_ptr<InformationField> makeField(const std::string& viewModel) const;
+    std::shared_ptr<const ViewSource> interruptibleViews() const;
     std::shared_ptr<BeliefModel> makeModel(std::shared_ptr<InformationField> field) const;
     EvaluatedPath evaluate(const std::string& planner,
                            const std::vector<const ompl::base::State*>& path);
 
     const Config config_;
     const World& world_;
+    /// What ends the rendering of views, in solve() alone; of all problems over the same views.
+    std::shared_ptr<const std::atomic<bool>*> interruption_ =
+        std::make_shared<const std::atomic<bool>*>(&kNotInterrupted);
+    InformationModel photometric_;
     FlightSpace space_;
     ompl::base::SpaceInformationPtr si_;
     std::shared_ptr<InformationField> field_;          // photometric, of evaluator_

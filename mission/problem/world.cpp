@@ -64,7 +64,7 @@ World::World(const Config& config) {
             const std::shared_ptr<TexturedOcTree> map = loadTexturedOcTree(config.mapFile);
             hasTexture_ = isTextured(*map);
             views_ = std::make_shared<VoxelRenderer>(*map, config.unknownToCamera);
-            useMap(map, config);
+            useMap(map, map, config);
         }
     } catch (const InputError& error) {
         throw InputError(config.file, config.mapFile.empty() ? "scene.file" : "map.file",
@@ -80,9 +80,13 @@ World::World(const Config& config) {
 World::World(Scene scene, const Config& config) { useScene(std::move(scene), config); }
 
 World::World(std::shared_ptr<const TexturedOcTree> map, const Config& config)
+    : World(map, map, config) {}
+
+World::World(std::shared_ptr<const TexturedOcTree> map,
+             std::shared_ptr<const TexturedOcTree> obstacles, const Config& config)
     : snapshots_(std::in_place, *map, config.unknownToCamera) {
     views_ = snapshots_->current();
-    useMap(std::move(map), config);
+    useMap(std::move(map), std::move(obstacles), config);
 }
 
 void World::useScene(Scene scene, const Config& config) {
@@ -95,18 +99,20 @@ void World::useScene(Scene scene, const Config& config) {
     views_ = std::move(renderer);
 }
 
-void World::useMap(std::shared_ptr<const TexturedOcTree> map, const Config& config) {
-    distances_ = DistanceMap(*map, config.bounds,
+void World::useMap(std::shared_ptr<const TexturedOcTree> map,
+                   std::shared_ptr<const TexturedOcTree> obstacles, const Config& config) {
+    distances_ = DistanceMap(*obstacles, config.bounds,
                              {.maxDistance = reach(config.robotRadius, map->getResolution()),
                               .unknown = config.unknownToPlanner});
     extent_ = extentOf(*map);
     map_ = std::move(map);
+    obstacles_ = std::move(obstacles);
 }
 
 void World::mapChanged(const MapChange& change) {
     if (!snapshots_) throw std::logic_error("world: only a map of the program's own can change");
     if (change.empty()) return;
-    distances_.update(*map_, change);
+    distances_.update(*obstacles_, change);
     views_ = snapshots_->update(*map_, change);
     extent_ = extentOf(*map_);
 }

@@ -24,6 +24,10 @@ class World {
     /// tell mapChanged().
     /// @throws std::invalid_argument for a map that is too large
     World(std::shared_ptr<const TexturedOcTree> map, const Config& config);
+    /// The same where obstacles are the occupied cells of another map, of the same resolution. A
+    /// change must list what changed in either.
+    World(std::shared_ptr<const TexturedOcTree> map,
+          std::shared_ptr<const TexturedOcTree> obstacles, const Config& config);
 
     /// Updates clearance and views after a change of the program's own map, at a cost that grows
     /// with the change. Nothing else may use the world meanwhile. Every planning problem in it must
@@ -51,7 +55,8 @@ class World {
 
   private:
     void useScene(Scene scene, const Config& config);
-    void useMap(std::shared_ptr<const TexturedOcTree> map, const Config& config);
+    void useMap(std::shared_ptr<const TexturedOcTree> map,
+                std::shared_ptr<const TexturedOcTree> obstacles, const Config& config);
 
     std::shared_ptr<const ViewSource> views_;
     std::optional<VoxelSnapshots> snapshots_;  // that views_ is of, where the map may change
@@ -59,6 +64,7 @@ class World {
     DistanceMap distances_;
     Eigen::AlignedBox3d extent_;
     std::shared_ptr<const TexturedOcTree> map_;
+    std::shared_ptr<const TexturedOcTree> obstacles_;
     const Scene* scene_ = nullptr;  // of the renderer in views_
 };
 

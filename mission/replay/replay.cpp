@@ -132,12 +132,15 @@ UncertainPose startOf(const ReplayOptions& options, const Sequence& sequence) {
 }
 
 AlignmentOptions alignmentOf(const ReplayOptions& options, const Sequence& sequence,
-                             double resolution) {
+                             const TrackingMap& map) {
     AlignmentOptions alignment;
     if (options.odometry) {
         alignment = KeyframeOptions().alignment;
+        alignment.modelErrors.depthScale = sequence.depthError;
     } else {
-        alignment = realCameraOptions(resolution);
+        alignment =
+            realCameraOptions(map.octree ? kRenderedBlur : sequence.blur.value_or(kAreaBlur));
+        alignment.modelErrors.surface = map.surfaceError();
         // The motion is only guessed, so that nothing else stops a pose from sliding away.
         alignment.trust.maxUnexplained = 0.25;
         if (sequence.informationScale) alignment.photometric.scale = *sequence.informationScale;
@@ -150,7 +153,7 @@ AlignmentOptions alignmentOf(const ReplayOptions& options, const Sequence& seque
     }
     alignment.robust = RobustWeight::huber;
     alignment.trust.minOverlap = options.minOverlap;
-    if (options.scale) alignment.photometric.scale = *options.scale;
+    alignment.informationFactor = options.scale.value_or(1.);
     if (options.floorTranslation) alignment.trust.floorTranslation = *options.floorTranslation;
     if (options.floorRotation) alignment.trust.floorRotation = *options.floorRotation;
     return alignment;
@@ -213,9 +216,9 @@ Replay::Replay(const ReplayOptions& options) : options_(options) {
         applyCalibration(options_.odometry ? std::nullopt : std::optional(map_.kind), options_);
     }
     start_ = startOf(options_, recording_.sequence);
-    alignment_ = alignmentOf(options_, recording_.sequence, map_.resolution());
+    alignment_ = alignmentOf(options_, recording_.sequence, map_);
     options_.stereo = recording_.stereo;
-    options_.scale = alignment_.photometric.scale;
+    options_.scale = alignment_.informationFactor;
     options_.floorTranslation = alignment_.trust.floorTranslation;
     options_.floorRotation = alignment_.trust.floorRotation;
     medianDepth_ = checkDepths(options, recording_);

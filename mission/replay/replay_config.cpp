@@ -22,12 +22,10 @@ void addKeys(KeyTable& keys, ReplayOptions& o) {
                 o.startSigma, kPositive);
     keys.number({"sigma", "grey value", "standard deviation of the image noise"}, o.sigma,
                 kPositive);
-    keys.number({"scale", "",
-                 "factor on the information of an image; none: that of camera.yaml in a map, else "
-                 "the tracker's"},
-                o.scale, kPositive);
-    keys.number({"least_sigma", "m",
-                 "least standard deviation of an aligned position; none: the tracker's"},
+    keys.number(
+        {"scale", "", "factor on the information that the residuals of an image say; none: 1"},
+        o.scale, kPositive);
+    keys.number({"least_sigma", "m", "least standard deviation of an aligned position; none: 0"},
                 o.floorTranslation, kNotNegative);
     keys.number({"least_sigma_rotation", "rad", "the same of an aligned rotation"}, o.floorRotation,
                 kNotNegative);

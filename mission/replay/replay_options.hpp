@@ -23,10 +23,9 @@ struct ReplayOptions : RecordingOptions {
     /// where it begins.
     std::optional<double> startSigma;
     double sigma = 0.02;                     ///< image noise, grey values in [0, 1]
-    std::optional<double> scale;             ///< factor on the information
+    std::optional<double> scale;             ///< factor on the measured information; none: 1
     std::optional<double> floorTranslation;  ///< least standard deviations of an alignment [m]
-    std::optional<double> floorRotation;     ///< [rad]; without these three the tracker's defaults:
-                                             ///< realCameraOptions(), KeyframeOptions
+    std::optional<double> floorRotation;     ///< [rad]; none: 0
     double minOverlap = 0.2;  ///< least share of the image's pixels that the model must explain
     /// Images are halved until they are as wide [pixels]; by default 320 in a map, once in
     /// odometry.

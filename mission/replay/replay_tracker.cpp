@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replay/replay_tracker.hpp"
 
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -69,7 +70,7 @@ ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
     ReplayTracker tracker;
     tracker.odometry = true;
     tracker.trust = options.keyframe.alignment.trust;
-    tracker.scale = options.keyframe.alignment.photometric.scale;
+    tracker.scale = options.keyframe.alignment.informationFactor;
     tracker.camera = camera;
     tracker.track = [=](const View& view, double timestamp) {
         return odometry->track(view, timestamp);
@@ -88,14 +89,19 @@ ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
 }
 
 ReplayTracker mapTracker(const std::shared_ptr<const ViewSource>& map, const Camera& camera,
-                         const UncertainPose& start, const TrackerOptions& options,
+                         const UncertainPose& start, const TrackerOptions& given,
                          unsigned maxWidth) {
+    TrackerOptions options = given;
     ReplayTracker tracker;
     tracker.trust = options.map.trust;
-    tracker.scale = options.map.photometric.scale;
+    tracker.scale = options.map.informationFactor;
     tracker.camera = camera;
     while (tracker.camera.width > maxWidth) {
         tracker.camera = halved(tracker.camera);
+        // The mean of two pixels has a variance of a quarter of a pixel, and is one pixel then.
+        if (options.map.blur < kRenderedBlur) {
+            options.map.blur = std::sqrt((options.map.blur * options.map.blur + 0.25) / 4.);
+        }
         ++tracker.halvings;
     }
     const auto localizer = std::make_shared<Tracker>(map, tracker.camera, start, options);

@@ -44,12 +44,6 @@ ImageF convolvedTransposed(const ImageF& image, const std::vector<float>& kernel
     return result;
 }
 
-vpImage<unsigned char> bytesOf(const ImageF& image) {
-    vpImage<unsigned char> bytes(image.getHeight(), image.getWidth());
-    std::transform(image.bitmap, image.bitmap + image.getSize(), bytes.bitmap, greyLevel);
-    return bytes;
-}
-
 }  // namespace
 
 ImageNoise assumedNoise(const PhotometricOptions& options) {
@@ -84,7 +78,7 @@ ImageNoise realNoise(const CameraNoiseOptions& options, const WanderingExposure&
 
 SimulatedCamera::SimulatedCamera(const ViewSource& world, const Camera& camera, ImageNoise noise,
                                  const SimulatedCameraOptions& options, std::uint64_t seed)
-    : world_(world),
+    : sensor_(world),
       camera_(camera),
       noise_(std::move(noise)),
       options_(options),
@@ -110,19 +104,20 @@ std::optional<Exposed> SimulatedCamera::expose(double time, const Pose& T_c_w) {
     if (time < next_ - kTimeSlack) return {};
     next_ += options_.period;
     View view;
-    world_.render(camera_, T_c_w, view);
+    sensor_.render(camera_, T_c_w, view);
     Exposed exposed{time, T_c_w, view.intensity, view.depth};
     if (noise_) noise_(exposed.image, random_);
-    if (isBlack(time)) exposed.image = 0.F;
+    const bool isBlackNow = isBlack(time);
+    if (isBlackNow) exposed.image = view.intensity = 0.F;
     const bool isDropped = std::bernoulli_distribution(options_.dropRate)(random_);
     if (isDropped) return exposed;
-    view.intensity = exposed.image;
     measureDepth(T_c_w, view);
+    view.intensity = exposed.image;
     onTheWay_.push_back({time, std::move(view)});
     return exposed;
 }
 
-/// Replaces the true depth of a view by the measured one.
+/// Replaces the true depth of an ideal view by the measured one.
 void SimulatedCamera::measureDepth(const Pose& T_c_w, View& view) {
     switch (options_.depth) {
         case DepthSensor::none:
@@ -131,17 +126,24 @@ void SimulatedCamera::measureDepth(const Pose& T_c_w, View& view) {
         case DepthSensor::rgbd:
             return addDepthNoise(view.depth, options_.depthNoise, depthRandom_);
         case DepthSensor::stereo:
-            (*stereo_)({bytesOf(view.intensity), rightImage(T_c_w)}, view);
+            (*stereo_)({pictureOf(view.intensity), rightImage(T_c_w)}, view);
     }
+}
+
+/// A picture of the pair.
+vpImage<unsigned char> SimulatedCamera::pictureOf(ImageF ideal) {
+    if (options_.pairNoise) options_.pairNoise(ideal, depthRandom_);
+    vpImage<unsigned char> bytes(ideal.getHeight(), ideal.getWidth());
+    std::transform(ideal.bitmap, ideal.bitmap + ideal.getSize(), bytes.bitmap, greyLevel);
+    return bytes;
 }
 
 vpImage<unsigned char> SimulatedCamera::rightImage(const Pose& T_c_w) {
     View view;
     Pose T_r_l = Pose::Identity();
     T_r_l.translation().x() = -options_.baseline;
-    world_.render(camera_, T_r_l * T_c_w, view);
-    if (noise_) noise_(view.intensity, depthRandom_);
-    return bytesOf(view.intensity);
+    sensor_.render(camera_, T_r_l * T_c_w, view);
+    return pictureOf(std::move(view.intensity));
 }
 
 std::optional<CameraFrame> SimulatedCamera::receive(double time) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A camera in a simulated world: noisy images at a fixed rate, with depth if it has a depth sensor,
-// with latency and lost images.
+// A camera in a simulated world: noisy images at a fixed rate, whose pixels average over their
+// area, with depth if it has a depth sensor, with latency and lost images.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include "depth/stereo_depth.hpp"
 #include "estimation/observation.hpp"
 #include "photometry/photometric.hpp"
+#include "render/area_sensor.hpp"
 #include "simulation/camera_noise.hpp"
 
 namespace photonav {
@@ -46,7 +47,10 @@ struct SimulatedCameraOptions {
     DepthSensor depth = DepthSensor::none;
     DepthNoiseOptions depthNoise = {};  ///< rgbd
     double baseline = 0.11;             ///< stereo [m]
-    StereoOptions stereo{.halvings = 0};
+    StereoOptions stereo{.halvings = 0, .blockSize = 21};
+    /// Noise of the pictures that `stereo` matches: the sensor's own, where that of the images may
+    /// stand for errors of a model as well. None: no noise.
+    ImageNoise pairNoise = {};
     double period = 0.25;        ///< between exposures [s]
     double latency = 0.;         ///< from the exposure to the image being there [s]
     double dropRate = 0.;        ///< share of the frames that never arrive
@@ -78,15 +82,15 @@ class SimulatedCamera {
     /// The next image that has arrived by now, oldest first.
     std::optional<CameraFrame> receive(double time);
 
-    /// Of the images: with stereo that of the rectified left one.
-    const Camera& camera() const { return stereo_ ? stereo_->camera() : camera_; }
+    const Camera& camera() const { return camera_; }
 
   private:
     bool isBlack(double time);
     void measureDepth(const Pose& T_c_w, View& view);
+    vpImage<unsigned char> pictureOf(ImageF ideal);
     vpImage<unsigned char> rightImage(const Pose& T_c_w);
 
-    const ViewSource& world_;
+    AreaSensor sensor_;
     Camera camera_;
     ImageNoise noise_;
     SimulatedCameraOptions options_;

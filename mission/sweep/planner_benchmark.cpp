@@ -92,7 +92,9 @@ class Session {
 
     void record(ob::Planner& planner, ompl::tools::Benchmark::RunProperties& properties) {
         const auto& ours = dynamic_cast<const BeliefPlanner&>(planner);
-        PlanOutcome noPath;  // unless one is found below
+        const bool hasPath = planner.getProblemDefinition()->hasExactSolution();
+        if (interrupted_ && !hasPath) throw Interrupted();  // cut, inside a large view
+        PlanOutcome noPath;                                 // unless one is found below
         noPath.vertices = ours.vertices();
         noPath.iterations = ours.iterations();
         SweepRun run{item(outcome_.runs.size()),
@@ -113,7 +115,7 @@ class Session {
             sample[name] = value();
         }
         samples_.push_back(sample);
-        if (planner.getProblemDefinition()->hasExactSolution()) {
+        if (hasPath) {
             const EvaluatedPath path = plan_.evaluate(ours);
             setPath(run, path);
             run.status = "done";

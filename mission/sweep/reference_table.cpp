@@ -92,7 +92,9 @@ void ReferenceTable::readFiles() {
         T_w_b.translation() = Eigen::Vector3d(toNumber(f[1]), toNumber(f[2]), toNumber(f[3]));
         T_w_b.linear() =
             Eigen::AngleAxisd(toNumber(f[4]), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-        rows_.at(keyOf(toNumber(f[0]))).waypoints.push_back(T_w_b);
+        // A path that came to the disk alone, before its row could be written, is none.
+        const auto row = rows_.find(keyOf(toNumber(f[0])));
+        if (row != rows_.end()) row->second.waypoints.push_back(T_w_b);
     });
 }
 

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -141,8 +143,18 @@ void SweepJournal::write(const json& line) {
         fs::resize_file(file_, size_, ignored);
         stream_.open(file_, std::ios::app);
     }
-    stream_ << jsonLine(line) << std::flush;
-    if (!stream_) throw InputError(file_.string(), "", "cannot be written");
+    const std::string text = jsonLine(line);
+    errno = 0;
+    stream_ << text << std::flush;
+    if (stream_) {
+        size_ += text.size();
+        return;
+    }
+    const std::string reason = errno != 0 ? std::strerror(errno) : "input/output error";
+    stream_.close();          // tries once more
+    std::error_code ignored;  // a line that was cut is dropped by readers, too
+    fs::resize_file(file_, size_, ignored);
+    throw InputError(file_.string(), "", "cannot be written: " + reason);
 }
 
 void SweepJournal::append(const SweepRun& run) {

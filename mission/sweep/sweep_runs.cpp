@@ -8,8 +8,22 @@
 #include <mutex>
 
 #include "geometry/constants.hpp"
+#include "render/interruptible_views.hpp"
 
 namespace photonav {
+namespace {
+
+std::optional<SweepRun> runUnlessStopped(const Config& config, const World& world,
+                                         const SweepItem& item,
+                                         const std::atomic<bool>& interrupted) {
+    try {
+        return runItem(config, world, item, interrupted);
+    } catch (const RenderingStopped&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace
 
 std::optional<SweepRun> runItem(const Config& config, const World& world, const SweepItem& item,
                                 const std::atomic<bool>& interrupted) {
@@ -52,7 +66,7 @@ void runItems(const Config& config, const World& world, const std::vector<SweepI
         while (!interrupted && !tbb::is_current_task_group_canceling()) {
             const std::size_t i = next++;
             if (i >= items.size()) return;
-            const auto run = runItem(config, world, items[i], interrupted);
+            const auto run = runUnlessStopped(config, world, items[i], interrupted);
             if (!run) return;
             const std::lock_guard lock(mutex);
             onRun(*run);

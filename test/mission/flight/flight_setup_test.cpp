@@ -31,16 +31,16 @@ TEST(FlightSetup, FliesUnderTheConditionsOfTheConfig) {
     EXPECT_TRUE(options.pilot.isFree != nullptr);
 }
 
-TEST(FlightSetup, ImagesOfARealCameraWeighLess) {
-    const FlightOptions assumed = optionsFor({});
-    const FlightOptions real = optionsFor({"fly.camera=real"});
-    const FlightOptions given = optionsFor({"fly.camera=real", "fly.scale=0.5"});
-    const auto scaleOf = [](const FlightOptions& o) { return o.tracker.map.photometric.scale; };
-    EXPECT_LT(scaleOf(real), scaleOf(assumed));
-    EXPECT_EQ(scaleOf(given), 0.5);
-    EXPECT_EQ(given.pilot.photometric.scale, 0.5);
-    EXPECT_TRUE(real.tracker.map.exposure.has_value());
-    EXPECT_FALSE(assumed.tracker.map.exposure.has_value());
+TEST(FlightSetup, ImagesAreAlignedAsTheCameraTakesThem) {
+    const AlignmentOptions assumed = optionsFor({}).tracker.map;
+    const AlignmentOptions real = optionsFor({"fly.camera=real", "camera.blur=0.4"}).tracker.map;
+    EXPECT_TRUE(assumed.measureCovariance && real.measureCovariance);
+    EXPECT_FALSE(assumed.exposure.has_value());
+    EXPECT_TRUE(real.exposure.has_value());
+    EXPECT_EQ(assumed.blur, kAreaBlur);
+    EXPECT_GT(real.blur, 0.4);  // and its defocus
+    EXPECT_EQ(assumed.informationFactor, 1.);
+    EXPECT_EQ(optionsFor({"fly.scale=0.5"}).tracker.map.informationFactor, 0.5);
 }
 
 TEST(FlightSetup, ACalibrationCountsCorrelatedImagesOnce) {

@@ -244,12 +244,36 @@ TEST_F(Flight, EndsInACollision) {
     EXPECT_LT(flight.leastClearance, options.bodyRadius);
 }
 
-TEST_F(Flight, EndsAstrayOverWhite) {
+/// With the covariance of its odometry, a flight over white is not certain of its goal.
+TEST_F(Flight, ClaimsNoArrivalThatItIsNotCertainOf) {
     world.truth = world.map = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
-    options.robot.body.odometryFactor = 100.;
     const FlightResult flight = fly(plan, world, options);
-    EXPECT_EQ(nameOf(flight.end), "astray");
-    EXPECT_FALSE(flight.photometric);
+    EXPECT_EQ(nameOf(flight.end), "uncertain arrival");
+    EXPECT_FALSE(flight.hasArrived());
+    EXPECT_GT(flight.arrivalProbability, 0.5);
+    EXPECT_LT(flight.arrivalProbability, kArrivalConfidence);
+    const FlightSample& last = flight.samples.back();
+    ASSERT_TRUE(flight.believedGoal);
+    const Pose T_w_b = (world.T_b_c * last.belief.mean).inverse();
+    EXPECT_LT((flight.believedGoal->mean_w - T_w_b.translation()).norm(), 0.05);
+    EXPECT_NEAR(std::sqrt(flight.believedGoal->covariance(0, 0)), 0.11, 0.02);  // 0.1^2 + 2 m flown
+}
+
+/// False claims: the odometry is far worse than believed, and no image contradicts it.
+TEST_F(Flight, EndsAstrayOverWhite) {
+    options.initialCovariance *= 0.01;
+    options.arrivalTolerance = 0.4;
+    world.truth = world.map = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
+    options.robot.body.odometryFactor = 200.;
+    int astray = 0;
+    for (options.seed = 1; options.seed <= 8; ++options.seed) {
+        const FlightResult flight = fly(plan, world, options);
+        EXPECT_FALSE(flight.photometric);
+        if (flight.end != FlightEnd::astray) continue;
+        ++astray;
+        EXPECT_GT(flight.goalError, options.arrivalTolerance);
+    }
+    EXPECT_GT(astray, 0);
 }
 
 }  // namespace

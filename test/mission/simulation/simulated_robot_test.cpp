@@ -125,6 +125,7 @@ TEST_P(RobotWithDepth, MeasuresTheFloor) {
     T_w_b.translation().z() = 2.;
     SimulatedRobotOptions options;
     options.camera.depth = GetParam();
+    options.camera.pairNoise = assumedNoise({.sigma = 0.01});
     SimulatedRobot robot(floor, camera, cameraMount(kDown), T_w_b, assumedNoise({.sigma = 0.01}),
                          options, 1);
     const Observation observation = robot.fly({}, 0.);
@@ -154,6 +155,23 @@ TEST_P(RobotWithDepth, MeasuresTheFloor) {
 INSTANTIATE_TEST_SUITE_P(Sensors, RobotWithDepth,
                          ::testing::Values(DepthSensor::none, DepthSensor::rgbd,
                                            DepthSensor::stereo));
+
+/// Noise that is correlated between pixels stands for errors of a model. It is not in the pair: it
+/// would look like texture.
+TEST(SimulatedCamera, StereoFindsNothingOnABlankFloor) {
+    const MeshRenderer floor(test::floorOf(uniformTexture(0.6F)));
+    const SimulatedCameraOptions options{.depth = DepthSensor::stereo,
+                                         .pairNoise = assumedNoise({.sigma = 0.02})};
+    SimulatedCamera camera(floor, makeCamera(188, 120, 1.2),
+                           assumedNoise({.sigma = 0.02, .scale = 0.08}), options, 1);
+    ASSERT_TRUE(camera.expose(0., cameraAt({0., 0., 2.}, kDown)));
+    const auto frame = camera.receive(0.);
+    ASSERT_TRUE(frame);
+    const ImageF& depth = frame->view.depth;
+    const auto found = std::count_if(depth.bitmap, depth.bitmap + depth.getSize(),
+                                     [](float z) { return z > 0.F; });
+    EXPECT_LT(found, 0.01 * depth.getSize());
+}
 
 }  // namespace
 }  // namespace photonav

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "config/explore_config.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "config/config_keys.hpp"
+#include "planners/planner_table.hpp"
+
+namespace photonav {
+namespace {
+
+void readExplorers(YamlMap& explore, std::vector<std::string>& planners) {
+    explore.read("planners", planners);
+    const std::vector<std::string>& known = plannerNames();
+    for (const std::string& name : planners) {
+        if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+        explore.fail("planners",
+                     fmt::format("'{}' is not one of {}", name, fmt::join(known, ", ")));
+    }
+}
+
+}  // namespace
+
+ExploreConfig::ExploreConfig() : initialCovariance(Matrix6::Zero()) {
+    initialCovariance.diagonal() << 1e-6, 1e-6, 1e-6, 1e-8, 1e-8, 1e-8;
+}
+
+void addKeys(KeyTable& keys, ExploreConfig& c) {
+    keys.beginSection("explore");
+    keys.choice({"sensor", "",
+                 "that maps: a depth camera, a second camera beside the first, or the camera alone, "
+                 "by its own motion"},
+                c.sensor, {"depth", "stereo", "monocular"});
+    keys.number({"depth_sigma", "m",
+                 "standard deviation of the depth camera at 1 m; it grows with depth squared"},
+                c.depthSigma, {0., 1.});
+    keys.number({"depth_missing", "", "share of its pixels without a measurement"}, c.depthMissing,
+                {0., 1.});
+    keys.number({"baseline", "m", "between the cameras of `stereo`"}, c.baseline, {0.01, 10.});
+    keys.number({"range", "m", "farther surfaces are not mapped"}, c.range, {0.5, 12.});
+    keys.number({"resolution", "m", "edge of the map's cells"}, c.resolution, {0.01, 0.5});
+    keys.choice({"unknown", "",
+                 "space never seen: `optimistic` plans lead through it, `pessimistic` ones do not"},
+                c.unknown, {"optimistic", "pessimistic"});
+    keys.choice({"unknown_information", "",
+                 "what views of such space tell: `none` (the paper), or as `predicted` from the "
+                 "views flown through lately"},
+                c.unknownInformation, {"none", "predicted"});
+    keys.number({"keyframe_distance", "m", "from the last image fused: the next one is fused"},
+                c.keyframeDistance, {0.01, 10.});
+    keys.number({"keyframe_angle", "rad", "turned since the last image fused: the same"},
+                c.keyframeAngle, {0.01, 3.2});
+    keys.number({"keyframe_new", "", "share of the surfaces in view that the map lacks: the same"},
+                c.keyframeNew, {0.01, 1.});
+    keys.count({"vertices", "", "of the tree or roadmap, in place of `planner.vertices`"},
+               c.vertices, {2., 1e8});
+    keys.count({"shortcut", "", "changes tried on each path, in place of `planner.shortcut`"},
+               c.shortcut, {0., 1e9});
+    keys.number({"commitment", "",
+                 "a way is left for another one only if that costs less by this share "
+                 "(`belief_rrt_star`)"},
+                c.commitment, {0., 0.9});
+    keys.variances({"initial", "m^2, rad^2",
+                    "variances at the start, in place of `noise.initial`: an unknown scene has no "
+                    "frame but that of the start"},
+                   c.initialCovariance);
+    keys.number({"time_limit", "s", "of a flight"}, c.timeLimit, {1., 1e5});
+    keys.count({"trials", "", "flights per planner"}, c.trials, {1., 1e6});
+    keys.add({.words = {"planners", "", "that are compared; none: `planner.name`"},
+              .read = [&c](YamlMap& map) { readExplorers(map, c.planners); },
+              .value = [&c] { return yamlList(c.planners); }});
+}
+
+}  // namespace photonav

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exploration/exploration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+#include "exploration/mapper.hpp"
+#include "exploration/way_ahead.hpp"
+#include "geometry/gaussian.hpp"
+#include "geometry/se3.hpp"
+#include "io/error.hpp"
+#include "io/stopwatch.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr double kHidden = 0.3;  // around the robot, that such a camera does not see [m]
+constexpr int kMostInVain = 6;   // updates in a row without a way, before there is none
+constexpr double kWait = 1.;     // before an update without a keyframe, while nothing moves [s]
+
+Matrix6 inCameraFrame(const Matrix6& covariance, const Pose& T_b_c) {
+    const Matrix6 toCamera = adjoint(T_b_c.inverse());
+    return toCamera * covariance * toCamera.transpose();
+}
+
+/// Robot, tracker, pilot and map in closed loop, and the comparison with the truth.
+class Exploration {
+  public:
+    Exploration(const ExplorationSetup& setup, const std::string& planner, std::uint32_t seed,
+                const std::atomic<bool>& interrupted, const OnPlanUpdate& onUpdate);
+    ExplorationResult run();
+
+  private:
+    void onImage(const TrackedFrame& tracked, const View& image);
+    void updatePlan(const UncertainPose& T_c_w, MapChange change, double fuseSeconds);
+    void flyOn(const UncertainPose& T_c_w);
+    bool isWaiting() const;
+    bool hasEnded();
+    ExplorationResult resultSoFar();
+    bool endAs(FlightEnd end, const std::string& reason);
+    std::string reasonForNoWay() const;
+    Pose bodyOf(const Pose& T_c_w) const { return (setup_.truth.T_b_c * T_c_w).inverse(); }
+
+    const ExplorationSetup& setup_;
+    const std::atomic<bool>& interrupted_;
+    const OnPlanUpdate& onUpdate_;
+    OwnMap map_;
+    OnlinePlanner planner_;
+    SimulatedRobot robot_;
+    Tracker tracker_;
+    Pilot pilot_;
+    SpaceAhead space_;
+    Mapper mapper_;
+    bool isWhole_ = false;    // the plan flown leads to the goal
+    int withoutWay_ = 0;      // updates in a row
+    double lastUpdate_ = 0.;  // [s]
+    FlightEvaluator evaluator_;
+    ExplorationResult result_;
+};
+
+DepthSensor depthSensorOf(ExploreSensor sensor) {
+    switch (sensor) {
+        case ExploreSensor::depth:
+            return DepthSensor::rgbd;
+        case ExploreSensor::stereo:
+            return DepthSensor::stereo;
+        case ExploreSensor::monocular:
+            break;
+    }
+    return DepthSensor::none;
+}
+
+/// The belief at take-off.
+UncertainPose startOf(const ExplorationSetup& setup) {
+    const Place& start = setup.config.start;
+    Pose T_w_b = Pose::Identity();
+    T_w_b.translation() = start.position;
+    T_w_b.rotate(Eigen::AngleAxisd(start.yaw.value_or(0.), Eigen::Vector3d::UnitZ()));
+    const Pose& T_b_c = setup.truth.T_b_c;
+    return {(T_w_b * T_b_c).inverse(),
+            inCameraFrame(setup.config.explore.initialCovariance, T_b_c)};
+}
+
+TrackerOptions trackerFor(const ExplorationSetup& setup, const OwnMap& map) {
+    TrackerOptions tracker = setup.flight.tracker;
+    tracker.T_b_c = setup.truth.T_b_c;
+    tracker.mapErrors = map.errors();
+    return tracker;
+}
+
+PilotOptions pilotFor(const ExplorationSetup& setup, const OnlinePlanner& planner) {
+    PilotOptions pilot = setup.flight.pilot;
+    pilot.photometricGoal = false;
+    pilot.isFree = [&planner, radius = setup.config.robotRadius](const Eigen::Vector3d& p_w) {
+        return planner.clearance(p_w) >= radius;
+    };
+    return pilot;
+}
+
+std::vector<PlannedView> stayingAt(const UncertainPose& T_c_w, const Pose& T_b_c) {
+    return hovering((T_b_c * T_c_w.mean).inverse(), T_c_w.covariance);
+}
+
+Exploration::Exploration(const ExplorationSetup& setup, const std::string& planner,
+                         std::uint32_t seed, const std::atomic<bool>& interrupted,
+                         const OnPlanUpdate& onUpdate)
+    : setup_(setup),
+      interrupted_(interrupted),
+      onUpdate_(onUpdate),
+      map_(setup.config),
+      planner_(setup.config, map_, planner, seed),
+      robot_(setup.truth.truth, setup.truth.camera, setup.truth.T_b_c,
+             drawStart(startOf(setup), setup.truth.T_b_c, seed), setup.truth.noise,
+             setup.flight.robot, seed),
+      tracker_(planner_.views(), robot_.camera(), startOf(setup), trackerFor(setup, map_)),
+      pilot_(stayingAt(startOf(setup), setup.truth.T_b_c), planner_.views(), robot_.camera(),
+             setup.truth.T_b_c, pilotFor(setup, planner_)),
+      mapper_(setup.config, map_),
+      evaluator_(setup.truth, robot_, setup.config.goal.position) {
+    const Config& config = setup.config;
+    const bool isAhead = looksAhead(setup.truth.T_b_c);
+    space_ = {.clearance = [this](const Eigen::Vector3d& p_w) { return planner_.clearance(p_w); },
+              .isSeen = [this](const Eigen::Vector3d& p_w) { return map_.isSeen(p_w); },
+              .radius = config.robotRadius,
+              .hidden = isAhead ? kHidden : 0.,
+              .canLook = isAhead && config.space != StateKind::position};
+    result_.planner = planner;
+    result_.seed = seed;
+    result_.map = map_.cells();
+}
+
+ExplorationResult Exploration::run() {
+    BodyVelocity command;
+    const double dt = setup_.flight.timeStep;
+    for (double seconds = 0.;; seconds = dt) {
+        const Observation observation = robot_.fly(command, seconds);
+        const std::vector<TrackedFrame> tracked = tracker_.update(observation);
+        evaluator_.onStep(tracked, tracker_, evaluator_.result().way);
+        for (std::size_t i = 0; i < tracked.size(); ++i) {
+            pilot_.observe(tracker_, tracked[i], observation.frames[i].view.intensity);
+            onImage(tracked[i], observation.frames[i].view);
+        }
+        if (hasEnded()) break;
+        command = pilot_.command(tracker_, observation.time, dt);
+    }
+    evaluator_.finish(tracker_);
+    return resultSoFar();
+}
+
+/// Whether the robot is where its plan ends for now.
+bool Exploration::isWaiting() const {
+    return !isWhole_ && (pilot_.route().isAtGoal() || robot_.time() - lastUpdate_ > kWait);
+}
+
+void Exploration::onImage(const TrackedFrame& tracked, const View& image) {
+    View shown;
+    planner_.views()->render(robot_.camera(), tracked.T_c_w.mean, shown);
+    Stopwatch watch;
+    auto change = mapper_.add(tracked, image, shown, isWaiting());
+    if (change) updatePlan(tracked.T_c_w, std::move(*change), watch.seconds());
+}
+
+/// Plans from here on in a map that has changed.
+void Exploration::updatePlan(const UncertainPose& T_c_w, MapChange change, double fuseSeconds) {
+    PlanUpdate update;
+    update.time = robot_.time();
+    Stopwatch watch;
+    change.join(map_.addBody(bodyOf(T_c_w.mean).translation()));
+    update.fuseSeconds = fuseSeconds + watch.seconds();
+    result_.keyframes = mapper_.keyframes();
+    planner_.update(change, T_c_w, update, interrupted_);
+    tracker_.setMap(planner_.views());
+    pilot_.setMap(planner_.views());
+    lastUpdate_ = robot_.time();
+    flyOn(T_c_w);
+    result_.updates.push_back(update);
+    if (onUpdate_) onUpdate_(resultSoFar());
+}
+
+/// Gives the pilot the part of the plan that is safe, or lets it hover.
+void Exploration::flyOn(const UncertainPose& T_c_w) {
+    const std::vector<BeliefPoint>& path = planner_.path();
+    if (path.empty()) {
+        ++withoutWay_;
+        isWhole_ = false;
+        return pilot_.setPlan(stayingAt(T_c_w, setup_.truth.T_b_c));
+    }
+    withoutWay_ = 0;
+    // Hovering over the goal is not interrupted by a way of a few centimetres to it.
+    if (isWhole_ && pilot_.route().isAtGoal()) return;
+    WayAhead way = wayAhead(path, space_);
+    isWhole_ = way.isWhole;
+    result_.blindSteps += way.isBlind;
+    pilot_.setPlan(std::move(way.plan));
+}
+
+ExplorationResult Exploration::resultSoFar() {
+    static_cast<FlightResult&>(result_) = evaluator_.result();
+    return result_;
+}
+
+bool Exploration::endAs(FlightEnd end, const std::string& reason) {
+    evaluator_.result().end = end;
+    result_.reason = reason;
+    return true;
+}
+
+std::string Exploration::reasonForNoWay() const {
+    const double clearance = planner_.clearance(setup_.config.goal.position);
+    if (clearance < setup_.config.robotRadius) {
+        return fmt::format("the goal is in collision: clearance {:.2f} m in the map", clearance);
+    }
+    return "the map shows no way to the goal";
+}
+
+bool Exploration::hasEnded() {
+    const double time = robot_.time();
+    if (interrupted_) return endAs(FlightEnd::stopped, "interrupted");
+    const double clearance = evaluator_.result().leastClearance;
+    if (clearance < setup_.flight.bodyRadius) {
+        return endAs(FlightEnd::collided, fmt::format("an obstacle {:.2f} m away", clearance));
+    }
+    if (tracker_.loss().isLost() && pilot_.hasGivenUp(tracker_, time)) {
+        return endAs(FlightEnd::lost, "tracking was lost for good");
+    }
+    if (withoutWay_ >= kMostInVain) return endAs(FlightEnd::noWay, reasonForNoWay());
+    if (time > setup_.config.explore.timeLimit) {
+        return endAs(FlightEnd::outOfTime, "the time limit was reached");
+    }
+    if (!isWhole_ || !pilot_.hasArrived(tracker_, time)) return false;
+    const FlightEnd end = evaluator_.endAtGoal(tracker_, setup_.flight.arrivalTolerance);
+    if (end == FlightEnd::arrived) return endAs(end, "");
+    if (end == FlightEnd::uncertain) {
+        return endAs(end, fmt::format("at the goal with a probability of {:.3f} only",
+                                      evaluator_.result().arrivalProbability));
+    }
+    return endAs(end,
+                 fmt::format("the pose was {:.2f} m wrong at the goal", evaluator_.goalError()));
+}
+
+}  // namespace
+
+ExplorationSetup setUpExploration(const PlanningProblem& problem) {
+    const Config& config = problem.config();
+    if (!problem.isFlyable(config.start.position)) {
+        throw InputError(
+            config.file, "start",
+            fmt::format("in collision: clearance {:.3f} m, robot.radius {} m",
+                        problem.world().clearance(config.start.position), config.robotRadius));
+    }
+    const FlightSetup flight = setUpFlight(problem);
+    ExplorationSetup setup{config, flight.world, flight.options};
+    setup.flight.tracker.map =
+        flightAlignment(config, MapKind::surfaces, config.explore.resolution);
+    SimulatedCameraOptions& camera = setup.flight.robot.camera;
+    camera.depth = depthSensorOf(config.explore.sensor);
+    camera.depthNoise = {config.explore.depthSigma, config.explore.depthMissing};
+    camera.baseline = config.explore.baseline;
+    PhotometricOptions ofSensor = config.photometric;
+    ofSensor.scale = 1.;
+    camera.pairNoise = config.fly.camera == "real" ? realNoise() : assumedNoise(ofSensor);
+    return setup;
+}
+
+ExplorationResult explore(const ExplorationSetup& setup, const std::string& planner,
+                          std::uint32_t seed, const std::atomic<bool>& interrupted,
+                          const OnPlanUpdate& onUpdate) {
+    return Exploration(setup, planner, seed, interrupted, onUpdate).run();
+}
+
+}  // namespace photonav

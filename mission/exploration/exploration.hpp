@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A flight to a goal in a scene that the robot does not know.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "exploration/online_planner.hpp"
+#include "flight/flight_setup.hpp"
+
+namespace photonav {
+
+/// A flight, against the truth. Its samples' distance is the way truly flown.
+struct ExplorationResult : FlightResult {
+    std::string planner;
+    std::uint32_t seed = 0;
+    std::string reason;  ///< of an end that is not arrived
+    int keyframes = 0;
+    int blindSteps = 0;  ///< into space that could not be looked at first
+    std::vector<PlanUpdate> updates;
+    std::shared_ptr<TexturedOcTree> map;  ///< that the robot made
+};
+
+/// The unknown scene and the conditions of flight.
+struct ExplorationSetup {
+    Config config;
+    FlightWorld truth;  ///< its map is not used
+    FlightOptions flight;
+};
+
+/// @param problem of the config in its true world, which must outlive the setup
+/// @throws InputError for a start in collision
+ExplorationSetup setUpExploration(const PlanningProblem& problem);
+
+/// Called after every update of the plan.
+using OnPlanUpdate = std::function<void(const ExplorationResult& soFar)>;
+
+/// Flies from start to goal with the robot's own camera as only sensor: the map is made, and the
+/// plan repaired, as the scene comes into view. Deterministic for a seed: planning ends by work,
+/// not by time.
+/// @param planner one of plannerNames()
+ExplorationResult explore(const ExplorationSetup& setup, const std::string& planner,
+                          std::uint32_t seed, const std::atomic<bool>& interrupted,
+                          const OnPlanUpdate& onUpdate = {});
+
+}  // namespace photonav

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exploration/explorations.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "evaluation/averages.hpp"
+#include "flight/flight_statistics.hpp"
+
+namespace photonav {
+
+std::vector<ExplorationResult> exploreMany(const ExplorationSetup& setup,
+                                           const std::vector<std::string>& planners,
+                                           unsigned trials, unsigned jobs,
+                                           const std::atomic<bool>& interrupted,
+                                           const OnExploration& onEnd,
+                                           const OnPlanUpdate& onUpdate) {
+    const std::size_t count = planners.size() * trials;
+    std::vector<ExplorationResult> flights(count);
+    std::mutex mutex;  // of the callbacks
+    const auto report = [&](const ExplorationResult& soFar) {
+        const std::lock_guard lock(mutex);
+        if (onUpdate) onUpdate(soFar);
+    };
+    const auto exploreOne = [&](std::size_t i) {
+        if (interrupted && i > 0) return;
+        const auto seed = static_cast<std::uint32_t>(setup.config.seed + i % trials);
+        flights[i] = explore(setup, planners[i / trials], seed, interrupted, report);
+        const std::lock_guard lock(mutex);
+        if (onEnd) onEnd(flights[i]);
+    };
+    tbb::task_arena(static_cast<int>(jobs)).execute([&] {
+        tbb::parallel_for(std::size_t{0}, count, exploreOne, tbb::simple_partitioner());
+    });
+    const auto isLeftOut = [&](const ExplorationResult& flight) {
+        return flight.end == FlightEnd::stopped && &flight != &flights.front();
+    };
+    std::vector<ExplorationResult> done;
+    for (ExplorationResult& flight : flights) {
+        if (!isLeftOut(flight)) done.push_back(std::move(flight));
+    }
+    return done;
+}
+
+double seconds(const PlanUpdate& update) {
+    return update.fuseSeconds + update.clearanceSeconds + update.planSeconds;
+}
+
+ExplorationSummary summarise(std::span<const ExplorationResult> flights,
+                             double characteristicLength) {
+    ExplorationSummary s;
+    s.flights = flights.size();
+    if (flights.empty()) return s;
+    s.planner = flights.front().planner;
+    constexpr double kNoFlight = ExplorationSummary::kNone;
+    std::vector<double> nees, goalErrors, durations, lengths, traces, goalTraces, updates;
+    double square = 0., samples = 0.;
+    const auto traceOf = [&](const FlightSample& sample) {
+        return weightedTrace(sample.belief.covariance, characteristicLength);
+    };
+    for (const ExplorationResult& flight : flights) {
+        s.arrived += flight.hasArrived();
+        s.collisions += flight.end == FlightEnd::collided;
+        goalErrors.push_back(flight.goalError);
+        durations.push_back(flight.duration);
+        lengths.push_back(flight.way);
+        for (const PlanUpdate& update : flight.updates) updates.push_back(seconds(update));
+        if (flight.samples.empty()) continue;
+        nees.push_back(neesPerDof(flight));
+        const auto n = static_cast<double>(flight.samples.size());
+        square += n * std::pow(positionRmse(flight), 2);
+        samples += n;
+        for (const FlightSample& sample : flight.samples) traces.push_back(traceOf(sample));
+        goalTraces.push_back(traceOf(flight.samples.back()));
+    }
+    s.positionRmse = std::sqrt(square / samples);
+    s.nees = mean(nees, kNoFlight);
+    s.neesMedian = median(nees, kNoFlight);
+    s.goalError = median(goalErrors, kNoFlight);
+    s.duration = mean(durations, kNoFlight);
+    s.length = mean(lengths, kNoFlight);
+    s.meanTrace = mean(traces, kNoFlight);
+    s.goalTrace = mean(goalTraces, kNoFlight);
+    if (updates.empty()) return s;
+    std::sort(updates.begin(), updates.end());
+    s.updateMedian = updates[updates.size() / 2];
+    s.update95 = updates[(updates.size() - 1) * 95 / 100];
+    return s;
+}
+
+}  // namespace photonav

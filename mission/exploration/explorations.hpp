@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many explorations of a scene, and their numbers.
+#pragma once
+
+#include <limits>
+#include <span>
+
+#include "exploration/exploration.hpp"
+
+namespace photonav {
+
+/// Called as flights end, in any order, one at a time.
+using OnExploration = std::function<void(const ExplorationResult& result)>;
+
+/// `trials` flights of each planner, with the seeds seed, seed + 1, ... of the config, on `jobs`
+/// threads.
+/// @return by planner, then by seed; without those that were interrupted, but the first
+std::vector<ExplorationResult> exploreMany(const ExplorationSetup& setup,
+                                           const std::vector<std::string>& planners,
+                                           unsigned trials, unsigned jobs,
+                                           const std::atomic<bool>& interrupted,
+                                           const OnExploration& onEnd = {},
+                                           const OnPlanUpdate& onUpdate = {});
+
+/// Wall-clock time of an update: fusion, clearance, views and planning [s].
+double seconds(const PlanUpdate& update);
+
+/// Over the flights of a planner. Numbers are NaN where no flight gave one.
+struct ExplorationSummary {
+    static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+    std::string planner;
+    std::size_t flights = 0, arrived = 0, collisions = 0;
+    double positionRmse = kNone;  ///< over all exposures [m]
+    double nees = kNone;          ///< per degree of freedom, mean over the flights
+    double neesMedian = kNone;    ///< of the median flight
+    double goalError = kNone;     ///< median [m]
+    double duration = kNone;      ///< mean [s]
+    double length = kNone;        ///< mean [m]
+    double meanTrace = kNone;     ///< of the beliefs, over all exposures
+    double goalTrace = kNone;     ///< of the last beliefs, mean
+    double updateMedian = kNone, update95 = kNone;  ///< wall-clock time of an update [s]
+};
+/// @param flights of one planner
+ExplorationSummary summarise(std::span<const ExplorationResult> flights,
+                             double characteristicLength);
+
+}  // namespace photonav

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exploration/online_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "alignment/residual_covariance.hpp"
+#include "geometry/se3.hpp"
+#include "io/stopwatch.hpp"
+#include "planners/planner_table.hpp"
+
+namespace photonav {
+namespace ob = ompl::base;
+namespace {
+
+constexpr unsigned kLeastSide = 8;  // of views [pixels]
+
+/// The config of plans in a map that grows. Views are of half the size: four times cheaper, and as
+/// many pixels fewer, for which the information is scaled. A view stands for a cell of twice the
+/// size: most views are seen once before the map changes again.
+Config configOf(Config config) {
+    config.vertices = config.explore.vertices;
+    config.search.shortcut = config.explore.shortcut;
+    config.search.commitment = config.explore.commitment;
+    config.camera.width = std::max(kLeastSide, config.camera.width / 2);
+    config.camera.height = std::max(kLeastSide, config.camera.height / 2);
+    config.photometric.scale *= 4.;
+    config.field.positionPitch *= 2.;
+    config.field.rotationPitch *= 2.;
+    config.belief.initialCovariance = config.explore.initialCovariance;
+    config.unknownToCamera = UnknownPolicy::free;
+    config.unknownToPlanner = config.explore.unknown == UnknownSpace::optimistic
+                                  ? UnknownPolicy::free
+                                  : UnknownPolicy::occupied;
+    return config;
+}
+
+}  // namespace
+
+OnlinePlanner::OnlinePlanner(const Config& config, const OwnMap& map, const std::string& planner,
+                             std::uint32_t seed)
+    : config_(configOf(config)),
+      world_(map.cells(), map.obstacles(), config_),
+      problem_(config_, world_, alphaOf(planner, config_.belief.alpha),
+               map.information(config_.camera.camera(), config_.photometric)),
+      name_(planner),
+      seed_(seed),
+      planner_(problem_.makePlanner(planner, seed)) {}
+
+/// The nearest place around that leaves room for the robot; nothing within a metre.
+std::optional<Eigen::Vector3d> OnlinePlanner::flyableNear(const Eigen::Vector3d& p_w) const {
+    constexpr double kStep = 0.05, kFarthest = 1.;  // [m]
+    constexpr int kDirections = 16;
+    const Eigen::AlignedBox3d& bounds = config_.bounds;
+    const Eigen::Vector3d inside = p_w.cwiseMax(bounds.min()).cwiseMin(bounds.max());
+    if (problem_.isFlyable(inside)) return inside;
+    for (double radius = kStep; radius <= kFarthest; radius += kStep) {
+        for (const double rise : {0., 0.5, -0.5}) {
+            for (int i = 0; i < kDirections; ++i) {
+                const double angle = 2. * std::numbers::pi * i / kDirections;
+                const Eigen::Vector3d place =
+                    inside + radius * Eigen::Vector3d(std::cos(angle), std::sin(angle), rise);
+                if (bounds.contains(place) && problem_.isFlyable(place)) return place;
+            }
+        }
+    }
+    return {};
+}
+
+void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, PlanUpdate& update,
+                           const std::atomic<bool>& interrupted) {
+    Stopwatch watch;
+    world_.mapChanged(change);
+    update.clearanceSeconds = watch.seconds();
+    const auto field = planner_->model().sharedField();
+    const std::size_t markedBefore = field->marked(), viewsBefore = field->views();
+    const double viewSecondsBefore = field->seconds();
+    watch = {};
+    problem_.mapChanged(change);
+
+    path_.clear();
+    const Pose T_w_b = T_c_w.mean.inverse() * config_.camera.T_b_c().inverse();
+    const auto from_w = flyableNear(T_w_b.translation());
+    if (from_w) {
+        const FlightSpace& space = problem_.space();
+        ob::ScopedState<> state(problem_.spaceInformation());
+        space.setState(state.get(), *from_w, yawOf(T_w_b));
+        const Eigen::Matrix3d R_w_c = T_c_w.mean.linear().transpose();
+        // Relative to the map in view. What the map's own error adds stays the same wherever the
+        // way leads: no texture seen for the first time tells a robot where it is in the world.
+        const Belief belief{inRotatedAxes(config_.belief.initialCovariance, R_w_c), 0.};
+        if (!solveFrom(state.get(), belief, interrupted) && !interrupted) {
+            // What is left of a tree may be full without the goal: another one begins here.
+            planner_ = problem_.makePlanner(name_, ++seed_);
+            solveFrom(state.get(), belief, interrupted);
+        }
+        if (planner_->getProblemDefinition()->hasExactSolution()) {
+            evaluatePath(T_w_b, T_c_w.covariance);
+        }
+    }
+    update.planSeconds = watch.seconds();
+    update.viewSeconds = field->seconds() - viewSecondsBefore;
+    update.counts = planner_->lastUpdate();
+    update.viewsMarked = field->marked() - markedBefore;
+    update.viewsRendered = field->views() - viewsBefore;
+    const bool isFound = !path_.empty();
+    update.cost = isFound ? path_.back().cost : std::numeric_limits<double>::quiet_NaN();
+    update.length = isFound ? path_.back().length : std::numeric_limits<double>::quiet_NaN();
+    update.trace = weightedTrace(T_c_w.covariance, config_.belief.characteristicLength);
+}
+
+/// @return whether there is a way to the goal
+bool OnlinePlanner::solveFrom(const ob::State* state, const Belief& belief,
+                              const std::atomic<bool>& interrupted) {
+    planner_->moveRoot(state, belief);
+    planner_->solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+    return planner_->getProblemDefinition()->hasExactSolution();
+}
+
+/// Beliefs along the solution. A view of the map that the robot made itself never makes its pose
+/// better than the map is, of which the belief here is a bound.
+void OnlinePlanner::evaluatePath(const Pose& T_w_b, const Matrix6& covariance) {
+    const auto solution = planner_->getProblemDefinition()->getSolutionPath();
+    const auto& states = solution->as<ompl::geometric::PathGeometric>()->getStates();
+    if (states.empty()) return;
+    BeliefModel& model = planner_->model();
+    BeliefPoint here{.T_w_b = T_w_b, .covariance = covariance, .isWaypoint = true};
+    here.traceBefore = here.trace = weightedTrace(covariance, config_.belief.characteristicLength);
+    path_.push_back(here);
+    path_.push_back(here);
+    path_.back().T_w_b = problem_.space().bodyPose(states.front());
+    path_.back().length = path_.back().distance =
+        (path_.back().T_w_b.translation() - T_w_b.translation()).norm();
+    for (std::size_t i = 1; i < states.size(); ++i) {
+        model.evaluateMotion(states[i - 1], states[i], path_);
+    }
+    const Matrix6 tiny = 1e-12 * Matrix6::Identity();
+    for (BeliefPoint& point : path_) point.covariance = larger(point.covariance + tiny, covariance);
+}
+
+}  // namespace photonav

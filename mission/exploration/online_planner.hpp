@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A plan that is kept up to date while map and robot change.
+#pragma once
+
+#include "exploration/own_map.hpp"
+#include "problem/planning_problem.hpp"
+
+namespace photonav {
+
+/// What an update of the plan changed and cost.
+struct PlanUpdate {
+    double time = 0.;  ///< of the flight [s]
+    UpdateCounts counts;
+    std::size_t viewsMarked = 0, viewsRendered = 0;
+    double fuseSeconds = 0., clearanceSeconds = 0., viewSeconds = 0., planSeconds = 0.;
+    double cost = 0.;    ///< from here to the goal; NaN: no way
+    double length = 0.;  ///< the same [m]
+    double trace = 0.;   ///< of the belief here
+};
+
+/// The problem of a config in the robot's own map, its planner and the path found last.
+class OnlinePlanner {
+  public:
+    /// @param map must outlive it @param planner one of plannerNames()
+    OnlinePlanner(const Config& config, const OwnMap& map, const std::string& planner,
+                  std::uint32_t seed);
+
+    /// Plans from a believed pose, once the map has changed.
+    /// @param update its times of planning, counts, cost and length are set
+    void update(const MapChange& change, const UncertainPose& T_c_w, PlanUpdate& update,
+                const std::atomic<bool>& interrupted);
+
+    /// From the robot to the goal, with the beliefs predicted; empty: none was found.
+    const std::vector<BeliefPoint>& path() const { return path_; }
+
+    /// The present map as it is seen.
+    std::shared_ptr<const ViewSource> views() const { return world_.sharedViews(); }
+    const World& world() const { return world_; }
+    const Config& config() const { return config_; }
+    double clearance(const Eigen::Vector3d& p_w) const { return world_.clearance(p_w); }
+
+  private:
+    std::optional<Eigen::Vector3d> flyableNear(const Eigen::Vector3d& p_w) const;
+    bool solveFrom(const ompl::base::State* state, const Belief& belief,
+                   const std::atomic<bool>& interrupted);
+    void evaluatePath(const Pose& T_w_b, const Matrix6& covariance);
+
+    Config config_;
+    World world_;
+    PlanningProblem problem_;
+    std::string name_;  // of the planner
+    std::uint32_t seed_;
+    std::shared_ptr<BeliefPlanner> planner_;
+    std::vector<BeliefPoint> path_;
+};
+
+}  // namespace photonav

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The map that a robot makes on its flight.
+#pragma once
+
+#include <optional>
+
+#include "config/config.hpp"
+#include "estimation/map_errors.hpp"
+#include "exploration/map_noise.hpp"
+#include "exploration/obstacle_map.hpp"
+#include "exploration/unseen_information.hpp"
+#include "map/map_fusion.hpp"
+
+namespace photonav {
+
+/// Whether a camera sees the way ahead of its robot, rather than the place below.
+bool looksAhead(const Pose& T_b_c);
+
+/// Map, obstacles in it, and how wrong it is, all from the images fused.
+class OwnMap {
+  public:
+    /// @param config its section explore, bounds and radius
+    explicit OwnMap(const Config& config);
+
+    /// Learns what views of the map are worth from one that an image can be compared with.
+    /// @param shown view of the map from where the image was taken
+    void compare(const View& shown, const ImageF& image, const Camera& camera);
+
+    /// A pose whose image is fused, now or later. @return its number
+    int addPose(const UncertainPose& T_c_w) { return errors_->addPose(T_c_w); }
+    /// Fuses an image at the believed pose of its camera.
+    /// @param number of this pose
+    /// @return what changed in the map and in the obstacles
+    MapChange fuse(const View& image, const Camera& camera, const Pose& T_c_w, int number);
+    /// The body's own place is free. @return what changed
+    MapChange addBody(const Eigen::Vector3d& p_w) {
+        return obstacles_.addBody(*cells_, p_w, radius_);
+    }
+
+    /// Whether a surface or free space was seen at a place or below it, within the sensor's range.
+    bool isSeen(const Eigen::Vector3d& p_w) const;
+
+    const std::shared_ptr<TexturedOcTree>& cells() const { return cells_; }
+    const std::shared_ptr<TexturedOcTree>& obstacles() const { return obstacles_.cells(); }
+    const std::shared_ptr<MapErrors>& errors() const { return errors_; }
+
+    /// Of views of this map, for planning: without the information that its noise pretends, and
+    /// with what is expected of unknown space if the config says so.
+    InformationModel information(const Camera& camera, const PhotometricOptions& options) const;
+
+  private:
+    std::shared_ptr<TexturedOcTree> cells_;
+    ObstacleMap obstacles_;
+    std::shared_ptr<MapErrors> errors_;
+    MapNoise noise_;
+    std::optional<UnseenInformation> unseen_;
+    PhotometricOptions photometric_;
+    FusionOptions fusion_;
+    double radius_;  // of the robot [m]
+    bool looksDown_;
+};
+
+}  // namespace photonav

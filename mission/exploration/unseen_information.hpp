@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Information that is expected of what the map does not show yet.
+#pragma once
+
+#include <memory>
+
+#include "belief/view_models.hpp"
+
+namespace photonav {
+
+/// What a robot has seen so far tells what it may expect behind the edge of its map: the paper
+/// counts unknown space as without information, and names its prediction as future work. Here a
+/// view of unknown space is expected to inform like the last views flown through did on average.
+class UnseenInformation {
+  public:
+    /// A view of the map from a pose that was flown through, if it shows enough of the map.
+    /// @param information of the pixels with a surface, camera frame
+    void observe(const View& shown, const Matrix6& information);
+
+    /// A model whose information of a view has that of its pixels without a surface added, as it
+    /// is expected when the view is asked for. May be used as long as any of its copies is.
+    InformationModel complete(InformationModel model) const;
+
+    /// Of a view that shows only surfaces, camera frame; zero before anything was observed.
+    const Matrix6& expected() const { return *expected_; }
+
+  private:
+    std::shared_ptr<Matrix6> expected_ = std::make_shared<Matrix6>(Matrix6::Zero());
+    int views_ = 0;
+};
+
+}  // namespace photonav

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exploration/explorations.hpp"
+
+#include <gtest/gtest.h>
+
+#include "flight/flight_statistics.hpp"
+#include "io/error.hpp"
+
+namespace photonav {
+namespace {
+
+/// A room of 8 x 4 m; a box as high as the room stands between start and goal.
+class RoomToExplore : public ::testing::Test {
+  protected:
+    RoomToExplore() {
+        config.bounds = {Eigen::Vector3d(0.4, 0.4, 0.8), Eigen::Vector3d(7.6, 3.6, 1.4)};
+        config.start.position = {1., 2., 1.1};
+        config.start.yaw = 0.;
+        config.goal.position = {7., 2., 1.1};
+        config.space = StateKind::positionYaw;
+        config.robotRadius = 0.25;
+        config.camera.mount = "front45";
+        config.camera.width = 94;
+        config.camera.height = 60;
+        config.planner = "rrt_star";
+        config.explore.range = 3.;
+        config.explore.vertices = 250;
+        config.explore.timeLimit = 120.;
+    }
+
+    static Scene room() {
+        Scene scene;
+        const auto floor = addTexture(scene, valueNoise({.size = {8., 4.}, .seed = 1}));
+        const auto walls = addTexture(scene, valueNoise({.size = {8., 3.}, .seed = 2}));
+        addBox(scene, {0., 0., 0.}, {8., 4., 3.}, walls, BoxInside::hollow);
+        addPlane(scene, {0., 0., 0.01}, {8., 0., 0.}, {0., 4., 0.}, floor);
+        addBox(scene, {4.5, 1.4, 0.}, {5., 2.6, 3.}, walls);
+        return scene;
+    }
+
+    ExplorationResult flown(Scene scene, std::uint32_t seed = 1) {
+        const World world(std::move(scene), config);
+        const PlanningProblem problem(config, world);
+        return explore(setUpExploration(problem), config.planner, seed, kNotInterrupted);
+    }
+
+    Config config;
+};
+
+TEST_F(RoomToExplore, ArrivesAroundABoxFoundOnTheWay) {
+    const ExplorationResult flight = flown(room());
+    ASSERT_EQ(nameOf(flight.end), "arrived") << flight.reason;
+    EXPECT_LT(flight.goalError, 0.25);
+    EXPECT_GT(flight.leastClearance, 0.125);
+    // Nothing was in the way at first; the plan then became longer where the box came into view.
+    EXPECT_LT(flight.updates.front().length, 6.3);
+    EXPECT_GT(flight.way, 6.2);
+    std::size_t invalidated = 0;
+    for (const PlanUpdate& update : flight.updates) invalidated += update.counts.edgesInvalidated;
+    EXPECT_GT(invalidated, 0U);
+    EXPECT_GT(flight.map->size(), 1000U);
+    EXPECT_LT(neesPerDof(flight), 6.);
+    EXPECT_EQ(flight.keyframes, static_cast<int>(flight.updates.size()));
+}
+
+/// Depth by a second camera, or by the motion of the only one, is found where there is texture.
+TEST_F(RoomToExplore, CamerasWithoutDepthMapItAsWell) {
+    config.goal.position.x() = 3.5;
+    for (const ExploreSensor sensor : {ExploreSensor::stereo, ExploreSensor::monocular}) {
+        config.explore.sensor = sensor;
+        const ExplorationResult flight = flown(room());
+        EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
+        EXPECT_GT(flight.keyframes, 2);
+        EXPECT_GT(flight.map->size(), 500U);
+        EXPECT_GT(flight.leastClearance, 0.125);
+    }
+}
+
+TEST_F(RoomToExplore, IsTheSameForTheSameSeed) {
+    config.goal.position.x() = 3.;
+    const ExplorationResult a = flown(room()), b = flown(room()), other = flown(room(), 2);
+    ASSERT_EQ(a.samples.size(), b.samples.size());
+    EXPECT_EQ(a.samples.back().T_c_w.matrix(), b.samples.back().T_c_w.matrix());
+    EXPECT_EQ(a.samples.back().belief.covariance, b.samples.back().belief.covariance);
+    EXPECT_NE(a.samples.back().T_c_w.matrix(), other.samples.back().T_c_w.matrix());
+}
+
+TEST_F(RoomToExplore, SaysThatTheGoalIsInAnObstacle) {
+    Scene scene = room();
+    const auto crate = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 3}));
+    addBox(scene, {6.8, 1.8, 0.}, {7.2, 2.2, 1.2}, crate);
+    const ExplorationResult flight = flown(std::move(scene));
+    EXPECT_EQ(nameOf(flight.end), "no way");
+    EXPECT_NE(flight.reason.find("goal is in collision"), std::string::npos) << flight.reason;
+    EXPECT_GT(flight.leastClearance, 0.125);
+}
+
+TEST_F(RoomToExplore, RefusesAStartInCollision) {
+    config.start.position = {4.7, 2., 1.1};
+    try {
+        flown(room());
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("start: in collision"), std::string::npos);
+    }
+}
+
+TEST_F(RoomToExplore, ManyFlightsAreTheSameOnAnyNumberOfThreads) {
+    config.goal.position.x() = 2.;
+    const World world(room(), config);
+    const PlanningProblem problem(config, world);
+    const ExplorationSetup setup = setUpExploration(problem);
+    const std::vector<std::string> planners{"rrt_star", "belief_rrt_star"};
+    const auto one = exploreMany(setup, planners, 2, 1, kNotInterrupted);
+    const auto two = exploreMany(setup, planners, 2, 2, kNotInterrupted);
+    ASSERT_EQ(one.size(), 4U);
+    ASSERT_EQ(two.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(one[i].planner, planners[i / 2]);
+        EXPECT_EQ(one[i].seed, 1 + i % 2);
+        EXPECT_EQ(one[i].goalError, two[i].goalError);
+    }
+    const ExplorationSummary s = summarise(one, 1.);
+    EXPECT_EQ(s.flights, 4U);
+    EXPECT_GT(s.updateMedian, 0.);
+}
+
+}  // namespace
+}  // namespace photonav
