@@ -31,7 +31,7 @@ Pose flight(int i) {
 
 /// A recording in the layout of the TUM RGB-D benchmark: images, depth, true poses.
 void record(const ViewSource& room, const Camera& camera, const std::string& folder) {
-    FlightRecorder recorder(folder, camera, 1.);
+    FlightRecorder recorder(folder, camera, 1., kRenderedBlur);
     const ImageNoise addNoise = assumedNoise({.sigma = kNoise});
     std::mt19937_64 random(1);
     View view;

@@ -26,6 +26,7 @@ struct Invocation {
     const std::atomic<bool>& interrupted;
 };
 
+Command exploreCommand(CLI::App& app, const Invocation& invocation);
 Command flyCommand(CLI::App& app, const Invocation& invocation);
 Command mapCommand(CLI::App& app, const Invocation& invocation);
 Command replayCommand(CLI::App& app, const Invocation& invocation);

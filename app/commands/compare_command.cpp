@@ -12,6 +12,7 @@
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "planners/planner_table.hpp"
+#include "render/interruptible_views.hpp"
 #include "report/problem_report.hpp"
 #include "sweep/sweep_plan.hpp"
 
@@ -110,9 +111,13 @@ std::vector<CompareRun> runMethods(const Config& config, const World& world,
             const std::uint32_t seed = config.seed + i;
             line.show(fmt::format("{}: {}, seed {} ({} of {})", name, method.label(), seed, i + 1,
                                   options.runs));
-            CompareRun run = runMethod(config, world, method, seed, interrupted);
-            if (interrupted) return runs;
-            runs.push_back(std::move(run));
+            try {
+                CompareRun run = runMethod(config, world, method, seed, interrupted);
+                if (interrupted) return runs;
+                runs.push_back(std::move(run));
+            } catch (const RenderingStopped&) {
+                return runs;
+            }
         }
     }
     return runs;

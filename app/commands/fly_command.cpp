@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <optional>
 
 #include "commands/result_folder.hpp"
@@ -36,7 +38,7 @@ std::vector<FlightSet> planAll(const Config& config, PlanningProblem& problem, P
         if (outcome.path) add(std::move(*outcome.path));
     };
     if (!config.fly.plan.empty()) {
-        add(readPlannedPath(config.fly.plan, problem));
+        add(readPlannedPath(config.fly.plan, problem, interrupted));
     } else {
         solve(config.planner);
     }
@@ -62,7 +64,8 @@ void flyAll(std::vector<FlightSet>& sets, const FlightSetup& setup, const FlyOpt
         record = [&](const Exposed& exposed) {
             if (!recorder) {
                 recorder.emplace(recording->path(), setup.world.camera,
-                                 setup.options.tracker.map.photometric.scale);
+                                 setup.options.tracker.map.photometric.scale,
+                                 setup.options.tracker.map.blur);
             }
             recorder->add(exposed);
         };
@@ -88,19 +91,37 @@ void flyAll(std::vector<FlightSet>& sets, const FlightSetup& setup, const FlyOpt
     recording->commit();
 }
 
+/// The ellipse of where a flight ended, and what it is worth.
+std::string uncertaintyText(const FlightResult& flight) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(flight.believedGoal->covariance);
+    const Eigen::Vector3d sigma = solver.eigenvalues().cwiseMax(0.).cwiseSqrt();
+    return fmt::format("standard deviations of {}, {} and {}: there with a probability of {:.1f} %",
+                       lengthText(sigma.z()), lengthText(sigma.y()), lengthText(sigma.x()),
+                       100. * flight.arrivalProbability);
+}
+
 void printFailure(const FlightSet& set) {
     const FlightSummary s = summarise(set);
     if (s.flights == 0 || s.arrived > 0) return;
-    fmt::print("no flight of {} arrived: {} astray, {} collided, {} gave up lost, {} out of time\n",
-               set.path.planner, s.astray, s.collisions, s.lost, s.outOfTime);
+    fmt::print(
+        "no flight of {} arrived: {} astray, {} at the goal without being certain, {} collided, {} "
+        "gave up lost, {} out of time\n",
+        set.path.planner, s.astray, s.uncertain, s.collisions, s.lost, s.outOfTime);
+    for (const FlightResult& flight : set.flights) {
+        if (flight.end != FlightEnd::uncertain) continue;
+        fmt::print("flight {} ended at its believed goal with {}\n", flight.number,
+                   uncertaintyText(flight));
+        return;
+    }
 }
 
 void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::path& folder) {
     if (sets.empty()) fmt::print("no path found\n");
     if (!sets.empty()) {
-        fmt::print("{:<16} {:>10} {:>7} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12} {:>10} {:>10}\n",
-                   "planner", "arrived", "astray", "collisions", "error (rms)", "predicted",
-                   "believed", "NEES (median)", "NEES at goal", "lost (sum)", "goal error");
+        fmt::print(
+            "{:<16} {:>10} {:>7} {:>9} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12} {:>10} {:>10}\n",
+            "planner", "arrived", "astray", "uncertain", "collisions", "error (rms)", "predicted",
+            "believed", "NEES (median)", "NEES at goal", "lost (sum)", "goal error");
     }
     for (const FlightSet& set : sets) {
         const FlightSummary s = summarise(set);
@@ -109,11 +130,12 @@ void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::pat
             continue;
         }
         fmt::print(
-            "{:<16} {:>10} {:>7} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12.2f} {:>8.1f} s {:>10}\n",
-            set.path.planner, fmt::format("{} of {}", s.arrived, s.flights), s.astray, s.collisions,
-            lengthText(s.positionRmse), lengthText(s.predictedSigma), lengthText(s.believedSigma),
-            fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian), s.neesAtGoal, s.lostTime,
-            lengthText(s.goalError));
+            "{:<16} {:>10} {:>7} {:>9} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12.2f} {:>8.1f} s "
+            "{:>10}\n",
+            set.path.planner, fmt::format("{} of {}", s.arrived, s.flights), s.astray, s.uncertain,
+            s.collisions, lengthText(s.positionRmse), lengthText(s.predictedSigma),
+            lengthText(s.believedSigma), fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian),
+            s.neesAtGoal, s.lostTime, lengthText(s.goalError));
     }
     if (!sets.empty() && !sets.front().flights.empty()) {
         const FlightSummary s = summarise(sets.front());

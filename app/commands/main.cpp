@@ -28,6 +28,7 @@
 #include "io/yaml_reader.hpp"
 #include "map/octree_file.hpp"
 #include "mapping/map_config.hpp"
+#include "render/interruptible_views.hpp"
 #include "report/report.hpp"
 
 namespace {
@@ -313,20 +314,15 @@ int run(int argc, char** argv) {
     Invocation invocation{"photonav", interrupted};
     for (int i = 1; i < argc; ++i) invocation.commandLine += std::string(" ") + argv[i];
 
-    const std::array commands{planCommand(app, invocation),
-                              infoCommand(app, invocation),
-                              flyCommand(app, invocation),
-                              mapCommand(app, invocation),
-                              sweepCommand(app, invocation),
-                              compareCommand(app),
-                              benchmarkCommand(app, invocation),
-                              referenceCommand(app),
-                              replayCommand(app, invocation),
-                              reportCommand(app),
-                              keysCommand(app)};
+    const std::array commands{planCommand(app, invocation), infoCommand(app, invocation),
+                              flyCommand(app, invocation),  exploreCommand(app, invocation),
+                              mapCommand(app, invocation),  sweepCommand(app, invocation),
+                              compareCommand(app),          benchmarkCommand(app, invocation),
+                              referenceCommand(app),        replayCommand(app, invocation),
+                              reportCommand(app),           keysCommand(app)};
     app.footer(  // after the commands, which would inherit it
 
-        "plan, fly, sweep, benchmark, info, map and replay write result.json, figures,\n"
+        "plan, fly, explore, sweep, benchmark, info, map and replay write result.json, figures,\n"
         "report.html and config.yaml (complete, re-runnable) into their folder (--out);\n"
         "compare writes tables, figures and result.json, reference its table alone.\n"
         "photonav COMMAND --help lists the options of a command, photonav keys those of a config.\n"
@@ -368,6 +364,8 @@ int main(int argc, char** argv) {
         return fail(kBadInput, error.what());
     } catch (const std::filesystem::filesystem_error& error) {
         return fail(kBadInput, error.path1().string() + ": " + error.code().message());
+    } catch (const RenderingStopped&) {
+        return fail(exitCodeOf(interruptedBy), "interrupted before there was any result");
     } catch (const std::bad_alloc&) {
         return fail(kNoAnswer, command + ": needs more memory than there is");
     } catch (const std::exception& error) {

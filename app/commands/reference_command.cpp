@@ -8,6 +8,7 @@
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "problem/planning_problem.hpp"
+#include "render/interruptible_views.hpp"
 #include "sweep/reference_table.hpp"
 
 namespace photonav {
@@ -62,8 +63,12 @@ class Search {
     }
 
     void plan(const std::string& planner, std::uint32_t seed) {
-        const PlanOutcome outcome =
-            problem_.solve(problem_.makePlanner(planner, seed), interrupted_);
+        PlanOutcome outcome;
+        try {
+            outcome = problem_.solve(problem_.makePlanner(planner, seed), interrupted_);
+        } catch (const RenderingStopped&) {
+            return;
+        }
         if (!outcome.path) return;
         descend(waypointsOf(*outcome.path), {.alpha = config_.belief.alpha,
                                              .planner = planner,

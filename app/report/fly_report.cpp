@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "recording/belief_trajectory.hpp"
@@ -15,12 +16,26 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
+/// Null for a flight that did not end at its believed goal.
+json ellipseJson(const std::optional<PositionBelief>& position) {
+    if (!position) return nullptr;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(position->covariance);
+    const auto row = [](const Eigen::Vector3d& v) { return json::array({v.x(), v.y(), v.z()}); };
+    const Eigen::Matrix3d& axes = solver.eigenvectors();
+    return {{"position", row(position->mean_w)},
+            {"sigmas_m", row(solver.eigenvalues().cwiseMax(0.).cwiseSqrt())},
+            {"axes", json::array({row(axes.col(0)), row(axes.col(1)), row(axes.col(2))})}};
+}
+
 json jsonOf(const FlightResult& flight) {
     return {{"flight", flight.number},
             {"end", nameOf(flight.end)},
             {"duration_s", flight.duration},
             {"way_m", flight.way},
             {"goal_error_m", flight.goalError},
+            {"believed_goal", ellipseJson(flight.believedGoal)},
+            {"arrival_probability",
+             flight.believedGoal ? json(flight.arrivalProbability) : json(nullptr)},
             {"least_clearance_m", finiteOrNull(flight.leastClearance)},
             {"images", flight.images},
             {"rejected_images", flight.rejectedImages},
@@ -37,6 +52,7 @@ json jsonOf(const FlightSet& set) {
                 {"flights", s.flights},
                 {"arrived", s.arrived},
                 {"astray", s.astray},
+                {"uncertain_arrivals", s.uncertain},
                 {"collisions", s.collisions},
                 {"given_up", s.lost},
                 {"out_of_time", s.outOfTime},
@@ -70,6 +86,7 @@ ReportTable tableOf(const FlightSet& set) {
     table.rows = {
         {"arrived", fmt::format("{} of {}", s.arrived, s.flights)},
         {"wrong arrivals (estimate at the goal, robot elsewhere)", fmt::format("{}", s.astray)},
+        {"uncertain arrivals (estimate at the goal, not claimed)", fmt::format("{}", s.uncertain)},
         {"collisions", fmt::format("{}", s.collisions)},
         {"gave up lost / out of time", fmt::format("{} / {}", s.lost, s.outOfTime)},
         {"position error, rms", lengthText(s.positionRmse)},
@@ -91,20 +108,6 @@ ReportTable tableOf(const FlightSet& set) {
                         lengthText(s.photometricAfter)));
     }
     return table;
-}
-
-void writeFirstFlight(const fs::path& folder, const FlightResult& flight) {
-    std::vector<StampedBelief> beliefs;
-    Trajectory truth;
-    for (const FlightSample& sample : flight.samples) {
-        beliefs.push_back({sample.time, sample.belief});
-        truth.push_back({sample.time, sample.T_c_w.inverse()});
-    }
-    const auto file = [&](const char* name) { return (folder / name).string(); };
-    writeTrajectory(file("trajectory.tum"), meansOf(beliefs));
-    writeTrajectory(file("groundtruth.tum"), truth);
-    writeCovariances(file("trajectory.cov"), beliefs);
-    writeOpenVinsTrajectory(file("trajectory.ov"), beliefs);
 }
 
 Png topView(const Config& config, const World& world, const std::vector<FlightSet>& sets,
@@ -193,7 +196,7 @@ json flyResult(const Config& config, const std::vector<FlightSet>& sets,
           {"exposure_prior", priorJson(options.tracker.map.exposure)},
           {"photometric_goal", options.pilot.photometricGoal},
           {"map", config.fly.map},
-          {"scale", options.tracker.map.photometric.scale},
+          {"scale", options.tracker.map.informationFactor},
           {"floor",
            {options.tracker.map.trust.floorTranslation, options.tracker.map.trust.floorRotation}}}},
         {"planners", json::array()}};
@@ -214,9 +217,23 @@ void writeFlyReport(const fs::path& folder, const Config& config, const World& w
     }
     report.fieldOfView = fieldOfView(config.camera.camera());
     if (!sets.empty() && !sets[0].flights.empty() && sets[0].flights[0].number == 0) {
-        writeFirstFlight(folder, sets[0].flights[0]);
+        writeFlownTrajectory(folder, sets[0].flights[0]);
     }
     writeResultFolder(folder, report, figuresOf(config, world, sets, report.paths));
+}
+
+void writeFlownTrajectory(const fs::path& folder, const FlightResult& flight) {
+    std::vector<StampedBelief> beliefs;
+    Trajectory truth;
+    for (const FlightSample& sample : flight.samples) {
+        beliefs.push_back({sample.time, sample.belief});
+        truth.push_back({sample.time, sample.T_c_w.inverse()});
+    }
+    const auto file = [&](const char* name) { return (folder / name).string(); };
+    writeTrajectory(file("trajectory.tum"), meansOf(beliefs));
+    writeTrajectory(file("groundtruth.tum"), truth);
+    writeCovariances(file("trajectory.cov"), beliefs);
+    writeOpenVinsTrajectory(file("trajectory.ov"), beliefs);
 }
 
 }  // namespace photonav

@@ -19,6 +19,9 @@ void writeFlyReport(const std::filesystem::path& folder, const Config& config, c
                     const std::vector<FlightSet>& sets, const std::string& commandLine,
                     const nlohmann::json& result);
 
+/// trajectory.tum, .cov and .ov (believed), groundtruth.tum.
+void writeFlownTrajectory(const std::filesystem::path& folder, const FlightResult& flight);
+
 /// "0.537 m", "3.75 mm".
 std::string lengthText(double metres);
 

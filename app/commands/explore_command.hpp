@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `photonav explore`: to the goal of a problem in a scene that the robot does not know.
+#pragma once
+
+#include <atomic>
+
+#include "commands/command_io.hpp"
+
+namespace photonav {
+
+/// All that the results depend on is in the config (ExploreConfig) and its overrides.
+struct ExploreOptions : CommandOptions {
+    unsigned jobs = 1;  ///< threads
+};
+
+/// Flies every trial and writes result.json, config.yaml, map.ot, trajectory.tum, .cov and .ov and
+/// groundtruth.tum of the first flight, figures, report.json and report.html.
+/// @param interrupted when set, flying ends with what was flown (exit code 130)
+/// @return the exit code: kNoAnswer unless the first flight arrived or, with several trials, one of
+///         the first planner's did
+/// @throws InputError for bad input, before anything is written
+int runExplore(const ExploreOptions& options, const std::atomic<bool>& interrupted);
+
+}  // namespace photonav

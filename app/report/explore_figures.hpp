@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Figures of explorations.
+#pragma once
+
+#include "exploration/explorations.hpp"
+#include "figures/paths.hpp"
+#include "plot/figure.hpp"
+
+namespace photonav {
+
+inline constexpr double kMapPixel = 0.025;  ///< of the picture of the map from above [m]
+
+/// The true positions of a flight.
+DrawnTree drawnWay(const ExplorationResult& flight);
+
+/// Its beliefs, about ten per metre.
+DrawnPath drawnBeliefs(const ExplorationResult& flight, double characteristicLength);
+
+/// Over the way flown: trace of the beliefs, and their NEES; time of the updates.
+Figure explorationFigure(const std::vector<ExplorationResult>& flights,
+                         double characteristicLength);
+
+}  // namespace photonav

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/explore_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <span>
+
+#include "flight/flight_statistics.hpp"
+#include "map/octree_file.hpp"
+#include "recording/belief_trajectory.hpp"
+#include "report/explore_figures.hpp"
+#include "report/fly_report.hpp"
+#include "report/problem_report.hpp"
+#include "result/json_values.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+json jsonOf(const PlanUpdate& u) {
+    return {{"time", u.time},
+            {"vertices_invalidated", u.counts.verticesInvalidated},
+            {"edges_invalidated", u.counts.edgesInvalidated},
+            {"vertices_added", u.counts.verticesAdded},
+            {"vertices_rewired", u.counts.verticesRewired},
+            {"views_marked", u.viewsMarked},
+            {"views_rendered", u.viewsRendered},
+            {"fuse_ms", 1e3 * u.fuseSeconds},
+            {"clearance_ms", 1e3 * u.clearanceSeconds},
+            {"views_ms", 1e3 * u.viewSeconds},
+            {"plan_ms", 1e3 * u.planSeconds},
+            {"cost", finiteOrNull(u.cost)},
+            {"length", finiteOrNull(u.length)},
+            {"trace", u.trace}};
+}
+
+/// The trace of the belief over the way flown.
+json traceOf(const ExplorationResult& flight, double characteristicLength) {
+    json trace = json::array();
+    for (const FlightSample& sample : flight.samples) {
+        trace.push_back({{"time", sample.time},
+                         {"distance", sample.distance},
+                         {"trace", weightedTrace(sample.belief.covariance, characteristicLength)}});
+    }
+    return trace;
+}
+
+json jsonOf(const ExplorationResult& flight, double characteristicLength) {
+    json updates = json::array();
+    for (const PlanUpdate& update : flight.updates) updates.push_back(jsonOf(update));
+    return {{"planner", flight.planner},
+            {"seed", flight.seed},
+            {"arrived", flight.hasArrived()},
+            {"end", nameOf(flight.end)},
+            {"reason", flight.reason},
+            {"collisions", flight.end == FlightEnd::collided ? 1 : 0},
+            {"duration_s", flight.duration},
+            {"length", flight.way},
+            {"goal_error_m", flight.goalError},
+            {"position_rmse_m", finiteOrNull(positionRmse(flight))},
+            {"nees_per_dof", finiteOrNull(neesPerDof(flight))},
+            {"least_clearance_m", finiteOrNull(flight.leastClearance)},
+            {"images", flight.images},
+            {"rejected_images", flight.rejectedImages},
+            {"keyframes", flight.keyframes},
+            {"blind_steps", flight.blindSteps},
+            {"times_lost", flight.timesLost},
+            {"lost_s", flight.lost},
+            {"path_trace", traceOf(flight, characteristicLength)},
+            {"updates", std::move(updates)}};
+}
+
+json jsonOf(const ExplorationSummary& s) {
+    return {{"planner", s.planner},
+            {"flights", s.flights},
+            {"arrived", s.arrived},
+            {"collisions", s.collisions},
+            {"position_rmse_m", finiteOrNull(s.positionRmse)},
+            {"nees_per_dof", finiteOrNull(s.nees)},
+            {"nees_median_flight_per_dof", finiteOrNull(s.neesMedian)},
+            {"goal_error_m", finiteOrNull(s.goalError)},
+            {"duration_s", finiteOrNull(s.duration)},
+            {"length", finiteOrNull(s.length)},
+            {"mean_trace", finiteOrNull(s.meanTrace)},
+            {"goal_trace", finiteOrNull(s.goalTrace)},
+            {"update_median_ms", finiteOrNull(1e3 * s.updateMedian)},
+            {"update_95_percent_ms", finiteOrNull(1e3 * s.update95)}};
+}
+
+ReportTable tableOf(const ExplorationSummary& s) {
+    const auto text = [](const char* format, double value) {
+        return fmt::format(fmt::runtime(format), value);
+    };
+    return {"Flights of " + s.planner,
+            {{"arrived", fmt::format("{} of {}", s.arrived, s.flights)},
+             {"collisions", fmt::format("{}", s.collisions)},
+             {"position error, rms", lengthText(s.positionRmse)},
+             {"NEES per degree of freedom (1: consistent), mean and median flight",
+              fmt::format("{:.2f}, {:.2f}", s.nees, s.neesMedian)},
+             {"true distance to the goal at the end, median", lengthText(s.goalError)},
+             {"length and duration, mean", fmt::format("{:.1f} m, {:.1f} s", s.length, s.duration)},
+             {"trace of the beliefs, mean and at the end",
+              fmt::format("{:.3g}, {:.3g}", s.meanTrace, s.goalTrace)},
+             {"time of an update, median", text("{:.0f} ms", 1e3 * s.updateMedian)},
+             {"time of an update, 95 %", text("{:.0f} ms", 1e3 * s.update95)}}};
+}
+
+ReportTable tableOfUpdates(const ExplorationResult& flight) {
+    ReportTable table{
+        "Updates of the first flight: vertices gone, new, rewired; views rendered; "
+        "fusion + clearance + planning; way to go",
+        {}};
+    for (const PlanUpdate& u : flight.updates) {
+        const std::string way =
+            std::isfinite(u.length) ? fmt::format("{:.2f} m", u.length) : "no way";
+        table.rows.emplace_back(
+            fmt::format("{:.2f} s", u.time),
+            fmt::format("{}, {}, {}; {}; {:.0f} + {:.0f} + {:.0f} ms; {}",
+                        u.counts.verticesInvalidated, u.counts.verticesAdded,
+                        u.counts.verticesRewired, u.viewsRendered, 1e3 * u.fuseSeconds,
+                        1e3 * u.clearanceSeconds, 1e3 * u.planSeconds, way));
+    }
+    return table;
+}
+
+std::vector<NamedFigure> figuresOf(const ExplorationSetup& setup, const World& world,
+                                   const std::vector<ExplorationResult>& flights) {
+    TopView view = viewFromAbove(setup.config, world, {});
+    view.title = "The true scene, and the true positions of the flights";
+    for (const ExplorationResult& flight : flights) view.trees.push_back(drawnWay(flight));
+    TopView map = view;
+    map.title = "The map of the first flight: believed positions and 3σ ellipses";
+    map.trees = {drawnWay(flights.front())};
+    map.paths = {drawnBeliefs(flights.front(), setup.config.belief.characteristicLength)};
+    Config mapped = setup.config;
+    mapped.unknownToPlanner = UnknownPolicy::free;
+    map.background = World(flights.front().map, mapped)
+                         .pictureFromAbove(map.area, setup.config.bounds.max().z(), kMapPixel);
+    return {{"map.png",
+             {"What the first flight mapped, from above, and where it believed to be, with 3σ "
+              "ellipses; the true positions beside it.",
+              topViewFigure(map).png()}},
+            {"top_view.png",
+             {"The true scene from above, with the true positions of all flights.",
+              topViewFigure(view).png()}},
+            {"trace.png",
+             {"Trace of the belief and NEES (1: consistent) over the way flown, and the time of "
+              "the updates.",
+              explorationFigure(flights, setup.config.belief.characteristicLength).png()}}};
+}
+
+}  // namespace
+
+std::vector<ExplorationSummary> summariesOf(const ExplorationSetup& setup,
+                                            const std::vector<ExplorationResult>& flights) {
+    std::vector<ExplorationSummary> summaries;
+    for (std::size_t first = 0; first < flights.size();) {
+        std::size_t last = first;
+        while (last < flights.size() && flights[last].planner == flights[first].planner) ++last;
+        summaries.push_back(summarise(std::span(flights).subspan(first, last - first),
+                                      setup.config.belief.characteristicLength));
+        first = last;
+    }
+    return summaries;
+}
+
+json exploreResult(const ExplorationSetup& setup, const std::vector<ExplorationResult>& flights,
+                   bool interrupted) {
+    const double length = setup.config.belief.characteristicLength;
+    json result = jsonOf(flights.front(), length);
+    result.update(
+        {{"schema", 1},
+         {"command", "explore"},
+         {"version", PHOTONAV_VERSION},
+         {"status", interrupted                    ? "interrupted"
+                    : flights.front().hasArrived() ? "done"
+                                                   : "not arrived: " + flights.front().reason},
+         {"seed", setup.config.seed},
+         {"trials", json::array()},
+         {"summary", json::array()}});
+    for (const ExplorationResult& flight : flights) {
+        result["trials"].push_back(jsonOf(flight, length));
+    }
+    for (const ExplorationSummary& s : summariesOf(setup, flights)) {
+        result["summary"].push_back(jsonOf(s));
+    }
+    return result;
+}
+
+void writeExploreReport(const fs::path& folder, const ExplorationSetup& setup, const World& world,
+                        const std::vector<ExplorationResult>& flights,
+                        const std::string& commandLine, const json& result) {
+    const Config& config = setup.config;
+    const ExplorationResult& first = flights.front();
+    ReportData report = problemReport(config, world, commandLine, result);
+    report.title = fs::path(config.file).stem().string() + ", explored";
+    report.subtitle =
+        "A flight to the goal in a scene unknown to the robot: its own map, path and beliefs.";
+    report.mesh = {};
+    report.voxels = makeReportVoxels(*first.map);
+    report.fieldOfView = fieldOfView(setup.truth.camera);
+    report.paths.push_back(drawnBeliefs(first, config.belief.characteristicLength));
+    report.trees.push_back(drawnWay(first));
+    for (const ExplorationSummary& s : summariesOf(setup, flights)) {
+        report.tables.push_back(tableOf(s));
+    }
+    report.tables.push_back(tableOfUpdates(first));
+    writeFlownTrajectory(folder, first);
+    saveTexturedOcTree(*first.map, (folder / "map.ot").string());
+    writeResultFolder(folder, report, figuresOf(setup, world, flights));
+}
+
+}  // namespace photonav
