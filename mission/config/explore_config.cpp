@@ -30,10 +30,11 @@ ExploreConfig::ExploreConfig() : initialCovariance(Matrix6::Zero()) {
 
 void addKeys(KeyTable& keys, ExploreConfig& c) {
     keys.beginSection("explore");
-    keys.choice({"sensor", "",
-                 "that maps: a depth camera, a second camera beside the first, or the camera alone, "
-                 "by its own motion"},
-                c.sensor, {"depth", "stereo", "monocular"});
+    keys.choice(
+        {"sensor", "",
+         "that maps: a depth camera, a second camera beside the first, or the camera alone, "
+         "by its own motion"},
+        c.sensor, {"depth", "stereo", "monocular"});
     keys.number({"depth_sigma", "m",
                  "standard deviation of the depth camera at 1 m; it grows with depth squared"},
                 c.depthSigma, {0., 1.});
