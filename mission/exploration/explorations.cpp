@@ -70,7 +70,7 @@ ExplorationSummary summarise(std::span<const ExplorationResult> flights,
         lengths.push_back(flight.way);
         for (const PlanUpdate& update : flight.updates) updates.push_back(seconds(update));
         if (flight.samples.empty()) continue;
-        nees.push_back(neesPerDof(flight));
+        if (const double x = neesPerDof(flight); !std::isnan(x)) nees.push_back(x);
         const auto n = static_cast<double>(flight.samples.size());
         square += n * std::pow(positionRmse(flight), 2);
         samples += n;

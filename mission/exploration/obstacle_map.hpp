@@ -41,7 +41,6 @@ class ObstacleMap {
     MapChange addBody(const TexturedOcTree& map, const Eigen::Vector3d& p_w, double radius);
 
   private:
-    struct Column;
     bool set(const octomap::OcTreeKey& key, bool isOccupied);
     void updateColumn(const TexturedOcTree& map, const Eigen::Array2i& column, MapChange& changed);
 

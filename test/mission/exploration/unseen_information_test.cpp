@@ -17,7 +17,7 @@ View viewWith(unsigned rows) {
     return view;
 }
 
-Matrix6 information(double factor) { return factor * Matrix6::Identity(); }
+Matrix6 isotropic(double factor) { return factor * Matrix6::Identity(); }
 
 /// Of what a view shows, nothing.
 const InformationModel kNothing = [](const View&) -> Matrix6 { return Matrix6::Zero(); };
@@ -32,30 +32,30 @@ TEST(UnseenInformation, ExpectsNothingBeforeAnythingWasSeen) {
 TEST(UnseenInformation, IsAsMuchAsTheRestOfTheViewWouldHave) {
     UnseenInformation unseen;
     const InformationModel model =
-        unseen.complete([](const View&) -> Matrix6 { return information(7.); });
-    unseen.observe(viewWith(8), information(80.));
+        unseen.complete([](const View&) -> Matrix6 { return isotropic(7.); });
+    unseen.observe(viewWith(8), isotropic(80.));
     EXPECT_NEAR(expectedOf(unseen), 100., 1e-9);
     EXPECT_NEAR(model(viewWith(kRows))(0, 0), 7., 1e-9);
     EXPECT_NEAR(model(viewWith(7))(0, 0), 7. + 30., 1e-9);
     EXPECT_NEAR(model(viewWith(0))(5, 5), 107., 1e-9);
-    EXPECT_EQ(model(View()), information(7.));  // without a depth image nothing is known to lack
+    EXPECT_EQ(model(View()), isotropic(7.));  // without a depth image nothing is known to lack
 }
 
 TEST(UnseenInformation, ViewsThatShowLittleDoNotStandForTheirSurroundings) {
     UnseenInformation unseen;
-    unseen.observe(viewWith(4), information(40.));
+    unseen.observe(viewWith(4), isotropic(40.));
     EXPECT_EQ(expectedOf(unseen), 0.);
-    unseen.observe(viewWith(5), information(40.));
+    unseen.observe(viewWith(5), isotropic(40.));
     EXPECT_NEAR(expectedOf(unseen), 80., 1e-9);
 }
 
 TEST(UnseenInformation, IsTheMeanOfTheLastViews) {
     UnseenInformation unseen;
-    unseen.observe(viewWith(kRows), information(10.));
-    unseen.observe(viewWith(kRows), information(20.));
+    unseen.observe(viewWith(kRows), isotropic(10.));
+    unseen.observe(viewWith(kRows), isotropic(20.));
     EXPECT_NEAR(expectedOf(unseen), 15., 1e-9);
-    for (int i = 0; i < 100; ++i) unseen.observe(viewWith(kRows), information(0.));
-    for (int i = 0; i < 60; ++i) unseen.observe(viewWith(kRows), information(10.));
+    for (int i = 0; i < 100; ++i) unseen.observe(viewWith(kRows), isotropic(0.));
+    for (int i = 0; i < 60; ++i) unseen.observe(viewWith(kRows), isotropic(10.));
     EXPECT_GT(expectedOf(unseen), 9.);
 }
 

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "io/error.hpp"
+#include "map/octree_file.hpp"
+#include "temporary_folder.hpp"
+
 namespace photonav {
 namespace {
 
@@ -41,6 +45,87 @@ TEST(FlightSetup, ImagesAreAlignedAsTheCameraTakesThem) {
     EXPECT_GT(real.blur, 0.4);  // and its defocus
     EXPECT_EQ(assumed.informationFactor, 1.);
     EXPECT_EQ(optionsFor({"fly.scale=0.5"}).tracker.map.informationFactor, 0.5);
+}
+
+TEST(FlightSetup, BodyAndToleranceAreThoseOfTheRobotUnlessGiven) {
+    const FlightOptions small = optionsFor({"robot.radius=0.05", "fly.body_radius=0.04"});
+    EXPECT_EQ(small.bodyRadius, 0.04);
+    EXPECT_EQ(small.arrivalTolerance, 0.1);
+    const FlightOptions usual = optionsFor({});
+    EXPECT_EQ(usual.robot.camera.period, 0.25);  // a view every planner.ds, at full speed
+    EXPECT_EQ(usual.pilot.photometricGoal, true);
+    EXPECT_EQ(optionsFor({"fly.photometric_goal=false"}).pilot.photometricGoal, false);
+    EXPECT_EQ(usual.tracker.map.trust.floorTranslation, 0.);
+    const AlignmentOptions bounded =
+        optionsFor({"fly.least_sigma=0.02", "fly.least_sigma_rotation=0.01"}).tracker.map;
+    EXPECT_EQ(bounded.trust.floorTranslation, 0.02);
+    EXPECT_EQ(bounded.trust.floorRotation, 0.01);
+}
+
+/// Images are compared with a map as sharply as it is, and its surfaces err by parts of a cell.
+TEST(FlightSetup, AlignmentsGoByTheKindOfMap) {
+    const Config config = loadConfig(PHOTONAV_SOURCE_DIR "/config/two_textures.yaml",
+                                     {"camera.blur=0.4", "camera.stride=2"});
+    const AlignmentOptions mesh = flightAlignment(config, MapKind::mesh, 0.);
+    const AlignmentOptions cells = flightAlignment(config, MapKind::cells, 0.1);
+    const AlignmentOptions surfaces = flightAlignment(config, MapKind::surfaces, 0.1);
+    EXPECT_EQ(mesh.modelErrors.surface, 0.);
+    EXPECT_NEAR(cells.modelErrors.surface, 0.058, 1e-9);
+    EXPECT_NEAR(surfaces.modelErrors.surface, 0.01, 1e-9);
+    EXPECT_EQ(mesh.modelNoise, ModelNoise::none);
+    EXPECT_EQ(surfaces.modelNoise, ModelNoise::measured);
+    EXPECT_EQ(mesh.blur, 0.4);
+    EXPECT_EQ(cells.blur, kRenderedBlur);
+    EXPECT_EQ(surfaces.blur, kRenderedBlur);
+    EXPECT_EQ(mesh.photometric.stride, 1);  // whatever that of the planner is
+}
+
+/// A floor of 4 x 4 cells.
+std::string mapFile(const test::TemporaryFolder& folder) {
+    TexturedOcTree map(0.25);
+    for (double x = 0.1; x < 1.; x += 0.25) {
+        for (double y = 0.1; y < 1.; y += 0.25) map.updateNode(x, y, 0.1, true);
+    }
+    saveTexturedOcTree(map, folder.file("map.ot"));
+    return folder.file("map.ot");
+}
+
+TEST(FlightSetup, AMapToTrackInIsNotTheWorldFlownIn) {
+    const test::TemporaryFolder folder;
+    Config config = loadConfig(PHOTONAV_SOURCE_DIR "/config/two_textures.yaml", {"seed=7"});
+    const World world(config);
+    const FlightSetup known = setUpFlight(PlanningProblem(config, world));
+    EXPECT_EQ(known.world.map, world.sharedViews());
+    EXPECT_EQ(known.map, MapKind::mesh);
+    EXPECT_EQ(known.world.clearance(config.start.position), world.clearance(config.start.position));
+
+    config.fly.map = mapFile(folder);
+    const FlightSetup mapped = setUpFlight(PlanningProblem(config, world));
+    EXPECT_EQ(mapped.world.truth, world.sharedViews());
+    EXPECT_NE(mapped.world.map, world.sharedViews());
+    EXPECT_EQ(mapped.map, MapKind::cells);
+    EXPECT_NEAR(mapped.options.tracker.map.modelErrors.surface, 0.58 * 0.25, 1e-9);
+    // It may be made of the images of flights with the same seeds.
+    EXPECT_NE(mapped.options.seed, known.options.seed);
+
+    config.fly.map = folder.file("missing.ot");
+    EXPECT_THROW(setUpFlight(PlanningProblem(config, world)), InputError);
+}
+
+TEST(FlightSetup, ThePilotKeepsTheRobotsRadius) {
+    const Config config = loadConfig(PHOTONAV_SOURCE_DIR "/config/kitchen.yaml");
+    const World world(config);
+    const FlightSetup setup = setUpFlight(PlanningProblem(config, world));
+    std::size_t free = 0;
+    constexpr int kPlaces = 200;
+    for (int i = 0; i < kPlaces; ++i) {
+        const Eigen::Vector3d p_w = config.bounds.sample();
+        const bool isFree = setup.options.pilot.isFree(p_w);
+        EXPECT_EQ(isFree, world.clearance(p_w) >= config.robotRadius);
+        free += isFree;
+    }
+    EXPECT_GT(free, 0U);
+    EXPECT_LT(free, kPlaces);
 }
 
 TEST(FlightSetup, ACalibrationCountsCorrelatedImagesOnce) {

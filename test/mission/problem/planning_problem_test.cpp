@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 #include <ompl/base/ScopedState.h>
+#include <ompl/base/goals/GoalStates.h>
 
 #include "geometry/camera.hpp"
 #include "geometry/constants.hpp"
+#include "io/error.hpp"
 #include "map/map_fusion.hpp"
 #include "planners/planner_table.hpp"
 #include "render/mesh_renderer.hpp"
@@ -142,6 +144,142 @@ TEST(PlanningProblem, EvaluatesPathsOfOtherPlanners) {
     }
     EXPECT_EQ(problem.evaluate("straight", path).cost,
               problem.evaluate("straight", {config.start, config.goal}).cost);
+}
+
+TEST(PlanningProblem, ItsTradeOffIsTheConfigsUnlessAnotherIsGiven) {
+    const Config config = smallProblem(0.1);
+    const World world(config);
+    PlanningProblem given(config, world), other(config, world, 0.9);
+    EXPECT_EQ(given.config().belief.alpha, 0.1);
+    EXPECT_EQ(other.config().belief.alpha, 0.9);
+    const std::vector<Place> straight{config.start, config.goal};
+    const EvaluatedPath uncertain = given.evaluate("a", straight);
+    const EvaluatedPath shorter = other.evaluate("b", straight);
+    EXPECT_EQ(uncertain.goalTrace, shorter.goalTrace);
+    EXPECT_GT(std::abs(uncertain.cost - shorter.cost), 0.1);
+    EXPECT_EQ(other.makePlanner("belief_rrt_star")->model().options().alpha, 0.9);
+}
+
+/// Over white nothing corrects the pose, and the trace grows nearly linearly.
+TEST(PlanningProblem, TheMeanTraceOfAPathIsItsMeanOverTheWay) {
+    const Config config = smallProblem(0.1);
+    const World world(config);
+    const EvaluatedPath path =
+        PlanningProblem(config, world).evaluate("white", {config.start, {{1., 4., 2.}, {}}});
+    ASSERT_EQ(path.points.back().information, Matrix6::Zero());
+    const double start = path.points.front().trace;
+    const double growth = path.goalTrace - start;
+    EXPECT_GT(growth, 0.01 * start);
+    EXPECT_NEAR(path.meanTrace, start + 0.5 * growth, 0.2 * growth);
+}
+
+/// The problem of emptySpace() in a room, with a crate around a place.
+World roomWithACrate(const Config& config, const Eigen::Vector3d& place) {
+    Scene room;
+    const auto texture = addTexture(room, valueNoise({.size = {8., 4.}, .seed = 1}));
+    addBox(room, {-1., -1., 0.}, {9., 5., 3.}, texture, BoxInside::hollow);
+    addBox(room, place - Eigen::Vector3d::Constant(0.3), place + Eigen::Vector3d::Constant(0.3),
+           texture);
+    return {std::move(room), config};
+}
+
+TEST(PlanningProblem, APlaceInCollisionIsNamed) {
+    Config config = emptySpace();
+    config.file = "room.yaml";
+    for (const auto& [key, place] :
+         {std::pair("start", config.start.position), std::pair("goal", config.goal.position)}) {
+        const World world = roomWithACrate(config, place);
+        const PlanningProblem problem(config, world);
+        EXPECT_FALSE(problem.isFlyable(place));
+        const std::string message = test::messageOf<InputError>([&] { problem.checkPlaces(); });
+        EXPECT_EQ(message.find(std::string("room.yaml: ") + key + ": in collision: clearance"), 0U)
+            << message;
+    }
+    const World world = roomWithACrate(config, {4., 0., 1.});
+    EXPECT_NO_THROW(PlanningProblem(config, world).checkPlaces());
+}
+
+TEST(PlanningProblem, AGoalWithoutAHeadingIsReachedInAnyOfEight) {
+    Config config = emptySpace();
+    const World world = roomWithACrate(config, {4., 0., 1.});
+    const auto goalsOf = [&] {
+        const auto definition = PlanningProblem(config, world).definition();
+        return definition->getGoal()->as<ompl::base::GoalStates>()->getStateCount();
+    };
+    EXPECT_EQ(goalsOf(), 1U);  // the heading is the start's
+    config.space = StateKind::positionYaw;
+    EXPECT_EQ(goalsOf(), 8U);
+    config.goal.yaw = 1.;
+    EXPECT_EQ(goalsOf(), 1U);
+}
+
+TEST(PlanningProblem, DescentKeepsToMotionsThatAreFree) {
+    const Config config = emptySpace();
+    const World world = roomWithACrate(config, {4., 2., 1.});
+    PlanningProblem problem(config, world);
+    const auto poses = [&](const std::vector<Place>& places) {
+        std::vector<Pose> T_w_b(places.size(), Pose::Identity());
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            T_w_b[i].translation() = places[i].position;
+        }
+        return T_w_b;
+    };
+    EXPECT_FALSE(problem.descend(poses({config.start, config.goal}), {}, kNotInterrupted));
+    const std::vector<Place> around{config.start, {{4., 3.2, 1.}, {}}, config.goal};
+    const auto best = problem.descend(poses(around), {}, kNotInterrupted);
+    ASSERT_TRUE(best);
+    EXPECT_LT(best->cost, problem.evaluate("around", around).cost);
+}
+
+TEST(PlanningProblem, EndsWhenItIsInterruptedAndGoesOnAfterwards) {
+    const Config config = smallProblem(0.1);
+    const World world(config);
+    PlanningProblem problem(config, world);
+    const std::atomic<bool> interrupted{true};
+    const PlanOutcome ended = problem.solve("rrt_star", interrupted);
+    EXPECT_LT(ended.vertices, config.vertices);
+    EXPECT_EQ(problem.statusOf(ended).find("no path: "), 0U);
+    EXPECT_NE(problem.statusOf(ended).find("then given up"), std::string::npos);
+    std::size_t shown = 0;
+    const PlanOutcome outcome =
+        problem.solve("rrt_star", kNotInterrupted, [&](const PlanProgress&) { ++shown; });
+    EXPECT_TRUE(outcome.isSolved());
+    EXPECT_GE(shown, 4U);  // after every 50 vertices, and at the end
+}
+
+/// Its planner goes by penalties; the path is evaluated by the information of its views.
+TEST(PlanningProblem, ThePlannersViewModelIsNotThatOfTheEvaluation) {
+    Config config = smallProblem(0.5);
+    config.viewModel.name = "feature_count";
+    config.viewModel.kappa = 7.;
+    const World world(config);
+    PlanningProblem problem(config, world), usual(smallProblem(0.5), world);
+    EXPECT_EQ(problem.makePlanner("rrt_star")->model().options().kappa, 7.);
+    EXPECT_EQ(usual.makePlanner("rrt_star")->model().options().kappa, config.belief.kappa);
+    const std::vector<Place> way{config.start, {{6., 4., 2.}, {}}, config.goal};
+    EXPECT_EQ(problem.evaluate("a", way).cost, usual.evaluate("b", way).cost);
+}
+
+TEST(PlanningProblem, ViewsInformAsTheProgramSays) {
+    const Config config = smallProblem(0.5);
+    const World world(config);
+    PlanningProblem problem(config, world, {},
+                            [](const View&) -> Matrix6 { return 4. * Matrix6::Identity(); });
+    EXPECT_NEAR(problem.informationAt(Pose::Identity()).trace(), 24., 1e-9);
+}
+
+TEST(PlanningProblem, ForgottenViewsAreRenderedAgain) {
+    const Config config = smallProblem(0.1);
+    const World world(config);
+    PlanningProblem problem(config, world);
+    const PlanOutcome first = problem.solve("belief_rrt_star");
+    const PlanOutcome second = problem.solve("belief_rrt_star");
+    EXPECT_EQ(second.views, first.views);
+    EXPECT_GT(second.cacheHits, first.cacheHits);
+    problem.forgetViews();
+    const PlanOutcome anew = problem.solve("belief_rrt_star");
+    EXPECT_EQ(anew.views, first.views);
+    EXPECT_EQ(anew.cacheHits, first.cacheHits);
 }
 
 TEST(World, OnlyAMapOfTheProgramsOwnCanChange) {

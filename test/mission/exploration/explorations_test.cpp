@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exploration/explorations.hpp"
+
+#include <gtest/gtest.h>
+
+#include "flight/flight_statistics.hpp"
+#include "io/error.hpp"
+
+namespace photonav {
+namespace {
+
+/// An exposure whose position is believed this far off, in x.
+FlightSample sampleWith(double error, double variance) {
+    FlightSample sample;
+    sample.belief.mean.translation().x() = error;
+    sample.belief.covariance = variance * Matrix6::Identity();
+    return sample;
+}
+
+ExplorationResult flightWith(FlightEnd end, double goalError, std::vector<FlightSample> samples) {
+    ExplorationResult flight;
+    flight.planner = "rrt_star";
+    flight.end = end;
+    flight.goalError = goalError;
+    flight.samples = std::move(samples);
+    return flight;
+}
+
+PlanUpdate updateTaking(double fuse, double clearance, double plan) {
+    PlanUpdate update;
+    update.fuseSeconds = fuse;
+    update.clearanceSeconds = clearance;
+    update.viewSeconds = 0.5 * plan;  // part of planning
+    update.planSeconds = plan;
+    return update;
+}
+
+TEST(ExplorationSummary, CountsEndsAndAveragesTheRest) {
+    std::vector<ExplorationResult> flights{
+        flightWith(FlightEnd::arrived, 0.1, {sampleWith(0.1, 0.01)}),
+        flightWith(FlightEnd::collided, 4., {}),
+        flightWith(FlightEnd::lost, 0.3,
+                   {sampleWith(0.3, 0.01), sampleWith(0.3, 0.01), sampleWith(0.3, 0.04)})};
+    for (std::size_t i = 0; i < 3; ++i) {
+        flights[i].duration = 10. * static_cast<double>(i + 1);
+        flights[i].way = static_cast<double>(i);
+    }
+    const ExplorationSummary s = summarise(flights, 2.);
+    EXPECT_EQ(s.planner, "rrt_star");
+    EXPECT_EQ(s.flights, 3U);
+    EXPECT_EQ(s.arrived, 1U);
+    EXPECT_EQ(s.collisions, 1U);
+    EXPECT_EQ(s.goalError, 0.3);
+    EXPECT_NEAR(s.duration, 20., 1e-9);
+    EXPECT_NEAR(s.length, 1., 1e-9);
+    // Over exposures, not over flights: a long flight counts for more.
+    EXPECT_NEAR(s.positionRmse, std::sqrt((0.01 + 3. * 0.09) / 4.), 1e-9);
+    const double unit = 3. + 3. * 4.;  // a radian counts as two metres
+    EXPECT_NEAR(s.meanTrace, unit * (0.01 + 0.01 + 0.01 + 0.04) / 4., 1e-9);
+    EXPECT_NEAR(s.goalTrace, unit * (0.01 + 0.04) / 2., 1e-9);
+    // One per degree of freedom of each flight: 0.01 / 0.01 / 6 and 0.09 (2 / 0.01 + 1 / 0.04)
+    // / 18.
+    EXPECT_NEAR(s.nees, 0.5 * (1. / 6. + 0.09 * 225. / 18.), 1e-9);
+    EXPECT_NEAR(s.neesMedian, 0.09 * 225. / 18., 1e-9);
+}
+
+TEST(ExplorationSummary, TimesOfUpdatesAreOverAllFlights) {
+    std::vector<ExplorationResult> flights(2);
+    for (int i = 1; i <= 100; ++i) {
+        flights[i % 2].updates.push_back(updateTaking(0.001, 0.002, 0.01 * i - 0.003));
+    }
+    EXPECT_NEAR(seconds(flights[1].updates[0]), 0.01, 1e-9);
+    const ExplorationSummary s = summarise(flights, 1.);
+    EXPECT_NEAR(s.updateMedian, 0.51, 1e-9);
+    EXPECT_NEAR(s.update95, 0.95, 1e-9);
+}
+
+TEST(ExplorationSummary, HasNoNumbersWhereNoFlightGaveOne) {
+    const ExplorationSummary none = summarise({}, 1.);
+    EXPECT_EQ(none.flights, 0U);
+    EXPECT_TRUE(std::isnan(none.positionRmse) && std::isnan(none.goalError));
+    const std::vector<ExplorationResult> flights{flightWith(FlightEnd::stopped, 5., {})};
+    const ExplorationSummary s = summarise(flights, 1.);
+    EXPECT_EQ(s.flights, 1U);
+    EXPECT_EQ(s.goalError, 5.);
+    for (const double value : {s.positionRmse, s.nees, s.neesMedian, s.meanTrace, s.goalTrace,
+                               s.updateMedian, s.update95}) {
+        EXPECT_TRUE(std::isnan(value));
+    }
+}
+
+/// A start that is known exactly has no error to compare with: its flight has no NEES.
+TEST(ExplorationSummary, FlightsWithoutANeesDoNotHideThatOfOthers) {
+    const std::vector<ExplorationResult> flights{
+        flightWith(FlightEnd::arrived, 0.1, {sampleWith(0.1, 0.)}),
+        flightWith(FlightEnd::arrived, 0.1, {sampleWith(0.1, 0.01)})};
+    const ExplorationSummary s = summarise(flights, 1.);
+    EXPECT_NEAR(s.nees, 1. / 6., 1e-9);
+    EXPECT_NEAR(s.neesMedian, 1. / 6., 1e-9);
+}
+
+/// An empty room, flown through to its other end.
+class EmptyRoom : public testing::Test {
+  protected:
+    EmptyRoom() {
+        config.bounds = {Eigen::Vector3d(0.4, 0.4, 0.8), Eigen::Vector3d(3.6, 3.6, 1.4)};
+        config.start.position = {1., 2., 1.1};
+        config.start.yaw = 0.;
+        config.goal.position = {1.5, 2., 1.1};
+        config.space = StateKind::positionYaw;
+        config.robotRadius = 0.25;
+        config.camera = {.mount = "front45", .width = 94, .height = 60};
+        config.explore.vertices = 60;
+        Scene scene;
+        const auto walls = addTexture(scene, valueNoise({.size = {4., 3.}, .seed = 2}));
+        addBox(scene, {0., 0., 0.}, {4., 4., 3.}, walls, BoxInside::hollow);
+        world.emplace(std::move(scene), config);
+        problem.emplace(config, *world);
+    }
+
+    Config config;
+    std::optional<World> world;
+    std::optional<PlanningProblem> problem;
+};
+
+TEST_F(EmptyRoom, AnInterruptedSetKeepsItsFirstFlight) {
+    const std::atomic<bool> interrupted{true};
+    std::size_t ended = 0;
+    const auto flights = exploreMany(setUpExploration(*problem), {"rrt_star"}, 3, 1, interrupted,
+                                     [&](const ExplorationResult&) { ++ended; });
+    ASSERT_EQ(flights.size(), 1U);
+    EXPECT_EQ(flights[0].end, FlightEnd::stopped);
+    EXPECT_EQ(ended, 1U);
+}
+
+TEST_F(EmptyRoom, EveryEndAndEveryUpdateIsReported) {
+    std::size_t ended = 0, updated = 0, updates = 0;
+    const auto flights = exploreMany(
+        setUpExploration(*problem), {"rrt_star"}, 2, 2, kNotInterrupted,
+        [&](const ExplorationResult&) { ++ended; },
+        [&](const ExplorationResult& soFar) {
+            ++updated;
+            EXPECT_FALSE(soFar.updates.empty());
+        });
+    for (const ExplorationResult& flight : flights) updates += flight.updates.size();
+    EXPECT_EQ(ended, 2U);
+    EXPECT_GT(updated, 0U);
+    EXPECT_EQ(updated, updates);
+}
+
+}  // namespace
+}  // namespace photonav
