@@ -19,10 +19,9 @@ std::vector<std::string> plannersOf(const Config& config) {
     return planners.empty() ? std::vector{config.planner} : planners;
 }
 
-void printFlight(const ExplorationResult& flight) {
+void printFlight(const ExplorationResult& flight, const ExplorationSummary& s) {
     fmt::print("{} after {:.1f} m and {:.1f} s{}\n", nameOf(flight.end), flight.way,
                flight.duration, flight.reason.empty() ? "" : ": " + flight.reason);
-    const ExplorationSummary s = summarise({&flight, 1}, 1.);
     fmt::print(
         "position error (rms) {}, NEES {:.2f}, goal error {}, {} keyframes, "
         "update {:.0f} ms (95 %: {:.0f} ms)\n",
@@ -80,16 +79,18 @@ int runExplore(const ExploreOptions& options, const std::atomic<bool>& interrupt
         flights = exploreMany(setup, planners, trials, options.jobs, interrupted, onEnd, onUpdate);
     }
     const bool stopped = interrupted;
-    nlohmann::json result = exploreResult(setup, flights, stopped);
+    const auto summaries = summariesByPlanner(flights, config.belief.characteristicLength);
+    nlohmann::json result = exploreResult(setup, flights, summaries, stopped);
     result["time"]["total_s"] = watch.seconds();
-    writeExploreReport(folder.path(), setup, world, flights, options.commandLine, result);
+    writeExploreReport(folder.path(), setup, world, flights, summaries, options.commandLine,
+                       result);
     commitResult(folder, result);
 
     if (options.json) {
         fmt::print("{}", jsonText(result));
     } else if (!options.quiet) {
-        if (flights.size() == 1) printFlight(flights.front());
-        if (flights.size() > 1) printSummary(summariesOf(setup, flights));
+        if (flights.size() == 1) printFlight(flights.front(), summaries.front());
+        if (flights.size() > 1) printSummary(summaries);
         fmt::print("report: {}\n", (folder.target() / "report.html").string());
     }
     if (stopped) return kInterrupted;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <span>
 
 #include "flight/flight_statistics.hpp"
 #include "map/octree_file.hpp"
@@ -153,21 +152,8 @@ std::vector<NamedFigure> figuresOf(const ExplorationSetup& setup, const World& w
 
 }  // namespace
 
-std::vector<ExplorationSummary> summariesOf(const ExplorationSetup& setup,
-                                            const std::vector<ExplorationResult>& flights) {
-    std::vector<ExplorationSummary> summaries;
-    for (std::size_t first = 0; first < flights.size();) {
-        std::size_t last = first;
-        while (last < flights.size() && flights[last].planner == flights[first].planner) ++last;
-        summaries.push_back(summarise(std::span(flights).subspan(first, last - first),
-                                      setup.config.belief.characteristicLength));
-        first = last;
-    }
-    return summaries;
-}
-
 json exploreResult(const ExplorationSetup& setup, const std::vector<ExplorationResult>& flights,
-                   bool interrupted) {
+                   const std::vector<ExplorationSummary>& summaries, bool interrupted) {
     const double length = setup.config.belief.characteristicLength;
     json result = jsonOf(flights.front(), length);
     result.update(
@@ -183,14 +169,13 @@ json exploreResult(const ExplorationSetup& setup, const std::vector<ExplorationR
     for (const ExplorationResult& flight : flights) {
         result["trials"].push_back(jsonOf(flight, length));
     }
-    for (const ExplorationSummary& s : summariesOf(setup, flights)) {
-        result["summary"].push_back(jsonOf(s));
-    }
+    for (const ExplorationSummary& s : summaries) result["summary"].push_back(jsonOf(s));
     return result;
 }
 
 void writeExploreReport(const fs::path& folder, const ExplorationSetup& setup, const World& world,
                         const std::vector<ExplorationResult>& flights,
+                        const std::vector<ExplorationSummary>& summaries,
                         const std::string& commandLine, const json& result) {
     const Config& config = setup.config;
     const ExplorationResult& first = flights.front();
@@ -203,9 +188,7 @@ void writeExploreReport(const fs::path& folder, const ExplorationSetup& setup, c
     report.fieldOfView = fieldOfView(setup.truth.camera);
     report.paths.push_back(drawnBeliefs(first, config.belief.characteristicLength));
     report.trees.push_back(drawnWay(first));
-    for (const ExplorationSummary& s : summariesOf(setup, flights)) {
-        report.tables.push_back(tableOf(s));
-    }
+    for (const ExplorationSummary& s : summaries) report.tables.push_back(tableOf(s));
     report.tables.push_back(tableOfUpdates(first));
     writeFlownTrajectory(folder, first);
     saveTexturedOcTree(*first.map, (folder / "map.ot").string());

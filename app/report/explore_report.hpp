@@ -7,18 +7,18 @@
 
 namespace photonav {
 
-/// One per planner, in the order of the flights.
-std::vector<ExplorationSummary> summariesOf(const ExplorationSetup& setup,
-                                            const std::vector<ExplorationResult>& flights);
-
 /// The content of result.json: the first flight, all trials, and a summary per planner.
+/// @param summaries of the flights
 nlohmann::json exploreResult(const ExplorationSetup& setup,
-                             const std::vector<ExplorationResult>& flights, bool interrupted);
+                             const std::vector<ExplorationResult>& flights,
+                             const std::vector<ExplorationSummary>& summaries, bool interrupted);
 
 /// Writes the map, the trajectories of the first flight, figures and the page.
 /// @param world the true one
+/// @param summaries of the flights
 void writeExploreReport(const std::filesystem::path& folder, const ExplorationSetup& setup,
                         const World& world, const std::vector<ExplorationResult>& flights,
+                        const std::vector<ExplorationSummary>& summaries,
                         const std::string& commandLine, const nlohmann::json& result);
 
 }  // namespace photonav

@@ -92,4 +92,16 @@ ExplorationSummary summarise(std::span<const ExplorationResult> flights,
     return s;
 }
 
+std::vector<ExplorationSummary> summariesByPlanner(std::span<const ExplorationResult> flights,
+                                                   double characteristicLength) {
+    std::vector<ExplorationSummary> summaries;
+    for (std::size_t first = 0; first < flights.size();) {
+        std::size_t last = first;
+        while (last < flights.size() && flights[last].planner == flights[first].planner) ++last;
+        summaries.push_back(summarise(flights.subspan(first, last - first), characteristicLength));
+        first = last;
+    }
+    return summaries;
+}
+
 }  // namespace photonav

@@ -45,4 +45,9 @@ struct ExplorationSummary {
 ExplorationSummary summarise(std::span<const ExplorationResult> flights,
                              double characteristicLength);
 
+/// One for each planner, in the order of the flights.
+/// @param flights by planner, as exploreMany() returns them
+std::vector<ExplorationSummary> summariesByPlanner(std::span<const ExplorationResult> flights,
+                                                   double characteristicLength);
+
 }  // namespace photonav

@@ -99,6 +99,18 @@ TEST(ExplorationSummary, FlightsWithoutANeesDoNotHideThatOfOthers) {
     EXPECT_NEAR(s.neesMedian, 1. / 6., 1e-9);
 }
 
+TEST(ExplorationSummary, ThereIsOneForEachPlanner) {
+    std::vector<ExplorationResult> flights(5);
+    for (std::size_t i = 0; i < 5; ++i) flights[i].planner = i < 2 ? "rrbt" : "rrt_star";
+    const auto summaries = summariesByPlanner(flights, 1.);
+    ASSERT_EQ(summaries.size(), 2U);
+    EXPECT_EQ(summaries[0].planner, "rrbt");
+    EXPECT_EQ(summaries[0].flights, 2U);
+    EXPECT_EQ(summaries[1].planner, "rrt_star");
+    EXPECT_EQ(summaries[1].flights, 3U);
+    EXPECT_TRUE(summariesByPlanner({}, 1.).empty());
+}
+
 /// An empty room, flown through to its other end.
 class EmptyRoom : public testing::Test {
   protected:
