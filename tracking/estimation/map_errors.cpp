@@ -7,6 +7,7 @@
 #include "alignment/residual_covariance.hpp"
 #include "geometry/se3.hpp"
 #include "map/map_change.hpp"
+#include "photometry/photometric.hpp"
 
 namespace photonav {
 namespace {
@@ -17,18 +18,6 @@ constexpr double kWeakSigma = 0.005;     // standard deviation of an image alone
                                          // [rad], translations in mean depths
 constexpr double kNegligible = 1e-6;     // share of the mean information
 constexpr double kOpenVariance = 1e3;    // of directions that an image leaves open [m^2], [rad^2]
-
-/// J of a pixel: gradient times the motion of its point in the image, both in pixels.
-Vector6 rowOf(const View& view, const Camera& camera, unsigned u, unsigned v) {
-    const ImageF& I = view.intensity;
-    const double gx = 0.5 * camera.fx() * (I[v][u + 1] - I[v][u - 1]);
-    const double gy = 0.5 * camera.fy() * (I[v + 1][u] - I[v - 1][u]);
-    const double w = 1. / view.depth[v][u];
-    const double x = (u - camera.cx()) / camera.fx(), y = (v - camera.cy()) / camera.fy();
-    const Vector6 du{{w, 0., -x * w, -x * y, x * x + 1., -y}};
-    const Vector6 dv{{0., w, -y * w, -y * y - 1., x * y, x}};
-    return gx * du + gy * dv;
-}
 
 bool isInside(const View& view, unsigned u, unsigned v) {
     const ImageF& d = view.depth;
@@ -88,7 +77,7 @@ MapErrors::Shares MapErrors::sharesOf(const View& map, const Camera& camera,
             if (found == makers_.end()) continue;
             const std::vector<int>& makers = found->second;
             const double part = 1. / static_cast<double>(makers.size());
-            const Vector6 J = rowOf(map, camera, u, v);
+            const Vector6 J = pixelJacobian(map, camera, u, v);
             const Matrix6 information = part * J * J.transpose();
             for (const int k : makers) {
                 if (at[k] < 0) {
