@@ -138,8 +138,7 @@ AlignmentOptions alignmentOf(const ReplayOptions& options, const Sequence& seque
         alignment = KeyframeOptions().alignment;
         alignment.modelErrors.depthScale = sequence.depthError;
     } else {
-        alignment =
-            realCameraOptions(map.octree ? kRenderedBlur : sequence.blur.value_or(kAreaBlur));
+        alignment = realCameraOptions(comparedBlur(map.kind, sequence.blur.value_or(kAreaBlur)));
         alignment.modelErrors.surface = map.surfaceError();
         // The motion is only guessed, so that nothing else stops a pose from sliding away.
         alignment.trust.maxUnexplained = 0.25;
