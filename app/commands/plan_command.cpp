@@ -9,6 +9,7 @@
 #include "commands/result_folder.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
+#include "mapping/map_config.hpp"
 #include "planners/planner_table.hpp"
 #include "problem/planning_problem.hpp"
 #include "problem/tree_evolution.hpp"
@@ -46,7 +47,9 @@ std::optional<RecordedComparison> compareWithImages(const Config& config, const 
                                                     const PlanOutcome& outcome) {
     if (!outcome.path || !world.hasTexture()) return {};
     try {
-        return compareWithRecording(config, world, *outcome.path);
+        const auto map = optionsOfMap(config.mapFile);
+        if (!map) return {};
+        return compareWithRecording(*map, config, world, *outcome.path);
     } catch (const InputError& error) {
         fmt::print(stderr, "photonav: warning: recorded frames not compared: {}\n", error.what());
         return {};

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "mapping/recorded_frames.hpp"
+#include "dataset/recorded_frames.hpp"
 #include "problem/planning_problem.hpp"
 #include "problem/tree_evolution.hpp"
 #include "report/problem_report.hpp"

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "dataset/recording_config.hpp"
 #include "depth/depth_filter.hpp"
 #include "map/textured_octree.hpp"
@@ -101,6 +103,16 @@ void readMapConfig(const std::string& file, MapOptions& options) { keysOf(option
 
 void readScanConfig(const std::string& file, ScanMapOptions& options) {
     keysOf(options).read(file);
+}
+
+std::optional<MapOptions> optionsOfMap(const std::string& mapFile) {
+    namespace fs = std::filesystem;
+    if (mapFile.empty()) return {};
+    const fs::path config = fs::path(mapFile).parent_path() / "config.yaml";
+    if (!fs::exists(config) || !isMapConfig(config.string())) return {};
+    MapOptions options;
+    readMapConfig(config.string(), options);
+    return options;
 }
 
 }  // namespace photonav

@@ -2,6 +2,7 @@
 // The config.yaml that `photonav map` writes beside its map.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "config/key_table.hpp"
@@ -32,5 +33,10 @@ bool isScanConfig(const std::string& file);
 /// @throws InputError naming file, key and reason
 void readMapConfig(const std::string& file, MapOptions& options);
 void readScanConfig(const std::string& file, ScanMapOptions& options);
+
+/// What the map in a file was made of, as `photonav map` notes it in config.yaml beside it.
+/// @return nothing where there is no config of a recording's map, and for an empty name
+/// @throws InputError for one that cannot be used
+std::optional<MapOptions> optionsOfMap(const std::string& mapFile);
 
 }  // namespace photonav

@@ -57,18 +57,12 @@ void applyCalibration(std::optional<MapKind> map, ReplayOptions& options) {
 /// What points up in the recording that a map was made of, as it is noted beside the map. A floor
 /// fitted to another part of it would turn the recording against the map.
 std::string upOfMap(const std::string& mapFile) {
-    const std::filesystem::path config =
-        std::filesystem::path(mapFile).parent_path() / "config.yaml";
-    if (!std::filesystem::exists(config) || !isMapConfig(config.string())) {
-        throw InputError(
-            "--up", "floor",
-            fmt::format("the map's own is taken, but there is no {} of a recorded map; "
-                        "give an axis or x,y,z",
-                        config.string()));
-    }
-    MapOptions map;
-    readMapConfig(config.string(), map);
-    return map.up;
+    if (const auto map = optionsOfMap(mapFile)) return map->up;
+    const auto config = std::filesystem::path(mapFile).parent_path() / "config.yaml";
+    throw InputError("--up", "floor",
+                     fmt::format("the map's own is taken, but there is no {} of a recorded map; "
+                                 "give an axis or x,y,z",
+                                 config.string()));
 }
 
 Recording openRecording(const ReplayOptions& options) {

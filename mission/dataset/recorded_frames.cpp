@@ -1,29 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapping/recorded_frames.hpp"
+#include "dataset/recorded_frames.hpp"
 
-#include <filesystem>
 #include <utility>
 
 #include "geometry/constants.hpp"
-#include "mapping/map_config.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
-namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kWaypoints = 6;
-
-std::optional<Recording> recordingOf(const std::string& mapFile) {
-    if (mapFile.empty()) return {};
-    const fs::path file = fs::path(mapFile).parent_path() / "config.yaml";
-    if (!fs::exists(file) || !isMapConfig(file.string())) return {};
-    MapOptions options;
-    readMapConfig(file.string(), options);
-    options.needsDepth = false;  // grey values are compared
-    options.depthScale.reset();
-    return readRecording(options);
-}
 
 /// Waypoints of the path, first and last included.
 std::vector<std::size_t> chosenPoints(const EvaluatedPath& path) {
@@ -72,11 +58,13 @@ std::size_t findNearest(const Sequence& sequence, const Pose& T_c_w, double dept
 
 }  // namespace
 
-std::optional<RecordedComparison> compareWithRecording(const Config& config, const World& world,
-                                                       const EvaluatedPath& path) {
-    const auto recording = recordingOf(config.mapFile);
-    if (!recording) return {};
-    const Sequence& sequence = recording->sequence;
+RecordedComparison compareWithRecording(const RecordingOptions& recording, const Config& config,
+                                        const World& world, const EvaluatedPath& path) {
+    RecordingOptions images = recording;  // grey values alone are compared
+    images.needsDepth = false;
+    images.depthScale.reset();
+    const Recording recorded = readRecording(images);
+    const Sequence& sequence = recorded.sequence;
     RecordedComparison comparison;
     for (const std::size_t point : chosenPoints(path)) {
         const BeliefPoint& waypoint = path.points[point];
@@ -87,7 +75,7 @@ std::optional<RecordedComparison> compareWithRecording(const Config& config, con
         world.views().render(sequence.camera, T_c_w, nearest.fromPath);
         const std::size_t index =
             findNearest(sequence, T_c_w, typicalDepth(nearest.fromPath), nearest);
-        RecordedFrame frame = recording->load(index);
+        RecordedFrame frame = recorded.load(index);
         world.views().render(sequence.camera, frame.T_c_w, nearest.predicted);
         nearest.difference = compareViews(frame.view, nearest.predicted);
         nearest.observed = std::move(frame.view);

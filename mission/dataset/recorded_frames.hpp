@@ -6,7 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "mapping/view_difference.hpp"
+#include "dataset/recording.hpp"
+#include "dataset/view_difference.hpp"
 #include "problem/planning_problem.hpp"
 
 namespace photonav {
@@ -25,13 +26,12 @@ struct NearestFrame {
 };
 using RecordedComparison = std::vector<NearestFrame>;
 
-/// Looks for the recording of the config's map (config.yaml beside the map file, as `photonav map`
-/// leaves it) and compares a few waypoints spread over the path. Nearest: least distance by the
-/// depth in view plus angle, about how far the image moves.
-/// @return nothing for a scene, and for a map whose recording is not stated
-/// @throws InputError when it is stated but cannot be read
-std::optional<RecordedComparison> compareWithRecording(const Config& config, const World& world,
-                                                       const EvaluatedPath& path);
+/// Compares a few waypoints spread over a path with the recording that its map was made of.
+/// Nearest: least distance by the depth in view plus angle, about how far the image moves.
+/// @param recording of the map (optionsOfMap()); its depth is not needed
+/// @throws InputError when it cannot be read
+RecordedComparison compareWithRecording(const RecordingOptions& recording, const Config& config,
+                                        const World& world, const EvaluatedPath& path);
 
 /// [{waypoint, stamp, distance_m, angle_deg, predicted, mean_abs_difference}], the last one null
 /// where nothing is predicted.
