@@ -6,12 +6,14 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <string>
 
 namespace photonav {
 namespace {
 
 constexpr int kDisparityUnit = 16;  // OpenCV gives sixteenths of pixels
 constexpr int kMaxDisparities = 512;
+constexpr int kLeastBlock = 5;  // of OpenCV's block matching [pixels]
 
 cv::Matx33d matrixOf(const Camera& camera) {
     return {camera.fx(), 0., camera.cx(), 0., camera.fy(), camera.cy(), 0., 0., 1.};
@@ -28,15 +30,26 @@ int disparities(double focalTimesBaseline, double minDepth) {
     return std::clamp(needed, 16, kMaxDisparities);
 }
 
-cv::Ptr<cv::StereoMatcher> makeMatcher(const StereoOptions& o, int count) {
+/// The block size asked for, or the largest odd one that fits into an image.
+int blockSizeFor(const cv::Size& image, int wanted) {
+    const int side = std::min(image.width, image.height);
+    if (side < kLeastBlock) {
+        throw std::invalid_argument("stereo: images are less than " + std::to_string(kLeastBlock) +
+                                    " pixels wide or high");
+    }
+    return std::min(wanted, side % 2 == 1 ? side : side - 1);
+}
+
+cv::Ptr<cv::StereoMatcher> makeMatcher(const StereoOptions& o, const cv::Size& image, int count) {
     cv::Ptr<cv::StereoMatcher> matcher;
+    const int blockSize = blockSizeFor(image, o.blockSize);
     if (o.method == StereoMethod::blockMatching) {
-        const auto blocks = cv::StereoBM::create(count, o.blockSize);
+        const auto blocks = cv::StereoBM::create(count, blockSize);
         blocks->setTextureThreshold(o.texture);
         blocks->setUniquenessRatio(o.uniqueness);
         matcher = blocks;
     } else {
-        const int block = std::max(3, o.blockSize / 3) | 1;
+        const int block = std::max(3, blockSize / 3) | 1;
         const int area = block * block;
         matcher = cv::StereoSGBM::create(0, count, block, 8 * area, 32 * area, 1, 31, o.uniqueness);
     }
@@ -109,7 +122,7 @@ StereoDepth::Impl::Impl(const DistortedCamera& left, const DistortedCamera& righ
                                 maps[0][1]);
     cv::initUndistortRectifyMap(matrixOf(smallRight), dRight, R2, P2, size, CV_16SC2, maps[1][0],
                                 maps[1][1]);
-    matcher = makeMatcher(o, disparities(baseline * camera.fx(), o.minDepth));
+    matcher = makeMatcher(o, size, disparities(baseline * camera.fx(), o.minDepth));
 }
 
 /// Halves first: averaging pixels is sharp enough and leaves a quarter of the work.

@@ -19,7 +19,8 @@ struct StereoOptions {
     int halvings = 1;       ///< of the images before anything else: 0 works at full size
     double minDepth = 0.4;  ///< nearest surface looked for [m]; sets the range of disparities
     double maxDepth = 20.;  ///< farther surfaces are left out [m]
-    int blockSize = 15;     ///< odd [pixels of the working size]; semiGlobal takes a third
+    int blockSize = 15;     ///< odd [pixels of the working size], smaller where an image is lower
+                            ///< or narrower; semiGlobal takes a third
     int uniqueness = 10;    ///< margin of the best match over the next [%]
     int texture = 10;       ///< blocks with less contrast are left out (blockMatching)
     int speckle = 60;       ///< smaller patches of depth are left out [pixels]
@@ -29,7 +30,7 @@ struct StereoOptions {
 class StereoDepth {
   public:
     /// @throws std::invalid_argument for cameras that are not side by side: rectified, the right
-    ///         one must see every point further left
+    ///         one must see every point further left; for working images below 5 pixels a side
     StereoDepth(const DistortedCamera& left, const DistortedCamera& right,
                 const StereoOptions& options = {});
     ~StereoDepth();

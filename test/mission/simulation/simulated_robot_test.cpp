@@ -156,6 +156,15 @@ INSTANTIATE_TEST_SUITE_P(Sensors, RobotWithDepth,
                          ::testing::Values(DepthSensor::none, DepthSensor::rgbd,
                                            DepthSensor::stereo));
 
+TEST(SimulatedCamera, StereoWorksAtTheLeastHeightOfACamera) {
+    const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    SimulatedCamera camera(floor, makeCamera(94, 8, 1.2), {}, {.depth = DepthSensor::stereo}, 1);
+    ASSERT_TRUE(camera.expose(0., cameraAt({0., 0., 2.}, kDown)));
+    const auto frame = camera.receive(0.);
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->view.depth.getHeight(), 8U);
+}
+
 /// Noise that is correlated between pixels stands for errors of a model. It is not in the pair: it
 /// would look like texture.
 TEST(SimulatedCamera, StereoFindsNothingOnABlankFloor) {

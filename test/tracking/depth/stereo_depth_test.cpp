@@ -90,6 +90,20 @@ TEST_F(StereoWall, SurfacesOutOfRangeAreLeftOut) {
     for (unsigned i = 0; i < view.depth.getSize(); ++i) EXPECT_LE(view.depth.bitmap[i], 1.5F);
 }
 
+/// OpenCV refuses blocks that are larger than the image.
+TEST_F(StereoWall, BlocksAreNotLargerThanTheImages) {
+    wall = {.width = 64, .height = 16};
+    View view;
+    for (const StereoMethod method : {StereoMethod::blockMatching, StereoMethod::semiGlobal}) {
+        StereoDepth stereo(wall.camera(0), wall.camera(1),
+                           {.method = method, .halvings = 0, .blockSize = 21});
+        stereo(images(0), view);
+        EXPECT_EQ(view.depth.getHeight(), 16U);
+    }
+    EXPECT_THROW(StereoDepth(wall.camera(0), wall.camera(1), {.halvings = 2}),
+                 std::invalid_argument);
+}
+
 TEST_F(StereoWall, RejectsCamerasInTheWrongOrderAndImagesOfAnotherSize) {
     EXPECT_THROW(StereoDepth(wall.camera(1), wall.camera(0)), std::invalid_argument);
     StereoDepth stereo(wall.camera(0), wall.camera(1));
