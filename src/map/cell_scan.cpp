@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/cell_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace photonav {
+namespace {
+
+using Eigen::Array3i;
+using Eigen::Vector3d;
+
+// Faces with a smaller share of their cell's pixels get no surface: scatter of the normals.
+constexpr float kLeastShare = 0.15F;
+
+/// Of the variance of a surface point: what all pixels of a view share, the error of the pose [m].
+constexpr double kPoseNoise = 3e-3;
+// Least weight of the past: about as many views of full weight.
+constexpr float kMostSurfaceWeight = 50.F / (kPoseNoise * kPoseNoise);
+
+/// A change in parts of what is tolerated.
+float share(float change, double tolerance) {
+    if (change == 0.F) return 0.F;
+    return change / std::max(static_cast<float>(tolerance), 1e-30F);
+}
+
+}  // namespace
+
+/// Amanatides and Woo's traversal, without branches, because the next axis cannot be predicted.
+/// Four rays at a time, because each step of a ray depends on the step before.
+void CellScan::castRays(const Vector3d& eye) {
+    constexpr int kLanes = 4;
+    using Doubles [[gnu::vector_size(kLanes * 8)]] = double;
+    using Places [[gnu::vector_size(kLanes * 8)]] = std::int64_t;
+    const Array3i from = eye.array().floor().cast<int>();
+    for (std::size_t first = 0; first < rayEnds_.size(); first += kLanes) {
+        std::array<Doubles, 3> next{}, delta{};  // in parts of the ray, per axis
+        std::array<Places, 3> step{};
+        Places left{};  // steps to the cell that holds the end
+        const std::size_t rays = std::min<std::size_t>(kLanes, rayEnds_.size() - first);
+        for (std::size_t i = 0; i < rays; ++i) {
+            const Vector3d& end = rayEnds_[first + i];
+            const Vector3d d = end - eye;
+            for (int a = 0; a < 3; ++a) {
+                const double gap = d[a] < 0. ? eye[a] - from[a] : from[a] + 1. - eye[a];
+                delta[a][i] = 1. / std::max(std::abs(d[a]), 1e-9);
+                next[a][i] = gap * delta[a][i];
+                step[a][i] = d[a] < 0. ? -stride_[a] : stride_[a];
+            }
+            left[i] = (end.array().floor().cast<int>() - from).abs().sum();
+        }
+        const Places start = Places{} + place(from);  // finished rays stay here
+        Places at = start;
+        for (auto n = std::max({left[0], left[1], left[2], left[3]}); n > 0; --n) {
+            for (std::size_t i = 0; i < kLanes; ++i) crossed_[at[i]] = 1;
+            auto& [x, y, z] = next;
+            const Places xFirst = (x <= y) & (x <= z), yFirst = ~xFirst & (y <= z);
+            const Places zFirst = ~(xFirst | yFirst);
+            left -= 1;
+            at = left > 0 ? at + ((xFirst & step[0]) | (yFirst & step[1]) | (zFirst & step[2]))
+                          : start;
+            x += xFirst ? delta[0] : Doubles{};
+            y += yFirst ? delta[1] : Doubles{};
+            z += zFirst ? delta[2] : Doubles{};
+        }
+    }
+}
+
+void CellScan::observeFaces(TexturedOcTreeNode& node, const Array3i& cell, const CellPixels& seen,
+                            const std::optional<Vector3d>& eye, float maxWeight) const {
+    const auto grey = static_cast<float>(seen.greySum / seen.count);
+    Vector3d d = Vector3d::Ones();
+    if (eye) d = (cell.cast<double>() + 0.5).matrix() - *eye;
+    const double pixelsPerLength = seen.count / d.norm();
+    const float surfaceWeight = seen.surfaceWeight();
+    for (int face = 0; face < 6; ++face) {
+        const int a = face / 2;
+        const int side = face % 2 == 0 ? -1 : 1;
+        const CellPixels::Sums& sums = seen.faces[face];
+        if (eye && sums[0] > kLeastShare * surfaceWeight) {
+            const double range = d.norm();
+            const auto weight = static_cast<float>(std::abs(d[a]) * sums[0] / range) + 1e-6F;
+            node.faces[face].observe(seen.firstGrey + sums[1] / sums[0], weight, maxWeight);
+            observeSurface(node.surfaces.obtain(face), sums, range * resolution_);
+            continue;
+        }
+        const bool looksAway = eye && !(side > 0 ? (*eye)[a] > cell[a] + 1 : (*eye)[a] < cell[a]);
+        Array3i front = cell;
+        front[a] += side;
+        if (looksAway || isHit(front)) continue;
+        const auto weight = static_cast<float>(std::abs(d[a]) * pixelsPerLength);
+        node.faces[face].observe(grey, weight, maxWeight);
+    }
+    node.surfaces.refreshShown();
+}
+
+/// @param range of the cell from the camera [m]
+void CellScan::observeSurface(FaceSurface& surface, const CellPixels::Sums& sums,
+                              double range) const {
+    const CellPixels::Sums mean = sums / sums[0];
+    const double depthNoise = kDepthNoise * range * range;
+    const double variance = depthNoise * depthNoise / sums[0] + kPoseNoise * kPoseNoise;
+    surface.observe({mean[2], mean[3], mean[4]}, {mean[5], mean[6], mean[7]},
+                    static_cast<float>(1. / variance), kMostSurfaceWeight);
+}
+
+std::uint64_t CellScan::crossedInBrick(const Array3i& corner) const {
+    std::uint64_t bits = 0;
+    for (unsigned z = 0; z < 4; ++z) {
+        for (unsigned y = 0; y < 4; ++y) {
+            std::uint32_t row = 0;  // four cells along x
+            std::memcpy(&row, &crossed_[place(corner) + y * stride_[1] + z * stride_[2]], 4);
+            const std::uint64_t spread =
+                (row & 1U) | (row >> 7U & 2U) | (row >> 8U & 0x100U) | (row >> 15U & 0x200U);
+            bits |= spread << brickBit(0, y, z);
+        }
+    }
+    return bits;
+}
+
+MapChange CellScan::apply(TexturedOcTree& map, const std::optional<Vector3d>& eye,
+                          const FusionOptions& options, const SurfaceCheck& remains) const {
+    MapChange change;
+    change.resolution = map.getResolution();
+    std::size_t brick = 0;
+    Array3i corner;
+    const auto cellAt = [&](unsigned bit) -> Array3i {
+        const int b = static_cast<int>(bit);
+        return corner + Array3i((b & 1) | (b >> 2 & 2), (b >> 1 & 1) | (b >> 3 & 2),
+                                (b >> 2 & 1) | (b >> 4 & 2));
+    };
+    const auto texture = [&](TexturedOcTreeNode& node, unsigned bit) {
+        const CellPixels& seen = pixels_[bricksHit_[brickPixels_[brick]].cells[bit]];
+        observeFaces(node, cellAt(bit), seen, eye, static_cast<float>(options.maxFaceWeight));
+    };
+    const auto keep = [&](const TexturedOcTreeNode& node, unsigned bit) {
+        const Vector3d centre = cellAt(bit).cast<double>() + 0.5;
+        for (unsigned f = 0; remains && f < 6; ++f) {
+            const FaceSurface& surface = node.surfaces[f];
+            if (!surface.observed()) continue;
+            if (remains(centre + surface.meanPoint().cast<double>())) return true;
+        }
+        return false;
+    };
+    for (int z = 0; z < bricks_.z(); ++z) {
+        for (int y = 0; y < bricks_.y(); ++y) {
+            for (int x = 0; x < bricks_.x(); ++x, ++brick) {
+                corner = first_ + 4 * Array3i(x, y, z);
+                const std::uint64_t crossed = crossedInBrick(corner);
+                const std::uint64_t hit = hitInBrick(brick);
+                if ((crossed | hit) == 0) continue;
+                const auto at = (corner + kKeyOfZero).cast<octomap::key_type>().eval();
+                const octomap::OcTreeKey key(at.x(), at.y(), at.z());
+                const BrickChange changed = map.updateBrick(key, crossed, hit, texture, keep);
+                if (changed.occupancy) change.occupancy.push_back(corner / 4);
+                if (!changed.texture) continue;
+                change.anyTexture.push_back(corner / 4);
+                const float drift =
+                    std::max(share(changed.greyChange, options.greyTolerance),
+                             share(changed.surfaceMotion, options.surfaceTolerance));
+                if (map.accumulateDrift(key, drift)) {
+                    change.texture.push_back(corner / 4);
+                }
+            }
+        }
+    }
+    return change;
+}
+
+}  // namespace photonav

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The cells that one observation crosses and ends in, and what it says of their surfaces.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "map/map_fusion.hpp"
+
+namespace photonav {
+
+/// Standard deviation of a pixel's depth, as a structured-light or stereo camera has it [1/m],
+/// times the depth squared.
+inline constexpr double kDepthNoise = 1.5e-3;
+
+/// The end cell of pixels: their grey values, and sums by the face that their normals point to.
+struct CellPixels {
+    /// Weight, grey less the first pixel's (what is constant stays so to the bit), point (3),
+    /// normal (3).
+    using Sums [[gnu::vector_size(32)]] = float;
+
+    double greySum = 0.;
+    unsigned count = 0;
+    float firstGrey = 0.F;
+    std::array<Sums, 6> faces{};
+
+    static constexpr float kLeastWeight = 0.05F;  ///< of a pixel for one face: less is not summed
+
+    void add(float grey) {
+        if (count == 0) firstGrey = grey;
+        greySum += grey;
+        ++count;
+    }
+
+    /// @param p the pixel's point, from the cell's centre @param n its normal
+    void addSurface(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float grey) {
+        const Sums pixel{1.F, grey - firstGrey, p.x(), p.y(), p.z(), n.x(), n.y(), n.z()};
+        for (int a = 0; a < 3; ++a) {
+            const float weight = n[a] * n[a];
+            if (weight > kLeastWeight) faces[2 * a + (n[a] > 0.F ? 1 : 0)] += weight * pixel;
+        }
+    }
+
+    float surfaceWeight() const {
+        float sum = 0.F;
+        for (const Sums& face : faces) sum += face[0];
+        return sum;
+    }
+};
+
+/// The cells in view: which of them were crossed by a ray, which were hit, and the grey values
+/// observed there. A dense box, x fastest, that begins and ends at bricks of 4 x 4 x 4 cells of the
+/// octree. Coordinates are in cells, OctoMap's keys less kKeyOfZero.
+class CellScan {
+  public:
+    CellScan(const Eigen::AlignedBox3d& cells, double resolution)
+        : resolution_(resolution),
+          first_(cells.min().array().floor().cast<int>() / 4 * 4 - 4),
+          bricks_((cells.max().array().floor().cast<int>() - first_) / 4 + 2),
+          stride_{1, std::ptrdiff_t{4} * bricks_.x(),
+                  std::ptrdiff_t{16} * bricks_.x() * bricks_.y()},
+          crossed_(64 * bricks_.cast<std::size_t>().prod(), 0),
+          brickPixels_(bricks_.cast<std::size_t>().prod(), kNoPixels) {
+        pixels_.reserve(kUsualCells);
+    }
+
+    static double cellsNeeded(const Eigen::AlignedBox3d& cells) {
+        return (cells.sizes().array() + 12.).prod();
+    }
+
+    /// The pixels of an end cell, valid until the next call.
+    CellPixels& obtain(const Eigen::Array3i& cell) {
+        std::int32_t& brick = brickPixels_[brickOf(cell)];
+        if (brick == kNoPixels) {
+            brick = static_cast<std::int32_t>(bricksHit_.size());
+            bricksHit_.emplace_back();
+        }
+        BrickPixels& seen = bricksHit_[brick];
+        const unsigned bit = bitOf(cell);
+        if ((seen.hit >> bit & 1U) == 0) {
+            seen.hit |= 1ULL << bit;
+            seen.cells[bit] = static_cast<std::int32_t>(pixels_.size());
+            pixels_.emplace_back();
+        }
+        return pixels_[seen.cells[bit]];
+    }
+
+    /// @returns whether the cell was crossed for the first time
+    bool cross(const Eigen::Array3i& cell) { return std::exchange(crossed_[place(cell)], 1) == 0; }
+
+    void addRay(const Eigen::Vector3d& end) { rayEnds_.push_back(end); }
+
+    /// Crosses the cells from the eye up to, not including, those that hold the ends of the rays.
+    void castRays(const Eigen::Vector3d& eye);
+
+    /// Whether a surface point that rays passed by is where it was, as far as they tell.
+    using SurfaceCheck = std::function<bool(const Eigen::Vector3d& point)>;
+
+    /// @param eye without one, surfaces are seen from all sides
+    /// @param remains may be missing: no surface does
+    MapChange apply(TexturedOcTree& map, const std::optional<Eigen::Vector3d>& eye,
+                    const FusionOptions& options, const SurfaceCheck& remains = {}) const;
+
+  private:
+    static constexpr std::int32_t kNoPixels = -1;
+    static constexpr std::size_t kUsualCells = 8192;  // that one view hits
+
+    struct BrickPixels {
+        std::uint64_t hit = 0;
+        std::array<std::int32_t, 64> cells;  // index into pixels_ of those that were hit
+    };
+
+    std::uint64_t hitInBrick(std::size_t brick) const {
+        const std::int32_t index = brickPixels_[brick];
+        return index != kNoPixels ? bricksHit_[index].hit : 0;
+    }
+    bool isHit(const Eigen::Array3i& cell) const {
+        return (hitInBrick(brickOf(cell)) >> bitOf(cell) & 1U) != 0;
+    }
+    std::size_t brickOf(const Eigen::Array3i& cell) const {
+        const Eigen::Array3i c = cell - first_;
+        return (std::size_t(c.z() >> 2) * bricks_.y() + (c.y() >> 2)) * bricks_.x() + (c.x() >> 2);
+    }
+    unsigned bitOf(const Eigen::Array3i& cell) const {  // first_ is a multiple of 4
+        return brickBit(cell.x(), cell.y(), cell.z());
+    }
+    std::ptrdiff_t place(const Eigen::Array3i& cell) const {
+        const Eigen::Array3i c = cell - first_;
+        return c.x() + c.y() * stride_[1] + c.z() * stride_[2];
+    }
+    std::uint64_t crossedInBrick(const Eigen::Array3i& corner) const;
+    void observeFaces(TexturedOcTreeNode& node, const Eigen::Array3i& cell, const CellPixels& seen,
+                      const std::optional<Eigen::Vector3d>& eye, float maxWeight) const;
+    void observeSurface(FaceSurface& surface, const CellPixels::Sums& sums, double range) const;
+
+    double resolution_;
+    Eigen::Array3i first_, bricks_;
+    std::array<std::ptrdiff_t, 3> stride_;
+    std::vector<std::uint8_t> crossed_;  // per cell; bytes, because setting single bits is slower
+    std::vector<std::int32_t> brickPixels_;  // per brick: index into bricksHit_
+    std::vector<BrickPixels> bricksHit_;
+    std::vector<CellPixels> pixels_;
+    std::vector<Eigen::Vector3d> rayEnds_;
+};
+
+}  // namespace photonav
