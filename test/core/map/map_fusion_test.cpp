@@ -9,7 +9,7 @@
 #include <set>
 #include <tuple>
 
-#include "core/photometry/synthetic_floor.hpp"
+#include "core/map/carpet_map.hpp"
 
 namespace photonav {
 namespace {
@@ -17,7 +17,142 @@ namespace {
 using Eigen::Array3i;
 using test::floorView;
 using test::kDown;
+using test::kTop;
 using test::lookDown;
+
+struct Look {
+    Camera camera;
+    Pose T_c_w;
+    View view;
+};
+
+/// Straight down on the carpet, which lies in the cells from z = 0 to 0.05.
+Look overCarpet(double x, double height) {
+    const Camera camera = makeCamera(160, 120, 1.2);
+    const Pose T_c_w = lookDown(x, 0.01, height, kDown);
+    return {camera, T_c_w, floorView(camera, T_c_w, test::carpet, 0.02)};
+}
+
+TEST(MapFusion, SeparatesFreeOccupiedAndUnknownCells) {
+    const auto [camera, T_c_w, view] = overCarpet(0.01, 1.52);
+    TexturedOcTree map(0.05);
+    fuse(map, view, camera, T_c_w);
+    for (double z = 0.075; z < 1.5; z += 0.05) {
+        const auto* free = map.search(0.01, 0.01, z);
+        ASSERT_NE(free, nullptr) << z;
+        EXPECT_FALSE(map.isNodeOccupied(free)) << z;
+    }
+    const auto* surface = map.search(0.01, 0.01, 0.025);
+    ASSERT_NE(surface, nullptr);
+    EXPECT_TRUE(map.isNodeOccupied(surface));
+    EXPECT_EQ(map.search(0.01, 0.01, -0.025), nullptr) << "behind the surface";
+    EXPECT_EQ(map.search(2.01, 0.01, 0.025), nullptr) << "outside the image";
+    EXPECT_EQ(map.search(0.01, 0.01, 1.60), nullptr) << "behind the camera";
+}
+
+TEST(MapFusion, CarvesUpToTheRangeAndLearnsNothingFromMissingDepth) {
+    auto [camera, T_c_w, view] = overCarpet(0.01, 3.02);
+    TexturedOcTree map(0.05);
+    fuse(map, view, camera, T_c_w, {.maxRange = 2.});
+    EXPECT_FALSE(map.isNodeOccupied(map.search(0.01, 0.01, 1.1)));
+    EXPECT_EQ(map.search(0.01, 0.01, 0.9), nullptr);
+    EXPECT_EQ(map.search(0.01, 0.01, 0.025), nullptr);
+
+    for (const float depth : {0.F, -1.F, std::nanf(""), 0.1F}) {
+        view.depth = depth;
+        TexturedOcTree untouched(0.05);
+        fuse(untouched, view, camera, T_c_w);
+        EXPECT_EQ(untouched.size(), 0U) << depth;
+    }
+}
+
+TEST(MapFusion, FacesTowardTheCameraTakeTheMeanGrey) {
+    const Camera camera = makeCamera(160, 120, 1.2);
+    TexturedOcTree map(0.05);
+    for (const auto& [grey, height] : {std::pair{0.3, 1.52}, {0.5, 1.52}}) {
+        const Pose T_c_w = lookDown(0.31, 0.01, height, kDown);
+        fuse(map,
+             floorView(
+                 camera, T_c_w, [g = grey](double, double) { return g; }, 0.02),
+             camera, T_c_w);
+    }
+    const auto* cell = map.search(0.01, 0.01, 0.025);
+    EXPECT_NEAR(cell->faces[kTop].mean, 0.4, 1e-6);
+    // The camera stands toward +x, but the next floor cell covers that face; below is never seen.
+    for (unsigned f = 0; f < 5; ++f) EXPECT_FALSE(cell->faces[f].observed()) << f;
+
+    // A cell on its own shows its side as well, with the smaller weight of a slanted look.
+    auto [sameCamera, T_c_w, view] = overCarpet(0.31, 1.52);
+    TexturedOcTree lone(0.05);
+    for (unsigned v = 0; v < camera.height; ++v) {
+        for (unsigned u = 0; u < camera.width; ++u) {
+            const Eigen::Vector3d p = test::pointOf(view, camera, T_c_w, u, v);
+            if (p.x() < 0. || p.x() >= 0.05 || p.y() < 0. || p.y() >= 0.05) view.depth[v][u] = 0.F;
+        }
+    }
+    fuse(lone, view, camera, T_c_w);
+    const auto* slanted = lone.search(0.01, 0.01, 0.025);
+    ASSERT_NE(slanted, nullptr);
+    EXPECT_NEAR(slanted->faces[1].weight / slanted->faces[kTop].weight, 0.285 / 1.495, 1e-3);
+    EXPECT_NEAR(slanted->faces[1].mean, slanted->faces[kTop].mean, 1e-6);
+    EXPECT_FALSE(slanted->faces[0].observed());
+    EXPECT_FALSE(slanted->faces[2].observed() || slanted->faces[3].observed());
+}
+
+TEST(MapFusion, ConstantFloorsStayConstantToTheBit) {
+    const Camera camera = makeCamera(160, 120, 1.2);
+    TexturedOcTree map(0.05);
+    for (const double yaw : {0., 0.4, 0.8}) {
+        const Pose T_c_w = lookDown(0.2 * yaw, 0.01, 1.52, 1.1, yaw);
+        View view = floorView(
+            camera, T_c_w, [](double, double) { return 0.; }, 0.02);
+        view.intensity = 0.7F;
+        fuse(map, view, camera, T_c_w);
+    }
+    for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+        for (const FaceTexture& face : leaf->faces) {
+            ASSERT_TRUE(!face.observed() || face.mean == 0.7F) << face.mean;
+        }
+    }
+}
+
+TEST(MapFusion, DropsPixelsAtDepthEdges) {
+    const Look look = overCarpet(0.01, 1.52);
+    View view = look.view;
+    for (unsigned v = 0; v < look.camera.height; ++v) {
+        for (unsigned u = 0; u < 80; ++u) view.depth[v][u] = 1.F;
+        view.depth[v][80] = 1.17F;  // smeared between the box at 1 m and the floor
+    }
+    const auto smeared = [&](double depthJump) {
+        TexturedOcTree map(0.05);
+        fuse(map, view, look.camera, look.T_c_w, {.depthJump = depthJump});
+        int count = 0;
+        for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+            const bool between = leaf.getZ() > 0.1 && leaf.getZ() < 0.45;
+            count += static_cast<int>(between && map.isNodeOccupied(*leaf));
+        }
+        return count;
+    };
+    EXPECT_GT(smeared(1e9), 0);
+    EXPECT_EQ(smeared(0.05), 0);
+}
+
+TEST(MapFusion, RefusesInputThatDoesNotFit) {
+    const Camera camera = makeCamera(16, 12, 1.2);
+    TexturedOcTree map(0.05);
+    View view = floorView(camera, lookDown(0., 0., 1., kDown), test::carpet);
+    EXPECT_THROW(fuse(map, view, makeCamera(17, 12, 1.2), Pose::Identity()), std::invalid_argument);
+    Pose broken = Pose::Identity();
+    broken.translation().x() = std::nan("");
+    EXPECT_THROW(fuse(map, view, camera, broken), std::invalid_argument);
+    Pose far = Pose::Identity();
+    far.translation().x() = 1e5;
+    EXPECT_THROW(fuse(map, view, camera, far), std::invalid_argument);
+    view.depth = 1e9F;
+    EXPECT_THROW(fuse(map, view, camera, Pose::Identity(), {.maxRange = 1e9}),
+                 std::invalid_argument);
+    EXPECT_EQ(map.size(), 0U);
+}
 
 using Key = std::tuple<int, int, int>;  // z, y, x
 
