@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "estimation/tracker.hpp"
+#include "tracking/rooms.hpp"
+
+namespace photonav {
+namespace {
+
+using test::cameraAt;
+
+const Camera& hoverCamera() {
+    static const Camera small = makeCamera(160, 120, 1.1);
+    return small;
+}
+
+/// With odometry: a hovering camera that looks down, and what it sees in a map.
+class HoverOver {
+  public:
+    /// @param errors of a map made on the flight; null: the map is exact
+    HoverOver(std::shared_ptr<const ViewSource> map, const UncertainPose& start,
+              std::shared_ptr<MapErrors> errors = {})
+        : map_(std::move(map)), tracker(map_, hoverCamera(), start, options(std::move(errors))) {}
+
+    TrackedFrame see(const ImageF& image) {
+        time_ += 0.25;
+        Observation observation;
+        observation.time = time_;
+        observation.T_next_now = UncertainPose{Pose::Identity(), 1e-6 * Matrix6::Identity()};
+        observation.frames.push_back({time_, {image, {}}});
+        return tracker.update(observation).front();
+    }
+    TrackedFrame see(const ViewSource& world, const Pose& T_c_w) {
+        View view;
+        world.render(hoverCamera(), T_c_w, view);
+        return see(test::noisy(view.intensity, 0.02, random_));
+    }
+
+  private:
+    static TrackerOptions options(std::shared_ptr<MapErrors> errors) {
+        TrackerOptions options;
+        options.searchPrior = true;
+        options.mapErrors = std::move(errors);
+        return options;
+    }
+    std::shared_ptr<const ViewSource> map_;
+    double time_ = 0.;
+    std::mt19937_64 random_{1};
+
+  public:
+    Tracker tracker;
+};
+
+UncertainPose narrow(const Pose& T_c_w) { return {T_c_w, 1e-6 * Matrix6::Identity()}; }
+
+/// A plan may lead over a surface without texture: such an image agrees with the map.
+TEST(TrackerWithOdometry, AnImageThatDoesNotInformIsNoLoss) {
+    const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
+    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    HoverOver hover(white, narrow(here));
+    for (int i = 0; i < 6; ++i) EXPECT_FALSE(hover.see(*white, here).lost);
+    EXPECT_FALSE(hover.tracker.loss().isLost());
+}
+
+/// What a map made on the flight does not show yet is no reason to doubt the pose; nothing where a
+/// given map should show something is.
+TEST(TrackerWithOdometry, WhatItsOwnMapLacksIsNoLoss) {
+    Scene elsewhere;
+    addPlane(elsewhere, {50., 50., 0.}, {1., 0., 0.}, {0., 1., 0.},
+             addTexture(elsewhere, uniformTexture(0.5F)));
+    const auto map = std::make_shared<MeshRenderer>(std::move(elsewhere));
+    const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
+    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    HoverOver own(map, narrow(here), std::make_shared<MapErrors>(0.05));
+    HoverOver given(map, narrow(here));
+    for (int i = 0; i < 8; ++i) {
+        const TrackedFrame frame = own.see(floor, here);
+        EXPECT_TRUE(frame.lost);
+        EXPECT_GT(frame.T_c_w.covariance(0, 0), 1e-6 * (i + 1)) << "odometry alone";
+        given.see(floor, here);
+    }
+    EXPECT_FALSE(own.tracker.loss().isLost());
+    EXPECT_TRUE(given.tracker.loss().isLost());
+}
+
+/// But it does not find a camera that is lost, however narrow its belief.
+TEST(TrackerWithOdometry, AnImageThatDoesNotInformEndsNoLoss) {
+    const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
+    const MeshRenderer another(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
+    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    for (const double sigma : {1e-3, 0.8}) {
+        HoverOver hover(white, {here, sigma * sigma * Matrix6::Identity()});
+        for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(another, here).lost);
+        ASSERT_TRUE(hover.tracker.loss().isLost());
+        for (int i = 0; i < 6; ++i) EXPECT_TRUE(hover.see(*white, here).lost) << sigma;
+        EXPECT_TRUE(hover.tracker.loss().isLost());
+        EXPECT_EQ(hover.tracker.loss().timesLost(), 1);
+    }
+}
+
+/// Nor does one that leaves open a direction that the loss has made wide; one that does not, does.
+TEST(TrackerWithOdometry, StripesEndNoLossAlongThem) {
+    const auto bars =
+        std::make_shared<MeshRenderer>(test::floorOf(stripes({.width = 2.5, .softEdge = 0.05})));
+    const Pose here = cameraAt({0.05, 0., 2.}, test::kDown);
+    const ImageF black(hoverCamera().height, hoverCamera().width, 0.F);
+    HoverOver hover(bars, narrow(here));
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(black).lost);
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(*bars, here).lost);
+
+    // A belief that was as wide along the bars before the loss is not rejected.
+    const Eigen::Vector3d along_c = here.linear().col(1);
+    UncertainPose wide = narrow(here);
+    wide.covariance.topLeftCorner<3, 3>() += along_c * along_c.transpose();
+    HoverOver uncertain(bars, wide);
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(uncertain.see(black).lost);
+    TrackedFrame frame;
+    for (int i = 0; i < 3; ++i) frame = uncertain.see(*bars, here);
+    EXPECT_FALSE(frame.lost) << describe(frame.alignment);
+
+    const auto floor =
+        std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    HoverOver found(floor, narrow(here));
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(found.see(black).lost);
+    const Pose moved = cameraAt({0.3, 0.2, 2.}, test::kDown);
+    for (int i = 0; i < 3; ++i) frame = found.see(*floor, moved);
+    EXPECT_FALSE(frame.lost) << describe(frame.alignment);
+    EXPECT_LT((frame.T_c_w.mean.inverse().translation() - moved.inverse().translation()).norm(),
+              0.02);
+}
+
+TEST(LossOfTracking, IsResolvedByWhatTheLossHasMadeWide) {
+    const Matrix6 before = 1e-4 * Matrix6::Identity();
+    const Matrix6 prior = 0.09 * Matrix6::Identity();
+    EXPECT_TRUE(resolvesLoss(before, prior, before));
+    EXPECT_TRUE(resolvesLoss(before, prior, 0.2 * prior));
+    EXPECT_FALSE(resolvesLoss(before, prior, prior));
+    Matrix6 after = before;
+    after(1, 1) = prior(1, 1);
+    EXPECT_FALSE(resolvesLoss(before, prior, after));
+    EXPECT_TRUE(resolvesLoss(after, prior, after)) << "it was as wide before";
+    EXPECT_FALSE(resolvesLoss(prior, prior, prior)) << "it did not inform";
+}
+
+}  // namespace
+}  // namespace photonav
