@@ -77,6 +77,16 @@ void halveRows(const float* a, const float* b, float* out, unsigned width, const
     }
 }
 
+/// Inverse depths of a keyframe, row by row.
+std::vector<float> inverseDepths(const ImageF& depth) {
+    std::vector<float> inverse(depth.getSize());
+    for (std::size_t i = 0; i < inverse.size(); ++i) {
+        const float z = depth.bitmap[i];
+        inverse[i] = z > 0.F ? 1.F / z : kNoSurface;
+    }
+    return inverse;
+}
+
 }  // namespace
 
 ImageF halvedByMean(const ImageF& image) {
@@ -119,6 +129,43 @@ struct PointSet::Row {
     explicit Row(std::size_t width) : inverseDepth(width), gx(width), gy(width), used(width, 0) {}
 };
 
+/// Which pixels become points.
+struct PointSet::Rule {
+    float jump, dark, aspect, least, nearerThan, fartherThan;
+
+    Rule(const Camera& camera, const KeyframeOptions& options)
+        : jump(static_cast<float>(
+              std::min(options.alignment.photometric.depthJump, options.maxBend / camera.fx()))),
+          dark(static_cast<float>(options.alignment.photometric.saturation)),
+          aspect(static_cast<float>(camera.fy() / camera.fx())),
+          least(static_cast<float>(4. * square(options.minGradient))),
+          nearerThan(static_cast<float>(1. / options.maxDepth)),
+          fartherThan(static_cast<float>(1. / options.minDepth)) {}
+
+    /// @param W inverse depths of row v, within those of the image
+    void apply(const ImageF& intensity, unsigned v, const float* W, Row& row) const {
+        const unsigned width = intensity.getWidth();
+        const float* aboveW = W - width;
+        const float* belowW = W + width;
+        const float* I = intensity[v];
+        const float* above = intensity[v - 1];
+        const float* below = intensity[v + 1];
+        row.intensity = I;
+        for (unsigned u = 1; u + 1 < width; ++u) {
+            const float horizontal = std::abs(W[u - 1] + W[u + 1] - 2.F * W[u]);
+            const float vertical = std::abs(aboveW[u] + belowW[u] - 2.F * W[u]);
+            const float du = I[u + 1] - I[u - 1];
+            const float dv = below[u] - above[u];
+            row.inverseDepth[u] = W[u];
+            row.gx[u] = du;
+            row.gy[u] = aspect * dv;
+            row.used[u] = (W[u] >= nearerThan) & (W[u] <= fartherThan) &
+                          (std::max(horizontal, vertical) <= jump * W[u]) & (I[u] > dark) &
+                          (I[u] < 1.F - dark) & (du * du + dv * dv >= least);
+        }
+    }
+};
+
 PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions& options)
     : camera_(camera),
       maxNoise_(2. * square(options.alignment.photometric.sigma) +
@@ -127,44 +174,16 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
     const std::size_t capacity = std::size_t(width) * camera.height + kWidth;
     for (auto* field : {&x_, &y_, &w_, &intensity_, &gx_, &gy_}) field->resize(capacity);
 
-    const PhotometricOptions& p = options.alignment.photometric;
-    const auto jump = static_cast<float>(std::min(p.depthJump, options.maxBend / camera.fx()));
-    const auto dark = static_cast<float>(p.saturation);
-    const auto aspect = static_cast<float>(camera.fy() / camera.fx());
-    const auto least = static_cast<float>(4. * square(options.minGradient));
-    const auto nearerThan = static_cast<float>(1. / options.maxDepth);
-    const auto fartherThan = static_cast<float>(1. / options.minDepth);
-    std::vector<float> inverse(std::size_t(width) * camera.height);
-    for (std::size_t i = 0; i < inverse.size(); ++i) {
-        const float z = view.depth.bitmap[i];
-        inverse[i] = z > 0.F ? 1.F / z : kNoSurface;
-    }
+    const Rule rule(camera, options);
+    const std::vector<float> inverse = inverseDepths(view.depth);
     const unsigned side = ImageBlock::side(camera);
     std::vector<Row> band(side, Row(width));
     for (unsigned top = 1; top + 1 < camera.height; top += side) {
         const unsigned bottom = std::min(top + side, camera.height - 1);
         for (unsigned v = top; v < bottom; ++v) {
             Row& row = band[v - top];
-            const float* W = &inverse[std::size_t(v) * width];
-            const float* aboveW = W - width;
-            const float* belowW = W + width;
-            const float* I = view.intensity[v];
-            const float* above = view.intensity[v - 1];
-            const float* below = view.intensity[v + 1];
-            row.intensity = I;
             row.y = static_cast<float>((v - camera.cy()) / camera.fy());
-            for (unsigned u = 1; u + 1 < width; ++u) {
-                const float horizontal = std::abs(W[u - 1] + W[u + 1] - 2.F * W[u]);
-                const float vertical = std::abs(aboveW[u] + belowW[u] - 2.F * W[u]);
-                const float du = I[u + 1] - I[u - 1];
-                const float dv = below[u] - above[u];
-                row.inverseDepth[u] = W[u];
-                row.gx[u] = du;
-                row.gy[u] = aspect * dv;
-                row.used[u] = (W[u] >= nearerThan) & (W[u] <= fartherThan) &
-                              (std::max(horizontal, vertical) <= jump * W[u]) & (I[u] > dark) &
-                              (I[u] < 1.F - dark) & (du * du + dv * dv >= least);
-            }
+            rule.apply(view.intensity, v, &inverse[std::size_t(v) * width], row);
         }
         for (unsigned left = 1; left + 1 < width; left += side) {
             blockBegin_.push_back(size_);
@@ -174,7 +193,11 @@ PointSet::PointSet(const View& view, const Camera& camera, const KeyframeOptions
         }
     }
     blockBegin_.push_back(size_);
-    // A block is read by whole vectors from where it begins.
+    finish();
+}
+
+/// Means over the points, and padding: a block is read by whole vectors from where it begins.
+void PointSet::finish() {
     const std::size_t padded = (size_ + 2 * kWidth - 1) / kWidth * kWidth;
     double sum = 0.;
     for (std::size_t i = 0; i < size_; ++i) sum += w_[i];

@@ -43,8 +43,10 @@ class PointSet {
 
   private:
     struct Row;
+    struct Rule;
     struct Projection;
     void append(const Row& row, unsigned left, unsigned right);
+    void finish();
 
     Camera camera_;
     std::size_t size_ = 0;
