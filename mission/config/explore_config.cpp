@@ -47,8 +47,8 @@ void addKeys(KeyTable& keys, ExploreConfig& c) {
                  "space never seen: `optimistic` plans lead through it, `pessimistic` ones do not"},
                 c.unknown, {"optimistic", "pessimistic"});
     keys.choice({"unknown_information", "",
-                 "what views of such space tell: `none` (the paper), or as `predicted` from the "
-                 "views flown through lately"},
+                 "information of views of such space: `none` (the paper), or as `predicted` from "
+                 "the views flown through lately"},
                 c.unknownInformation, {"none", "predicted"});
     keys.number({"keyframe_distance", "m", "from the last image fused: the next one is fused"},
                 c.keyframeDistance, {0.01, 10.});

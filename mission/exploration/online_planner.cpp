@@ -89,7 +89,7 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
         space.setState(state.get(), *from_w, yawOf(T_w_b));
         const Eigen::Matrix3d R_w_c = T_c_w.mean.linear().transpose();
         // Relative to the map in view. What the map's own error adds stays the same wherever the
-        // way leads: no texture seen for the first time tells a robot where it is in the world.
+        // way leads: texture seen for the first time does not inform of the place in the world.
         const Belief belief{inRotatedAxes(config_.belief.initialCovariance, R_w_c), 0.};
         if (!solveFrom(state.get(), belief, interrupted) && !interrupted) {
             // What is left of a tree may be full without the goal: another one begins here.

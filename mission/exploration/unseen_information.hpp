@@ -8,9 +8,9 @@
 
 namespace photonav {
 
-/// What a robot has seen so far tells what it may expect behind the edge of its map: the paper
-/// counts unknown space as without information, and names its prediction as future work. Here a
-/// view of unknown space is expected to inform like the last views flown through did on average.
+/// Information expected behind the edge of the map: that of the last views flown through, on
+/// average. The paper counts unknown space as without information, and names its prediction as
+/// future work.
 class UnseenInformation {
   public:
     /// A view of the map from a pose that was flown through, if it shows enough of the map.

@@ -86,7 +86,7 @@ class PlanningProblem {
                       const std::atomic<bool>& interrupted = kNotInterrupted,
                       const OnPlanProgress& onProgress = {});
     /// Grows a planner of makePlanner() as far as its parameters allow: a new one, or once more one
-    /// that was told of a change.
+    /// after mapChanged().
     PlanOutcome solve(const std::shared_ptr<BeliefPlanner>& planner,
                       const std::atomic<bool>& interrupted = kNotInterrupted,
                       const OnPlanProgress& onProgress = {});

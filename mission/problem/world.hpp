@@ -21,7 +21,7 @@ class World {
     /// A scene of the program's own, in the bounds of the config.
     World(Scene scene, const Config& config);
     /// A map of the program's own, in the bounds of the config. It may change and gain texture:
-    /// tell mapChanged().
+    /// call mapChanged() then.
     /// @throws std::invalid_argument for a map that is too large
     World(std::shared_ptr<const TexturedOcTree> map, const Config& config);
     /// The same where obstacles are the occupied cells of another map, of the same resolution. A
@@ -30,8 +30,8 @@ class World {
           std::shared_ptr<const TexturedOcTree> obstacles, const Config& config);
 
     /// Updates clearance and views after a change of the program's own map, at a cost that grows
-    /// with the change. Nothing else may use the world meanwhile. Every planning problem in it must
-    /// be told next: PlanningProblem::mapChanged().
+    /// with the change. Nothing else may use the world meanwhile. Next, call
+    /// PlanningProblem::mapChanged() of every planning problem in it.
     /// @param change everything that changed since the last call
     /// @throws std::logic_error for a world made otherwise
     void mapChanged(const MapChange& change);

@@ -97,7 +97,7 @@ class CellScan {
     /// Crosses the cells from the eye up to, not including, those that hold the ends of the rays.
     void castRays(const Eigen::Vector3d& eye);
 
-    /// Whether a surface point that rays passed by is where it was, as far as they tell.
+    /// Whether a surface point that rays passed by is where it was, as far as they show.
     using SurfaceCheck = std::function<bool(const Eigen::Vector3d& point)>;
 
     /// @param eye without one, surfaces are seen from all sides

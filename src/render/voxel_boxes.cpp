@@ -17,7 +17,7 @@ std::uint64_t bitsBelow(int count) { return count < 64 ? (1ULL << count) - 1 : ~
 /// Counts marked bricks in boxes of bricks: a summed-area table of a part of the grid.
 class BrickCounts {
   public:
-    /// @param marked tells of a brick's index whether it counts
+    /// @param marked whether a brick counts, by its index
     template <class Marked>
     BrickCounts(const VoxelGrid& grid, const CellBox& bricks, const Marked& marked)
         : bricks_(bricks), size_(bricks.high - bricks.low + 1) {

@@ -203,8 +203,8 @@ bool Search::measureSlope() {
     return true;
 }
 
-/// What the image tells by its residuals; the pose becomes that at which image, weighted by it,
-/// and prior agree.
+/// The information of the image by its residuals; the pose becomes that at which image, so
+/// weighted, and prior agree.
 MeasuredInformation Search::measured() {
     if (!isCompared_) at_ = evaluate(at_.T_c_w, at_.exposure);
     MeasuredInformation image = respondingBy(

@@ -20,7 +20,7 @@ struct ModelErrors {
     double depthScale = 0.;  ///< relative, of a depth sensor's scale and registration
 };
 
-/// What an image tells about the pose: left perturbation, camera frame.
+/// The information of an image about the pose: left perturbation, camera frame.
 struct MeasuredInformation {
     PoseEquations equations;  ///< information 0 in directions that the image leaves open
     /// Part of the covariance that repeats from image to image; very large in open directions.

@@ -194,7 +194,8 @@ TEST_F(ReplayCommand, LeavesFoldersThatWereThere) {
     EXPECT_TRUE(test::fs::exists(options.out));
 }
 
-/// Covariances that are far from true do not go unsaid, nor do images that tell only half.
+/// Covariances that are far from true are reported, and so are images that inform of half of the
+/// directions only.
 TEST(ReplaySummary, NamesWhatIsNotRight) {
     json result = {{"verdict", "tracked 9 of 9 frames"},
                    {"tracked", 9},

@@ -47,17 +47,19 @@ TEST_F(LoadedMap, OfCellsHasSurfacesOnlyWhereSomeWereFused) {
     const TrackingMap cells = saved(map);
     EXPECT_EQ(cells.kind, MapKind::cells);
     EXPECT_NEAR(cells.surfaceError(), 0.058, 1e-9);
-    View shown;
-    cells.views->render(camera, Pose::Identity(), shown);  // unknown cells hide nothing
-    EXPECT_NEAR(shown.depth[17][25], 2., 0.02);
     fuse(map, view, camera, Pose::Identity());
     const TrackingMap surfaces = saved(map);
     EXPECT_EQ(surfaces.kind, MapKind::surfaces);
     EXPECT_NEAR(surfaces.surfaceError(), 0.01, 1e-9);
     ASSERT_NE(surfaces.octree, nullptr);
     EXPECT_EQ(surfaces.scene, nullptr);
+    View shown;
     surfaces.views->render(camera, Pose::Identity(), shown);
     EXPECT_NEAR(shown.depth[16][24], 2., 0.02);
+    Pose aside = Pose::Identity();
+    aside.translation().x() = 1.2;
+    surfaces.views->render(camera, aside, shown);  // through unknown cells
+    EXPECT_NEAR(shown.depth[16][29], 2., 0.02);
 }
 
 TEST_F(LoadedMap, OfASceneIsAMesh) {

@@ -116,12 +116,12 @@ TEST(DenseAligner, EdgesSayNothingAlongThemselves) {
         const Alignment a = aligner.align(view.intensity, prior);
         EXPECT_EQ(describe(a), "degenerate along y");
         const Eigen::Vector3d y_c = prior.mean.linear().col(1);
-        const double told = y_c.dot(a.information.topLeftCorner<3, 3>() * y_c);
-        EXPECT_LT(told, 0.15 / (0.5 * 0.5)) << askew;
+        const double along = y_c.dot(a.information.topLeftCorner<3, 3>() * y_c);
+        EXPECT_LT(along, 0.15 / (0.5 * 0.5)) << askew;
     }
 }
 
-/// What is told faintly but truly is kept, whatever the exposure: bars, and beside them texture of
+/// Faint information that is true is kept, whatever the exposure: bars, and beside them texture of
 /// next to no contrast.
 TEST(DenseAligner, FaintTextureStillCounts) {
     Scene scene;
@@ -262,13 +262,13 @@ TEST(DenseAligner, RefusesImagesOfAnotherSize) {
     EXPECT_THROW(aligner.align(ImageF(10, 10), kPose), std::invalid_argument);
 }
 
-// --- Honesty
+// --- Consistency
 // --------------------------------------------------------------------------------------
 
 /// NEES per degree of freedom over simulated alignments with independent noise. The chi-square
 /// bounds of 60 x 6 degrees of freedom at three sigma are 1 +- 0.22; consistency_bench runs
 /// hundreds.
-TEST(DenseAligner, CovarianceIsHonestOnTexture) {
+TEST(DenseAligner, CovarianceIsConsistentOnTexture) {
     const Camera small = makeCamera(94, 60, 1.2);
     DenseAligner aligner(room(), small);
     std::mt19937_64 random(7);

@@ -85,7 +85,7 @@ TEST(PoseEquations, TheStepOfTheExposureEndsInTheMinimumOfTheCost) {
 }
 
 /// Images that say as much about the exposure as the prior does.
-TEST(Exposure, IsHonestWhenExposuresAreDrawnFromThePrior) {
+TEST(Exposure, IsConsistentWhenExposuresAreDrawnFromThePrior) {
     const Camera small = makeCamera(64, 40, 1.2);
     const ExposurePrior prior{0.03, 0.01};
     AlignmentOptions options;

@@ -59,21 +59,21 @@ TEST_F(MeasuredSlope, IsTheSandwich) {
 }
 
 /// J says something along n, where nothing changes; what it says aside is true.
-TEST_F(MeasuredSlope, TellsNothingWhereNothingChanges) {
+TEST_F(MeasuredSlope, InformsOfNothingWhereNothingChanges) {
     const Vector6 n = (Vector6() << 1., -0.5, 0.3, 0.2, 0.1, -0.7).finished().normalized();
     const Vector6 Jn = J.transpose() * (J * n);
     const Slope D = J * (Matrix6::Identity() - n * Jn.transpose() / n.dot(Jn));
-    const Matrix6 told = informationOf(D);
-    EXPECT_LT(n.dot(told * n), 0.01 * n.dot(Jn));
-    expectClose(told, D.transpose() * D);
+    const Matrix6 information = informationOf(D);
+    EXPECT_LT(n.dot(information * n), 0.01 * n.dot(Jn));
+    expectClose(information, D.transpose() * D);
 }
 
 /// Two claims may be steeper together than each alone.
-TEST_F(MeasuredSlope, TellsInNoDirectionMoreThanJ) {
+TEST_F(MeasuredSlope, InformsOfNoDirectionMoreThanJ) {
     Slope D = J;
     for (double& value : D.reshaped()) value += std::normal_distribution<double>(0., 60.)(random);
-    const Matrix6 told = informationOf(D);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(told, J.transpose() * J);
+    const Matrix6 information = informationOf(D);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(information, J.transpose() * J);
     EXPECT_LT(solver.eigenvalues().maxCoeff(), 1. + 1e-9);
     EXPECT_GT(solver.eigenvalues().minCoeff(), 0.1);
 }

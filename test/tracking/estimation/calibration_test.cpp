@@ -29,7 +29,7 @@ std::vector<AlignmentError> sampled(double scale, double floorTranslation, doubl
     return errors;
 }
 
-TEST(Calibration, LeavesHonestErrorsAlone) {
+TEST(Calibration, LeavesConsistentErrorsAlone) {
     const auto errors = sampled(1., 0., 0., 400);
     const Calibration c = calibrate(errors);
     EXPECT_NEAR(c.neesBefore, 1., 0.1);

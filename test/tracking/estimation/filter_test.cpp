@@ -96,7 +96,7 @@ TEST(Filter, IsConsistentAlongFlights) {
 }
 
 /// Hovering over bars along y: neither what central differences say along an edge that is askew,
-/// nor a prior turned by half of a correction may ever tell y.
+/// nor a prior turned by half of a correction may ever inform of y.
 TEST(Filter, BarsDoNotInformAlongThem) {
     const MeshRenderer bars(test::floorOf(stripes({.width = 0.5, .softEdge = 0.05})));
     AlignmentOptions options;
