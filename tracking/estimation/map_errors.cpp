@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "alignment/residual_covariance.hpp"
+#include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 #include "map/map_change.hpp"
 #include "photometry/photometric.hpp"
@@ -18,6 +19,9 @@ constexpr double kWeakSigma = 0.005;     // standard deviation of an image alone
                                          // [rad], translations in mean depths
 constexpr double kNegligible = 1e-6;     // share of the mean information
 constexpr double kOpenVariance = 1e3;    // of directions that an image leaves open [m^2], [rad^2]
+
+/// Unlike an alignment, a map is displaced at its edges and where it is saturated as well.
+constexpr PhotometricOptions kEveryPixel{.depthJump = kInfinity, .saturation = -1.};
 
 bool isInside(const View& view, unsigned u, unsigned v) {
     const ImageF& d = view.depth;
@@ -77,7 +81,7 @@ MapErrors::Shares MapErrors::sharesOf(const View& map, const Camera& camera,
             if (found == makers_.end()) continue;
             const std::vector<int>& makers = found->second;
             const double part = 1. / static_cast<double>(makers.size());
-            const Vector6 J = pixelJacobian(map, camera, u, v);
+            const Vector6 J = pixelJacobian(map, camera, u, v, kEveryPixel);
             const Matrix6 information = part * J * J.transpose();
             for (const int k : makers) {
                 if (at[k] < 0) {
