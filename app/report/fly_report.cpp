@@ -31,6 +31,7 @@ json jsonOf(const FlightResult& flight) {
     return {{"flight", flight.number},
             {"end", nameOf(flight.end)},
             {"duration_s", flight.duration},
+            {"mean_speed_mps", orNull(flight.meanSpeed)},
             {"way_m", flight.way},
             {"goal_error_m", flight.goalError},
             {"believed_goal", ellipseJson(flight.believedGoal)},
@@ -66,6 +67,7 @@ json jsonOf(const FlightSet& set) {
                 {"nees_at_goal_bounds", {finiteOrNull(s.neesLow), finiteOrNull(s.neesHigh)}},
                 {"lost_s", s.lostTime},
                 {"duration_s", finiteOrNull(s.duration)},
+                {"mean_speed_mps", finiteOrNull(s.meanSpeed)},
                 {"goal_error_m", finiteOrNull(s.goalError)},
                 {"photometric_goal",
                  {{"flights", s.photometric},
@@ -100,7 +102,8 @@ ReportTable tableOf(const FlightSet& set) {
          fmt::format("{:.2f} ({:.2f} to {:.2f})", s.neesAtGoal, s.neesLow, s.neesHigh)},
         {"true distance to the goal at the end, median", lengthText(s.goalError)},
         {"time without tracking, all flights", fmt::format("{:.1f} s", s.lostTime)},
-        {"duration, mean", fmt::format("{:.1f} s", s.duration)}};
+        {"duration, mean", fmt::format("{:.1f} s", s.duration)},
+        {"speed on the way to the goal, mean", fmt::format("{:.2f} m/s", s.meanSpeed)}};
     if (s.photometric > 0) {
         table.rows.emplace_back(
             "servoing on the image of the goal",
@@ -188,7 +191,7 @@ json flyResult(const Config& config, const std::vector<FlightSet>& sets,
           {"camera_drop_rate", options.robot.camera.dropRate},
           {"camera_black_rate", options.robot.camera.blackRate},
           {"blackout_s", {options.robot.camera.blackoutStart, options.robot.camera.blackoutLength}},
-          {"max_speed_mps", options.pilot.servo.maxSpeed},
+          {"max_speed_mps", options.pilot.route.limits.maxSpeed},
           {"odometry_factor", options.robot.body.odometryFactor},
           {"body_radius_m", options.bodyRadius},
           {"arrival_tolerance_m", options.arrivalTolerance},

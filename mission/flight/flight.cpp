@@ -70,7 +70,8 @@ class PlannedFlight {
 
 void PlannedFlight::onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker,
                            const Pilot& pilot) {
-    evaluator_.onStep(tracked, tracker, pilot.route().progress(tracker.belief().mean));
+    evaluator_.onStep(tracked, tracker, pilot.route().distance());
+    if (pilot.route().isAtGoal()) evaluator_.measureSpeed();
     FlightResult& result = evaluator_.result();
     if (pilot.hasServoedOnImage() && !std::exchange(result.photometric, true)) {
         result.goalErrorBefore = evaluator_.goalError();
@@ -150,7 +151,13 @@ FlightEnd FlightEvaluator::endAtGoal(const Tracker& tracker, double tolerance) {
     return goalError() <= tolerance ? FlightEnd::arrived : FlightEnd::astray;
 }
 
+void FlightEvaluator::measureSpeed() {
+    const double time = robot_.time();
+    if (!result_.meanSpeed && time > 0.) result_.meanSpeed = result_.way / time;
+}
+
 void FlightEvaluator::finish(const Tracker& tracker) {
+    measureSpeed();
     result_.duration = robot_.time();
     result_.lost = tracker.loss().lostTime(robot_.time());
     result_.timesLost = tracker.loss().timesLost();

@@ -64,7 +64,10 @@ struct FlightResult {
     FlightEnd end = FlightEnd::stopped;
     double duration = 0.;  ///< [s]
     double way = 0.;       ///< truly flown [m]
-    double lost = 0.;      ///< time without tracking [s]
+    /// Way truly flown until the belief was at the goal for the first time, or else until the end,
+    /// divided by the time until then [m/s].
+    std::optional<double> meanSpeed;
+    double lost = 0.;  ///< time without tracking [s]
     int timesLost = 0;
     double goalError = 0.;  ///< true distance to the goal at the end [m]
     /// Of a flight that ended at its believed goal: where it believed to be, wider where its last
@@ -94,6 +97,8 @@ class FlightEvaluator {
     /// Once after every step of the robot.
     /// @param tracked of this step; @param distance of the sample, if the camera exposed now [m]
     void onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker, double distance);
+    /// Sets the mean speed until now, unless it is set already.
+    void measureSpeed();
     /// True distance of the body to the goal [m].
     double goalError() const { return (robot_.T_w_b().translation() - goal_w_).norm(); }
     /// Of a robot whose estimate is at the goal: an arrival is claimed where the belief, as wide as

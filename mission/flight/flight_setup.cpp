@@ -32,7 +32,7 @@ FlightOptions flightOptions(const Config& config, const TrackingMap& map) {
     flight.tracker.map = flightAlignment(config, map.kind, map.resolution());
     double& blindTime = flight.tracker.loss.blindTime;
     blindTime = fly.latency + std::max(blindTime, 4. * flight.robot.camera.period);
-    flight.pilot.servo.maxSpeed = fly.speed;
+    flight.pilot.route.limits.maxSpeed = fly.speed;
     flight.pilot.photometric = flight.tracker.map.photometric;
     flight.pilot.photometricGoal = fly.photometricGoal;
     flight.bodyRadius = fly.bodyRadius > 0. ? fly.bodyRadius : 0.5 * config.robotRadius;

@@ -27,9 +27,13 @@ Matrix6 predictedCovariance(std::span<const PlannedView> plan, double distance) 
     return (1. - t) * last->covariance + t * next->covariance;
 }
 
+void append(const std::optional<double>& value, std::vector<double>& values) {
+    if (value) values.push_back(*value);
+}
+
 void countEnds(std::span<const FlightResult> flights, FlightSummary& s) {
     const auto n = static_cast<double>(flights.size());
-    std::vector<double> errors, before, after;
+    std::vector<double> errors, before, after, speeds;
     s.duration = 0.;
     for (const FlightResult& flight : flights) {
         s.arrived += flight.end == FlightEnd::arrived;
@@ -40,19 +44,17 @@ void countEnds(std::span<const FlightResult> flights, FlightSummary& s) {
         s.outOfTime += flight.end == FlightEnd::outOfTime;
         s.lostTime += flight.lost;
         s.duration += flight.duration / n;
+        append(flight.meanSpeed, speeds);
         errors.push_back(flight.goalError);
         if (!flight.photometric) continue;
         before.push_back(flight.goalErrorBefore);
         after.push_back(flight.goalError);
     }
+    s.meanSpeed = mean(speeds, FlightSummary::kNone);
     s.goalError = median(errors, FlightSummary::kNone);
     s.photometric = before.size();
     s.photometricBefore = median(before, FlightSummary::kNone);
     s.photometricAfter = median(after, FlightSummary::kNone);
-}
-
-void append(const std::optional<double>& value, std::vector<double>& values) {
-    if (value) values.push_back(*value);
 }
 
 /// Errors against what was predicted and believed, over all exposures.

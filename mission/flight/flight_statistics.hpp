@@ -55,6 +55,7 @@ struct FlightSummary {
     double neesLow = kNone, neesHigh = kNone;  ///< neesBounds() of neesAtGoal
     double lostTime = 0.;                      ///< sum [s]
     double duration = kNone;                   ///< mean [s]
+    double meanSpeed = kNone;                  ///< mean over the flights [m/s]
     double goalError = kNone;                  ///< median true distance to the goal at the end [m]
     std::size_t photometric = 0;               ///< flights that ended on the goal's image
     double photometricBefore = kNone;          ///< their median goal error when that began [m]

@@ -13,6 +13,7 @@ constexpr double kPhotometricTime = 10.;   // at most, for the goal's image [s]
 constexpr double kPhotometricStep = 0.01;  // below which, or twice the noise, it is reached
                                            // [m, rad]
 constexpr int kPhotometricImages = 6;      // in a row
+constexpr double kOtherView = 0.7;         // so far on, other things are in view [m]
 
 /// An image in the exposure of the model.
 ImageF asModelled(const ImageF& observed, const Exposure& exposure) {
@@ -32,7 +33,7 @@ Pilot::Pilot(std::vector<PlannedView> plan, std::shared_ptr<const ViewSource> ma
       T_b_c_(T_b_c),
       options_(options),
       route_(std::move(plan), T_b_c, options.route),
-      servo_(T_b_c, options.servo),
+      servo_(T_b_c, options.servoGain),
       goalServo_(servoToGoal()),
       search_(map_, camera, T_b_c, options.photometric, options.isFree) {}
 
@@ -41,7 +42,7 @@ PhotometricServo Pilot::servoToGoal() const {
 }
 
 void Pilot::setPlan(std::vector<PlannedView> plan) {
-    route_ = Route(std::move(plan), T_b_c_, options_.route);
+    route_ = Route(std::move(plan), T_b_c_, options_.route, command_);
     goalServo_ = servoToGoal();
     if (searchSince_) endSearch();
     leaveImage();
@@ -83,38 +84,45 @@ void Pilot::approachOnImage(const ImageF& image, const Pose& T_w_b) {
 }
 
 BodyVelocity Pilot::command(const Tracker& tracker, double time, double dt) {
-    command_ = limited(decide(tracker, time), command_, options_.servo, dt);
+    command_ = limited(decide(tracker, time, dt), command_, options_.route.limits, dt);
     return command_;
 }
 
-BodyVelocity Pilot::decide(const Tracker& tracker, double time) {
+BodyVelocity Pilot::decide(const Tracker& tracker, double time, double dt) {
     const UncertainPose belief = tracker.belief();
     if (const auto lostSince = tracker.loss().since()) {
-        if (time - *lostSince < options_.hoverTime) return {};
+        if (time - *lostSince < options_.hoverTime) {
+            route_.halt();
+            return {};
+        }
         if (!searchSince_) beginSearch(tracker, time);
     }
-    if (searched_) return servo_.toward(belief.mean, (*searched_ * T_b_c_).inverse());
+    if (searched_) {
+        route_.halt();
+        return servo_.toward(belief.mean, route_.cameraAt(*searched_));
+    }
     if (atGoalSince_) {
-        return onImage_ ? *onImage_ : servo_.toward(belief.mean, route_.cameraAt(route_.goal()));
+        return onImage_ ? *onImage_
+                        : servo_.toward(belief.mean, route_.cameraAt(route_.goal().T_w_b));
     }
-    const double before = route_.lastWaypoint().distance;
-    const PlannedView& target = route_.advance(belief);
-    if (!tracker.loss().isLost() && route_.lastWaypoint().distance > before && isMissed(belief)) {
-        beginSearch(tracker, time);
-    }
-    if (route_.isAtGoal() && !searchSince_) {
-        atGoalSince_ = time;
-        hasMissedGoal_ = isMissed(belief);
-    }
-    return servo_.toward(belief.mean, route_.cameraAt(target));
+    return alongRoute(tracker, time, dt);
 }
 
-/// Whether the belief is too wide for waypoints to be reached, and was not to be at the last one.
-bool Pilot::isMissed(const UncertainPose& belief) const {
-    const PlannedView& waypoint = route_.lastWaypoint();
-    const double planned = widestSigma(waypoint.covariance);
-    const double sigma = widestSigma(belief.covariance);
-    return sigma > options_.route.maxTolerance && std::sqrt(2.) * planned < sigma;
+BodyVelocity Pilot::alongRoute(const Tracker& tracker, double time, double dt) {
+    const UncertainPose belief = tracker.belief();
+    const double before = route_.lastWaypoint().distance;
+    const Route::Reference reference = route_.advance(belief, dt);
+    const bool isMissed = route_.needs(route_.lastWaypoint(), belief);
+    const bool isPassed = route_.lastWaypoint().distance > before;
+    if (isPassed && isMissed && !tracker.loss().isLost()) beginSearch(tracker, time);
+    if (route_.isAtGoal() && !searchSince_) {
+        atGoalSince_ = time;
+        hasMissedGoal_ = isMissed;
+    }
+    BodyVelocity velocity = servo_.toward(belief.mean, route_.cameraAt(reference.T_w_b));
+    velocity.linear += reference.velocity.linear;
+    velocity.yawRate += reference.velocity.yawRate;
+    return velocity;
 }
 
 void Pilot::beginSearch(const Tracker& tracker, double time) {
@@ -130,9 +138,9 @@ void Pilot::continueSearch(const Tracker& tracker, double time) {
     if (tracker.loss().isLost()) return;
     const UncertainPose belief = tracker.belief();
     const bool isTooLong = time - *searchSince_ > options_.giveUpTime;
-    if (!searched_ || isTooLong || !isMissed(belief)) return endSearch();
+    if (!searched_ || isTooLong || !route_.needs(route_.lastWaypoint(), belief)) return endSearch();
     const Eigen::Vector3d p_w = bodyOf(belief.mean).translation();
-    if ((p_w - searched_->translation()).norm() > options_.route.minTolerance) return;
+    if ((p_w - searched_->translation()).norm() > options_.route.tolerance.position) return;
     search_.visited(*searched_);
     searched_ = search_.nearest(belief, route_.lastWaypoint().T_w_b);
 }
@@ -149,10 +157,10 @@ std::optional<Pose> Pilot::viewToRelocalize(const Tracker& tracker) const {
     const Eigen::Vector3d p_w = bodyOf(belief.mean).translation();
     const Pose certain = bodyOf(tracker.lastCertainView());
     const double back = (certain.translation() - p_w).norm();
-    const PlannedView& target = route_.target();
-    const double way = (target.T_w_b.translation() - p_w).norm();
     for (const PlannedView& view : route_.ahead()) {
-        if (way + view.distance - target.distance > back) break;
+        const double way = view.distance - route_.distance();
+        if (way < kOtherView) continue;
+        if (way > back) break;
         if (search_.narrows(belief, view.T_w_b)) return {};
     }
     return certain;

@@ -16,8 +16,8 @@
 namespace photonav {
 
 struct PilotOptions {
-    ServoOptions servo;
     RouteOptions route;
+    double servoGain = 1.5;       ///< of the pose error's exponential decrease [1/s]
     bool photometricGoal = true;  ///< servo on the goal's image where it determines all velocities
     PhotometricOptions photometric;  ///< of that image
     double hoverTime = 1.;           ///< waited on the spot after a loss before flying on [s]
@@ -26,13 +26,13 @@ struct PilotOptions {
     std::function<bool(const Eigen::Vector3d& p_w)> isFree;
 };
 
-/// Flies to the views of a plan, one after the other, by visual servoing on the believed pose; at
-/// the goal on its image. A waypoint at which the belief is much wider than planned, so that its
-/// view cannot have been seen, begins a search for a view around that narrows it; what is not found
-/// in time leaves the route as uncertain as before, and a goal not reached for certain is given up.
-/// While tracking is lost the pilot hovers, then flies back to the last view that determined the
-/// pose, or on along the route to one that should narrow the belief, whichever is nearer. It gives
-/// up after a while.
+/// Flies past the views of a plan on a smooth path, with its velocity and visual servoing on the
+/// believed pose; at the goal on its image. A waypoint at which the belief is much wider than
+/// planned, so that its view cannot have been seen, begins a search for a view around that narrows
+/// it; what is not found in time leaves the route as uncertain as before, and a goal not reached
+/// for certain is given up. While tracking is lost the pilot hovers, then flies back to the last
+/// view that determined the pose, or on along the route to one that should narrow the belief,
+/// whichever is nearer. It gives up after a while.
 class Pilot {
   public:
     /// @param plan at least two views @throws std::invalid_argument otherwise
@@ -40,7 +40,8 @@ class Pilot {
     Pilot(std::vector<PlannedView> plan, std::shared_ptr<const ViewSource> map,
           const Camera& camera, const Pose& T_b_c, const PilotOptions& options);
 
-    /// Flies another plan from now on. @throws std::invalid_argument below two views
+    /// Flies another plan from now on, without a stop where it goes on in the same direction.
+    /// @throws std::invalid_argument below two views
     void setPlan(std::vector<PlannedView> plan);
     /// Exchanges the map; the plan stays.
     void setMap(std::shared_ptr<const ViewSource> map);
@@ -48,7 +49,7 @@ class Pilot {
     /// An image was tracked: for servoing on the goal's.
     void observe(const Tracker& tracker, const TrackedFrame& tracked, const ImageF& image);
 
-    /// Velocity for the next `dt` seconds, within the limits of ServoOptions.
+    /// Velocity for the next `dt` seconds, within the limits of the route.
     /// @param time now [s]
     BodyVelocity command(const Tracker& tracker, double time, double dt);
 
@@ -61,8 +62,8 @@ class Pilot {
     const Route& route() const { return route_; }
 
   private:
-    BodyVelocity decide(const Tracker& tracker, double time);
-    bool isMissed(const UncertainPose& belief) const;
+    BodyVelocity decide(const Tracker& tracker, double time, double dt);
+    BodyVelocity alongRoute(const Tracker& tracker, double time, double dt);
     void beginSearch(const Tracker& tracker, double time);
     void continueSearch(const Tracker& tracker, double time);
     void endSearch();

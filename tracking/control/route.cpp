@@ -7,61 +7,135 @@
 #include <stdexcept>
 #include <utility>
 
-#include "geometry/constants.hpp"
+#include "control/view_search.hpp"
 #include "geometry/se3.hpp"
 
 namespace photonav {
+namespace {
 
-Route::Route(std::vector<PlannedView> plan, const Pose& T_b_c, const RouteOptions& options)
-    : plan_(std::move(plan)), T_b_c_(T_b_c), options_(options) {
-    if (plan_.size() < 2) throw std::invalid_argument("flight: a plan has at least two views");
+constexpr double kCatchUp = 2.;    // of the phase, toward the body's own [1/s]
+constexpr double kApproach = 1.5;  // of a view that is needed: rate by the phase left [1/s]
+
+Station stationOf(const Pose& T_w_b) {
+    Station station;
+    station << T_w_b.translation(), yawOf(T_w_b);
+    return station;
 }
 
-bool Route::isReached(const UncertainPose& belief) const {
+Pose poseOf(const Station& station) {
+    Pose T_w_b = Pose::Identity();
+    T_w_b.translation() = station.head<3>();
+    T_w_b.linear() = Eigen::AngleAxisd(station[3], Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    return T_w_b;
+}
+
+SmoothPath pathOf(const std::vector<PlannedView>& plan, const RouteOptions& options) {
+    if (plan.size() < 2) throw std::invalid_argument("flight: a plan has at least two views");
+    std::vector<Station> corners;
+    corners.reserve(plan.size());
+    for (const PlannedView& view : plan) corners.push_back(stationOf(view.T_w_b));
+    MotionLimits limits = options.limits;
+    limits.maxAcceleration *= options.accelerationShare;
+    limits.maxYawAcceleration *= options.accelerationShare;
+    return {std::move(corners), limits, options.tolerance};
+}
+
+}  // namespace
+
+Route::Route(std::vector<PlannedView> plan, const Pose& T_b_c, const RouteOptions& options,
+             const BodyVelocity& velocity)
+    : plan_(std::move(plan)), T_b_c_(T_b_c), options_(options), path_(pathOf(plan_, options)) {
+    const Station slope = path_.at(0.).first;
+    const double atFullRate = along(slope, slope);
+    if (atFullRate <= 0.) return;
+    Station now;
+    now << plan_.front().T_w_b.linear() * velocity.linear, velocity.yawRate;
+    rate_ = std::clamp(along(slope, now) / atFullRate, 0., path_.rateLimit(0.));
+}
+
+/// Scalar product of a derivative of the path with an offset, both as shares of the limits: the
+/// phase that the offset is worth where the path is flown at a limit [s].
+double Route::along(const Station& slope, const Station& offset) const {
+    const double speed = options_.limits.maxSpeed, yawRate = options_.limits.maxYawRate;
+    return slope.head<3>().dot(offset.head<3>()) / (speed * speed) +
+           slope[3] * offset[3] / (yawRate * yawRate);
+}
+
+double Route::tolerance(const UncertainPose& belief) const {
     const double sigma = std::sqrt(belief.covariance.topLeftCorner<3, 3>().trace());
-    const double tolerance =
-        std::clamp(options_.toleranceSigmas * sigma, options_.minTolerance, options_.maxTolerance);
-    const Pose T_w_b = bodyOf(belief.mean);
-    const double distance = (T_w_b.translation() - target().T_w_b.translation()).norm();
-    // Of the headings: tilt cannot be commanded.
-    const double turn = std::remainder(yawOf(T_w_b) - yawOf(target().T_w_b), 2. * std::numbers::pi);
-    return distance < tolerance && std::abs(turn) < options_.yawTolerance;
+    const double least = options_.tolerance.position;
+    return std::clamp(options_.toleranceSigmas * sigma, least,
+                      std::max(least, options_.maxTolerance));
 }
 
-const PlannedView& Route::advance(const UncertainPose& belief) {
-    const Eigen::Vector3d p_w = bodyOf(belief.mean).translation();
-    atGoal_ = false;  // a search may have led away from it
-    for (;;) {
-        if (target().isWaypoint || target_ + 1 == plan_.size()) {
-            if (!isReached(belief)) break;
-            passed_ = target_;
-            if (target_ + 1 == plan_.size()) {
-                atGoal_ = true;
-                break;
-            }
-        } else if ((p_w - target().T_w_b.translation()).norm() > options_.lookahead) {
-            break;
-        }
-        ++target_;
-    }
-    return target();
+/// @param offset of the belief from the path
+double Route::allowedRate(const UncertainPose& belief, const Station& offset) const {
+    const double tolerances = std::max(offset.head<3>().norm() / tolerance(belief),
+                                       std::abs(offset[3]) / options_.tolerance.yaw);
+    return std::clamp(2. - tolerances, 0., 1.);
 }
 
-double Route::progress(const Pose& T_c_w) const {
-    const Eigen::Vector3d p_w = bodyOf(T_c_w).translation();
-    double least = kInfinity;
-    double distance = target().distance;  // at the goal there is no way left
-    for (std::size_t i = passed_; i < target_; ++i) {
-        const Eigen::Vector3d from = plan_[i].T_w_b.translation();
-        const Eigen::Vector3d way = plan_[i + 1].T_w_b.translation() - from;
-        const double square = std::max(way.squaredNorm(), 1e-12);
-        const double t = std::clamp((p_w - from).dot(way) / square, 0., 1.);
-        const double away = (p_w - from - t * way).norm();
-        if (away >= least) continue;
-        least = away;
-        distance = plan_[i].distance + t * (plan_[i + 1].distance - plan_[i].distance);
+Route::Reference Route::advance(const UncertainPose& belief, double dt) {
+    const Pose T_w_b = (T_b_c_ * belief.mean).inverse();
+    const auto offsetFrom = [&](const Station& station) {
+        Station offset = stationOf(T_w_b) - station;
+        offset[3] = std::remainder(offset[3], 2. * std::numbers::pi);
+        return offset;
+    };
+    const SmoothPath::Point before = path_.at(phase_);
+    const Station offset = offsetFrom(before.station);
+    const double ahead = along(before.first, offset);
+    const double allowed = allowedRate(belief, offset - ahead * before.first);
+    const double growth = path_.rateGrowth(phase_, rate_);
+    const double most = std::min(allowed, approachRate(belief));
+    rate_ = std::min({rate_ + growth * dt, most, path_.rateLimit(phase_)});
+    phase_ = std::clamp(phase_ + (rate_ + allowed * kCatchUp * ahead) * dt, 0., path_.end());
+
+    const SmoothPath::Point here = path_.at(phase_);
+    const double left = (path_.end() - phase_) * options_.limits.maxSpeed;
+    atGoal_ = left < options_.tolerance.position &&
+              allowedRate(belief, offsetFrom(path_.at(path_.end()).station)) >= 1.;
+    passViews(belief);
+    const double responded = phase_ + rate_ * options_.responseTime;
+    const double rate = std::min({rate_ + growth * options_.responseTime, most,
+                                  responded < path_.end() ? path_.rateLimit(responded) : 0.});
+    const SmoothPath::Point later = path_.at(responded);
+    // The body responds in its own axes, which turn until then.
+    const Eigen::AngleAxisd turn(here.station[3] - later.station[3], Eigen::Vector3d::UnitZ());
+    return {poseOf(here.station),
+            {T_w_b.linear().transpose() * (turn * (rate * later.first.head<3>())),
+             rate * later.first[3]}};
+}
+
+bool Route::needs(const PlannedView& view, const UncertainPose& belief) const {
+    const double sigma = widestSigma(belief.covariance);
+    return sigma > options_.maxTolerance && std::sqrt(2.) * widestSigma(view.covariance) < sigma;
+}
+
+double Route::approachRate(const UncertainPose& belief) const {
+    for (std::size_t i = next_; i < plan_.size(); ++i) {
+        const double left = path_.phaseOf(i) - phase_;
+        if (kApproach * left > 1.) break;
+        if (plan_[i].isWaypoint && needs(plan_[i], belief)) return std::max(0., kApproach * left);
     }
-    return distance;
+    return 1.;
+}
+
+void Route::passViews(const UncertainPose& belief) {
+    const double near = tolerance(belief) / options_.limits.maxSpeed;  // [s]
+    for (; next_ + 1 < plan_.size(); ++next_) {
+        const PlannedView& view = plan_[next_];
+        const double left = path_.phaseOf(next_) - phase_;
+        if (left > (view.isWaypoint && needs(view, belief) ? near : 0.)) break;
+        if (view.isWaypoint) passed_ = next_;
+    }
+    if (atGoal_) passed_ = next_;
+}
+
+double Route::distance() const {
+    const SmoothPath::OnLeg place = path_.legAt(phase_);
+    const double from = plan_[place.from].distance;
+    return place.share > 0. ? from + place.share * (plan_[place.from + 1].distance - from) : from;
 }
 
 }  // namespace photonav

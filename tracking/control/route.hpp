@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far along its plan a flight is, and which view to fly to.
+// How far along its plan a flight is, and what to fly next.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "control/smooth_path.hpp"
 #include "geometry/uncertain_pose.hpp"
 
 namespace photonav {
@@ -15,51 +16,76 @@ struct PlannedView {
     /// Predicted, of T_c_w (camera frame, left), with the image taken here.
     Matrix6 covariance = Matrix6::Zero();
     double distance = 0.;     ///< way of the position so far [m]
-    bool isWaypoint = false;  ///< to be reached, not only passed near
+    bool isWaypoint = false;  ///< the plan counts on the image taken here
 };
 
 struct RouteOptions {
-    double lookahead = 0.7;  ///< between waypoints, the view flown to is this far ahead [m]
-    /// A waypoint counts as reached within this many standard deviations of the believed position,
-    /// but not below or above these distances [m], and within `yawTolerance` [rad].
+    MotionLimits limits = {};
+    /// Share of the limits of acceleration that the route makes use of; the rest is left to
+    /// corrections.
+    double accelerationShare = 0.75;
+    /// Time constant of the body's response to commands, which velocities of the route anticipate
+    /// [s].
+    double responseTime = 0.25;
+    PathTolerance tolerance = {};  ///< of the curve around the plan
+    /// A believed position is on the route within this many of its standard deviations, but not
+    /// below the tolerance of the curve nor above this [m]. Farther away the flight goes on more
+    /// slowly, at twice as far it waits until the belief is nearer.
     double toleranceSigmas = 1.;
-    double minTolerance = 0.05;
     double maxTolerance = 0.2;
-    double yawTolerance = 0.1;
 };
 
-/// Between waypoints the target view is a little ahead; a waypoint must be reached, within the
-/// uncertainty of the belief.
+/// Passes a plan's views on a smooth path, as fast as its limits allow, and stops at the last. A
+/// waypoint whose view the belief needs is approached more slowly, to be seen from near.
 class Route {
   public:
-    /// @param plan at least two views @throws std::invalid_argument otherwise
-    Route(std::vector<PlannedView> plan, const Pose& T_b_c, const RouteOptions& options);
+    /// @param plan at least two views
+    /// @param velocity of the body at the first one, in its own axes: the route goes on from it
+    /// @throws std::invalid_argument for a shorter plan, and as SmoothPath does
+    Route(std::vector<PlannedView> plan, const Pose& T_b_c, const RouteOptions& options,
+          const BodyVelocity& velocity = {});
 
-    /// Moves on as far as the believed pose allows. @return the view to fly to
-    const PlannedView& advance(const UncertainPose& belief);
+    /// Where the body should be now, and the velocity of the route a response time later.
+    struct Reference {
+        Pose T_w_b = Pose::Identity();  ///< level
+        BodyVelocity velocity;          ///< in the believed axes of the body
+    };
+    /// Goes on for `dt` seconds, as far as the believed pose allows.
+    Reference advance(const UncertainPose& belief, double dt);
+    /// The flight was interrupted: the route goes on from standstill.
+    void halt() { rate_ = 0.; }
 
-    /// Whether the belief was at the last waypoint at the last advance().
+    /// Whether the belief was at the goal at the last advance().
     bool isAtGoal() const { return atGoal_; }
 
-    const PlannedView& target() const { return plan_[target_]; }
-    const PlannedView& lastWaypoint() const { return plan_[passed_]; }
-    /// Views that are still to be flown to, the target first.
-    std::span<const PlannedView> ahead() const { return std::span(plan_).subspan(target_); }
-    const PlannedView& goal() const { return plan_.back(); }
-    Pose cameraAt(const PlannedView& view) const { return (view.T_w_b * T_b_c_).inverse(); }
+    /// Whether a belief is too wide for waypoints to be reached, and the plan's at this view is
+    /// not.
+    bool needs(const PlannedView& view, const UncertainPose& belief) const;
 
-    /// Way along the plan of its point nearest to here, among those around the target view [m].
-    double progress(const Pose& T_c_w) const;
+    const PlannedView& lastWaypoint() const { return plan_[passed_]; }
+    /// Views that are still to be passed, the next one first; the goal is always among them.
+    std::span<const PlannedView> ahead() const { return std::span(plan_).subspan(next_); }
+    const PlannedView& goal() const { return plan_.back(); }
+    Pose cameraAt(const Pose& T_w_b) const { return (T_w_b * T_b_c_).inverse(); }
+
+    /// Way along the plan until now [m].
+    double distance() const;
 
   private:
-    bool isReached(const UncertainPose& belief) const;
-    Pose bodyOf(const Pose& T_c_w) const { return T_c_w.inverse() * T_b_c_.inverse(); }
+    double tolerance(const UncertainPose& belief) const;
+    double along(const Station& slope, const Station& offset) const;
+    double allowedRate(const UncertainPose& belief, const Station& offset) const;
+    double approachRate(const UncertainPose& belief) const;
+    void passViews(const UncertainPose& belief);
 
     std::vector<PlannedView> plan_;
     Pose T_b_c_;
     RouteOptions options_;
-    std::size_t target_ = 1;
-    std::size_t passed_ = 0;  // the last waypoint reached
+    SmoothPath path_;
+    double phase_ = 0.;  // along the path [s]
+    double rate_ = 0.;
+    std::size_t next_ = 1;    // view
+    std::size_t passed_ = 0;  // the last waypoint
     bool atGoal_ = false;
 };
 

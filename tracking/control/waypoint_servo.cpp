@@ -4,24 +4,9 @@
 #include <visp3/visual_features/vpFeatureThetaU.h>
 #include <visp3/visual_features/vpFeatureTranslation.h>
 
-#include <algorithm>
-
 #include "control/mav_task.hpp"
 
 namespace photonav {
-
-BodyVelocity limited(const BodyVelocity& wanted, const BodyVelocity& last,
-                     const ServoOptions& options, double dt) {
-    const double excess = std::max({1., wanted.linear.norm() / options.maxSpeed,
-                                    std::abs(wanted.yawRate) / options.maxYawRate});
-    BodyVelocity command{wanted.linear / excess, wanted.yawRate / excess};
-    const Eigen::Vector3d change = command.linear - last.linear;
-    const double most = options.maxAcceleration * dt;
-    if (change.norm() > most) command.linear = last.linear + change * (most / change.norm());
-    const double turn = options.maxYawAcceleration * dt;
-    command.yawRate = last.yawRate + std::clamp(command.yawRate - last.yawRate, -turn, turn);
-    return command;
-}
 
 struct WaypointServo::Impl {
     vpFeatureTranslation t{vpFeatureTranslation::cdMc};
@@ -39,8 +24,8 @@ struct WaypointServo::Impl {
     ~Impl() { task.kill(); }
 };
 
-WaypointServo::WaypointServo(const Pose& T_b_c, const ServoOptions& options)
-    : impl_(std::make_unique<Impl>(T_b_c, options.gain)) {}
+WaypointServo::WaypointServo(const Pose& T_b_c, double gain)
+    : impl_(std::make_unique<Impl>(T_b_c, gain)) {}
 WaypointServo::~WaypointServo() = default;
 WaypointServo::WaypointServo(WaypointServo&&) noexcept = default;
 WaypointServo& WaypointServo::operator=(WaypointServo&&) noexcept = default;

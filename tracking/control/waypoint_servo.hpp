@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flying to planned views: ViSP's visual servoing on the estimated pose, within what a MAV can do.
+// Flying to planned views: ViSP's visual servoing on the estimated pose.
 #pragma once
 
 #include <memory>
@@ -9,26 +9,14 @@
 
 namespace photonav {
 
-struct ServoOptions {
-    double gain = 1.5;               ///< of the error's exponential decrease [1/s]
-    double maxSpeed = 1.;            ///< [m/s]
-    double maxYawRate = 1.;          ///< [rad/s]
-    double maxAcceleration = 2.;     ///< [m/s^2]
-    double maxYawAcceleration = 4.;  ///< [rad/s^2]
-};
-
-/// Brings a command within the velocity limits, keeping its direction, and to what can be reached
-/// from the last command within `dt` seconds.
-BodyVelocity limited(const BodyVelocity& wanted, const BodyVelocity& last,
-                     const ServoOptions& options, double dt);
-
 /// Pose-based visual servoing (vpServo; features: translation and theta-u of the current in the
 /// wanted camera frame) with the four velocities that a MAV near hover has: what only tilting could
 /// correct stays as it is.
 class WaypointServo {
   public:
     /// @param T_b_c camera mount
-    WaypointServo(const Pose& T_b_c, const ServoOptions& options);
+    /// @param gain of the error's exponential decrease [1/s]
+    WaypointServo(const Pose& T_b_c, double gain);
     ~WaypointServo();
     WaypointServo(WaypointServo&&) noexcept;
     WaypointServo& operator=(WaypointServo&&) noexcept;

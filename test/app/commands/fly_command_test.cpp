@@ -51,11 +51,12 @@ TEST_F(FlyCommand, FliesBothPlannersAndWritesWhatOthersRead) {
     for (const json& planner : a["planners"]) {
         EXPECT_EQ(planner["flights"], 2);
         EXPECT_EQ(planner["each"].size(), 2U);
-        for (const char* key :
-             {"collisions", "position_rmse_m", "predicted_sigma_m", "nees_per_dof", "lost_s"}) {
+        for (const char* key : {"collisions", "position_rmse_m", "predicted_sigma_m",
+                                "nees_per_dof", "lost_s", "mean_speed_mps"}) {
             EXPECT_TRUE(planner[key].is_number()) << key;
         }
         EXPECT_TRUE(planner["each"][0]["rejected_images"].is_number());
+        EXPECT_TRUE(planner["each"][0]["mean_speed_mps"].is_number());
     }
     // Whether the shortest path arrives does not count.
     const bool hasArrived = a["planners"][0]["arrived"].get<int>() > 0;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 #include "tracking/rooms.hpp"
 
@@ -22,6 +23,7 @@ class ObedientRobot : public Robot {
         motion[5] = seconds * command.yawRate;
         const Pose T_now_next = expSE3(motion);
         T_w_b = T_w_b * T_now_next;
+        lastCommand = command;
         time_ += seconds;
         Observation observation{time_, UncertainPose{T_now_next.inverse()}, {}};
         observation.T_next_now->covariance = 1e-6 * Matrix6::Identity();
@@ -34,6 +36,7 @@ class ObedientRobot : public Robot {
     const Pose& T_b_c() const override { return T_b_c_; }
 
     Pose T_w_b = Pose::Identity();
+    BodyVelocity lastCommand;
 
   private:
     std::shared_ptr<const ViewSource> world_;
@@ -97,6 +100,37 @@ TEST_F(FlightLoop, GoesOnWithAnotherPlanAndMap) {
     EXPECT_FALSE(pilot->hasServoedOnImage());
     EXPECT_LT(flyToGoal(), 60.);
     EXPECT_LT((robot.T_w_b.translation() - Eigen::Vector3d(-0.5, 0., 2.)).norm(), 0.05);
+}
+
+/// As an exploration does.
+TEST_F(FlightLoop, ANewPlanOnTheWayDoesNotStopIt) {
+    constexpr double kStep = 0.1;  // [s]
+    pilot->setPlan(straightTo(3.));
+    int plans = 0;
+    double slowest = kInfinity;
+    BodyVelocity before;
+    flyLoop(robot, *tracker, *pilot, kStep, [&](const std::vector<TrackedFrame>& tracked) {
+        const BodyVelocity& now = robot.lastCommand;
+        EXPECT_LT((now.linear - before.linear).norm(), 2. * kStep + 1e-9);
+        EXPECT_LT(robot.T_w_b.translation().x(), 3.8);
+        if (plans > 0 && robot.T_w_b.translation().x() < 2.5) {
+            slowest = std::min(slowest, now.linear.norm());
+        }
+        before = now;
+        const double time = tracked.back().time;
+        if (plans < 5 && robot.T_w_b.translation().x() > 1. + 0.2 * plans) {
+            std::vector<PlannedView> plan = straightTo(3.7);
+            plan.front().T_w_b = (robot.T_b_c() * tracker->belief().mean).inverse();
+            plan.back().T_w_b.translation().y() = 0.1 * plans;
+            plan.back().distance = 2.7 - 0.2 * plans;
+            pilot->setPlan(std::move(plan));
+            ++plans;
+        }
+        return !pilot->hasArrived(*tracker, time) && time < 30.;
+    });
+    EXPECT_EQ(plans, 5);
+    EXPECT_GT(slowest, 0.9);
+    EXPECT_NEAR(robot.T_w_b.translation().x(), 3.7, 0.05);
 }
 
 TEST_F(FlightLoop, TimeMustPass) {

@@ -26,7 +26,7 @@ TEST(FlightSetup, FliesUnderTheConditionsOfTheConfig) {
     EXPECT_EQ(options.robot.camera.blackoutStart, 3.);
     EXPECT_EQ(options.robot.camera.blackoutLength, 2.);
     EXPECT_EQ(options.robot.body.odometryFactor, 4.);
-    EXPECT_EQ(options.pilot.servo.maxSpeed, 0.5);
+    EXPECT_EQ(options.pilot.route.limits.maxSpeed, 0.5);
     EXPECT_EQ(options.bodyRadius, 0.15);
     EXPECT_EQ(options.arrivalTolerance, 0.3);
     EXPECT_EQ(options.seed, 7U);

@@ -58,6 +58,58 @@ TEST_F(Flight, ArrivesByItsImagesAlone) {
     }
 }
 
+/// Waypoints every 10 cm, up to 2 cm beside the line.
+std::vector<PlannedView> closeWaypoints(double length) {
+    std::vector<PlannedView> plan;
+    for (int i = 0; 0.1 * i <= length; ++i) {
+        PlannedView view;
+        view.T_w_b.translation() << 0.1 * i, 0.02 * std::sin(2. * i), 2.;
+        view.distance = 0.1 * i;
+        view.isWaypoint = true;
+        plan.push_back(view);
+    }
+    return plan;
+}
+
+TEST_F(Flight, PassesCloseWaypointsAtItsSpeed) {
+    options.initialCovariance *= 1e-2;
+    plan = closeWaypoints(8.);
+    const FlightResult one = fly(plan, world, options);
+    EXPECT_EQ(nameOf(one.end), "arrived");
+    EXPECT_GT(one.meanSpeed.value_or(0.), 0.85);
+    options.pilot.route.limits.maxSpeed = 2.;
+    options.robot.camera.period /= 2.;
+    const FlightResult two = fly(plan, world, options);
+    EXPECT_EQ(nameOf(two.end), "arrived");
+    EXPECT_GT(two.meanSpeed.value_or(0.), 1.35);
+}
+
+/// Around the corner of a wall.
+TEST_F(Flight, DoesNotCutCornersIntoObstacles) {
+    constexpr double kPlanned = 0.2;  // clearance of the plan [m]
+    world.clearance = [](const Eigen::Vector3d& p_w) {
+        const Eigen::Vector2d outside(p_w.x() - 1.8, 0.2 - p_w.y());  // beyond both faces
+        return std::max(outside.maxCoeff(), outside.cwiseMax(0.).norm());
+    };
+    options.initialCovariance *= 1e-2;
+    const std::vector<Eigen::Vector2d> corners{
+        {0., 0.}, {1.8 + kPlanned, 0.}, {1.8 + kPlanned, 2.}};
+    plan.clear();
+    for (const Eigen::Vector2d& corner : corners) {
+        PlannedView& view = plan.emplace_back();
+        view.T_w_b.translation() << corner, 2.;
+        view.distance = corner.lpNorm<1>();
+        view.isWaypoint = true;
+    }
+    for (options.seed = 1; options.seed <= 5; ++options.seed) {
+        const FlightResult flight = fly(plan, world, options);
+        EXPECT_EQ(nameOf(flight.end), "arrived");
+        EXPECT_GT(flight.leastClearance, 0.5 * kPlanned);
+        EXPECT_LT(flight.leastClearance, kPlanned);
+        EXPECT_GT(flight.meanSpeed.value_or(0.), 0.6);
+    }
+}
+
 TEST_F(Flight, ImagesHaveTheAssumedNoiseWithoutAnyOther) {
     const FlightResult assumed = fly(plan, world, options);
     world.noise = {};
@@ -146,6 +198,7 @@ TEST_F(Flight, StopsAndHoversThroughABlackoutAndGoesOn) {
 TEST_F(Flight, GivesUpInTheDark) {
     options.robot.camera.blackoutStart = 1.5;
     options.robot.camera.blackoutLength = 1e3;
+    options.pilot.route.limits.maxSpeed = 0.5;
     options.pilot.giveUpTime = 5.;
     const FlightResult flight = fly(plan, world, options);
     EXPECT_EQ(nameOf(flight.end), "lost");
@@ -211,10 +264,10 @@ TEST_F(Flight, LooksAroundForAViewThatItMissed) {
     for (PlannedView& view : plan) {
         view.T_w_b.linear().setIdentity();
         if (view.distance > 0.9) view.covariance = 1e-4 * Matrix6::Identity();
-        view.T_w_b.translation().y() = -1.;
+        const double back = 2. * std::max(0., view.distance - 1.);  // from the carpet
+        view.T_w_b.translation() << std::min(view.distance, 1.), -1. - back, 2.;
+        view.distance += 0.5 * back;
     }
-    plan.back().T_w_b.translation() << 1., -3., 2.;
-    plan.back().distance = 5.;
     int arrived = 0;
     int lost = 0;
     int astray = 0;
@@ -264,7 +317,7 @@ TEST_F(Flight, EndsAstrayOverWhite) {
     options.initialCovariance *= 0.01;
     options.arrivalTolerance = 0.4;
     world.truth = world.map = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
-    options.robot.body.odometryFactor = 200.;
+    options.robot.body.odometryFactor = 50.;
     int astray = 0;
     for (options.seed = 1; options.seed <= 8; ++options.seed) {
         const FlightResult flight = fly(plan, world, options);

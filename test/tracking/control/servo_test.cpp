@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include "control/motion_limits.hpp"
 #include "control/photometric_servo.hpp"
-#include "control/route.hpp"
 #include "control/waypoint_servo.hpp"
 #include "tracking/rooms.hpp"
 
@@ -21,7 +21,7 @@ Pose moved(const Pose& T_w_b, const BodyVelocity& velocity, double dt) {
 }
 
 TEST(Limited, KeepsDirectionSpeedAndAcceleration) {
-    const ServoOptions options{.maxSpeed = 1., .maxYawRate = 0.5, .maxAcceleration = 2.};
+    const MotionLimits options{.maxSpeed = 1., .maxYawRate = 0.5, .maxAcceleration = 2.};
     const BodyVelocity fast{{3., 4., 0.}, 0.1};
     const BodyVelocity now = limited(fast, {{0.6, 0.8, 0.}, 0.02}, options, 0.1);
     EXPECT_TRUE(now.linear.isApprox(Eigen::Vector3d(0.6, 0.8, 0.)));
@@ -33,27 +33,11 @@ TEST(Limited, KeepsDirectionSpeedAndAcceleration) {
     EXPECT_NEAR(turning.linear.x(), 0.1, 1e-12);  // a tenth of the speed, as of the turn
 }
 
-/// The way is the body's, wherever the camera sits on it.
-TEST(Route, ProgressIsOfTheBody) {
-    std::vector<PlannedView> plan(2);
-    plan[1].T_w_b.translation().x() = 2.;
-    plan[1].distance = 2.;
-    Pose T_b_c = cameraMount(kDown);
-    T_b_c.translation().x() = 0.3;
-    Route route(plan, T_b_c, {});
-    Pose T_w_b = Pose::Identity();
-    T_w_b.translation().x() = 0.5;
-    EXPECT_NEAR(route.progress((T_w_b * T_b_c).inverse()), 0.5, 1e-12);
-    T_w_b.translation().x() = 1.99;
-    route.advance({(T_w_b * T_b_c).inverse(), Matrix6::Zero()});
-    EXPECT_TRUE(route.isAtGoal());
-}
-
 class ServoWithMount : public ::testing::TestWithParam<double> {};
 
 TEST_P(ServoWithMount, ReachesAPlannedViewFromAnywhere) {
     const Pose T_b_c = cameraMount(GetParam());
-    WaypointServo servo(T_b_c, {});
+    WaypointServo servo(T_b_c, 1.5);
     Pose T_w_goal = Pose::Identity();
     T_w_goal.translation() << 1., -2., 1.5;
     T_w_goal.linear() = Eigen::AngleAxisd(2., Eigen::Vector3d::UnitZ()).toRotationMatrix();
