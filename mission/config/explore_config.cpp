@@ -1,24 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "config/explore_config.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
+#include <stdexcept>
 
 #include "config/config_keys.hpp"
-#include "planners/planner_table.hpp"
+#include "config/explore_strategy.hpp"
 
 namespace photonav {
 namespace {
 
 void readExplorers(YamlMap& explore, std::vector<std::string>& planners) {
     explore.read("planners", planners);
-    const std::vector<std::string>& known = plannerNames();
     for (const std::string& name : planners) {
-        if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-        explore.fail("planners",
-                     fmt::format("'{}' is not one of {}", name, fmt::join(known, ", ")));
+        try {
+            exploreStrategy(name);
+        } catch (const std::invalid_argument& unknown) {
+            explore.fail("planners", unknown.what());
+        }
     }
 }
 
@@ -70,7 +68,11 @@ void addKeys(KeyTable& keys, ExploreConfig& c) {
                    c.initialCovariance);
     keys.number({"time_limit", "s", "of a flight"}, c.timeLimit, {1., 1e5});
     keys.count({"trials", "", "flights per planner"}, c.trials, {1., 1e6});
-    keys.add({.words = {"planners", "", "that are compared; none: `planner.name`"},
+    keys.add({.words = {"planners", "",
+                        "that are compared; none: `planner.name`. A planner may be followed by a "
+                        "policy: headings "
+                        "`/fixed` or along the motion, `/forward`; a new tree after every change, "
+                        "`/replan`; a plan made once, `/once`"},
               .read = [&c](YamlMap& map) { readExplorers(map, c.planners); },
               .value = [&c] { return yamlList(c.planners); }});
 }

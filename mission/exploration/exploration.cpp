@@ -111,7 +111,7 @@ Exploration::Exploration(const ExplorationSetup& setup, const std::string& plann
       interrupted_(interrupted),
       onUpdate_(onUpdate),
       map_(setup.config),
-      planner_(setup.config, map_, planner, seed),
+      planner_(setup.config, map_, exploreStrategy(planner), seed),
       robot_(setup.truth.truth, setup.truth.camera, setup.truth.T_b_c,
              drawStart(startOf(setup), setup.truth.T_b_c, seed), setup.truth.noise,
              setup.flight.robot, seed),
@@ -126,7 +126,8 @@ Exploration::Exploration(const ExplorationSetup& setup, const std::string& plann
               .isSeen = [this](const Eigen::Vector3d& p_w) { return map_.isSeen(p_w); },
               .radius = config.robotRadius,
               .hidden = isAhead ? kHidden : 0.,
-              .canLook = isAhead && config.space != StateKind::position};
+              .canLook = isAhead && config.space != StateKind::position &&
+                         exploreStrategy(planner).headings != Headings::fixed};
     result_.planner = planner;
     result_.seed = seed;
     result_.map = map_.cells();
@@ -245,6 +246,12 @@ bool Exploration::hasEnded() {
 
 ExplorationSetup setUpExploration(const PlanningProblem& problem) {
     const Config& config = problem.config();
+    for (const std::string& name : config.explore.planners) {
+        if (exploreStrategy(name).headings && config.space != StateKind::positionYaw) {
+            throw InputError(config.file, "explore.planners",
+                             fmt::format("{}: the robot's heading is not free", name));
+        }
+    }
     if (!problem.isFlyable(config.start.position)) {
         throw InputError(
             config.file, "start",

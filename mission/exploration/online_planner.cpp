@@ -8,6 +8,7 @@
 
 #include "alignment/residual_covariance.hpp"
 #include "geometry/se3.hpp"
+#include "geometry/segment.hpp"
 #include "io/stopwatch.hpp"
 #include "planners/planner_table.hpp"
 
@@ -37,17 +38,21 @@ Config configOf(Config config) {
     return config;
 }
 
+std::shared_ptr<ob::State> copyOf(const ob::SpaceInformationPtr& si, const ob::State* state) {
+    return {si->cloneState(state), [si](ob::State* copy) { si->freeState(copy); }};
+}
+
 }  // namespace
 
-OnlinePlanner::OnlinePlanner(const Config& config, const OwnMap& map, const std::string& planner,
-                             std::uint32_t seed)
+OnlinePlanner::OnlinePlanner(const Config& config, const OwnMap& map,
+                             const ExploreStrategy& strategy, std::uint32_t seed)
     : config_(configOf(config)),
       world_(map.cells(), map.obstacles(), config_),
-      problem_(config_, world_, alphaOf(planner, config_.belief.alpha),
+      problem_(config_, world_, alphaOf(strategy.planner, config_.belief.alpha),
                map.information(config_.camera.camera(), config_.photometric)),
-      name_(planner),
+      strategy_(strategy),
       seed_(seed),
-      planner_(problem_.makePlanner(planner, seed)) {}
+      planner_(problem_.makePlanner(strategy.planner, seed)) {}
 
 /// The nearest place around that leaves room for the robot; nothing within a metre.
 std::optional<Eigen::Vector3d> OnlinePlanner::flyableNear(const Eigen::Vector3d& p_w) const {
@@ -82,23 +87,15 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
 
     path_.clear();
     const Pose T_w_b = T_c_w.mean.inverse() * config_.camera.T_b_c().inverse();
-    const auto from_w = flyableNear(T_w_b.translation());
-    if (from_w) {
-        const FlightSpace& space = problem_.space();
+    if (const auto from_w = flyableNear(T_w_b.translation())) {
         ob::ScopedState<> state(problem_.spaceInformation());
-        space.setState(state.get(), *from_w, yawOf(T_w_b));
+        problem_.space().setState(state.get(), *from_w, yawOf(T_w_b));
         const Eigen::Matrix3d R_w_c = T_c_w.mean.linear().transpose();
         // Relative to the map in view. What the map's own error adds stays the same wherever the
         // way leads: texture seen for the first time does not inform of the place in the world.
         const Belief belief{inRotatedAxes(config_.belief.initialCovariance, R_w_c), 0.};
-        if (!solveFrom(state.get(), belief, interrupted) && !interrupted) {
-            // What is left of a tree may be full without the goal: another one begins here.
-            planner_ = problem_.makePlanner(name_, ++seed_);
-            solveFrom(state.get(), belief, interrupted);
-        }
-        if (planner_->getProblemDefinition()->hasExactSolution()) {
-            evaluatePath(T_w_b, T_c_w.covariance);
-        }
+        planFrom(state.get(), belief, interrupted);
+        if (!plan_.empty()) evaluatePath(T_w_b, T_c_w.covariance);
     }
     update.planSeconds = watch.seconds();
     update.viewSeconds = field->seconds() - viewSecondsBefore;
@@ -111,6 +108,22 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
     update.trace = weightedTrace(T_c_w.covariance, config_.belief.characteristicLength);
 }
 
+void OnlinePlanner::planFrom(const ob::State* state, const Belief& belief,
+                             const std::atomic<bool>& interrupted) {
+    if (strategy_.replanning == Replanning::never && !plan_.empty()) {
+        plan_ = restOf(plan_, state);
+        return;
+    }
+    const bool isNew = strategy_.replanning == Replanning::scratch;
+    if (isNew) planner_ = problem_.makePlanner(strategy_.planner, seed_);
+    if (!solveFrom(state, belief, interrupted) && !isNew && !interrupted) {
+        // What is left of a tree may be full without the goal: another one begins here.
+        planner_ = problem_.makePlanner(strategy_.planner, ++seed_);
+        solveFrom(state, belief, interrupted);
+    }
+    plan_ = solution();
+}
+
 /// @return whether there is a way to the goal
 bool OnlinePlanner::solveFrom(const ob::State* state, const Belief& belief,
                               const std::atomic<bool>& interrupted) {
@@ -119,22 +132,52 @@ bool OnlinePlanner::solveFrom(const ob::State* state, const Belief& belief,
     return planner_->getProblemDefinition()->hasExactSolution();
 }
 
-/// Beliefs along the solution. A view of the map that the robot made itself never makes its pose
+/// The planner's path, with the strategy's headings; empty: there is none.
+OnlinePlanner::States OnlinePlanner::solution() const {
+    const auto definition = planner_->getProblemDefinition();
+    if (!definition->hasExactSolution()) return {};
+    const auto& path = *definition->getSolutionPath()->as<ompl::geometric::PathGeometric>();
+    const std::vector<const ob::State*> states(path.getStates().begin(), path.getStates().end());
+    const auto& si = problem_.spaceInformation();
+    if (strategy_.headings) return withHeadings(si, problem_.space(), states, *strategy_.headings);
+    States copies;
+    for (const ob::State* state : states) copies.push_back(copyOf(si, state));
+    return copies;
+}
+
+/// What is left of a plan for a robot that flies along it; empty: an obstacle was seen on it.
+OnlinePlanner::States OnlinePlanner::restOf(const States& plan, const ob::State* state) const {
+    const auto& si = problem_.spaceInformation();
+    const auto place = [&](std::size_t i) { return problem_.space().position(plan[i].get()); };
+    const Eigen::Vector3d here = problem_.space().position(state);
+    std::size_t next = plan.size() - 1;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i < plan.size(); ++i) {
+        const double away = distanceToSegment(here, place(i - 1), place(i));
+        if (away < nearest) next = i;
+        nearest = std::min(nearest, away);
+    }
+    States rest{copyOf(si, state)};
+    rest.insert(rest.end(), plan.begin() + static_cast<std::ptrdiff_t>(next), plan.end());
+    for (std::size_t i = 1; i < rest.size(); ++i) {
+        if (!si->checkMotion(rest[i - 1].get(), rest[i].get())) return {};
+    }
+    return rest;
+}
+
+/// Beliefs along the plan. A view of the map that the robot made itself never makes its pose
 /// better than the map is, of which the belief here is a bound.
 void OnlinePlanner::evaluatePath(const Pose& T_w_b, const Matrix6& covariance) {
-    const auto solution = planner_->getProblemDefinition()->getSolutionPath();
-    const auto& states = solution->as<ompl::geometric::PathGeometric>()->getStates();
-    if (states.empty()) return;
     BeliefModel& model = planner_->model();
     BeliefPoint here{.T_w_b = T_w_b, .covariance = covariance, .isWaypoint = true};
     here.traceBefore = here.trace = weightedTrace(covariance, config_.belief.characteristicLength);
     path_.push_back(here);
     path_.push_back(here);
-    path_.back().T_w_b = problem_.space().bodyPose(states.front());
+    path_.back().T_w_b = problem_.space().bodyPose(plan_.front().get());
     path_.back().length = path_.back().distance =
         (path_.back().T_w_b.translation() - T_w_b.translation()).norm();
-    for (std::size_t i = 1; i < states.size(); ++i) {
-        model.evaluateMotion(states[i - 1], states[i], path_);
+    for (std::size_t i = 1; i < plan_.size(); ++i) {
+        model.evaluateMotion(plan_[i - 1].get(), plan_[i].get(), path_);
     }
     const Matrix6 tiny = 1e-12 * Matrix6::Identity();
     for (BeliefPoint& point : path_) point.covariance = larger(point.covariance + tiny, covariance);

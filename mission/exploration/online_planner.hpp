@@ -2,6 +2,7 @@
 // A plan that is kept up to date while map and robot change.
 #pragma once
 
+#include "config/explore_strategy.hpp"
 #include "exploration/own_map.hpp"
 #include "problem/planning_problem.hpp"
 
@@ -18,11 +19,16 @@ struct PlanUpdate {
     double trace = 0.;   ///< of the belief here
 };
 
-/// The problem of a config in the robot's own map, its planner and the path found last.
+/// The problem of a config in the robot's own map, its planner and the path found last:
+///
+///     update(change):  distances and views follow the map   (World, PlanningProblem::mapChanged)
+///                      what collides or looks otherwise now is repaired      (BeliefPlanner)
+///                      root and belief move to where the robot is, the search goes on
+///                      beliefs along the best path                           (path())
 class OnlinePlanner {
   public:
-    /// @param map must outlive it @param planner one of plannerNames()
-    OnlinePlanner(const Config& config, const OwnMap& map, const std::string& planner,
+    /// @param map must outlive it
+    OnlinePlanner(const Config& config, const OwnMap& map, const ExploreStrategy& strategy,
                   std::uint32_t seed);
 
     /// Plans from a believed pose, once the map has changed.
@@ -40,17 +46,24 @@ class OnlinePlanner {
     double clearance(const Eigen::Vector3d& p_w) const { return world_.clearance(p_w); }
 
   private:
+    using States = std::vector<std::shared_ptr<ompl::base::State>>;
+
     std::optional<Eigen::Vector3d> flyableNear(const Eigen::Vector3d& p_w) const;
+    void planFrom(const ompl::base::State* state, const Belief& belief,
+                  const std::atomic<bool>& interrupted);
     bool solveFrom(const ompl::base::State* state, const Belief& belief,
                    const std::atomic<bool>& interrupted);
+    States solution() const;
+    States restOf(const States& plan, const ompl::base::State* state) const;
     void evaluatePath(const Pose& T_w_b, const Matrix6& covariance);
 
     Config config_;
     World world_;
     PlanningProblem problem_;
-    std::string name_;  // of the planner
+    ExploreStrategy strategy_;
     std::uint32_t seed_;
     std::shared_ptr<BeliefPlanner> planner_;
+    States plan_;  // empty: none was found
     std::vector<BeliefPoint> path_;
 };
 
