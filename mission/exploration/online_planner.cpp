@@ -136,7 +136,7 @@ bool OnlinePlanner::solveFrom(const ob::State* state, const Belief& belief,
 OnlinePlanner::States OnlinePlanner::solution() const {
     const auto definition = planner_->getProblemDefinition();
     if (!definition->hasExactSolution()) return {};
-    const auto& path = *definition->getSolutionPath()->as<ompl::geometric::PathGeometric>();
+    auto& path = *definition->getSolutionPath()->as<ompl::geometric::PathGeometric>();
     const std::vector<const ob::State*> states(path.getStates().begin(), path.getStates().end());
     const auto& si = problem_.spaceInformation();
     if (strategy_.headings) return withHeadings(si, problem_.space(), states, *strategy_.headings);
