@@ -13,7 +13,8 @@ namespace photonav {
 
 ExploreStrategy exploreStrategy(const std::string& name) {
     const std::size_t slash = name.find('/');
-    ExploreStrategy strategy{.planner = name.substr(0, slash)};
+    ExploreStrategy strategy;
+    strategy.planner = name.substr(0, slash);
     const std::vector<std::string>& known = plannerNames();
     if (std::ranges::find(known, strategy.planner) == known.end()) {
         throw std::invalid_argument(
