@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "commands/flight_recording.hpp"
 #include "commands/result_folder.hpp"
 #include "exploration/explorations.hpp"
 #include "io/stopwatch.hpp"
@@ -56,6 +57,7 @@ int runExplore(const ExploreOptions& options, const std::atomic<bool>& interrupt
     const World world(config);
     const PlanningProblem problem(config, world);
     const ExplorationSetup setup = setUpExploration(problem);
+    FlightRecording recording(options.record, setup.truth.camera, setup.flight.tracker.map);
     FolderTransaction folder = beginResult(options, "explore", {config.sceneFile, config.mapFile});
 
     const std::vector<std::string> planners = plannersOf(config);
@@ -76,8 +78,10 @@ int runExplore(const ExploreOptions& options, const std::atomic<bool>& interrupt
                             flown, planners.size() * trials, arrived, flight.planner, flight.seed,
                             update.time, flight.way, update.length));
         };
-        flights = exploreMany(setup, planners, trials, options.jobs, interrupted, onEnd, onUpdate);
+        flights = exploreMany(setup, planners, trials, options.jobs, interrupted,
+                              {onEnd, onUpdate, recording.onExposure()});
     }
+    recording.commit();
     const bool stopped = interrupted;
     const auto summaries = summariesByPlanner(flights, config.belief.characteristicLength);
     nlohmann::json result = exploreResult(setup, flights, summaries, stopped);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <filesystem>
 
 #include "commands/command_io.hpp"
 
@@ -10,7 +11,8 @@ namespace photonav {
 
 /// All that the results depend on is in the config (ExploreConfig) and its overrides.
 struct ExploreOptions : CommandOptions {
-    unsigned jobs = 1;  ///< threads
+    unsigned jobs = 1;             ///< threads
+    std::filesystem::path record;  ///< folder for the first flight as a recording; empty: none
 };
 
 /// Flies every trial and writes result.json, config.yaml, map.ot, trajectory.tum, .cov and .ov and

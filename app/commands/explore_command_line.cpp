@@ -49,6 +49,9 @@ Command exploreCommand(CLI::App& app, const Invocation& invocation) {
     parser->add_option("--jobs", options->jobs, "threads")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
+    parser
+        ->add_option("--record", options->record, "write the first flight as a TUM RGB-D recording")
+        ->type_name("DIR");
     addSeed(*parser, options->seed, "of all random numbers, of the first trial");
     addKeyOptions(*parser, options->keys, {"planners"});
     return {parser, [options, parser, &interrupted = invocation.interrupted] {

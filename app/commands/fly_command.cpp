@@ -5,10 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <optional>
-
+#include "commands/flight_recording.hpp"
 #include "commands/result_folder.hpp"
-#include "flight/flight_recorder.hpp"
 #include "flight/flight_setup.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
@@ -47,29 +45,9 @@ std::vector<FlightSet> planAll(const Config& config, PlanningProblem& problem, P
     return sets;
 }
 
-/// Of an earlier recording images would be left over, and it may be one that cannot be had again.
-void checkRecordFolder(const std::filesystem::path& folder) {
-    for (const char* list : {"rgb.txt", "assoc.txt", "rgb"}) {
-        if (!std::filesystem::exists(folder / list)) continue;
-        throw InputError(folder.string(), "", "holds a recording already: remove it first");
-    }
-}
-
 void flyAll(std::vector<FlightSet>& sets, const FlightSetup& setup, const FlyOptions& options,
-            FolderTransaction* recording, unsigned count, ProgressLine& line,
+            FlightRecording& recording, unsigned count, ProgressLine& line,
             const std::atomic<bool>& interrupted) {
-    std::optional<FlightRecorder> recorder;  // from the first image on
-    OnExposure record;
-    if (recording != nullptr) {
-        record = [&](const Exposed& exposed) {
-            if (!recorder) {
-                recorder.emplace(recording->path(), setup.world.camera,
-                                 setup.options.tracker.map.photometric.scale,
-                                 setup.options.tracker.map.blur);
-            }
-            recorder->add(exposed);
-        };
-    }
     const Stopwatch watch;
     std::size_t flown = 0;
     std::size_t arrived = 0;
@@ -83,12 +61,12 @@ void flyAll(std::vector<FlightSet>& sets, const FlightSetup& setup, const FlyOpt
                                   set.path.planner, flown, all, arrived,
                                   each * (all - static_cast<double>(flown))));
         };
-        set.flights = flyMany(set.plan, setup.world, setup.options, count, options.jobs,
-                              interrupted, onFlight, &set == &sets.front() ? record : OnExposure{});
+        const bool isFirst = &set == &sets.front();
+        set.flights =
+            flyMany(set.plan, setup.world, setup.options, count, options.jobs, interrupted,
+                    onFlight, isFirst ? recording.onExposure() : OnExposure{});
     }
-    if (!recorder) return;
-    recorder->finish();
-    recording->commit();
+    recording.commit();
 }
 
 /// The ellipse of where a flight ended, and what it is worth.
@@ -176,19 +154,14 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     problem.checkPlaces();
     const FlightSetup setup = setUpFlight(problem);
     if (!options.calibration.empty()) readCalibration(options.calibration, setup.map);
-    std::optional<FolderTransaction> recording;
-    if (!options.record.empty()) {
-        checkRecordFolder(options.record);
-        recording.emplace(options.record);
-    }
+    FlightRecording recording(options.record, setup.world.camera, setup.options.tracker.map);
     FolderTransaction folder = folderFor(options, config);
 
     std::vector<FlightSet> sets;
     {
         ProgressLine line(options.quiet);
         sets = planAll(config, problem, line, interrupted);
-        flyAll(sets, setup, options, recording ? &*recording : nullptr, config.fly.flights, line,
-               interrupted);
+        flyAll(sets, setup, options, recording, config.fly.flights, line, interrupted);
     }
     const bool stopped = interrupted;
     nlohmann::json result = flyResult(config, sets, setup.options, stopped);

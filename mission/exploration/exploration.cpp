@@ -31,7 +31,7 @@ class Exploration {
   public:
     Exploration(const ExplorationSetup& setup, const std::string& planner, std::uint32_t seed,
                 const std::atomic<bool>& interrupted, const OnPlanUpdate& onUpdate);
-    ExplorationResult run();
+    ExplorationResult run(const OnExposure& onExposure);
 
   private:
     void onImage(const TrackedFrame& tracked, const View& image);
@@ -133,11 +133,12 @@ Exploration::Exploration(const ExplorationSetup& setup, const std::string& plann
     result_.map = map_.cells();
 }
 
-ExplorationResult Exploration::run() {
+ExplorationResult Exploration::run(const OnExposure& onExposure) {
     BodyVelocity command;
     const double dt = setup_.flight.timeStep;
     for (double seconds = 0.;; seconds = dt) {
         const Observation observation = robot_.fly(command, seconds);
+        if (onExposure && robot_.exposed()) onExposure(*robot_.exposed());
         const std::vector<TrackedFrame> tracked = tracker_.update(observation);
         evaluator_.onStep(tracked, tracker_, evaluator_.result().way);
         for (std::size_t i = 0; i < tracked.size(); ++i) {
@@ -274,8 +275,8 @@ ExplorationSetup setUpExploration(const PlanningProblem& problem) {
 
 ExplorationResult explore(const ExplorationSetup& setup, const std::string& planner,
                           std::uint32_t seed, const std::atomic<bool>& interrupted,
-                          const OnPlanUpdate& onUpdate) {
-    return Exploration(setup, planner, seed, interrupted, onUpdate).run();
+                          const OnPlanUpdate& onUpdate, const OnExposure& onExposure) {
+    return Exploration(setup, planner, seed, interrupted, onUpdate).run(onExposure);
 }
 
 }  // namespace photonav

@@ -43,6 +43,6 @@ using OnPlanUpdate = std::function<void(const ExplorationResult& soFar)>;
 /// @param planner as exploreStrategy() takes it
 ExplorationResult explore(const ExplorationSetup& setup, const std::string& planner,
                           std::uint32_t seed, const std::atomic<bool>& interrupted,
-                          const OnPlanUpdate& onUpdate = {});
+                          const OnPlanUpdate& onUpdate = {}, const OnExposure& onExposure = {});
 
 }  // namespace photonav

@@ -17,21 +17,21 @@ std::vector<ExplorationResult> exploreMany(const ExplorationSetup& setup,
                                            const std::vector<std::string>& planners,
                                            unsigned trials, unsigned jobs,
                                            const std::atomic<bool>& interrupted,
-                                           const OnExploration& onEnd,
-                                           const OnPlanUpdate& onUpdate) {
+                                           const OnExplorations& on) {
     const std::size_t count = planners.size() * trials;
     std::vector<ExplorationResult> flights(count);
     std::mutex mutex;  // of the callbacks
     const auto report = [&](const ExplorationResult& soFar) {
         const std::lock_guard lock(mutex);
-        if (onUpdate) onUpdate(soFar);
+        if (on.update) on.update(soFar);
     };
     const auto exploreOne = [&](std::size_t i) {
         if (interrupted && i > 0) return;
         const auto seed = static_cast<std::uint32_t>(setup.config.seed + i % trials);
-        flights[i] = explore(setup, planners[i / trials], seed, interrupted, report);
+        flights[i] = explore(setup, planners[i / trials], seed, interrupted, report,
+                             i == 0 ? on.exposure : OnExposure{});
         const std::lock_guard lock(mutex);
-        if (onEnd) onEnd(flights[i]);
+        if (on.end) on.end(flights[i]);
     };
     tbb::task_arena(static_cast<int>(jobs)).execute([&] {
         tbb::parallel_for(std::size_t{0}, count, exploreOne, tbb::simple_partitioner());

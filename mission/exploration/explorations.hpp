@@ -9,8 +9,12 @@
 
 namespace photonav {
 
-/// Called as flights end, in any order, one at a time.
-using OnExploration = std::function<void(const ExplorationResult& result)>;
+/// Called while scenes are explored, one at a time; each may be empty.
+struct OnExplorations {
+    std::function<void(const ExplorationResult&)> end = {};  ///< as flights end, in any order
+    OnPlanUpdate update = {};
+    OnExposure exposure = {};  ///< of the first flight
+};
 
 /// `trials` flights of each planner, with the seeds seed, seed + 1, ... of the config, on `jobs`
 /// threads.
@@ -19,8 +23,7 @@ std::vector<ExplorationResult> exploreMany(const ExplorationSetup& setup,
                                            const std::vector<std::string>& planners,
                                            unsigned trials, unsigned jobs,
                                            const std::atomic<bool>& interrupted,
-                                           const OnExploration& onEnd = {},
-                                           const OnPlanUpdate& onUpdate = {});
+                                           const OnExplorations& on = {});
 
 /// Wall-clock time of an update: fusion, clearance, views and planning [s].
 double seconds(const PlanUpdate& update);

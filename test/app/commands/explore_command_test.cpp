@@ -9,6 +9,7 @@
 
 #include "app/executable.hpp"
 #include "map/octree_file.hpp"
+#include "recording/sequence_tum.hpp"
 #include "recording/trajectory.hpp"
 #include "temporary_folder.hpp"
 
@@ -96,6 +97,17 @@ TEST_F(ExploreCommand, SaysWhyItDidNotArrive) {
     EXPECT_TRUE(fs::exists(folder_ / "a/report.html"));
 }
 
+TEST_F(ExploreCommand, RecordsTheFlight) {
+    const Execution run = explore("a", "--time-limit 2 --record " + at("flight"));
+    ASSERT_NE(run.exitCode, 2) << run.output;
+    const Sequence flight = readTumSequence(at("flight"));
+    EXPECT_EQ(flight.frames.size(), result("a")["images"].get<std::size_t>());
+    const Execution again = explore("b", "--time-limit 2 --record " + at("flight"));
+    EXPECT_EQ(again.exitCode, 2);
+    EXPECT_NE(again.output.find("holds a recording already"), std::string::npos) << again.output;
+    EXPECT_FALSE(fs::exists(folder_ / "b"));
+}
+
 TEST_F(ExploreCommand, RefusesBadInputInOneLine) {
     const auto refuses = [&](const std::string& arguments, const std::string& reason) {
         const Execution run = explore("bad", arguments);
@@ -105,6 +117,8 @@ TEST_F(ExploreCommand, RefusesBadInputInOneLine) {
     };
     refuses("--set goal=[100,2,2]", "goal: outside the bounds");
     refuses("--planners none_such", "explore.planners: 'none_such' is not one of");
+    refuses("--planners rrt_star/sometimes", "the policy 'sometimes' is not one of fixed");
+    refuses("--planners rrt_star/fixed", "rrt_star/fixed: the robot's heading is not free");
     refuses("--set explore.sensor=sonar", "explore.sensor");
     refuses("--set explore.vertex=3", "did you mean 'vertices'");
     refuses("--set fly.rate=-1", "fly.rate");
