@@ -30,7 +30,7 @@ Config flightThrough() {
     config.start.yaw = 0.;
     config.goal.position = {7., 2., 1.1};
     config.space = StateKind::positionYaw;
-    config.camera.mount = "front45";
+    config.camera.mount = "20";  // degrees below the horizon
     config.camera.width = 94;
     config.camera.height = 60;
     config.belief.kappa = 1000.;

@@ -58,6 +58,10 @@ void addKeys(KeyTable& keys, ExploreConfig& c) {
                c.vertices, {2., 1e8});
     keys.count({"shortcut", "", "changes tried on each path, in place of `planner.shortcut`"},
                c.shortcut, {0., 1e9});
+    keys.count({"view_turns", "",
+                "of the views that a change of the map has touched, one in so many is rendered "
+                "again at every update, in turn; 1: all of them"},
+               c.viewTurns, {1., 1e3});
     keys.number({"commitment", "",
                  "a way is left for another one only if that costs less by this share "
                  "(`belief_rrt_star`)"},

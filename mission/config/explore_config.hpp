@@ -37,6 +37,7 @@ struct ExploreConfig {
     double keyframeNew = 0.3;        ///< or with this share of surfaces not in the map
     unsigned vertices = 400;         ///< of the roadmap or tree, grown again after every keyframe
     unsigned shortcut = 100;         ///< changes tried on each path (belief_rrt_star)
+    unsigned viewTurns = 4;          ///< views that changed are rendered again in as many updates
     double commitment = 0.1;         ///< a way is left for one that costs less by this share
     Matrix6 initialCovariance;       ///< of the pose at the start, body frame
     double timeLimit = 600.;         ///< of a flight [s]

@@ -30,6 +30,7 @@ Config configOf(Config config) {
     config.photometric.scale *= 4.;
     config.field.positionPitch *= 2.;
     config.field.rotationPitch *= 2.;
+    config.field.turns = config.explore.viewTurns;
     config.belief.initialCovariance = config.explore.initialCovariance;
     config.unknownToCamera = UnknownPolicy::free;
     config.unknownToPlanner = config.explore.unknown == UnknownSpace::optimistic
@@ -94,12 +95,11 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
         // Relative to the map in view. What the map's own error adds stays the same wherever the
         // way leads: texture seen for the first time does not inform of the place in the world.
         const Belief belief{inRotatedAxes(config_.belief.initialCovariance, R_w_c), 0.};
-        planFrom(state.get(), belief, interrupted);
+        update.counts = planFrom(state.get(), belief, interrupted);
         if (!plan_.empty()) evaluatePath(T_w_b, T_c_w.covariance);
     }
     update.planSeconds = watch.seconds();
     update.viewSeconds = field->seconds() - viewSecondsBefore;
-    update.counts = planner_->lastUpdate();
     update.viewsMarked = field->marked() - markedBefore;
     update.viewsRendered = field->views() - viewsBefore;
     const bool isFound = !path_.empty();
@@ -108,11 +108,12 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
     update.trace = weightedTrace(T_c_w.covariance, config_.belief.characteristicLength);
 }
 
-void OnlinePlanner::planFrom(const ob::State* state, const Belief& belief,
-                             const std::atomic<bool>& interrupted) {
+/// @return what this changed in the tree
+UpdateCounts OnlinePlanner::planFrom(const ob::State* state, const Belief& belief,
+                                     const std::atomic<bool>& interrupted) {
     if (strategy_.replanning == Replanning::never && !plan_.empty()) {
         plan_ = restOf(plan_, state);
-        return;
+        return {};
     }
     const bool isNew = strategy_.replanning == Replanning::scratch;
     if (isNew) planner_ = problem_.makePlanner(strategy_.planner, seed_);
@@ -122,6 +123,7 @@ void OnlinePlanner::planFrom(const ob::State* state, const Belief& belief,
         solveFrom(state, belief, interrupted);
     }
     plan_ = solution();
+    return planner_->lastUpdate();
 }
 
 /// @return whether there is a way to the goal

@@ -49,8 +49,8 @@ class OnlinePlanner {
     using States = std::vector<std::shared_ptr<ompl::base::State>>;
 
     std::optional<Eigen::Vector3d> flyableNear(const Eigen::Vector3d& p_w) const;
-    void planFrom(const ompl::base::State* state, const Belief& belief,
-                  const std::atomic<bool>& interrupted);
+    UpdateCounts planFrom(const ompl::base::State* state, const Belief& belief,
+                          const std::atomic<bool>& interrupted);
     bool solveFrom(const ompl::base::State* state, const Belief& belief,
                    const std::atomic<bool>& interrupted);
     States solution() const;

@@ -29,6 +29,9 @@ InformationField::InformationField(Evaluate evaluate, const Pose& T_b_c, const O
     if (!(options.positionPitch > 0. && options.rotationPitch > 0.)) {
         throw std::invalid_argument("information field: the pitch must be positive");
     }
+    if (options.turns == 0) {
+        throw std::invalid_argument("information field: the turns must be positive");
+    }
 }
 
 InformationField::InformationField(std::shared_ptr<const ViewSource> views, const Camera& camera,
@@ -91,6 +94,7 @@ const InformationField::Entry& InformationField::atAnyEpoch(const Pose& T_w_b) {
     if (source_ != nullptr) {
         bounds_.push_back(extent.bounds(camera_, cameraPose(cell)));
         extents_.push_back(std::move(extent));
+        isTouched_.push_back(0);
     }
     return entries_.emplace_back(entry);
 }
@@ -124,16 +128,28 @@ void InformationField::update(std::shared_ptr<const ViewSource> views, const Map
     ++epoch_;
     const ChangedBricks changed(change);
     for (Entry& entry : entries_) {
+        char& isTouched = isTouched_[entry.index];
         if (entry.isStale) continue;
-        const Eigen::AlignedBox3d& bounds = bounds_[entry.index];
-        const auto isNear = [&](const Eigen::AlignedBox3d& box) { return bounds.intersects(box); };
-        if (!changed.any(isNear)) continue;
-        const Pose T_c_w = cameraPose(cells_[entry.index]);
-        entry.isStale = changed.any([&](const Eigen::AlignedBox3d& box) {
-            return isNear(box) && extents_[entry.index].meets(camera_, T_c_w, box);
-        });
-        marked_ += entry.isStale ? 1 : 0;
+        if (isTouched == 0) {
+            if (!isInView(entry, changed)) continue;
+            isTouched = 1;
+            ++marked_;
+        }
+        if ((entry.index + epoch_) % options_.turns != 0) continue;
+        entry.isStale = true;
+        isTouched = 0;
     }
+}
+
+/// Whether the view of an entry may depend on what changed.
+bool InformationField::isInView(const Entry& entry, const ChangedBricks& changed) const {
+    const Eigen::AlignedBox3d& bounds = bounds_[entry.index];
+    const auto isNear = [&](const Eigen::AlignedBox3d& box) { return bounds.intersects(box); };
+    if (!changed.any(isNear)) return false;
+    const Pose T_c_w = cameraPose(cells_[entry.index]);
+    return changed.any([&](const Eigen::AlignedBox3d& box) {
+        return isNear(box) && extents_[entry.index].meets(camera_, T_c_w, box);
+    });
 }
 
 std::size_t InformationField::stale() const {
@@ -147,6 +163,7 @@ void InformationField::clear() {
     cells_.clear();
     extents_.clear();
     bounds_.clear();
+    isTouched_.clear();
     views_ = marked_ = cacheHits_ = 0;
     seconds_ = 0.;
 }

@@ -28,6 +28,9 @@ class InformationField {
         double positionPitch = 0.125;  ///< edge of a cell [m]
         double rotationPitch =
             std::numbers::pi / 36.;  ///< per component of the rotation vector [rad]
+        /// Entries that updates have touched take turns: each becomes stale in every so many
+        /// updates, and is as the map was until then. 1: at once.
+        unsigned turns = 1;
     };
 
     struct Entry {
@@ -42,7 +45,7 @@ class InformationField {
     /// A field over a map.
     /// @param views of the map; kept until update() replaces it
     /// @param T_b_c camera mount
-    /// @throws std::invalid_argument unless both pitches are positive
+    /// @throws std::invalid_argument unless both pitches and the turns are positive
     InformationField(std::shared_ptr<const ViewSource> views, const Camera& camera,
                      const InformationModel& model, const Pose& T_b_c, const Options& options);
     /// A field of penalties, whose views give no information about the pose.
@@ -54,8 +57,9 @@ class InformationField {
     InformationField(const InformationFormula& formula, const Pose& T_b_c, const Options& options);
     InformationField(const PenaltyFormula& formula, const Pose& T_b_c, const Options& options);
 
-    /// The information of the view from the cell of T_w_b in the map as it is now. The reference
-    /// stays valid until clear(); update() may make the entry stale.
+    /// The information of the view from the cell of T_w_b in the map as it is now, or as it was
+    /// less than `turns` updates ago. The reference stays valid until clear(); update() may make
+    /// the entry stale.
     const Entry& at(const Pose& T_w_b);
 
     /// The same, but an entry that is stale is not evaluated again.
@@ -84,7 +88,7 @@ class InformationField {
     const Pose& mount() const { return T_b_c_; }
     std::size_t size() const { return entries_.size(); }  ///< cells evaluated
     std::size_t stale() const;                            ///< of them, those that are stale
-    std::size_t marked() const { return marked_; }        ///< made stale by all updates together
+    std::size_t marked() const { return marked_; }        ///< touched by all updates together
     std::size_t views() const { return views_; }          ///< evaluated, repeated ones included
     std::size_t cacheHits() const { return cacheHits_; }  ///< queries answered without a view
     double seconds() const { return seconds_; }           ///< spent on views
@@ -101,6 +105,7 @@ class InformationField {
     Cell cellOf(const Pose& T_w_b) const;
     Pose cameraPose(const Cell& cell) const;  // T_c_w at the centre
     void evaluate(const Cell& cell, Entry& entry, ViewExtent& extent);
+    bool isInView(const Entry& entry, const ChangedBricks& changed) const;
 
     Evaluate evaluate_;
     std::shared_ptr<const ViewSource> source_;  // none: formulas
@@ -113,6 +118,7 @@ class InformationField {
     std::vector<Cell> cells_;                  // by entry
     std::vector<ViewExtent> extents_;          // by entry, for fields over a map
     std::vector<Eigen::AlignedBox3d> bounds_;  // of the extents
+    std::vector<char> isTouched_;              // by entry: waits for its turn to become stale
     View view_;                                // rendered last
     std::uint32_t epoch_ = 0;
     std::size_t views_ = 0;

@@ -101,7 +101,8 @@ TEST_F(ExploreCommand, RecordsTheFlight) {
     const Execution run = explore("a", "--time-limit 2 --record " + at("flight"));
     ASSERT_NE(run.exitCode, 2) << run.output;
     const Sequence flight = readTumSequence(at("flight"));
-    EXPECT_EQ(flight.frames.size(), result("a")["images"].get<std::size_t>());
+    EXPECT_GE(flight.frames.size(), result("a")["images"].get<std::size_t>());
+    EXPECT_GT(flight.frames.size(), 4U);
     const Execution again = explore("b", "--time-limit 2 --record " + at("flight"));
     EXPECT_EQ(again.exitCode, 2);
     EXPECT_NE(again.output.find("holds a recording already"), std::string::npos) << again.output;

@@ -168,6 +168,44 @@ TEST_P(FieldOverAMap, EntriesThatAreNotStaleEqualFreshOnes) {
     EXPECT_LT(needless, 0.6);  // bricks are as large as a change here, and grow by two cells
 }
 
+/// Each update renders a share of what changed; after as many as there are turns all is as new.
+TEST(FieldUpdate, EntriesThatTakeTurnsAreAllRenewed) {
+    constexpr unsigned kTurns = 3;
+    ChangingRoom room(7);
+    const Camera camera = makeCamera(94, 60, 1.2);
+    const auto field = [&](const std::shared_ptr<const ViewSource>& views, unsigned turns) {
+        return InformationField(views, camera, photometricModel(camera, {}), cameraMount(0.8),
+                                {.positionPitch = 1e-3, .turns = turns});
+    };
+    const auto viewsNow = [&] {
+        return std::make_shared<VoxelRenderer>(room.map, UnknownPolicy::free);
+    };
+    InformationField inTurns = field(viewsNow(), kTurns), atOnce = field(viewsNow(), 1);
+    std::vector<Pose> poses;
+    for (int i = 0; i < 90; ++i) poses.push_back(room.freePose());
+    for (const Pose& pose : poses) {
+        inTurns.at(pose);
+        atOnce.at(pose);
+    }
+    MapChange change;
+    for (int i = 0; i < 10; ++i) change.join(room.change());
+    const auto views = viewsNow();
+    atOnce.update(views, change);
+    std::size_t renewed = 0;
+    for (unsigned turn = 0; turn < kTurns; ++turn) {
+        inTurns.update(views, turn == 0 ? change : MapChange{});
+        EXPECT_LT(inTurns.stale(), atOnce.stale());
+        renewed += inTurns.stale();
+        for (const Pose& pose : poses) inTurns.at(pose);
+    }
+    EXPECT_GT(renewed, 2 * kTurns);
+    EXPECT_EQ(renewed, atOnce.stale());
+    EXPECT_EQ(inTurns.marked(), atOnce.marked());
+    for (const Pose& pose : poses) {
+        EXPECT_EQ(inTurns.at(pose).information, atOnce.at(pose).information);
+    }
+}
+
 TEST(FieldUpdate, AnObstacleWhereNoSurfaceWasMakesAViewStale) {
     TexturedOcTree map(0.1);
     const auto set = [&](int x, int y, int z, float grey) {
