@@ -5,8 +5,10 @@ namespace photonav {
 
 bool KeyframeChoice::isUsable(const TrackedFrame& tracked, const View& image) const {
     if (isBlack(image.intensity)) return false;
-    // Where the map shows too little to be aligned to, it has to grow.
-    return !tracked.lost || tracked.alignment.verdict == Verdict::lostOverlap;
+    // Where the map shows too little to be aligned to, it has to grow; where it is doubted, it has
+    // to be made again.
+    return !tracked.lost || tracked.isMapDoubted ||
+           tracked.alignment.verdict == Verdict::lostOverlap;
 }
 
 bool KeyframeChoice::isKeyframe(const TrackedFrame& tracked, const View& image,

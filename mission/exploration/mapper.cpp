@@ -26,8 +26,14 @@ Mapper::Mapper(const Config& config, OwnMap& map)
 
 std::optional<MapChange> Mapper::add(const TrackedFrame& tracked, const View& image,
                                      const View& shown, bool isNeeded) {
-    return depth_ ? addToFilter(tracked, image, shown, isNeeded)
-                  : addKeyframe(tracked, image, shown, isNeeded);
+    std::optional<MapChange> forgotten;
+    if (tracked.isMapDoubted) forgotten = map_.forget(shown, camera_, tracked.T_c_w.mean);
+    std::optional<MapChange> change =
+        depth_ ? addToFilter(tracked, image, shown, isNeeded)
+               : addKeyframe(tracked, image, shown, isNeeded || tracked.isMapDoubted);
+    if (!forgotten) return change;
+    if (change) forgotten->join(*change);
+    return forgotten;
 }
 
 std::optional<MapChange> Mapper::addKeyframe(const TrackedFrame& tracked, const View& image,

@@ -6,6 +6,13 @@ namespace {
 
 constexpr double kLooksAhead = 0.25;  // horizontal part of the axis of such a camera
 
+constexpr double kBehind = 0.01;  // [cells]
+
+Eigen::Array3i brickOf(const octomap::OcTreeKey& key) {
+    return Eigen::Array3i(key[0] - kKeyOfZero, key[1] - kKeyOfZero, key[2] - kKeyOfZero)
+        .unaryExpr([](int cell) { return cell >> 2; });
+}
+
 /// Depths that are fused; the others are 0.
 ImageF fusedDepth(const ImageF& depth, const FusionOptions& fusion) {
     ImageF fused = depth;
@@ -43,6 +50,26 @@ MapChange OwnMap::fuse(const View& image, const Camera& camera, const Pose& T_c_
     if (looksDown_) {
         change.join(obstacles_.addHidden(*cells_, image, camera, T_c_w, 2. * radius_));
     }
+    return change;
+}
+
+MapChange OwnMap::forget(const View& shown, const Camera& camera, const Pose& T_c_w) {
+    MapChange change{.resolution = cells_->getResolution()};
+    const Pose T_w_c = T_c_w.inverse();
+    for (unsigned v = 0; v < shown.depth.getHeight(); ++v) {
+        for (unsigned u = 0; u < shown.depth.getWidth(); ++u) {
+            const double z = shown.depth[v][u];
+            if (!(z > 0.)) continue;
+            // Just behind what is seen: a view may show the border of a cell.
+            const double inside = z + kBehind * change.resolution;
+            const Eigen::Vector3d p_w = T_w_c * (camera.unproject(u, v, inside));
+            const octomap::OcTreeKey key = cells_->coordToKey(p_w.x(), p_w.y(), p_w.z());
+            if (!cells_->deleteNode(key)) continue;
+            change.occupancy.push_back(brickOf(key));
+        }
+    }
+    change.normalize();
+    change.join(obstacles_.update(*cells_, change));
     return change;
 }
 

@@ -32,6 +32,8 @@ class OwnMap {
     /// @param number of this pose
     /// @return what changed in the map and in the obstacles
     MapChange fuse(const View& image, const Camera& camera, const Pose& T_c_w, int number);
+    /// Forgets the surfaces that a view of the map shows. @return what changed
+    MapChange forget(const View& shown, const Camera& camera, const Pose& T_c_w);
     /// The body's own place is free. @return what changed
     MapChange addBody(const Eigen::Vector3d& p_w) {
         return obstacles_.addBody(*cells_, p_w, radius_);

@@ -21,6 +21,9 @@ struct LossOptions {
     /// Share of TrustOptions::maxUnexplained that an image may leave unexplained to end a loss:
     /// little else supports its pose.
     double maxUnexplainedShare = 0.5;
+    /// After as long a loss, odometry is believed more than a map that is made on the flight: the
+    /// map in view is doubted [s].
+    double doubtAfter = 3.;
     /// Without odometry, standard deviations at which a lost belief stops growing [m], [rad].
     double maxTranslation = 1.;
     double maxRotation = 0.5;

@@ -244,6 +244,10 @@ void Tracker::miss(const View& view, const Pose& stayed, TrackedFrame& frame) {
         belief_.mean = stayed;
         if (map_) belief_ = bounded(belief_);
     }
+    if (isMapDoubted(view)) {
+        frame.isMapDoubted = true;
+        loss_.onTracked(now_);
+    }
     if (!keyframes_) return;
     keyframes_->forgetLastTracked();
     const bool isFirst = keyframes_->isEmpty() && !map_;
@@ -258,6 +262,12 @@ void Tracker::miss(const View& view, const Pose& stayed, TrackedFrame& frame) {
     frame.lost = false;
     frame.alignment.verdict = Verdict::converged;
     frame.keyframe = frame.time;
+}
+
+/// Whether a map made on the flight has contradicted the images for long.
+bool Tracker::isMapDoubted(const View& view) const {
+    return options_.mapErrors && hasOdometry_ && loss_.isLost() && !isBlack(view.intensity) &&
+           now_ - *loss_.since() > options_.loss.doubtAfter;
 }
 
 UncertainPose Tracker::bounded(UncertainPose belief) const {

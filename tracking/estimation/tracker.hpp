@@ -38,7 +38,8 @@ struct TrackerOptions {
 /// A rejected image leaves the prediction. Tracking counts as lost after several of them
 /// (LossOptions); then the same images are aligned in a wider neighbourhood, and to remembered
 /// keyframes, and one ends the loss when it explains the image and leaves no direction as wide as
-/// the loss has made it. Images may be late or missing.
+/// the loss has made it. Where no image does for long, a map that is made on the flight is doubted
+/// rather than the odometry (TrackedFrame::isMapDoubted). Images may be late or missing.
 class Tracker {
   public:
     /// @param map to align to; null: none, which needs options.keyframes
@@ -97,6 +98,7 @@ class Tracker {
     bool isResolvedBy(const Alignment& alignment, const UncertainPose& prior) const;
     void take(const View& view, const Match& match, const Pose& before, TrackedFrame& frame);
     void miss(const View& view, const Pose& stayed, TrackedFrame& frame);
+    bool isMapDoubted(const View& view) const;
     UncertainPose bounded(UncertainPose belief) const;
 
     Camera camera_;

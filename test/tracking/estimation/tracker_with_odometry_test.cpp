@@ -83,6 +83,30 @@ TEST(TrackerWithOdometry, WhatItsOwnMapLacksIsNoLoss) {
     EXPECT_TRUE(given.tracker.loss().isLost());
 }
 
+/// After a long contradiction between odometry and a map that was made on the flight, it is the map
+/// that is doubted; a given map is not, and neither is any map for a camera in the dark.
+TEST(TrackerWithOdometry, DoubtsItsOwnMapAfterALongLoss) {
+    const auto map =
+        std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
+    const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 5})));
+    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    HoverOver own(map, narrow(here), std::make_shared<MapErrors>(0.05));
+    HoverOver dark(map, narrow(here), std::make_shared<MapErrors>(0.05));
+    HoverOver given(map, narrow(here));
+    int doubted = 0;
+    for (int i = 0; i < 16; ++i) {
+        const TrackedFrame frame = own.see(floor, here);
+        EXPECT_TRUE(frame.lost);
+        EXPECT_FALSE(frame.isMapDoubted && i < 12) << "after " << i;
+        doubted += frame.isMapDoubted;
+        EXPECT_FALSE(dark.see(black().intensity).isMapDoubted);
+        EXPECT_FALSE(given.see(floor, here).isMapDoubted);
+    }
+    EXPECT_EQ(doubted, 1);
+    EXPECT_FALSE(own.tracker.loss().isLost());
+    EXPECT_TRUE(given.tracker.loss().isLost());
+}
+
 /// But it does not find a camera that is lost, however narrow its belief.
 TEST(TrackerWithOdometry, AnImageThatDoesNotInformEndsNoLoss) {
     const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
