@@ -14,8 +14,8 @@ struct TrackedFrame {
     /// The alignment that the belief follows from; when lost, the first that was tried.
     Alignment alignment;
     bool lost = false;  ///< the image contributed nothing to the belief, for it was rejected
-    /// The map, made on the same flight, has contradicted the images for long: it is to be forgotten
-    /// where it is in view, and made again at the pose that odometry predicts.
+    /// The map, made on the same flight, has contradicted the images for long: it is to be
+    /// forgotten where it is in view, and made again at the pose that odometry predicts.
     bool isMapDoubted = false;
     /// Time of the keyframe that the image was aligned to, its own if it began one [s]; none: it
     /// was aligned to the map.

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "render/voxel_renderer.hpp"
 #include "tracking/rooms.hpp"
 
 namespace photonav {
@@ -56,6 +59,36 @@ TEST_F(MapOfABox, PlacesBehindItAreObstaclesToACameraThatLooksDown) {
     const OwnMap ahead = fused();
     EXPECT_TRUE(isObstacle(ahead, 0.05, 0.35, 1.05));
     EXPECT_FALSE(isObstacle(ahead, 0.05, 0.55, 2.05));
+}
+
+/// What a view of the map shows is gone, with its obstacles, and only that.
+TEST_F(MapOfABox, ForgetsWhatIsInView) {
+    OwnMap map = fused();
+    const auto shownBy = [&](const Pose& pose) {
+        View shown;
+        VoxelRenderer(*map.cells(), UnknownPolicy::free).render(camera, pose, shown);
+        return shown;
+    };
+    const auto surfaces = [&](const Pose& pose) {
+        const View shown = shownBy(pose);
+        return std::count_if(shown.depth.bitmap, shown.depth.bitmap + shown.depth.getSize(),
+                             [](float z) { return z > 0.F; });
+    };
+    const Pose aside = test::cameraAt({0., -1.5, 2.}, test::kDown);
+    const auto before = surfaces(T_c_w), asideBefore = surfaces(aside);
+    ASSERT_TRUE(isObstacle(map, 0.05, 0.35, 1.45));
+    const Pose low = test::cameraAt({0.05, 0.35, 2.}, test::kDown);
+    const MapChange change = map.forget(shownBy(low), camera, low);
+    EXPECT_FALSE(isObstacle(map, 0.05, 0.35, 1.45));
+    EXPECT_LT(surfaces(T_c_w), before / 2);
+    EXPECT_GT(surfaces(aside), asideBefore / 2);
+    const auto lists = [&](double x, double y, double z) {
+        const Eigen::Array3i brick = (Eigen::Array3d(x, y, z) / 0.4).floor().cast<int>();
+        return std::ranges::any_of(change.occupancy,
+                                   [&](const auto& other) { return (other == brick).all(); });
+    };
+    EXPECT_TRUE(lists(0.05, 0.35, 1.45));
+    EXPECT_FALSE(lists(0.05, -1.5, -0.05));
 }
 
 TEST_F(MapOfABox, IsSeenAboveSurfacesWithinRange) {
