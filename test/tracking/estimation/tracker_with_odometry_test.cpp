@@ -92,6 +92,7 @@ TEST(TrackerWithOdometry, DoubtsItsOwnMapAfterALongLoss) {
     const Pose here = cameraAt({0., 0., 2.}, test::kDown);
     HoverOver own(map, narrow(here), std::make_shared<MapErrors>(0.05));
     HoverOver dark(map, narrow(here), std::make_shared<MapErrors>(0.05));
+    const ImageF black(hoverCamera().height, hoverCamera().width, 0.F);
     HoverOver given(map, narrow(here));
     int doubted = 0;
     for (int i = 0; i < 16; ++i) {
@@ -99,7 +100,7 @@ TEST(TrackerWithOdometry, DoubtsItsOwnMapAfterALongLoss) {
         EXPECT_TRUE(frame.lost);
         EXPECT_FALSE(frame.isMapDoubted && i < 12) << "after " << i;
         doubted += frame.isMapDoubted;
-        EXPECT_FALSE(dark.see(black().intensity).isMapDoubted);
+        EXPECT_FALSE(dark.see(black).isMapDoubted);
         EXPECT_FALSE(given.see(floor, here).isMapDoubted);
     }
     EXPECT_EQ(doubted, 1);
