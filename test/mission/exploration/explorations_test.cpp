@@ -139,7 +139,7 @@ TEST_F(EmptyRoom, AnInterruptedSetKeepsItsFirstFlight) {
     const std::atomic<bool> interrupted{true};
     std::size_t ended = 0;
     const auto flights = exploreMany(setUpExploration(*problem), {"rrt_star"}, 3, 1, interrupted,
-                                     [&](const ExplorationResult&) { ++ended; });
+                                     {.end = [&](const ExplorationResult&) { ++ended; }});
     ASSERT_EQ(flights.size(), 1U);
     EXPECT_EQ(flights[0].end, FlightEnd::stopped);
     EXPECT_EQ(ended, 1U);
@@ -147,13 +147,14 @@ TEST_F(EmptyRoom, AnInterruptedSetKeepsItsFirstFlight) {
 
 TEST_F(EmptyRoom, EveryEndAndEveryUpdateIsReported) {
     std::size_t ended = 0, updated = 0, updates = 0;
-    const auto flights = exploreMany(
-        setUpExploration(*problem), {"rrt_star"}, 2, 2, kNotInterrupted,
-        [&](const ExplorationResult&) { ++ended; },
-        [&](const ExplorationResult& soFar) {
-            ++updated;
-            EXPECT_FALSE(soFar.updates.empty());
-        });
+    const auto flights =
+        exploreMany(setUpExploration(*problem), {"rrt_star"}, 2, 2, kNotInterrupted,
+                    {.end = [&](const ExplorationResult&) { ++ended; },
+                     .update =
+                         [&](const ExplorationResult& soFar) {
+                             ++updated;
+                             EXPECT_FALSE(soFar.updates.empty());
+                         }});
     for (const ExplorationResult& flight : flights) updates += flight.updates.size();
     EXPECT_EQ(ended, 2U);
     EXPECT_GT(updated, 0U);
