@@ -46,12 +46,9 @@ Color inferno(double share) {
 
 Color plannerColor(std::string_view planner) {
     static constexpr std::pair<std::string_view, Color> kColors[]{
-        {"belief_rrt_star", {222, 79, 12}},
-        {"rrt_star", {28, 108, 214}},
-        {"pa_rrt_star", {230, 159, 0}},
-        {"rrbt", {0, 158, 115}},
-        {"rrt_star/fixed", {86, 180, 233}},
-        {"rrt_star/forward", {204, 121, 167}}};
+        {"belief_rrt_star", {222, 79, 12}}, {"rrt_star", {28, 108, 214}},
+        {"pa_rrt_star", {230, 159, 0}},     {"rrbt", {0, 158, 115}},
+        {"rrt_star/fixed", {86, 180, 233}}, {"rrt_star/forward", {204, 121, 167}}};
     for (const auto& [name, color] : kColors)
         if (name == planner) return color;
     return {98, 104, 112};
