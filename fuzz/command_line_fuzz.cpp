@@ -39,7 +39,7 @@ void setKeys(const std::string& text) {
 
 void parseShardAndFrames(const std::string& text) {
     if (text.find('/') != std::string::npos) {
-        const SweepShard shard = parseShard(text);
+        const Shard shard = parseShard(text);
         require(shard.index >= 1 && shard.index <= shard.count, "a shard is one of all");
     } else {
         const auto [first, end] = parseFrames(text, 100);

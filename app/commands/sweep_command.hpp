@@ -3,19 +3,14 @@
 #pragma once
 
 #include <atomic>
-#include <optional>
 
-#include "commands/command_io.hpp"
+#include "commands/many_runs.hpp"
 #include "commands/sweep_lists.hpp"
 
 namespace photonav {
 
-struct SweepOptions : CommandOptions {
-    SweepLists lists;                  ///< typed, instead of the config's
-    unsigned jobs = 1;                 ///< threads
-    std::optional<std::string> shard;  ///< "k/n"
-    std::vector<std::string> merge;    ///< folders of shards: no runs, only the table
-    bool resume = false;               ///< go on with what the result folder holds, or extend it
+struct SweepOptions : ManyRunsOptions {
+    SweepLists lists;  ///< typed, instead of the config's
 };
 
 /// Runs all combinations and writes runs.jsonl, runs.csv, summary.csv, sweep.png, pareto.png,

@@ -14,7 +14,7 @@ namespace photonav {
 struct SweepOutcome {
     std::string name;  ///< of the config
     std::string commandLine;
-    SweepShard shard;
+    Shard shard;
     std::vector<SweepRun> runs;  ///< in the order of sweepItems()
     std::size_t asked = 0;       ///< runs there should be
     bool interrupted = false;

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sweep/sweep_runs.hpp"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-#include <tbb/task_group.h>
-
 #include <mutex>
 
 #include "geometry/constants.hpp"
@@ -60,20 +56,15 @@ void setPath(SweepRun& run, const EvaluatedPath& path) {
 void runItems(const Config& config, const World& world, const std::vector<SweepItem>& items,
               unsigned jobs, const std::atomic<bool>& interrupted,
               const std::function<void(const SweepRun&)>& onRun) {
-    std::atomic<std::size_t> next{0};  // in the order of the items, however many threads there are
-    std::mutex mutex;                  // of onRun
-    const auto work = [&](unsigned) {
-        while (!interrupted && !tbb::is_current_task_group_canceling()) {
-            const std::size_t i = next++;
-            if (i >= items.size()) return;
-            const auto run = runUnlessStopped(config, world, items[i], interrupted);
-            if (!run) return;
-            const std::lock_guard lock(mutex);
-            onRun(*run);
-        }
-    };
-    tbb::task_arena threads(static_cast<int>(jobs));
-    threads.execute([&] { tbb::parallel_for(0U, jobs, 1U, work, tbb::simple_partitioner{}); });
+    std::mutex mutex;  // of onRun
+    workInOrder(items.size(), jobs, [&](std::size_t i) {
+        if (interrupted) return false;
+        const auto run = runUnlessStopped(config, world, items[i], interrupted);
+        if (!run) return false;
+        const std::lock_guard lock(mutex);
+        onRun(*run);
+        return true;
+    });
 }
 
 }  // namespace photonav

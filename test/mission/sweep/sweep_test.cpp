@@ -72,7 +72,7 @@ TEST(SweepShards, PartitionTheRuns) {
     std::set<SweepItem> unique(gathered.begin(), gathered.end());
     EXPECT_EQ(unique, std::set<SweepItem>(items.begin(), items.end()));
     EXPECT_EQ(gathered.size(), items.size());
-    EXPECT_EQ(parseShard("+2/4"), (SweepShard{2, 4}));
+    EXPECT_EQ(parseShard("+2/4"), (Shard{2, 4}));
     for (const char* bad : {"", "1", "0/2", "3/2", "1/0", "1/2/3", "a/b", "-1/2", "1/"}) {
         EXPECT_TRUE(reasonOf([&] { parseShard(bad); }).starts_with("--shard: ")) << bad;
     }
@@ -191,8 +191,8 @@ TEST_F(SweepFiles, AJournalGivesBackWhatWasWritten) {
     const SweepJournal journal = SweepJournal::read(folder_);
     EXPECT_EQ(journal.header().name, "name");
     EXPECT_EQ(journal.header().config, "config: text\n");
-    EXPECT_EQ(journal.header().identity, (SweepIdentity{{"key", "value"}}));
-    EXPECT_EQ(journal.header().shard, (SweepShard{2, 3}));
+    EXPECT_EQ(journal.header().identity, (Identity{{"key", "value"}}));
+    EXPECT_EQ(journal.header().shard, (Shard{2, 3}));
     ASSERT_EQ(journal.runs().size(), 2U);
     EXPECT_EQ(journal.runs()[0].item, solved);
     EXPECT_EQ(journal.runs()[0].cost, 0.1 + 0.2);  // to the last bit

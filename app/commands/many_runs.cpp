@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/many_runs.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "io/atomic_file.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+
+bool isMerge(const ManyRunsOptions& options, const RunWords& words) {
+    if (!options.merge.empty()) {
+        if (!options.shard && !options.resume) return true;
+        throw InputError("--merge", "", "goes without --shard and --resume");
+    }
+    if (!options.config.empty()) return false;
+    throw InputError(words.command, "", "give a CONFIG, or --merge with the folders of its shards");
+}
+
+Shard shardOf(const ManyRunsOptions& options) {
+    return options.shard ? parseShard(*options.shard) : Shard{};
+}
+
+fs::path folderOf(const ManyRunsOptions& options, const RunWords& words, const std::string& name,
+                  const Shard& shard) {
+    if (!options.out.empty()) return options.out;
+    fs::path folder = fs::path("out") / fmt::format("{}-{}", words.command, name);
+    if (shard.count > 1) folder += fmt::format("-{}of{}", shard.index, shard.count);
+    return folder;
+}
+
+FolderTransaction beginRuns(const ManyRunsOptions& options, const fs::path& folder,
+                            InputPaths inputs) {
+    inputs.emplace_back(options.config);
+    inputs.insert(inputs.end(), options.merge.begin(), options.merge.end());
+    return beginResult(folder, inputs, FolderTransaction::Unfinished::kept);
+}
+
+void RemainingTime::count(const std::string& planner, double seconds, double wall) {
+    --open_[planner];
+    auto& [sum, runs] = taken_[planner];
+    sum += seconds;
+    runs += 1.;
+    wall_ = wall;
+}
+
+std::pair<double, double> RemainingTime::all() const {
+    std::pair<double, double> sum{0., 0.};
+    for (const auto& entry : taken_) {
+        sum.first += entry.second.first;
+        sum.second += entry.second.second;
+    }
+    return sum;
+}
+
+double RemainingTime::seconds(double wall) const {
+    double rest = 0.;
+    for (const auto& [planner, runs] : open_) {
+        const auto known = taken_.find(planner);
+        const auto& [seconds, count] = known != taken_.end() ? known->second : all();
+        rest += runs * seconds / std::max(count, 1.);
+    }
+    const double taken = all().first;
+    return taken > 0. ? std::max(0., rest * wall_ / taken - (wall - wall_)) : 0.;
+}
+
+std::string RemainingTime::text(double wall) const {
+    if (taken_.empty()) return "";
+    return fmt::format(", about {} left", durationText(seconds(wall)));
+}
+
+std::string durationText(double seconds) {
+    const auto total = std::lround(seconds);
+    if (total < 120) return fmt::format("{} s", total);
+    if (total < 7200) return fmt::format("{} min", (total + 30) / 60);
+    return fmt::format("{:.1f} h", static_cast<double>(total) / 3600.);
+}
+
+void checkIsSame(const JournalHeader& found, const JournalHeader& wanted, const RunWords& words,
+                 const std::function<Identity(const Identity&)>& runIdentity,
+                 const fs::path& file) {
+    const std::string changed =
+        difference(runIdentity(wanted.identity), runIdentity(found.identity));
+    if (!changed.empty()) {
+        throw InputError(
+            "--resume", file.string(),
+            fmt::format("{} was begun with another config: {}", words.theWhole, changed));
+    }
+    if (!(found.shard == wanted.shard)) {
+        throw InputError(
+            "--resume", file.string(),
+            fmt::format("holds shard {}, not {}", toString(found.shard), toString(wanted.shard)));
+    }
+}
+
+void checkIsNotWritten(const std::string& folder) {
+    if (!FolderTransaction::isBeingWritten(folder)) return;
+    throw InputError("--merge", folder, "another photonav is writing it");
+}
+
+void checkMakeOneWhole(const std::vector<std::string>& folders,
+                       const std::vector<JournalHeader>& shards) {
+    std::map<unsigned, std::string> folderOf;
+    const JournalHeader& first = shards.front();
+    for (std::size_t i = 0; i < shards.size(); ++i) {
+        const JournalHeader& header = shards[i];
+        const auto refuse = [&](const std::string& reason) {
+            throw InputError("--merge", folders[i], reason);
+        };
+        const std::string changed = difference(header.identity, first.identity);
+        if (!changed.empty()) refuse(changed + ", as in " + folders.front());
+        const std::string shard = toString(header.shard);
+        if (header.shard.count != first.shard.count) {
+            refuse(fmt::format("is shard {}, {} is shard {}", shard, folders.front(),
+                               toString(first.shard)));
+        }
+        const auto [known, isNew] = folderOf.emplace(header.shard.index, folders[i]);
+        if (!isNew) refuse(fmt::format("is shard {}, as is {}", shard, known->second));
+    }
+    for (unsigned k = 1; k <= first.shard.count; ++k) {
+        if (folderOf.contains(k)) continue;
+        throw InputError("--merge", "shard " + toString({k, first.shard.count}), "missing");
+    }
+}
+
+void checkIsNoShard(const ManyRunsOptions& options, const fs::path& target) {
+    for (const std::string& shard : options.merge) {
+        std::error_code noFolder;  // none yet: no shard's
+        if (!fs::equivalent(shard, target, noFolder)) continue;
+        throw InputError("--merge", shard, "the result needs another folder (--out)");
+    }
+}
+
+namespace {
+
+/// The config that the shards keep. Nothing is written to the result's folder yet.
+Config keptConfig(const JournalHeader& header,
+                  const std::function<Config(const std::string& file)>& load) {
+    const fs::path copy =
+        fs::temp_directory_path() / fmt::format("photonav_merge_{}.yaml", getpid());
+    writeFileAtomically(copy, header.config);
+    const std::unique_ptr<const fs::path, void (*)(const fs::path*)> removed(
+        &copy, [](const fs::path* file) { fs::remove(*file); });
+    return load(copy.string());
+}
+
+}  // namespace
+
+Config configOfShards(const ManyRunsOptions& options, const JournalHeader& header,
+                      const fs::path& journal,
+                      const std::function<Config(const std::string& file)>& load,
+                      const std::function<Identity(const Config&)>& identity) {
+    Config config = options.config.empty() ? keptConfig(header, load) : load(options.config);
+    if (options.config.empty()) config.file = journal.string();
+    const std::string changed = difference(header.identity, identity(config));
+    if (changed.empty()) return config;
+    throw InputError("--merge", options.merge.front(), changed + ", as in " + config.file);
+}
+
+}  // namespace photonav
