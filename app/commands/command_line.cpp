@@ -72,6 +72,17 @@ void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig) {
     addOutput(parser, {options.out, options.quiet, options.json}, "out/<command>-<config>");
 }
 
+void addManyRuns(CLI::App& parser, ManyRunsOptions& options, const RunWords& words) {
+    parser.add_option("--jobs", options.jobs, "threads")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    parser.add_option("--shard", options.shard, "do only part k of n")->type_name("K/N");
+    parser.add_option("--merge", options.merge, "one result from the folders of all n shards")
+        ->type_name("DIR...");
+    parser.add_flag("--resume", options.resume,
+                    fmt::format("continue the {}s of the result folder", words.run));
+}
+
 std::string optionOf(const ConfigKey& key) {
     std::string name = key.words.name;
     std::replace(name.begin(), name.end(), '_', '-');

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "commands/command_io.hpp"
+#include "commands/many_runs.hpp"
 #include "config/key_table.hpp"
 #include "report/report.hpp"
 
@@ -47,6 +48,9 @@ void addOverrides(CLI::App& parser, std::vector<std::string>& overrides);
 
 /// config, --set and the output.
 void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig = true);
+
+/// --jobs, --shard, --merge and --resume. Shards are merged without a config.
+void addManyRuns(CLI::App& parser, ManyRunsOptions& options, const RunWords& words);
 
 /// --seed as text for an override: a number that a config may hold.
 template <typename Text>

@@ -5,20 +5,16 @@
 
 #include "commands/flight_recording.hpp"
 #include "commands/result_folder.hpp"
-#include "exploration/explorations.hpp"
+#include "exploration/trial_journal.hpp"
+#include "io/error.hpp"
 #include "io/stopwatch.hpp"
-#include "planners/planner_table.hpp"
 #include "report/explore_report.hpp"
 #include "report/fly_report.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
+namespace fs = std::filesystem;
 namespace {
-
-std::vector<std::string> plannersOf(const Config& config) {
-    const std::vector<std::string>& planners = config.explore.planners;
-    return planners.empty() ? std::vector{config.planner} : planners;
-}
 
 void printFlight(const ExplorationResult& flight, const ExplorationSummary& s) {
     fmt::print("{} after {:.1f} m and {:.1f} s{}\n", nameOf(flight.end), flight.way,
@@ -49,56 +45,176 @@ bool hasArrived(const std::vector<ExplorationResult>& flights) {
     return false;
 }
 
-}  // namespace
+/// The config, with what was typed in place of its values.
+Config loadExploreConfig(const ExploreOptions& options, const std::string& file) {
+    return loadConfig(file, options.overrides);
+}
 
-int runExplore(const ExploreOptions& options, const std::atomic<bool>& interrupted) {
+FolderTransaction beginExploration(const ExploreOptions& options, const Config& config,
+                                   const fs::path& folder) {
+    return beginRuns(options, folder, {config.sceneFile, config.mapFile});
+}
+
+void print(const ExploreOutcome& outcome, const fs::path& folder) {
+    const std::vector<ExplorationResult>& flights = outcome.flights;
+    if (flights.size() == 1) printFlight(flights.front(), outcome.summaries.front());
+    if (flights.size() > 1) printSummary(outcome.summaries);
+    if (outcome.asked > 1) {
+        fmt::print("{} of {} flights ended{}\n", outcome.ended, outcome.asked,
+                   outcome.interrupted ? " and are kept; fly the others with --resume" : "");
+    }
+    fmt::print("report: {}\n", (folder / "report.html").string());
+}
+
+/// The last step of every exploration: report, print.
+int conclude(const ExploreOptions& options, const ExplorationSetup& setup, const World& world,
+             FolderTransaction& folder, ExploreOutcome outcome, const Stopwatch& watch) {
+    outcome.commandLine = options.commandLine;
+    outcome.summaries =
+        summariesByPlanner(outcome.flights, setup.config.belief.characteristicLength);
+    nlohmann::json result = exploreResult(setup, outcome);
+    result["time"]["total_s"] = watch.seconds();
+    writeExploreReport(folder.path(), setup, world, outcome, result);
+    commitResult(folder, result);
+    if (options.json) {
+        fmt::print("{}", jsonText(result));
+    } else if (!options.quiet) {
+        print(outcome, folder.target());
+    }
+    if (outcome.interrupted) return kInterrupted;
+    return hasArrived(outcome.flights) ? kDone : kNoAnswer;
+}
+
+/// The progress of many flights on a line.
+class ExploreProgress {
+  public:
+    ExploreProgress(bool quiet, std::size_t asked, const std::vector<TrialItem>& open)
+        : line_(quiet), rest_(open), asked_(asked), flown_(asked - open.size()) {}
+
+    void onEnd(const ExplorationResult& flight) {
+        ++flown_;
+        arrived_ += flight.hasArrived();
+        rest_.count(flight.planner, flight.wallSeconds, running_.seconds());
+    }
+
+    void onUpdate(const ExplorationResult& flight) {
+        const PlanUpdate& update = flight.updates.back();
+        line_.show(fmt::format(
+            "{} of {} flights, {} arrived; {}, seed {}: {:.1f} s, {:.1f} m flown, {:.1f} m to go{}",
+            flown_, asked_, arrived_, flight.planner, flight.seed, update.time, flight.way,
+            update.length, rest_.text(running_.seconds())));
+    }
+
+  private:
+    ProgressLine line_;
+    RemainingTime rest_;
+    Stopwatch running_;
+    std::size_t asked_, flown_, arrived_ = 0;
+};
+
+/// Flies those of `items` that the journal lacks, and adds them.
+/// @return the first flight as far as it was flown, if it was interrupted
+std::optional<ExplorationResult> flyMissing(const ExploreOptions& options,
+                                            const ExplorationSetup& setup,
+                                            const std::vector<TrialItem>& items,
+                                            TrialJournal& journal, FlightRecording& recording,
+                                            const std::atomic<bool>& interrupted) {
+    const std::vector<TrialItem> open = journal.missing(items);
+    std::optional<ExplorationResult> cut;
+    ExploreProgress progress(options.quiet, items.size(), open);
+    const auto onEnd = [&](ExplorationResult flight) {
+        const bool isFirst = itemOf(flight) == items.front();
+        if (flight.end != FlightEnd::stopped) {
+            progress.onEnd(flight);
+            if (!isFirst) flight.map.reset();
+            journal.append(std::move(flight));
+        } else if (isFirst) {
+            cut = std::move(flight);
+        }
+    };
+    const auto onUpdate = [&](const ExplorationResult& soFar) { progress.onUpdate(soFar); };
+    exploreMany(setup, open, options.jobs, interrupted, {onEnd, onUpdate, recording.onExposure()});
+    return cut;
+}
+
+std::vector<TrialItem> itemsOfShard(const Shard& shard, const Config& config) {
+    const std::vector<TrialItem> all = trialItems(config);
+    if (shard.index <= all.size()) return itemsOf(shard, all);
+    throw InputError("--shard", toString(shard), fmt::format("of {} flights none", all.size()));
+}
+
+/// @throws InputError where the first flight, which is recorded, was flown before
+void checkRecord(const ExploreOptions& options, const std::vector<ExplorationResult>& flown,
+                 const TrialItem& first) {
+    if (options.record.empty()) return;
+    for (const ExplorationResult& flight : flown) {
+        if (!(itemOf(flight) == first)) continue;
+        throw InputError("--record", "", "the first flight has been flown: it has no images now");
+    }
+}
+
+int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
-    const Config config = loadConfig(options.config, options.overrides);
+    const Config config = loadExploreConfig(options, options.config);
+    const Shard shard = shardOf(options);
+    const std::vector<TrialItem> items = itemsOfShard(shard, config);
     const World world(config);
     const PlanningProblem problem(config, world);
     const ExplorationSetup setup = setUpExploration(problem);
     FlightRecording recording(options.record, setup.truth.camera, setup.flight.tracker.map);
-    FolderTransaction folder = beginResult(options, "explore", {config.sceneFile, config.mapFile});
+    const std::string name = fs::path(options.config).stem().string();
+    FolderTransaction folder =
+        beginExploration(options, config, folderOf(options, TrialKind::kWords, name, shard));
+    const JournalHeader header{name, toYaml(config), TrialKind::identity(config), shard};
+    std::vector<ExplorationResult> earlier = runsSoFar<TrialKind>(options, folder, header);
+    keepMapOf(items.front(), earlier);
+    checkRecord(options, earlier, items.front());
+    TrialJournal journal = TrialJournal::create(folder.path(), header, std::move(earlier));
 
-    const std::vector<std::string> planners = plannersOf(config);
-    const unsigned trials = config.explore.trials;
-    std::vector<ExplorationResult> flights;
-    {
-        ProgressLine line(options.quiet);
-        std::size_t flown = 0, arrived = 0;
-        const auto onEnd = [&](const ExplorationResult& flight) {
-            ++flown;
-            arrived += flight.hasArrived();
-        };
-        const auto onUpdate = [&](const ExplorationResult& flight) {
-            const PlanUpdate& update = flight.updates.back();
-            line.show(
-                fmt::format("{} of {} flights, {} arrived; {}, seed {}: {:.1f} s, {:.1f} m "
-                            "flown, {:.1f} m to go",
-                            flown, planners.size() * trials, arrived, flight.planner, flight.seed,
-                            update.time, flight.way, update.length));
-        };
-        flights = exploreMany(setup, planners, trials, options.jobs, interrupted,
-                              {onEnd, onUpdate, recording.onExposure()});
-    }
+    const auto cut = flyMissing(options, setup, items, journal, recording, interrupted);
     recording.commit();
-    const bool stopped = interrupted;
-    const auto summaries = summariesByPlanner(flights, config.belief.characteristicLength);
-    nlohmann::json result = exploreResult(setup, flights, summaries, stopped);
-    result["time"]["total_s"] = watch.seconds();
-    writeExploreReport(folder.path(), setup, world, flights, summaries, options.commandLine,
-                       result);
-    commitResult(folder, result);
+    std::vector<ExplorationResult> flights = journal.runsOf(items);
+    const std::size_t ended = flights.size();
+    if (cut) flights.insert(flights.begin(), *cut);
+    return conclude(options, setup, world, folder,
+                    {name, "", std::move(flights), {}, ended, items.size(), ended < items.size()},
+                    watch);
+}
 
-    if (options.json) {
-        fmt::print("{}", jsonText(result));
-    } else if (!options.quiet) {
-        if (flights.size() == 1) printFlight(flights.front(), summaries.front());
-        if (flights.size() > 1) printSummary(summaries);
-        fmt::print("report: {}\n", (folder.target() / "report.html").string());
+int mergeExplorations(const ExploreOptions& options) {
+    const Stopwatch watch;
+    if (!options.record.empty()) throw InputError("--merge", "", "goes without --record");
+    const auto shards = readShards<TrialKind>(options.merge);
+    JournalHeader header = shards.front().header();
+    const fs::path target = folderOf(options, TrialKind::kWords, header.name, {});
+    checkIsNoShard(options, target);
+    const Config config = configOfShards(
+        options, header, shards.front().file(),
+        [&](const std::string& file) { return loadExploreConfig(options, file); },
+        TrialKind::identity);
+    const auto items = trialItems(config);
+    std::vector<ExplorationResult> flights = gather(options, shards, items);
+    keepMapOf(items.front(), flights);
+    if (flights.size() < items.size()) {
+        throw InputError("--merge", "shard " + toString({1, header.shard.count}),
+                         "the map of its first flight is missing; finish it with --resume");
     }
-    if (stopped) return kInterrupted;
-    return hasArrived(flights) ? kDone : kNoAnswer;
+    const World world(config);
+    const PlanningProblem problem(config, world);
+    const ExplorationSetup setup = setUpExploration(problem);
+    FolderTransaction folder = beginExploration(options, config, target);
+    header.shard = {};
+    TrialJournal::create(folder.path(), header, flights);
+    return conclude(options, setup, world, folder,
+                    {header.name, "", std::move(flights), {}, items.size(), items.size(), false},
+                    watch);
+}
+
+}  // namespace
+
+int runExplore(const ExploreOptions& options, const std::atomic<bool>& interrupted) {
+    return isMerge(options, TrialKind::kWords) ? mergeExplorations(options)
+                                               : exploreAll(options, interrupted);
 }
 
 }  // namespace photonav

@@ -5,19 +5,20 @@
 #include <atomic>
 #include <filesystem>
 
-#include "commands/command_io.hpp"
+#include "commands/many_runs.hpp"
 
 namespace photonav {
 
 /// All that the results depend on is in the config (ExploreConfig) and its overrides.
-struct ExploreOptions : CommandOptions {
-    unsigned jobs = 1;             ///< threads
+struct ExploreOptions : ManyRunsOptions {
     std::filesystem::path record;  ///< folder for the first flight as a recording; empty: none
 };
 
-/// Flies every trial and writes result.json, config.yaml, map.ot, trajectory.tum, .cov and .ov and
-/// groundtruth.tum of the first flight, figures, report.json and report.html.
-/// @param interrupted when set, flying ends with what was flown (exit code 130)
+/// Flies every trial, or merges the shards of an exploration, and writes trials.jsonl, result.json,
+/// config.yaml, map.ot, trajectory.tum, .cov and .ov and groundtruth.tum of the first flight,
+/// figures, report.json and report.html.
+/// @param interrupted when set, flying ends with the flights that ended, and the first as far as it
+///        was flown (exit code 130)
 /// @return the exit code: kNoAnswer unless the first flight arrived or, with several trials, one of
 ///         the first planner's did
 /// @throws InputError for bad input, before anything is written

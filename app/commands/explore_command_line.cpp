@@ -6,6 +6,7 @@
 #include "commands/command_line.hpp"
 #include "commands/explore_command.hpp"
 #include "config/config_keys.hpp"
+#include "exploration/trial_journal.hpp"
 
 namespace photonav {
 namespace {
@@ -41,14 +42,12 @@ Command exploreCommand(CLI::App& app, const Invocation& invocation) {
         "explore",
         "Fly to the goal in a scene that the robot does not know, by its own camera: map it, and "
         "repair the plan, on the way. Exit code 0: a flight of the first planner arrived.");
-    addCommon(*parser, *options);
+    addCommon(*parser, *options, false);
     parser
         ->add_option("--planners,--planner", options->planners,
                      "names of planners, a,b,c (default: planner.name)")
         ->type_name("NAMES");
-    parser->add_option("--jobs", options->jobs, "threads")
-        ->check(CLI::Range(1, 4096))
-        ->capture_default_str();
+    addManyRuns(*parser, *options, TrialKind::kWords);
     parser
         ->add_option("--record", options->record, "write the first flight as a TUM RGB-D recording")
         ->type_name("DIR");

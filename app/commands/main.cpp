@@ -30,6 +30,7 @@
 #include "mapping/map_config.hpp"
 #include "render/interruptible_views.hpp"
 #include "report/report.hpp"
+#include "sweep/sweep_journal.hpp"
 
 namespace {
 
@@ -157,13 +158,7 @@ Command sweepCommand(CLI::App& app, const Invocation& invocation) {
     parser->add_option("--planners", options->lists.planners, "a,b,c")->type_name("NAMES");
     parser->add_option("--runs", options->lists.runs, "seeds per planner and alpha");
     addSeed(*parser, options->lists.seed, "the first seed");
-    parser->add_option("--jobs", options->jobs, "threads")
-        ->check(CLI::Range(1, 4096))
-        ->capture_default_str();
-    parser->add_option("--shard", options->shard, "do only part k of n")->type_name("K/N");
-    parser->add_option("--merge", options->merge, "one table from the folders of all n shards")
-        ->type_name("DIR...");
-    parser->add_flag("--resume", options->resume, "continue the runs of the result folder");
+    addManyRuns(*parser, *options, SweepKind::kWords);
     return {parser, [options] { return runSweep(*options, interrupted); }};
 }
 

@@ -67,6 +67,7 @@ json jsonOf(const ExplorationResult& flight, double characteristicLength) {
             {"blind_steps", flight.blindSteps},
             {"times_lost", flight.timesLost},
             {"lost_s", flight.lost},
+            {"wall_s", flight.wallSeconds},
             {"path_trace", traceOf(flight, characteristicLength)},
             {"updates", std::move(updates)}};
 }
@@ -152,35 +153,36 @@ std::vector<NamedFigure> figuresOf(const ExplorationSetup& setup, const World& w
 
 }  // namespace
 
-json exploreResult(const ExplorationSetup& setup, const std::vector<ExplorationResult>& flights,
-                   const std::vector<ExplorationSummary>& summaries, bool interrupted) {
+json exploreResult(const ExplorationSetup& setup, const ExploreOutcome& outcome) {
+    const std::vector<ExplorationResult>& flights = outcome.flights;
     const double length = setup.config.belief.characteristicLength;
     json result = jsonOf(flights.front(), length);
     result.update(
         {{"schema", 1},
          {"command", "explore"},
          {"version", PHOTONAV_VERSION},
-         {"status", interrupted                    ? "interrupted"
+         {"status", outcome.interrupted            ? "interrupted"
                     : flights.front().hasArrived() ? "done"
                                                    : "not arrived: " + flights.front().reason},
          {"seed", setup.config.seed},
+         {"flights_ended", outcome.ended},
+         {"flights_asked", outcome.asked},
          {"trials", json::array()},
          {"summary", json::array()}});
     for (const ExplorationResult& flight : flights) {
         result["trials"].push_back(jsonOf(flight, length));
     }
-    for (const ExplorationSummary& s : summaries) result["summary"].push_back(jsonOf(s));
+    for (const ExplorationSummary& s : outcome.summaries) result["summary"].push_back(jsonOf(s));
     return result;
 }
 
 void writeExploreReport(const fs::path& folder, const ExplorationSetup& setup, const World& world,
-                        const std::vector<ExplorationResult>& flights,
-                        const std::vector<ExplorationSummary>& summaries,
-                        const std::string& commandLine, const json& result) {
+                        const ExploreOutcome& outcome, const json& result) {
+    const std::vector<ExplorationResult>& flights = outcome.flights;
     const Config& config = setup.config;
     const ExplorationResult& first = flights.front();
-    ReportData report = problemReport(config, world, commandLine, result);
-    report.title = fs::path(config.file).stem().string() + ", explored";
+    ReportData report = problemReport(config, world, outcome.commandLine, result);
+    report.title = outcome.name + ", explored";
     report.subtitle =
         "A flight to the goal in a scene unknown to the robot: its own map, path and beliefs.";
     report.mesh = {};
@@ -188,7 +190,7 @@ void writeExploreReport(const fs::path& folder, const ExplorationSetup& setup, c
     report.fieldOfView = fieldOfView(setup.truth.camera);
     report.paths.push_back(drawnBeliefs(first, config.belief.characteristicLength));
     report.trees.push_back(drawnWay(first));
-    for (const ExplorationSummary& s : summaries) report.tables.push_back(tableOf(s));
+    for (const ExplorationSummary& s : outcome.summaries) report.tables.push_back(tableOf(s));
     report.tables.push_back(tableOfUpdates(first));
     writeFlownTrajectory(folder, first);
     saveTexturedOcTree(*first.map, (folder / "map.ot").string());

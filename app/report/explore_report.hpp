@@ -7,18 +7,24 @@
 
 namespace photonav {
 
+/// The flights of an exploration, of one run or merged from shards.
+struct ExploreOutcome {
+    std::string name;  ///< of the config
+    std::string commandLine;
+    std::vector<ExplorationResult> flights;  ///< in the order of trialItems(); the first with a map
+    std::vector<ExplorationSummary> summaries;  ///< one per planner
+    std::size_t ended = 0;                      ///< without a first one that was interrupted
+    std::size_t asked = 0;                      ///< flights there should be
+    bool interrupted = false;
+};
+
 /// The content of result.json: the first flight, all trials, and a summary per planner.
-/// @param summaries of the flights
-nlohmann::json exploreResult(const ExplorationSetup& setup,
-                             const std::vector<ExplorationResult>& flights,
-                             const std::vector<ExplorationSummary>& summaries, bool interrupted);
+nlohmann::json exploreResult(const ExplorationSetup& setup, const ExploreOutcome& outcome);
 
 /// Writes the map, the trajectories of the first flight, figures and the page.
 /// @param world the true one
-/// @param summaries of the flights
 void writeExploreReport(const std::filesystem::path& folder, const ExplorationSetup& setup,
-                        const World& world, const std::vector<ExplorationResult>& flights,
-                        const std::vector<ExplorationSummary>& summaries,
-                        const std::string& commandLine, const nlohmann::json& result);
+                        const World& world, const ExploreOutcome& outcome,
+                        const nlohmann::json& result);
 
 }  // namespace photonav

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "config/explore_config.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "config/config_keys.hpp"
@@ -17,6 +18,7 @@ void readExplorers(YamlMap& explore, std::vector<std::string>& planners) {
         } catch (const std::invalid_argument& unknown) {
             explore.fail("planners", unknown.what());
         }
+        if (std::ranges::count(planners, name) > 1) explore.fail("planners", name + " twice");
     }
 }
 

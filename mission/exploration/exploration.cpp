@@ -276,7 +276,11 @@ ExplorationSetup setUpExploration(const PlanningProblem& problem) {
 ExplorationResult explore(const ExplorationSetup& setup, const std::string& planner,
                           std::uint32_t seed, const std::atomic<bool>& interrupted,
                           const OnPlanUpdate& onUpdate, const OnExposure& onExposure) {
-    return Exploration(setup, planner, seed, interrupted, onUpdate).run(onExposure);
+    const Stopwatch watch;
+    ExplorationResult flight =
+        Exploration(setup, planner, seed, interrupted, onUpdate).run(onExposure);
+    flight.wallSeconds = watch.seconds();
+    return flight;
 }
 
 }  // namespace photonav

@@ -18,9 +18,10 @@ struct ExplorationResult : FlightResult {
     std::uint32_t seed = 0;
     std::string reason;  ///< of an end that is not arrived
     int keyframes = 0;
-    int blindSteps = 0;  ///< into space that could not be looked at first
+    int blindSteps = 0;       ///< into space that could not be looked at first
+    double wallSeconds = 0.;  ///< that it took to simulate
     std::vector<PlanUpdate> updates;
-    std::shared_ptr<TexturedOcTree> map;  ///< that the robot made
+    std::shared_ptr<TexturedOcTree> map;  ///< that the robot made; empty: not kept
 };
 
 /// The unknown scene and the conditions of flight.

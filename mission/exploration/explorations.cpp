@@ -1,49 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "exploration/explorations.hpp"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 
 #include "evaluation/averages.hpp"
 #include "flight/flight_statistics.hpp"
+#include "runs/work_items.hpp"
 
 namespace photonav {
 
-std::vector<ExplorationResult> exploreMany(const ExplorationSetup& setup,
-                                           const std::vector<std::string>& planners,
-                                           unsigned trials, unsigned jobs,
-                                           const std::atomic<bool>& interrupted,
-                                           const OnExplorations& on) {
-    const std::size_t count = planners.size() * trials;
-    std::vector<ExplorationResult> flights(count);
+std::vector<std::string> plannersOf(const Config& config) {
+    const std::vector<std::string>& planners = config.explore.planners;
+    return planners.empty() ? std::vector{config.planner} : planners;
+}
+
+std::vector<TrialItem> trialItems(const Config& config) {
+    const unsigned trials = config.explore.trials;
+    checkSeeds(config, trials);
+    std::vector<TrialItem> items;
+    for (const std::string& planner : plannersOf(config)) {
+        for (unsigned i = 0; i < trials; ++i) items.push_back({planner, config.seed + i});
+    }
+    return items;
+}
+
+void exploreMany(const ExplorationSetup& setup, const std::vector<TrialItem>& items, unsigned jobs,
+                 const std::atomic<bool>& interrupted, const OnExplorations& on) {
     std::mutex mutex;  // of the callbacks
     const auto report = [&](const ExplorationResult& soFar) {
         const std::lock_guard lock(mutex);
         if (on.update) on.update(soFar);
     };
-    const auto exploreOne = [&](std::size_t i) {
-        if (interrupted && i > 0) return;
-        const auto seed = static_cast<std::uint32_t>(setup.config.seed + i % trials);
-        flights[i] = explore(setup, planners[i / trials], seed, interrupted, report,
-                             i == 0 ? on.exposure : OnExposure{});
+    workInOrder(items.size(), jobs, [&](std::size_t i) {
+        if (interrupted && i > 0) return false;
+        ExplorationResult flight = explore(setup, items[i].planner, items[i].seed, interrupted,
+                                           report, i == 0 ? on.exposure : OnExposure{});
         const std::lock_guard lock(mutex);
-        if (on.end) on.end(flights[i]);
-    };
-    tbb::task_arena(static_cast<int>(jobs)).execute([&] {
-        tbb::parallel_for(std::size_t{0}, count, exploreOne, tbb::simple_partitioner());
+        if (on.end) on.end(std::move(flight));
+        return true;
     });
-    const auto isLeftOut = [&](const ExplorationResult& flight) {
-        return flight.end == FlightEnd::stopped && &flight != &flights.front();
-    };
-    std::vector<ExplorationResult> done;
-    for (ExplorationResult& flight : flights) {
-        if (!isLeftOut(flight)) done.push_back(std::move(flight));
-    }
-    return done;
 }
 
 double seconds(const PlanUpdate& update) {

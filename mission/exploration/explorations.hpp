@@ -2,6 +2,7 @@
 // Many explorations of a scene, and their numbers.
 #pragma once
 
+#include <compare>
 #include <limits>
 #include <span>
 
@@ -9,21 +10,32 @@
 
 namespace photonav {
 
+/// One flight of an unknown scene.
+struct TrialItem {
+    std::string planner;  ///< as exploreStrategy() takes it
+    std::uint32_t seed = 1;
+    auto operator<=>(const TrialItem&) const = default;
+};
+inline TrialItem itemOf(const ExplorationResult& flight) { return {flight.planner, flight.seed}; }
+
+/// The planners that a config compares: planner.name alone where no others are named.
+std::vector<std::string> plannersOf(const Config& config);
+
+/// All flights that a config asks for: planner by planner, seed by seed from the config's on.
+/// @throws InputError for seeds beyond the last one
+std::vector<TrialItem> trialItems(const Config& config);
+
 /// Called while scenes are explored, one at a time; each may be empty.
 struct OnExplorations {
-    std::function<void(const ExplorationResult&)> end = {};  ///< as flights end, in any order
+    std::function<void(ExplorationResult)> end = {};  ///< as flights end, in any order
     OnPlanUpdate update = {};
-    OnExposure exposure = {};  ///< of the first flight
+    OnExposure exposure = {};  ///< of the first item
 };
 
-/// `trials` flights of each planner, with the seeds seed, seed + 1, ... of the config, on `jobs`
-/// threads.
-/// @return by planner, then by seed; without those that were interrupted, but the first
-std::vector<ExplorationResult> exploreMany(const ExplorationSetup& setup,
-                                           const std::vector<std::string>& planners,
-                                           unsigned trials, unsigned jobs,
-                                           const std::atomic<bool>& interrupted,
-                                           const OnExplorations& on = {});
+/// Flies `items` on `jobs` threads. When interrupted, flights end as FlightEnd::stopped and no
+/// others begin, but the first.
+void exploreMany(const ExplorationSetup& setup, const std::vector<TrialItem>& items, unsigned jobs,
+                 const std::atomic<bool>& interrupted, const OnExplorations& on);
 
 /// Wall-clock time of an update: fusion, clearance, views and planning [s].
 double seconds(const PlanUpdate& update);

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "app/executable.hpp"
+#include "io/folder_transaction.hpp"
 #include "map/octree_file.hpp"
 #include "recording/sequence_tum.hpp"
 #include "recording/trajectory.hpp"
@@ -35,6 +38,59 @@ class ExploreCommand : public testing::Test {
 
     json result(const std::string& name) const {
         return json::parse(std::ifstream(folder_ / name / "result.json"));
+    }
+
+    /// All that was flown, without what depends on the machine.
+    json flown(const std::string& name) const {
+        json whole = result(name);
+        whole.erase("time");
+        const auto withoutTimes = [](json& flight) {
+            flight.erase("wall_s");
+            for (json& update : flight["updates"]) {
+                for (const char* key : {"fuse_ms", "clearance_ms", "views_ms", "plan_ms"}) {
+                    update.erase(key);
+                }
+            }
+        };
+        withoutTimes(whole);
+        for (json& flight : whole["trials"]) withoutTimes(flight);
+        for (json& summary : whole["summary"]) {
+            for (const char* key : {"update_median_ms", "update_95_percent_ms"}) summary.erase(key);
+        }
+        return whole;
+    }
+
+    std::string fileOf(const std::string& name, const std::string& file) const {
+        return test::contentOf(folder_ / name / file);
+    }
+
+    /// Everything but what depends on the machine.
+    void expectSame(const std::string& name, const std::string& other) const {
+        EXPECT_EQ(flown(name), flown(other));
+        for (const char* file : {"config.yaml", "map.ot", "trajectory.tum", "trajectory.cov",
+                                 "groundtruth.tum", "map.png", "top_view.png"}) {
+            EXPECT_TRUE(fileOf(name, file) == fileOf(other, file)) << file;
+        }
+    }
+
+    /// As an exploration is when it was killed after `count` flights: these, and half of the next.
+    void killAfter(const std::string& name, std::size_t count) const {
+        const fs::path unfinished = folder_ / (name + ".unfinished");
+        fs::create_directories(unfinished);
+        std::istringstream lines(fileOf(name, "trials.jsonl"));
+        std::ofstream kept(unfinished / "trials.jsonl");
+        std::string line;
+        for (std::size_t i = 0; i <= count && std::getline(lines, line); ++i) kept << line << '\n';
+        if (std::getline(lines, line)) kept << line.substr(0, 40);
+        if (count > 0) fs::rename(folder_ / name / "map.ot", unfinished / "map.ot");
+        fs::remove_all(folder_ / name);
+    }
+
+    static void expectBadInput(const Execution& run, const std::string& reason) {
+        EXPECT_EQ(run.exitCode, 2) << run.output;
+        EXPECT_NE(run.output.find(reason), std::string::npos) << run.output;
+        EXPECT_TRUE(run.output.starts_with("photonav: ")) << run.output;
+        EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
     }
 
     test::TemporaryFolder temporary_;
@@ -109,6 +165,117 @@ TEST_F(ExploreCommand, RecordsTheFlight) {
     EXPECT_FALSE(fs::exists(folder_ / "b"));
 }
 
+const std::string kThreeFlights = " --planners rrt_star --trials 3 --time-limit 3 ";
+
+TEST_F(ExploreCommand, AKilledExplorationResumesWhereItWas) {
+    ASSERT_EQ(explore("whole", kThreeFlights).exitCode, 1);  // out of time
+    for (const std::size_t ended : {0U, 1U, 2U}) {
+        fs::copy(folder_ / "whole", folder_ / "out", fs::copy_options::recursive);
+        killAfter("out", ended);
+        const std::string kept = fileOf("out.unfinished", "trials.jsonl");
+        if (ended == 2) {
+            expectBadInput(explore("out", kThreeFlights),
+                           "out.unfinished: holds 2 flights of an exploration that was killed");
+        }
+        const Execution resumed = explore("out", kThreeFlights + "--resume --jobs 2");
+        ASSERT_EQ(resumed.exitCode, 1) << resumed.output;
+        expectSame("out", "whole");
+        const std::string whole = kept.substr(0, kept.rfind('\n') + 1);
+        EXPECT_TRUE(fileOf("out", "trials.jsonl").starts_with(whole));  // not flown again
+        EXPECT_FALSE(fs::exists(folder_ / "out.unfinished"));
+        fs::remove_all(folder_ / "out");
+    }
+}
+
+TEST_F(ExploreCommand, AnEndedExplorationIsExtended) {
+    const std::string quick = " --time-limit 2 --resume ";
+    ASSERT_EQ(explore("out", quick + "--planners rrt_star --trials 2").exitCode, 1);
+    const std::string kept = fileOf("out", "trials.jsonl");
+    const std::string wanted = quick + "--planners pa_rrt_star,rrt_star --trials 2 --seed 2";
+    ASSERT_EQ(explore("out", wanted).exitCode, 1);
+    ASSERT_EQ(explore("fresh", wanted).exitCode, 1);
+    expectSame("out", "fresh");  // with the map of another flight than before
+    const std::string all = fileOf("out", "trials.jsonl");
+    EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 1 + 2 + 3);  // of five, one was there
+    expectBadInput(explore("out", wanted + " --set camera.sigma=0.03"),
+                   "the exploration was begun with another config: camera.sigma: 0.03 instead of");
+    expectBadInput(explore("out", wanted + " --shard 1/2"), "holds shard 1/1, not 1/2");
+    expectBadInput(explore("out", wanted + " --record " + at("flight")),
+                   "--record: the first flight has been flown");
+    EXPECT_EQ(result("out")["trials"].size(), 4U);  // still there
+}
+
+TEST_F(ExploreCommand, ShardsMergeToTheWhole) {
+    ASSERT_EQ(explore("whole", kThreeFlights).exitCode, 1);
+    ASSERT_EQ(explore("1of2", kThreeFlights + "--shard 1/2").exitCode, 1);
+    ASSERT_EQ(explore("2of2", kThreeFlights + "--shard 2/2").exitCode, 1);
+    ASSERT_EQ(explore("other", kThreeFlights + "--shard 2/2 --commitment 0.2").exitCode, 1);
+    EXPECT_EQ(result("1of2")["trials"].size(), 2U);
+    EXPECT_EQ(result("2of2")["trials"][0]["seed"], 2);
+    const auto merge = [&](const std::string& first, const std::string& second,
+                           const std::string& more = "") {
+        return photonav(fmt::format("explore --merge {} {} --out {} {}", at(first), at(second),
+                                    at("merged"), more));
+    };
+    const Execution merged = merge("2of2", "1of2");
+    ASSERT_EQ(merged.exitCode, 1) << merged.output;
+    expectSame("merged", "whole");
+
+    expectBadInput(merge("1of2", "1of2"), "is shard 1/2, as is ");
+    expectBadInput(merge("1of2", "other"), "explore.commitment: 0.2 instead of 0.1");
+    expectBadInput(merge("1of2", "nowhere"), "is this an exploration?");
+    expectBadInput(merge("1of2", "merged"), "is shard 1/1");
+    expectBadInput(merge("1of2", "2of2", "--resume"), "goes without --shard and --resume");
+    expectBadInput(merge("1of2", "2of2", "--record " + at("flight")), "goes without --record");
+    expectBadInput(photonav("explore --merge " + at("1of2") + " --out " + at("new")),
+                   "shard 2/2: missing");
+    {
+        const FolderTransaction running(folder_ / "2of2");
+        expectBadInput(merge("1of2", "2of2"), "2of2: another photonav is writing it");
+    }
+    fs::rename(folder_ / "1of2/map.ot", folder_ / "map.ot");
+    expectBadInput(merge("1of2", "2of2"), "the map of its first flight is missing");
+    fs::rename(folder_ / "map.ot", folder_ / "1of2/map.ot");
+    const std::string flights = fileOf("2of2", "trials.jsonl");
+    std::ofstream(folder_ / "2of2/trials.jsonl") << flights.substr(0, flights.find('\n') + 40);
+    expectBadInput(merge("1of2", "2of2"), "1 flights are missing; finish it with --resume");
+    EXPECT_EQ(result("merged")["trials"].size(), 3U);  // still there
+}
+
+TEST_F(ExploreCommand, CtrlCKeepsTheFlightsThatEnded) {
+    const std::string common = fmt::format("explore {} {} --planners rrt_star --time-limit 2",
+                                           config("two_textures"), kQuickExploration);
+    // Interrupted as soon as the header and two flights are there.
+    const Execution run = execute(fmt::format(
+        "{{ {} {} --trials 1000000 --out {} & until [ $(cat {}.unfinished/trials.jsonl 2>/dev/null"
+        " | wc -l) -gt 2 ]; do sleep 0.05; done; kill -INT $!; wait $!; }}",
+        PHOTONAV_BINARY, common, at("out"), at("out")));
+    EXPECT_EQ(run.exitCode, 130) << run.output;
+    EXPECT_NE(run.output.find(" of 1000000 flights ended and are kept"), std::string::npos)
+        << run.output;
+    const json r = result("out");
+    EXPECT_EQ(r["status"], "interrupted");
+    EXPECT_GE(r["trials"].size(), 2U);
+    EXPECT_EQ(r["trials"].size(), r["flights_ended"]);
+    for (const json& flight : r["trials"]) EXPECT_EQ(flight["end"], "out of time");
+    const auto again =
+        fmt::format("{} --trials {} --resume --out {}", common, r["trials"].size(), at("out"));
+    EXPECT_EQ(photonav(again).exitCode, 1);
+    EXPECT_EQ(result("out")["trials"], r["trials"]);  // not flown again
+}
+
+TEST_F(ExploreCommand, AFirstFlightThatIsInterruptedIsReportedNotKept) {
+    const Execution run = execute(fmt::format(
+        "{{ {} explore {} {} --planners rrt_star --out {} & until [ -s "
+        "{}.unfinished/trials.jsonl ]; do sleep 0.05; done; sleep 0.5; kill -INT $!; wait $!; }}",
+        PHOTONAV_BINARY, config("two_textures"), kQuickExploration, at("out"), at("out")));
+    EXPECT_EQ(run.exitCode, 130) << run.output;
+    EXPECT_EQ(result("out")["trials"][0]["end"], "stopped");
+    EXPECT_EQ(result("out")["flights_ended"], 0);
+    const std::string kept = fileOf("out", "trials.jsonl");
+    EXPECT_EQ(std::count(kept.begin(), kept.end(), '\n'), 1);
+}
+
 TEST_F(ExploreCommand, RefusesBadInputInOneLine) {
     const auto refuses = [&](const std::string& arguments, const std::string& reason) {
         const Execution run = explore("bad", arguments);
@@ -123,6 +290,12 @@ TEST_F(ExploreCommand, RefusesBadInputInOneLine) {
     refuses("--set explore.sensor=sonar", "explore.sensor");
     refuses("--set explore.vertex=3", "did you mean 'vertices'");
     refuses("--set fly.rate=-1", "fly.rate");
+    refuses("--planners rrt_star,rrt_star", "explore.planners: rrt_star twice");
+    refuses("--seed 4294967295 --trials 2", "2 runs from 4294967295 on go beyond the last seed");
+    refuses("--shard 3/2", "--shard: '3/2' is not k/n");
+    refuses("--shard 3/3 --trials 2", "--shard: 3/3: of 2 flights none");
+    refuses("--jobs 0", "--jobs");
+    expectBadInput(photonav("explore"), "give a CONFIG");
 }
 
 }  // namespace

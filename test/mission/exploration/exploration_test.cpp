@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "flight/flight_statistics.hpp"
 #include "io/error.hpp"
 
@@ -110,17 +112,24 @@ TEST_F(RoomToExplore, ManyFlightsAreTheSameOnAnyNumberOfThreads) {
     const World world(room(), config);
     const PlanningProblem problem(config, world);
     const ExplorationSetup setup = setUpExploration(problem);
-    const std::vector<std::string> planners{"rrt_star", "belief_rrt_star"};
-    const auto one = exploreMany(setup, planners, 2, 1, kNotInterrupted);
-    const auto two = exploreMany(setup, planners, 2, 2, kNotInterrupted);
+    const std::vector<TrialItem> items{
+        {"rrt_star", 1}, {"rrt_star", 2}, {"belief_rrt_star", 1}, {"belief_rrt_star", 2}};
+    const auto fly = [&](unsigned jobs) {
+        std::map<TrialItem, ExplorationResult> flights;
+        exploreMany(setup, items, jobs, kNotInterrupted, {[&](ExplorationResult flight) {
+                        flights.emplace(itemOf(flight), std::move(flight));
+                    }});
+        return flights;
+    };
+    auto one = fly(1), two = fly(2);
     ASSERT_EQ(one.size(), 4U);
     ASSERT_EQ(two.size(), 4U);
-    for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_EQ(one[i].planner, planners[i / 2]);
-        EXPECT_EQ(one[i].seed, 1 + i % 2);
-        EXPECT_EQ(one[i].goalError, two[i].goalError);
+    std::vector<ExplorationResult> flights;
+    for (const TrialItem& item : items) {
+        EXPECT_EQ(one.at(item).goalError, two.at(item).goalError);
+        flights.push_back(one.at(item));
     }
-    const ExplorationSummary s = summarise(one, 1.);
+    const ExplorationSummary s = summarise(flights, 1.);
     EXPECT_EQ(s.flights, 4U);
     EXPECT_GT(s.updateMedian, 0.);
 }

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exploration/trial_journal.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <stdexcept>
+
+#include "geometry/constants.hpp"
+#include "map/octree_file.hpp"
+
+namespace photonav {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+constexpr double kFarthest = 1e6;  // from the origin [m]
+
+void require(bool holds, const char* what) {
+    if (!holds) throw std::out_of_range(what);
+}
+
+/// A duration, length or share of them.
+double positive(const json& line, const char* key) {
+    const auto value = line.at(key).get<double>();
+    require(value >= 0., key);
+    return value;
+}
+
+double orNone(const json& line, const char* key) {
+    return line.at(key).is_null() ? kNone : line.at(key).get<double>();
+}
+
+int countOf(const json& line, const char* key) { return wholeNumber<int>(line.at(key)); }
+
+/// Row by row.
+template <int rows, int columns>
+json valuesOf(const Eigen::Matrix<double, rows, columns>& matrix) {
+    json values = json::array();
+    for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < columns; ++j) values.push_back(matrix(i, j));
+    }
+    return values;
+}
+
+template <int rows, int columns>
+Eigen::Matrix<double, rows, columns> matrixFrom(const json& values) {
+    require(values.size() == std::size_t{rows * columns}, "size");
+    Eigen::Matrix<double, rows, columns> matrix;
+    for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < columns; ++j) matrix(i, j) = values.at(i * columns + j).get<double>();
+    }
+    return matrix;
+}
+
+json valuesOf(const Pose& pose) { return valuesOf<3, 4>(pose.matrix().topRows<3>()); }
+
+Pose poseFrom(const json& values) {
+    constexpr double kTolerance = 1e-6;
+    Pose pose = Pose::Identity();
+    pose.matrix().topRows<3>() = matrixFrom<3, 4>(values);
+    require(pose.linear().isUnitary(kTolerance) && pose.linear().determinant() > 0., "rotation");
+    require(pose.translation().norm() < kFarthest, "position");
+    return pose;
+}
+
+json lineOf(const FlightSample& sample) {
+    return {{"time", sample.time},
+            {"distance", sample.distance},
+            {"T_c_w", valuesOf(sample.T_c_w)},
+            {"believed_T_c_w", valuesOf(sample.belief.mean)},
+            {"covariance", valuesOf<6, 6>(sample.belief.covariance)}};
+}
+
+FlightSample sampleFrom(const json& line) {
+    const auto covariance = matrixFrom<6, 6>(line.at("covariance"));
+    require(covariance.diagonal().minCoeff() >= 0., "covariance");
+    return {positive(line, "time"),
+            positive(line, "distance"),
+            poseFrom(line.at("T_c_w")),
+            {poseFrom(line.at("believed_T_c_w")), covariance}};
+}
+
+json lineOf(const PlanUpdate& u) {
+    return {{"time", u.time},
+            {"vertices_invalidated", u.counts.verticesInvalidated},
+            {"edges_invalidated", u.counts.edgesInvalidated},
+            {"vertices_added", u.counts.verticesAdded},
+            {"vertices_rewired", u.counts.verticesRewired},
+            {"views_marked", u.viewsMarked},
+            {"views_rendered", u.viewsRendered},
+            {"fuse_s", u.fuseSeconds},
+            {"clearance_s", u.clearanceSeconds},
+            {"views_s", u.viewSeconds},
+            {"plan_s", u.planSeconds},
+            {"cost", finiteOrNull(u.cost)},
+            {"length", finiteOrNull(u.length)},
+            {"trace", finiteOrNull(u.trace)}};
+}
+
+PlanUpdate updateFrom(const json& line) {
+    const auto count = [&](const char* key) { return wholeNumber<std::size_t>(line.at(key)); };
+    return {.time = positive(line, "time"),
+            .counts = {.verticesInvalidated = count("vertices_invalidated"),
+                       .edgesInvalidated = count("edges_invalidated"),
+                       .verticesAdded = count("vertices_added"),
+                       .verticesRewired = count("vertices_rewired")},
+            .viewsMarked = count("views_marked"),
+            .viewsRendered = count("views_rendered"),
+            .fuseSeconds = positive(line, "fuse_s"),
+            .clearanceSeconds = positive(line, "clearance_s"),
+            .viewSeconds = positive(line, "views_s"),
+            .planSeconds = positive(line, "plan_s"),
+            .cost = orNone(line, "cost"),
+            .length = orNone(line, "length"),
+            .trace = orNone(line, "trace")};
+}
+
+/// The end of a flight that was not stopped.
+FlightEnd endFrom(const std::string& name) {
+    for (int i = 0; i < static_cast<int>(FlightEnd::stopped); ++i) {
+        if (nameOf(static_cast<FlightEnd>(i)) == name) return static_cast<FlightEnd>(i);
+    }
+    throw std::out_of_range("end");
+}
+
+template <typename Element>
+json linesOf(const std::vector<Element>& elements) {
+    json lines = json::array();
+    for (const Element& element : elements) lines.push_back(lineOf(element));
+    return lines;
+}
+
+}  // namespace
+
+Identity TrialKind::identity(const Config& config) {
+    Identity identity =
+        without({"planner.name", "planner.compare_with_rrt_star", "map.made_by", "sweep."},
+                identityOf(config));
+    identity["explore.planners"] = fmt::format("[{}]", fmt::join(plannersOf(config), ", "));
+    return identity;
+}
+
+Identity TrialKind::runIdentity(const Identity& exploration) {
+    return without({"seed", "explore.trials", "explore.planners"}, exploration);
+}
+
+json TrialKind::save(const ExplorationResult& flight, const fs::path& folder) {
+    if (flight.map) saveTexturedOcTree(*flight.map, folder / kMapFile);
+    return {{"planner", flight.planner},
+            {"seed", flight.seed},
+            {"end", nameOf(flight.end)},
+            {"reason", flight.reason},
+            {"duration_s", flight.duration},
+            {"way", flight.way},
+            {"lost_s", flight.lost},
+            {"times_lost", flight.timesLost},
+            {"goal_error", flight.goalError},
+            {"least_clearance", finiteOrNull(flight.leastClearance)},
+            {"images", flight.images},
+            {"rejected_images", flight.rejectedImages},
+            {"keyframes", flight.keyframes},
+            {"blind_steps", flight.blindSteps},
+            {"wall_s", flight.wallSeconds},
+            {"has_map", flight.map != nullptr},
+            {"samples", linesOf(flight.samples)},
+            {"updates", linesOf(flight.updates)}};
+}
+
+ExplorationResult TrialKind::load(const json& line, const fs::path& folder) {
+    ExplorationResult flight;
+    flight.planner = line.at("planner");
+    flight.seed = wholeNumber<std::uint32_t>(line.at("seed"));
+    flight.end = endFrom(line.at("end"));
+    flight.reason = line.at("reason");
+    flight.duration = positive(line, "duration_s");
+    flight.way = positive(line, "way");
+    flight.lost = positive(line, "lost_s");
+    flight.timesLost = countOf(line, "times_lost");
+    flight.goalError = positive(line, "goal_error");
+    flight.leastClearance = orNone(line, "least_clearance");
+    flight.images = countOf(line, "images");
+    flight.rejectedImages = countOf(line, "rejected_images");
+    flight.keyframes = countOf(line, "keyframes");
+    flight.blindSteps = countOf(line, "blind_steps");
+    flight.wallSeconds = positive(line, "wall_s");
+    for (const json& sample : line.at("samples")) flight.samples.push_back(sampleFrom(sample));
+    for (const json& update : line.at("updates")) flight.updates.push_back(updateFrom(update));
+    if (line.at("has_map").get<bool>() && fs::exists(folder / kMapFile)) {
+        flight.map = loadTexturedOcTree(folder / kMapFile);
+    }
+    return flight;
+}
+
+void keepMapOf(const TrialItem& first, std::vector<ExplorationResult>& flights) {
+    std::erase_if(flights, [&](ExplorationResult& flight) {
+        if (itemOf(flight) == first) return !flight.map;
+        flight.map.reset();
+        return false;
+    });
+}
+
+}  // namespace photonav
