@@ -157,6 +157,7 @@ std::vector<typename Kind::Run> gather(const ManyRunsOptions& options,
         for (auto& run : shards[i].runsOf(own)) all.emplace(Kind::itemOf(run), std::move(run));
     }
     std::vector<typename Kind::Run> runs;
+    runs.reserve(items.size());
     for (const auto& item : items) runs.push_back(std::move(all.at(item)));
     return runs;
 }

@@ -266,8 +266,8 @@ TEST_F(ExploreCommand, CtrlCKeepsTheFlightsThatEnded) {
 
 TEST_F(ExploreCommand, AFirstFlightThatIsInterruptedIsReportedNotKept) {
     const Execution run = execute(fmt::format(
-        "{{ {} explore {} {} --planners rrt_star --out {} & until [ -s "
-        "{}.unfinished/trials.jsonl ]; do sleep 0.05; done; sleep 0.5; kill -INT $!; wait $!; }}",
+        "{{ {} explore {} {} --set goal=[2,9,2] --planners rrt_star --out {} & until [ -s "
+        "{}.unfinished/trials.jsonl ]; do sleep 0.02; done; kill -INT $!; wait $!; }}",
         PHOTONAV_BINARY, config("two_textures"), kQuickExploration, at("out"), at("out")));
     EXPECT_EQ(run.exitCode, 130) << run.output;
     EXPECT_EQ(result("out")["trials"][0]["end"], "stopped");

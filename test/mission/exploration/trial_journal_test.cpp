@@ -185,7 +185,7 @@ TEST(TrialIdentity, IsThatOfWhatFlightsDependOn) {
             loadConfig(fmt::format("{}/config/two_textures.yaml", PHOTONAV_SOURCE_DIR), overrides));
     };
     const Identity base = identity({});
-    EXPECT_EQ(difference(identity({"fly.rate=11"}), base), "fly.rate: 11 instead of 10");
+    EXPECT_EQ(difference(identity({"fly.rate=11"}), base), "fly.rate: 11 instead of 0");
     EXPECT_EQ(difference(identity({"sweep.runs=3"}), base), "");
     EXPECT_EQ(difference(identity({"planner.name=rrt_star"}), base),
               "explore.planners: [rrt_star] instead of [belief_rrt_star]");
