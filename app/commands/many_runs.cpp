@@ -11,6 +11,20 @@
 
 namespace photonav {
 namespace fs = std::filesystem;
+namespace {
+
+/// The config that the shards keep. Nothing is written to the result's folder yet.
+Config keptConfig(const JournalHeader& header,
+                  const std::function<Config(const std::string& file)>& load) {
+    const fs::path copy =
+        fs::temp_directory_path() / fmt::format("photonav_merge_{}.yaml", getpid());
+    writeFileAtomically(copy, header.config);
+    const std::unique_ptr<const fs::path, void (*)(const fs::path*)> removed(
+        &copy, [](const fs::path* file) { fs::remove(*file); });
+    return load(copy.string());
+}
+
+}  // namespace
 
 bool isMerge(const ManyRunsOptions& options, const RunWords& words) {
     if (!options.merge.empty()) {
@@ -134,21 +148,6 @@ void checkIsNoShard(const ManyRunsOptions& options, const fs::path& target) {
         throw InputError("--merge", shard, "the result needs another folder (--out)");
     }
 }
-
-namespace {
-
-/// The config that the shards keep. Nothing is written to the result's folder yet.
-Config keptConfig(const JournalHeader& header,
-                  const std::function<Config(const std::string& file)>& load) {
-    const fs::path copy =
-        fs::temp_directory_path() / fmt::format("photonav_merge_{}.yaml", getpid());
-    writeFileAtomically(copy, header.config);
-    const std::unique_ptr<const fs::path, void (*)(const fs::path*)> removed(
-        &copy, [](const fs::path* file) { fs::remove(*file); });
-    return load(copy.string());
-}
-
-}  // namespace
 
 Config configOfShards(const ManyRunsOptions& options, const JournalHeader& header,
                       const fs::path& journal,

@@ -137,28 +137,46 @@ class EmptyRoom : public testing::Test {
 
 TEST_F(EmptyRoom, AnInterruptedSetKeepsItsFirstFlight) {
     const std::atomic<bool> interrupted{true};
-    std::size_t ended = 0;
-    const auto flights = exploreMany(setUpExploration(*problem), {"rrt_star"}, 3, 1, interrupted,
-                                     {.end = [&](const ExplorationResult&) { ++ended; }});
+    std::vector<ExplorationResult> flights;
+    config.explore.trials = 3;
+    exploreMany(setUpExploration(*problem), trialItems(config), 1, interrupted,
+                {.end = [&](ExplorationResult flight) { flights.push_back(std::move(flight)); }});
     ASSERT_EQ(flights.size(), 1U);
     EXPECT_EQ(flights[0].end, FlightEnd::stopped);
-    EXPECT_EQ(ended, 1U);
+    EXPECT_EQ(itemOf(flights[0]), trialItems(config).front());
 }
 
 TEST_F(EmptyRoom, EveryEndAndEveryUpdateIsReported) {
     std::size_t ended = 0, updated = 0, updates = 0;
-    const auto flights =
-        exploreMany(setUpExploration(*problem), {"rrt_star"}, 2, 2, kNotInterrupted,
-                    {.end = [&](const ExplorationResult&) { ++ended; },
-                     .update =
-                         [&](const ExplorationResult& soFar) {
-                             ++updated;
-                             EXPECT_FALSE(soFar.updates.empty());
-                         }});
-    for (const ExplorationResult& flight : flights) updates += flight.updates.size();
+    const auto onEnd = [&](const ExplorationResult& flight) {
+        ++ended;
+        updates += flight.updates.size();
+    };
+    const auto onUpdate = [&](const ExplorationResult& soFar) {
+        ++updated;
+        EXPECT_FALSE(soFar.updates.empty());
+    };
+    exploreMany(setUpExploration(*problem), {{"rrt_star", 1}, {"rrt_star", 2}}, 2, kNotInterrupted,
+                {onEnd, onUpdate});
     EXPECT_EQ(ended, 2U);
     EXPECT_GT(updated, 0U);
     EXPECT_EQ(updated, updates);
+}
+
+TEST_F(EmptyRoom, TrialsAreListedByPlannerThenBySeed) {
+    config.seed = 4294967294U;
+    config.explore.trials = 2;
+    config.explore.planners = {"rrt_star/once", "rrbt"};
+    const std::vector<TrialItem> expected{{"rrt_star/once", 4294967294U},
+                                          {"rrt_star/once", 4294967295U},
+                                          {"rrbt", 4294967294U},
+                                          {"rrbt", 4294967295U}};
+    EXPECT_EQ(trialItems(config), expected);
+    config.explore.planners = {};
+    config.planner = "pa_rrt_star";
+    EXPECT_EQ(trialItems(config).front().planner, "pa_rrt_star");
+    config.explore.trials = 3;
+    EXPECT_THROW(trialItems(config), InputError);
 }
 
 }  // namespace
