@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that earlier runs left: the journals of a sweep and of an exploration, the table of reference paths, the report's
-// data, the manifest of a result folder.
+// Files that earlier runs left: the journals of a sweep and of an exploration, the table of
+// reference paths, the report's data, the manifest of a result folder.
 #include "exploration/trial_journal.hpp"
 #include "fuzz_input.hpp"
 #include "io/folder_transaction.hpp"
