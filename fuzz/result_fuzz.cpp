@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that earlier runs left: the journals of a sweep and of an exploration, the table of
-// reference paths, the report's data, the manifest of a result folder.
-#include "exploration/trial_journal.hpp"
+// Files that earlier runs left: the journal of a sweep, the table of reference paths, the report's
+// data, the manifest of a result folder.
 #include "fuzz_input.hpp"
 #include "io/folder_transaction.hpp"
 #include "report/report.hpp"
@@ -9,7 +8,7 @@
 #include "sweep/sweep_journal.hpp"
 
 void photonav::fuzz::run(std::string_view input) {
-    const unsigned choice = takeChoice(input, 5);
+    const unsigned choice = takeChoice(input, 4);
     check([&] {
         if (choice == 0) {
             write("runs.jsonl", input);
@@ -20,12 +19,9 @@ void photonav::fuzz::run(std::string_view input) {
             ReferenceTable(folder() / "table.csv").read();
         } else if (choice == 2) {
             readReportJson(write("report.json", input));
-        } else if (choice == 3) {
+        } else {
             write("result/.photonav", input);
             Manifest::read(folder() / "result").foreignFile(folder() / "result");
-        } else {
-            write("trials.jsonl", input);
-            TrialJournal::read(folder());
         }
     });
 }

@@ -6,7 +6,8 @@ namespace {
 
 constexpr double kLooksAhead = 0.25;  // horizontal part of the axis of such a camera
 
-constexpr double kBehind = 0.01;  // [cells]
+constexpr double kBeside = 0.02;      // [cells]
+constexpr float kForgotten = -0.01F;  // log odds: free, until a surface is seen there once
 
 Eigen::Array3i brickOf(const octomap::OcTreeKey& key) {
     return Eigen::Array3i(key[0] - kKeyOfZero, key[1] - kKeyOfZero, key[2] - kKeyOfZero)
@@ -56,18 +57,26 @@ MapChange OwnMap::fuse(const View& image, const Camera& camera, const Pose& T_c_
 MapChange OwnMap::forget(const View& shown, const Camera& camera, const Pose& T_c_w) {
     MapChange change{.resolution = cells_->getResolution()};
     const Pose T_w_c = T_c_w.inverse();
+    const auto forgetCellAt = [&](const Eigen::Vector3d& p_w) {
+        const octomap::OcTreeKey key = cells_->coordToKey(p_w.x(), p_w.y(), p_w.z());
+        const TexturedOcTreeNode* known = cells_->search(key);
+        if (known == nullptr || !cells_->isNodeOccupied(*known)) return;
+        TexturedOcTreeNode* cell = cells_->setNodeValue(key, kForgotten, true);
+        cell->faces = {};
+        cell->surfaces.clear();
+        change.occupancy.push_back(brickOf(key));
+    };
     for (unsigned v = 0; v < shown.depth.getHeight(); ++v) {
         for (unsigned u = 0; u < shown.depth.getWidth(); ++u) {
             const double z = shown.depth[v][u];
             if (!(z > 0.)) continue;
-            // Just behind what is seen: a view may show the border of a cell.
-            const double inside = z + kBehind * change.resolution;
-            const Eigen::Vector3d p_w = T_w_c * (camera.unproject(u, v, inside));
-            const octomap::OcTreeKey key = cells_->coordToKey(p_w.x(), p_w.y(), p_w.z());
-            if (!cells_->deleteNode(key)) continue;
-            change.occupancy.push_back(brickOf(key));
+            // A surface may lie on the border of two cells.
+            for (const double beside : {-kBeside, kBeside}) {
+                forgetCellAt(T_w_c * camera.unproject(u, v, z + beside * change.resolution));
+            }
         }
     }
+    cells_->updateInnerOccupancy();
     change.normalize();
     change.join(obstacles_.update(*cells_, change));
     return change;

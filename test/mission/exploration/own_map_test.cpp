@@ -81,7 +81,7 @@ TEST_F(MapOfABox, ForgetsWhatIsInView) {
     const MapChange change = map.forget(shownBy(low), camera, low);
     EXPECT_FALSE(isObstacle(map, 0.05, 0.35, 1.45));
     EXPECT_LT(surfaces(T_c_w), before / 2);
-    EXPECT_GT(surfaces(aside), asideBefore / 2);
+    EXPECT_GT(surfaces(aside), asideBefore / 5);  // what both see is gone
     const auto lists = [&](double x, double y, double z) {
         const Eigen::Array3i brick = (Eigen::Array3d(x, y, z) / 0.4).floor().cast<int>();
         return std::ranges::any_of(change.occupancy,
