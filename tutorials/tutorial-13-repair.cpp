@@ -90,7 +90,8 @@ int main() {
     //! [plan]
 
     //! [change]
-    const MapChange change = look(*map, withBox, config, 2.5, 0.);  // a box has appeared
+    MapChange change;  // a box has appeared; one image does not outweigh all that saw no box
+    for (int i = 0; i < 4; ++i) change.join(look(*map, withBox, config, 2.5, 0.));
     const Stopwatch watch;
     world.mapChanged(change);    // clearance, and the views' snapshot of the map
     problem.mapChanged(change);  // cached views, and what of the roadmap is in collision now
