@@ -11,7 +11,7 @@
 namespace photonav {
 namespace {
 
-double mean(const std::vector<float>& values) {
+double meanOf(const std::vector<float>& values) {
     return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
 }
 
@@ -38,15 +38,15 @@ ViewDifference compareViews(const View& observed, const View& predicted) {
     ViewDifference difference;
     difference.predicted = size == 0 ? 0. : static_cast<double>(known.size()) / size;
     if (known.empty()) return difference;
-    difference.meanIntensity = mean(intensity);
+    difference.meanIntensity = meanOf(intensity);
     difference.medianIntensity = median(intensity, 0.);
     if (!depth.empty()) {
-        difference.meanDepth = mean(depth);
+        difference.meanDepth = meanOf(depth);
         difference.medianDepth = median(depth, 0.);
     }
     const auto typical = static_cast<float>(median(known, 0.));
     for (float& value : known) value = std::abs(value - typical);
-    difference.contrast = mean(known);
+    difference.contrast = meanOf(known);
     return difference;
 }
 

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-constexpr double kFarthest = 1e6;  // from the origin [m]
+constexpr double kFarthestPosition = 1e6;  // from the origin [m]
 
 void require(bool holds, const char* what) {
     if (!holds) throw std::out_of_range(what);
@@ -60,7 +60,7 @@ Pose poseFrom(const json& values) {
     Pose pose = Pose::Identity();
     pose.matrix().topRows<3>() = matrixFrom<3, 4>(values);
     require(pose.linear().isUnitary(kTolerance) && pose.linear().determinant() > 0., "rotation");
-    require(pose.translation().norm() < kFarthest, "position");
+    require(pose.translation().norm() < kFarthestPosition, "position");
     return pose;
 }
 
