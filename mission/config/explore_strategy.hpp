@@ -18,7 +18,7 @@ enum class Replanning {
 /// As it is named in a config: a planner, or a planner and a policy, "rrt_star/forward".
 struct ExploreStrategy {
     std::string planner;                         ///< one of plannerNames()
-    std::optional<Headings> headings;            ///< in place of the planner's: "fixed", "forward"
+    std::optional<Headings> headings;            ///< "fixed", "forward"; none: the planner's
     Replanning replanning = Replanning::repair;  ///< "replan": scratch, "once": never
 };
 

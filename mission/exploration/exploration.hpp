@@ -31,8 +31,9 @@ struct ExplorationSetup {
     FlightOptions flight;
 };
 
-/// @param problem of the config in its true world, which must outlive the setup
-/// @throws InputError for a start in collision
+/// @param problem of the config in its true World, which must outlive the setup
+/// @throws InputError for a start in collision, and for headings of explore.planners where the
+///         heading is not free
 ExplorationSetup setUpExploration(const PlanningProblem& problem);
 
 /// Called after every update of the plan.

@@ -61,7 +61,7 @@ ExplorationSummary summarise(std::span<const ExplorationResult> flights,
                              double characteristicLength);
 
 /// One for each planner, in the order of the flights.
-/// @param flights by planner, as exploreMany() returns them
+/// @param flights those of a planner one after the other, as in trialItems()
 std::vector<ExplorationSummary> summariesByPlanner(std::span<const ExplorationResult> flights,
                                                    double characteristicLength);
 

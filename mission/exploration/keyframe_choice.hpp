@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which images become part of the map.
+// Which images of a depth sensor become part of the map while the robot flies on.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ class KeyframeChoice {
     /// An image that the map contradicts is not.
     /// @param shown view of the map from the believed pose
     bool isKeyframe(const TrackedFrame& tracked, const View& image, const View& shown) const;
-    /// Whether it may be, however near it is.
+    /// Whether an image may be fused at all: it is not black, and the map does not contradict it.
     bool isUsable(const TrackedFrame& tracked, const View& image) const;
 
     void fused(const Pose& T_c_w) { T_last_w_ = T_c_w; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which images become part of the map, and when.
+// Fuses images into the robot's own map, by a depth sensor or by the motion of one camera.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,8 @@ class Mapper {
     /// An image was tracked.
     /// @param shown view of the map from the believed pose
     /// @param isNeeded the robot waits for its map to grow
-    /// @return what changed in the map, perhaps nothing; none: the plan is as good as before
+    /// @return what changed in the map, for a new plan; empty while the robot waits for its map
+    ///         although nothing changed; none: no new plan is needed
     std::optional<MapChange> add(const TrackedFrame& tracked, const View& image, const View& shown,
                                  bool isNeeded);
 

@@ -29,9 +29,9 @@ class ObstacleMap {
     /// @return bricks whose obstacles changed
     MapChange update(const TexturedOcTree& map, const MapChange& change);
 
-    /// Columns around a camera that looks down, of which nothing was ever seen although they are in
-    /// the image: something hides them that is higher than what is seen of it. They count as
-    /// occupied from the robot's height on upward.
+    /// Columns near a camera that looks down whose floor is in the image but hidden by a nearer
+    /// surface, and of which nothing was seen. They and their eight neighbours count as occupied
+    /// from `radius` below the camera upward.
     /// @param radius around the camera [m]
     /// @return bricks that changed
     MapChange addHidden(const TexturedOcTree& map, const View& image, const Camera& camera,

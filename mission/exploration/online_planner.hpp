@@ -13,10 +13,11 @@ struct PlanUpdate {
     double time = 0.;  ///< of the flight [s]
     UpdateCounts counts;
     std::size_t viewsMarked = 0, viewsRendered = 0;
-    double fuseSeconds = 0., clearanceSeconds = 0., viewSeconds = 0., planSeconds = 0.;
-    double cost = 0.;    ///< from here to the goal; NaN: no way
+    double fuseSeconds = 0., clearanceSeconds = 0.;
+    double planSeconds = 0., viewSeconds = 0.;  ///< the views are part of planning
+    double cost = 0.;    ///< from here to the goal, as planners count [m]; NaN: no way
     double length = 0.;  ///< the same [m]
-    double trace = 0.;   ///< of the belief here
+    double trace = 0.;   ///< of the belief here, weightedTrace() [m^2]
 };
 
 /// The problem of a config in the robot's own map, its planner and the path found last:
@@ -32,7 +33,7 @@ class OnlinePlanner {
                   std::uint32_t seed);
 
     /// Plans from a believed pose, once the map has changed.
-    /// @param update its times of planning, counts, cost and length are set
+    /// @param update all but `time` and `fuseSeconds` is set
     void update(const MapChange& change, const UncertainPose& T_c_w, PlanUpdate& update,
                 const std::atomic<bool>& interrupted);
 

@@ -28,15 +28,15 @@ class InformationField {
         double positionPitch = 0.125;  ///< edge of a cell [m]
         double rotationPitch =
             std::numbers::pi / 36.;  ///< per component of the rotation vector [rad]
-        /// Entries that updates have touched take turns: each becomes stale in every so many
-        /// updates, and is as the map was until then. 1: at once.
+        /// After an update, only every `turns`-th of the entries in view of the change becomes
+        /// stale; the others follow in the next updates. 1: all at once.
         unsigned turns = 1;
     };
 
     struct Entry {
         Matrix6 information;  ///< about the camera centre, world-oriented axes (see Belief)
         bool isZero;          ///< no information: the update can be skipped
-        bool isStale;         ///< the map has changed in this view: call current() before use
+        bool isStale;         ///< to be evaluated again: call current() before use
         std::uint32_t index;  ///< in the field
         std::uint32_t epoch;  ///< of the field, when this was evaluated
         ViewPenalty penalty;  ///< for fields of penalties; its reduction in world-oriented axes

@@ -58,8 +58,8 @@ class Route {
     /// Whether the belief was at the goal at the last advance().
     bool isAtGoal() const { return atGoal_; }
 
-    /// Whether a belief is too wide for waypoints to be reached, and the plan's at this view is
-    /// not.
+    /// Whether a belief is wider than the route tolerates, and the plan expects less than half of
+    /// its variance at this view.
     bool needs(const PlannedView& view, const UncertainPose& belief) const;
 
     const PlannedView& lastWaypoint() const { return plan_[passed_]; }

@@ -13,11 +13,10 @@ struct LossOptions {
     /// motion is then only extrapolated.
     int rejectedImages = 3;
     double blindTime = 1.5;  ///< without any image before it counts as lost, with odometry [s]
-    /// While lost, the position is searched with this standard deviation on top of the belief's
-    /// [m], growing by `searchGrowth` with every image, and the heading with `searchTurn` [rad].
-    double searchRadius = 0.3;
-    double searchGrowth = 0.02;
-    double searchTurn = 0.1;
+    /// While lost, images are aligned with a wider belief than the tracker's.
+    double searchRadius = 0.3;   ///< standard deviation added to each axis of the position [m]
+    double searchGrowth = 0.02;  ///< its growth with every rejected image, a share of searchRadius
+    double searchTurn = 0.1;     ///< standard deviation added about the vertical [rad]
     /// Share of TrustOptions::maxUnexplained that an image may leave unexplained to end a loss:
     /// little else supports its pose.
     double maxUnexplainedShare = 0.5;

@@ -13,7 +13,8 @@ struct TrackedFrame {
     UncertainPose T_c_w;  ///< after the image; only predicted when lost
     /// The alignment that the belief follows from; when lost, the first that was tried.
     Alignment alignment;
-    bool lost = false;  ///< the image contributed nothing to the belief, for it was rejected
+    bool lost = false;  ///< the image did not change the belief: it was rejected, or the map lacks
+                        ///< what it shows. Whether tracking is lost: Tracker::loss()
     /// The map, made on the same flight, has contradicted the images for long: it is to be
     /// forgotten where it is in view, and made again at the pose that odometry predicts.
     bool isMapDoubted = false;
