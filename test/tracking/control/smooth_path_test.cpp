@@ -47,20 +47,20 @@ struct Flown {
 
 /// As fast as the path allows, from standstill.
 Flown flown(const SmoothPath& path) {
-    constexpr double kStep = 1e-3;  // [s]
+    constexpr double kPhaseStep = 1e-3;  // [s]
     Flown most;
     double phase = 0., rate = 0.;
     Station before = Station::Zero();
-    for (; phase < path.end() - 1e-4 && most.seconds < 200.; most.seconds += kStep) {
-        rate = std::min(rate + path.rateGrowth(phase, rate) * kStep, path.rateLimit(phase));
+    for (; phase < path.end() - 1e-4 && most.seconds < 200.; most.seconds += kPhaseStep) {
+        rate = std::min(rate + path.rateGrowth(phase, rate) * kPhaseStep, path.rateLimit(phase));
         const Station velocity = rate * path.at(phase).first;
-        const Station change = (velocity - before) / kStep;
+        const Station change = (velocity - before) / kPhaseStep;
         before = velocity;
         most.speed = std::max(most.speed, velocity.head<3>().norm());
         most.yawRate = std::max(most.yawRate, std::abs(velocity[3]));
         most.acceleration = std::max(most.acceleration, change.head<3>().norm());
         most.yawAcceleration = std::max(most.yawAcceleration, std::abs(change[3]));
-        phase += rate * kStep;
+        phase += rate * kPhaseStep;
     }
     most.lastRate = rate;
     return most;
@@ -106,13 +106,14 @@ TEST(SmoothPath, KeepsAllLimitsUntilItStops) {
 
 TEST(SmoothPath, DerivativesAreThoseOfTheStations) {
     const SmoothPath path(zigzag(5), {}, {});
-    constexpr double kStep = 1e-5;
+    constexpr double kPhaseStep = 1e-5;
     for (double phase = 0.05; phase < path.end() - 0.05; phase += 0.0137) {
         const SmoothPath::Point here = path.at(phase);
-        const SmoothPath::Point next = path.at(phase + kStep), last = path.at(phase - kStep);
-        EXPECT_TRUE(((next.station - last.station) / (2. * kStep)).isApprox(here.first, 1e-3));
-        EXPECT_TRUE(((next.first - here.first) / kStep - here.second).norm() < 1e-4 ||
-                    ((here.first - last.first) / kStep - here.second).norm() < 1e-4);
+        const SmoothPath::Point next = path.at(phase + kPhaseStep),
+                                last = path.at(phase - kPhaseStep);
+        EXPECT_TRUE(((next.station - last.station) / (2. * kPhaseStep)).isApprox(here.first, 1e-3));
+        EXPECT_TRUE(((next.first - here.first) / kPhaseStep - here.second).norm() < 1e-4 ||
+                    ((here.first - last.first) / kPhaseStep - here.second).norm() < 1e-4);
     }
 }
 
