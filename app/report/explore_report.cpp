@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "exploration/trial_journal.hpp"
 #include "flight/flight_statistics.hpp"
 #include "map/octree_file.hpp"
 #include "recording/belief_trajectory.hpp"
@@ -18,21 +19,13 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-json jsonOf(const PlanUpdate& u) {
-    return {{"time", u.time},
-            {"vertices_invalidated", u.counts.verticesInvalidated},
-            {"edges_invalidated", u.counts.edgesInvalidated},
-            {"vertices_added", u.counts.verticesAdded},
-            {"vertices_rewired", u.counts.verticesRewired},
-            {"views_marked", u.viewsMarked},
-            {"views_rendered", u.viewsRendered},
-            {"fuse_ms", 1e3 * u.fuseSeconds},
-            {"clearance_ms", 1e3 * u.clearanceSeconds},
-            {"views_ms", 1e3 * u.viewSeconds},
-            {"plan_ms", 1e3 * u.planSeconds},
-            {"cost", finiteOrNull(u.cost)},
-            {"length", finiteOrNull(u.length)},
-            {"trace", u.trace}};
+json jsonOf(const PlanUpdate& update) {
+    json result = untimedJson(update);
+    result["fuse_ms"] = 1e3 * update.fuseSeconds;
+    result["clearance_ms"] = 1e3 * update.clearanceSeconds;
+    result["views_ms"] = 1e3 * update.viewSeconds;
+    result["plan_ms"] = 1e3 * update.planSeconds;
+    return result;
 }
 
 /// The trace of the belief over the way flown.

@@ -81,21 +81,13 @@ FlightSample sampleFrom(const json& line) {
             {poseFrom(line.at("believed_T_c_w")), covariance}};
 }
 
-json lineOf(const PlanUpdate& u) {
-    return {{"time", u.time},
-            {"vertices_invalidated", u.counts.verticesInvalidated},
-            {"edges_invalidated", u.counts.edgesInvalidated},
-            {"vertices_added", u.counts.verticesAdded},
-            {"vertices_rewired", u.counts.verticesRewired},
-            {"views_marked", u.viewsMarked},
-            {"views_rendered", u.viewsRendered},
-            {"fuse_s", u.fuseSeconds},
-            {"clearance_s", u.clearanceSeconds},
-            {"views_s", u.viewSeconds},
-            {"plan_s", u.planSeconds},
-            {"cost", finiteOrNull(u.cost)},
-            {"length", finiteOrNull(u.length)},
-            {"trace", finiteOrNull(u.trace)}};
+json lineOf(const PlanUpdate& update) {
+    json line = untimedJson(update);
+    line["fuse_s"] = update.fuseSeconds;
+    line["clearance_s"] = update.clearanceSeconds;
+    line["views_s"] = update.viewSeconds;
+    line["plan_s"] = update.planSeconds;
+    return line;
 }
 
 PlanUpdate updateFrom(const json& line) {
@@ -132,6 +124,19 @@ json linesOf(const std::vector<Element>& elements) {
 }
 
 }  // namespace
+
+json untimedJson(const PlanUpdate& u) {
+    return {{"time", u.time},
+            {"vertices_invalidated", u.counts.verticesInvalidated},
+            {"edges_invalidated", u.counts.edgesInvalidated},
+            {"vertices_added", u.counts.verticesAdded},
+            {"vertices_rewired", u.counts.verticesRewired},
+            {"views_marked", u.viewsMarked},
+            {"views_rendered", u.viewsRendered},
+            {"cost", finiteOrNull(u.cost)},
+            {"length", finiteOrNull(u.length)},
+            {"trace", finiteOrNull(u.trace)}};
+}
 
 Identity TrialKind::identity(const Config& config) {
     Identity identity =
