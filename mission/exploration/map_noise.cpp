@@ -12,12 +12,6 @@ const Vector6 kSigns{{1., 1., -1., -1., 1., 1.}};  // of J's columns in Gradient
 constexpr unsigned kStride = 4;                    // of the points that stand for all
 constexpr double kMinPixels = 1000;                // of an image that is compared
 
-bool isSurface(const View& view, unsigned u, unsigned v) {
-    const ImageF& d = view.depth;
-    return d[v][u] > 0.F && d[v][u - 1] > 0.F && d[v][u + 1] > 0.F && d[v - 1][u] > 0.F &&
-           d[v + 1][u] > 0.F;
-}
-
 Eigen::Vector2d gradientAt(const ImageF& I, unsigned u, unsigned v) {
     return 0.5 * Eigen::Vector2d(I[v][u + 1] - I[v][u - 1], I[v + 1][u] - I[v - 1][u]);
 }
@@ -32,7 +26,7 @@ Points pointsOf(const View& view, const Camera& camera) {
     Points points;
     for (unsigned v = 1; v + 1 < camera.height; v += kStride) {
         for (unsigned u = 1; u + 1 < camera.width; u += kStride) {
-            if (!isSurface(view, u, v)) continue;
+            if (!hasDepthAround(view, u, v)) continue;
             points.noise.add((u - camera.cx()) / camera.fx(), (v - camera.cy()) / camera.fy(),
                              1. / view.depth[v][u]);
             points.pixels += kStride * kStride;
@@ -47,7 +41,7 @@ void MapNoise::observe(const View& map, const ImageF& image, const Camera& camer
     double sum = 0., count = 0.;
     for (unsigned v = 1; v + 1 < image.getHeight(); ++v) {
         for (unsigned u = 1; u + 1 < image.getWidth(); ++u) {
-            if (!isSurface(map, u, v)) continue;
+            if (!hasDepthAround(map, u, v)) continue;
             const Eigen::Vector2d g = gradientAt(map.intensity, u, v);
             sum += 0.5 * g.dot(g - gradientAt(image, u, v));
             ++count;

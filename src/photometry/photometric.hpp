@@ -26,7 +26,8 @@ struct PhotometricOptions {
 Matrix6 photometricInformation(const View& view, const Camera& camera,
                                const PhotometricOptions& options = {});
 
-/// The row J of one pixel; zero if the pixel is not used. Slow: for tests, tutorials and figures.
+/// The row J of one pixel; zero if the pixel is not used. For single pixels:
+/// photometricInformation() sums over a view several times faster.
 Vector6 pixelJacobian(const View& view, const Camera& camera, unsigned u, unsigned v,
                       const PhotometricOptions& options = {});
 

@@ -33,6 +33,13 @@ class ViewSource {
     virtual void render(const Camera& camera, const Pose& T_c_w, View& view) const = 0;
 };
 
+/// Whether a pixel, which is not at the border, and its four neighbours have depth.
+inline bool hasDepthAround(const View& view, unsigned u, unsigned v) {
+    const ImageF& d = view.depth;
+    return d[v][u] > 0.F && d[v][u - 1] > 0.F && d[v][u + 1] > 0.F && d[v - 1][u] > 0.F &&
+           d[v + 1][u] > 0.F;
+}
+
 /// Whether a recorded image is black, as with a covered lens: a mean grey value below 5 of 255.
 bool isBlack(const ImageF& image);
 

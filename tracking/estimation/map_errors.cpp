@@ -23,12 +23,6 @@ constexpr double kOpenVariance = 1e3;    // of directions that an image leaves o
 /// Unlike an alignment, a map is displaced at its edges and where it is saturated as well.
 constexpr PhotometricOptions kEveryPixel{.depthJump = kInfinity, .saturation = -1.};
 
-bool isInside(const View& view, unsigned u, unsigned v) {
-    const ImageF& d = view.depth;
-    return d[v][u] > 0.F && d[v][u - 1] > 0.F && d[v][u + 1] > 0.F && d[v - 1][u] > 0.F &&
-           d[v + 1][u] > 0.F;
-}
-
 Matrix6 symmetric(const Matrix6& A) { return 0.5 * (A + A.transpose()); }
 
 /// Differences of covariances may lose definiteness by rounding.
@@ -75,7 +69,7 @@ MapErrors::Shares MapErrors::sharesOf(const View& map, const Camera& camera,
     const Pose T_w_c = T_c_w.inverse();
     for (unsigned v = 1; v + 1 < camera.height; v += kStride) {
         for (unsigned u = 1; u + 1 < camera.width; u += kStride) {
-            if (!isInside(map, u, v)) continue;
+            if (!hasDepthAround(map, u, v)) continue;
             const Eigen::Vector3d p_w = T_w_c * camera.unproject(u, v, map.depth[v][u]);
             const auto found = makers_.find(brickOf(p_w));
             if (found == makers_.end()) continue;
