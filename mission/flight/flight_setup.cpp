@@ -58,8 +58,8 @@ AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellS
     if (map != MapKind::mesh) {
         // Odometry carries what the map's noise leaves open; replays without it would drift there.
         alignment.modelNoise = ModelNoise::measured;
-        alignment.blur = kRenderedBlur;  // texture in cells is blurred: images are used as they are
     }
+    alignment.blur = comparedBlur(map, alignment.blur);
     alignment.modelErrors.surface = surfaceError(map, cellSize);
     return alignment;
 }
