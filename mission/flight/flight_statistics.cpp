@@ -129,7 +129,7 @@ FlightSummary summarise(std::span<const FlightResult> flights, std::span<const P
     judgeExposures(flights, plan, s);
     std::vector<double> nees, atGoal;
     for (const FlightResult& flight : flights) {
-        nees.push_back(neesPerDof(flight));
+        if (const double x = neesPerDof(flight); !std::isnan(x)) nees.push_back(x);
         append(neesPerDof(flight.samples.back()), atGoal);
     }
     s.neesAtGoal = mean(atGoal, FlightSummary::kNone);
