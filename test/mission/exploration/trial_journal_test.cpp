@@ -11,6 +11,7 @@
 #include "flight/flight_statistics.hpp"
 #include "geometry/se3.hpp"
 #include "io/error.hpp"
+#include "reason_of.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {
@@ -65,15 +66,6 @@ std::shared_ptr<TexturedOcTree> makeMap() {
     auto map = std::make_shared<TexturedOcTree>(0.1);
     map->updateNode(octomap::point3d(0.F, 0.F, 0.F), true);
     return map;
-}
-
-std::string reasonOf(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
 }
 
 class TrialFiles : public testing::Test {
@@ -141,7 +133,7 @@ TEST_F(TrialFiles, NumbersThatNoFlightGivesAreRefused) {
         ASSERT_NE(bad.find(text), std::string::npos) << text << " in " << bad;
         bad.replace(bad.find(text), std::string(text).size(), other);
         std::ofstream(file()) << bad;
-        EXPECT_NE(reasonOf([&] { read(); }).find("line 2: not a flight of this version"),
+        EXPECT_NE(test::reasonOf([&] { read(); }).find("line 2: not a flight of this version"),
                   std::string::npos)
             << other;
     }
@@ -149,9 +141,9 @@ TEST_F(TrialFiles, NumbersThatNoFlightGivesAreRefused) {
     const std::size_t pose = mirrored.find("\"T_c_w\":[") + 9;
     mirrored.insert(pose, "-");
     std::ofstream(file()) << mirrored;
-    EXPECT_NE(reasonOf([&] { read(); }).find("line 2"), std::string::npos);
+    EXPECT_NE(test::reasonOf([&] { read(); }).find("line 2"), std::string::npos);
     std::ofstream(file()) << "{\"photonav_sweep\":1}\n";
-    EXPECT_NE(reasonOf([&] { read(); }).find("line 1"), std::string::npos);
+    EXPECT_NE(test::reasonOf([&] { read(); }).find("line 1"), std::string::npos);
 }
 
 TEST_F(TrialFiles, TheFirstFlightKeepsItsMap) {
@@ -174,7 +166,7 @@ TEST_F(TrialFiles, AMapThatIsMissingOrDamagedIsNoticed) {
     flight.map = makeMap();
     create({flight});
     std::ofstream(temporary_.path() / "map.ot") << "cut";
-    EXPECT_NE(reasonOf([&] { read(); }).find("map.ot: "), std::string::npos);
+    EXPECT_NE(test::reasonOf([&] { read(); }).find("map.ot: "), std::string::npos);
     fs::remove(temporary_.path() / "map.ot");
     EXPECT_FALSE(read().runs().front().map);
 }

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "io/error.hpp"
+#include "reason_of.hpp"
 #include "sweep/sweep_summary.hpp"
 #include "sweep_run.hpp"
 #include "temporary_folder.hpp"
@@ -27,15 +28,6 @@ std::string scenario(const std::string& name) {
     return fmt::format("{}/config/{}.yaml", PHOTONAV_SOURCE_DIR, name);
 }
 
-std::string reasonOf(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
-}
-
 class SweepFiles : public testing::Test {
   protected:
     test::TemporaryFolder temporary_;
@@ -51,7 +43,7 @@ TEST(SweepAlphas, RangesIncludeTheirEndAndAreRound) {
     for (const char* bad : {"", "0.1:0.9", "0.9:0.1:0.1", "0:1:0", "0:1:-1", "0:1:1e-9", "a",
                             "0.1,"
                             "b"}) {
-        EXPECT_TRUE(reasonOf([&] { parseAlphas(bad); }).starts_with("--alpha: ")) << bad;
+        EXPECT_TRUE(test::reasonOf([&] { parseAlphas(bad); }).starts_with("--alpha: ")) << bad;
     }
 }
 
@@ -74,7 +66,7 @@ TEST(SweepShards, PartitionTheRuns) {
     EXPECT_EQ(gathered.size(), items.size());
     EXPECT_EQ(parseShard("+2/4"), (Shard{2, 4}));
     for (const char* bad : {"", "1", "0/2", "3/2", "1/0", "1/2/3", "a/b", "-1/2", "1/"}) {
-        EXPECT_TRUE(reasonOf([&] { parseShard(bad); }).starts_with("--shard: ")) << bad;
+        EXPECT_TRUE(test::reasonOf([&] { parseShard(bad); }).starts_with("--shard: ")) << bad;
     }
 }
 
@@ -95,7 +87,7 @@ TEST(SweepConfigs, SurviveTheirOwnYaml) {
 
 TEST(SweepConfigs, BadOnesAreRefused) {
     const auto reason = [](const std::string& override) {
-        return reasonOf([&] { loadConfig(scenario("stripes"), {override}); });
+        return test::reasonOf([&] { loadConfig(scenario("stripes"), {override}); });
     };
     EXPECT_NE(reason("sweep.planners=[rrt_star, rrt_sta]")
                   .find("sweep.planners: 'rrt_sta' is not one of belief_rrt_star, "),
@@ -222,9 +214,10 @@ TEST_F(SweepFiles, ACutLineIsDroppedAndWrittenOver) {
     EXPECT_EQ(whole.runs()[1].cost, 7.);
 
     std::ofstream(file) << "{\"photonav_sweep\": 99}\n";
-    EXPECT_NE(reasonOf([&] { SweepJournal::read(folder_); }).find("line 1"), std::string::npos);
+    EXPECT_NE(test::reasonOf([&] { SweepJournal::read(folder_); }).find("line 1"),
+              std::string::npos);
     fs::remove(file);
-    EXPECT_NE(reasonOf([&] { SweepJournal::read(folder_); }).find("is this a sweep?"),
+    EXPECT_NE(test::reasonOf([&] { SweepJournal::read(folder_); }).find("is this a sweep?"),
               std::string::npos);
 }
 
@@ -243,7 +236,8 @@ TEST_F(SweepFiles, NumbersThatNoRunGivesAreRefused) {
         ASSERT_NE(bad.find(number), std::string::npos) << bad;
         bad.replace(bad.find(number), std::string(number).size(), other);
         std::ofstream(file) << bad;
-        EXPECT_NE(reasonOf([&] { SweepJournal::read(folder_); }).find("line 2"), std::string::npos)
+        EXPECT_NE(test::reasonOf([&] { SweepJournal::read(folder_); }).find("line 2"),
+                  std::string::npos)
             << other;
     }
     std::ofstream(file) << good;
@@ -302,9 +296,10 @@ TEST_F(SweepFiles, ReferencesGiveTheExcess) {
     EXPECT_TRUE(
         std::isnan(ReferenceCosts().excess(makeRun({"pa_rrt_star", 0.15, 1}, 4.4, 0., 0.))));
     std::ofstream(file) << "alpha,length\n0.05,2.5\n";
-    EXPECT_NE(reasonOf([&] { ReferenceCosts r(file); }).find("no column cost"), std::string::npos);
+    EXPECT_NE(test::reasonOf([&] { ReferenceCosts r(file); }).find("no column cost"),
+              std::string::npos);
     std::ofstream(file) << "alpha,cost\n0.05\n";
-    EXPECT_NE(reasonOf([&] { ReferenceCosts r(file); }).find("line 2"), std::string::npos);
+    EXPECT_NE(test::reasonOf([&] { ReferenceCosts r(file); }).find("line 2"), std::string::npos);
 }
 
 TEST(SweepTables, HaveThePapersRowBesideOurs) {
