@@ -39,7 +39,7 @@ class Exploration {
     void flyOn(const UncertainPose& T_c_w);
     bool isWaiting() const;
     bool hasEnded();
-    ExplorationResult resultSoFar();
+    const ExplorationResult& resultSoFar();
     bool endAs(FlightEnd end, const std::string& reason);
     std::string reasonForNoWay() const;
     Pose bodyOf(const Pose& T_c_w) const { return (setup_.truth.T_b_c * T_c_w).inverse(); }
@@ -199,7 +199,7 @@ void Exploration::flyOn(const UncertainPose& T_c_w) {
     pilot_.setPlan(std::move(way.plan));
 }
 
-ExplorationResult Exploration::resultSoFar() {
+const ExplorationResult& Exploration::resultSoFar() {
     static_cast<FlightResult&>(result_) = evaluator_.result();
     return result_;
 }
