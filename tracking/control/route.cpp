@@ -49,7 +49,8 @@ Route::Route(std::vector<PlannedView> plan, const Pose& T_b_c, const RouteOption
     const double atFullRate = along(slope, slope);
     if (atFullRate <= 0.) return;
     Station now;
-    now << plan_.front().T_w_b.linear() * velocity.linear, velocity.yawRate;
+    now.head<3>() = plan_.front().T_w_b.linear() * velocity.linear;
+    now[3] = velocity.yawRate;
     rate_ = std::clamp(along(slope, now) / atFullRate, 0., path_.rateLimit(0.));
 }
 
