@@ -16,10 +16,10 @@
 
 #include "alignment/dense_aligner.hpp"
 #include "alignment/keyframe_model.hpp"
+#include "dataset/sequence_tum.hpp"
 #include "estimation/calibration.hpp"
 #include "geometry/se3.hpp"
 #include "map/map_fusion.hpp"
-#include "recording/sequence_tum.hpp"
 #include "render/mesh_renderer.hpp"
 #include "render/voxel_renderer.hpp"
 #include "thread_time.hpp"

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "dataset/sequence_tum.hpp"
 #include "depth/monocular_depth.hpp"
 #include "depth/stereo_depth.hpp"
 #include "map/map_fusion.hpp"
-#include "recording/sequence_tum.hpp"
 #include "render/mesh_renderer.hpp"
 #include "simulation/camera_noise.hpp"
 #include "simulation/simulated_camera.hpp"

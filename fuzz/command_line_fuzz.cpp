@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is typed: overrides of a config, options that are keys, numbers and lists of numbers.
 #include "config/config.hpp"
-#include "dataset/recording.hpp"
 #include "fuzz_input.hpp"
 #include "mapping/map_config.hpp"
+#include "recording/recording.hpp"
 #include "replay/replay_config.hpp"
 #include "sweep/sweep_plan.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tables of a EuRoC recording: sensors, lists of images, ground truth.
+#include "dataset/sequence_euroc.hpp"
 #include "fuzz_input.hpp"
-#include "recording/sequence_euroc.hpp"
 
 void photonav::fuzz::run(std::string_view input) {
     const std::string mav = "euroc/mav0/";

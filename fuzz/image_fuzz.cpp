@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Encoded images: textures, and grey and depth images of a recording.
+#include "dataset/image_file.hpp"
 #include "fuzz_input.hpp"
 #include "geometry/camera.hpp"
 #include "io/image_bytes.hpp"
-#include "recording/image_file.hpp"
 #include "scene/texture.hpp"
 
 namespace {

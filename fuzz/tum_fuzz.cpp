@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tables of a TUM recording: lists of images, associations, trajectory, camera.
+#include "dataset/sequence_tum.hpp"
 #include "fuzz_input.hpp"
 #include "geometry/constants.hpp"
-#include "recording/sequence_tum.hpp"
 
 void photonav::fuzz::run(std::string_view input) {
     const std::array<std::string, 5> names{"tum/rgb.txt", "tum/depth.txt", "tum/groundtruth.txt",

@@ -3,7 +3,7 @@
 // wall, in the EuRoC layout.
 #pragma once
 
-#include "recording/sequence_euroc.hpp"
+#include "dataset/sequence_euroc.hpp"
 #include "tum_dataset.hpp"
 
 namespace photonav::test {

@@ -5,11 +5,11 @@
 #include <numbers>
 #include <set>
 
+#include "dataset/sequence_tum.hpp"
 #include "estimation/tracker.hpp"
 #include "evaluation/evaluation.hpp"
 #include "flight/flight_recorder.hpp"
 #include "plot/figure.hpp"
-#include "recording/sequence_tum.hpp"
 #include "render/mesh_renderer.hpp"
 #include "scene_argument.hpp"
 

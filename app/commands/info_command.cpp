@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include "commands/result_folder.hpp"
+#include "dataset/image_file.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
 #include "io/stopwatch.hpp"
-#include "recording/image_file.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 

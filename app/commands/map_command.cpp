@@ -9,10 +9,10 @@
 
 #include "commands/command_io.hpp"
 #include "commands/result_folder.hpp"
-#include "dataset/view_difference.hpp"
 #include "io/stopwatch.hpp"
 #include "map/octree_file.hpp"
 #include "map/surface_cloud.hpp"
+#include "recording/view_difference.hpp"
 #include "render/voxel_renderer.hpp"
 #include "report/comparison_images.hpp"
 #include "report/convergence_figure.hpp"

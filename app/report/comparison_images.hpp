@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "dataset/recorded_frames.hpp"
 #include "figures/images.hpp"
+#include "recording/recorded_frames.hpp"
 
 namespace photonav {
 

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
+#include "dataset/belief_trajectory.hpp"
 #include "exploration/trial_journal.hpp"
 #include "flight/flight_statistics.hpp"
 #include "map/octree_file.hpp"
-#include "recording/belief_trajectory.hpp"
 #include "report/explore_figures.hpp"
 #include "report/fly_report.hpp"
 #include "report/problem_report.hpp"

@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "recording/belief_trajectory.hpp"
+#include "dataset/belief_trajectory.hpp"
 #include "report/fly_figures.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include "commands/command_io.hpp"
+#include "dataset/image_file.hpp"
+#include "dataset/trajectory.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
 #include "figures/perspective.hpp"
 #include "figures/trace.hpp"
 #include "geometry/se3.hpp"
-#include "recording/image_file.hpp"
-#include "recording/trajectory.hpp"
 #include "report/comparison_images.hpp"
 #include "report/tree_evolution_figure.hpp"
 

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "dataset/recorded_frames.hpp"
 #include "problem/planning_problem.hpp"
 #include "problem/tree_evolution.hpp"
+#include "recording/recorded_frames.hpp"
 #include "report/problem_report.hpp"
 
 namespace photonav {

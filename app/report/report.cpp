@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "dataset/image_file.hpp"
 #include "io/atomic_file.hpp"
-#include "recording/image_file.hpp"
 
 namespace photonav {
 

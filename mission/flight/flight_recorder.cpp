@@ -8,10 +8,10 @@
 #include <system_error>
 #include <vector>
 
+#include "dataset/image_file.hpp"
+#include "dataset/trajectory.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
-#include "recording/image_file.hpp"
-#include "recording/trajectory.hpp"
 
 namespace photonav {
 namespace {

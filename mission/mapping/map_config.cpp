@@ -5,9 +5,9 @@
 
 #include <filesystem>
 
-#include "dataset/recording_config.hpp"
 #include "depth/depth_filter.hpp"
 #include "map/textured_octree.hpp"
+#include "recording/recording_config.hpp"
 
 namespace photonav {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "dataset/recording.hpp"
 #include "map/map_fusion.hpp"
+#include "recording/recording.hpp"
 
 namespace photonav {
 

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "dataset/sequence.hpp"
 #include "depth/monocular_depth.hpp"
 #include "map/map_fusion.hpp"
-#include "recording/sequence.hpp"
 
 namespace photonav {
 

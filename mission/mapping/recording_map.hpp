@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "dataset/trajectory.hpp"
 #include "mapping/map_options.hpp"
 #include "mapping/monocular_fusion.hpp"
-#include "recording/trajectory.hpp"
 
 namespace photonav {
 

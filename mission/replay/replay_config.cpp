@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replay/replay_config.hpp"
 
-#include "dataset/recording_config.hpp"
+#include "recording/recording_config.hpp"
 
 namespace photonav {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "dataset/recording.hpp"
+#include "recording/recording.hpp"
 
 namespace photonav {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "dataset/recording.hpp"
+#include "recording/recording.hpp"
 #include "replay/replay_tracker.hpp"
 
 namespace photonav {

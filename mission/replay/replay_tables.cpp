@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "dataset/trajectory.hpp"
 #include "geometry/constants.hpp"
 #include "io/atomic_file.hpp"
-#include "recording/trajectory.hpp"
 
 namespace photonav {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "recording/belief_trajectory.hpp"
+#include "dataset/belief_trajectory.hpp"
 #include "replay/replay_errors.hpp"
 
 namespace photonav {

@@ -14,12 +14,12 @@
 
 #include "commands/result_folder.hpp"
 #include "config/config.hpp"
+#include "dataset/sequence_tum.hpp"
 #include "euroc_dataset.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "map/octree_file.hpp"
 #include "map/point_cloud.hpp"
-#include "recording/sequence_tum.hpp"
 #include "replay/calibration_file.hpp"
 #include "scene/scene.hpp"
 #include "sweep/reference_table.hpp"

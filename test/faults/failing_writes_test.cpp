@@ -14,12 +14,12 @@
 #include <functional>
 
 #include "commands/result_folder.hpp"
+#include "dataset/sequence_tum.hpp"
 #include "flight/flight_recorder.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "map/octree_file.hpp"
 #include "map/surface_cloud.hpp"
-#include "recording/sequence_tum.hpp"
 #include "sweep/reference_table.hpp"
 #include "sweep/sweep_journal.hpp"
 #include "temporary_folder.hpp"

@@ -4,8 +4,8 @@
 
 #include <memory>
 
+#include "dataset/sequence_euroc.hpp"
 #include "photometry/view.hpp"
-#include "recording/sequence_euroc.hpp"
 
 namespace photonav {
 

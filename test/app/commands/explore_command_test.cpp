@@ -10,10 +10,10 @@
 #include <sstream>
 
 #include "app/executable.hpp"
+#include "dataset/sequence_tum.hpp"
+#include "dataset/trajectory.hpp"
 #include "io/folder_transaction.hpp"
 #include "map/octree_file.hpp"
-#include "recording/sequence_tum.hpp"
-#include "recording/trajectory.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {

@@ -9,9 +9,9 @@
 #include <sstream>
 
 #include "app/executable.hpp"
+#include "dataset/sequence_tum.hpp"
+#include "dataset/trajectory.hpp"
 #include "flight/flight_set.hpp"
-#include "recording/sequence_tum.hpp"
-#include "recording/trajectory.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {

@@ -5,11 +5,11 @@
 #include <octomap/OcTree.h>
 
 #include "app/executable.hpp"
+#include "dataset/trajectory.hpp"
 #include "depth/stereo_depth.hpp"
 #include "euroc_dataset.hpp"
 #include "map/octree_file.hpp"
 #include "mapping/map_config.hpp"
-#include "recording/trajectory.hpp"
 #include "tum_dataset.hpp"
 
 namespace photonav {

@@ -2,8 +2,8 @@
 #include "commands/replay_command.hpp"
 
 #include "app/executable.hpp"
+#include "dataset/trajectory.hpp"
 #include "flight_dataset.hpp"
-#include "recording/trajectory.hpp"
 #include "replay/calibration_file.hpp"
 #include "report/replay_report.hpp"
 

@@ -2,9 +2,9 @@
 // The report of a made-up run.
 #pragma once
 
+#include "dataset/image_file.hpp"
 #include "drawing/sample_run.hpp"
 #include "figures/images.hpp"
-#include "recording/image_file.hpp"
 #include "report/report.hpp"
 
 namespace photonav {

@@ -6,9 +6,9 @@
 #include <functional>
 #include <random>
 
+#include "dataset/belief_trajectory.hpp"
 #include "geometry/camera.hpp"
 #include "geometry/se3.hpp"
-#include "recording/belief_trajectory.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {

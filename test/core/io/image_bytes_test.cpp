@@ -5,8 +5,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "dataset/sequence_tum.hpp"
 #include "io/error.hpp"
-#include "recording/sequence_tum.hpp"
 #include "scene/texture.hpp"
 #include "tum_dataset.hpp"
 

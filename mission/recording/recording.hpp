@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "dataset/sequence.hpp"
 #include "io/reading.hpp"
-#include "recording/sequence.hpp"
 
 namespace photonav {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/sequence_tum.hpp"
+#include "dataset/sequence_tum.hpp"
 
 #include <fmt/format.h>
 
@@ -8,13 +8,13 @@
 #include <filesystem>
 #include <functional>
 
+#include "dataset/association.hpp"
+#include "dataset/image_file.hpp"
+#include "dataset/time_order.hpp"
+#include "dataset/trajectory.hpp"
 #include "io/reading.hpp"
 #include "io/text_table.hpp"
 #include "io/yaml_reader.hpp"
-#include "recording/association.hpp"
-#include "recording/image_file.hpp"
-#include "recording/time_order.hpp"
-#include "recording/trajectory.hpp"
 
 namespace photonav {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/recording.hpp"
+#include "recording/recording.hpp"
 
 #include <fmt/format.h>
 
@@ -8,14 +8,14 @@
 #include <filesystem>
 #include <numbers>
 
-#include "dataset/stereo_recording.hpp"
+#include "dataset/floor_plane.hpp"
+#include "dataset/sequence_euroc.hpp"
+#include "dataset/sequence_tum.hpp"
+#include "dataset/trajectory.hpp"
 #include "evaluation/averages.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
-#include "recording/floor_plane.hpp"
-#include "recording/sequence_euroc.hpp"
-#include "recording/sequence_tum.hpp"
-#include "recording/trajectory.hpp"
+#include "recording/stereo_recording.hpp"
 
 namespace photonav {
 namespace {

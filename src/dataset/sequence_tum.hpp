@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "recording/sequence.hpp"
+#include "dataset/sequence.hpp"
 
 namespace photonav {
 

@@ -2,7 +2,7 @@
 // Recordings of a stereo camera (EuRoC layout) as images with depth.
 #pragma once
 
-#include "dataset/recording.hpp"
+#include "recording/recording.hpp"
 
 namespace photonav {
 

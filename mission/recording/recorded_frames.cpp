@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/recorded_frames.hpp"
+#include "recording/recorded_frames.hpp"
 
 #include <utility>
 

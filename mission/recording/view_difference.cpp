@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/view_difference.hpp"
+#include "recording/view_difference.hpp"
 
 #include <cmath>
 #include <numeric>

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "dataset/recording.hpp"
-#include "dataset/view_difference.hpp"
 #include "problem/planning_problem.hpp"
+#include "recording/recording.hpp"
+#include "recording/view_difference.hpp"
 
 namespace photonav {
 

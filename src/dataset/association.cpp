@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/association.hpp"
+#include "dataset/association.hpp"
 
 #include <algorithm>
 #include <cmath>

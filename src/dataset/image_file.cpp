@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/image_file.hpp"
+#include "dataset/image_file.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/belief_trajectory.hpp"
+#include "dataset/belief_trajectory.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/trajectory.hpp"
+#include "dataset/trajectory.hpp"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "dataset/time_order.hpp"
 #include "geometry/se3.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
-#include "recording/time_order.hpp"
 
 namespace photonav {
 namespace {

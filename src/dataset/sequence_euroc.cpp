@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/sequence_euroc.hpp"
+#include "dataset/sequence_euroc.hpp"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,12 @@
 #include <cmath>
 #include <filesystem>
 
+#include "dataset/image_file.hpp"
+#include "dataset/time_order.hpp"
+#include "dataset/trajectory.hpp"
 #include "io/reading.hpp"
 #include "io/text_table.hpp"
 #include "io/yaml_reader.hpp"
-#include "recording/image_file.hpp"
-#include "recording/time_order.hpp"
-#include "recording/trajectory.hpp"
 
 namespace photonav {
 namespace {

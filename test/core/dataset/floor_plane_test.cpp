@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/floor_plane.hpp"
+#include "dataset/floor_plane.hpp"
 
 #include <gtest/gtest.h>
 

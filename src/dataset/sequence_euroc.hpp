@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "recording/sequence.hpp"
+#include "dataset/sequence.hpp"
 
 namespace photonav {
 

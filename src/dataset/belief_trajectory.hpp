@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "dataset/trajectory.hpp"
 #include "geometry/uncertain_pose.hpp"
-#include "recording/trajectory.hpp"
 
 namespace photonav {
 

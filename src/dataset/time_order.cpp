@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/time_order.hpp"
+#include "dataset/time_order.hpp"
 
 #include <algorithm>
 

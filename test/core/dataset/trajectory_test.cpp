@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/trajectory.hpp"
+#include "dataset/trajectory.hpp"
 
 #include <gtest/gtest.h>
 

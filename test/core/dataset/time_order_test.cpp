@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/time_order.hpp"
+#include "dataset/time_order.hpp"
 
 #include <gtest/gtest.h>
 
-#include "recording/image_file.hpp"
+#include "dataset/image_file.hpp"
 
 namespace photonav {
 namespace {

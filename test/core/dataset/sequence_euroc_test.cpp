@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/sequence_euroc.hpp"
+#include "dataset/sequence_euroc.hpp"
 
 #include "euroc_dataset.hpp"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "config/key_table.hpp"
-#include "dataset/recording.hpp"
+#include "recording/recording.hpp"
 
 namespace photonav {
 

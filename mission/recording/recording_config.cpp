@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/recording_config.hpp"
+#include "recording/recording_config.hpp"
 
 namespace photonav {
 

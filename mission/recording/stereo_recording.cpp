@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/stereo_recording.hpp"
+#include "recording/stereo_recording.hpp"
 
 #include <fmt/format.h>
 
 #include <memory>
 #include <stdexcept>
 
+#include "dataset/sequence_euroc.hpp"
 #include "depth/stereo_depth.hpp"
 #include "io/error.hpp"
-#include "recording/sequence_euroc.hpp"
 
 namespace photonav {
 namespace {

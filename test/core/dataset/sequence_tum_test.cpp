@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/sequence_tum.hpp"
+#include "dataset/sequence_tum.hpp"
 
 #include "tum_dataset.hpp"
 
