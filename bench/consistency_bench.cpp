@@ -91,10 +91,10 @@ void printRow(const std::string& name, const std::vector<AlignmentError>& errors
     }
     const Calibration c = calibrate(errors);
     fmt::print(
-        "{:<44} {:7.2f} mm {:6.3f} deg  NEES {:8.2f}  -> scale {:7.3g}, floor {:5.2f} mm "
+        "{:<44} {:7.2f} mm {:6.3f} deg  NEES {:8.2f}  -> scale {:7.3g}, least sigma {:5.2f} mm "
         "{:5.3f} deg: {:5.2f}   {} lost\n",
         name, 1e3 * std::sqrt(metres), std::sqrt(radians) * 180. / std::numbers::pi, c.neesBefore,
-        c.scale, 1e3 * c.floorTranslation, c.floorRotation * 180. / std::numbers::pi, c.neesAfter,
+        c.scale, 1e3 * c.leastSigma, c.leastSigmaRotation * 180. / std::numbers::pi, c.neesAfter,
         lost);
     std::fflush(stdout);
 }

@@ -12,7 +12,7 @@ namespace photonav {
 /// All that the results depend on is in the config (FlyConfig) and its overrides.
 struct FlyOptions : CommandOptions {
     unsigned jobs = 1;             ///< threads
-    std::string calibration;       ///< file whose scale and floors are among the overrides
+    std::string calibration;       ///< file whose scale and least sigmas are among the overrides
     std::filesystem::path record;  ///< folder for the first flight as a recording; empty: none
 };
 

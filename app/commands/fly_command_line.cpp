@@ -23,8 +23,8 @@ void override(const CLI::App& parser, const KeyTable& keys, FlyOptions& options)
         FlyConfig fly;
         applyCalibration(readCalibration(options.calibration), fly);
         overrides.push_back(fmt::format("fly.scale={}", *fly.scale));
-        overrides.push_back(fmt::format("fly.least_sigma={}", *fly.floorTranslation));
-        overrides.push_back(fmt::format("fly.least_sigma_rotation={}", *fly.floorRotation));
+        overrides.push_back(fmt::format("fly.least_sigma={}", *fly.leastSigma));
+        overrides.push_back(fmt::format("fly.least_sigma_rotation={}", *fly.leastSigmaRotation));
     }
     for (const ConfigKey& key : keys.keys()) {
         const CLI::Option* option = parser.get_option_no_throw(optionOf(key));
@@ -54,7 +54,7 @@ Command flyCommand(CLI::App& app, const Invocation& invocation) {
     addKeyOptions(*parser, options->keys, {"plan"});  // the positional argument
     parser
         ->add_option("--calibration", options->calibration,
-                     "scale and floors from the calibration.yaml of a replay --calibrate, the "
+                     "scale and least sigmas from the calibration.yaml of a replay --calibrate, the "
                      "factor divided by the number of images with correlated errors; --scale, "
                      "--least-sigma and --least-sigma-rotation override it")
         ->type_name("FILE");

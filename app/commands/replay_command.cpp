@@ -33,7 +33,7 @@ json optionsJson(const ReplayOptions& o) {
             {"start_sigma", orNull(o.startSigma)},
             {"sigma", o.sigma},
             {"scale", *o.scale},
-            {"floor", {*o.floorTranslation, *o.floorRotation}},
+            {"least_sigma", {*o.leastSigma, *o.leastSigmaRotation}},
             {"min_overlap", o.minOverlap},
             {"max_width", o.maxWidth ? json(*o.maxWidth) : json(nullptr)},
             {"exposure", o.exposure}};
@@ -51,13 +51,13 @@ json datasetJson(const Replay& replay) {
 /// Fits a calibration, and writes it if there is enough to fit it to. @returns its entry of
 /// result.json
 json calibrateReplay(const fs::path& folder, const ReplayRun& run, MapKind map) {
-    const bool floorOnly = !run.odometry && map != MapKind::mesh;
-    const auto calibration = calibrationOf(run, floorOnly);
+    const bool leastSigmaOnly = !run.odometry && map != MapKind::mesh;
+    const auto calibration = calibrationOf(run, leastSigmaOnly);
     if (!calibration) return nullptr;
     writeFileAtomically(folder / "calibration.yaml",
                         toYaml(*calibration, run.odometry ? std::nullopt : std::optional(map)));
     return {{"scale", calibration->scale},
-            {"floor", {calibration->floorTranslation, calibration->floorRotation}},
+            {"least_sigma", {calibration->leastSigma, calibration->leastSigmaRotation}},
             {"correlation_time", calibration->correlationTime},
             {"nees_before", calibration->neesBefore},
             {"nees_after", calibration->neesAfter}};
@@ -75,7 +75,7 @@ std::string configOf(const ReplayCommandOptions& options, const Replay& replay) 
 KeyTable keysOf(ReplayCommandOptions& options) {
     KeyTable keys;
     addKeys(keys, static_cast<ReplayOptions&>(options));
-    keys.flag({"calibrate", "", "also fit factor and floor to the errors"}, options.calibrate);
+    keys.flag({"calibrate", "", "also fit scale and least sigmas to the errors"}, options.calibrate);
     return keys;
 }
 

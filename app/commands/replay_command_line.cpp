@@ -24,7 +24,7 @@ void addOptions(CLI::App& parser, ReplayArguments& options) {
     addKeyOptions(parser, options.keys, {"dataset"});
     parser
         .add_option("--calibration", options.calibration,
-                    "scale and floors from the calibration.yaml of a --calibrate; --scale, "
+                    "scale and least sigmas from the calibration.yaml of a --calibrate; --scale, "
                     "--least-sigma and --least-sigma-rotation override it")
         ->type_name("FILE");
     addOutput(parser, {options.out, options.quiet, options.json}, "out/replay-<dataset>");

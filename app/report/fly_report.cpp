@@ -200,8 +200,8 @@ json flyResult(const Config& config, const std::vector<FlightSet>& sets,
           {"photometric_goal", options.pilot.photometricGoal},
           {"map", config.fly.map},
           {"scale", options.tracker.map.informationFactor},
-          {"floor",
-           {options.tracker.map.trust.floorTranslation, options.tracker.map.trust.floorRotation}}}},
+          {"least_sigma",
+           {options.tracker.map.trust.leastSigma, options.tracker.map.trust.leastSigmaRotation}}}},
         {"planners", json::array()}};
     for (const FlightSet& set : sets) result["planners"].push_back(jsonOf(set));
     return result;

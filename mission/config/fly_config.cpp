@@ -48,8 +48,8 @@ void addKeys(KeyTable& keys, FlyConfig& c) {
         {"scale", "", "factor on the information that the residuals of an image say; none: 1"},
         c.scale, {1e-12, 1e12});
     keys.number({"least_sigma", "m", "least standard deviation of an aligned position; none: 0"},
-                c.floorTranslation, {0., 1e3});
-    keys.number({"least_sigma_rotation", "rad", "the same of an aligned rotation"}, c.floorRotation,
+                c.leastSigma, {0., 1e3});
+    keys.number({"least_sigma_rotation", "rad", "the same of an aligned rotation"}, c.leastSigmaRotation,
                 {0., 1e3});
 }
 

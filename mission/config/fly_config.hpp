@@ -24,8 +24,8 @@ struct FlyConfig {
     bool photometricGoal = true;     ///< servo on the goal's image at the end
     std::string map;  ///< octree, mesh or scene file to track in, absolute; empty: the true world
     std::optional<double> scale;             ///< factor on the measured information; none: 1
-    std::optional<double> floorTranslation;  ///< least standard deviations of an alignment [m]
-    std::optional<double> floorRotation;     ///< [rad]; none: 0
+    std::optional<double> leastSigma;  ///< least standard deviations of an alignment [m]
+    std::optional<double> leastSigmaRotation;     ///< [rad]; none: 0
 };
 
 }  // namespace photonav

@@ -53,8 +53,8 @@ AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellS
     alignment.photometric = config.photometric;
     alignment.photometric.stride = 1;
     alignment.informationFactor = fly.scale.value_or(1.);
-    alignment.trust.floorTranslation = fly.floorTranslation.value_or(0.);
-    alignment.trust.floorRotation = fly.floorRotation.value_or(0.);
+    alignment.trust.leastSigma = fly.leastSigma.value_or(0.);
+    alignment.trust.leastSigmaRotation = fly.leastSigmaRotation.value_or(0.);
     if (map != MapKind::mesh) {
         // Odometry carries what the map's noise leaves open; replays without it would drift there.
         alignment.modelNoise = ModelNoise::measured;
@@ -88,8 +88,8 @@ FlightSetup setUpFlight(const PlanningProblem& problem) {
 
 void applyCalibration(const Calibration& calibration, FlyConfig& fly) {
     fly.scale = calibration.scale / calibration.correlationTime;
-    fly.floorTranslation = calibration.floorTranslation;
-    fly.floorRotation = calibration.floorRotation;
+    fly.leastSigma = calibration.leastSigma;
+    fly.leastSigmaRotation = calibration.leastSigmaRotation;
 }
 
 }  // namespace photonav

@@ -37,8 +37,8 @@ CalibrationFile readFile(YamlMap& yaml) {
         yaml.readChoice("mode", file.mode, kModes);
     }
     yaml.readNumber("scale", c.scale, 1e-12, 1e12);
-    yaml.readNumber("least_sigma", c.floorTranslation, 0., 1e6);
-    yaml.readNumber("least_sigma_rotation", c.floorRotation, 0., 1e6);
+    yaml.readNumber("least_sigma", c.leastSigma, 0., 1e6);
+    yaml.readNumber("least_sigma_rotation", c.leastSigmaRotation, 0., 1e6);
     yaml.readNumber("correlation_time", c.correlationTime, 1., 1e9);
     yaml.finish();
     return file;
@@ -66,8 +66,8 @@ std::string toYaml(const Calibration& c, std::optional<MapKind> map) {
         "# Single alignments: NEES per degree of freedom {:.3g} before, {:.3g} with\n"
         "# photonav replay ... --scale {:.3g} --least-sigma {:.3g} --least-sigma-rotation {:.3g}\n"
         "mode: {}\nscale: {:.3g}\nleast_sigma: {:.3g}  # m\nleast_sigma_rotation: {:.3g}  # rad\n",
-        c.neesBefore, c.neesAfter, c.scale, c.floorTranslation, c.floorRotation, modeOf(map),
-        c.scale, c.floorTranslation, c.floorRotation);
+        c.neesBefore, c.neesAfter, c.scale, c.leastSigma, c.leastSigmaRotation, modeOf(map),
+        c.scale, c.leastSigma, c.leastSigmaRotation);
     if (c.correlationTime > 1.) {
         text += fmt::format(
             "# Images whose errors are correlated: photonav fly, which averages images, divides\n"

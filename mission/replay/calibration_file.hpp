@@ -14,7 +14,7 @@ namespace photonav {
 /// @param map that images were aligned to; none: to keyframes (odometry)
 std::string toYaml(const Calibration& calibration, std::optional<MapKind> map);
 
-/// Factor, floor and correlation time of such a file.
+/// Scale, least sigmas and correlation time of such a file.
 /// @throws InputError naming file, key and reason
 Calibration readCalibration(const std::string& file);
 

@@ -34,11 +34,11 @@ void checkOptions(const ReplayOptions& options) {
     require(isPositive(options.startSigma.value_or(kStartSigma)), "--start-sigma",
             "must be above 0");
     require(!options.scale || isPositive(*options.scale), "--scale", "must be above 0");
-    const auto isFloor = [](const std::optional<double>& x) {
+    const auto isSigma = [](const std::optional<double>& x) {
         return !x || (std::isfinite(*x) && *x >= 0.);
     };
-    require(isFloor(options.floorTranslation), "--least-sigma", "must be a number, not negative");
-    require(isFloor(options.floorRotation), "--least-sigma-rotation",
+    require(isSigma(options.leastSigma), "--least-sigma", "must be a number, not negative");
+    require(isSigma(options.leastSigmaRotation), "--least-sigma-rotation",
             "must be a number, not negative");
     require(options.minOverlap > 0. && options.minOverlap < 1., "--min-overlap",
             "must be between 0 and 1");
@@ -46,12 +46,12 @@ void checkOptions(const ReplayOptions& options) {
             fmt::format("must be at least {}", kLeastWidth));
 }
 
-/// Scale and floors that the options leave open.
+/// Scale and least sigmas that the options leave open.
 void applyCalibration(std::optional<MapKind> map, ReplayOptions& options) {
     const Calibration calibration = readCalibration(options.calibration, map);
     options.scale = options.scale.value_or(calibration.scale);
-    options.floorTranslation = options.floorTranslation.value_or(calibration.floorTranslation);
-    options.floorRotation = options.floorRotation.value_or(calibration.floorRotation);
+    options.leastSigma = options.leastSigma.value_or(calibration.leastSigma);
+    options.leastSigmaRotation = options.leastSigmaRotation.value_or(calibration.leastSigmaRotation);
 }
 
 /// What points up in the recording that a map was made of, as it is noted beside the map. A floor
@@ -147,8 +147,8 @@ AlignmentOptions alignmentOf(const ReplayOptions& options, const Sequence& seque
     alignment.robust = RobustWeight::huber;
     alignment.trust.minOverlap = options.minOverlap;
     alignment.informationFactor = options.scale.value_or(1.);
-    if (options.floorTranslation) alignment.trust.floorTranslation = *options.floorTranslation;
-    if (options.floorRotation) alignment.trust.floorRotation = *options.floorRotation;
+    if (options.leastSigma) alignment.trust.leastSigma = *options.leastSigma;
+    if (options.leastSigmaRotation) alignment.trust.leastSigmaRotation = *options.leastSigmaRotation;
     return alignment;
 }
 
@@ -212,8 +212,8 @@ Replay::Replay(const ReplayOptions& options) : options_(options) {
     alignment_ = alignmentOf(options_, recording_.sequence, map_);
     options_.stereo = recording_.stereo;
     options_.scale = alignment_.informationFactor;
-    options_.floorTranslation = alignment_.trust.floorTranslation;
-    options_.floorRotation = alignment_.trust.floorRotation;
+    options_.leastSigma = alignment_.trust.leastSigma;
+    options_.leastSigmaRotation = alignment_.trust.leastSigmaRotation;
     medianDepth_ = checkDepths(options, recording_);
 }
 

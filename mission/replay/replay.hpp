@@ -22,7 +22,7 @@ class Replay {
     explicit Replay(const ReplayOptions& options);
 
     /// As given, with the values that recording and tracker decide filled in: `stereo`,
-    /// `startSigma`, `scale` and the floors.
+    /// `startSigma`, `scale` and the least sigmas.
     const ReplayOptions& options() const { return options_; }
     const Recording& recording() const { return recording_; }  ///< frames without pose included
     const TrackingMap& map() const { return map_; }            ///< empty for odometry

@@ -27,10 +27,10 @@ std::vector<AlignmentError> alignmentErrors(const ReplayRun& run) {
     return errors;
 }
 
-std::optional<Calibration> calibrationOf(const ReplayRun& run, bool floorOnly) {
+std::optional<Calibration> calibrationOf(const ReplayRun& run, bool leastSigmaOnly) {
     const auto errors = alignmentErrors(run);
     if (errors.size() < kLeastForCalibration) return {};
-    return floorOnly ? calibrateFloor(errors, run.scale) : calibrate(errors);
+    return leastSigmaOnly ? calibrateLeastSigma(errors, run.scale) : calibrate(errors);
 }
 
 }  // namespace photonav

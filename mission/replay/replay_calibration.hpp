@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What factor and floor would have made the covariances of a replay true.
+// What scale and least sigmas would have made the covariances of a replay true.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ constexpr std::size_t kLeastForCalibration = 20;  ///< alignments
 std::vector<AlignmentError> alignmentErrors(const ReplayRun& run);
 
 /// Nothing when there are too few of them.
-/// @param floorOnly keep the factor: for maps of cells
-std::optional<Calibration> calibrationOf(const ReplayRun& run, bool floorOnly);
+/// @param leastSigmaOnly keep the factor: for maps of cells
+std::optional<Calibration> calibrationOf(const ReplayRun& run, bool leastSigmaOnly);
 
 }  // namespace photonav

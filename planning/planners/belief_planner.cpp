@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "geometry/constants.hpp"
-#include "planners/path_cost_objective.hpp"
+#include "planners/ompl_objective.hpp"
 #include "render/interruptible_views.hpp"
 
 namespace photonav {
@@ -44,7 +44,7 @@ BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<
       growth_(growth),
       best_{kInfinity, {}},
       updated_(si, model_->space()),
-      objective_(std::make_shared<PathCostObjective>(si, model_)) {
+      objective_(std::make_shared<OmplObjective>(si, model_)) {
     specs_.optimizingPaths = true;
     specs_.canReportIntermediateSolutions = false;
     const auto declare = [this](const std::string& key, auto& value) {

@@ -17,7 +17,7 @@ constexpr double kSearchGrowth = 2.;               // of the roadmap between sea
 constexpr double kSearchGrowthWithoutPath = 1.25;  // while no search has reached the goal
 constexpr double kSearchMargin = 1.5;              // a search takes so much longer than expected
 
-constexpr double kMuchToSee = 1.5;  // times the floor: a path that costs less has much to see
+constexpr double kWellObserved = 1.5;  // times the base cost: a path that costs less is well observed
 
 constexpr double kLittle = 0.02;            // of the cost: not worth another path
 constexpr double kCaution = 1.06;           // factor on the gain after a descent in vain,
@@ -174,7 +174,7 @@ void BeliefRRTstar::search(const ob::PlannerTerminationCondition& ptc) {
     roadmap_.checkAll(*si_);
     std::vector<CostToGo::Start> starts;
     for (const Root& root : roots_) starts.push_back({root.vertex, root.belief.covariance});
-    toGo_.update(roadmap_, vertices_, goals_, *model_, starts, isMuchToSee_);
+    toGo_.update(roadmap_, vertices_, goals_, *model_, starts, isWellObserved_);
 
     Open open;
     for (const Root& root : roots_) {
@@ -258,7 +258,7 @@ bool BeliefRRTstar::isDominated(const Vertex& vertex, const Belief& belief) cons
 void BeliefRRTstar::keepPath(int label) {
     pathCost_ = settled_[label].belief.cost;
     const Label& start = settled_.front();
-    isMuchToSee_ = pathCost_ - start.belief.cost < kMuchToSee * toGo_.floor(*start.vertex);
+    isWellObserved_ = pathCost_ - start.belief.cost < kWellObserved * toGo_.baseCost(*start.vertex);
     std::vector<const ob::State*> path;
     for (; label >= 0; label = settled_[label].parent) {
         path.push_back(settled_[label].vertex->state);
@@ -353,7 +353,7 @@ void BeliefRRTstar::clear() {
     renewBeliefs();
     isSearchDue_ = false;
     gain_ = 1.;
-    isMuchToSee_ = true;
+    isWellObserved_ = true;
     searchSeconds_ = descentSeconds_ = 0.;
     shortcutsTried_ = shortcutsTaken_ = 0;
 }

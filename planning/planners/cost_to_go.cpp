@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMinInformation = 1e-6;  // a coordinate known to 1 km is not observed [1/m^2]
 constexpr double kSafety = 0.99;          // factor on the charge
-constexpr double kLittleCharge = 0.05;    // of the floor: not worth a view from every vertex
+constexpr double kLittleCharge = 0.05;    // of the base cost: not worth a view from every vertex
 
 double lengthOf(const Roadmap::Edge& edge) { return edge.motion.length; }
 
@@ -44,22 +44,22 @@ void findDistances(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
 
 void CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                       const std::vector<Vertex*>& goals, BeliefModel& model) {
-    findFloors(roadmap, vertices, goals, model);
+    findBaseCosts(roadmap, vertices, goals, model);
     if (charge_ > 0.) findObserved(roadmap, vertices);
 }
 
 void CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                       const std::vector<Vertex*>& goals, BeliefModel& model,
-                      const std::vector<Start>& starts, bool muchToSee) {
-    findFloors(roadmap, vertices, goals, model);
+                      const std::vector<Start>& starts, bool wellObserved) {
+    findBaseCosts(roadmap, vertices, goals, model);
     const bool needsViews = std::any_of(starts.begin(), starts.end(), [&](const Start& start) {
-        return reachesGoal(start) && (!muchToSee || isUncertain(start));
+        return reachesGoal(start) && (!wellObserved || isUncertain(start));
     });
     if (!needsViews) charge_ = 0.;
     if (charge_ > 0.) findObserved(roadmap, vertices);
 }
 
-void CostToGo::findFloors(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
+void CostToGo::findBaseCosts(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                           const std::vector<Vertex*>& goals, BeliefModel& model) {
     const BeliefOptions& options = model.options();
     model_ = &model;
@@ -70,9 +70,9 @@ void CostToGo::findFloors(const Roadmap& roadmap, const std::deque<Vertex>& vert
     const double unreached = goals.empty() ? 0. : kInfinity;
     toGoal_.assign(vertices.size(), unreached);
     for (const Vertex* goal : goals) toGoal_[goal->index] = 0.;
-    floor_ = toGoal_;
+    baseCost_ = toGoal_;
     findDistances(roadmap, vertices, toGoal_, lengthOf);
-    findDistances(roadmap, vertices, floor_, [this](const auto& edge) { return floorOf(edge); });
+    findDistances(roadmap, vertices, baseCost_, [this](const auto& edge) { return baseCostOf(edge); });
 }
 
 void CostToGo::findObserved(const Roadmap& roadmap, const std::deque<Vertex>& vertices) {
@@ -90,16 +90,16 @@ void CostToGo::findObserved(const Roadmap& roadmap, const std::deque<Vertex>& ve
     for (int k = 0; k < kAxes; ++k) findViews(roadmap, vertices, k);
 }
 
-/// Whether the uncertainty at the start may add much to the floor.
+/// Whether the uncertainty at the start may add much to the base cost.
 bool CostToGo::isUncertain(const Start& start) const {
     if (charge_ == 0.) return false;
     double sum = 0.;
     for (const double variance : variances(start.covariance)) sum += variance;
     return charge_ * sum * toGoal_[start.vertex->index] >
-           kLittleCharge * floor_[start.vertex->index];
+           kLittleCharge * baseCost_[start.vertex->index];
 }
 
-double CostToGo::floorOf(const Roadmap::Edge& edge) const {
+double CostToGo::baseCostOf(const Roadmap::Edge& edge) const {
     const double length = edge.motion.length;
     return length * (alpha_ + noise_ * length / edge.motion.steps);
 }
@@ -134,17 +134,17 @@ void CostToGo::findViews(const Roadmap& roadmap, const std::deque<Vertex>& verti
             if (!observes(*edge, axis)) continue;
             toView[vertex.index] = 0.;
             viaView[vertex.index] =
-                std::min(viaView[vertex.index], floorOf(*edge) + floor_[next->index]);
+                std::min(viaView[vertex.index], baseCostOf(*edge) + baseCost_[next->index]);
         }
     }
     findDistances(roadmap, vertices, toView, lengthOf);
-    findDistances(roadmap, vertices, viaView, [this](const auto& edge) { return floorOf(edge); });
+    findDistances(roadmap, vertices, viaView, [this](const auto& edge) { return baseCostOf(edge); });
 }
 
 double CostToGo::from(const Vertex& vertex, const PerAxis& variance) const {
     const double length = toGoal_[vertex.index];
-    const double floor = floor_[vertex.index];
-    if (charge_ == 0. || length == kInfinity) return floor;
+    const double base = baseCost_[vertex.index];
+    if (charge_ == 0. || length == kInfinity) return base;
     double unobserved = 0.;  // charge until each axis is observed, on the shortest path
     double detour = 0.;      // at least as much more for one of the axes
     for (int k = 0; k < kAxes; ++k) {
@@ -153,17 +153,17 @@ double CostToGo::from(const Vertex& vertex, const PerAxis& variance) const {
         const double never = charge_ * variance[k] * length;
         const double viaView = toView == kInfinity ? kInfinity
                                                    : charge_ * variance[k] * toView +
-                                                         viaView_[k][vertex.index] - floor;
+                                                         viaView_[k][vertex.index] - base;
         unobserved += least;
         detour = std::max(detour, std::min(viaView, never) - least);
     }
-    return floor + unobserved + detour;
+    return base + unobserved + detour;
 }
 
 double CostToGo::over(const Roadmap::Edge& edge, const Vertex& vertex,
                       const PerAxis& variance) const {
     PerAxis left = variance;
-    double cost = floorOf(edge);
+    double cost = baseCostOf(edge);
     if (charge_ > 0.) {
         for (int k = 0; k < kAxes; ++k) {
             if (observes(edge, k)) left[k] = 0.;

@@ -12,9 +12,9 @@ namespace photonav {
 
 /// A lower bound on the cost-to-go over a roadmap, the sum of two parts.
 ///
-/// The floor: what a motion costs however certain the pose is before it. Its length counts alpha,
+/// The base cost: what a motion costs however certain the pose is before it. Its length counts alpha,
 /// and the noise of a step is in the covariance at the end of the step, before the next view, so
-/// that it is charged over half the step. Where there is much to see the cost is hardly more.
+/// that it is charged over half the step. Where views inform nearly everywhere the cost is hardly more.
 ///
 /// The uncertainty at the start: the conditional variance of a position coordinate given all others
 /// (the inverse of the precision's diagonal) never falls with motion, and only a view that observes
@@ -42,14 +42,14 @@ class CostToGo {
                 const std::vector<Vertex*>& goals, BeliefModel& model);
 
     /// The same for a search from these starts. If no goal can be reached from them, or the
-    /// uncertainty there adds little and there is `muchToSee` on the way, the bound is the floor
-    /// alone, which needs no views.
+    /// uncertainty there adds little and the last path was `wellObserved`, the bound is the base
+    /// cost alone, which needs no views.
     void update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                 const std::vector<Vertex*>& goals, BeliefModel& model,
-                const std::vector<Start>& starts, bool muchToSee);
+                const std::vector<Start>& starts, bool wellObserved);
 
-    /// The floor of the cost from a vertex to a goal.
-    double floor(const Vertex& vertex) const { return floor_[vertex.index]; }
+    /// Least sum of base costs from a vertex to a goal.
+    double baseCost(const Vertex& vertex) const { return baseCost_[vertex.index]; }
 
     /// Conditional variance of each position coordinate (axes of the world) given all other
     /// coordinates of the belief [m^2]; neither motion nor uninformative views reduce it.
@@ -71,11 +71,11 @@ class CostToGo {
 
     const Vertex* evaluatedNear(const Roadmap& roadmap, const Vertex& vertex) const;
     Observed observedFrom(const Vertex& vertex) const;
-    double floorOf(const Roadmap::Edge& edge) const;
-    void findFloors(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
+    double baseCostOf(const Roadmap::Edge& edge) const;
+    void findBaseCosts(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                     const std::vector<Vertex*>& goals, BeliefModel& model);
     void findObserved(const Roadmap& roadmap, const std::deque<Vertex>& vertices);
-    bool reachesGoal(const Start& start) const { return floor_[start.vertex->index] < kInfinity; }
+    bool reachesGoal(const Start& start) const { return baseCost_[start.vertex->index] < kInfinity; }
     bool isUncertain(const Start& start) const;
     void findViews(const Roadmap& roadmap, const std::deque<Vertex>& vertices, int axis);
     bool observes(const Roadmap::Edge& edge, int axis) const {
@@ -87,11 +87,11 @@ class CostToGo {
     double charge_ = 0.;              // per metre and m^2
     double noise_ = 0.;               // charged per metre flown and metre of a step
     std::vector<double> toGoal_;      // by vertex: distance
-    std::vector<double> floor_;       // by vertex: least sum of floors to a goal
+    std::vector<double> baseCost_;       // by vertex: least sum of base costs to a goal
     std::vector<Observed> observes_;  // by vertex
     std::vector<bool> isEvaluated_;   // by vertex; else it observes what a near one does
     std::array<std::vector<double>, kAxes> toView_;   // by vertex: distance to a view of the axis
-    std::array<std::vector<double>, kAxes> viaView_;  // by vertex: floors to the goal by there
+    std::array<std::vector<double>, kAxes> viaView_;  // by vertex: base costs to the goal by there
 };
 
 }  // namespace photonav

@@ -146,7 +146,7 @@ void conclude(Alignment& a, const NormalEquations& equations, std::size_t pixels
     a.directions = s.directions;
     const Matrix6 covariance = prior ? posteriorCovariance(*prior, a.information, image.repeating)
                                      : covarianceWithoutPrior(s);
-    a.covariance = withFloor(covariance, options.floorTranslation, options.floorRotation);
+    a.covariance = withLeastSigma(covariance, options.leastSigma, options.leastSigmaRotation);
     const double least = 1. / (options.openSigma * options.openSigma);
     const int open = static_cast<int>((s.values.array() < least).count());
     a.openDirections = axesOf(s.directions, open);
@@ -163,13 +163,13 @@ void conclude(Alignment& a, const NormalEquations& equations, std::size_t pixels
     }
 }
 
-Matrix6 withFloor(const Matrix6& covariance, double translation, double rotation) {
+Matrix6 withLeastSigma(const Matrix6& covariance, double translation, double rotation) {
     if (!(translation > 0. || rotation > 0.)) return covariance;
     constexpr double kNegligible = 1e-6;  // of the one that is not given [m], [rad]
-    Vector6 floor;
-    floor << Eigen::Vector3d::Constant(std::max(translation, kNegligible)),
+    Vector6 least;
+    least << Eigen::Vector3d::Constant(std::max(translation, kNegligible)),
         Eigen::Vector3d::Constant(std::max(rotation, kNegligible));
-    return larger(covariance, floor.cwiseAbs2().asDiagonal());
+    return larger(covariance, least.cwiseAbs2().asDiagonal());
 }
 
 double squaredDistance(const Vector6& e, const Matrix6& covariance) {

@@ -66,8 +66,8 @@ struct TrustOptions {
     double maxGain = 3.;
     /// Least standard deviations of the result. Errors that repeat from image to image, as those of
     /// the map, do not average out over the pixels.
-    double floorTranslation = 0.;  ///< [m]
-    double floorRotation = 0.;     ///< [rad]
+    double leastSigma = 0.;  ///< [m]
+    double leastSigmaRotation = 0.;     ///< [rad]
 };
 
 /// Residuals observed - (gain * predicted + offset), grey values, over the pixels that count.
@@ -163,9 +163,11 @@ void conclude(Alignment& alignment, const NormalEquations& equations, std::size_
               const MeasuredInformation& image, double sigma, bool isExposureEstimated,
               const std::optional<Matrix6>& prior, const TrustOptions& options);
 
-/// The covariance raised where it is below floor (eigenvalues relative to the floor, clipped at 1).
-/// 0: no floor.
-Matrix6 withFloor(const Matrix6& covariance, double translation, double rotation);
+/// The covariance, raised along the axes where it is below the least standard deviations
+/// (eigenvalues relative to their squares, clipped at 1). 0: no least one.
+/// @param translation least standard deviation [m]
+/// @param rotation least standard deviation [rad]
+Matrix6 withLeastSigma(const Matrix6& covariance, double translation, double rotation);
 
 /// Squared Mahalanobis distance e^T covariance^-1 e; variances of zero are replaced by a millionth
 /// of the largest.

@@ -43,10 +43,10 @@ Directions directionsOf(const NormalEquations& here, const std::optional<Matrix6
     return along;
 }
 
-/// Whether the floor is above a displacement of one standard deviation.
-bool isBelowFloor(const Vector6& xi, const TrustOptions& floors) {
-    return xi.head<3>().norm() <= floors.floorTranslation &&
-           xi.tail<3>().norm() <= floors.floorRotation;
+/// Whether the least standard deviation is above a displacement of one standard deviation.
+bool isBelowLeastSigma(const Vector6& xi, const TrustOptions& trust) {
+    return xi.head<3>().norm() <= trust.leastSigma &&
+           xi.tail<3>().norm() <= trust.leastSigmaRotation;
 }
 
 /// W with singular values limited to 1, so that no direction has more information than J gives.
@@ -58,7 +58,7 @@ Matrix6 atMostOne(const Matrix6& W) {
 
 }  // namespace
 
-Matrix6 measuredSlope(const std::optional<Matrix6>& prior, const TrustOptions& floors,
+Matrix6 measuredSlope(const std::optional<Matrix6>& prior, const TrustOptions& trust,
                       const DisplacedComparison& compare) {
     const NormalEquations here = compare(Pose::Identity());
     if (here.count < 1.) return Matrix6::Identity();
@@ -66,7 +66,7 @@ Matrix6 measuredSlope(const std::optional<Matrix6>& prior, const TrustOptions& f
     Matrix6 W = Matrix6::Identity();  // M from direction to direction
     for (int i = 0; i < 6; ++i) {
         const Vector6 sigma = along.sigmas.col(i);
-        if (!along.isRelevant(i) || isBelowFloor(sigma, floors)) continue;
+        if (!along.isRelevant(i) || isBelowLeastSigma(sigma, trust)) continue;
         // No farther than one standard deviation given image and prior.
         const double together = std::sqrt(along.information[i] / (1. + along.information[i]));
         const double step = std::min(together, kLongest / sigma.cwiseQuotient(along.unit).norm());

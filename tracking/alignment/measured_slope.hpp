@@ -23,10 +23,10 @@ using DisplacedComparison = std::function<NormalEquations(const Pose& T_away_her
 /// only if an edge happens to cross the middle of a pixel.
 /// @param prior covariance of the pose, left, camera frame; none: one mean depth and one radian.
 ///        Directions about which the image informs much less are not measured.
-/// @param floors least standard deviations of the result. Directions that they determine are not
+/// @param trust least standard deviations of the result. Directions that they determine are not
 ///        measured.
 /// @return M
-Matrix6 measuredSlope(const std::optional<Matrix6>& prior, const TrustOptions& floors,
+Matrix6 measuredSlope(const std::optional<Matrix6>& prior, const TrustOptions& trust,
                       const DisplacedComparison& compare);
 
 }  // namespace photonav

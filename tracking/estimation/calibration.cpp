@@ -11,9 +11,9 @@
 namespace photonav {
 namespace {
 
-Matrix6 covarianceOf(const AlignmentError& error, double scale, double floorTranslation,
-                     double floorRotation) {
-    return withFloor((scale * error.information).inverse(), floorTranslation, floorRotation);
+Matrix6 covarianceOf(const AlignmentError& error, double scale, double leastSigma,
+                     double leastSigmaRotation) {
+    return withLeastSigma((scale * error.information).inverse(), leastSigma, leastSigmaRotation);
 }
 
 /// Mean of -2 log likelihood per degree of freedom, without the constant.
@@ -35,7 +35,7 @@ double misfit(std::span<const AlignmentError> errors, double scale, double trans
 double correlationTime(std::span<const AlignmentError> errors, const Calibration& c) {
     std::vector<Vector6> white;
     for (const AlignmentError& e : errors) {
-        const Matrix6 covariance = covarianceOf(e, c.scale, c.floorTranslation, c.floorRotation);
+        const Matrix6 covariance = covarianceOf(e, c.scale, c.leastSigma, c.leastSigmaRotation);
         white.push_back(covariance.llt().matrixL().solve(e.xi));
     }
     double time = 1.;
@@ -73,7 +73,7 @@ void descend(std::span<const AlignmentError> errors, std::array<double, 3>& para
     }
 }
 
-/// The factor, and the errors themselves as floor.
+/// The scale, and the errors themselves as least sigmas.
 std::array<double, 3> startOf(std::span<const AlignmentError> errors, double scale) {
     std::array<double, 3> start = {scale, 0., 0.};
     for (const AlignmentError& e : errors) {
@@ -88,11 +88,11 @@ std::array<double, 3> startOf(std::span<const AlignmentError> errors, double sca
 
 }  // namespace
 
-double neesPerDof(std::span<const AlignmentError> errors, double scale, double floorTranslation,
-                  double floorRotation) {
+double neesPerDof(std::span<const AlignmentError> errors, double scale, double leastSigma,
+                  double leastSigmaRotation) {
     double sum = 0.;
     for (const AlignmentError& e : errors) {
-        const Matrix6 covariance = covarianceOf(e, scale, floorTranslation, floorRotation);
+        const Matrix6 covariance = covarianceOf(e, scale, leastSigma, leastSigmaRotation);
         sum += e.xi.dot(covariance.ldlt().solve(e.xi)) / 6.;
     }
     return sum / static_cast<double>(errors.size());
@@ -102,30 +102,30 @@ Calibration calibrate(std::span<const AlignmentError> errors) {
     if (errors.size() < 20) throw std::invalid_argument("calibrate: fewer than 20 alignments");
     Calibration result;
     result.neesBefore = neesPerDof(errors);
-    // Without a floor the most likely factor is the one that makes the NEES one.
+    // Without least sigmas the most likely scale is the one that makes the NEES one.
     result.scale = 1. / result.neesBefore;
-    std::array<double, 3> withFloors = startOf(errors, 1.);
-    descend(errors, withFloors, 0, 3);
+    std::array<double, 3> withLeastSigmas = startOf(errors, 1.);
+    descend(errors, withLeastSigmas, 0, 3);
     constexpr double kWorthwhile = 0.05;  // misfit per degree of freedom
-    if (misfit(errors, withFloors[0], withFloors[1], withFloors[2]) <
+    if (misfit(errors, withLeastSigmas[0], withLeastSigmas[1], withLeastSigmas[2]) <
         misfit(errors, result.scale, 0., 0.) - kWorthwhile) {
-        result.scale = withFloors[0];
-        result.floorTranslation = withFloors[1];
-        result.floorRotation = withFloors[2];
+        result.scale = withLeastSigmas[0];
+        result.leastSigma = withLeastSigmas[1];
+        result.leastSigmaRotation = withLeastSigmas[2];
     }
     result.correlationTime = correlationTime(errors, result);
     result.neesAfter =
-        neesPerDof(errors, result.scale, result.floorTranslation, result.floorRotation);
+        neesPerDof(errors, result.scale, result.leastSigma, result.leastSigmaRotation);
     return result;
 }
 
-Calibration calibrateFloor(std::span<const AlignmentError> errors, double scale) {
+Calibration calibrateLeastSigma(std::span<const AlignmentError> errors, double scale) {
     if (errors.size() < 20) throw std::invalid_argument("calibrate: fewer than 20 alignments");
-    std::array<double, 3> withFloors = startOf(errors, scale);
-    descend(errors, withFloors, 1, 3);
-    Calibration result{scale, withFloors[1], withFloors[2]};
+    std::array<double, 3> withLeastSigmas = startOf(errors, scale);
+    descend(errors, withLeastSigmas, 1, 3);
+    Calibration result{scale, withLeastSigmas[1], withLeastSigmas[2]};
     result.neesBefore = neesPerDof(errors, scale);
-    result.neesAfter = neesPerDof(errors, scale, withFloors[1], withFloors[2]);
+    result.neesAfter = neesPerDof(errors, scale, withLeastSigmas[1], withLeastSigmas[2]);
     return result;
 }
 

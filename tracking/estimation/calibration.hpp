@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What factor on the information and what floor of the covariances recorded errors ask for.
+// The scale of the information and the least standard deviations that fit recorded errors.
 #pragma once
 
 #include <span>
@@ -19,31 +19,31 @@ struct AlignmentError {
 /// they are overconfident.
 /// @param scale factor on every information matrix
 double neesPerDof(std::span<const AlignmentError> errors, double scale = 1.,
-                  double floorTranslation = 0., double floorRotation = 0.);
+                  double leastSigma = 0., double leastSigmaRotation = 0.);
 
 struct Calibration {
     double scale = 1.;             ///< for AlignmentOptions::informationFactor
-    double floorTranslation = 0.;  ///< for TrustOptions [m]; 0 when the errors ask for none
-    double floorRotation = 0.;     ///< [rad]
+    double leastSigma = 0.;  ///< for TrustOptions [m]; 0 when the errors ask for none
+    double leastSigmaRotation = 0.;     ///< [rad]
     /// Over how many images errors stay alike: the integrated autocorrelation of the whitened
     /// errors, 1 when every image errs in its own way. A filter that averages images must divide
-    /// the factor by it. (calibrateFloor does not measure it.)
+    /// the scale by it. (calibrateLeastSigma does not measure it.)
     double correlationTime = 1.;
-    double neesBefore = 0.;  ///< per degree of freedom, without floor and with scale 1
-                             ///< (calibrateFloor: the scale)
+    double neesBefore = 0.;  ///< per degree of freedom, without least sigmas and with scale 1
+                             ///< (calibrateLeastSigma: the scale)
     double neesAfter = 0.;
 };
 
-/// The factor and the floor under which the errors are most likely (Gaussian). When a factor alone
-/// is nearly as likely, there is no floor.
+/// The scale and the least sigmas under which the errors are most likely (Gaussian). When a scale
+/// alone is nearly as likely, the least sigmas are 0.
 /// @param errors in the order of the images
 /// @throws std::invalid_argument below 20 samples
 Calibration calibrate(std::span<const AlignmentError> errors);
 
-/// The floor alone, with this factor: for maps of cells, whose errors repeat from image to image,
-/// so that a factor which describes one alignment would be averaged away by the next.
+/// The least sigmas alone, with this scale: for maps of cells, whose errors repeat from image to
+/// image, so that a scale which describes one alignment would be averaged away by the next.
 /// @throws std::invalid_argument below 20 samples
-Calibration calibrateFloor(std::span<const AlignmentError> errors, double scale);
+Calibration calibrateLeastSigma(std::span<const AlignmentError> errors, double scale);
 
 /// Options for images that the model did not make: covariances follow from their residuals.
 /// @param blur point spread of the images, standard deviation [pixels]

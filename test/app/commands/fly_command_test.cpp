@@ -121,7 +121,7 @@ TEST_F(FlyCommand, ItsConfigRepeatsTheRun) {
     EXPECT_EQ(result("a")["flight"]["camera"], "real");
     EXPECT_EQ(result("a")["flight"]["exposure_prior"]["gain_sigma"], 0.1);
     EXPECT_EQ(result("a")["flight"]["photometric_goal"], false);
-    EXPECT_EQ(result("a")["flight"]["floor"], json({0.01, 0.004}));
+    EXPECT_EQ(result("a")["flight"]["least_sigma"], json({0.01, 0.004}));
     EXPECT_EQ(test::contentOf(folder_ / "a/config.yaml"),
               test::contentOf(folder_ / "b/config.yaml"));
     EXPECT_NE(photonav(fmt::format("fly {} --flights 1 --camera assumed --out {}",

@@ -96,8 +96,8 @@ TEST_F(ReplayCommand, CalibrationMakesCovariancesTrue) {
     EXPECT_NEAR(fitted["nees_after"].get<double>(), 1., 0.3);
     const Calibration read = readCalibration((options.out / "calibration.yaml").string());
     EXPECT_NEAR(read.scale, fitted["scale"].get<double>(), 0.01 * read.scale);
-    EXPECT_NEAR(read.floorTranslation, fitted["floor"][0].get<double>(), 1e-4);
-    EXPECT_NEAR(read.floorRotation, fitted["floor"][1].get<double>(), 1e-4);
+    EXPECT_NEAR(read.leastSigma, fitted["least_sigma"][0].get<double>(), 1e-4);
+    EXPECT_NEAR(read.leastSigmaRotation, fitted["least_sigma"][1].get<double>(), 1e-4);
     options.frames = ":10";
     EXPECT_TRUE(run().result["calibration"].is_null());
 }
@@ -107,7 +107,7 @@ TEST_F(ReplayCommand, ItsConfigRepeatsTheRun) {
     options.frames = "1:9";
     options.every = 2;
     options.startSigma = 0.02;
-    options.floorTranslation = 0.003;
+    options.leastSigma = 0.003;
     options.maxWidth = 80;
     options.calibrate = true;
     json first = run().result;
@@ -121,7 +121,7 @@ TEST_F(ReplayCommand, ItsConfigRepeatsTheRun) {
     const Execution good = photonav(fmt::format("replay {} --out {}", config, again.string()));
     ASSERT_EQ(good.exitCode, 0) << good.output;
     json second = json::parse(textOf(again / "result.json"));
-    EXPECT_EQ(second["options"]["floor"][0], 0.003);
+    EXPECT_EQ(second["options"]["least_sigma"][0], 0.003);
     EXPECT_EQ(second["options"]["max_width"], 80);
     for (const char* key : {"time", "fps", "fps_with_reading", "options"}) {
         first.erase(key);

@@ -55,11 +55,11 @@ TEST(FlightSetup, BodyAndToleranceAreThoseOfTheRobotUnlessGiven) {
     EXPECT_EQ(usual.robot.camera.period, 0.25);  // a view every planner.ds, at full speed
     EXPECT_EQ(usual.pilot.photometricGoal, true);
     EXPECT_EQ(optionsFor({"fly.photometric_goal=false"}).pilot.photometricGoal, false);
-    EXPECT_EQ(usual.tracker.map.trust.floorTranslation, 0.);
+    EXPECT_EQ(usual.tracker.map.trust.leastSigma, 0.);
     const AlignmentOptions bounded =
         optionsFor({"fly.least_sigma=0.02", "fly.least_sigma_rotation=0.01"}).tracker.map;
-    EXPECT_EQ(bounded.trust.floorTranslation, 0.02);
-    EXPECT_EQ(bounded.trust.floorRotation, 0.01);
+    EXPECT_EQ(bounded.trust.leastSigma, 0.02);
+    EXPECT_EQ(bounded.trust.leastSigmaRotation, 0.01);
 }
 
 /// Images are compared with a map as sharply as it is, and its surfaces err by parts of a cell.
@@ -130,10 +130,10 @@ TEST(FlightSetup, ThePilotKeepsTheRobotsRadius) {
 
 TEST(FlightSetup, ACalibrationCountsCorrelatedImagesOnce) {
     FlyConfig fly;
-    applyCalibration({.scale = 0.2, .floorTranslation = 0.01, .correlationTime = 4.}, fly);
+    applyCalibration({.scale = 0.2, .leastSigma = 0.01, .correlationTime = 4.}, fly);
     EXPECT_DOUBLE_EQ(fly.scale.value(), 0.05);
-    EXPECT_EQ(fly.floorTranslation, 0.01);
-    EXPECT_EQ(fly.floorRotation, 0.);
+    EXPECT_EQ(fly.leastSigma, 0.01);
+    EXPECT_EQ(fly.leastSigmaRotation, 0.);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ TEST_F(CalibrationFile, IsRefusedForEveryOtherKindOfMap) {
         const std::string file = written(toYaml(calibration, of));
         for (const Kind& wanted : kKinds) {
             if (of == wanted) {
-                EXPECT_EQ(readCalibration(file, wanted).floorTranslation, 0.01);
+                EXPECT_EQ(readCalibration(file, wanted).leastSigma, 0.01);
             } else {
                 expectInputError([&] { readCalibration(file, wanted); },
                                  {"calibration.yaml: mode: is "});

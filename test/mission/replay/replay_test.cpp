@@ -77,8 +77,8 @@ TEST_F(ReplayFixture, SaysWhichValuesAreInUse) {
     EXPECT_EQ(inMap.options().startSigma, kStartSigma);
     EXPECT_GT(inMap.options().scale, 0.);
     EXPECT_NEAR(inMap.medianDepth().value_or(0.), 1.5, 0.3);
-    options.floorTranslation = 0.003;
-    EXPECT_EQ(Replay(options).options().floorTranslation, 0.003);
+    options.leastSigma = 0.003;
+    EXPECT_EQ(Replay(options).options().leastSigma, 0.003);
 }
 
 class ReplayInMap : public ReplayFixture {

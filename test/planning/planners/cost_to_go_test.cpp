@@ -132,10 +132,10 @@ TEST(CostToGo, NeedsViewsOnlyWhereTheStartIsUncertain) {
     Vertex& start = grid.at(6, 2);
     InformationField& field = grid.model->field();
     const Matrix6 covariance = problem.belief.initialCovariance;
-    const auto boundFrom = [&](const Matrix6& atStart, bool muchToSee = true) {
+    const auto boundFrom = [&](const Matrix6& atStart, bool wellObserved = true) {
         field.clear();
         grid.toGo.update(grid.roadmap, grid.vertices, {&grid.at(6, 18)}, *grid.model,
-                         {{&start, atStart}}, muchToSee);
+                         {{&start, atStart}}, wellObserved);
         return grid.bound(start, atStart);
     };
     const double uncertain = boundFrom(covariance);

@@ -231,21 +231,21 @@ TEST(DenseAligner, IsLostInTheDarkOverWhite) {
               Verdict::lostResidual);
 }
 
-TEST(DenseAligner, FloorBoundsTheCovarianceFromBelow) {
+TEST(DenseAligner, LeastSigmasBoundTheCovarianceFromBelow) {
     AlignmentOptions options;
-    options.trust.floorTranslation = 0.01;
-    options.trust.floorRotation = 0.005;
+    options.trust.leastSigma = 0.01;
+    options.trust.leastSigmaRotation = 0.005;
     DenseAligner aligner(room(), camera(), options);
     const Alignment a = aligner.align(observe(room(), kPose), kPose);
     Vector6 sigmas;
     sigmas << 0.01, 0.01, 0.01, 0.005, 0.005, 0.005;
-    const Matrix6 floor = sigmas.cwiseAbs2().asDiagonal();
-    EXPECT_LT((a.covariance - floor).norm(), 1e-9);
-    const Matrix6 large = 2. * floor;
-    EXPECT_LT((withFloor(large, 0.01, 0.005) - large).norm(), 1e-12);
-    const Matrix6 raised = withFloor(floor, 0.02, 0.);  // of positions alone
+    const Matrix6 least = sigmas.cwiseAbs2().asDiagonal();
+    EXPECT_LT((a.covariance - least).norm(), 1e-9);
+    const Matrix6 large = 2. * least;
+    EXPECT_LT((withLeastSigma(large, 0.01, 0.005) - large).norm(), 1e-12);
+    const Matrix6 raised = withLeastSigma(least, 0.02, 0.);  // of positions alone
     EXPECT_NEAR(raised(0, 0), 0.02 * 0.02, 1e-12);
-    EXPECT_NEAR(raised(4, 4), floor(4, 4), 1e-12);
+    EXPECT_NEAR(raised(4, 4), least(4, 4), 1e-12);
 }
 
 TEST(DenseAligner, ResidualStatisticsAreThoseOfTheNoise) {

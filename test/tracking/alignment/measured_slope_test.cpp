@@ -21,8 +21,8 @@ class MeasuredSlope : public testing::Test {
         for (double& value : J.reshaped()) value = 100. * normal(random);
     }
 
-    Matrix6 informationOf(const Slope& D, const TrustOptions& floors = {}) {
-        const Matrix6 M = measuredSlope(prior, floors, [&](const Pose& T_away_here) {
+    Matrix6 informationOf(const Slope& D, const TrustOptions& trust = {}) {
+        const Matrix6 M = measuredSlope(prior, trust, [&](const Pose& T_away_here) {
             ++walks;
             NormalEquations e;
             e.AtA.topLeftCorner<6, 6>() = J.transpose() * J;
@@ -80,12 +80,12 @@ TEST_F(MeasuredSlope, InformsOfNoDirectionMoreThanJ) {
 
 TEST_F(MeasuredSlope, StopsAtWhatJSays) { expectClose(informationOf(2. * J), J.transpose() * J); }
 
-TEST_F(MeasuredSlope, LeavesWhatThePriorKnowsBetterOrTheFloorDecides) {
+TEST_F(MeasuredSlope, DirectionsThatThePriorOrTheLeastSigmaDeterminesAreNotMeasured) {
     prior *= 1e-8;
     expectClose(informationOf(0.5 * J), J.transpose() * J);
     EXPECT_EQ(walks, 1);
     prior = 0.01 * Matrix6::Identity();
-    expectClose(informationOf(0.5 * J, {.floorTranslation = 0.1, .floorRotation = 0.1}),
+    expectClose(informationOf(0.5 * J, {.leastSigma = 0.1, .leastSigmaRotation = 0.1}),
                 J.transpose() * J);
     EXPECT_EQ(walks, 2);
 }

@@ -8,8 +8,8 @@
 namespace photonav {
 namespace {
 
-/// Errors whose covariance is (scale * information)^-1 or the floor, whichever is larger.
-std::vector<AlignmentError> sampled(double scale, double floorTranslation, double floorRotation,
+/// Errors whose covariance is (scale * information)^-1 or that of the least sigmas, whichever is larger.
+std::vector<AlignmentError> sampled(double scale, double leastSigma, double leastSigmaRotation,
                                     int count) {
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal;
@@ -20,7 +20,7 @@ std::vector<AlignmentError> sampled(double scale, double floorTranslation, doubl
         AlignmentError e;
         e.information = sigmas.cwiseAbs2().cwiseInverse().asDiagonal();
         const Matrix6 covariance =
-            withFloor((scale * e.information).inverse(), floorTranslation, floorRotation);
+            withLeastSigma((scale * e.information).inverse(), leastSigma, leastSigmaRotation);
         Vector6 z;
         for (double& component : z) component = normal(random);
         e.xi = covariance.llt().matrixL() * z;
@@ -34,23 +34,23 @@ TEST(Calibration, LeavesConsistentErrorsAlone) {
     const Calibration c = calibrate(errors);
     EXPECT_NEAR(c.neesBefore, 1., 0.1);
     EXPECT_NEAR(c.scale, 1., 0.1);
-    EXPECT_EQ(c.floorTranslation, 0.);
-    EXPECT_EQ(c.floorRotation, 0.);
+    EXPECT_EQ(c.leastSigma, 0.);
+    EXPECT_EQ(c.leastSigmaRotation, 0.);
 }
 
-TEST(Calibration, FindsAFactor) {
+TEST(Calibration, FindsAScale) {
     const Calibration c = calibrate(sampled(0.05, 0., 0., 400));
     EXPECT_NEAR(c.neesBefore, 20., 2.);
     EXPECT_NEAR(c.scale, 0.05, 0.005);
-    EXPECT_EQ(c.floorTranslation, 0.);
+    EXPECT_EQ(c.leastSigma, 0.);
     EXPECT_NEAR(c.neesAfter, 1., 1e-6);
 }
 
-TEST(Calibration, FindsAFactorAndAFloor) {
+TEST(Calibration, FindsAScaleAndLeastSigmas) {
     const Calibration c = calibrate(sampled(0.5, 0.01, 0.004, 400));
     EXPECT_NEAR(c.scale, 0.5, 0.1);
-    EXPECT_NEAR(c.floorTranslation, 0.01, 0.001);
-    EXPECT_NEAR(c.floorRotation, 0.004, 0.0004);
+    EXPECT_NEAR(c.leastSigma, 0.01, 0.001);
+    EXPECT_NEAR(c.leastSigmaRotation, 0.004, 0.0004);
     EXPECT_NEAR(c.neesAfter, 1., 0.1);
 }
 
@@ -66,15 +66,15 @@ TEST(Calibration, FindsOverHowManyImagesErrorsAreAlike) {
     EXPECT_NEAR(c.scale, 1., 0.1);
 }
 
-TEST(Calibration, OfAFloorAloneKeepsTheFactor) {
-    const Calibration c = calibrateFloor(sampled(0.5, 0.01, 0.004, 400), 0.5);
+TEST(Calibration, OfLeastSigmasAloneKeepsTheScale) {
+    const Calibration c = calibrateLeastSigma(sampled(0.5, 0.01, 0.004, 400), 0.5);
     EXPECT_EQ(c.scale, 0.5);
-    EXPECT_NEAR(c.floorTranslation, 0.01, 0.001);
-    EXPECT_NEAR(c.floorRotation, 0.004, 0.0004);
+    EXPECT_NEAR(c.leastSigma, 0.01, 0.001);
+    EXPECT_NEAR(c.leastSigmaRotation, 0.004, 0.0004);
     EXPECT_EQ(c.correlationTime, 1.);
     EXPECT_GT(c.neesBefore, 3.);
     EXPECT_NEAR(c.neesAfter, 1., 0.1);
-    EXPECT_THROW(calibrateFloor(sampled(1., 0., 0., 10), 1.), std::invalid_argument);
+    EXPECT_THROW(calibrateLeastSigma(sampled(1., 0., 0., 10), 1.), std::invalid_argument);
 }
 
 TEST(Calibration, WantsEnoughErrors) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planners/path_cost_objective.hpp"
+#include "planners/ompl_objective.hpp"
 
 #include <fmt/format.h>
 
 namespace photonav {
 namespace ob = ompl::base;
 
-PathCostObjective::PathCostObjective(const ob::SpaceInformationPtr& si,
+OmplObjective::OmplObjective(const ob::SpaceInformationPtr& si,
                                      std::shared_ptr<const BeliefModel> model)
     : ob::OptimizationObjective(si), model_(std::move(model)) {
     const BeliefOptions& options = model_->options();
@@ -15,7 +15,7 @@ PathCostObjective::PathCostObjective(const ob::SpaceInformationPtr& si,
         options.cost == CostRule::integral ? "integral of the trace" : "trace at the vertices");
 }
 
-ob::Cost PathCostObjective::motionCost(const ob::State* from, const ob::State* to) const {
+ob::Cost OmplObjective::motionCost(const ob::State* from, const ob::State* to) const {
     return ob::Cost(model_->lowerBound(si_->distance(from, to)));
 }
 

@@ -14,9 +14,9 @@ namespace photonav {
 /// comparing, printing and stopping at solutions. The cost of a motion depends on the belief it is
 /// flown with, which OMPL does not carry: motionCost() is the part that no belief can undercut, so
 /// the sum over a path (ompl::base::Path::cost) is a lower bound, exact for alpha = 1.
-class PathCostObjective : public ompl::base::OptimizationObjective {
+class OmplObjective : public ompl::base::OptimizationObjective {
   public:
-    PathCostObjective(const ompl::base::SpaceInformationPtr& si,
+    OmplObjective(const ompl::base::SpaceInformationPtr& si,
                       std::shared_ptr<const BeliefModel> model);
 
     ompl::base::Cost stateCost(const ompl::base::State*) const override {
