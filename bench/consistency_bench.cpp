@@ -169,7 +169,7 @@ void flights(const std::string& name, const ViewSource& world, const ViewSource&
             observation.T_next_now = UncertainPose{expSE3(draw(sigmas, random)) * T_next_now, Q};
             world.render(camera, truth, view);
             observation.frames.push_back({observation.time, {picture(view.intensity, random), {}}});
-            lost += tracker.update(observation).front().lost ? 1 : 0;
+            lost += tracker.update(observation).front().rejected ? 1 : 0;
         }
         const Vector6 xi = logSE3(truth * tracker.beliefAtLastImage().mean.inverse());
         sum += xi.dot(tracker.beliefAtLastImage().covariance.ldlt().solve(xi)) / 6.;

@@ -46,7 +46,7 @@ Timed run(const StereoSequence& sequence, const std::vector<StereoImages>& image
         const double t0 = threadTime();
         stereo(images[i], view);
         const double t1 = threadTime();
-        timed.lost += odometry.track(view, sequence.frames[i].timestamp).lost ? 1 : 0;
+        timed.lost += odometry.track(view, sequence.frames[i].timestamp).rejected ? 1 : 0;
         const double t2 = threadTime();
         depthTimes.push_back(t1 - t0);
         odometryTimes.push_back(t2 - t1);

@@ -53,9 +53,9 @@ struct Result {
     std::set<double> keyframes;  // timestamps
 
     void add(const TrackedFrame& tracked, const RecordedFrame& frame, std::size_t i) {
-        lost += tracked.lost ? 1 : 0;
+        lost += tracked.rejected ? 1 : 0;
         if (tracked.keyframe) keyframes.insert(*tracked.keyframe);
-        if (tracked.lost) return;
+        if (tracked.rejected) return;
         poses.push_back({i, frame.timestamp, tracked.T_c_w.mean.inverse(), frame.T_c_w.inverse()});
         if (const auto squared = squaredNormalisedError(tracked.T_c_w, frame.T_c_w)) {
             nees = (nees * evaluated + *squared / 6.) / (evaluated + 1);

@@ -59,7 +59,7 @@ json jsonOf(const ExplorationResult& flight, double characteristicLength) {
             {"keyframes", flight.keyframes},
             {"blind_steps", flight.blindSteps},
             {"times_lost", flight.timesLost},
-            {"lost_s", flight.lost},
+            {"lost_s", flight.lostTime},
             {"wall_s", flight.wallSeconds},
             {"path_trace", traceOf(flight, characteristicLength)},
             {"updates", std::move(updates)}};

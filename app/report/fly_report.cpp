@@ -41,7 +41,7 @@ json jsonOf(const FlightResult& flight) {
             {"images", flight.images},
             {"rejected_images", flight.rejectedImages},
             {"times_lost", flight.timesLost},
-            {"lost_s", flight.lost},
+            {"lost_s", flight.lostTime},
             {"photometric_goal", flight.photometric},
             {"nees_per_dof", finiteOrNull(neesPerDof(flight))}};
 }

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "config/config_keys.hpp"
-#include "config/explore_strategy.hpp"
+#include "config/explore_planner.hpp"
 
 namespace photonav {
 namespace {
@@ -14,7 +14,7 @@ void readExplorers(YamlMap& explore, std::vector<std::string>& planners) {
     explore.read("planners", planners);
     for (const std::string& name : planners) {
         try {
-            exploreStrategy(name);
+            explorePlanner(name);
         } catch (const std::invalid_argument& unknown) {
             explore.fail("planners", unknown.what());
         }

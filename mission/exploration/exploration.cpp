@@ -7,8 +7,8 @@
 #include <random>
 #include <utility>
 
+#include "exploration/flyable_part.hpp"
 #include "exploration/mapper.hpp"
-#include "exploration/way_ahead.hpp"
 #include "geometry/gaussian.hpp"
 #include "geometry/se3.hpp"
 #include "io/error.hpp"
@@ -111,7 +111,7 @@ Exploration::Exploration(const ExplorationSetup& setup, const std::string& plann
       interrupted_(interrupted),
       onUpdate_(onUpdate),
       map_(setup.config),
-      planner_(setup.config, map_, exploreStrategy(planner), seed),
+      planner_(setup.config, map_, explorePlanner(planner), seed),
       robot_(setup.truth.truth, setup.truth.camera, setup.truth.T_b_c,
              drawStart(startOf(setup), setup.truth.T_b_c, seed), setup.truth.noise,
              setup.flight.robot, seed),
@@ -127,7 +127,7 @@ Exploration::Exploration(const ExplorationSetup& setup, const std::string& plann
               .radius = config.robotRadius,
               .hidden = isAhead ? kHidden : 0.,
               .canLook = isAhead && config.space != StateKind::position &&
-                         exploreStrategy(planner).headings != Headings::fixed};
+                         explorePlanner(planner).headings != Headings::fixed};
     result_.planner = planner;
     result_.seed = seed;
     result_.map = map_.cells();
@@ -193,7 +193,7 @@ void Exploration::flyOn(const UncertainPose& T_c_w) {
     withoutWay_ = 0;
     // Hovering over the goal is not interrupted by a way of a few centimetres to it.
     if (isWhole_ && pilot_.route().isAtGoal()) return;
-    WayAhead way = wayAhead(path, space_);
+    FlyablePart way = flyablePart(path, space_);
     isWhole_ = way.isWhole;
     result_.blindSteps += way.isBlind;
     pilot_.setPlan(std::move(way.plan));
@@ -248,7 +248,7 @@ bool Exploration::hasEnded() {
 ExplorationSetup setUpExploration(const PlanningProblem& problem) {
     const Config& config = problem.config();
     for (const std::string& name : config.explore.planners) {
-        if (exploreStrategy(name).headings && config.space != StateKind::positionYaw) {
+        if (explorePlanner(name).headings && config.space != StateKind::positionYaw) {
             throw InputError(config.file, "explore.planners",
                              fmt::format("{}: the robot's heading is not free", name));
         }

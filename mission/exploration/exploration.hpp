@@ -42,7 +42,7 @@ using OnPlanUpdate = std::function<void(const ExplorationResult& soFar)>;
 /// Flies from start to goal with the robot's own camera as only sensor: the map is made, and the
 /// plan repaired, as the scene comes into view. Deterministic for a seed: planning ends by work,
 /// not by time.
-/// @param planner as exploreStrategy() takes it
+/// @param planner as explorePlanner() takes it
 ExplorationResult explore(const ExplorationSetup& setup, const std::string& planner,
                           std::uint32_t seed, const std::atomic<bool>& interrupted,
                           const OnPlanUpdate& onUpdate = {}, const OnExposure& onExposure = {});

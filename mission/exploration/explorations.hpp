@@ -12,7 +12,7 @@ namespace photonav {
 
 /// One flight of an unknown scene.
 struct TrialItem {
-    std::string planner;  ///< as exploreStrategy() takes it
+    std::string planner;  ///< as explorePlanner() takes it
     std::uint32_t seed = 1;
     auto operator<=>(const TrialItem&) const = default;
 };

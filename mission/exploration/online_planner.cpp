@@ -45,15 +45,15 @@ std::shared_ptr<ob::State> copyOf(const ob::SpaceInformationPtr& si, const ob::S
 
 }  // namespace
 
-OnlinePlanner::OnlinePlanner(const Config& config, const OwnMap& map,
-                             const ExploreStrategy& strategy, std::uint32_t seed)
+OnlinePlanner::OnlinePlanner(const Config& config, const OwnMap& map, const ExplorePlanner& kind,
+                             std::uint32_t seed)
     : config_(configOf(config)),
       world_(map.cells(), map.obstacles(), config_),
-      problem_(config_, world_, alphaOf(strategy.planner, config_.belief.alpha),
+      problem_(config_, world_, alphaOf(kind.name, config_.belief.alpha),
                map.information(config_.camera.camera(), config_.photometric)),
-      strategy_(strategy),
+      kind_(kind),
       seed_(seed),
-      planner_(problem_.makePlanner(strategy.planner, seed)) {}
+      planner_(problem_.makePlanner(kind.name, seed)) {}
 
 /// The nearest place around that leaves room for the robot; nothing within a metre.
 std::optional<Eigen::Vector3d> OnlinePlanner::flyableNear(const Eigen::Vector3d& p_w) const {
@@ -111,15 +111,15 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
 /// @return what this changed in the tree
 UpdateCounts OnlinePlanner::planFrom(const ob::State* state, const Belief& belief,
                                      const std::atomic<bool>& interrupted) {
-    if (strategy_.replanning == Replanning::never && !plan_.empty()) {
+    if (kind_.replanning == Replanning::never && !plan_.empty()) {
         plan_ = restOf(plan_, state);
         return {};
     }
-    const bool isNew = strategy_.replanning == Replanning::scratch;
-    if (isNew) planner_ = problem_.makePlanner(strategy_.planner, seed_);
+    const bool isNew = kind_.replanning == Replanning::scratch;
+    if (isNew) planner_ = problem_.makePlanner(kind_.name, seed_);
     if (!solveFrom(state, belief, interrupted) && !isNew && !interrupted) {
         // What is left of a tree may be full without the goal: another one begins here.
-        planner_ = problem_.makePlanner(strategy_.planner, ++seed_);
+        planner_ = problem_.makePlanner(kind_.name, ++seed_);
         solveFrom(state, belief, interrupted);
     }
     plan_ = solution();
@@ -134,14 +134,14 @@ bool OnlinePlanner::solveFrom(const ob::State* state, const Belief& belief,
     return planner_->getProblemDefinition()->hasExactSolution();
 }
 
-/// The planner's path, with the strategy's headings; empty: there is none.
+/// The planner's path, with the kind's headings; empty: there is none.
 OnlinePlanner::States OnlinePlanner::solution() const {
     const auto definition = planner_->getProblemDefinition();
     if (!definition->hasExactSolution()) return {};
     auto& path = *definition->getSolutionPath()->as<ompl::geometric::PathGeometric>();
     const std::vector<const ob::State*> states(path.getStates().begin(), path.getStates().end());
     const auto& si = problem_.spaceInformation();
-    if (strategy_.headings) return withHeadings(si, problem_.space(), states, *strategy_.headings);
+    if (kind_.headings) return withHeadings(si, problem_.space(), states, *kind_.headings);
     States copies;
     for (const ob::State* state : states) copies.push_back(copyOf(si, state));
     return copies;

@@ -2,7 +2,7 @@
 // A plan that is kept up to date while map and robot change.
 #pragma once
 
-#include "config/explore_strategy.hpp"
+#include "config/explore_planner.hpp"
 #include "exploration/own_map.hpp"
 #include "problem/planning_problem.hpp"
 
@@ -29,7 +29,7 @@ struct PlanUpdate {
 class OnlinePlanner {
   public:
     /// @param map must outlive it
-    OnlinePlanner(const Config& config, const OwnMap& map, const ExploreStrategy& strategy,
+    OnlinePlanner(const Config& config, const OwnMap& map, const ExplorePlanner& kind,
                   std::uint32_t seed);
 
     /// Plans from a believed pose, once the map has changed.
@@ -61,7 +61,7 @@ class OnlinePlanner {
     Config config_;
     World world_;
     PlanningProblem problem_;
-    ExploreStrategy strategy_;
+    ExplorePlanner kind_;
     std::uint32_t seed_;
     std::shared_ptr<BeliefPlanner> planner_;
     States plan_;  // empty: none was found

@@ -158,7 +158,7 @@ json TrialKind::save(const ExplorationResult& flight, const fs::path& folder) {
             {"reason", flight.reason},
             {"duration_s", flight.duration},
             {"way", flight.way},
-            {"lost_s", flight.lost},
+            {"lost_s", flight.lostTime},
             {"times_lost", flight.timesLost},
             {"goal_error", flight.goalError},
             {"least_clearance", finiteOrNull(flight.leastClearance)},
@@ -180,7 +180,7 @@ ExplorationResult TrialKind::load(const json& line, const fs::path& folder) {
     flight.reason = line.at("reason");
     flight.duration = positive(line, "duration_s");
     flight.way = positive(line, "way");
-    flight.lost = positive(line, "lost_s");
+    flight.lostTime = positive(line, "lost_s");
     flight.timesLost = countOf(line, "times_lost");
     flight.goalError = positive(line, "goal_error");
     flight.leastClearance = orNone(line, "least_clearance");

@@ -133,11 +133,11 @@ void FlightEvaluator::onStep(const std::vector<TrackedFrame>& tracked, const Tra
     }
     for (const TrackedFrame& frame : tracked) {
         ++result_.images;
-        result_.rejectedImages += frame.lost;
+        result_.rejectedImages += frame.rejected;
         const auto sample =
             std::find_if(result_.samples.rbegin(), result_.samples.rend(),
                          [&](const FlightSample& s) { return s.time == frame.time; });
-        if (!frame.lost) corrections_.add(sample->belief, frame.T_c_w);
+        if (!frame.rejected) corrections_.add(sample->belief, frame.T_c_w);
         sample->belief = frame.T_c_w;
     }
 }
@@ -159,7 +159,7 @@ void FlightEvaluator::measureSpeed() {
 void FlightEvaluator::finish(const Tracker& tracker) {
     measureSpeed();
     result_.duration = robot_.time();
-    result_.lost = tracker.loss().lostTime(robot_.time());
+    result_.lostTime = tracker.loss().lostTime(robot_.time());
     result_.timesLost = tracker.loss().timesLost();
     result_.goalError = goalError();
 }

@@ -67,7 +67,7 @@ struct FlightResult {
     /// Way truly flown until the belief was at the goal for the first time, or else until the end,
     /// divided by the time until then [m/s].
     std::optional<double> meanSpeed;
-    double lost = 0.;  ///< time without tracking [s]
+    double lostTime = 0.;  ///< without tracking [s]
     int timesLost = 0;
     double goalError = 0.;  ///< true distance to the goal at the end [m]
     /// Of a flight that ended at its believed goal: where it believed to be, wider where its last

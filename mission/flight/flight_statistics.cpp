@@ -42,7 +42,7 @@ void countEnds(std::span<const FlightResult> flights, FlightSummary& s) {
         s.collisions += flight.end == FlightEnd::collided;
         s.lost += flight.end == FlightEnd::lost;
         s.outOfTime += flight.end == FlightEnd::outOfTime;
-        s.lostTime += flight.lost;
+        s.lostTime += flight.lostTime;
         s.duration += flight.duration / n;
         append(flight.meanSpeed, speeds);
         errors.push_back(flight.goalError);

@@ -65,9 +65,9 @@ void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, Repla
     frame.tracked = tracker.track(view, frame.timestamp);
     frame.seconds = watch.lap();
     run.trackSeconds += frame.seconds;
-    frame.status = frame.tracked.lost ? FrameStatus::lost : FrameStatus::tracked;
+    frame.status = frame.tracked.rejected ? FrameStatus::lost : FrameStatus::tracked;
     const Alignment& alignment = frame.tracked.alignment;
-    frame.words = frame.tracked.lost && !isLost(alignment.verdict)
+    frame.words = frame.tracked.rejected && !isLost(alignment.verdict)
                       ? fmt::format("lost: the view does not determine the pose ({})",
                                     describe(alignment, tracker.trust))
                       : describe(alignment, tracker.trust);
@@ -117,12 +117,12 @@ ReplayRun replay(const Recording& recording, const ReplayTracker& tracker,
         if (view) track(tracker, *view, frame, run);
         run.frames.push_back(frame);
         if (view) {
-            const bool isFirstLoss = frame.tracked.lost && lost == 0;
+            const bool isFirstLoss = frame.tracked.rejected && lost == 0;
             if (isFirstLoss || isStripFrame(i, entries.size())) {
                 run.strips.push_back(stripOf(recording, tracker, run, std::move(*view)));
             }
-            ++(frame.tracked.lost ? lost : tracked);
-            notFound += frame.tracked.lost && !frame.isBlack;
+            ++(frame.tracked.rejected ? lost : tracked);
+            notFound += frame.tracked.rejected && !frame.isBlack;
         }
         checkReadable(run.frames, recording);
         if (progress) progress(run.frames.size());

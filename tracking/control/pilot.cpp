@@ -62,7 +62,8 @@ void Pilot::observe(const Tracker& tracker, const TrackedFrame& tracked, const I
     if (tracker.loss().isLost()) return leaveImage();
     if (!atGoalSince_) return;
     const Pose T_w_b = tracked.T_c_w.mean.inverse() * T_b_c_.inverse();
-    approachOnImage(tracked.lost ? image : asModelled(image, tracked.alignment.exposure), T_w_b);
+    approachOnImage(tracked.rejected ? image : asModelled(image, tracked.alignment.exposure),
+                    T_w_b);
 }
 
 /// The belief is all there is.

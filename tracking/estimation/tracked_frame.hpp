@@ -10,11 +10,12 @@ namespace photonav {
 
 struct TrackedFrame {
     double time = 0.;     ///< of the exposure [s]
-    UncertainPose T_c_w;  ///< after the image; only predicted when lost
-    /// The alignment that the belief follows from; when lost, the first that was tried.
+    UncertainPose T_c_w;  ///< after the image; only predicted when rejected
+    /// The alignment that the belief follows from; when rejected, the first that was tried.
     Alignment alignment;
-    bool lost = false;  ///< the image did not change the belief: it was rejected, or the map lacks
-                        ///< what it shows. Whether tracking is lost: Tracker::loss()
+    /// The image did not change the belief: no alignment explained it, or it shows what the map
+    /// lacks. One rejected image is no loss of tracking: see Tracker::loss().
+    bool rejected = false;
     /// The map, made on the same flight, has contradicted the images for long: it is to be
     /// forgotten where it is in view, and made again at the pose that odometry predicts.
     bool isMapDoubted = false;

@@ -223,7 +223,7 @@ void Tracker::take(const View& view, const Match& match, const Pose& before, Tra
     trackedTime_ = frame.time;
     trackedCovariance_ = belief_.covariance;
     sinceTracked_.setZero();
-    lostInRow_ = 0;
+    rejectedInRow_ = 0;
     if (match.alignment.verdict == Verdict::converged) T_certain_w_ = belief_.mean;
     loss_.onTracked(now_);
     if (!keyframes_ || view.depth.getSize() == 0) return;
@@ -235,10 +235,10 @@ void Tracker::take(const View& view, const Match& match, const Pose& before, Tra
     }
 }
 
-/// The belief after a lost image. Without a map the first image that shows anything begins a chain
-/// of keyframes, at the start and, at the belief of then, after many lost ones.
+/// The belief after a rejected image. Without a map the first image that shows anything begins a
+/// chain of keyframes, at the start and, at the belief of then, after many rejected ones.
 void Tracker::miss(const View& view, const Pose& stayed, TrackedFrame& frame) {
-    frame.lost = true;
+    frame.rejected = true;
     velocity_.forget();
     if (!hasOdometry_) {
         belief_.mean = stayed;
@@ -251,15 +251,15 @@ void Tracker::miss(const View& view, const Pose& stayed, TrackedFrame& frame) {
     if (!keyframes_) return;
     keyframes_->forgetLastTracked();
     const bool isFirst = keyframes_->isEmpty() && !map_;
-    if (!isFirst && ++lostInRow_ < keyframes_->options().patience) return;
+    if (!isFirst && ++rejectedInRow_ < keyframes_->options().patience) return;
     if (view.depth.getSize() == 0 || !keyframes_->begin(view, belief_, frame.time)) return;
     trackedTime_ = frame.time;
     trackedCovariance_ = belief_.covariance;
     sinceTracked_.setZero();
-    lostInRow_ = 0;
+    rejectedInRow_ = 0;
     loss_.onTracked(now_);
     if (!isFirst) return;
-    frame.lost = false;
+    frame.rejected = false;
     frame.alignment.verdict = Verdict::converged;
     frame.keyframe = frame.time;
 }

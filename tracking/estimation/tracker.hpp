@@ -118,7 +118,7 @@ class Tracker {
     std::optional<double> imageTime_;         ///< of the last image [s]
     double now_ = 0.;                         ///< [s]
     bool hasOdometry_ = false;
-    int lostInRow_ = 0;  ///< images
+    int rejectedInRow_ = 0;  ///< images
 };
 
 }  // namespace photonav

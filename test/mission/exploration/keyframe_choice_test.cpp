@@ -67,7 +67,7 @@ TEST_F(Keyframes, ComeWhereMuchIsNew) {
 TEST_F(Keyframes, AreNotBlackOrContradictedByTheMap) {
     tracked.T_c_w.mean.translation().x() = 1.;
     EXPECT_TRUE(choice.isUsable(tracked, image));
-    tracked.lost = true;
+    tracked.rejected = true;
     for (const Verdict verdict : {Verdict::lostResidual, Verdict::lostDivergence,
                                   Verdict::lostImplausible, Verdict::lostExposure}) {
         tracked.alignment.verdict = verdict;

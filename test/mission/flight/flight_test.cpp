@@ -50,7 +50,7 @@ TEST_F(Flight, ArrivesByItsImagesAlone) {
         EXPECT_EQ(nameOf(flight.end), "arrived");
         EXPECT_LT(flight.goalError, 0.02);
         EXPECT_TRUE(flight.photometric);
-        EXPECT_EQ(flight.lost, 0.);
+        EXPECT_EQ(flight.lostTime, 0.);
         const FlightSample& last = flight.samples.back();
         const Eigen::Vector3d error_w =
             last.belief.mean.inverse().translation() - last.T_c_w.inverse().translation();
@@ -192,7 +192,7 @@ TEST_F(Flight, StopsAndHoversThroughABlackoutAndGoesOn) {
     const FlightResult flight = fly(plan, world, options);
     EXPECT_EQ(nameOf(flight.end), "arrived");
     EXPECT_EQ(flight.timesLost, 1);
-    EXPECT_NEAR(flight.lost, 3.5, 0.6);
+    EXPECT_NEAR(flight.lostTime, 3.5, 0.6);
 }
 
 TEST_F(Flight, GivesUpInTheDark) {
@@ -230,7 +230,7 @@ TEST_F(Flight, IsFoundAgainWhereTheHeadingIsWrong) {
               0.05)
         << nameOf(flight.end);
     EXPECT_EQ(flight.timesLost, 1);
-    EXPECT_LT(flight.lost, 1.);
+    EXPECT_LT(flight.lostTime, 1.);
 }
 
 TEST_F(Flight, IsFoundAgainWhereTheEstimateIsWrong) {

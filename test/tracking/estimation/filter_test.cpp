@@ -51,7 +51,7 @@ TEST(Filter, PropagatesAsThePlannerDoes) {
     const UncertainPose start{cameraAt({2., 3., 1.5}, kOblique), 1e-3 * Matrix6::Identity()};
     Filter filter(room, start, {});
     const ImageF black(filterCamera().height, filterCamera().width, 0.F);
-    EXPECT_TRUE(filter.update(motion(), black).lost);
+    EXPECT_TRUE(filter.update(motion(), black).rejected);
     const UncertainPose planned = compound(motion(), start);
     EXPECT_TRUE(filter.belief().mean.isApprox(planned.mean, 1e-12));
     EXPECT_TRUE(filter.belief().covariance.isApprox(planned.covariance, 1e-9));
@@ -80,7 +80,7 @@ TEST(Filter, IsConsistentAlongFlights) {
             floor.render(filterCamera(), truth, view);
             const TrackedFrame frame =
                 filter.update(motion(), test::noisy(view.intensity, 0.02, random));
-            ASSERT_FALSE(frame.lost) << describe(frame.alignment);
+            ASSERT_FALSE(frame.rejected) << describe(frame.alignment);
             final += filter.belief().covariance.trace();
         }
         const Vector6 xi = logSE3(truth * filter.belief().mean.inverse());

@@ -62,7 +62,7 @@ TEST(KeyframeTracker, FollowsAFlightThroughSeveralKeyframes) {
     double last = 0.;
     for (int i = 0; i < 30; ++i) {
         const TrackedFrame frame = odometry.track(viewFrom(flight(i)), 5. + kInterval * i);
-        EXPECT_FALSE(frame.lost) << i << ": " << describe(frame.alignment);
+        EXPECT_FALSE(frame.rejected) << i << ": " << describe(frame.alignment);
         EXPECT_LT(distance(frame.T_c_w.mean, flight(i)), 0.02) << i;
         const double trace = frame.T_c_w.covariance.trace();
         ASSERT_TRUE(frame.keyframe);
@@ -97,12 +97,12 @@ TEST(KeyframeTracker, BlackImagesAreLostAndThenItGoesOn) {
     const Pose certain = odometry.beliefAtLastImage().mean;
     for (int i = 5; i < 8; ++i) {
         const TrackedFrame frame = odometry.track(black(), kInterval * i);
-        EXPECT_TRUE(frame.lost);
+        EXPECT_TRUE(frame.rejected);
         EXPECT_TRUE(frame.T_c_w.mean.isApprox(certain));
     }
     EXPECT_GT(odometry.beliefAtLastImage().covariance.trace(), before + 1e-3);
     const TrackedFrame frame = odometry.track(viewFrom(flight(8)), kInterval * 8);
-    EXPECT_FALSE(frame.lost) << describe(frame.alignment);
+    EXPECT_FALSE(frame.rejected) << describe(frame.alignment);
     EXPECT_LT(distance(frame.T_c_w.mean, flight(8)), 0.02);
     EXPECT_LT(odometry.beliefAtLastImage().covariance.trace(), before + 1e-3);
 }
@@ -111,9 +111,9 @@ TEST(KeyframeTracker, ComesBackToAnOldKeyframe) {
     Tracker odometry = odometryFrom(start());
     for (int i = 0; i < 30; ++i) odometry.track(viewFrom(flight(i)), kInterval * i);
     const View wall = viewFrom(cameraAt({3., 3., 1.5}, 0., 2.5));
-    EXPECT_TRUE(odometry.track(wall, 3.).lost);
+    EXPECT_TRUE(odometry.track(wall, 3.).rejected);
     const TrackedFrame frame = odometry.track(viewFrom(flight(12)), 3.1);
-    EXPECT_FALSE(frame.lost) << describe(frame.alignment);
+    EXPECT_FALSE(frame.rejected) << describe(frame.alignment);
     EXPECT_LT(distance(frame.T_c_w.mean, flight(12)), 0.03);
     ASSERT_TRUE(frame.keyframe);
     EXPECT_NEAR(*frame.keyframe, 1.2, 0.45);
@@ -130,7 +130,7 @@ TEST(KeyframeTracker, NamesTheKeyframeThatItAlignedTo) {
         const TrackedFrame frame = odometry.track(viewFrom(flight(i)), kInterval * i);
         ASSERT_TRUE(frame.keyframe) << i;
         if (*frame.keyframe == keyframe) continue;
-        EXPECT_FALSE(frame.lost);
+        EXPECT_FALSE(frame.rejected);
         EXPECT_EQ(*frame.keyframe, kInterval * (i - 1));
         keyframe = *frame.keyframe;
     }
@@ -143,13 +143,13 @@ TEST(KeyframeTracker, LostForLongItBeginsAnewAsUncertainAsItIs) {
     Tracker odometry = odometryFrom(start(), options);
     int i = 0;
     for (; i < 3; ++i) odometry.track(viewFrom(flight(i)), kInterval * i);
-    for (; i < 20; ++i) EXPECT_TRUE(odometry.track(black(), kInterval * i).lost) << i;
+    for (; i < 20; ++i) EXPECT_TRUE(odometry.track(black(), kInterval * i).rejected) << i;
     const double lost = odometry.beliefAtLastImage().covariance.trace();
     const auto elsewhere = [](int k) { return cameraAt({4., 1.5 + 0.03 * k, 1.6}, 0.5, 2.5); };
     TrackedFrame frame;
     for (int k = 0; k < 10; ++k, ++i) {
         frame = odometry.track(viewFrom(elsewhere(k)), kInterval * i);
-        EXPECT_EQ(frame.lost, k == 0) << k;
+        EXPECT_EQ(frame.rejected, k == 0) << k;
     }
     EXPECT_GT(frame.T_c_w.covariance.trace(), lost);
     const Pose motion = odometry.beliefAtLastImage().mean.inverse();
@@ -159,11 +159,11 @@ TEST(KeyframeTracker, LostForLongItBeginsAnewAsUncertainAsItIs) {
 
 TEST(KeyframeTracker, BlackFromTheBeginningIsLostUntilSomethingIsSeen) {
     Tracker odometry = odometryFrom(start());
-    EXPECT_TRUE(odometry.track(black(), 1e9).lost);
+    EXPECT_TRUE(odometry.track(black(), 1e9).rejected);
     EXPECT_EQ(odometry.beliefAtLastImage().covariance, start().covariance);
-    EXPECT_TRUE(odometry.track(black(), 1e9 + 0.1).lost);
+    EXPECT_TRUE(odometry.track(black(), 1e9 + 0.1).rejected);
     const TrackedFrame frame = odometry.track(viewFrom(flight(0)), 1e9 + 0.2);
-    EXPECT_FALSE(frame.lost);
+    EXPECT_FALSE(frame.rejected);
     EXPECT_EQ(frame.keyframe, 1e9 + 0.2);
     EXPECT_TRUE(frame.T_c_w.mean.isApprox(flight(0)));
     // It may have moved in the dark.
@@ -185,7 +185,7 @@ TEST(MapTracker, FollowsAFlightInAMap) {
     for (int i = 0; i < 30; ++i) {
         const ImageF image = test::noisy(viewFrom(flight(i)).intensity, 0.02, random);
         const TrackedFrame frame = localizer.track({image, {}}, kInterval * i);
-        EXPECT_FALSE(frame.lost) << i << ": " << describe(frame.alignment);
+        EXPECT_FALSE(frame.rejected) << i << ": " << describe(frame.alignment);
         EXPECT_LT(distance(frame.T_c_w.mean, flight(i)), 5e-3) << i;
         const Vector6 xi = logSE3(flight(i) * frame.T_c_w.mean.inverse());
         sum += squaredDistance(xi, frame.T_c_w.covariance) / 6.;
@@ -199,12 +199,12 @@ TEST(MapTracker, LostInTheDarkItWaitsWhereItWasAndTakesUpAgain) {
     for (int i = 0; i < 5; ++i) localizer.track(viewFrom(flight(i)), kInterval * i);
     const Pose certain = localizer.beliefAtLastImage().mean;
     for (int i = 5; i < 9; ++i) {
-        EXPECT_TRUE(localizer.track(black(), kInterval * i).lost);
+        EXPECT_TRUE(localizer.track(black(), kInterval * i).rejected);
         EXPECT_TRUE(localizer.beliefAtLastImage().mean.isApprox(certain));
     }
     EXPECT_GT(localizer.beliefAtLastImage().covariance.trace(), 1e-2);
     const TrackedFrame frame = localizer.track(viewFrom(flight(8)), 0.9);
-    EXPECT_FALSE(frame.lost) << describe(frame.alignment);
+    EXPECT_FALSE(frame.rejected) << describe(frame.alignment);
     EXPECT_LT(distance(frame.T_c_w.mean, flight(8)), 5e-3);
 }
 
@@ -221,7 +221,7 @@ TEST(MapTracker, AnotherRoomIsNotThisOne) {
         roughStart(0));
     for (int i = 0; i < 8; ++i) {
         const TrackedFrame frame = localizer.track(viewFrom(flight(i)), kInterval * i);
-        EXPECT_TRUE(frame.lost) << i;
+        EXPECT_TRUE(frame.rejected) << i;
     }
 }
 
@@ -230,9 +230,9 @@ void expectSpeedKept(Tracker tracker) {
     const auto position = [](const Pose& T_c_w) -> Eigen::Vector3d {
         return T_c_w.inverse().translation();
     };
-    for (int i = 0; i < 5; ++i) EXPECT_FALSE(tracker.track(viewFrom(flight(i)), i).lost);
-    for (int i = 5; i < 8; ++i) EXPECT_TRUE(tracker.track(black(), i).lost);
-    EXPECT_FALSE(tracker.track(viewFrom(flight(8)), 8.).lost);
+    for (int i = 0; i < 5; ++i) EXPECT_FALSE(tracker.track(viewFrom(flight(i)), i).rejected);
+    for (int i = 5; i < 8; ++i) EXPECT_TRUE(tracker.track(black(), i).rejected);
+    EXPECT_FALSE(tracker.track(viewFrom(flight(8)), 8.).rejected);
     const Eigen::Vector3d step =
         position(tracker.predicted(9.).mean) - position(tracker.beliefAtLastImage().mean);
     const Eigen::Vector3d truth = (position(flight(8)) - position(flight(4))) / 4.;
@@ -256,7 +256,7 @@ TEST(Tracker, AlignsToWhateverExplainsTheImage) {
     const auto track = [&](int i) { return tracker.track(viewFrom(flight(i)), kInterval * i); };
     for (int i = 0; i < 4; ++i) {
         const TrackedFrame frame = track(i);
-        EXPECT_FALSE(frame.lost);
+        EXPECT_FALSE(frame.rejected);
         EXPECT_FALSE(frame.keyframe) << "found in the map";
     }
     const double inMap = tracker.beliefAtLastImage().covariance.trace();
@@ -264,7 +264,7 @@ TEST(Tracker, AlignsToWhateverExplainsTheImage) {
         std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 9}))));
     for (int i = 4; i < 8; ++i) {
         const TrackedFrame frame = track(i);
-        EXPECT_FALSE(frame.lost) << describe(frame.alignment);
+        EXPECT_FALSE(frame.rejected) << describe(frame.alignment);
         EXPECT_TRUE(frame.keyframe);
         EXPECT_LT(distance(frame.T_c_w.mean, flight(i)), 0.02);
     }

@@ -58,7 +58,7 @@ TEST(TrackerWithOdometry, AnImageThatDoesNotInformIsNoLoss) {
     const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
     const Pose here = cameraAt({0., 0., 2.}, test::kDown);
     HoverOver hover(white, narrow(here));
-    for (int i = 0; i < 6; ++i) EXPECT_FALSE(hover.see(*white, here).lost);
+    for (int i = 0; i < 6; ++i) EXPECT_FALSE(hover.see(*white, here).rejected);
     EXPECT_FALSE(hover.tracker.loss().isLost());
 }
 
@@ -75,7 +75,7 @@ TEST(TrackerWithOdometry, WhatItsOwnMapLacksIsNoLoss) {
     HoverOver given(map, narrow(here));
     for (int i = 0; i < 8; ++i) {
         const TrackedFrame frame = own.see(floor, here);
-        EXPECT_TRUE(frame.lost);
+        EXPECT_TRUE(frame.rejected);
         EXPECT_GT(frame.T_c_w.covariance(0, 0), 1e-6 * (i + 1)) << "odometry alone";
         given.see(floor, here);
     }
@@ -97,7 +97,7 @@ TEST(TrackerWithOdometry, DoubtsItsOwnMapAfterALongLoss) {
     int doubted = 0;
     for (int i = 0; i < 16; ++i) {
         const TrackedFrame frame = own.see(floor, here);
-        EXPECT_TRUE(frame.lost);
+        EXPECT_TRUE(frame.rejected);
         EXPECT_FALSE(frame.isMapDoubted && i < 12) << "after " << i;
         doubted += frame.isMapDoubted;
         EXPECT_FALSE(dark.see(black).isMapDoubted);
@@ -115,9 +115,9 @@ TEST(TrackerWithOdometry, AnImageThatDoesNotInformEndsNoLoss) {
     const Pose here = cameraAt({0., 0., 2.}, test::kDown);
     for (const double sigma : {1e-3, 0.8}) {
         HoverOver hover(white, {here, sigma * sigma * Matrix6::Identity()});
-        for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(another, here).lost);
+        for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(another, here).rejected);
         ASSERT_TRUE(hover.tracker.loss().isLost());
-        for (int i = 0; i < 6; ++i) EXPECT_TRUE(hover.see(*white, here).lost) << sigma;
+        for (int i = 0; i < 6; ++i) EXPECT_TRUE(hover.see(*white, here).rejected) << sigma;
         EXPECT_TRUE(hover.tracker.loss().isLost());
         EXPECT_EQ(hover.tracker.loss().timesLost(), 1);
     }
@@ -130,26 +130,26 @@ TEST(TrackerWithOdometry, StripesEndNoLossAlongThem) {
     const Pose here = cameraAt({0.05, 0., 2.}, test::kDown);
     const ImageF black(hoverCamera().height, hoverCamera().width, 0.F);
     HoverOver hover(bars, narrow(here));
-    for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(black).lost);
-    for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(*bars, here).lost);
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(black).rejected);
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(*bars, here).rejected);
 
     // A belief that was as wide along the bars before the loss is not rejected.
     const Eigen::Vector3d along_c = here.linear().col(1);
     UncertainPose wide = narrow(here);
     wide.covariance.topLeftCorner<3, 3>() += along_c * along_c.transpose();
     HoverOver uncertain(bars, wide);
-    for (int i = 0; i < 3; ++i) EXPECT_TRUE(uncertain.see(black).lost);
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(uncertain.see(black).rejected);
     TrackedFrame frame;
     for (int i = 0; i < 3; ++i) frame = uncertain.see(*bars, here);
-    EXPECT_FALSE(frame.lost) << describe(frame.alignment);
+    EXPECT_FALSE(frame.rejected) << describe(frame.alignment);
 
     const auto floor =
         std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
     HoverOver found(floor, narrow(here));
-    for (int i = 0; i < 3; ++i) EXPECT_TRUE(found.see(black).lost);
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(found.see(black).rejected);
     const Pose moved = cameraAt({0.3, 0.2, 2.}, test::kDown);
     for (int i = 0; i < 3; ++i) frame = found.see(*floor, moved);
-    EXPECT_FALSE(frame.lost) << describe(frame.alignment);
+    EXPECT_FALSE(frame.rejected) << describe(frame.alignment);
     EXPECT_LT((frame.T_c_w.mean.inverse().translation() - moved.inverse().translation()).norm(),
               0.02);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The quick check of a way against clearance from scratch.
-#include "space/blocked_way.hpp"
+#include "space/blocked_path.hpp"
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ double leastClearance(const TexturedOcTree& map, const std::vector<Vector3d>& wa
     return least;
 }
 
-TEST(BlockedWay, AgreesWithTheClearanceOfTheMap) {
+TEST(BlockedPath, AgreesWithTheClearanceOfTheMap) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> at(-1., 2.);
     const std::vector<Vector3d> way{{0., 0., 0.}, {1., 0., 0.}, {1., 1., 0.5}};
@@ -50,7 +50,7 @@ TEST(BlockedWay, AgreesWithTheClearanceOfTheMap) {
         const MapChange change = occupy(map, {at(random), at(random), 0.5 * at(random)});
         const double clearance = leastClearance(map, way);
         for (const double radius : {0.2, 0.5}) {
-            const bool isBlocked = blocksWay(map, change, way, radius);
+            const bool isBlocked = blocksPath(map, change, way, radius);
             if (clearance < radius) {
                 EXPECT_TRUE(isBlocked) << clearance;
             }
@@ -64,16 +64,16 @@ TEST(BlockedWay, AgreesWithTheClearanceOfTheMap) {
     EXPECT_GT(free, 15);
 }
 
-TEST(BlockedWay, IsNotBlockedByCellsThatBecameFree) {
+TEST(BlockedPath, IsNotBlockedByCellsThatBecameFree) {
     TexturedOcTree map(kCell);
     const MapChange change = occupy(map, {0.5, 0., 0.});
     const std::vector<Vector3d> way{{0., 0., 0.}, {1., 0., 0.}};
-    EXPECT_TRUE(blocksWay(map, change, way, 0.2));
-    EXPECT_TRUE(blocksWay(map, change, {{0.5, 0., 0.}}, 0.2));
-    EXPECT_FALSE(blocksWay(map, change, {}, 0.2));
-    EXPECT_FALSE(blocksWay(map, {}, way, 0.2));
+    EXPECT_TRUE(blocksPath(map, change, way, 0.2));
+    EXPECT_TRUE(blocksPath(map, change, {{0.5, 0., 0.}}, 0.2));
+    EXPECT_FALSE(blocksPath(map, change, {}, 0.2));
+    EXPECT_FALSE(blocksPath(map, {}, way, 0.2));
     map.setNodeValue(map.coordToKey(0.5, 0., 0.), -5.F);
-    EXPECT_FALSE(blocksWay(map, change, way, 0.2));
+    EXPECT_FALSE(blocksPath(map, change, way, 0.2));
 }
 
 }  // namespace

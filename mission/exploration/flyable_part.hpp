@@ -19,7 +19,7 @@ struct SpaceAhead {
     bool canLook = false;  ///< the robot turns its camera ahead by its heading
 };
 
-struct WayAhead {
+struct FlyablePart {
     std::vector<PlannedView> plan;  ///< at least two views; the robot stays where they are equal
     bool isWhole = false;           ///< it leads to the end of the path
     bool isBlocked = false;         ///< by an obstacle: the path is out of date
@@ -30,7 +30,7 @@ struct WayAhead {
 /// first turns to look there; a camera that cannot be turned there (it looks down, or the heading
 /// is fixed) sees the next step from a short one.
 /// @param path from the robot on
-WayAhead wayAhead(const std::vector<BeliefPoint>& path, const SpaceAhead& space);
+FlyablePart flyablePart(const std::vector<BeliefPoint>& path, const SpaceAhead& space);
 
 /// The plan of staying at a pose.
 std::vector<PlannedView> hovering(const Pose& T_w_b, const Matrix6& covariance);

@@ -16,7 +16,7 @@ namespace photonav {
 /// @param map after the change
 /// @param waypoints of the path ahead, world frame [m]; one: the place where the robot is
 /// @param radius of the robot [m]
-bool blocksWay(const TexturedOcTree& map, const MapChange& change,
-               const std::vector<Eigen::Vector3d>& waypoints, double radius);
+bool blocksPath(const TexturedOcTree& map, const MapChange& change,
+                const std::vector<Eigen::Vector3d>& waypoints, double radius);
 
 }  // namespace photonav

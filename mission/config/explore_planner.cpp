@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "config/explore_strategy.hpp"
+#include "config/explore_planner.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,30 +11,30 @@
 
 namespace photonav {
 
-ExploreStrategy exploreStrategy(const std::string& name) {
+ExplorePlanner explorePlanner(const std::string& name) {
     const std::size_t slash = name.find('/');
-    ExploreStrategy strategy;
-    strategy.planner = name.substr(0, slash);
+    ExplorePlanner planner;
+    planner.name = name.substr(0, slash);
     const std::vector<std::string>& known = plannerNames();
-    if (std::ranges::find(known, strategy.planner) == known.end()) {
+    if (std::ranges::find(known, planner.name) == known.end()) {
         throw std::invalid_argument(
-            fmt::format("'{}' is not one of {}", strategy.planner, fmt::join(known, ", ")));
+            fmt::format("'{}' is not one of {}", planner.name, fmt::join(known, ", ")));
     }
-    if (slash == std::string::npos) return strategy;
+    if (slash == std::string::npos) return planner;
     const std::string policy = name.substr(slash + 1);
     if (policy == "fixed") {
-        strategy.headings = Headings::fixed;
+        planner.headings = Headings::fixed;
     } else if (policy == "forward") {
-        strategy.headings = Headings::forward;
+        planner.headings = Headings::forward;
     } else if (policy == "replan") {
-        strategy.replanning = Replanning::scratch;
+        planner.replanning = Replanning::scratch;
     } else if (policy == "once") {
-        strategy.replanning = Replanning::never;
+        planner.replanning = Replanning::never;
     } else {
         throw std::invalid_argument(fmt::format(
             "'{}': the policy '{}' is not one of fixed, forward, replan, once", name, policy));
     }
-    return strategy;
+    return planner;
 }
 
 }  // namespace photonav

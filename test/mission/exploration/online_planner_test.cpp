@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "config/explore_strategy.hpp"
+#include "config/explore_planner.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,23 +11,23 @@
 namespace photonav {
 namespace {
 
-TEST(ExploreStrategy, IsNamedByPlannerAndPolicy) {
-    EXPECT_EQ(exploreStrategy("pa_rrt_star").replanning, Replanning::repair);
-    EXPECT_FALSE(exploreStrategy("pa_rrt_star").headings);
-    EXPECT_EQ(exploreStrategy("rrt_star/fixed").headings, Headings::fixed);
-    EXPECT_EQ(exploreStrategy("rrt_star/forward").headings, Headings::forward);
-    EXPECT_EQ(exploreStrategy("rrt_star/forward").planner, "rrt_star");
-    EXPECT_EQ(exploreStrategy("belief_rrt_star/replan").replanning, Replanning::scratch);
-    EXPECT_EQ(exploreStrategy("belief_rrt_star/once").replanning, Replanning::never);
+TEST(ExplorePlanner, IsNamedByPlannerAndPolicy) {
+    EXPECT_EQ(explorePlanner("pa_rrt_star").replanning, Replanning::repair);
+    EXPECT_FALSE(explorePlanner("pa_rrt_star").headings);
+    EXPECT_EQ(explorePlanner("rrt_star/fixed").headings, Headings::fixed);
+    EXPECT_EQ(explorePlanner("rrt_star/forward").headings, Headings::forward);
+    EXPECT_EQ(explorePlanner("rrt_star/forward").name, "rrt_star");
+    EXPECT_EQ(explorePlanner("belief_rrt_star/replan").replanning, Replanning::scratch);
+    EXPECT_EQ(explorePlanner("belief_rrt_star/once").replanning, Replanning::never);
     for (const char* unknown : {"rrt", "", "/once", "rrt_star/", "rrt_star/sometimes"}) {
-        EXPECT_THROW(exploreStrategy(unknown), std::invalid_argument) << unknown;
+        EXPECT_THROW(explorePlanner(unknown), std::invalid_argument) << unknown;
     }
 }
 
 /// A robot that plans over 5 m of unknown space and then sees a wall, or nothing.
-class PlansOnTheWay : public ::testing::Test {
+class OnlinePlannerTest : public ::testing::Test {
   protected:
-    PlansOnTheWay() {
+    OnlinePlannerTest() {
         config_.bounds = {Eigen::Vector3d(-0.5, -2., 0.8), Eigen::Vector3d(6., 2., 1.2)};
         config_.start.position = {0., 0., 1.};
         config_.start.yaw = 0.;
@@ -42,7 +42,7 @@ class PlansOnTheWay : public ::testing::Test {
     }
 
     OnlinePlanner planner(const std::string& name) {
-        return {config_, *map_, exploreStrategy(name), 1};
+        return {config_, *map_, explorePlanner(name), 1};
     }
 
     /// @param p_w of the robot, which looks along x
@@ -77,7 +77,7 @@ class PlansOnTheWay : public ::testing::Test {
     std::unique_ptr<OwnMap> map_;
 };
 
-TEST_F(PlansOnTheWay, HeadingsAreThoseOfTheStrategy) {
+TEST_F(OnlinePlannerTest, HeadingsAreThoseOfThePolicy) {
     OnlinePlanner fixed = planner("rrt_star/fixed"), forward = planner("rrt_star/forward");
     updateAt(fixed, {0., 0., 1.});
     updateAt(forward, {0., 0., 1.});
@@ -93,7 +93,7 @@ TEST_F(PlansOnTheWay, HeadingsAreThoseOfTheStrategy) {
     }
 }
 
-TEST_F(PlansOnTheWay, APlanMadeOnceIsFlownToItsEnd) {
+TEST_F(OnlinePlannerTest, APlanMadeOnceIsFlownToItsEnd) {
     OnlinePlanner once = planner("rrt_star/once");
     const double whole = updateAt(once, {0., 0., 1.}).length;
     const Eigen::Vector3d halfWay = once.path()[once.path().size() / 2].T_w_b.translation();
@@ -103,7 +103,7 @@ TEST_F(PlansOnTheWay, APlanMadeOnceIsFlownToItsEnd) {
     EXPECT_EQ(update.counts.verticesAdded, 0U);
 }
 
-TEST_F(PlansOnTheWay, APlanMadeOnceEndsAtAnObstacle) {
+TEST_F(OnlinePlannerTest, APlanMadeOnceEndsAtAnObstacle) {
     OnlinePlanner once = planner("rrt_star/once"), repaired = planner("rrt_star");
     updateAt(once, {0., 0., 1.});
     updateAt(repaired, {0., 0., 1.});
@@ -114,7 +114,7 @@ TEST_F(PlansOnTheWay, APlanMadeOnceEndsAtAnObstacle) {
     EXPECT_FALSE(repaired.path().empty());
 }
 
-TEST_F(PlansOnTheWay, FromScratchKeepsNothing) {
+TEST_F(OnlinePlannerTest, FromScratchKeepsNothing) {
     OnlinePlanner scratch = planner("rrt_star/replan"), repaired = planner("rrt_star");
     updateAt(scratch, {0., 0., 1.});
     updateAt(repaired, {0., 0., 1.});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exploration/way_ahead.hpp"
+#include "exploration/flyable_part.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -80,7 +80,7 @@ std::vector<PlannedView> hovering(const Pose& T_w_b, const Matrix6& covariance) 
     return {here, here};
 }
 
-WayAhead wayAhead(const std::vector<BeliefPoint>& path, const SpaceAhead& space) {
+FlyablePart flyablePart(const std::vector<BeliefPoint>& path, const SpaceAhead& space) {
     const Eigen::Vector3d here = path.front().T_w_b.translation();
     // A robot that is nearer to an obstacle than plans are first flies away from it. It is given no
     // slack: from update to update it would come nearer and nearer.
@@ -99,7 +99,7 @@ WayAhead wayAhead(const std::vector<BeliefPoint>& path, const SpaceAhead& space)
                 kSide * space.radius * leg.cross(Eigen::Vector3d::UnitZ()).normalized();
             return isNew(p_w) || isNew(p_w + side) || isNew(p_w - side);
         });
-    WayAhead way;
+    FlyablePart way;
     const std::vector<PlannedView> plan = plannedViews(path);
     const double whole = path.back().length;
     way.isBlocked = obstacle.length <= whole;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exploration/way_ahead.hpp"
+#include "exploration/flyable_part.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,18 +31,18 @@ SpaceAhead openSpace() {
             .canLook = true};
 }
 
-double endOf(const WayAhead& way) { return way.plan.back().T_w_b.translation().x(); }
+double endOf(const FlyablePart& way) { return way.plan.back().T_w_b.translation().x(); }
 
-TEST(WayAhead, IsThePathWhereAllOfItWasSeenAndIsFree) {
-    const WayAhead way = wayAhead(straightPath(0.), openSpace());
+TEST(FlyablePart, IsThePathWhereAllOfItWasSeenAndIsFree) {
+    const FlyablePart way = flyablePart(straightPath(0.), openSpace());
     EXPECT_TRUE(way.isWhole);
     EXPECT_EQ(endOf(way), 4.);
 }
 
-TEST(WayAhead, EndsBeforeWhatWasNotSeen) {
+TEST(FlyablePart, EndsBeforeWhatWasNotSeen) {
     SpaceAhead space = openSpace();
     space.isSeen = [](const Vector3d& p_w) { return p_w.x() < 2.; };
-    const WayAhead way = wayAhead(straightPath(0.), space);
+    const FlyablePart way = flyablePart(straightPath(0.), space);
     EXPECT_FALSE(way.isWhole || way.isBlocked || way.isBlind);
     EXPECT_NEAR(endOf(way), 1.7, 0.06);
     EXPECT_TRUE(way.plan.back().isWaypoint);
@@ -51,77 +51,77 @@ TEST(WayAhead, EndsBeforeWhatWasNotSeen) {
 }
 
 /// A robot is as wide as twice its radius.
-TEST(WayAhead, BothSidesMustHaveBeenSeen) {
+TEST(FlyablePart, BothSidesMustHaveBeenSeen) {
     for (const double side : {-1., 1.}) {
         SpaceAhead space = openSpace();
         space.isSeen = [&](const Vector3d& p_w) { return p_w.x() < 2. || side * p_w.y() < 0.2; };
-        EXPECT_NEAR(endOf(wayAhead(straightPath(0.), space)), 1.7, 0.06) << side;
+        EXPECT_NEAR(endOf(flyablePart(straightPath(0.), space)), 1.7, 0.06) << side;
         space.isSeen = [&](const Vector3d& p_w) { return side * p_w.y() < 0.25; };
-        EXPECT_TRUE(wayAhead(straightPath(0.), space).isWhole) << side;
+        EXPECT_TRUE(flyablePart(straightPath(0.), space).isWhole) << side;
     }
 }
 
 /// A tilted camera never sees the places beside and behind the robot.
-TEST(WayAhead, NeedNotBeSeenRightAroundTheRobot) {
+TEST(FlyablePart, NeedNotBeSeenRightAroundTheRobot) {
     SpaceAhead space = openSpace();
     space.isSeen = [](const Vector3d& p_w) { return p_w.norm() > 1.15; };  // 0.57 m around it
-    EXPECT_TRUE(wayAhead(straightPath(0.), space).isWhole);
+    EXPECT_TRUE(flyablePart(straightPath(0.), space).isWhole);
     space.hidden = 0.2;
-    EXPECT_FALSE(wayAhead(straightPath(0.), space).isWhole);
+    EXPECT_FALSE(flyablePart(straightPath(0.), space).isWhole);
 }
 
-TEST(WayAhead, TurnsToLookFirst) {
+TEST(FlyablePart, TurnsToLookFirst) {
     SpaceAhead space = openSpace();
     space.isSeen = [](const Vector3d& p_w) { return p_w.norm() < 1.1; };
-    const WayAhead way = wayAhead(straightPath(2.), space);
+    const FlyablePart way = flyablePart(straightPath(2.), space);
     EXPECT_EQ(endOf(way), 0.);
     EXPECT_NEAR(yawOf(way.plan.back().T_w_b), 0., 1e-9);
     EXPECT_FALSE(way.isBlind);
     // Where it looks there already, or cannot, it takes a short step.
-    EXPECT_NEAR(endOf(wayAhead(straightPath(0.), space)), 0.3, 0.06);
+    EXPECT_NEAR(endOf(flyablePart(straightPath(0.), space)), 0.3, 0.06);
     space.canLook = false;
-    EXPECT_NEAR(endOf(wayAhead(straightPath(2.), space)), 0.3, 0.06);
+    EXPECT_NEAR(endOf(flyablePart(straightPath(2.), space)), 0.3, 0.06);
 }
 
-TEST(WayAhead, DoesNotLookBeyondAnObstacle) {
+TEST(FlyablePart, DoesNotLookBeyondAnObstacle) {
     SpaceAhead space = openSpace();
     space.isSeen = [](const Vector3d&) { return false; };
-    EXPECT_EQ(endOf(wayAhead(straightPath(2.), space)), 0.);
+    EXPECT_EQ(endOf(flyablePart(straightPath(2.), space)), 0.);
     space.clearance = [](const Vector3d& p_w) { return 0.76 - p_w.x(); };
-    const WayAhead way = wayAhead(straightPath(2.), space);
+    const FlyablePart way = flyablePart(straightPath(2.), space);
     EXPECT_NEAR(endOf(way), 0.2, 1e-9);
     EXPECT_NEAR(yawOf(way.plan.back().T_w_b), 2., 1e-9);
 }
 
-TEST(WayAhead, IsABlindStepWhereNothingIsSeenAndNothingCanBe) {
+TEST(FlyablePart, IsABlindStepWhereNothingIsSeenAndNothingCanBe) {
     SpaceAhead space = openSpace();
     space.isSeen = [](const Vector3d&) { return false; };
     space.hidden = 0.;
     space.canLook = false;
-    const WayAhead way = wayAhead(straightPath(0.), space);
+    const FlyablePart way = flyablePart(straightPath(0.), space);
     EXPECT_TRUE(way.isBlind);
     EXPECT_NEAR(endOf(way), 0.15, 1e-9);
     // But not nearer to an obstacle than the robot's radius.
     space.clearance = [](const Vector3d& p_w) { return 0.66 - p_w.x(); };
-    const WayAhead shorter = wayAhead(straightPath(0.), space);
+    const FlyablePart shorter = flyablePart(straightPath(0.), space);
     EXPECT_TRUE(shorter.isBlind);
     EXPECT_NEAR(endOf(shorter), 0.11, 0.01);
 }
 
-TEST(WayAhead, NeverLeadsIntoAnObstacle) {
+TEST(FlyablePart, NeverLeadsIntoAnObstacle) {
     SpaceAhead space = openSpace();
     space.clearance = [](const Vector3d& p_w) { return 2.5 - p_w.x(); };
-    const WayAhead way = wayAhead(straightPath(0.), space);
+    const FlyablePart way = flyablePart(straightPath(0.), space);
     EXPECT_TRUE(way.isBlocked);
     EXPECT_FALSE(way.isWhole);
     EXPECT_NEAR(endOf(way), 1.95, 0.06);
     space.clearance = [](const Vector3d& p_w) { return 0.35 - p_w.x(); };
-    EXPECT_EQ(endOf(wayAhead(straightPath(0.), space)), 0.);
+    EXPECT_EQ(endOf(flyablePart(straightPath(0.), space)), 0.);
     // A robot that is too near may fly away, but not nearer.
     space.clearance = [](const Vector3d& p_w) { return 0.2 + p_w.x(); };
-    EXPECT_TRUE(wayAhead(straightPath(0.), space).isWhole);
+    EXPECT_TRUE(flyablePart(straightPath(0.), space).isWhole);
     space.clearance = [](const Vector3d& p_w) { return 0.2 - p_w.x(); };
-    EXPECT_EQ(endOf(wayAhead(straightPath(0.), space)), 0.);
+    EXPECT_EQ(endOf(flyablePart(straightPath(0.), space)), 0.);
 }
 
 }  // namespace

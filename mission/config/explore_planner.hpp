@@ -16,13 +16,13 @@ enum class Replanning {
 };
 
 /// As it is named in a config: a planner, or a planner and a policy, "rrt_star/forward".
-struct ExploreStrategy {
-    std::string planner;                         ///< one of plannerNames()
+struct ExplorePlanner {
+    std::string name;                            ///< one of plannerNames()
     std::optional<Headings> headings;            ///< "fixed", "forward"; none: the planner's
     Replanning replanning = Replanning::repair;  ///< "replan": scratch, "once": never
 };
 
 /// @throws std::invalid_argument for an unknown planner or policy
-ExploreStrategy exploreStrategy(const std::string& name);
+ExplorePlanner explorePlanner(const std::string& name);
 
 }  // namespace photonav
