@@ -199,7 +199,7 @@ json flyResult(const Config& config, const std::vector<FlightSet>& sets,
           {"exposure_prior", priorJson(options.tracker.map.exposure)},
           {"photometric_goal", options.pilot.photometricGoal},
           {"map", config.fly.map},
-          {"scale", options.tracker.map.informationFactor},
+          {"scale", options.tracker.map.informationScale},
           {"least_sigma",
            {options.tracker.map.trust.leastSigma, options.tracker.map.trust.leastSigmaRotation}}}},
         {"planners", json::array()}};

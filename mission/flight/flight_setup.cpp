@@ -52,7 +52,7 @@ AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellS
                                         : photographOptions(config.camera.blur);
     alignment.photometric = config.photometric;
     alignment.photometric.stride = 1;
-    alignment.informationFactor = fly.scale.value_or(1.);
+    alignment.informationScale = fly.scale.value_or(1.);
     alignment.trust.leastSigma = fly.leastSigma.value_or(0.);
     alignment.trust.leastSigmaRotation = fly.leastSigmaRotation.value_or(0.);
     if (map != MapKind::mesh) {

@@ -71,7 +71,7 @@ std::string toYaml(const Calibration& c, std::optional<MapKind> map) {
     if (c.correlationTime > 1.) {
         text += fmt::format(
             "# Images whose errors are correlated: photonav fly, which averages images, divides\n"
-            "# the factor by this number.\ncorrelation_time: {:.3g}\n",
+            "# the scale by this number.\ncorrelation_time: {:.3g}\n",
             c.correlationTime);
     }
     return text;

@@ -51,7 +51,8 @@ void applyCalibration(std::optional<MapKind> map, ReplayOptions& options) {
     const Calibration calibration = readCalibration(options.calibration, map);
     options.scale = options.scale.value_or(calibration.scale);
     options.leastSigma = options.leastSigma.value_or(calibration.leastSigma);
-    options.leastSigmaRotation = options.leastSigmaRotation.value_or(calibration.leastSigmaRotation);
+    options.leastSigmaRotation =
+        options.leastSigmaRotation.value_or(calibration.leastSigmaRotation);
 }
 
 /// What points up in the recording that a map was made of, as it is noted beside the map. A floor
@@ -146,9 +147,10 @@ AlignmentOptions alignmentOf(const ReplayOptions& options, const Sequence& seque
     }
     alignment.robust = RobustWeight::huber;
     alignment.trust.minOverlap = options.minOverlap;
-    alignment.informationFactor = options.scale.value_or(1.);
+    alignment.informationScale = options.scale.value_or(1.);
     if (options.leastSigma) alignment.trust.leastSigma = *options.leastSigma;
-    if (options.leastSigmaRotation) alignment.trust.leastSigmaRotation = *options.leastSigmaRotation;
+    if (options.leastSigmaRotation)
+        alignment.trust.leastSigmaRotation = *options.leastSigmaRotation;
     return alignment;
 }
 
@@ -211,7 +213,7 @@ Replay::Replay(const ReplayOptions& options) : options_(options) {
     start_ = startOf(options_, recording_.sequence);
     alignment_ = alignmentOf(options_, recording_.sequence, map_);
     options_.stereo = recording_.stereo;
-    options_.scale = alignment_.informationFactor;
+    options_.scale = alignment_.informationScale;
     options_.leastSigma = alignment_.trust.leastSigma;
     options_.leastSigmaRotation = alignment_.trust.leastSigmaRotation;
     medianDepth_ = checkDepths(options, recording_);

@@ -70,7 +70,7 @@ ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
     ReplayTracker tracker;
     tracker.odometry = true;
     tracker.trust = options.keyframe.alignment.trust;
-    tracker.scale = options.keyframe.alignment.informationFactor;
+    tracker.scale = options.keyframe.alignment.informationScale;
     tracker.camera = camera;
     tracker.track = [=](const View& view, double timestamp) {
         return odometry->track(view, timestamp);
@@ -94,7 +94,7 @@ ReplayTracker mapTracker(const std::shared_ptr<const ViewSource>& map, const Cam
     TrackerOptions options = given;
     ReplayTracker tracker;
     tracker.trust = options.map.trust;
-    tracker.scale = options.map.informationFactor;
+    tracker.scale = options.map.informationScale;
     tracker.camera = camera;
     while (tracker.camera.width > maxWidth) {
         tracker.camera = halved(tracker.camera);

@@ -212,9 +212,9 @@ MeasuredInformation Search::measured() {
                                     at_.equations, options_.photometric, options_.exposure,
                                     options_.modelErrors, comparison_.camera(level_),
                                     comparison_.sinceModel(at_.T_c_w)));
-    image.equations.information *= options_.informationFactor;
-    image.equations.right *= options_.informationFactor;
-    image.repeating /= options_.informationFactor;
+    image.equations.information *= options_.informationScale;
+    image.equations.right *= options_.informationScale;
+    image.repeating /= options_.informationScale;
     at_.T_c_w = expSE3(step(image.equations, 0.)) * at_.T_c_w;
     relateToPrior(at_);
     return image;

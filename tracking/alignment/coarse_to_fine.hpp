@@ -34,7 +34,7 @@ struct AlignmentOptions {
     /// `scale`.
     bool measureCovariance = false;
     /// Factor on the information measured, as a calibration asks for.
-    double informationFactor = 1.;
+    double informationScale = 1.;
     bool measureSlope = true;  ///< where a model can be rendered (measured_slope.hpp)
 };
 

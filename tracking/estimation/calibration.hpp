@@ -18,13 +18,13 @@ struct AlignmentError {
 /// NEES per degree of freedom, mean over the samples: 1 when covariances are consistent, above when
 /// they are overconfident.
 /// @param scale factor on every information matrix
-double neesPerDof(std::span<const AlignmentError> errors, double scale = 1.,
-                  double leastSigma = 0., double leastSigmaRotation = 0.);
+double neesPerDof(std::span<const AlignmentError> errors, double scale = 1., double leastSigma = 0.,
+                  double leastSigmaRotation = 0.);
 
 struct Calibration {
-    double scale = 1.;             ///< for AlignmentOptions::informationFactor
-    double leastSigma = 0.;  ///< for TrustOptions [m]; 0 when the errors ask for none
-    double leastSigmaRotation = 0.;     ///< [rad]
+    double scale = 1.;               ///< for AlignmentOptions::informationScale
+    double leastSigma = 0.;          ///< for TrustOptions [m]; 0 when the errors ask for none
+    double leastSigmaRotation = 0.;  ///< [rad]
     /// Over how many images errors stay alike: the integrated autocorrelation of the whitened
     /// errors, 1 when every image errs in its own way. A filter that averages images must divide
     /// the scale by it. (calibrateLeastSigma does not measure it.)

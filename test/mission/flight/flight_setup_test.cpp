@@ -43,8 +43,8 @@ TEST(FlightSetup, ImagesAreAlignedAsTheCameraTakesThem) {
     EXPECT_TRUE(real.exposure.has_value());
     EXPECT_EQ(assumed.blur, kAreaBlur);
     EXPECT_GT(real.blur, 0.4);  // and its defocus
-    EXPECT_EQ(assumed.informationFactor, 1.);
-    EXPECT_EQ(optionsFor({"fly.scale=0.5"}).tracker.map.informationFactor, 0.5);
+    EXPECT_EQ(assumed.informationScale, 1.);
+    EXPECT_EQ(optionsFor({"fly.scale=0.5"}).tracker.map.informationScale, 0.5);
 }
 
 TEST(FlightSetup, BodyAndToleranceAreThoseOfTheRobotUnlessGiven) {
