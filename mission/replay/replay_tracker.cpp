@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replay/replay_tracker.hpp"
 
-#include <cmath>
 #include <memory>
 #include <utility>
 
 #include "alignment/image_pyramid.hpp"
+#include "photometry/bilinear.hpp"
 
 namespace photonav {
 namespace {
 
 constexpr std::size_t kPatience = 10;
 
-/// The grey value between four pixels; nothing outside.
-std::optional<float> sample(const ImageF& image, const Eigen::Vector2d& pixel) {
-    const double u = pixel.x(), v = pixel.y();
-    if (!(u >= 0. && v >= 0. && u < image.getWidth() - 1. && v < image.getHeight() - 1.)) return {};
-    const auto x = static_cast<unsigned>(u);
-    const auto y = static_cast<unsigned>(v);
-    const auto a = static_cast<float>(u - x);
-    const auto b = static_cast<float>(v - y);
-    return (1.F - b) * ((1.F - a) * image[y][x] + a * image[y][x + 1]) +
-           b * ((1.F - a) * image[y + 1][x] + a * image[y + 1][x + 1]);
+bool isBetweenPixels(const ImageF& image, const Eigen::Vector2d& pixel) {
+    return pixel.x() >= 0. && pixel.y() >= 0. && pixel.x() < image.getWidth() - 1. &&
+           pixel.y() < image.getHeight() - 1.;
 }
 
 /// A keyframe as it looks from another place, by the depth seen from there.
@@ -36,9 +29,9 @@ View seenFrom(const View& keyframe, const Camera& camera, const Pose& T_k_c,
             if (!(z > 0.)) continue;
             const Eigen::Vector3d p_k = T_k_c * camera.unproject(u, v, z);
             if (!(p_k.z() > 0.)) continue;
-            const auto grey = sample(keyframe.intensity, camera.project(p_k));
-            if (!grey) continue;
-            result.intensity[v][u] = *grey;
+            const Eigen::Vector2d pixel = camera.project(p_k);
+            if (!isBetweenPixels(keyframe.intensity, pixel)) continue;
+            result.intensity[v][u] = bilinear(keyframe.intensity, pixel.x(), pixel.y());
             result.depth[v][u] = static_cast<float>(z);
         }
     }
@@ -98,10 +91,7 @@ ReplayTracker mapTracker(const std::shared_ptr<const ViewSource>& map, const Cam
     tracker.camera = camera;
     while (tracker.camera.width > maxWidth) {
         tracker.camera = halved(tracker.camera);
-        // The mean of two pixels has a variance of a quarter of a pixel, and is one pixel then.
-        if (options.map.blur < kRenderedBlur) {
-            options.map.blur = std::sqrt((options.map.blur * options.map.blur + 0.25) / 4.);
-        }
+        options.map.blur = blurAfterHalving(options.map.blur);
         ++tracker.halvings;
     }
     const auto localizer = std::make_shared<Tracker>(map, tracker.camera, start, options);

@@ -40,7 +40,7 @@ ReplayTracker mapTracker(const std::shared_ptr<const ViewSource>& map, const Cam
                          const UncertainPose& start, const TrackerOptions& options,
                          unsigned maxWidth);
 
-/// Halves a view: grey values averaged, depth taken from the first of four pixels.
+/// Halves a view: grey values by halvedAsRendered(), depth taken from the first of four pixels.
 void halve(View& view, int times);
 
 }  // namespace photonav

@@ -13,6 +13,7 @@ namespace {
 constexpr int kTaps = 8;
 constexpr std::array<float, kTaps> kBinomial = {1.F / 128,  7.F / 128,  21.F / 128, 35.F / 128,
                                                 35.F / 128, 21.F / 128, 7.F / 128,  1.F / 128};
+constexpr double kBinomialVariance = 0.25 * (kTaps - 1);  // [pixels^2]
 
 }  // namespace
 
@@ -82,5 +83,7 @@ ImageF halvedAsRendered(const ImageF& image) {
     }
     return half;
 }
+
+double blurAfterHalving(double blur) { return 0.5 * std::sqrt(blur * blur + kBinomialVariance); }
 
 }  // namespace photonav

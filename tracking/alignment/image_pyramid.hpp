@@ -32,4 +32,8 @@ double noiseAfterWidening(double variance, double scale);
 /// average and point spread of the small one (variance 1/4 + 4 * 1/2). Borders repeat.
 ImageF halvedAsRendered(const ImageF& image);
 
+/// Point spread of halvedAsRendered(), standard deviation [its pixels], by that of the large image
+/// [its pixels]. kRenderedBlur stays kRenderedBlur.
+double blurAfterHalving(double blur);
+
 }  // namespace photonav

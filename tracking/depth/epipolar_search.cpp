@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "photometry/bilinear.hpp"
+
 namespace photonav {
 namespace {
 
@@ -13,19 +15,6 @@ using Eigen::Vector3d;
 constexpr double kMaxScale = 2.;      // of a patch between the images
 constexpr float kRivalScore = 0.95F;  // share of the best score: as good
 constexpr int kRivalDistance = 3;     // steps from the best: another place
-
-/// The grey value between four pixels, all of them inside.
-float sample(const ImageF& image, double x, double y) {
-    const auto column = static_cast<int>(x);
-    const auto row = static_cast<int>(y);
-    const auto a = static_cast<float>(x - column);
-    const auto b = static_cast<float>(y - row);
-    const float* p = image.bitmap + std::ptrdiff_t(row) * image.getWidth() + column;
-    const float* q = p + image.getWidth();
-    const float above = p[0] + a * (p[1] - p[0]);
-    const float below = q[0] + a * (q[1] - q[0]);
-    return above + b * (below - above);
-}
 
 Vector2d across(const Vector2d& along) { return {-along.y(), along.x()}; }
 
@@ -145,7 +134,7 @@ bool EpipolarSearch::sampleReference(unsigned u, unsigned v, const Vector2d& alo
         for (int c = 0; c < kSide; ++c) {
             const Vector2d p =
                 Vector2d(u, v) + (c - kRadius) * along + (r - kRadius) * across(along);
-            patch_[kSide * r + c] = sample(reference_, p.x(), p.y());
+            patch_[kSide * r + c] = bilinear(reference_, p.x(), p.y());
             sum += patch_[kSide * r + c];
         }
     }
@@ -177,7 +166,7 @@ void EpipolarSearch::sampleStrip(const Line& line) {
     for (int r = 0; r < kSide; ++r) {
         const Vector2d first = line.start - kRadius * step + (r - kRadius) * across(step);
         for (int c = 0; c < line.steps + kSide - 1; ++c) {
-            strip_[r][c] = sample(image_, first.x() + c * step.x(), first.y() + c * step.y());
+            strip_[r][c] = bilinear(image_, first.x() + c * step.x(), first.y() + c * step.y());
         }
     }
 }
