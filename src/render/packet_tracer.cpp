@@ -18,17 +18,6 @@ using simd::Int;
 // faces it went through such a gap: it meets the plane up to this far before the cell [cells].
 constexpr float kGap = 0.5F;
 
-/// The cell of rays at time t along one axis: exactly the one behind the planes that they have
-/// crossed. @param counts lanes for which a plane that they cross at t itself is crossed
-[[gnu::always_inline]] inline Int cellAt(const Float& t, const Float& direction,
-                                         const Float& inverse, float offset, const Int& counts) {
-    const Float plane = simd::rounded(offset + t * direction);  // others are far from rounding
-    const Float tPlane = (plane - offset) * inverse;
-    const Int crossed = (tPlane < t) | ((tPlane == t) & counts);
-    const Int forward = direction > 0.F;
-    return simd::wrappingSum(simd::toInt(plane), crossed ^ forward);
-}
-
 /// Traces rays of one camera pose to the first surfaces that they meet, and shades these. The cells
 /// that a ray visits do not depend on how empty space is divided into boxes: of two planes that it
 /// crosses at the same time, the one across the first axis comes first.

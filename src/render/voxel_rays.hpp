@@ -50,4 +50,17 @@ struct Rays {
     simd::Int face;  ///< that the surface met in a cell points to, or kNoPlane
 };
 
+/// The cell of rays at time t along one axis: exactly the one behind the planes that they have
+/// crossed. @param counts lanes for which a plane that they cross at t itself is crossed
+[[gnu::always_inline]] inline simd::Int cellAt(const simd::Float& t, const simd::Float& direction,
+                                               const simd::Float& inverse, float offset,
+                                               const simd::Int& counts) {
+    // Planes that are not crossed here are far from rounding.
+    const simd::Float plane = simd::rounded(offset + t * direction);
+    const simd::Float tPlane = (plane - offset) * inverse;
+    const simd::Int crossed = (tPlane < t) | ((tPlane == t) & counts);
+    const simd::Int forward = direction > 0.F;
+    return simd::wrappingSum(simd::toInt(plane), crossed ^ forward);
+}
+
 }  // namespace photonav

@@ -155,11 +155,9 @@ Matrix8 scatterByDisplacement(const std::vector<ImageBlock>& blocks, const Eigen
     for (int axis = 0; axis < 2; ++axis) {
         sum += scatterOfField(blocks, size, sigma * sigma, [&](const ImageBlock& block) -> Vector8 {
             const Eigen::Array2d pixel = side * (block.index.cast<double>() + 0.5) - 0.5;
-            const double x = (pixel.x() - camera.cx()) / camera.fx();
-            const double y = (pixel.y() - camera.cy()) / camera.fy();
-            Eigen::Matrix2d byRotation;  // pixels by radians about x and y
-            byRotation << camera.fx() * x * y, -camera.fx() * (1. + x * x),
-                camera.fy() * (1. + y * y), -camera.fy() * x * y;
+            const Eigen::Vector3d p = camera.unproject(pixel.x(), pixel.y());
+            const Eigen::Matrix2d byRotation =  // pixels by radians about x and y
+                (camera.projectionJacobian(p) * -hat(p)).leftCols<2>();
             return block.AtA.middleCols<2>(3) * byRotation.inverse().col(axis);
         });
     }

@@ -18,13 +18,6 @@ constexpr int kRivalDistance = 3;     // steps from the best: another place
 
 Vector2d across(const Vector2d& along) { return {-along.y(), along.x()}; }
 
-/// Derivative of the pixel of q + w t by w.
-Vector2d pixelDerivative(const Camera& camera, const Vector3d& t, const Vector3d& h) {
-    const double z2 = h.z() * h.z();
-    return {camera.fx() * (t.x() * h.z() - h.x() * t.z()) / z2,
-            camera.fy() * (t.y() * h.z() - h.y() * t.z()) / z2};
-}
-
 }  // namespace
 
 /// Places where the patch's centre may be: start + k * spacing * along, k from 0 to steps - 1.
@@ -78,8 +71,7 @@ EpipolarMatch EpipolarSearch::operator()(unsigned u, unsigned v, double low, dou
                                          double high) {
     using enum EpipolarMatch::Outcome;
     const Vector3d f = camera_.unproject(u, v);
-    const Vector2d away(camera_.fx() * (f.x() * t_r_.z() - t_r_.x()),
-                        camera_.fy() * (f.y() * t_r_.z() - t_r_.y()));
+    const Vector2d away = -camera_.projectionJacobian(f) * t_r_;
     const Vector3d q = T_c_r_.linear() * f;
     const Vector3d& t = T_c_r_.translation();
     const auto point = [&](double inverseDepth) -> Vector3d { return q + inverseDepth * t; };
@@ -88,7 +80,7 @@ EpipolarMatch EpipolarSearch::operator()(unsigned u, unsigned v, double low, dou
     if (point(low).z() < 0.1 || point(high).z() < 0.1 || away.squaredNorm() < 1e-12) return {};
 
     Line line;
-    line.along = pixelDerivative(camera_, t, h);
+    line.along = camera_.projectionJacobian(h) * t;  // by w
     if (line.along.squaredNorm() < 1e-12) return {};
     line.along.normalize();
     line.spacing = 1. / h.z();
@@ -118,7 +110,7 @@ EpipolarMatch EpipolarSearch::operator()(unsigned u, unsigned v, double low, dou
     const double variance =
         options_.matchSigma * options_.matchSigma +
         line.spacing * line.spacing * 2. * options_.sigma * options_.sigma / gradient_;
-    match.sigma = std::sqrt(variance) / pixelDerivative(camera_, t, point(match.w)).norm();
+    match.sigma = std::sqrt(variance) / (camera_.projectionJacobian(point(match.w)) * t).norm();
     return match;
 }
 
