@@ -88,7 +88,8 @@ ReportTable tableOf(const FlightSet& set) {
     table.rows = {
         {"arrived", fmt::format("{} of {}", s.arrived, s.flights)},
         {"wrong arrivals (estimate at the goal, robot elsewhere)", fmt::format("{}", s.astray)},
-        {"uncertain arrivals (estimate at the goal, not claimed)", fmt::format("{}", s.uncertain)},
+        {"uncertain arrivals (estimate at the goal, not certain enough)",
+         fmt::format("{}", s.uncertain)},
         {"collisions", fmt::format("{}", s.collisions)},
         {"gave up lost / out of time", fmt::format("{} / {}", s.lost, s.outOfTime)},
         {"position error, rms", lengthText(s.positionRmse)},

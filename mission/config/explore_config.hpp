@@ -15,7 +15,7 @@ enum class ExploreSensor { depth, stereo, monocular };
 /// What space that was never seen is to a planner.
 enum class UnknownSpace { optimistic, pessimistic };
 
-/// What a view of space that was never seen tells about the pose.
+/// The information assumed of a view of space that was never seen.
 enum class UnknownInformation {
     none,      ///< the paper
     predicted  ///< as much as the views that were flown through lately

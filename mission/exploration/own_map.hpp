@@ -13,7 +13,7 @@
 
 namespace photonav {
 
-/// Whether a camera sees the way ahead of its robot, rather than the place below.
+/// Whether a camera looks ahead of its robot, rather than at the place below.
 bool looksAhead(const Pose& T_b_c);
 
 /// Map, obstacles in it, and how wrong it is, all from the images fused.
@@ -22,7 +22,8 @@ class OwnMap {
     /// @param config its section explore, bounds and radius
     explicit OwnMap(const Config& config);
 
-    /// Learns what views of the map are worth from one that an image can be compared with.
+    /// Measures how much information of the map's views is noise, by one that an image can be
+    /// compared with.
     /// @param shown view of the map from where the image was taken
     void compare(const View& shown, const ImageF& image, const Camera& camera);
 

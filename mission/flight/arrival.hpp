@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a robot that believes to be at its goal may claim to have arrived.
+// Whether a robot whose estimate is at its goal is certain enough to report its arrival.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,10 +10,10 @@
 
 namespace photonav {
 
-/// Least believed probability of an arrival that is claimed.
+/// Least believed probability of an arrival that is reported.
 inline constexpr double kArrivalConfidence = 0.995;
 
-/// Where a body believes to be.
+/// Where a body is by its belief.
 struct PositionBelief {
     Eigen::Vector3d mean_w = Eigen::Vector3d::Zero();      ///< [m]
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< axes of the world [m^2]
@@ -33,8 +33,7 @@ double probabilityWithin(const PositionBelief& position, const Eigen::Vector3d& 
 /// none.
 std::optional<double> squaredCorrection(const UncertainPose& prior, const UncertainPose& posterior);
 
-/// Remembers the corrections by the last images, which tell whether the belief is as wide as its
-/// errors.
+/// The corrections by the last images: a test whether the belief is as wide as its errors.
 class Corrections {
   public:
     /// An image was accepted.

@@ -39,9 +39,9 @@ struct FlightOptions {
 };
 
 enum class FlightEnd {
-    arrived,    ///< claimed to be at the goal, and is
-    astray,     ///< claimed to be at the goal, but is not: a false claim
-    uncertain,  ///< the best estimate is at the goal, but not certain enough to claim an arrival
+    arrived,    ///< reported at the goal, and is there
+    astray,     ///< reported at the goal, but is not there
+    uncertain,  ///< the best estimate is at the goal, but not certain enough to report it
     collided,
     lost,   ///< gave up searching
     noWay,  ///< the map that the robot made shows none
@@ -101,8 +101,8 @@ class FlightEvaluator {
     void measureSpeed();
     /// True distance of the body to the goal [m].
     double goalError() const { return (robot_.T_w_b().translation() - goal_w_).norm(); }
-    /// Of a robot whose estimate is at the goal: an arrival is claimed where the belief, as wide as
-    /// the corrections by the last images ask for, is within `tolerance` [m] of the goal with
+    /// Of a robot whose estimate is at the goal: an arrival is reported where the belief, as wide
+    /// as the corrections by the last images ask for, is within `tolerance` [m] of the goal with
     /// kArrivalConfidence.
     FlightEnd endAtGoal(const Tracker& tracker, double tolerance);
     FlightResult& result() { return result_; }

@@ -23,7 +23,7 @@ struct Sequence {
     struct Entry {
         double timestamp = 0.;  ///< of the colour image [s]
         Pose T_c_w = Pose::Identity();
-        bool hasPose = true;  ///< false only where the reader was told to keep such frames
+        bool hasPose = true;  ///< false only where `forgiving` keeps such frames
         std::string colourFile;
         std::string depthFile;  ///< empty: none
     };
@@ -39,7 +39,7 @@ struct Sequence {
     bool cameraAssumed = false;  ///< the dataset does not say; this is the format's usual one
     double depthScale = 5000.;   ///< depth image value of one metre
     bool needsDepth = true;      ///< false: a depth image that cannot be used is as none
-    /// Factor on the photometric information that the noise of these images asks for, if known.
+    /// Factor on the photometric information, by the noise of these images, if given.
     std::optional<double> informationScale;
     /// Point spread of the colour images, standard deviation [pixels]; none: that of pixels which
     /// average over their area.

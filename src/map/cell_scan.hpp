@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cells that one observation crosses and ends in, and what it says of their surfaces.
+// The cells that one observation crosses and ends in, and what it adds to their surfaces.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where surfaces lie inside a cell: what a map learns of them, and the planes that views show.
+// Where surfaces lie inside a cell: what a map keeps of them, and the planes that views show.
 #pragma once
 
 #include <Eigen/Core>

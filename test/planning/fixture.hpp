@@ -97,7 +97,7 @@ struct Problem {
 };
 
 /// Vertices of a tree: half under the address sanitizer, which is after other errors than the
-/// test's claim, made at full size by the ordinary build, and for which RRBT's n^2 is slow.
+/// test's statement, made at full size by the ordinary build, and for which RRBT's n^2 is slow.
 constexpr std::size_t treeOf(std::size_t vertices) {
 #ifdef __SANITIZE_ADDRESS__
     return vertices / 2;

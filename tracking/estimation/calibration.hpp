@@ -23,11 +23,11 @@ double neesPerDof(std::span<const AlignmentError> errors, double scale = 1., dou
 
 struct Calibration {
     double scale = 1.;               ///< for AlignmentOptions::informationScale
-    double leastSigma = 0.;          ///< for TrustOptions [m]; 0 when the errors ask for none
+    double leastSigma = 0.;          ///< for TrustOptions [m]; 0 where the errors need none
     double leastSigmaRotation = 0.;  ///< [rad]
-    /// Over how many images errors stay alike: the integrated autocorrelation of the whitened
-    /// errors, 1 when every image errs in its own way. A filter that averages images must divide
-    /// the scale by it. (calibrateLeastSigma does not measure it.)
+    /// Number of consecutive images whose errors are correlated: the integrated autocorrelation of
+    /// the whitened errors, 1 when every image errs in its own way. A filter that averages images
+    /// must divide the scale by it. (calibrateLeastSigma does not measure it.)
     double correlationTime = 1.;
     double neesBefore = 0.;  ///< per degree of freedom, without least sigmas and with scale 1
                              ///< (calibrateLeastSigma: the scale)

@@ -12,7 +12,7 @@ namespace photonav {
 
 struct KeyframeChainOptions {
     KeyframeOptions keyframe;
-    // A tracked image becomes the next keyframe when one of these says so.
+    // A tracked image becomes the next keyframe when one of these is exceeded.
     double minOverlap = 0.8;     ///< share of the keyframe's points in view
     double maxShift = 0.12;      ///< distance from the keyframe [mean depths]
     double maxTurn = 0.2;        ///< angle from the keyframe [rad]

@@ -80,7 +80,7 @@ TEST_F(CommandLine, EvolutionIsAFigureAndAnAnimation) {
     EXPECT_NE(report["frames"][0]["image"], report["frames"][5]["image"]);
 }
 
-TEST_F(CommandLine, TheDetourBuysCertainty) {
+TEST_F(CommandLine, TheDetourReducesUncertainty) {
     ASSERT_EQ(plan(kQuickPlan).exitCode, 0);
     const json r = result();
     EXPECT_GT(r["length"].get<double>(), r["baseline"]["length"].get<double>() + 1.);
@@ -278,7 +278,7 @@ TEST_F(CommandLine, CtrlCBeforeThereIsAResultEndsAtOnce) {
     EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
-TEST_F(CommandLine, HelpTeaches) {
+TEST_F(CommandLine, HelpHasExamplesAndPages) {
     const Execution run = photonav("--help");
     EXPECT_EQ(run.exitCode, 0);
     for (const char* word : {"plan", "info", "map", "report", "Exit codes", "two_textures.yaml"}) {

@@ -228,7 +228,7 @@ TEST_F(MapCommand, DepthOfOneImageCannotBeHad) {
               "the map is empty: depth is measured from image to image, and there is only one");
 }
 
-TEST_F(MapCommand, BlackImagesTellNothingOfAMap) {
+TEST_F(MapCommand, BlackImagesAreNotCompared) {
     const auto blacken = [&](int i) {
         cv::imwrite((data / fmt::format("rgb/{}.png", i)).string(),
                     cv::Mat(60, 80, CV_8UC1, cv::Scalar(0)));

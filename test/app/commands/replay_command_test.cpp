@@ -84,7 +84,7 @@ TEST_F(ReplayCommand, WritesWhatOtherProgramsRead) {
     EXPECT_EQ(rows, 13);
 }
 
-TEST_F(ReplayCommand, CalibrationMakesCovariancesTrue) {
+TEST_F(ReplayCommand, CalibrationMakesCovariancesConsistent) {
     FlightDataset longer{.frames = 30, .speed = 0.02};
     longer.write(data);
     useMap();

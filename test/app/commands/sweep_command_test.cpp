@@ -280,7 +280,7 @@ TEST_F(SweepCommand, ItsPageShowsCurvesAndTables) {
     EXPECT_EQ(page.output.find("data-errors"), std::string::npos);
 }
 
-TEST_F(SweepCommand, AnUnreachableGoalIsSaidByEveryPlanner) {
+TEST_F(SweepCommand, EveryPlannerReportsAnUnreachableGoal) {
     std::ofstream(at("walled.yaml"))
         << "textures:\n  - {name: grey, type: uniform, grey: 0.5}\n"
            "planes:\n  - {corner: [-4, -4, 0], u: [16, 0, 0], v: [0, 16, 0], texture: grey}\n"

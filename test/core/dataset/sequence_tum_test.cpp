@@ -62,7 +62,7 @@ TEST_F(TumSequence, DepthScaleComesFromOptionCameraFileOrStandard) {
     EXPECT_EQ(read({.depthScale = 2500.}).depthScale, 2500.);
 }
 
-TEST_F(TumSequence, TheCameraFileMayKnowTheFactorOnTheInformation) {
+TEST_F(TumSequence, TheCameraFileMayGiveTheInformationScale) {
     EXPECT_FALSE(read().informationScale);
     std::ofstream(path / "camera.yaml", std::ios::app) << "information_scale: 0.08\n";
     EXPECT_EQ(read().informationScale, 0.08);

@@ -82,7 +82,7 @@ TEST(Compound, FourthOrderAddsItsTerms) {
                                motion + carried + fourthOrderTerms(motion, carried), 1e-14));
 }
 
-TEST(Compound, NothingUncertainStaysCertain) {
+TEST(Compound, CertainPosesStayCertain) {
     const auto result = compoundCovariance(adjoint(randomPose()), Matrix6::Zero(), Matrix6::Zero(),
                                            PropagationOrder::fourth);
     EXPECT_EQ(result.covariance, Matrix6::Zero());

@@ -214,7 +214,7 @@ TEST(DistanceMap, MatchesDynamicEdtAtCellCentres) {
 }
 
 /// Against the cubes themselves: at centres never too large, elsewhere by less than half a cell.
-TEST(DistanceMap, NeverPromisesMoreRoomThanThereIs) {
+TEST(DistanceMap, NeverOverestimatesClearance) {
     std::mt19937 random(8);
     std::uniform_int_distribution<int> cell(-12, 12);
     const AlignedBox3d bounds(Vector3d::Constant(-1.3), Vector3d::Constant(1.3));

@@ -50,7 +50,7 @@ TEST(MapFusion, SeparatesFreeOccupiedAndUnknownCells) {
     EXPECT_EQ(map.search(0.01, 0.01, 1.60), nullptr) << "behind the camera";
 }
 
-TEST(MapFusion, CarvesUpToTheRangeAndLearnsNothingFromMissingDepth) {
+TEST(MapFusion, FreesSpaceUpToTheRangeAndNoneWhereDepthIsMissing) {
     auto [camera, T_c_w, view] = overCarpet(0.01, 3.02);
     TexturedOcTree map(0.05);
     fuse(map, view, camera, T_c_w, {.maxRange = 2.});

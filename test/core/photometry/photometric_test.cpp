@@ -256,7 +256,7 @@ TEST(Information, StrideKeepsTheCovariance) {
     }
 }
 
-TEST(Information, WhiteFloorIsWorthExactlyNothing) {
+TEST(Information, WhiteFloorHasNoInformation) {
     const Camera camera = defaultCamera();
     View view = cases()[1].plane.view(camera, cases()[1].T_c_w);
     for (float grey : {0.F, 0.3F, 0.7F, 1.F}) {
@@ -265,7 +265,7 @@ TEST(Information, WhiteFloorIsWorthExactlyNothing) {
     }
 }
 
-TEST(Information, StripesSeeOneAxisOnly) {
+TEST(Information, StripesInformAboutOneAxisOnly) {
     const Camera camera = defaultCamera();
     AnalyticPlane floor;
     floor.stripes = true;

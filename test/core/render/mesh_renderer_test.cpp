@@ -125,7 +125,7 @@ TEST(MeshRenderer, NoPixelSlipsBetweenNeighbours) {
     }
 }
 
-TEST(MeshRenderer, NothingToSeeIsDepthZero) {
+TEST(MeshRenderer, NoSurfaceIsDepthZero) {
     Scene scene;
     addPlane(scene, {0., 0., 0.}, {1., 0., 0.}, {0., 1., 0.},
              addTexture(scene, uniformTexture(0.5)));

@@ -215,7 +215,7 @@ MeshRenderer shipped(const std::string& name) {
         loadScene(std::string(PHOTONAV_SOURCE_DIR) + "/config/scenes/" + name + ".yaml"));
 }
 
-TEST(ShippedScenes, TwoTexturesTellNothingOverWhiteAndEverythingOverTexture) {
+TEST(ShippedScenes, TwoTexturesInformOverTheTextureOnly) {
     const MeshRenderer renderer = shipped("two_textures");
     EXPECT_EQ(informationAt(renderer, -1., -0.5), Matrix6::Zero());
     EXPECT_EQ(informationAt(renderer, 3.5, 9.5), Matrix6::Zero());

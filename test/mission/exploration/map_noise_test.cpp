@@ -26,7 +26,7 @@ struct NoisyFloor {
 };
 
 /// A blank floor, mapped by noisy images, has gradients as well.
-TEST(MapNoise, TellsNoiseFromTexture) {
+TEST(MapNoise, DistinguishesNoiseFromTexture) {
     const auto informationOf = [&](const Texture& texture) {
         const NoisyFloor floor(texture);
         MapNoise noise;

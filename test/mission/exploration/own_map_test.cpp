@@ -115,7 +115,7 @@ TEST_F(MapOfABox, SurfacesOutOfRangeAreNotMapped) {
 }
 
 /// The noise of the images left in the map does not inform; unknown space does as the config says.
-TEST_F(MapOfABox, LearnsFromComparisonsWhatViewsInform) {
+TEST_F(MapOfABox, MeasuresTheInformationOfViewsByComparisons) {
     MeshRenderer(test::floorOf(uniformTexture(0.5))).render(camera, T_c_w, image);
     std::mt19937_64 random(1);
     View shown = image;

@@ -82,7 +82,7 @@ TEST(Corrections, AreOneOnAverageWhereThePriorIsConsistent) {
     EXPECT_GT(meanSquaredCorrection(0.4, 500), 5.);
 }
 
-TEST(Corrections, WithoutInformationSayNothing) {
+TEST(Corrections, AreNotCountedWithoutInformation) {
     const UncertainPose belief{Pose::Identity(), 0.04 * Matrix6::Identity()};
     EXPECT_FALSE(squaredCorrection(belief, belief));
     EXPECT_FALSE(squaredCorrection({Pose::Identity(), Matrix6::Zero()}, belief));

@@ -286,7 +286,7 @@ TEST_F(Flight, LooksAroundForAViewThatItMissed) {
         arrived = now;
     }
     EXPECT_GE(arrived, 7);
-    EXPECT_GT(lost, 0) << "without a search it must not claim to have arrived";
+    EXPECT_GT(lost, 0) << "without a search it must not report an arrival";
     EXPECT_EQ(astray, 0);
 }
 
@@ -298,7 +298,7 @@ TEST_F(Flight, EndsInACollision) {
 }
 
 /// With the covariance of its odometry, a flight over white is not certain of its goal.
-TEST_F(Flight, ClaimsNoArrivalThatItIsNotCertainOf) {
+TEST_F(Flight, ReportsNoArrivalThatIsNotCertain) {
     world.truth = world.map = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
     const FlightResult flight = fly(plan, world, options);
     EXPECT_EQ(nameOf(flight.end), "uncertain arrival");
@@ -312,7 +312,7 @@ TEST_F(Flight, ClaimsNoArrivalThatItIsNotCertainOf) {
     EXPECT_NEAR(std::sqrt(flight.believedGoal->covariance(0, 0)), 0.11, 0.02);  // 0.1^2 + 2 m flown
 }
 
-/// False claims: the odometry is far worse than believed, and no image contradicts it.
+/// False arrivals: the odometry is far worse than believed, and no image contradicts it.
 TEST_F(Flight, EndsAstrayOverWhite) {
     options.initialCovariance *= 0.01;
     options.arrivalTolerance = 0.4;

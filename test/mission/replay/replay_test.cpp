@@ -247,7 +247,7 @@ TEST_F(ReplayFixture, LostForTooLittleOverlapItNamesTheOption) {
 }
 
 /// What it begins with is nowhere near the truth, and must not count.
-TEST_F(ReplayFixture, OdometryIsLaidOnTheTruthWhereItBegins) {
+TEST_F(ReplayFixture, OdometryIsAlignedToTheGroundTruthWhereItBegins) {
     const std::string poses = test::contentOf(data / "groundtruth.txt");
     const json all = run();
     EXPECT_TRUE(all["nees_per_dof"].is_number());

@@ -20,7 +20,7 @@ TEST(SimulatedMav, FollowsCommandsWithALag) {
     EXPECT_NEAR(mav.T_w_b().translation().x(), 0.5 - 0.5 * (1. - std::exp(-1.)), 1e-9);
 }
 
-TEST(SimulatedMav, ItsOdometryIsAsUncertainAsItSays) {
+TEST(SimulatedMav, ItsOdometryHasTheStatedCovariance) {
     Vector6 variances;
     variances << 1e-3, 2e-3, 1e-3, 1e-5, 1e-5, 1e-4;
     const MavOptions options{.lag = 0., .odometryNoise = variances.asDiagonal()};

@@ -98,7 +98,7 @@ TEST(Penalty, TurningOnTheSpotSeesNoParallax) {
     EXPECT_NEAR(model->evaluate({a.get(), b.get()}).back().cost, 0.25, 1e-12);  // 0.25 m per radian
 }
 
-TEST(Penalty, LeadsEveryPlannerToWhereTheCornersAre) {
+TEST(Penalty, EveryPlannerFliesWhereTheCornersAre) {
     for (const std::string name : {"pa_rrt_star", "rrbt", "belief_rrt_star"}) {
         Problem problem;  // from (3, 1) to (3, 9): 8 m straight, about 9 m through the corners
         const auto planner = problem.planner(name, 5, penalised(problem, manyCornersBeyondFive));
@@ -125,7 +125,7 @@ TEST(Penalty, LeavesOneBeliefPerVertex) {
     EXPECT_EQ(planner->beliefs(), planner->vertices());
 }
 
-TEST(NoInformation, IsTheShortestWayAndNeverLooks) {
+TEST(NoInformation, IsTheShortestPathWithoutViews) {
     Problem problem;
     problem.information = {};
     const auto planner = problem.planner("belief_rrt_star");

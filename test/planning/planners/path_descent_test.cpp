@@ -138,7 +138,7 @@ TEST(PathDescent, EndsWhereNothingCanBeTried) {
     EXPECT_EQ(Descended(problem, {{3, 1, 2}, {3, 1.2, 2}}).descent.tried(), 0U);
 }
 
-TEST(PathDescent, PullsTheStringAroundAnObstacle) {
+TEST(PathDescent, ShortensThePathAroundAnObstacle) {
     Problem problem;  // a cylinder of 2 m, and 0.2 m of robot: tangents and an arc
     problem.belief.alpha = 1.;
     problem.clearance = [](const Vector3d& p) { return (p - Vector3d(5, 5, p.z())).norm() - 2.; };

@@ -300,7 +300,7 @@ TEST_P(EveryPlanner, GrowsAgainAfterAChange) {
     EXPECT_EQ(planner->iterations(), 300U);
 }
 
-TEST(RRTstar, NeverRendersAView) {
+TEST(RRTstar, RendersNoView) {
     const auto planner = Problem{}.planner("rrt_star");
     grow(*planner, 300);
     auditTree(*planner);
@@ -349,7 +349,7 @@ TEST(PerceptionRRTstar, KeepsItsBeliefsWhereOnlyTheLengthCounts) {
     EXPECT_DOUBLE_EQ(aware->bestCost(), shortest->bestCost());
 }
 
-TEST(PerceptionRRTstar, GoesOutOfItsWayForCertainty) {
+TEST(PerceptionRRTstar, TakesALongerPathForCertainty) {
     const auto shortest = Problem{}.planner("rrt_star");
     const auto aware = Problem{}.planner("pa_rrt_star");
     grow(*shortest, 600);
@@ -358,7 +358,7 @@ TEST(PerceptionRRTstar, GoesOutOfItsWayForCertainty) {
     EXPECT_LT(aware->bestCost(), replayedCost(*shortest) + 1e-9);
 }
 
-TEST(BeliefRRTstar, BeatsOneBeliefPerVertex) {
+TEST(BeliefRRTstar, CostsLessThanOneBeliefPerVertex) {
     double literal = 0.;
     double labels = 0.;
     for (const std::uint32_t seed : {1U, 2U, 3U, 4U}) {

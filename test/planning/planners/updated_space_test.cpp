@@ -86,7 +86,7 @@ TEST_F(UpdatedSpaceTest, DrawsWhereTheMapChangedIfTheRobotCanBeThere) {
     EXPECT_FALSE(blocked.sample(state.get(), {.changed = 1.}, 0.5, *sampler, rng));
 }
 
-TEST_F(UpdatedSpaceTest, RemembersTheLatestOfManyRemovedVertices) {
+TEST_F(UpdatedSpaceTest, KeepsTheLatestOfManyRemovedVertices) {
     for (int i = 0; i < 30000; ++i) remove({i < 20000 ? 2. : 8., 2., 2.});
     int old = 0;
     for (const Vector3d& p : draw({.removed = 1.})) old += p.x() < 5. ? 1 : 0;

@@ -46,7 +46,7 @@ TEST(DenseAligner, CovarianceIsThePlannersInverse) {
     EXPECT_LT((a.covariance * planned - Matrix6::Identity()).norm(), 1e-4);
 }
 
-TEST(DenseAligner, PriorDecidesWhereTheImageIsSilent) {
+TEST(DenseAligner, PriorDecidesWhereTheImageDoesNotInform) {
     const MeshRenderer white(test::floorOf(uniformTexture(0.9)));
     const Pose truth = cameraAt({0., 0., 2.}, kDown);
     DenseAligner aligner(white, camera());
@@ -104,7 +104,7 @@ TEST(DenseAligner, WeighsImageAgainstPrior) {
 }
 
 /// Bars along world y, 0.5 m wide with soft edges, seen askew.
-TEST(DenseAligner, EdgesSayNothingAlongThemselves) {
+TEST(DenseAligner, EdgesDoNotInformAlongThemselves) {
     const MeshRenderer bars(test::floorOf(stripes({.width = 0.5, .softEdge = 0.05})));
     AlignmentOptions options;
     options.photometric.scale = 0.08;
@@ -202,7 +202,7 @@ TEST(DenseAligner, RobustWeightsSurviveAnOccluder) {
     EXPECT_LT(errorWith(RobustWeight::tukey), 1.5e-3);
 }
 
-TEST(DenseAligner, SaysWhenItIsLost) {
+TEST(DenseAligner, ReportsThatItIsLost) {
     DenseAligner aligner(room(), camera());
     const ImageF image = observe(room(), kPose, 0.02);
     // Looking away from everything.

@@ -129,7 +129,7 @@ TEST(KeyframeModel, NoiseIsNoTexture) {
     EXPECT_LT(squaredDistance(e, b.covariance), 30.) << e.transpose();
 }
 
-TEST(KeyframeModel, SaysWhenItIsLost) {
+TEST(KeyframeModel, ReportsThatItIsLost) {
     KeyframeModel keyframe(roomView(kFirst), wideCamera(), kFirst);
     EXPECT_TRUE(isLost(
         keyframe.align(ImageF(wideCamera().height, wideCamera().width, 0.F), kFirst).verdict));

@@ -68,7 +68,7 @@ TEST_F(MeasuredSlope, InformsOfNothingWhereNothingChanges) {
     expectClose(information, D.transpose() * D);
 }
 
-/// Two claims may be steeper together than each alone.
+/// Two slopes may be steeper together than each alone.
 TEST_F(MeasuredSlope, InformsOfNoDirectionMoreThanJ) {
     Slope D = J;
     for (double& value : D.reshaped()) value += std::normal_distribution<double>(0., 60.)(random);
@@ -78,7 +78,7 @@ TEST_F(MeasuredSlope, InformsOfNoDirectionMoreThanJ) {
     EXPECT_GT(solver.eigenvalues().minCoeff(), 0.1);
 }
 
-TEST_F(MeasuredSlope, StopsAtWhatJSays) { expectClose(informationOf(2. * J), J.transpose() * J); }
+TEST_F(MeasuredSlope, IsLimitedToJ) { expectClose(informationOf(2. * J), J.transpose() * J); }
 
 TEST_F(MeasuredSlope, DirectionsThatThePriorOrTheLeastSigmaDeterminesAreNotMeasured) {
     prior *= 1e-8;

@@ -74,7 +74,7 @@ double traceOf(const View& model, const ImageF& observed, ModelNoise noise) {
         .trace();
 }
 
-TEST(NormalEquations, NoiseOfAModelTellsNothing) {
+TEST(NormalEquations, NoiseOfAModelDoesNotInform) {
     std::mt19937_64 random(1);
     View wall = viewAt(kViewpoint);
     wall.intensity = ImageF(tinyCamera().height, tinyCamera().width, 0.5F);
@@ -86,7 +86,7 @@ TEST(NormalEquations, NoiseOfAModelTellsNothing) {
     EXPECT_GT(traceOf(model, model.intensity, ModelNoise::measured), 0.9 * exact);
 }
 
-TEST(NormalEquations, TextureOfANoisyModelTellsWhatItWould) {
+TEST(NormalEquations, TextureOfANoisyModelInformsAsWithoutNoise) {
     std::mt19937_64 random(1);
     const View view = viewAt(kViewpoint);
     const ImageF observed = test::noisy(view.intensity, 0.02, random);

@@ -58,7 +58,7 @@ void addLightFromTheSide(ImageF& image, std::mt19937_64& random) {
 }
 
 /// Whatever the images suffer from; the noise that the options assume is another one.
-TEST(ResidualCovariance, IsConsistentWithoutBeingToldTheNoise) {
+TEST(ResidualCovariance, IsConsistentWithoutAnAssumedNoise) {
     for (const Camera& camera : {makeCamera(94, 60, 1.2), makeCamera(188, 120, 1.2)}) {
         const double noise = neesWith(forPhotographs(), addNoise, camera);
         const double exact = neesWith(

@@ -70,7 +70,7 @@ TEST_F(WideAlignerTest, FindsThePlaceInAnotherExposure) {
 
 /// The border of white and texture is just in view where the camera is thought to be, and not
 /// where it is. That is no measurement of the border: it moves out of view, and no more is known.
-TEST_F(WideAlignerTest, NothingInViewIsNoPlaceFound) {
+TEST_F(WideAlignerTest, NothingInViewIsNoMatch) {
     Scene scene;
     addPlane(scene, {-10., -10., 0.}, {10., 0., 0.}, {0., 20., 0.},
              addTexture(scene, uniformTexture(0.5F)));
@@ -123,7 +123,7 @@ TEST_F(WideAlignerTest, AStripOfTextureIsFoundWhereItIs) {
 
 /// What a strip must show to be believed is a property of the scene, not of how many pixels it is
 /// seen with.
-TEST_F(WideAlignerTest, AFaintStripIsBelievedAtNoImageSize) {
+TEST_F(WideAlignerTest, AFaintStripIsAcceptedAtNoImageSize) {
     const Texture faint = valueNoise({.size = {20., 20.}, .amplitudes = {0.06, 0.04, 0.02}});
     const Patch half{{10., 0.}, {20., 20.}, &faint};
     const MeshRenderer floor(
@@ -141,7 +141,7 @@ TEST_F(WideAlignerTest, AFaintStripIsBelievedAtNoImageSize) {
 }
 
 /// A strip of so little contrast is not believed. All over the image it is.
-TEST_F(WideAlignerTest, PaleTextureIsAPlace) {
+TEST_F(WideAlignerTest, PaleTextureIsFound) {
     const MeshRenderer floor(test::floorOf(
         valueNoise({.size = {20., 20.}, .amplitudes = {0.004, 0.003, 0.002}, .seed = 1})));
     camera = makeCamera(188, 120, 1.2);
@@ -154,7 +154,7 @@ TEST_F(WideAlignerTest, PaleTextureIsAPlace) {
     EXPECT_LT(squaredDistance(logSE3(truth * a.T_c_w.inverse()), a.covariance), 25.);
 }
 
-TEST_F(WideAlignerTest, StripesDoNotSayWhichOfThemItIs) {
+TEST_F(WideAlignerTest, StripesAreAmbiguous) {
     const MeshRenderer floor(test::floorOf(stripes({.width = 0.2, .softEdge = 0.05})));
     WideAligner wide(floor, camera, options);
     const UncertainPose belief = prior(cameraAt({0.05, 0., 2.}, kDown), 0.3);

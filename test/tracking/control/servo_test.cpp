@@ -76,7 +76,7 @@ TEST_P(ServoWithMount, ReachesTheGoalsImage) {
 
 INSTANTIATE_TEST_SUITE_P(Mounts, ServoWithMount, ::testing::Values(kDown, kOblique));
 
-TEST(PhotometricServo, DoesNotTrustAnotherPlacesImageNorAWhiteFloor) {
+TEST(PhotometricServo, RejectsTheImageOfAnotherPlaceAndOfAWhiteFloor) {
     const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
     const Camera camera = makeCamera(94, 60, 1.2);
     Pose T_w_goal = Pose::Identity();

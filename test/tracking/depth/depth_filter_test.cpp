@@ -76,7 +76,7 @@ TEST_F(DepthFilterTest, BrightnessDoesNotMatter) {
 }
 
 /// No place in the image for the patches that are compared.
-TEST_F(DepthFilterTest, ImagesTooSmallTeachNothing) {
+TEST_F(DepthFilterTest, ImagesTooSmallGiveNoDepth) {
     camera = makeCamera(40, 16, 1.2);
     DepthFilter filter(seen(0).intensity, camera, pose(0));
     for (int i = 1; i <= 12; ++i) {
@@ -89,7 +89,7 @@ TEST_F(DepthFilterTest, ImagesTooSmallTeachNothing) {
     EXPECT_EQ(filter.shareConverged(), 0.);
 }
 
-TEST_F(DepthFilterTest, ImagesOfAnotherPlaceTeachNearlyNothing) {
+TEST_F(DepthFilterTest, ImagesOfAnotherPlaceGiveHardlyAnyDepth) {
     DepthFilter filter(seen(0).intensity, camera, pose(0));
     for (int i = 1; i <= 12; ++i) {
         View other;
@@ -99,7 +99,7 @@ TEST_F(DepthFilterTest, ImagesOfAnotherPlaceTeachNearlyNothing) {
     EXPECT_LT(filter.shareConverged(), 0.05);
 }
 
-TEST_F(DepthFilterTest, WithoutMotionOrTextureNothingIsKnown) {
+TEST_F(DepthFilterTest, NoDepthWithoutMotionOrTexture) {
     DepthFilter still(seen(0).intensity, camera, pose(0));
     DepthFilter bland(ImageF(camera.height, camera.width, 0.5F), camera, pose(0));
     for (int i = 1; i <= 6; ++i) {

@@ -8,7 +8,8 @@
 namespace photonav {
 namespace {
 
-/// Errors whose covariance is (scale * information)^-1 or that of the least sigmas, whichever is larger.
+/// Errors whose covariance is (scale * information)^-1 or that of the least sigmas, whichever is
+/// larger.
 std::vector<AlignmentError> sampled(double scale, double leastSigma, double leastSigmaRotation,
                                     int count) {
     std::mt19937_64 random(1);
@@ -54,7 +55,7 @@ TEST(Calibration, FindsAScaleAndLeastSigmas) {
     EXPECT_NEAR(c.neesAfter, 1., 0.1);
 }
 
-TEST(Calibration, FindsOverHowManyImagesErrorsAreAlike) {
+TEST(Calibration, MeasuresTheCorrelationTimeOfErrors) {
     EXPECT_NEAR(calibrate(sampled(1., 0., 0., 1000)).correlationTime, 1., 0.3);
     std::vector<AlignmentError> errors = sampled(1., 0., 0., 4000);
     constexpr double kRho = 0.8;  // AR(1): (1 + rho) / (1 - rho) = 9
