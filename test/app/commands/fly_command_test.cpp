@@ -246,52 +246,5 @@ TEST_F(FlyCommand, RejectsBadInput) {
     EXPECT_FALSE(fs::exists(folder_ / "x" / "result.json"));
 }
 
-/// Believed positions known to be off by 3 and 9 sigma in one direction, of which one in six
-/// counts.
-TEST(FlySummary, ComparesErrorsWithWhatWasPredicted) {
-    FlightSet set;
-    PlannedView from, to;
-    from.covariance = 0.01 * Matrix6::Identity();
-    to.covariance = 0.04 * Matrix6::Identity();
-    to.distance = 2.;
-    set.plan = {from, to};
-    FlightResult flight;
-    flight.end = FlightEnd::arrived;
-    FlightSample sample;
-    sample.distance = 1.;
-    sample.belief.covariance = 0.01 * Matrix6::Identity();
-    sample.T_c_w.translation().x() = 0.3;
-    FlightSample worse = sample;
-    worse.T_c_w.translation().x() = 0.9;
-    flight.samples = {sample, worse};
-    set.flights = {flight};
-    const FlightSummary s = summarise(set);
-    EXPECT_EQ(s.arrived, 1U);
-    EXPECT_NEAR(s.positionRmse, std::sqrt(0.45), 1e-12);
-    EXPECT_NEAR(s.believedSigma, std::sqrt(0.03), 1e-12);
-    EXPECT_NEAR(s.predictedSigma, std::sqrt(0.075), 1e-12);
-    EXPECT_NEAR(s.nees, 0.5 * (9. + 81.) / 6., 1e-12);
-    EXPECT_NEAR(s.neesAtGoal, 81. / 6., 1e-12);
-    EXPECT_NEAR(s.neesMedian, s.nees, 1e-12);
-    EXPECT_EQ(s.within3Sigma, 0.5);
-    EXPECT_NEAR(neesBounds(100).second, 669.77 / 600., 1e-4);  // tables: 669.77
-    EXPECT_NEAR(neesBounds(1).first, 1.237 / 6., 1e-3);        // tables: 1.237
-}
-
-/// Where a belief is certain there is nothing to divide an error by.
-TEST(FlySummary, BeliefsWithoutAnErrorDoNotCount) {
-    FlightSample certain, sample;
-    sample.belief.covariance = 0.01 * Matrix6::Identity();
-    sample.T_c_w.translation().x() = 0.3;
-    EXPECT_FALSE(neesPerDof(certain));
-    FlightResult flight;
-    flight.samples = {certain, sample};
-    EXPECT_NEAR(neesPerDof(flight), 1.5, 1e-12);
-    FlightSet set;
-    set.plan = {PlannedView{}};
-    set.flights = {flight};
-    EXPECT_NEAR(summarise(set).nees, 1.5, 1e-12);
-}
-
 }  // namespace
 }  // namespace photonav

@@ -154,18 +154,5 @@ TEST(TrackerWithOdometry, StripesEndNoLossAlongThem) {
               0.02);
 }
 
-TEST(LossOfTracking, IsResolvedByWhatTheLossHasMadeWide) {
-    const Matrix6 before = 1e-4 * Matrix6::Identity();
-    const Matrix6 prior = 0.09 * Matrix6::Identity();
-    EXPECT_TRUE(resolvesLoss(before, prior, before));
-    EXPECT_TRUE(resolvesLoss(before, prior, 0.2 * prior));
-    EXPECT_FALSE(resolvesLoss(before, prior, prior));
-    Matrix6 after = before;
-    after(1, 1) = prior(1, 1);
-    EXPECT_FALSE(resolvesLoss(before, prior, after));
-    EXPECT_TRUE(resolvesLoss(after, prior, after)) << "it was as wide before";
-    EXPECT_FALSE(resolvesLoss(prior, prior, prior)) << "it did not inform";
-}
-
 }  // namespace
 }  // namespace photonav

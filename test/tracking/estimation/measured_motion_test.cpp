@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/measured_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include "estimation/motion_model.hpp"
+
+namespace photonav {
+namespace {
+
+/// A step of the body along its x axis, with a variance along it.
+UncertainPose step(double length, double variance) {
+    UncertainPose T_next_now;
+    T_next_now.mean.translation() = Eigen::Vector3d(-length, 0., 0.);
+    T_next_now.covariance(0, 0) = variance;
+    return T_next_now;
+}
+
+/// Distance of a camera's motion along its z axis, with the variance.
+void expectForward(const UncertainPose& motion, double length, double variance) {
+    EXPECT_NEAR(motion.mean.translation().z(), -length, 1e-12);
+    EXPECT_NEAR(motion.covariance(2, 2), variance, 1e-12);
+    EXPECT_NEAR(motion.covariance.trace(), variance, 1e-12);
+}
+
+TEST(MeasuredMotion, IsTakenUntilAnExposureAndKeptAfterIt) {
+    Pose T_b_c = Pose::Identity();  // the camera looks along the body's x axis
+    T_b_c.linear().col(0) = -Eigen::Vector3d::UnitY();
+    T_b_c.linear().col(1) = -Eigen::Vector3d::UnitZ();
+    T_b_c.linear().col(2) = Eigen::Vector3d::UnitX();
+    MeasuredMotion motion(T_b_c);
+    motion.add(0.1, step(0.1, 1e-4));
+    motion.add(0.2, step(0.2, 2e-4));
+    motion.add(0.3, step(0.4, 4e-4));
+    expectForward(motion.pending(), 0.7, 7e-4);
+    expectForward(motion.takeUntil(0.2), 0.3, 3e-4);  // the step that ends at the exposure, too
+    expectForward(motion.pending(), 0.4, 4e-4);
+    expectForward(motion.takeUntil(0.25), 0., 0.);
+    motion.add(0.4, step(0.8, 8e-4));
+    expectForward(motion.pending(), 1.2, 12e-4);
+    expectForward(motion.takeUntil(1.), 1.2, 12e-4);
+    expectForward(motion.pending(), 0., 0.);
+}
+
+TEST(MotionModel, GoesOnAtTheVelocityObservedLast) {
+    MotionModel model({.speed = 0.5, .turn = 1.});
+    Vector6 xi;
+    xi << 0.1, 0., 0.2, 0., 0.05, 0.;
+    model.observe(expSE3(xi), 0.5);
+    const UncertainPose motion = model.predict(0.25);
+    EXPECT_LT((logSE3(motion.mean) - 0.5 * xi).norm(), 1e-12);
+    Vector6 variance;
+    variance << Eigen::Vector3d::Constant(0.125 * 0.125), Eigen::Vector3d::Constant(0.0625);
+    EXPECT_LT((motion.covariance.diagonal() - variance).norm(), 1e-12);
+    model.observe(expSE3(2. * xi), 0.);  // two images of one time: no velocity
+    EXPECT_LT((logSE3(model.predict(0.5).mean) - xi).norm(), 1e-12);
+    EXPECT_TRUE(model.predict(-1.).mean.isApprox(Pose::Identity()));
+    model.forget();
+    EXPECT_TRUE(model.predict(0.5).mean.isApprox(Pose::Identity()));
+}
+
+}  // namespace
+}  // namespace photonav
