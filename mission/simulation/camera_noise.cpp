@@ -3,44 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <opencv2/imgproc.hpp>
 
 namespace photonav {
-
 namespace {
 
-/// Gaussian blur along one axis; borders repeat.
-void blurAlong(const ImageF& in, ImageF& out, const std::vector<double>& kernel, bool alongRows) {
-    const int radius = static_cast<int>(kernel.size() / 2);
-    const int width = static_cast<int>(in.getWidth());
-    const int height = static_cast<int>(in.getHeight());
-    for (int v = 0; v < height; ++v) {
-        for (int u = 0; u < width; ++u) {
-            double sum = 0.;
-            for (int k = -radius; k <= radius; ++k) {
-                const int x = alongRows ? std::clamp(u + k, 0, width - 1) : u;
-                const int y = alongRows ? v : std::clamp(v + k, 0, height - 1);
-                sum += kernel[k + radius] * in[y][x];
-            }
-            out[v][u] = static_cast<float>(sum);
-        }
-    }
-}
-
 ImageF blurred(const ImageF& image, double sigma) {
-    const int radius = static_cast<int>(std::ceil(3. * sigma));
-    std::vector<double> kernel;
-    double total = 0.;
-    for (int k = -radius; k <= radius; ++k) {
-        kernel.push_back(std::exp(-0.5 * k * k / (sigma * sigma)));
-        total += kernel.back();
-    }
-    for (double& k : kernel) k /= total;
-    ImageF rows(image.getHeight(), image.getWidth());
-    ImageF both(image.getHeight(), image.getWidth());
-    blurAlong(image, rows, kernel, true);
-    blurAlong(rows, both, kernel, false);
-    return both;
+    const auto height = static_cast<int>(image.getHeight());
+    const auto width = static_cast<int>(image.getWidth());
+    const int side = 2 * static_cast<int>(std::ceil(3. * sigma)) + 1;
+    ImageF result(image.getHeight(), image.getWidth());
+    cv::Mat out(height, width, CV_32F, result.bitmap);
+    cv::GaussianBlur(cv::Mat(height, width, CV_32F, image.bitmap), out, {side, side}, sigma, sigma,
+                     cv::BORDER_REPLICATE);
+    return result;
 }
 
 }  // namespace
