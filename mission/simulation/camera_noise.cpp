@@ -3,18 +3,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+#include <vector>
 
 namespace photonav {
 namespace {
 
+/// The same pixels for OpenCV.
+cv::Mat wrapped(const ImageF& image) {
+    return {static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_32F,
+            image.bitmap};
+}
+
+/// Weights of a Gaussian kernel of one dimension whose squares sum to one: white noise keeps its
+/// variance.
+std::vector<float> unitPowerKernel(double sigma) {
+    const int reach = std::max(1, static_cast<int>(std::ceil(4. * sigma)));
+    std::vector<float> kernel;
+    double power = 0.;
+    for (int i = -reach; i <= reach; ++i) {
+        const double weight = std::exp(-0.5 * i * i / (sigma * sigma));
+        kernel.push_back(static_cast<float>(weight));
+        power += weight * weight;
+    }
+    for (float& weight : kernel) weight /= static_cast<float>(std::sqrt(power));
+    return kernel;
+}
+
 ImageF blurred(const ImageF& image, double sigma) {
-    const auto height = static_cast<int>(image.getHeight());
-    const auto width = static_cast<int>(image.getWidth());
     const int side = 2 * static_cast<int>(std::ceil(3. * sigma)) + 1;
     ImageF result(image.getHeight(), image.getWidth());
-    cv::Mat out(height, width, CV_32F, result.bitmap);
-    cv::GaussianBlur(cv::Mat(height, width, CV_32F, image.bitmap), out, {side, side}, sigma, sigma,
+    cv::GaussianBlur(wrapped(image), wrapped(result), {side, side}, sigma, sigma,
                      cv::BORDER_REPLICATE);
     return result;
 }
@@ -44,6 +65,39 @@ ImageF takePicture(const ImageF& ideal, const CameraNoiseOptions& options,
         }
     }
     return image;
+}
+
+ImageNoise assumedNoise(const PhotometricOptions& options) {
+    // Correlation exp(-d^2 / 4 s^2) of a Gaussian kernel of s pixels sums to 4 pi s^2 pixels.
+    const double area = 1. / options.scale;
+    std::vector<float> kernel{1.F};
+    if (options.scale > 0. && area > 1.) {
+        kernel = unitPowerKernel(std::sqrt(area / (4. * std::numbers::pi)));
+    }
+    const auto sigma = static_cast<float>(options.sigma);
+    return [kernel, sigma](ImageF& image, std::mt19937_64& random) {
+        std::normal_distribution<float> normal(0.F, sigma);
+        const auto border = static_cast<int>(kernel.size()) - 1;
+        cv::Mat pixels = wrapped(image);
+        cv::Mat1f noise(pixels.rows + border, pixels.cols + border);
+        for (float& value : noise) value = normal(random);
+        cv::Mat1f smooth;
+        cv::sepFilter2D(noise, smooth, CV_32F, kernel, kernel);
+        // Only where the kernel lies inside.
+        pixels += smooth(cv::Rect(border / 2, border / 2, pixels.cols, pixels.rows));
+    };
+}
+
+ImageNoise realNoise(const CameraNoiseOptions& options, const WanderingExposure& wandering) {
+    return [options, wandering, state = std::optional<double>{}](ImageF& image,
+                                                                 std::mt19937_64& random) mutable {
+        std::normal_distribution<double> normal;
+        const double c = wandering.correlation;
+        state = state ? c * *state + std::sqrt(1. - c * c) * normal(random) : normal(random);
+        CameraNoiseOptions now = options;
+        now.exposure.gain *= 1. + wandering.gainSigma * std::clamp(*state, -2., 2.);
+        image = takePicture(image, now, random);
+    };
 }
 
 void addDepthNoise(ImageF& depth, const DepthNoiseOptions& options, std::mt19937_64& random) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The noise of a real camera, and of a real depth sensor.
+// The noise of cameras, as assumed or as of a real one, and of a real depth sensor.
 #pragma once
 
+#include <functional>
 #include <random>
 
 #include "alignment/normal_equations.hpp"
+#include "photometry/photometric.hpp"
 #include "photometry/view.hpp"
 
 namespace photonav {
@@ -22,6 +24,26 @@ struct CameraNoiseOptions {
 /// The image that a camera makes of an ideal one: blurred, vignetted, exposed, with shot and read
 /// noise, clipped to [0, 1] and quantised, in this order.
 ImageF takePicture(const ImageF& ideal, const CameraNoiseOptions& options, std::mt19937_64& random);
+
+/// Adds the noise of one exposure to the noise-free image.
+using ImageNoise = std::function<void(ImageF& image, std::mt19937_64& random)>;
+
+/// The noise that PhotometricOptions describe: Gaussian with standard deviation sigma, correlated
+/// over an area of 1 / scale pixels. `scale` below 1 means that neighbouring pixels are not
+/// independent; with this noise the information of an image is Lambda. Independent pixels for a
+/// scale of 1 or more.
+ImageNoise assumedNoise(const PhotometricOptions& options);
+
+/// The varying gain of a camera with automatic exposure: a first-order Gauss-Markov process.
+struct WanderingExposure {
+    double gainSigma = 0.1;  ///< standard deviation of the gain about 1, cut off at twice as much
+    double correlation = 0.95;  ///< of the gains of consecutive images
+};
+
+/// The noise of a real camera, image by image, with a varying gain. A copy varies independently,
+/// from the present gain on.
+ImageNoise realNoise(const CameraNoiseOptions& options = {},
+                     const WanderingExposure& wandering = {});
 
 /// Depth as a structured-light or stereo camera measures it: the error of inverse depth does not
 /// depend on depth.

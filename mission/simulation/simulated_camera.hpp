@@ -5,37 +5,15 @@
 
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <optional>
 #include <random>
 
 #include "depth/stereo_depth.hpp"
 #include "estimation/observation.hpp"
-#include "photometry/photometric.hpp"
 #include "render/area_sensor.hpp"
 #include "simulation/camera_noise.hpp"
 
 namespace photonav {
-
-/// Adds the noise of one exposure to the noise-free image.
-using ImageNoise = std::function<void(ImageF& image, std::mt19937_64& random)>;
-
-/// The noise that PhotometricOptions describe: Gaussian with standard deviation sigma, correlated
-/// over an area of 1 / scale pixels. `scale` below 1 means that neighbouring pixels are not
-/// independent; with this noise the information of an image is Lambda. Independent pixels for a
-/// scale of 1 or more.
-ImageNoise assumedNoise(const PhotometricOptions& options);
-
-/// The varying gain of a camera with automatic exposure: a first-order Gauss-Markov process.
-struct WanderingExposure {
-    double gainSigma = 0.1;  ///< standard deviation of the gain about 1, cut off at twice as much
-    double correlation = 0.95;  ///< of the gains of consecutive images
-};
-
-/// The noise of a real camera, image by image, with a varying gain. A copy varies independently,
-/// from the present gain on.
-ImageNoise realNoise(const CameraNoiseOptions& options = {},
-                     const WanderingExposure& wandering = {});
 
 enum class DepthSensor {
     none,

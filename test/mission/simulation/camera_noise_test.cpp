@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "simulation/simulated_camera.hpp"
-
 namespace photonav {
 namespace {
 
@@ -99,6 +97,36 @@ TEST(CameraNoise, BlurSpreadsAPointAndKeepsItsLight) {
     }
     EXPECT_NEAR(sum, 1., 1e-3);
     EXPECT_NEAR(std::sqrt(spread), 1.5, 0.05);
+}
+/// What the planner assumes of an image: its variance, and that Lambda with the scale is right.
+TEST(AssumedNoise, HasTheVarianceAndTheInformationAssumed) {
+    const PhotometricOptions options{.sigma = 0.02, .scale = 0.08};
+    const ImageNoise noise = assumedNoise(options);
+    std::mt19937_64 random(1);
+    double square = 0., blocks = 0.;
+    int pixels = 0, count = 0;
+    for (int i = 0; i < 40; ++i) {
+        ImageF image(64, 64, 0.F);
+        noise(image, random);
+        for (unsigned v = 0; v < 64; v += 16) {
+            for (unsigned u = 0; u < 64; u += 16) {
+                double sum = 0.;
+                for (unsigned k = 0; k < 256; ++k) {
+                    const double x = image[v + k / 16][u + k % 16];
+                    sum += x;
+                    square += x * x;
+                    ++pixels;
+                }
+                blocks += sum * sum / 256.;
+                ++count;
+            }
+        }
+    }
+    EXPECT_NEAR(std::sqrt(square / pixels), 0.02, 0.001);
+    // Sums over areas vary as if there were 0.08 times as many pixels (less at the areas' edges).
+    const double ratio = blocks / count / (0.02 * 0.02);
+    EXPECT_GT(ratio, 0.7 / 0.08);
+    EXPECT_LT(ratio, 1.05 / 0.08);
 }
 
 TEST(CameraNoise, DepthErrorsGrowWithDepthSquared) {
