@@ -96,8 +96,8 @@ int main() {
     const ExplorationResult flight =
         explore(setUpExploration(problem), "belief_rrt_star", 1, kNotInterrupted, onUpdate);
     //! [explore]
-    std::printf("%s after %.1f m, %.0f mm from the goal\n", nameOf(flight.end).c_str(), flight.way,
-                1e3 * flight.goalError);
+    std::printf("%s after %.1f m, %.0f mm from the goal\n", nameOf(flight.end).c_str(),
+                flight.flown, 1e3 * flight.goalError);
     Figure{"The robot's own map, and its errors",
            {{drawMap(flight, config)}, {drawErrors(flight.samples)}}}
         .save("explore.png");

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 void printFlight(const ExplorationResult& flight, const ExplorationSummary& s) {
-    fmt::print("{} after {:.1f} m and {:.1f} s{}\n", nameOf(flight.end), flight.way,
+    fmt::print("{} after {:.1f} m and {:.1f} s{}\n", nameOf(flight.end), flight.flown,
                flight.duration, flight.reason.empty() ? "" : ": " + flight.reason);
     fmt::print(
         "position error (rms) {}, NEES {:.2f}, goal error {}, {} keyframes, "
@@ -101,7 +101,7 @@ class ExploreProgress {
         const PlanUpdate& update = flight.updates.back();
         line_.show(fmt::format(
             "{} of {} flights, {} arrived; {}, seed {}: {:.1f} s, {:.1f} m flown, {:.1f} m to go{}",
-            flown_, asked_, arrived_, flight.planner, flight.seed, update.time, flight.way,
+            flown_, asked_, arrived_, flight.planner, flight.seed, update.time, flight.flown,
             update.length, rest_.text(running_.seconds())));
     }
 

@@ -49,7 +49,7 @@ json jsonOf(const ExplorationResult& flight, double characteristicLength) {
             {"reason", flight.reason},
             {"collisions", flight.end == FlightEnd::collided ? 1 : 0},
             {"duration_s", flight.duration},
-            {"length", flight.way},
+            {"length", flight.flown},
             {"goal_error_m", flight.goalError},
             {"position_rmse_m", finiteOrNull(positionRmse(flight))},
             {"nees_per_dof", finiteOrNull(neesPerDof(flight))},

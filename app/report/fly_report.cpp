@@ -32,7 +32,7 @@ json jsonOf(const FlightResult& flight) {
             {"end", nameOf(flight.end)},
             {"duration_s", flight.duration},
             {"mean_speed_mps", orNull(flight.meanSpeed)},
-            {"way_m", flight.way},
+            {"way_m", flight.flown},
             {"goal_error_m", flight.goalError},
             {"believed_goal", ellipseJson(flight.believedGoal)},
             {"arrival_probability",

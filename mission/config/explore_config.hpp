@@ -38,7 +38,7 @@ struct ExploreConfig {
     unsigned vertices = 400;         ///< of the roadmap or tree, grown again after every keyframe
     unsigned shortcut = 100;         ///< changes tried on each path (belief_rrt_star)
     unsigned viewTurns = 4;          ///< views that changed are rendered again in as many updates
-    double commitment = 0.1;         ///< a way is left for one that costs less by this share
+    double commitment = 0.1;         ///< a path is left for one that costs less by this share
     Matrix6 initialCovariance;       ///< of the pose at the start, body frame
     double timeLimit = 600.;         ///< of a flight [s]
     unsigned trials = 1;             ///< per planner

@@ -23,9 +23,9 @@ struct FlyConfig {
     double bodyRadius = 0.;          ///< of collisions [m]; 0: half of robot.radius
     bool photometricGoal = true;     ///< servo on the goal's image at the end
     std::string map;  ///< octree, mesh or scene file to track in, absolute; empty: the true world
-    std::optional<double> scale;             ///< factor on the measured information; none: 1
-    std::optional<double> leastSigma;  ///< least standard deviations of an alignment [m]
-    std::optional<double> leastSigmaRotation;     ///< [rad]; none: 0
+    std::optional<double> scale;               ///< factor on the measured information; none: 1
+    std::optional<double> leastSigma;          ///< least standard deviations of an alignment [m]
+    std::optional<double> leastSigmaRotation;  ///< [rad]; none: 0
 };
 
 }  // namespace photonav

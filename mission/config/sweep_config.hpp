@@ -11,7 +11,7 @@ namespace photonav {
 struct PaperRow {
     double alpha = 0.;
     double length = 0.;     ///< [m]
-    double meanTrace = 0.;  ///< along the way, as printed
+    double meanTrace = 0.;  ///< along the path, as printed
     double goalTrace = 0.;  ///< as printed
 };
 

@@ -140,7 +140,7 @@ ExplorationResult Exploration::run(const OnExposure& onExposure) {
         const Observation observation = robot_.fly(command, seconds);
         if (onExposure && robot_.exposed()) onExposure(*robot_.exposed());
         const std::vector<TrackedFrame> tracked = tracker_.update(observation);
-        evaluator_.onStep(tracked, tracker_, evaluator_.result().way);
+        evaluator_.onStep(tracked, tracker_, evaluator_.result().flown);
         for (std::size_t i = 0; i < tracked.size(); ++i) {
             pilot_.observe(tracker_, tracked[i], observation.frames[i].view.intensity);
             onImage(tracked[i], observation.frames[i].view);

@@ -12,7 +12,7 @@
 
 namespace photonav {
 
-/// A flight, against the truth. Its samples' distance is the way truly flown.
+/// A flight, against the truth. Its samples' distance is the length of the true path.
 struct ExplorationResult : FlightResult {
     std::string planner;
     std::uint32_t seed = 0;

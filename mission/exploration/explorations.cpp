@@ -64,7 +64,7 @@ ExplorationSummary summarise(std::span<const ExplorationResult> flights,
         s.collisions += flight.end == FlightEnd::collided;
         goalErrors.push_back(flight.goalError);
         durations.push_back(flight.duration);
-        lengths.push_back(flight.way);
+        lengths.push_back(flight.flown);
         for (const PlanUpdate& update : flight.updates) updates.push_back(seconds(update));
         if (flight.samples.empty()) continue;
         if (const double x = neesPerDof(flight); !std::isnan(x)) nees.push_back(x);

@@ -15,7 +15,7 @@ struct PlanUpdate {
     std::size_t viewsMarked = 0, viewsRendered = 0;
     double fuseSeconds = 0., clearanceSeconds = 0.;
     double viewSeconds = 0., planSeconds = 0.;  ///< the views are part of planning
-    double cost = 0.;    ///< from here to the goal, as planners count [m]; NaN: no way
+    double cost = 0.;    ///< from here to the goal, as planners count [m]; NaN: no path
     double length = 0.;  ///< the same [m]
     double trace = 0.;   ///< of the belief here, weightedTrace() [m^2]
 };

@@ -157,7 +157,7 @@ json TrialKind::save(const ExplorationResult& flight, const fs::path& folder) {
             {"end", nameOf(flight.end)},
             {"reason", flight.reason},
             {"duration_s", flight.duration},
-            {"way", flight.way},
+            {"way", flight.flown},
             {"lost_s", flight.lostTime},
             {"times_lost", flight.timesLost},
             {"goal_error", flight.goalError},
@@ -179,7 +179,7 @@ ExplorationResult TrialKind::load(const json& line, const fs::path& folder) {
     flight.end = endFrom(line.at("end"));
     flight.reason = line.at("reason");
     flight.duration = positive(line, "duration_s");
-    flight.way = positive(line, "way");
+    flight.flown = positive(line, "way");
     flight.lostTime = positive(line, "lost_s");
     flight.timesLost = countOf(line, "times_lost");
     flight.goalError = positive(line, "goal_error");

@@ -126,7 +126,7 @@ FlightEvaluator::FlightEvaluator(const FlightWorld& world, const SimulatedRobot&
 void FlightEvaluator::onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker,
                              double distance) {
     const Eigen::Vector3d p_w = robot_.T_w_b().translation();
-    result_.way += (p_w - std::exchange(before_w_, p_w)).norm();
+    result_.flown += (p_w - std::exchange(before_w_, p_w)).norm();
     result_.leastClearance = std::min(result_.leastClearance, world_.clearance(p_w));
     if (robot_.exposed()) {
         result_.samples.push_back({robot_.time(), distance, robot_.T_c_w(), tracker.belief()});
@@ -153,7 +153,7 @@ FlightEnd FlightEvaluator::endAtGoal(const Tracker& tracker, double tolerance) {
 
 void FlightEvaluator::measureSpeed() {
     const double time = robot_.time();
-    if (!result_.meanSpeed && time > 0.) result_.meanSpeed = result_.way / time;
+    if (!result_.meanSpeed && time > 0.) result_.meanSpeed = result_.flown / time;
 }
 
 void FlightEvaluator::finish(const Tracker& tracker) {

@@ -63,9 +63,9 @@ struct FlightResult {
     std::size_t number = 0;  ///< of several flights of a plan
     FlightEnd end = FlightEnd::stopped;
     double duration = 0.;  ///< [s]
-    double way = 0.;       ///< truly flown [m]
-    /// Way truly flown until the belief was at the goal for the first time, or else until the end,
-    /// divided by the time until then [m/s].
+    double flown = 0.;     ///< length of the true path [m]
+    /// Length of the true path until the belief was at the goal for the first time, or else until
+    /// the end, divided by the time until then [m/s].
     std::optional<double> meanSpeed;
     double lostTime = 0.;  ///< without tracking [s]
     int timesLost = 0;

@@ -31,8 +31,8 @@ FlightSetup setUpFlight(const PlanningProblem& problem);
 /// @param map what images are compared with; @param cellSize of a map of cells [m]
 AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellSize);
 
-/// Sets scale and least sigmas of alignments as calibrated. The factor is divided by the number of images
-/// with correlated errors, because a tracker averages images.
+/// Sets scale and least sigmas of alignments as calibrated. The factor is divided by the number of
+/// images with correlated errors, because a tracker averages images.
 void applyCalibration(const Calibration& calibration, FlyConfig& fly);
 
 }  // namespace photonav

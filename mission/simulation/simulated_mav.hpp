@@ -12,10 +12,10 @@ namespace photonav {
 
 struct MavOptions {
     double lag = 0.25;  ///< time constant of the velocity's response [s]
-    /// Covariance of the measured motion per metre of way flown, body frame, left perturbation;
+    /// Covariance of the measured motion per metre flown, body frame, left perturbation;
     /// what the planner assumes.
     Matrix6 odometryNoise = Matrix6::Zero();
-    double rotationWeight = 0.25;  ///< metres of way flown that turning by a radian counts as
+    double rotationWeight = 0.25;  ///< metres flown that turning by a radian counts as
     double odometryFactor = 1.;    ///< true odometry variance divided by the assumed one
     /// Standard deviation, in each direction, of a velocity that the controller does not remove
     /// (wind, trim) [m/s], and the time over which it changes [s].

@@ -15,7 +15,7 @@ struct PlannedView {
     Pose T_w_b = Pose::Identity();
     /// Predicted, of T_c_w (camera frame, left), with the image taken here.
     Matrix6 covariance = Matrix6::Zero();
-    double distance = 0.;     ///< way of the position so far [m]
+    double distance = 0.;     ///< length of the path so far [m]
     bool isWaypoint = false;  ///< the plan counts on the image taken here
 };
 

@@ -56,7 +56,7 @@ TEST_F(RoomToExplore, ArrivesAroundABoxFoundOnTheWay) {
     EXPECT_GT(flight.leastClearance, 0.125);
     // Nothing was in the way at first; the plan then became longer where the box came into view.
     EXPECT_LT(flight.updates.front().length, 6.3);
-    EXPECT_GT(flight.way, 6.2);
+    EXPECT_GT(flight.flown, 6.2);
     std::size_t invalidated = 0;
     for (const PlanUpdate& update : flight.updates) invalidated += update.counts.edgesInvalidated;
     EXPECT_GT(invalidated, 0U);

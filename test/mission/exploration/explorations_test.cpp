@@ -43,7 +43,7 @@ TEST(ExplorationSummary, CountsEndsAndAveragesTheRest) {
                    {sampleWith(0.3, 0.01), sampleWith(0.3, 0.01), sampleWith(0.3, 0.04)})};
     for (std::size_t i = 0; i < 3; ++i) {
         flights[i].duration = 10. * static_cast<double>(i + 1);
-        flights[i].way = static_cast<double>(i);
+        flights[i].flown = static_cast<double>(i);
     }
     const ExplorationSummary s = summarise(flights, 2.);
     EXPECT_EQ(s.planner, "rrt_star");

@@ -33,7 +33,7 @@ ExplorationResult makeFlight(const TrialItem& item) {
     flight.end = FlightEnd::noWay;
     flight.reason = "the map shows no way to the goal";
     flight.duration = 0.1 + 0.2;
-    flight.way = 1. / 3.;
+    flight.flown = 1. / 3.;
     flight.lostTime = 0.04;
     flight.timesLost = 2;
     flight.goalError = 1e-300;

@@ -203,7 +203,7 @@ TEST_F(Flight, GivesUpInTheDark) {
     const FlightResult flight = fly(plan, world, options);
     EXPECT_EQ(nameOf(flight.end), "lost");
     EXPECT_LT(flight.duration, 10.);
-    EXPECT_LT(flight.way, 1.5) << "it must not go on blindly";
+    EXPECT_LT(flight.flown, 1.5) << "it must not go on blindly";
 }
 
 /// A world that is seen as from T T_c_w.
