@@ -53,10 +53,11 @@ Command flyCommand(CLI::App& app, const Invocation& invocation) {
     addSeed(*parser, options->seed, "of all random numbers");
     addKeyOptions(*parser, options->keys, {"plan"});  // the positional argument
     parser
-        ->add_option("--calibration", options->calibration,
-                     "scale and least sigmas from the calibration.yaml of a replay --calibrate, the "
-                     "factor divided by the number of images with correlated errors; --scale, "
-                     "--least-sigma and --least-sigma-rotation override it")
+        ->add_option(
+            "--calibration", options->calibration,
+            "scale and least sigmas from the calibration.yaml of a replay --calibrate, the "
+            "factor divided by the number of images with correlated errors; --scale, "
+            "--least-sigma and --least-sigma-rotation override it")
         ->type_name("FILE");
     parser
         ->add_option("--record", options->record, "write the first flight as a TUM RGB-D recording")

@@ -75,7 +75,8 @@ std::string configOf(const ReplayCommandOptions& options, const Replay& replay) 
 KeyTable keysOf(ReplayCommandOptions& options) {
     KeyTable keys;
     addKeys(keys, static_cast<ReplayOptions&>(options));
-    keys.flag({"calibrate", "", "also fit scale and least sigmas to the errors"}, options.calibrate);
+    keys.flag({"calibrate", "", "also fit scale and least sigmas to the errors"},
+              options.calibrate);
     return keys;
 }
 

@@ -16,8 +16,8 @@ namespace photonav {
 
 struct ReplayCommandOptions : ReplayOptions {
     std::filesystem::path out;  ///< folder for the results; made when missing
-    bool calibrate = false;   ///< also write calibration.yaml: scale and least sigmas that fit
-    std::string commandLine;  ///< for the report
+    bool calibrate = false;     ///< also write calibration.yaml: scale and least sigmas that fit
+    std::string commandLine;    ///< for the report
 
     /// Called after each frame with the number done and the number there are.
     std::function<void(std::size_t done, std::size_t total)> progress;

@@ -42,8 +42,9 @@ std::string calibrationText(const json& c) {
         "--scale {:.3g} --least-sigma {:.3g} --least-sigma-rotation {:.3g} (NEES of single "
         "alignments {:.3g}, "
         "then {:.3g}",
-        c["scale"].get<double>(), c["least_sigma"][0].get<double>(), c["least_sigma"][1].get<double>(),
-        c["nees_before"].get<double>(), c["nees_after"].get<double>());
+        c["scale"].get<double>(), c["least_sigma"][0].get<double>(),
+        c["least_sigma"][1].get<double>(), c["nees_before"].get<double>(),
+        c["nees_after"].get<double>());
     const auto alike = c["correlation_time"].get<double>();
     if (alike > 1.) text += fmt::format("; errors correlated over {:.3g} images", alike);
     return text + ")";

@@ -49,8 +49,8 @@ void addKeys(KeyTable& keys, FlyConfig& c) {
         c.scale, {1e-12, 1e12});
     keys.number({"least_sigma", "m", "least standard deviation of an aligned position; none: 0"},
                 c.leastSigma, {0., 1e3});
-    keys.number({"least_sigma_rotation", "rad", "the same of an aligned rotation"}, c.leastSigmaRotation,
-                {0., 1e3});
+    keys.number({"least_sigma_rotation", "rad", "the same of an aligned rotation"},
+                c.leastSigmaRotation, {0., 1e3});
 }
 
 }  // namespace photonav

@@ -27,8 +27,8 @@ void addKeys(KeyTable& keys, ReplayOptions& o) {
         o.scale, kPositive);
     keys.number({"least_sigma", "m", "least standard deviation of an aligned position; none: 0"},
                 o.leastSigma, kNotNegative);
-    keys.number({"least_sigma_rotation", "rad", "the same of an aligned rotation"}, o.leastSigmaRotation,
-                kNotNegative);
+    keys.number({"least_sigma_rotation", "rad", "the same of an aligned rotation"},
+                o.leastSigmaRotation, kNotNegative);
     keys.number({"min_overlap", "", "least share of an image that the model must cover"},
                 o.minOverlap, {1e-12, 1. - 1e-12});
     keys.count(

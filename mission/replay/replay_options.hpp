@@ -22,10 +22,10 @@ struct ReplayOptions : RecordingOptions {
     /// Standard deviation of the start, per axis [m] and [rad]; only in a map: odometry is exact
     /// where it begins.
     std::optional<double> startSigma;
-    double sigma = 0.02;                     ///< image noise, grey values in [0, 1]
-    std::optional<double> scale;             ///< factor on the measured information; none: 1
-    std::optional<double> leastSigma;  ///< least standard deviations of an alignment [m]
-    std::optional<double> leastSigmaRotation;     ///< [rad]; none: 0
+    double sigma = 0.02;                       ///< image noise, grey values in [0, 1]
+    std::optional<double> scale;               ///< factor on the measured information; none: 1
+    std::optional<double> leastSigma;          ///< least standard deviations of an alignment [m]
+    std::optional<double> leastSigmaRotation;  ///< [rad]; none: 0
     double minOverlap = 0.2;  ///< least share of the image's pixels that the model must explain
     /// Images are halved until they are as wide [pixels]; by default 320 in a map, once in
     /// odometry.

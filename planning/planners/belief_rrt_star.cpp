@@ -17,7 +17,8 @@ constexpr double kSearchGrowth = 2.;               // of the roadmap between sea
 constexpr double kSearchGrowthWithoutPath = 1.25;  // while no search has reached the goal
 constexpr double kSearchMargin = 1.5;              // a search takes so much longer than expected
 
-constexpr double kWellObserved = 1.5;  // times the base cost: a path that costs less is well observed
+constexpr double kWellObserved =
+    1.5;  // times the base cost: a path that costs less is well observed
 
 constexpr double kLittle = 0.02;            // of the cost: not worth another path
 constexpr double kCaution = 1.06;           // factor on the gain after a descent in vain,

@@ -114,7 +114,7 @@ class BeliefRRTstar : public BeliefPlanner {
     bool isFollowing_ = false;                    // an update has kept a path
     double keptCost_ = kInfinity;                 // of this path
     double limitOfUpdate_ = kInfinity;            // see limitOfUpdate()
-    bool isWellObserved_ = true;                     // along the last path
+    bool isWellObserved_ = true;                  // along the last path
     double gain_ = 1.;                            // see limitOfUpdate()
     std::vector<bool> promising_;                 // by vertex, from the last search while growing
     std::vector<const ompl::base::State*> path_;  // the best over the roadmap

@@ -60,7 +60,7 @@ void CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices
 }
 
 void CostToGo::findBaseCosts(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
-                          const std::vector<Vertex*>& goals, BeliefModel& model) {
+                             const std::vector<Vertex*>& goals, BeliefModel& model) {
     const BeliefOptions& options = model.options();
     model_ = &model;
     alpha_ = options.alpha;
@@ -72,7 +72,8 @@ void CostToGo::findBaseCosts(const Roadmap& roadmap, const std::deque<Vertex>& v
     for (const Vertex* goal : goals) toGoal_[goal->index] = 0.;
     baseCost_ = toGoal_;
     findDistances(roadmap, vertices, toGoal_, lengthOf);
-    findDistances(roadmap, vertices, baseCost_, [this](const auto& edge) { return baseCostOf(edge); });
+    findDistances(roadmap, vertices, baseCost_,
+                  [this](const auto& edge) { return baseCostOf(edge); });
 }
 
 void CostToGo::findObserved(const Roadmap& roadmap, const std::deque<Vertex>& vertices) {
@@ -138,7 +139,8 @@ void CostToGo::findViews(const Roadmap& roadmap, const std::deque<Vertex>& verti
         }
     }
     findDistances(roadmap, vertices, toView, lengthOf);
-    findDistances(roadmap, vertices, viaView, [this](const auto& edge) { return baseCostOf(edge); });
+    findDistances(roadmap, vertices, viaView,
+                  [this](const auto& edge) { return baseCostOf(edge); });
 }
 
 double CostToGo::from(const Vertex& vertex, const PerAxis& variance) const {
@@ -151,9 +153,9 @@ double CostToGo::from(const Vertex& vertex, const PerAxis& variance) const {
         const double toView = toView_[k][vertex.index];
         const double least = charge_ * variance[k] * std::min(toView, length);
         const double never = charge_ * variance[k] * length;
-        const double viaView = toView == kInfinity ? kInfinity
-                                                   : charge_ * variance[k] * toView +
-                                                         viaView_[k][vertex.index] - base;
+        const double viaView =
+            toView == kInfinity ? kInfinity
+                                : charge_ * variance[k] * toView + viaView_[k][vertex.index] - base;
         unobserved += least;
         detour = std::max(detour, std::min(viaView, never) - least);
     }

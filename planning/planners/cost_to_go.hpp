@@ -12,9 +12,10 @@ namespace photonav {
 
 /// A lower bound on the cost-to-go over a roadmap, the sum of two parts.
 ///
-/// The base cost: what a motion costs however certain the pose is before it. Its length counts alpha,
-/// and the noise of a step is in the covariance at the end of the step, before the next view, so
-/// that it is charged over half the step. Where views inform nearly everywhere the cost is hardly more.
+/// The base cost: what a motion costs however certain the pose is before it. Its length counts
+/// alpha, and the noise of a step is in the covariance at the end of the step, before the next
+/// view, so that it is charged over half the step. Where views inform nearly everywhere the cost is
+/// hardly more.
 ///
 /// The uncertainty at the start: the conditional variance of a position coordinate given all others
 /// (the inverse of the precision's diagonal) never falls with motion, and only a view that observes
@@ -73,9 +74,11 @@ class CostToGo {
     Observed observedFrom(const Vertex& vertex) const;
     double baseCostOf(const Roadmap::Edge& edge) const;
     void findBaseCosts(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
-                    const std::vector<Vertex*>& goals, BeliefModel& model);
+                       const std::vector<Vertex*>& goals, BeliefModel& model);
     void findObserved(const Roadmap& roadmap, const std::deque<Vertex>& vertices);
-    bool reachesGoal(const Start& start) const { return baseCost_[start.vertex->index] < kInfinity; }
+    bool reachesGoal(const Start& start) const {
+        return baseCost_[start.vertex->index] < kInfinity;
+    }
     bool isUncertain(const Start& start) const;
     void findViews(const Roadmap& roadmap, const std::deque<Vertex>& vertices, int axis);
     bool observes(const Roadmap::Edge& edge, int axis) const {
@@ -87,7 +90,7 @@ class CostToGo {
     double charge_ = 0.;              // per metre and m^2
     double noise_ = 0.;               // charged per metre flown and metre of a step
     std::vector<double> toGoal_;      // by vertex: distance
-    std::vector<double> baseCost_;       // by vertex: least sum of base costs to a goal
+    std::vector<double> baseCost_;    // by vertex: least sum of base costs to a goal
     std::vector<Observed> observes_;  // by vertex
     std::vector<bool> isEvaluated_;   // by vertex; else it observes what a near one does
     std::array<std::vector<double>, kAxes> toView_;   // by vertex: distance to a view of the axis

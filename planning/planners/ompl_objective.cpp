@@ -7,7 +7,7 @@ namespace photonav {
 namespace ob = ompl::base;
 
 OmplObjective::OmplObjective(const ob::SpaceInformationPtr& si,
-                                     std::shared_ptr<const BeliefModel> model)
+                             std::shared_ptr<const BeliefModel> model)
     : ob::OptimizationObjective(si), model_(std::move(model)) {
     const BeliefOptions& options = model_->options();
     description_ = fmt::format(

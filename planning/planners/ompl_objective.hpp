@@ -17,7 +17,7 @@ namespace photonav {
 class OmplObjective : public ompl::base::OptimizationObjective {
   public:
     OmplObjective(const ompl::base::SpaceInformationPtr& si,
-                      std::shared_ptr<const BeliefModel> model);
+                  std::shared_ptr<const BeliefModel> model);
 
     ompl::base::Cost stateCost(const ompl::base::State*) const override {
         return ompl::base::Cost(0.);

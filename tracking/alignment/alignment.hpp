@@ -66,8 +66,8 @@ struct TrustOptions {
     double maxGain = 3.;
     /// Least standard deviations of the result. Errors that repeat from image to image, as those of
     /// the map, do not average out over the pixels.
-    double leastSigma = 0.;  ///< [m]
-    double leastSigmaRotation = 0.;     ///< [rad]
+    double leastSigma = 0.;          ///< [m]
+    double leastSigmaRotation = 0.;  ///< [rad]
 };
 
 /// Residuals observed - (gain * predicted + offset), grey values, over the pixels that count.
