@@ -1,14 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that earlier runs left: the journal of a sweep, the table of reference paths, the report's
-// data, the manifest of a result folder.
+// Files that earlier runs left: the journals of a sweep and of explorations, the table of
+// reference paths, the report's data, the manifest of a result folder.
+#include "exploration/trial_journal.hpp"
 #include "fuzz_input.hpp"
 #include "io/folder_transaction.hpp"
 #include "report/report.hpp"
 #include "sweep/reference_table.hpp"
 #include "sweep/sweep_journal.hpp"
 
+namespace {
+
+using namespace photonav;
+
+/// What was read is written, and read again as the same.
+void readTrials(std::string_view input) {
+    const auto linesOf = [](const TrialJournal& journal) {
+        std::string lines;
+        for (const ExplorationResult& flight : journal.runs())
+            lines += jsonLine(TrialKind::save(flight, fuzz::folder()));
+        return lines;
+    };
+    fuzz::write("trials.jsonl", input);
+    const TrialJournal journal = TrialJournal::read(fuzz::folder());
+    TrialJournal::create(fuzz::folder(), journal.header(), journal.runs());
+    fuzz::require(linesOf(TrialJournal::read(fuzz::folder())) == linesOf(journal),
+                  "a journal that was written is read as it was");
+}
+
+}  // namespace
+
 void photonav::fuzz::run(std::string_view input) {
-    const unsigned choice = takeChoice(input, 4);
+    const unsigned choice = takeChoice(input, 5);
     check([&] {
         if (choice == 0) {
             write("runs.jsonl", input);
@@ -19,9 +41,11 @@ void photonav::fuzz::run(std::string_view input) {
             ReferenceTable(folder() / "table.csv").read();
         } else if (choice == 2) {
             readReportJson(write("report.json", input));
-        } else {
+        } else if (choice == 3) {
             write("result/.photonav", input);
             Manifest::read(folder() / "result").foreignFile(folder() / "result");
+        } else {
+            readTrials(input);
         }
     });
 }

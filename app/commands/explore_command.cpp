@@ -161,10 +161,11 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     const World world(config);
     const PlanningProblem problem(config, world);
     const ExplorationSetup setup = setUpExploration(problem);
-    FlightRecording recording(options.record, setup.truth.camera, setup.flight.tracker.map);
     const std::string name = fs::path(options.config).stem().string();
     FolderTransaction folder =
         beginExploration(options, config, folderOf(options, TrialKind::kWords, name, shard));
+    FlightRecording recording(options.record, folder.target(), setup.truth.camera,
+                              setup.flight.tracker.map);
     const JournalHeader header{name, toYaml(config), TrialKind::identity(config), shard};
     std::vector<ExplorationResult> earlier = runsSoFar<TrialKind>(options, folder, header);
     keepMapOf(items.front(), earlier);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "commands/flight_recording.hpp"
 
+#include "commands/path_inside.hpp"
 #include "io/error.hpp"
 
 namespace photonav {
@@ -16,10 +17,15 @@ void checkRecordFolder(const std::filesystem::path& folder) {
 
 }  // namespace
 
-FlightRecording::FlightRecording(const std::filesystem::path& folder, const Camera& camera,
+FlightRecording::FlightRecording(const std::filesystem::path& folder,
+                                 const std::filesystem::path& result, const Camera& camera,
                                  const AlignmentOptions& images)
     : camera_(camera), informationScale_(images.photometric.scale), blur_(images.blur) {
     if (folder.empty()) return;
+    if (isInside(folder, result) || isInside(result, folder)) {
+        throw InputError("--record", folder.string(),
+                         "and the result's folder " + result.string() + " need to be apart");
+    }
     checkRecordFolder(folder);
     folder_.emplace(folder);
 }

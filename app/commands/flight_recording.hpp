@@ -15,10 +15,11 @@ namespace photonav {
 class FlightRecording {
   public:
     /// @param folder empty: nothing is recorded
+    /// @param result the folder of the result, from which a recording is apart
     /// @param images how they are aligned: the recording states their blur and their information
-    /// @throws InputError where the folder holds a recording already
-    FlightRecording(const std::filesystem::path& folder, const Camera& camera,
-                    const AlignmentOptions& images);
+    /// @throws InputError where the folder holds a recording already, or the result
+    FlightRecording(const std::filesystem::path& folder, const std::filesystem::path& result,
+                    const Camera& camera, const AlignmentOptions& images);
 
     /// Adds an exposure; empty where nothing is recorded. Must not outlive the recording.
     OnExposure onExposure();

@@ -154,8 +154,9 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     problem.checkPlaces();
     const FlightSetup setup = setUpFlight(problem);
     if (!options.calibration.empty()) readCalibration(options.calibration, setup.map);
-    FlightRecording recording(options.record, setup.world.camera, setup.options.tracker.map);
     FolderTransaction folder = folderFor(options, config);
+    FlightRecording recording(options.record, folder.target(), setup.world.camera,
+                              setup.options.tracker.map);
 
     std::vector<FlightSet> sets;
     {

@@ -3,20 +3,13 @@
 
 #include <fmt/format.h>
 
+#include "commands/path_inside.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
-namespace {
-
-bool isInside(const fs::path& path, const fs::path& folder) {
-    const fs::path way = resolvedFolder(path).lexically_relative(resolvedFolder(folder));
-    return !way.empty() && *way.begin() != "..";
-}
-
-}  // namespace
 
 FolderTransaction beginResult(const fs::path& folder, const InputPaths& inputs,
                               FolderTransaction::Unfinished unfinished) {

@@ -6,6 +6,7 @@
 
 #include "dataset/image_file.hpp"
 #include "io/atomic_file.hpp"
+#include "io/durable_file.hpp"
 
 namespace photonav {
 
@@ -53,7 +54,7 @@ void writeReport(const std::filesystem::path& file, std::string_view content) {
     std::string page(kReportPage.substr(0, mark));
     page += escapedForScript(content);
     page += kReportPage.substr(mark + kDataMark.size());
-    writeFileAtomically(file, page);
+    replaceFile(file, page);
 }
 
 void writeResultFolder(const std::filesystem::path& folder, ReportData& report,

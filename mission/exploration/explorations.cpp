@@ -11,21 +11,6 @@
 
 namespace photonav {
 
-std::vector<std::string> plannersOf(const Config& config) {
-    const std::vector<std::string>& planners = config.explore.planners;
-    return planners.empty() ? std::vector{config.planner} : planners;
-}
-
-std::vector<TrialItem> trialItems(const Config& config) {
-    const unsigned trials = config.explore.trials;
-    checkSeeds(config, trials);
-    std::vector<TrialItem> items;
-    for (const std::string& planner : plannersOf(config)) {
-        for (unsigned i = 0; i < trials; ++i) items.push_back({planner, config.seed + i});
-    }
-    return items;
-}
-
 void exploreMany(const ExplorationSetup& setup, const std::vector<TrialItem>& items, unsigned jobs,
                  const std::atomic<bool>& interrupted, const OnExplorations& on) {
     std::mutex mutex;  // of the callbacks

@@ -89,28 +89,6 @@ bool PlannedFlight::hasEnded(const Tracker& tracker, const Pilot& pilot) {
 
 }  // namespace
 
-std::string nameOf(FlightEnd end) {
-    switch (end) {
-        case FlightEnd::arrived:
-            return "arrived";
-        case FlightEnd::astray:
-            return "astray";
-        case FlightEnd::uncertain:
-            return "uncertain arrival";
-        case FlightEnd::collided:
-            return "collided";
-        case FlightEnd::lost:
-            return "lost";
-        case FlightEnd::noWay:
-            return "no way";
-        case FlightEnd::outOfTime:
-            return "out of time";
-        case FlightEnd::stopped:
-            break;
-    }
-    return "stopped";
-}
-
 Pose drawStart(const UncertainPose& start, const Pose& T_b_c, std::uint64_t seed) {
     std::mt19937_64 random(seedFor(seed, 0));
     const Pose T_c_w = expSE3(draw(rootOf(start.covariance), random)) * start.mean;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/error.hpp"
+#include "io/reading.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -44,7 +45,7 @@ PlanSource findPlan(const std::string& argument) {
 
 EvaluatedPath readPlannedPath(const fs::path& resultFile, PlanningProblem& problem,
                               const std::atomic<bool>& interrupted) {
-    std::ifstream stream(resultFile, std::ios::binary);
+    std::ifstream stream = openToRead(resultFile.string());
     if (!stream) throw InputError(resultFile.string(), "", "cannot be read");
     const json result = json::parse(stream, nullptr, false);
     if (!result.is_object()) throw InputError(resultFile.string(), "", "not a JSON object");

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sweep/planner_benchmark.hpp"
 
+#include <fmt/format.h>
 #include <ompl/tools/benchmark/Benchmark.h>
 
 #include <filesystem>
+#include <locale>
 #include <sstream>
 
 #include "geometry/constants.hpp"
@@ -49,7 +51,7 @@ class Session {
         setup_.getProblemDefinition()->addStartState(definition->getStartState(0));
         setup_.setGoal(definition->getGoal());
         setup_.setPlanner(planners_.front());
-        benchmark_.addExperimentParameter("alpha", "REAL", std::to_string(config.belief.alpha));
+        benchmark_.addExperimentParameter("alpha", "REAL", fmt::format("{}", config.belief.alpha));
         benchmark_.setPreRunEvent([this](const ob::PlannerPtr& planner) { prepare(*planner); });
         benchmark_.setPostRunEvent([this](const ob::PlannerPtr& planner, auto& properties) {
             record(*planner, properties);
@@ -67,6 +69,7 @@ class Session {
         addLastSamples();
         outcome_.curves = curves();
         std::ostringstream log;
+        log.imbue(std::locale::classic());
         if (!outcome_.runs.empty()) benchmark_.saveResultsToStream(log);
         outcome_.log = log.str();
         return outcome_;
@@ -119,10 +122,10 @@ class Session {
             const EvaluatedPath path = plan_.evaluate(ours);
             setPath(run, path);
             run.status = "done";
-            properties["cost REAL"] = std::to_string(path.cost);
-            properties["path length REAL"] = std::to_string(path.length);
-            properties["mean trace REAL"] = std::to_string(path.meanTrace);
-            properties["trace at goal REAL"] = std::to_string(path.goalTrace);
+            properties["cost REAL"] = fmt::format("{}", path.cost);
+            properties["path length REAL"] = fmt::format("{}", path.length);
+            properties["mean trace REAL"] = fmt::format("{}", path.meanTrace);
+            properties["trace at goal REAL"] = fmt::format("{}", path.goalTrace);
         }
         outcome_.runs.push_back(run);
     }

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "geometry/se3.hpp"
-#include "io/atomic_file.hpp"
+#include "io/durable_file.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
 #include "io/reading.hpp"
@@ -113,8 +113,8 @@ void ReferenceTable::write() const {
                 fmt::format("{:.6g},{},{},{},{}\n", r.alpha, p.x(), p.y(), p.z(), yawOf(T_w_b));
         }
     }
-    writeFileAtomically(pathsFile(), paths);
-    writeFileAtomically(file_, table);
+    replaceFile(pathsFile(), paths);
+    replaceFile(file_, table);
 }
 
 void ReferenceTable::addNote(const std::string& text) {

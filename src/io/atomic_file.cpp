@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <locale>
 #include <random>
 #include <string>
 #include <system_error>
 
+#include "io/durable_file.hpp"
 #include "io/error.hpp"
 
 namespace photonav {
@@ -45,29 +48,57 @@ class TemporaryFile {
     std::filesystem::path path_;
 };
 
-}  // namespace
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
+    throw InputError(file.string(), "", "cannot be written: " + reason);
+}
 
-void writeFileAtomically(const std::filesystem::path& file,
-                         const std::function<void(std::ostream&)>& write) {
-    const auto fail = [&](const std::string& reason) {
-        throw InputError(file.string(), "", "cannot be written: " + reason);
-    };
+using Write = std::function<void(std::ostream&)>;
+
+/// @param onWritten called before the temporary file is renamed
+void writeAndRename(const std::filesystem::path& file, const Write& write,
+                    const std::function<void(const std::filesystem::path&)>& onWritten) {
     const TemporaryFile temporary(file);
     errno = 0;
     std::ofstream stream(temporary.path(), std::ios::binary);
+    stream.imbue(std::locale::classic());  // a point in numbers, and no other separator
     if (stream) write(stream);
     stream.close();
-    if (!stream) fail(errno != 0 ? std::strerror(errno) : "input/output error");
+    if (!stream) fail(file, errno != 0 ? std::strerror(errno) : "input/output error");
+    onWritten(temporary.path());
 
     std::error_code error;
     std::filesystem::rename(temporary.path(), file, error);
-    if (error) fail(error.message());
+    if (error) fail(file, error.message());
+}
+
+Write writing(std::string_view content) {
+    return [content](std::ostream& stream) {
+        stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+    };
+}
+
+}  // namespace
+
+void writeFileAtomically(const std::filesystem::path& file, const Write& write) {
+    writeAndRename(file, write, [](const auto& /*temporary*/) {});
 }
 
 void writeFileAtomically(const std::filesystem::path& file, std::string_view content) {
-    writeFileAtomically(file, [&](std::ostream& stream) {
-        stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-    });
+    writeFileAtomically(file, writing(content));
+}
+
+void replaceFile(const std::filesystem::path& file, std::string_view content) {
+    writeAndRename(file, writing(content),
+                   [&](const auto& temporary) { synchronise(temporary, file); });
+    synchronise(std::filesystem::absolute(file).parent_path(), file);
+}
+
+void synchronise(const std::filesystem::path& path, const std::filesystem::path& reported) {
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool failed = file < 0 || fsync(file) != 0;
+    const int reason = errno;
+    if (file >= 0) close(file);
+    if (failed) fail(reported, std::strerror(reason));
 }
 
 }  // namespace photonav

@@ -17,7 +17,7 @@
 #include <sstream>
 #include <utility>
 
-#include "io/atomic_file.hpp"
+#include "io/durable_file.hpp"
 #include "io/error.hpp"
 #include "io/reading.hpp"
 
@@ -59,19 +59,6 @@ void removeEmptyFolders(const fs::path& folder) {
     fs::remove(folder, ignored);  // fails unless it is empty
 }
 
-/// Waits until a file or folder is on the disk.
-/// @param reported in an error
-void synchronise(const fs::path& path, const fs::path& reported) {
-    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    const bool failed = file < 0 || fsync(file) != 0;
-    const int reason = errno;
-    if (file >= 0) close(file);
-    if (failed) {
-        throw InputError(reported.string(), "",
-                         std::string("cannot be written: ") + std::strerror(reason));
-    }
-}
-
 void synchroniseAll(const fs::path& folder) {
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
         if (!entry.is_symlink()) synchronise(entry.path(), entry.path());
@@ -104,8 +91,24 @@ void checkTarget(const fs::path& target, const fs::path& resolved) {
     }
 }
 
+constexpr const char* kWorkingSuffix = ".unfinished";
+
 /// Beside a folder.
-fs::path workingFolderOf(const fs::path& resolved) { return resolved.string() + ".unfinished"; }
+fs::path workingFolderOf(const fs::path& resolved) { return resolved.string() + kWorkingSuffix; }
+
+/// What stands in the way of writing beside a folder: anything but a working folder, in which the
+/// lock is the first file and the last one.
+void checkWorkingFolder(const fs::path& working) {
+    std::error_code error;
+    const fs::file_status status = fs::symlink_status(working, error);
+    if (status.type() == fs::file_type::not_found) return;
+    const char* reason = "is in the way of a result that is being written; rename or remove it";
+    if (!fs::is_directory(status)) refuse(working, reason);
+    if (fs::exists(working / Manifest::kFileName, error)) return;
+    for (const auto& entry : fs::recursive_directory_iterator(working, error)) {
+        if (entry.is_symlink() || !entry.is_directory()) refuse(working, reason);
+    }
+}
 
 }  // namespace
 
@@ -140,7 +143,7 @@ Manifest Manifest::read(const fs::path& folder) {
     const auto fail = [&] { throw InputError(file.string(), "", "is damaged"); };
     if (line != kFirstLine) fail();
     while (std::getline(stream, line)) {
-        std::istringstream fields(line);
+        std::istringstream fields = wordsOf(line);
         File entry{};
         std::string name;
         fields >> entry.size >> std::hex >> entry.checksum;
@@ -182,12 +185,15 @@ void Manifest::renew(const fs::path& folder, const fs::path& name) {
     } else {
         manifest.files_.insert(place, describe(folder, name));
     }
-    writeFileAtomically(folder / kFileName, manifest.text());
+    replaceFile(folder / kFileName, manifest.text());
 }
 
 void Manifest::removeFiles(const fs::path& folder) const {
     std::error_code ignored;
-    for (const File& file : files_) fs::remove(folder / file.name, ignored);
+    for (const fs::path& name : namesIn(folder)) {
+        const auto listed = placeOf(name);
+        if (listed != files_.end() && listed->name == name) fs::remove(folder / name, ignored);
+    }
 }
 
 FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinished)
@@ -195,7 +201,12 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
       resolved_(resolvedFolder(target)),
       working_(workingFolderOf(resolved_)),
       unfinished_(unfinished) {
+    if (resolved_.extension() == kWorkingSuffix) {
+        refuse(target,
+               fmt::format("ends in {}, as folders do that are being written", kWorkingSuffix));
+    }
     checkTarget(target_, resolved_);
+    checkWorkingFolder(working_);
     lock();
     const bool isReplaced =
         !Manifest::read(working_).empty();  // the process ended before it was removed

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <fstream>
+#include <locale>
 #include <new>
+#include <sstream>
 #include <string>
+#include <system_error>
 
 #include "io/error.hpp"
 
@@ -24,11 +28,26 @@ auto reading(const std::string& file, const Read& read) {
     }
 }
 
-/// A file to read. An error on the way throws; of its own accord a stream would just end early.
+/// A file to read; one that is missing gives a stream that is not open. An error on the way throws;
+/// of its own accord a stream would just end early.
+/// @throws InputError for folders, pipes and devices, some of which never end
 inline std::ifstream openToRead(const std::string& file) {
+    std::error_code missing;
+    const auto status = std::filesystem::status(file, missing);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+        throw InputError(file, "", "not a file");
+    }
     std::ifstream stream(file, std::ios::binary);
+    stream.imbue(std::locale::classic());
     stream.exceptions(std::ios::badbit);
     return stream;
+}
+
+/// The words and numbers of a line, with a decimal point whatever the program's locale says.
+inline std::istringstream wordsOf(const std::string& line) {
+    std::istringstream words(line);
+    words.imbue(std::locale::classic());
+    return words;
 }
 
 }  // namespace photonav

@@ -47,12 +47,27 @@ YAML::Node loadYaml(const std::string& file) {
     if (!std::filesystem::exists(file)) throw InputError(file, "", "no such file");
     if (!std::filesystem::is_regular_file(file)) throw InputError(file, "", "not a file");
     try {
-        return YAML::LoadFile(file);
+        const std::vector<YAML::Node> documents = YAML::LoadAllFromFile(file);
+        if (documents.size() > 1) {
+            throw InputError(file, "", "holds several documents ('---'); only one is read");
+        }
+        return documents.empty() ? YAML::Node() : documents.front();
     } catch (const YAML::ParserException& error) {
         throw InputError(file, fmt::format("line {}", error.mark.line + 1), error.msg);
     } catch (const YAML::Exception& error) {
         throw InputError(file, "", error.msg);
     }
+}
+
+void setFrom(const YAML::Node& node, double& value) {
+    if (!node.IsScalar()) throw YAML::TypedBadConversion<double>(node.Mark());
+    std::string text = node.Scalar();
+    for (const char* word : {".nan", ".inf", "-.inf"}) {
+        if (text == word) std::erase(text, '.');
+    }
+    const std::optional<double> number = numberIn(text);
+    if (!number) throw YAML::TypedBadConversion<double>(node.Mark());
+    value = *number;
 }
 
 YamlMap::YamlMap(std::string file, const YAML::Node& node, std::string prefix)
@@ -130,7 +145,11 @@ void YamlMap::finish() const {
 }
 
 void YamlMap::fail(const std::string& key, const std::string& reason) const {
-    throw InputError(file_, prefix_.empty() ? key : prefix_ + "." + key, reason);
+    constexpr std::size_t kLongest = 1000;  // of a value of megabytes, say
+    const auto cut = [](const std::string& text) {
+        return text.size() > kLongest ? text.substr(0, kLongest) + " ..." : text;
+    };
+    throw InputError(file_, cut(prefix_.empty() ? key : prefix_ + "." + key), cut(reason));
 }
 
 }  // namespace photonav

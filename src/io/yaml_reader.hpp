@@ -24,6 +24,20 @@ std::string numberText(double value);
 /// Loads a YAML file. @throws InputError when it is missing or does not parse.
 YAML::Node loadYaml(const std::string& file);
 
+/// Sets a value from a node as yaml-cpp does, but for numbers with a point, which yaml-cpp reads
+/// as the program's locale says. @throws YAML::Exception
+template <typename T>
+void setFrom(const YAML::Node& node, T& value) {
+    value = node.as<T>();
+}
+void setFrom(const YAML::Node& node, double& value);
+template <typename T>
+void setFrom(const YAML::Node& node, std::vector<T>& values) {
+    if (!node.IsSequence()) throw YAML::TypedBadConversion<std::vector<T>>(node.Mark());
+    values.assign(node.size(), T());
+    for (std::size_t i = 0; i < values.size(); ++i) setFrom(node[i], values[i]);
+}
+
 /// One YAML mapping being read. read() the keys you know, then finish().
 class YamlMap {
   public:
@@ -39,7 +53,7 @@ class YamlMap {
         known_.insert(key);
         if (!has(key)) return;
         try {
-            value = node_[key].template as<T>();
+            setFrom(node_[key], value);
         } catch (const YAML::Exception&) {
             fail(key, "cannot read the value '" + YAML::Dump(node_[key]) + "'");
         }

@@ -45,10 +45,10 @@ Header readHeader(std::istream& stream, const std::string& file) {
     }
     while (std::getline(stream, line) && line != "data") {
         if (line.starts_with(kVersionLine)) {
-            std::istringstream(line.substr(kVersionLine.size())) >> header.version;
+            wordsOf(line.substr(kVersionLine.size())) >> header.version;
             continue;
         }
-        std::istringstream words(line);
+        std::istringstream words = wordsOf(line);
         std::string key;
         words >> key;
         if (key == "id") words >> header.id;

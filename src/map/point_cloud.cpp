@@ -72,7 +72,7 @@ void PointCloudFile::readHeader(std::istream& stream) {
     std::string text;
     if (!std::getline(stream, text) || text.substr(0, 3) != "ply") fail("not a PLY file");
     for (std::size_t n = 0; std::getline(stream, text); ++n) {
-        std::istringstream line(text);
+        std::istringstream line = wordsOf(text);
         std::string keyword, word;
         line >> keyword;
         if (keyword == "end_header") {

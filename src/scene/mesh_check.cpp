@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "io/error.hpp"
@@ -19,15 +20,11 @@
 
 namespace photonav {
 namespace fs = std::filesystem;
+using nlohmann::json;
 namespace {
 
 constexpr std::size_t kMostJsonDepth = 200;
 constexpr unsigned kMostNodeDepth = 500;  // of a node in a scene; real scenes have tens
-
-std::string lowerCase(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
 
 std::size_t binarySize(const std::string& type) {
     if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
@@ -50,7 +47,7 @@ class PlyHeader {
         std::getline(in, line);
         if (line.substr(0, 3) != "ply") throw InputError(file_, "", "does not begin with 'ply'");
         while (std::getline(in, line)) {
-            std::istringstream words(line);
+            std::istringstream words = wordsOf(line);
             std::string word;
             words >> word;
             if (word == "format") readFormat(words);
@@ -127,15 +124,37 @@ std::string gltfJson(const std::string& file, bool isBinary) {
     return {bytes.begin() + kHeader, bytes.begin() + kHeader + length};
 }
 
-/// Assimp follows nodes by recursion, whatever their depth, and in circles.
-void checkGltf(const std::string& file, bool isBinary) {
-    const std::string text = gltfJson(file, isBinary);
+/// Nothing may be read here in another way than by assimp's own parser, which takes text that is no
+/// UTF-8, and of two equal keys the first one.
+json parseStrictly(const std::string& file, const std::string& text) {
     if (nestingDepth(text) > kMostJsonDepth) {
         throw InputError(file, "", fmt::format("JSON nested deeper than {}", kMostJsonDepth));
     }
-    const auto root = nlohmann::json::parse(text, nullptr, false);
-    if (!root.is_object() || !root.contains("nodes") || !root["nodes"].is_array()) return;
-    const auto& nodes = root["nodes"];
+    std::vector<std::set<std::string>> keys;  // of the objects around the present value
+    const auto onEvent = [&](int /*depth*/, json::parse_event_t event, const json& value) {
+        if (event == json::parse_event_t::object_start) keys.emplace_back();
+        if (event == json::parse_event_t::object_end) keys.pop_back();
+        if (event == json::parse_event_t::key && !keys.back().insert(value).second) {
+            throw InputError(file, value, "is there twice in the same JSON object");
+        }
+        return true;
+    };
+    json root = json::parse(text, onEvent, false);
+    if (root.is_discarded()) throw InputError(file, "", "is not JSON");
+    return root;
+}
+
+/// Assimp follows nodes by recursion, whatever their depth, and in circles.
+void checkGltf(const std::string& file, bool isBinary) {
+    const json root = parseStrictly(file, gltfJson(file, isBinary));
+    const json::json_pointer place("/asset/version");
+    const json version = root.contains(place) ? root[place] : json();
+    if (!version.is_string() || !version.get_ref<const std::string&>().starts_with("2.")) {
+        throw InputError(file, "asset.version", fmt::format("{} is not \"2.0\"", version.dump()));
+    }
+    if (!root.contains("nodes")) return;
+    const json& nodes = root["nodes"];
+    if (!nodes.is_array()) throw InputError(file, "nodes", "expected a list");
     std::vector<unsigned> depth(nodes.size(), 1);
     std::deque<std::size_t> open;
     for (std::size_t i = 0; i < nodes.size(); ++i) open.push_back(i);
@@ -162,11 +181,30 @@ void checkGltf(const std::string& file, bool isBinary) {
 
 }  // namespace
 
+MeshFormat meshFormatOf(const std::string& file) {
+    std::string extension = fs::path(file).extension().string();
+    for (char& c : extension) {
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    if (extension == ".ply") return MeshFormat::ply;
+    if (extension == ".obj") return MeshFormat::obj;
+    if (extension == ".gltf") return MeshFormat::gltf;
+    if (extension == ".glb") return MeshFormat::glb;
+    throw InputError(
+        file, "",
+        fmt::format("'{}' is no mesh that can be read; known: .gltf, .glb, .obj, .ply", extension));
+}
+
 void checkMeshFile(const std::string& file) {
-    const std::string extension = lowerCase(fs::path(file).extension().string());
-    if (extension == ".ply") PlyHeader(file).check();
-    if (extension == ".obj") checkObj(file);
-    if (extension == ".gltf" || extension == ".glb") checkGltf(file, extension == ".glb");
+    switch (const MeshFormat format = meshFormatOf(file)) {
+        case MeshFormat::ply:
+            return PlyHeader(file).check();
+        case MeshFormat::obj:
+            return checkObj(file);
+        case MeshFormat::gltf:
+        case MeshFormat::glb:
+            return checkGltf(file, format == MeshFormat::glb);
+    }
 }
 
 }  // namespace photonav

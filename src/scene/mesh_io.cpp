@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/mesh_io.hpp"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/importerdesc.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -10,8 +12,10 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "io/error.hpp"
 #include "scene/mesh_check.hpp"
@@ -33,8 +37,21 @@ namespace {
 using Rgb = std::array<double, 3>;
 
 bool isGltf(const std::string& file) {
-    const auto extension = std::filesystem::path(file).extension();
-    return extension == ".gltf" || extension == ".glb";
+    const MeshFormat format = meshFormatOf(file);
+    return format == MeshFormat::gltf || format == MeshFormat::glb;
+}
+
+std::string_view importerOf(MeshFormat format) {
+    switch (format) {
+        case MeshFormat::ply:
+            return "Stanford Polygon Library (PLY) Importer";
+        case MeshFormat::obj:
+            return "Wavefront Object Importer";
+        case MeshFormat::gltf:
+        case MeshFormat::glb:
+            break;
+    }
+    return "glTF2 Importer";
 }
 
 /// Maps file coordinates to the world: the file's up axis becomes z, units become metres.
@@ -78,6 +95,7 @@ class RememberingFiles : public Assimp::DefaultIOSystem {
     explicit RememberingFiles(std::vector<std::string>& files) : files_(files) {}
 
     Assimp::IOStream* Open(const char* file, const char* mode) override {
+        if (!std::filesystem::is_regular_file(file)) return nullptr;  // a pipe may never end
         Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
         const bool isNew = std::find(files_.begin(), files_.end(), file) == files_.end();
         if (stream != nullptr && isNew) files_.emplace_back(file);
@@ -86,6 +104,26 @@ class RememberingFiles : public Assimp::DefaultIOSystem {
 
   private:
     std::vector<std::string>& files_;
+};
+
+/// Assimp with one of its importers. All fifty of them would look at the first bytes of a file, and
+/// one would take it for its own whatever its name says, and whatever was checked.
+class SingleImporter {
+  public:
+    explicit SingleImporter(std::string_view name) {
+        others_.reserve(importer_.GetImporterCount());
+        for (std::size_t i = importer_.GetImporterCount(); i-- > 0;) {
+            const aiImporterDesc* info = importer_.GetImporterInfo(i);
+            if (info != nullptr && name == info->mName) continue;
+            others_.emplace_back(importer_.GetImporter(i));
+            importer_.UnregisterLoader(others_.back().get());
+        }
+    }
+    Assimp::Importer& operator*() { return importer_; }
+
+  private:
+    std::vector<std::unique_ptr<Assimp::BaseImporter>> others_;  // assimp gives them away
+    Assimp::Importer importer_;
 };
 
 /// Fills a Scene from what assimp read.
@@ -250,7 +288,8 @@ Scene loadMesh(const std::string& file, const MeshOptions& options) {
     if (std::filesystem::file_size(file) == 0) throw InputError(file, "", "the file is empty");
     checkMeshFile(file);
     std::vector<std::string> files;  // outlives the importer, which owns the RememberingFiles
-    Assimp::Importer importer;
+    SingleImporter single(importerOf(meshFormatOf(file)));
+    Assimp::Importer& importer = *single;
     importer.SetIOHandler(new RememberingFiles(files));  // NOLINT(cppcoreguidelines-owning-memory)
     const aiScene* input = importer.ReadFile(
         file, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType);

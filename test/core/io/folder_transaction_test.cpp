@@ -177,5 +177,33 @@ TEST_F(FolderTransactionTest, WhatWasReplacedIsNotTakenForUnfinishedWork) {
     EXPECT_EQ(entries(target_), 2U);
 }
 
+TEST_F(FolderTransactionTest, LinesOfAManifestNameNothingOutsideOfItsFolder) {
+    const fs::path outside = temporary_.path() / "outside";
+    write(outside / "notes.txt", "mine");
+    commit(target_, "old.txt", "old");
+    const std::string first = "photonav files 1\n";
+    const std::string rest = contentOf(target_ / ".photonav").substr(first.size());
+    write(target_ / ".photonav", first + "0 00000000 ../outside/notes.txt\n" + rest);
+    commit(target_, "new.txt", "new");
+    EXPECT_EQ(contentOf(outside / "notes.txt"), "mine");
+    EXPECT_EQ(contentOf(target_ / "new.txt"), "new");
+}
+
+TEST_F(FolderTransactionTest, TakesOnlyWorkingFoldersForUnfinishedWork) {
+    const fs::path working = target_.string() + ".unfinished";
+    write(working / "sub/notes.txt", "mine");
+    EXPECT_NE(complaint(target_).find("target.unfinished: is in the way"), std::string::npos);
+    EXPECT_EQ(contentOf(working / "sub/notes.txt"), "mine");
+    fs::remove(working / "sub/notes.txt");
+    EXPECT_EQ(complaint(target_), "");  // as killed before the lock was made
+    const fs::path elsewhere = temporary_.path() / "elsewhere";
+    commit(elsewhere, "result.json", "{}");
+    fs::create_directory_symlink(elsewhere, working);
+    EXPECT_NE(complaint(target_).find("is in the way"), std::string::npos);
+    EXPECT_EQ(contentOf(elsewhere / "result.json"), "{}");
+    fs::remove(working);
+    EXPECT_NE(complaint(working).find("ends in .unfinished"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace photonav

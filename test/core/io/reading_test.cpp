@@ -2,6 +2,7 @@
 #include "io/reading.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <vector>
 
@@ -21,6 +22,17 @@ TEST(Reading, NamesTheFileWhateverIsThrown) {
     EXPECT_EQ(complaint([]() -> int { throw InputError("b.png", "", "damaged"); }),
               "b.png: damaged");
     EXPECT_EQ(reading("a.ot", [] { return 3; }), 3);
+}
+
+TEST(Reading, OpensFilesOnly) {
+    const test::TemporaryFolder folder;
+    const std::string pipe = folder.file("pipe");
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    for (const std::string& file : {pipe, folder.path().string(), std::string("/dev/zero")}) {
+        EXPECT_EQ(test::messageOf<InputError>([&] { openToRead(file); }), file + ": not a file");
+    }
+    EXPECT_FALSE(openToRead(folder.file("missing")).is_open());
+    EXPECT_TRUE(openToRead(folder.write("there", "")).is_open());
 }
 
 }  // namespace

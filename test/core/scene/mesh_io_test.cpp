@@ -222,6 +222,42 @@ TEST(MeshIo, IndicesAndNodesAreNotTrusted) {
     EXPECT_EQ(complaint(brackets), brackets + ": JSON nested deeper than 200");
 }
 
+/// What is checked must be what assimp reads: it takes text that is no UTF-8, the first of two
+/// equal keys, and nodes by name in version 1.
+TEST(MeshIo, GltfIsReadInOneWayOnly) {
+    const TemporaryFolder folder;
+    const std::string head =
+        R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}])";
+    const std::string circle = R"("nodes": [{"children": [1]}, {"children": [0]}])";
+    const auto complaintOf = [&](const std::string& text) {
+        const auto file = folder.write("mesh.gltf", text);
+        return complaint(file).substr(file.size() + 2);
+    };
+    EXPECT_EQ(complaintOf(head + ", " + circle + R"(, "nodes": [{}]})"),
+              "nodes: is there twice in the same JSON object");
+    EXPECT_EQ(complaintOf(head + R"(, "name": ")" + "\xff" + R"(", )" + circle + "}"),
+              "is not JSON");
+    EXPECT_EQ(complaintOf(R"({"asset": {"version": "1.0"}, "nodes": {"a": {"children": ["a"]}}})"),
+              R"(asset.version: "1.0" is not "2.0")");
+    EXPECT_EQ(complaintOf("[]"), R"(asset.version: null is not "2.0")");
+    EXPECT_EQ(complaintOf(head + R"(, "nodes": {}})"), "nodes: expected a list");
+}
+
+/// Assimp would read each of these as what its first bytes look like.
+TEST(MeshIo, FilesAreReadAsTheirNameSays) {
+    const TemporaryFolder folder;
+    const auto stl = folder.write("mesh.stl", "solid a\nendsolid a\n");
+    EXPECT_EQ(complaint(stl),
+              stl + ": '.stl' is no mesh that can be read; known: .gltf, .glb, .obj, .ply");
+    const auto ply = folder.write("ply.obj",
+                                  "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                  "property float y\nproperty float z\nelement face 1\n"
+                                  "property list uchar int vertex_indices\nend_header\n"
+                                  "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    EXPECT_NE(complaint(ply), "");
+    EXPECT_THROW(loadMesh("/dev/null"), InputError);
+}
+
 /// Debian's assimp asserts that every face has a corner.
 TEST(MeshIo, AFaceWithoutCornersDoesNotEndTheProgram) {
     const TemporaryFolder folder;

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Names of ends, apart from what flies: journals of flights are read without that.
+#include "flight/flight.hpp"
+
+namespace photonav {
+
+std::string nameOf(FlightEnd end) {
+    switch (end) {
+        case FlightEnd::arrived:
+            return "arrived";
+        case FlightEnd::astray:
+            return "astray";
+        case FlightEnd::uncertain:
+            return "uncertain arrival";
+        case FlightEnd::collided:
+            return "collided";
+        case FlightEnd::lost:
+            return "lost";
+        case FlightEnd::noWay:
+            return "no way";
+        case FlightEnd::outOfTime:
+            return "out of time";
+        case FlightEnd::stopped:
+            break;
+    }
+    return "stopped";
+}
+
+}  // namespace photonav
