@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "exercises.hpp"
 #include "io/error.hpp"
 #include "scene/scene.hpp"
 
@@ -14,7 +15,8 @@ namespace photonav {
 /// The scene of the first argument, else a sample. One that cannot be read ends the program.
 inline Scene sceneArgument(int argc, char** argv, const std::string& sample) {
     try {
-        return loadScene(argc > 1 ? argv[1] : PHOTONAV_SOURCE_DIR "/config/scenes/" + sample);
+        const bool isNamed = argc > 1 && !asksForCheck(argc, argv);
+        return loadScene(isNamed ? argv[1] : PHOTONAV_SOURCE_DIR "/config/scenes/" + sample);
     } catch (const InputError& error) {
         std::fprintf(stderr, "%s\n", error.what());
         std::exit(2);

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <random>
 
+#include "exercises.hpp"
+#include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 #include "geometry/uncertain_pose.hpp"
 #include "plot/figure.hpp"
@@ -17,15 +19,33 @@ constexpr int kMotions = 10;
 constexpr int kSamples = 10000;
 
 //! [motion]
-/// The robot moves 1 m forward, with an uncertain turn. T_b_a maps the old body frame a to the new
-/// one b, hence the minus.
-UncertainPose oneMetreForward() {
+/// The robot moves 1 m forward, with an uncertain turn [rad^2]. T_b_a maps the old body frame a to
+/// the new one b, hence the minus.
+UncertainPose oneMetreForward(double yawVariance) {
     UncertainPose T_b_a;
     T_b_a.mean.translation() << -1., 0., 0.;
-    T_b_a.covariance(5, 5) = 0.03;  // yaw variance [rad^2]: a standard deviation of 10 degrees
+    T_b_a.covariance(5, 5) = yawVariance;
     return T_b_a;
 }
 //! [motion]
+
+//! [propagate]
+/// The belief after a number of such motions. It starts at the world's origin, without uncertainty.
+UncertainPose afterMotions(int count, const UncertainPose& motion, PropagationOrder order) {
+    UncertainPose T_k_w;
+    for (int k = 0; k < count; ++k) T_k_w = compound(motion, T_k_w, order);
+    return T_k_w;
+}
+//! [propagate]
+
+std::vector<Exercise> exercises() {
+    const auto after = [](int count, double yawSigma) {
+        return afterMotions(count, oneMetreForward(yawSigma * yawSigma), PropagationOrder::fourth)
+            .covariance;
+    };
+    return {{[=] { return after(20, std::sqrt(0.03)).trace(); }},
+            {[=] { return std::sqrt(after(10, 5. * kDegree)(1, 1)); }, 0.05}};
+}
 
 Eigen::Vector2d position(const Pose& T_k_w) { return T_k_w.inverse().translation().head<2>(); }
 
@@ -90,16 +110,11 @@ Plot::Points flatEllipse(const Plot::Points& positions) {
 
 }  // namespace
 
-int main() {
-    //! [propagate]
-    const UncertainPose motion = oneMetreForward();
-    UncertainPose second;  // starts at the world's origin, certain
-    UncertainPose fourth;
-    for (int k = 0; k < kMotions; ++k) {
-        second = compound(motion, second, PropagationOrder::second);
-        fourth = compound(motion, fourth, PropagationOrder::fourth);
-    }
-    //! [propagate]
+int main(int argc, char** argv) {
+    if (const auto code = checkAnswers(argc, argv, exercises())) return *code;
+    const UncertainPose motion = oneMetreForward(0.03);  // a standard deviation of 10 degrees
+    const UncertainPose second = afterMotions(kMotions, motion, PropagationOrder::second);
+    const UncertainPose fourth = afterMotions(kMotions, motion, PropagationOrder::fourth);
 
     const std::vector<Pose> samples = samplePoses(motion);
     const Matrix6 truth = sampleCovariance(samples, fourth.mean);

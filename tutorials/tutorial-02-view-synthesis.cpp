@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "exercises.hpp"
 #include "figures/images.hpp"
 #include "map/map_fusion.hpp"
 #include "photometry/photometric.hpp"
@@ -63,19 +64,45 @@ double difference(const View& a, const View& b) {
     return sum / std::max(1, pixels);
 }
 
-void compare(const char* name, const View& voxels, const View& mesh, const Camera& camera) {
-    const double information = photometricInformation(voxels, camera).trace() /
-                               photometricInformation(mesh, camera).trace();
-    std::printf("  %s  mean absolute difference %.3f   information %3.0f %%\n", name,
-                difference(voxels, mesh), 100. * information);
+/// The share of the information that a view of the map keeps.
+double informationKept(const View& voxels, const View& mesh, const Camera& camera) {
+    return photometricInformation(voxels, camera).trace() /
+           photometricInformation(mesh, camera).trace();
 }
 //! [compare]
 
+void compare(const char* name, const View& voxels, const View& mesh, const Camera& camera) {
+    std::printf("  %s  mean absolute difference %.3f   information %3.0f %%\n", name,
+                difference(voxels, mesh), 100. * informationKept(voxels, mesh, camera));
+}
+
+View viewOf(const ViewSource& source, const Camera& camera, double belowHorizon) {
+    const Pose T_w_c = bodyAt({0.1, 0.3, 1.8}) * cameraMount(belowHorizon);
+    View view;
+    source.render(camera, T_w_c.inverse(), view);
+    return view;
+}
+
+std::vector<Exercise> exercises(const ViewSource& mesh, const Camera& camera) {
+    const auto kept = [&](double resolution) {
+        const TexturedOcTree map = mapScene(mesh, scaled(camera, 2.), resolution);
+        const double down = std::numbers::pi / 2.;
+        return 100. * informationKept(viewOf(VoxelRenderer(map, UnknownPolicy::free), camera, down),
+                                      viewOf(mesh, camera, down), camera);
+    };
+    return {{[&] {
+                return viewOf(mesh, camera, std::numbers::pi / 4.)
+                    .depth[camera.height / 2][camera.width / 2];
+            }},
+            {[=] { return kept(0.1); }, 0.05}};
+}
+
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
     const Camera camera = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
     const MeshRenderer mesh(crateOnCarpet());
+    if (const auto code = checkAnswers(argc, argv, exercises(mesh, camera))) return *code;
     //! [renderers]
     const Camera fine = scaled(camera, 2.);  // the map is made from larger images
     const VoxelRenderer coarseMap(mapScene(mesh, fine, 0.05), UnknownPolicy::free);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "exercises.hpp"
 #include "figures/images.hpp"
 #include "geometry/uncertain_pose.hpp"
 #include "geometry/visp_bridge.hpp"
@@ -15,11 +16,11 @@ using namespace photonav;
 
 namespace {
 
-View lookDownAt(const Texture& texture, const Camera& camera) {
+View lookDownAt(const Texture& texture, const Camera& camera, double height = 2.) {
     Scene floor;
     addPlane(floor, {-5., 5., 0.}, {10., 0., 0.}, {0., -10., 0.}, addTexture(floor, texture));
     Pose T_w_c = cameraMount(std::numbers::pi / 2.);  // straight down: image up is world x
-    T_w_c.translation() << 0., 0., 2.;
+    T_w_c.translation() << 0., 0., height;
     View view;
     MeshRenderer(floor).render(camera, T_w_c.inverse(), view);
     return view;
@@ -73,14 +74,19 @@ void compareWholeImage(const View& view, const Camera& camera) {
                 (byVisp - byKernel).norm() / byVisp.norm());
 }
 
-void report(const char* name, const View& view, const Camera& camera) {
-    //! [update]
-    UncertainPose belief;
-    belief.covariance.diagonal() << 1e-2, 1e-2, 1e-2, 1e-4, 1e-4, 1e-4;  // 0.1 m, 0.01 rad
+//! [update]
+/// Standard deviations (x, y, z [mm], about x, y, z [mrad]) after some images from one place.
+Vector6 sigmaAfter(const View& view, const Camera& camera, int images = 1) {
+    Matrix6 covariance = Matrix6::Zero();
+    covariance.diagonal() << 1e-2, 1e-2, 1e-2, 1e-4, 1e-4, 1e-4;  // 0.1 m, 0.01 rad
     const Matrix6 information = photometricInformation(view, camera);
-    const Matrix6 after = updateCovariance(belief.covariance, information);
-    //! [update]
-    const Vector6 sigma = 1e3 * after.diagonal().cwiseSqrt();
+    for (int i = 0; i < images; ++i) covariance = updateCovariance(covariance, information);
+    return 1e3 * covariance.diagonal().cwiseSqrt();
+}
+//! [update]
+
+void report(const char* name, const View& view, const Camera& camera) {
+    const Vector6 sigma = sigmaAfter(view, camera);
     std::printf("%s: after one image sigma is %6.2f %6.2f %6.2f mm and %5.2f %5.2f %5.2f mrad\n",
                 name, sigma[0], sigma[1], sigma[2], sigma[3], sigma[4], sigma[5]);
 }
@@ -100,10 +106,16 @@ std::vector<CaptionedImage> images(const std::string& name, const View& view,
     return row;
 }
 
+std::vector<Exercise> exercises(const Camera& camera) {
+    return {{[&] { return sigmaAfter(lookDownAt(valueNoise(), camera), camera, 4)[0]; }, 0.05},
+            {[&] { return sigmaAfter(lookDownAt(valueNoise(), camera, 4.), camera)[0]; }, 0.05}};
+}
+
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
     const Camera camera = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
+    if (const auto code = checkAnswers(argc, argv, exercises(camera))) return *code;
     const View noise = lookDownAt(valueNoise(), camera);
     const View bars = lookDownAt(stripes({.alongV = true}), camera);  // along world x, image y
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's first scene for tutorials 4 to 6: a floor that is white on the left and textured on
+// The paper's first scene for tutorials 6 to 9: a floor that is white on the left and textured on
 // the right (x > 4.95 m), a robot at a height of 2 m, a camera that looks straight down.
 #pragma once
 

@@ -165,9 +165,10 @@ void addCamera(KeyTable& keys, Config& c) {
 void addNoise(KeyTable& keys, Config& c) {
     keys.beginSection("noise");
     keys.variances({"initial", "m^2, rad^2", "variances at the start"}, c.belief.initialCovariance);
-    keys.variances({"motion", "m^2, rad^2 per m",
-                    "variances added per metre flown ([which metre](planner.md#with-a-heading))"},
-                   c.belief.motionNoise);
+    keys.variances(
+        {"motion", "m^2, rad^2 per m",
+         "variances added per metre flown ([which metre](concepts/cost.md#with-a-heading))"},
+        c.belief.motionNoise);
     keys.choice({"propagation", "", "order of the compounding"}, c.belief.order,
                 {"second", "fourth"});
     keys.beginSection("features");
@@ -201,7 +202,7 @@ void addObjective(KeyTable& keys, Config& c) {
                 c.belief.characteristicLength, {0., kFarthest});
     keys.number({"rotation_weight", "m/rad",
                  "turning by 1 rad costs as much as flying so many metres "
-                 "([with a heading](planner.md#with-a-heading))"},
+                 "([with a heading](concepts/cost.md#with-a-heading))"},
                 c.rotationWeight, {0., kLargest});
     keys.number(
         {"penalty_kappa", "", "replaces `planner.kappa` for `feature_count` and `map_uncertainty`"},

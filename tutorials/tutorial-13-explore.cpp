@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fly to a goal in a room that the robot has never seen: its own camera makes the map, and the plan
+// is repaired whenever an obstacle comes into view.
+#include <cmath>
+#include <cstdio>
+
+#include "exercises.hpp"
+#include "exploration/exploration.hpp"
+#include "figures/images.hpp"
+#include "plot/figure.hpp"
+#include "scene/scene.hpp"
+
+using namespace photonav;
+
+namespace {
+
+/// 8 m long, with a box as high as the room between start and goal.
+Scene room() {
+    Scene scene;
+    const auto floor = addTexture(scene, valueNoise({.size = {8., 4.}, .seed = 1}));
+    const auto walls = addTexture(scene, valueNoise({.size = {8., 3.}, .seed = 2}));
+    addBox(scene, {0., 0., 0.}, {8., 4., 3.}, walls, BoxInside::hollow);
+    addPlane(scene, {0., 0., 0.01}, {8., 0., 0.}, {0., 4., 0.}, floor);
+    addBox(scene, {4.5, 1.4, 0.}, {5., 2.6, 3.}, walls);
+    return scene;
+}
+
+/// Camera 45 degrees down, any heading.
+Config flightThrough() {
+    Config config;
+    config.bounds = {Eigen::Vector3d(0.4, 0.4, 0.8), Eigen::Vector3d(7.6, 3.6, 1.4)};
+    config.start.position = {1., 2., 1.1};
+    config.start.yaw = 0.;
+    config.goal.position = {7., 2., 1.1};
+    config.space = StateKind::positionYaw;
+    config.camera.mount = "front45";
+    config.camera.width = 94;
+    config.camera.height = 60;
+    config.explore.range = 3.;
+    return config;
+}
+
+Plot::Points fromAbove(const std::vector<FlightSample>& samples) {
+    Plot::Points way;
+    for (const FlightSample& s : samples) {
+        way.emplace_back(s.T_c_w.inverse().translation().head<2>());
+    }
+    return way;
+}
+
+/// The map that the robot made, and its way.
+Plot drawMap(const ExplorationResult& flight, const Config& config) {
+    const Eigen::AlignedBox2d area(Eigen::Vector2d(-0.2, -0.2), Eigen::Vector2d(8.2, 4.2));
+    Plot plot = Plot::map(area, 640.);
+    const World map(flight.map, config);
+    plot.picture(greyPicture(map.pictureFromAbove(area, 1.4, 0.05)), area, false);
+    plot.curve(
+        fromAbove(flight.samples),
+        {.color = plannerColor(flight.planner), .width = 3., .name = "way flown", .halo = 1.});
+    plot.marker(config.start.position.head<2>(), kInk, "start");
+    plot.marker(config.goal.position.head<2>(), Color{222, 79, 12}, "goal");
+    return plot;
+}
+
+/// The standard deviation of the position that the robot believes, and its true error [mm].
+Eigen::Vector2d errorsOf(const FlightSample& s) {
+    const Eigen::Vector3d off =
+        s.belief.mean.inverse().translation() - s.T_c_w.inverse().translation();
+    return 1e3 * Eigen::Vector2d(std::sqrt(s.belief.covariance.topLeftCorner<3, 3>().trace()),
+                                 off.norm());
+}
+
+/// What the robot believes its error to be, and what it is.
+Plot drawErrors(const std::vector<FlightSample>& samples) {
+    Plot plot;
+    plot.width = 640.;
+    plot.x = {.min = 0., .label = "way flown [m]"};
+    plot.y = {.min = 0., .label = "position error [mm]"};
+    Plot::Points believed, actual;
+    for (const FlightSample& s : samples) {
+        believed.emplace_back(s.distance, errorsOf(s)[0]);
+        actual.emplace_back(s.distance, errorsOf(s)[1]);
+    }
+    plot.curve(believed, {.color = kInk, .width = 3., .name = "believed σ"});
+    plot.curve(actual, {.color = Color{222, 79, 12}, .name = "true error"});
+    return plot;
+}
+
+/// Both answers are read off the lower figure.
+std::vector<Exercise> exercises(const std::vector<FlightSample>& samples) {
+    return {{[&] { return errorsOf(samples.back())[0]; }, 0.15},
+            {[&] {
+                 double largest = 0.;
+                 for (const FlightSample& s : samples) largest = std::max(largest, errorsOf(s)[1]);
+                 return largest;
+             },
+             0.15}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    //! [explore]
+    const Config config = flightThrough();
+    const World truth(room(), config);  // that the robot does not know
+    const PlanningProblem problem(config, truth);
+    std::puts("  time  cells mapped  edges blocked  way to go");
+    const auto onUpdate = [](const ExplorationResult& soFar) {
+        const PlanUpdate& update = soFar.updates.back();
+        std::printf("%4.1f s  %12zu  %13zu  %7.2f m\n", update.time, soFar.map->size(),
+                    update.counts.edgesInvalidated, update.length);
+    };
+    const ExplorationResult flight =
+        explore(setUpExploration(problem), "belief_rrt_star", 1, kNotInterrupted, onUpdate);
+    //! [explore]
+    if (const auto code = checkAnswers(argc, argv, exercises(flight.samples))) return *code;
+    std::printf("%s after %.1f m, %.0f mm from the goal\n", nameOf(flight.end).c_str(),
+                flight.flown, 1e3 * flight.goalError);
+    Figure{"The robot's own map, and its errors",
+           {{drawMap(flight, config)}, {drawErrors(flight.samples)}}}
+        .save("explore.png");
+    std::puts("wrote explore.png");
+    return flight.hasArrived() ? 0 : 1;
+}
