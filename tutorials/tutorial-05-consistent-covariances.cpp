@@ -85,7 +85,9 @@ std::vector<Case> cases() {
     const ImageNoise independent = assumedNoise({.sigma = 0.02});
     const ImageNoise correlated = assumedNoise({.sigma = 0.02, .scale = 0.08});
     const ImageNoise camera = [](ImageF& image, std::mt19937_64& random) {
-        image = takePicture(image, {.blur = 0.2, .vignetting = 0.03}, random);
+        CameraNoiseOptions options;
+        options.blur = 0.2;
+        image = takePicture(image, options, random);
     };
     AlignmentOptions measured = photographOptions();
     return {{"independent noise, as assumed", independent, assuming(0.02), {20, 60, 160}},

@@ -50,7 +50,9 @@ View trueView(const ViewSource& scene, const Camera& camera, const Pose& T_c_w) 
 
 ImageF picture(const ViewSource& scene, const Camera& camera, const Pose& T_c_w,
                std::mt19937_64& random) {
-    return takePicture(trueView(scene, camera, T_c_w).intensity, {.vignetting = 0.}, random);
+    CameraNoiseOptions options;
+    options.vignetting = 0.;
+    return takePicture(trueView(scene, camera, T_c_w).intensity, options, random);
 }
 
 //! [monocular]
