@@ -7,7 +7,7 @@ cmake_minimum_required(VERSION 3.25)
 set(core io geometry photometry scene map render dataset evaluation)
 set(planning space belief planners)
 set(tracking alignment depth estimation control)
-set(mission result config problem runs sweep recording mapping replay robot simulation flight exploration)
+set(mission result config check problem runs sweep recording mapping replay robot simulation flight exploration)
 
 set(folders_src_io "")
 set(folders_src_geometry "")
@@ -35,6 +35,7 @@ set(folders_mission_replay ${core} ${tracking} result config problem recording m
 set(folders_mission_robot ${core} estimation control)
 set(folders_mission_simulation ${core} ${tracking} robot)
 set(folders_mission_flight ${core} belief ${tracking} config problem robot simulation)
+set(folders_mission_check ${core} ${planning} ${tracking} config problem flight simulation robot)
 set(folders_mission_exploration ${core} ${planning} ${tracking} result config problem runs robot simulation
     flight)
 set(folders_drawing_plot io)

@@ -27,6 +27,7 @@ struct Invocation {
     const std::atomic<bool>& interrupted;
 };
 
+Command checkCommand(CLI::App& app, const Invocation& invocation);
 Command exploreCommand(CLI::App& app, const Invocation& invocation);
 Command flyCommand(CLI::App& app, const Invocation& invocation);
 Command mapCommand(CLI::App& app, const Invocation& invocation);

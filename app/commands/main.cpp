@@ -309,15 +309,23 @@ int run(int argc, char** argv) {
     Invocation invocation{"photonav", interrupted};
     for (int i = 1; i < argc; ++i) invocation.commandLine += std::string(" ") + argv[i];
 
-    const std::array commands{planCommand(app, invocation), infoCommand(app, invocation),
-                              flyCommand(app, invocation),  exploreCommand(app, invocation),
-                              mapCommand(app, invocation),  sweepCommand(app, invocation),
-                              compareCommand(app),          benchmarkCommand(app, invocation),
-                              referenceCommand(app),        replayCommand(app, invocation),
-                              reportCommand(app),           keysCommand(app)};
+    const std::array commands{planCommand(app, invocation),
+                              infoCommand(app, invocation),
+                              flyCommand(app, invocation),
+                              exploreCommand(app, invocation),
+                              mapCommand(app, invocation),
+                              sweepCommand(app, invocation),
+                              compareCommand(app),
+                              benchmarkCommand(app, invocation),
+                              referenceCommand(app),
+                              replayCommand(app, invocation),
+                              checkCommand(app, invocation),
+                              reportCommand(app),
+                              keysCommand(app)};
     app.footer(  // after the commands, which would inherit it
 
-        "plan, fly, explore, sweep, benchmark, info, map and replay write result.json, figures,\n"
+        "plan, check, fly, explore, sweep, benchmark, info, map and replay write result.json, "
+        "figures,\n"
         "report.html and config.yaml (complete, re-runnable) into their folder (--out);\n"
         "compare writes tables, figures and result.json, reference its table alone.\n"
         "photonav COMMAND --help lists the options of a command, photonav keys those of a config.\n"

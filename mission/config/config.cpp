@@ -66,12 +66,11 @@ void checkSource(YamlMap& root) {
     }
 }
 
-Config readConfig(const std::string& file, const std::vector<std::string>& overrides) {
-    checkIsPlanningProblem(file);
+Config configOf(const YAML::Node& node, const std::string& file,
+                const std::vector<std::string>& overrides) {
     Config config;
     config.file = file;
     const KeyTable keys = keysOf(config);
-    const YAML::Node node = loadYaml(file);
     for (const auto& text : overrides) applyOverride(keys, node, text);
     YamlMap root(file, node);
     checkSource(root);
@@ -93,7 +92,15 @@ BeliefOptions defaultBelief() {
 }
 
 Config loadConfig(const std::string& file, const std::vector<std::string>& overrides) {
-    return reading(file, [&] { return readConfig(file, overrides); });
+    return reading(file, [&] {
+        checkIsPlanningProblem(file);
+        return configOf(loadYaml(file), file, overrides);
+    });
+}
+
+Config parseConfig(const std::string& text, const std::string& name,
+                   const std::vector<std::string>& overrides) {
+    return reading(name, [&] { return configOf(YAML::Load(text), name, overrides); });
 }
 
 std::string toYaml(const Config& config) {

@@ -91,6 +91,11 @@ const std::vector<std::string>& viewModelNames();
 /// @throws InputError naming file, key and reason for anything unknown, missing or out of range
 Config loadConfig(const std::string& file, const std::vector<std::string>& overrides = {});
 
+/// The same of the text of a config.
+/// @param name of the text, for messages; paths are relative to its folder, as if it were a file
+Config parseConfig(const std::string& text, const std::string& name,
+                   const std::vector<std::string>& overrides = {});
+
 /// The complete config, defaults filled in, as YAML that loadConfig() reads back.
 std::string toYaml(const Config& config);
 

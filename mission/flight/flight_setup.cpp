@@ -36,7 +36,7 @@ FlightOptions flightOptions(const Config& config, const TrackingMap& map) {
     flight.pilot.photometric = flight.tracker.map.photometric;
     flight.pilot.photometricGoal = fly.photometricGoal;
     flight.bodyRadius = fly.bodyRadius > 0. ? fly.bodyRadius : 0.5 * config.robotRadius;
-    flight.arrivalTolerance = std::max(config.robotRadius, 0.1);
+    flight.arrivalTolerance = photonav::arrivalTolerance(config);
     flight.seed = config.seed + (fly.map.empty() ? 0 : kSeedInMaps);
     return flight;
 }
@@ -85,6 +85,8 @@ FlightSetup setUpFlight(const PlanningProblem& problem) {
     };
     return setup;
 }
+
+double arrivalTolerance(const Config& config) { return std::max(config.robotRadius, 0.1); }
 
 void applyCalibration(const Calibration& calibration, FlyConfig& fly) {
     fly.scale = calibration.scale / calibration.correlationTime;

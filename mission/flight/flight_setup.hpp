@@ -31,6 +31,9 @@ FlightSetup setUpFlight(const PlanningProblem& problem);
 /// @param map what images are compared with; @param cellSize of a map of cells [m]
 AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellSize);
 
+/// Distance to the goal of a flight that arrived [m].
+double arrivalTolerance(const Config& config);
+
 /// Sets scale and least sigmas of alignments as calibrated. The factor is divided by the number of
 /// images with correlated errors, because a tracker averages images.
 void applyCalibration(const Calibration& calibration, FlyConfig& fly);

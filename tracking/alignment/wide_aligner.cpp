@@ -11,7 +11,6 @@
 namespace photonav {
 namespace {
 
-constexpr double kBasin = 6.;        // standard deviation within which one start suffices [pixels]
 constexpr double kSpacing = 8.;      // between the views compared [pixels]
 constexpr double kReach = 3.;        // of these views from the prior's mean [standard deviations]
 constexpr double kMaxPlaces = 4e3;   // views compared; the spacing grows beyond
@@ -51,11 +50,17 @@ ImageMotion imageMotionOf(const Matrix6& covariance, const Camera& camera, doubl
             solver.eigenvalues().cwiseMax(0.).cwiseSqrt()};
 }
 
+/// Between points of a grid in the box around an ellipsoid, which has no more than kMaxPlaces
+/// [pixels].
+double spacingWithin(const Vector6& sigmas) {
+    const double volume = (2. * kReach * sigmas / kSpacing).cwiseMax(1.).prod();
+    return kSpacing * std::cbrt(std::max(1., volume / kMaxPlaces));
+}
+
 /// Points of a grid within an ellipsoid, its middle included [pixels].
 std::vector<Vector6> placesWithin(const Vector6& sigmas) {
     const Vector6 radii = kReach * sigmas;
-    const double volume = (2. * radii / kSpacing).cwiseMax(1.).prod();
-    const double spacing = kSpacing * std::cbrt(std::max(1., volume / kMaxPlaces));
+    const double spacing = spacingWithin(sigmas);
     std::vector<Vector6> places{Vector6::Zero()};
     for (int axis = 0; axis < 6; ++axis) {
         const int reach = static_cast<int>(radii[axis] / spacing);
@@ -168,6 +173,10 @@ std::vector<Pose> distinct(const std::vector<Start>& starts, double distance, st
 
 }  // namespace
 
+double searchSpacing(const Matrix6& covariance, const Camera& camera, double depth) {
+    return spacingWithin(imageMotionOf(covariance, camera, depth).sigmas);
+}
+
 WideAligner::WideAligner(const ViewSource& model, const Camera& camera,
                          const AlignmentOptions& options)
     : model_(model),
@@ -253,7 +262,7 @@ std::vector<Pose> WideAligner::ambiguousMatches(const Alignment& best,
                                                 const std::vector<Alignment>& found,
                                                 const UncertainPose& prior) const {
     const ImageMotion motion = imageMotionOf(prior.covariance, aligner_.camera(), best.meanDepth);
-    const Vector6 isWide = (motion.sigmas.array() >= kBasin).cast<double>();
+    const Vector6 isWide = (motion.sigmas.array() >= kBasinSigma).cast<double>();
     const Matrix6 alongWide = motion.axes * isWide.asDiagonal() * motion.axes.inverse();
     std::vector<Start> starts;
     const double least = costOf(best, prior);
@@ -278,7 +287,7 @@ bool WideAligner::isAmbiguous(const Alignment& best, const std::vector<Alignment
                               const UncertainPose& prior) const {
     const ImageMotion motion = imageMotionOf(prior.covariance, aligner_.camera(), best.meanDepth);
     const double stuck =
-        motion.sigmas[4] < kBasin ? kStuck * weight() * best.residual.explained : 0.;
+        motion.sigmas[4] < kBasinSigma ? kStuck * weight() * best.residual.explained : 0.;
     const double decides = std::max(kAmbiguous, stuck);
     const double least = costOf(best, prior);
     return std::any_of(found.begin(), found.end(), [&](const Alignment& a) {
@@ -304,7 +313,7 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
     View expected;
     model_.render(small_.camera(), prior.mean, expected);
     const double depth = meanDepth(expected);
-    if (imageMotionOf(prior.covariance, aligner_.camera(), depth).sigmas.maxCoeff() < kBasin)
+    if (imageMotionOf(prior.covariance, aligner_.camera(), depth).sigmas.maxCoeff() < kBasinSigma)
         return first;
 
     const auto isLikelier = [&](const Alignment& a, const Alignment& b) {

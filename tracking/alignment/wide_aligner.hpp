@@ -6,6 +6,18 @@
 
 namespace photonav {
 
+/// Standard deviation of a prior within which one start suffices [pixels].
+inline constexpr double kBasinSigma = 6.;
+
+/// Distance between the views that a search of a prior compares, as motion of the image [pixels].
+/// The number of views is limited: from some width on they are farther apart.
+/// @param covariance of the prior, camera frame; @param depth mean depth of the view [m]
+double searchSpacing(const Matrix6& covariance, const Camera& camera, double depth);
+
+/// Farther apart, the true pose can be outside the basins of both views beside it: the search no
+/// longer covers the prior.
+inline constexpr double kWidestSearchSpacing = 2. * kBasinSigma;
+
 /// Finds the most likely pose given an image and a prior. If the image content may have moved by
 /// more than a few pixels, texture matches in several places. Therefore small views from poses all
 /// over the prior are compared with the image, and the most similar ones are aligned; full

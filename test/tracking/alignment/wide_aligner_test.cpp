@@ -169,5 +169,22 @@ TEST_F(WideAlignerTest, IsLostWhereNoPlaceExplainsTheImage) {
     EXPECT_TRUE(isLost(wide.align(seen(another, here), prior(here, 0.3)).verdict));
 }
 
+/// As many views as there may be are compared at the usual distance; wider priors spread them.
+TEST(WideAligner, TheSearchIsCoarserWhereThePriorIsTooWide) {
+    const Camera camera = makeCamera(188, 120, 1.2217);
+    const auto spacing = [&](double sigma) {
+        Vector6 variances = Vector6::Constant(1e-8);
+        variances.head<2>().setConstant(sigma * sigma);
+        return searchSpacing(variances.asDiagonal(), camera, 2.);
+    };
+    EXPECT_EQ(spacing(0.01), 8.);
+    EXPECT_EQ(spacing(0.5), 8.);
+    // (6 sigmas / 8 pixels)^2 views are 4000 at sigma = 84.3 pixels, 1.26 m at this depth
+    const double metre = camera.fx() / 2.;
+    EXPECT_NEAR(spacing(2. * 84.327 / metre), 8. * std::cbrt(4.), 1e-3);
+    EXPECT_LT(spacing(2.2), kWidestSearchSpacing);
+    EXPECT_GT(spacing(2.5), kWidestSearchSpacing);
+}
+
 }  // namespace
 }  // namespace photonav

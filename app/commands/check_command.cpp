@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/check_command.hpp"
+
+#include <fmt/format.h>
+
+#include "check/obstruction.hpp"
+#include "commands/result_folder.hpp"
+#include "flight/flight_setup.hpp"
+#include "geometry/constants.hpp"
+#include "io/error.hpp"
+#include "io/number.hpp"
+#include "io/stopwatch.hpp"
+#include "map/octree_file.hpp"
+#include "report/check_report.hpp"
+#include "result/json_values.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMargin = 1.;              // of bounds around a trajectory [m]
+constexpr double kMostTilt = 5. * kDegree;  // of a body that the simulated robot can follow
+
+GivenHeading headingOf(const std::string& text) {
+    if (text == "forward") return {};
+    const auto heading = numberIn(text);
+    if (heading && std::abs(*heading) <= 1e3) return heading;
+    throw InputError("--heading", text, "expected forward or an angle in radians");
+}
+
+/// A planning problem from the first to the last pose.
+std::string configAround(const GivenTrajectory& trajectory) {
+    Eigen::AlignedBox3d box = boxAround(trajectory);
+    box.min().array() -= kMargin;
+    box.max().array() += kMargin;
+    const auto list = [](const Eigen::Vector3d& p) {
+        return fmt::format("[{}, {}, {}]", p.x(), p.y(), p.z());
+    };
+    return fmt::format("bounds: [{}, {}]\nstart: {}\ngoal: {}\nspace: xyz_yaw\n", list(box.min()),
+                       list(box.max()), list(trajectory.poses.front().T_w_b.translation()),
+                       list(trajectory.poses.back().T_w_b.translation()));
+}
+
+/// The world that was named replaces that of the config.
+std::vector<std::string> overridesOf(const CheckCommandOptions& options) {
+    std::vector<std::string> overrides = options.overrides;
+    if (!options.map.empty()) {
+        overrides.insert(overrides.begin(), {"scene.file=", "map.file=" + options.map});
+    }
+    if (!options.scene.empty()) {
+        overrides.insert(overrides.begin(), {"map.file=", "scene.file=" + options.scene});
+    }
+    return overrides;
+}
+
+Config configOf(const CheckCommandOptions& options) {
+    if (!options.map.empty() && !isOcTreeFile(options.map)) {
+        throw InputError("--map", options.map, "not an OctoMap (.ot, .bt); meshes are scenes");
+    }
+    if (!options.config.empty()) return loadConfig(options.config, overridesOf(options));
+    if (options.map.empty() && options.scene.empty()) {
+        throw InputError(options.trajectory, "", "needs a world: give --map, --scene or --config");
+    }
+    const GivenTrajectory trajectory = readGivenTrajectory(options.trajectory, Pose::Identity());
+    return parseConfig(configAround(trajectory), options.trajectory, overridesOf(options));
+}
+
+/// Angle of the body's vertical axis to that of the world, at most along the trajectory.
+double tiltOf(const GivenTrajectory& trajectory) {
+    double tilt = 0.;
+    for (const GivenPose& pose : trajectory.poses) {
+        tilt = std::max(tilt, std::acos(std::clamp(pose.T_w_b(2, 2), -1., 1.)));
+    }
+    return tilt;
+}
+
+void checkTilt(const CheckCommandOptions& options, double tilt) {
+    if (options.flights == 0 || tilt <= kMostTilt) return;
+    throw InputError("--flights", "",
+                     fmt::format("the body of the trajectory is tilted by up to {:.0f} degrees, "
+                                 "the simulated robot is level",
+                                 tilt / kDegree));
+}
+
+/// The places as a flight passes them; only the ends are stopped at.
+std::vector<PlannedView> planOf(const CheckedTrajectory& checked) {
+    std::vector<PlannedView> plan;
+    for (const CheckedPlace& place : checked.places) {
+        plan.push_back({place.T_w_b, place.covariance, place.length, false});
+    }
+    plan.front().isWaypoint = plan.back().isWaypoint = true;
+    return plan;
+}
+
+FlightSet flightsAlong(const CheckReport& report, const CheckCommandOptions& options,
+                       ProgressLine& line, const std::atomic<bool>& interrupted) {
+    FlightSet set{report.path, planOf(report.checked), {}};
+    if (options.flights == 0 || interrupted) return set;
+    const PlanningProblem problem(report.config, report.world);
+    const FlightSetup setup = setUpFlight(problem);
+    std::size_t flown = 0;
+    set.flights = flyMany(set.plan, setup.world, setup.options, options.flights, options.jobs,
+                          interrupted, [&](const FlightResult&) {
+                              line.show(fmt::format("{} of {} flights", ++flown, options.flights));
+                          });
+    return set;
+}
+
+void printSummary(const CheckReport& report, const fs::path& folder) {
+    for (const auto& [label, value] : summaryOf(report).rows) {
+        fmt::print("{:<42}{}\n", label, value);
+    }
+    fmt::print("report: {}\n", (folder / "report.html").string());
+}
+
+FolderTransaction folderFor(const CheckCommandOptions& options, const Config& config) {
+    const fs::path folder =
+        options.out.empty()
+            ? fs::path("out") / ("check-" + fs::path(options.trajectory).stem().string())
+            : options.out;
+    return beginResult(folder,
+                       {options.trajectory, options.config, config.sceneFile, config.mapFile});
+}
+
+}  // namespace
+
+int runCheck(const CheckCommandOptions& options, const std::atomic<bool>& interrupted) {
+    const Stopwatch watch;
+    const GivenHeading heading = headingOf(options.heading);
+    const Config config = configOf(options);
+    const GivenTrajectory trajectory =
+        readGivenTrajectory(options.trajectory, config.camera.T_b_c(), heading);
+    CheckReport report{.config = config,
+                       .world = World(config),
+                       .trajectory = trajectory,
+                       .file = options.trajectory,
+                       .tilt = tiltOf(trajectory)};
+    checkTilt(options, report.tilt);
+    FolderTransaction folder = folderFor(options, config);
+
+    {
+        ProgressLine line(options.quiet);
+        report.obstruction = obstructionOf(trajectory, config, report.world);
+        report.checked = checkLocalisation(
+            trajectory, config, report.world, options.check, interrupted,
+            [&](double share) { line.show(fmt::format("{:.0f} % checked", 100. * share)); });
+        report.path = pathOf(report.checked, "trajectory");
+        if (options.check.headings > 0 && !interrupted) {
+            CheckOptions same = options.check;
+            same.headings = 0;
+            report.turned = checkLocalisation(withBestHeadings(report.checked), config,
+                                              report.world, same, interrupted);
+        }
+        report.flights = flightsAlong(report, options, line, interrupted);
+    }
+    report.interrupted = interrupted;
+    nlohmann::json result = checkResult(report);
+    result["time"]["total_s"] = watch.seconds();
+    writeCheckReport(folder.path(), report, options.commandLine, result);
+    commitResult(folder, result);
+
+    if (options.json)
+        fmt::print("{}", jsonText(result));
+    else if (!options.quiet)
+        printSummary(report, folder.target());
+    if (report.interrupted) return kInterrupted;
+    return report.checked.isLost() ? kNoAnswer : kDone;
+}
+
+}  // namespace photonav

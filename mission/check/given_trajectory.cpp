@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/given_trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <sstream>
+
+#include "io/reading.hpp"
+#include "io/text_table.hpp"
+#include "recording/trajectory.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr double kFarthest = 1e5;  // of positions, as of the bounds of a config [m]
+constexpr std::size_t kTumColumns = 8;
+constexpr double kLeastSlope = 1e-3;  // a steeper motion has no direction from above
+
+enum Column { kTime, kX, kY, kZ, kYaw, kColumns };
+using Columns = std::array<std::optional<std::size_t>, kColumns>;
+
+/// The first line that is not blank, nor a comment.
+std::string firstLine(const std::string& file) {
+    std::ifstream in = openToRead(file);
+    if (!in) throw InputError(file, "", "no such file");
+    for (std::string line; std::getline(in, line);) {
+        const std::size_t begin = line.find_first_not_of(" \t\r");
+        if (begin != std::string::npos && line[begin] != '#') return line.substr(begin);
+    }
+    throw InputError(file, "", "no poses");
+}
+
+/// A comma at the end of a line ends its last field.
+std::size_t fieldsOf(const std::string& line, bool hasCommas) {
+    if (hasCommas) {
+        const auto commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
+        const bool endsWithOne = line.find_last_not_of(" \t\r") == line.rfind(',');
+        return commas + (endsWithOne ? 0 : 1);
+    }
+    std::istringstream fields(line);
+    return static_cast<std::size_t>(std::distance(std::istream_iterator<std::string>(fields), {}));
+}
+
+std::optional<Column> columnNamed(const std::string& name) {
+    static const std::array<std::vector<std::string>, kColumns> kNames{
+        {{"t", "time", "timestamp"}, {"x"}, {"y"}, {"z"}, {"yaw", "heading"}}};
+    std::string lower = name;
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
+        if (std::find(kNames[i].begin(), kNames[i].end(), lower) != kNames[i].end()) {
+            return static_cast<Column>(i);
+        }
+    }
+    return {};
+}
+
+/// The columns by the names in a first line. Nothing where that has a number in place of a name.
+std::optional<Columns> columnsNamedBy(const TextRow& row, std::size_t count) {
+    Columns columns;
+    bool isNamed = false;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto column = columnNamed(row.text(i));
+        if (!column) continue;
+        if (columns[*column]) row.fail(fmt::format("two columns '{}'", row.text(i)));
+        columns[*column] = i;
+        isNamed = true;
+    }
+    if (!isNamed) return {};
+    for (const Column needed : {kX, kY, kZ}) {
+        if (!columns[needed]) row.fail("the names of the columns must include x, y and z");
+    }
+    return columns;
+}
+
+/// The columns of a table without names.
+Columns columnsOf(const TextRow& row, std::size_t count) {
+    if (count == 3) return {std::nullopt, 0, 1, 2, std::nullopt};
+    if (count == 5) return {0, 1, 2, 3, 4};
+    if (count == 4) {
+        row.fail("four columns may be t,x,y,z or x,y,z,yaw: name them in a first line");
+    }
+    row.fail(fmt::format("{} columns; expected x,y,z, t,x,y,z,yaw or a first line with their names",
+                         count));
+}
+
+struct Row {
+    std::optional<double> time, yaw;
+    Eigen::Vector3d position;
+};
+
+Row rowOf(const TextRow& row, const Columns& columns) {
+    const auto number = [&](Column column) { return row.number(*columns[column]); };
+    Row read;
+    if (columns[kTime]) read.time = number(kTime);
+    if (columns[kYaw]) read.yaw = number(kYaw);
+    read.position = {number(kX), number(kY), number(kZ)};
+    if (read.position.cwiseAbs().maxCoeff() > kFarthest) {
+        row.fail(fmt::format("farther than {} m from the origin", kFarthest));
+    }
+    return read;
+}
+
+std::vector<Row> readRows(const std::string& file, const std::string& first) {
+    const bool hasCommas = first.find(',') != std::string::npos;
+    const std::size_t fields = fieldsOf(first, hasCommas);
+    const std::vector<TextRow> table = hasCommas ? readCsv(file, fields) : readTable(file, fields);
+    const auto named = columnsNamedBy(table.front(), fields);
+    const Columns columns = named ? *named : columnsOf(table.front(), fields);
+    std::vector<Row> rows;
+    for (std::size_t i = named ? 1 : 0; i < table.size(); ++i) {
+        rows.push_back(rowOf(table[i], columns));
+        if (rows.size() < 2 || !columns[kTime]) continue;
+        const double before = *rows[rows.size() - 2].time, now = *rows.back().time;
+        if (now < before) {
+            table[i].fail(fmt::format("time {} after {}: times must not decrease", now, before));
+        }
+    }
+    return rows;
+}
+
+/// The heading of every row: its own, or else the one that is wanted, or where it flies to.
+std::vector<double> headingsOf(const std::vector<Row>& rows, const GivenHeading& wanted) {
+    std::vector<double> headings(rows.size(), wanted.value_or(0.));
+    std::optional<double> last;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (rows[i].yaw) {
+            headings[i] = *rows[i].yaw;
+            continue;
+        }
+        if (wanted) continue;
+        if (i + 1 < rows.size()) {
+            const Eigen::Vector3d way = rows[i + 1].position - rows[i].position;
+            if (way.head<2>().norm() > kLeastSlope * way.norm())
+                last = std::atan2(way.y(), way.x());
+        }
+        headings[i] = last.value_or(0.);
+    }
+    return headings;
+}
+
+GivenTrajectory readPoses(const std::string& file, const Pose& T_b_c) {
+    GivenTrajectory trajectory{TrajectoryFormat::cameraPoses, true, {}};
+    for (const StampedPose& pose : readTrajectory(file)) {
+        if (pose.T_w_c.translation().cwiseAbs().maxCoeff() > kFarthest) {
+            throw InputError(file, fmt::format("pose at time {}", pose.timestamp),
+                             fmt::format("farther than {} m from the origin", kFarthest));
+        }
+        trajectory.poses.push_back({pose.timestamp, pose.T_w_c * T_b_c.inverse()});
+    }
+    return trajectory;
+}
+
+GivenTrajectory readPlaces(const std::string& file, const std::string& first,
+                           const GivenHeading& heading) {
+    const std::vector<Row> rows = readRows(file, first);
+    GivenTrajectory trajectory;
+    trajectory.hasHeading = !rows.empty() && rows.front().yaw.has_value();
+    const std::vector<double> headings = headingsOf(rows, heading);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        GivenPose pose{rows[i].time, Pose::Identity()};
+        pose.T_w_b.translation() = rows[i].position;
+        pose.T_w_b.linear() =
+            Eigen::AngleAxisd(headings[i], Eigen::Vector3d::UnitZ()).toRotationMatrix();
+        trajectory.poses.push_back(pose);
+    }
+    return trajectory;
+}
+
+void check(const GivenTrajectory& trajectory, const std::string& file) {
+    const std::vector<GivenPose>& poses = trajectory.poses;
+    if (poses.size() < 2) {
+        throw InputError(file, "", fmt::format("{} pose; at least two are needed", poses.size()));
+    }
+    const bool isStill = std::all_of(poses.begin(), poses.end(), [&](const GivenPose& pose) {
+        return pose.T_w_b.matrix() == poses.front().T_w_b.matrix();
+    });
+    if (isStill) throw InputError(file, "", "all poses are the same");
+}
+
+}  // namespace
+
+GivenTrajectory readGivenTrajectory(const std::string& file, const Pose& T_b_c,
+                                    const GivenHeading& heading) {
+    return reading(file, [&] {
+        const std::string first = firstLine(file);
+        const bool isTum =
+            first.find(',') == std::string::npos && fieldsOf(first, false) == kTumColumns;
+        GivenTrajectory trajectory =
+            isTum ? readPoses(file, T_b_c) : readPlaces(file, first, heading);
+        check(trajectory, file);
+        return trajectory;
+    });
+}
+
+Eigen::AlignedBox3d boxAround(const GivenTrajectory& trajectory) {
+    Eigen::AlignedBox3d box;
+    for (const GivenPose& pose : trajectory.poses) box.extend(pose.T_w_b.translation());
+    return box;
+}
+
+}  // namespace photonav

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/predicted_image.hpp"
+
+namespace photonav {
+
+ImagePredictor::ImagePredictor(const ViewSource& map, const Camera& camera,
+                               const PhotometricOptions& photometric,
+                               const AlignmentOptions& alignment)
+    : map_(map),
+      camera_(camera),
+      photometric_(photometric),
+      alignment_(alignment),
+      comparison_(camera, alignment.photometric) {}
+
+PredictedImage ImagePredictor::at(const Pose& T_c_w) {
+    map_.render(camera_, T_c_w, view_);
+    PredictedImage image{photometricInformation(view_, camera_, photometric_), {}};
+    const NormalEquations equations = comparison_(view_, view_.intensity, Exposure{}, Loss{});
+    const MeasuredInformation measured{
+        poseEquations(equations, alignment_.photometric, alignment_.exposure), Matrix6::Zero()};
+    image.alignment.T_c_w = T_c_w;
+    image.alignment.verdict = Verdict::converged;
+    conclude(image.alignment, equations, view_.intensity.getSize(), measured,
+             alignment_.photometric.sigma, alignment_.exposure.has_value(), {}, alignment_.trust);
+    return image;
+}
+
+}  // namespace photonav
