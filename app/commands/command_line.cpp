@@ -65,6 +65,18 @@ void addOverrides(CLI::App& parser, std::vector<std::string>& overrides) {
         ->allow_extra_args(false);
 }
 
+void addValue(CLI::App& parser, CommandOptions& options, const std::string& name,
+              const std::string& key, const std::string& description) {
+    parser
+        .add_option_function<std::string>(
+            name,
+            [&options, key](const std::string& value) {
+                options.overrides.insert(options.overrides.begin(), key + "=" + value);
+            },
+            description + " (overrides the config)")
+        ->type_name("VALUE");
+}
+
 void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig) {
     parser.add_option("config", options.config, "YAML file of the planning problem")
         ->required(needsConfig);

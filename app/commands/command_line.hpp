@@ -47,6 +47,10 @@ void printOutput(const OutputOptions& output, const nlohmann::json& result,
 
 void addOverrides(CLI::App& parser, std::vector<std::string>& overrides);
 
+/// An option that overrides a key of the config, before --set.
+void addValue(CLI::App& parser, CommandOptions& options, const std::string& name,
+              const std::string& key, const std::string& description);
+
 /// config, --set and the output.
 void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig = true);
 

@@ -38,6 +38,15 @@ std::string meanAndDeviation(const Values& values, int decimals) {
     return fmt::format("{:.{}f} ± {:.{}f}", mean, decimals, std::sqrt(variance), decimals);
 }
 
+/// Three digits, whatever the order of magnitude.
+std::string traceText(const Values& values) {
+    double largest = 0.;
+    for (const double v : values) largest = std::max(largest, std::abs(v));
+    const bool isNumber = largest > 0. && std::isfinite(largest);
+    const int decimals = isNumber ? 2 - static_cast<int>(std::floor(std::log10(largest))) : 2;
+    return meanAndDeviation(values, std::clamp(decimals, 0, 12));
+}
+
 std::string tableRow(const std::string& method, const std::vector<const CompareRun*>& runs) {
     const auto ofPath = [&](double EvaluatedPath::*value) {
         Values values;
@@ -56,15 +65,10 @@ std::string tableRow(const std::string& method, const std::vector<const CompareR
         costs.size() == runs.size()
             ? method
             : fmt::format("{} ({} of {} found a path)", method, costs.size(), runs.size());
-    Values traces = ofPath(&EvaluatedPath::meanTrace);
-    Values goalTraces = ofPath(&EvaluatedPath::goalTrace);
-    for (Values* values : {&traces, &goalTraces}) {
-        for (double& v : *values) v *= 1e4;
-    }
     return fmt::format(
         "| {} | {} | {} | {} | {} | {} | {} | {} |\n", label, meanAndDeviation(costs, 3),
-        meanAndDeviation(ofPath(&EvaluatedPath::length), 2), meanAndDeviation(traces, 1),
-        meanAndDeviation(goalTraces, 1),
+        meanAndDeviation(ofPath(&EvaluatedPath::length), 2),
+        traceText(ofPath(&EvaluatedPath::meanTrace)), traceText(ofPath(&EvaluatedPath::goalTrace)),
         meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.vertices); }), 0),
         meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.views); }), 0),
         meanAndDeviation(ofRun([](const auto& o) { return o.planSeconds; }), 1));
@@ -145,7 +149,10 @@ json writeScenario(const Config& config, const World& world, const std::vector<C
     writeFileAtomically(folder / (name + ".md"), table);
     writeFileAtomically(folder / (name + ".png"), picture(config, world, runs));
     if (!quiet) fmt::print("{}\n{}\n", name, table);
-    json scenario{{"config", name}, {"alpha", config.belief.alpha}, {"runs", json::array()}};
+    json scenario{{"config", name},
+                  {"alpha", config.belief.alpha},
+                  {"kappa", config.belief.kappa},
+                  {"runs", json::array()}};
     for (const CompareRun& run : runs) scenario["runs"].push_back(jsonOf(run));
     return scenario;
 }
@@ -184,7 +191,8 @@ CompareRun runMethod(const Config& config, const World& world, const CompareMeth
 
 std::string compareTable(const std::vector<CompareRun>& runs) {
     std::string table =
-        "| planner, information | cost J | length [m] | mean trace [1e-4] | goal trace [1e-4] | "
+        "| planner, information | cost J | length [m] | mean trace [m² + rad²] | goal trace [m² + "
+        "rad²] | "
         "vertices | views | seconds |\n|---|---|---|---|---|---|---|---|\n";
     for (const CompareMethod& method : compareMethods()) {
         std::vector<const CompareRun*> own;
@@ -205,9 +213,10 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
                 {"version", PHOTONAV_VERSION},
                 {"scenarios", json::array()}};
     bool anyPath = false;
-    for (const Config& config : configs) {
-        const World world(config);
-        PlanningProblem(config, world).checkPlaces();
+    for (const Config& given : configs) {
+        const World world(given);
+        PlanningProblem(given, world).checkPlaces();
+        const Config config = withKappa(given, world, interrupted);
         ProgressLine line(options.quiet);
         const auto runs = runMethods(config, world, options, line, interrupted);
         line.clear();

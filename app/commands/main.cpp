@@ -87,6 +87,10 @@ Command planCommand(CLI::App& app, const Invocation& invocation) {
         app.add_subcommand("plan", "Plan a perception-aware path in a known scene or map.");
     addCommon(*parser, *options);
     addSeed(*parser, *seed, "of all random numbers");
+    addValue(*parser, *options, "--alpha", "planner.alpha",
+             "1: the shortest path, 0: the most certain one");
+    addValue(*parser, *options, "--kappa", "planner.kappa",
+             "metres of detour that 1 m of flight at tr(Sigma) = 1 m^2 is worth, or auto [1/m]");
     parser->add_flag(
         "--audit", options->audit,
         "propagate every stored belief again from the start and print the largest error");

@@ -11,7 +11,7 @@
 #include "io/stopwatch.hpp"
 #include "mapping/map_config.hpp"
 #include "planners/planner_table.hpp"
-#include "problem/planning_problem.hpp"
+#include "problem/advantage.hpp"
 #include "problem/tree_evolution.hpp"
 #include "report/plan_report.hpp"
 #include "result/json_values.hpp"
@@ -20,7 +20,7 @@ namespace photonav {
 namespace {
 
 void printSummary(const PlanOutcome& outcome, const std::optional<EvaluatedPath>& baseline,
-                  bool audit, const std::filesystem::path& folder, double seconds) {
+                  double kappa, bool audit, const std::filesystem::path& folder, double seconds) {
     const auto row = [](const EvaluatedPath& path) {
         fmt::print("{:<16} {:>8.2f} m {:>12.3g} {:>12.3g} {:>10.4g}\n", path.planner, path.length,
                    path.meanTrace, path.goalTrace, path.cost);
@@ -33,6 +33,14 @@ void printSummary(const PlanOutcome& outcome, const std::optional<EvaluatedPath>
     }
     if (outcome.path) row(*outcome.path);
     if (baseline) row(*baseline);
+    if (outcome.isSolved()) {
+        fmt::print("cost: {} (alpha {}, kappa {:.4g} 1/m)\n", costShares(*outcome.path),
+                   outcome.alpha, kappa);
+    }
+    if (outcome.isSolved() && baseline) {
+        const std::string reason = noAdvantage(*outcome.path, *baseline, outcome.alpha);
+        if (!reason.empty()) fmt::print("{}\n", reason);
+    }
     if (audit) {
         fmt::print("audit: {} beliefs replayed, cost error {:.1e}, covariance error {:.1e}\n",
                    outcome.audit.nodes, outcome.audit.maxCostError,
@@ -108,7 +116,7 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     if (options.evolution)
         evolutions = growthOf({"rrt_star", config.planner}, problem, config.vertices, interrupted);
     const bool stopped = interrupted;
-    nlohmann::json result = planResult(config, outcome, baseline, stopped);
+    nlohmann::json result = planResult(config, problem.kappa(), outcome, baseline, stopped);
     const auto recorded = compareWithImages(config, world, outcome);
     if (recorded) result["recorded_frames"] = toJson(*recorded);
     result["time"]["total_s"] = watch.seconds();
@@ -120,7 +128,8 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     if (options.json)
         fmt::print("{}", jsonText(result));
     else if (!options.quiet)
-        printSummary(outcome, baseline, options.audit, folder.target(), watch.seconds());
+        printSummary(outcome, baseline, problem.kappa(), options.audit, folder.target(),
+                     watch.seconds());
     if (stopped) return kInterrupted;
     return outcome.isSolved() ? kDone : kNoAnswer;
 }

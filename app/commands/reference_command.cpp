@@ -26,10 +26,16 @@ void prepareFolder(const fs::path& folder) {
 }
 
 Config loadReferenceConfig(const ReferenceOptions& options) {
-    std::vector<std::string> overrides = options.lists.after(options.overrides);
-    overrides.push_back(fmt::format("planner.vertices={}", options.vertices));
-    overrides.push_back(fmt::format("planner.labels={}", options.labels));
-    return loadConfig(options.config, overrides);
+    return loadConfig(options.config, options.lists.after(options.overrides));
+}
+
+/// With the effort of references, but the kappa of the sweeps that are compared with them.
+Config withEffort(const Config& config, const ReferenceOptions& options, const World& world,
+                  const std::atomic<bool>& interrupted) {
+    Config effort = withKappa(config, world, interrupted);
+    effort.vertices = options.vertices;
+    effort.search.labels = options.labels;
+    return effort;
 }
 
 std::vector<Pose> waypointsOf(const EvaluatedPath& path) {
@@ -118,8 +124,8 @@ void print(const ReferenceTable& table) {
 }  // namespace
 
 int runReference(const ReferenceOptions& options, const std::atomic<bool>& interrupted) {
-    const Config config = loadReferenceConfig(options);
-    const World world(config);
+    const Config given = loadReferenceConfig(options);
+    const World world(given);
     const fs::path source(options.config);
     const fs::path file = options.file.empty() ? source.parent_path() / "reference" /
                                                      (source.stem().string() + ".csv")
@@ -127,6 +133,7 @@ int runReference(const ReferenceOptions& options, const std::atomic<bool>& inter
     ReferenceTable table(file);
     if (!options.fromScratch) table.read();
     prepareFolder(fs::absolute(file).parent_path());
+    const Config config = withEffort(given, options, world, interrupted);
 
     ProgressLine line(options.quiet);
     bool isComplete = true;

@@ -80,13 +80,14 @@ int sweepAll(const SweepOptions& options, const std::atomic<bool>& interrupted) 
         SweepJournal::create(folder.path(), header, runsSoFar<SweepKind>(options, folder, header));
 
     const auto open = journal.missing(items);
+    const Config planned = withKappa(config, world, interrupted);  // of all seeds
     {
         ProgressLine line(options.quiet);
         RemainingTime rest(open);
         const Stopwatch running;
         std::size_t done = items.size() - open.size();
         line.show(fmt::format("{} of {} runs", done, items.size()));
-        runItems(config, world, open, options.jobs, interrupted, [&](const SweepRun& run) {
+        runItems(planned, world, open, options.jobs, interrupted, [&](const SweepRun& run) {
             journal.append(run);
             const double wall = running.seconds();
             rest.count(run.item.planner, run.seconds, wall);
@@ -96,7 +97,7 @@ int sweepAll(const SweepOptions& options, const std::atomic<bool>& interrupted) 
         });
     }
     const bool stopped = interrupted && !journal.missing(items).empty();
-    return conclude(options, config, world, folder,
+    return conclude(options, planned, world, folder,
                     {name, "", shard, journal.runsOf(items), items.size(), stopped, 0.}, reference,
                     watch);
 }
@@ -112,12 +113,13 @@ int mergeSweep(const SweepOptions& options) {
         [&](const std::string& file) { return loadSweepConfig(options, file); }, sweepIdentity);
     const ReferenceCosts reference = referenceOf(config);
     const World world(config);
+    const Config planned = withKappa(config, world);
     const auto items = sweepItems(config);
     auto runs = gather(options, shards, items);
     FolderTransaction folder = beginSweep(options, config, target);
     header.shard = {};
     SweepJournal::create(folder.path(), header, runs);
-    return conclude(options, config, world, folder,
+    return conclude(options, planned, world, folder,
                     {header.name, "", {}, std::move(runs), items.size(), false, 0.}, reference,
                     watch);
 }

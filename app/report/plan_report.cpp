@@ -11,6 +11,7 @@
 #include "figures/perspective.hpp"
 #include "figures/trace.hpp"
 #include "geometry/se3.hpp"
+#include "problem/advantage.hpp"
 #include "report/comparison_images.hpp"
 #include "report/tree_evolution_figure.hpp"
 
@@ -47,9 +48,14 @@ json jsonOf(const BeliefPoint& point) {
 }
 
 json jsonOf(const EvaluatedPath& path) {
-    return {{"planner", path.planner},      {"cost", path.cost},
-            {"length", path.length},        {"metric_length", path.points.back().distance},
-            {"mean_trace", path.meanTrace}, {"goal_trace", path.goalTrace}};
+    return {{"planner", path.planner},
+            {"cost", path.cost},
+            {"length", path.length},
+            {"metric_length", path.points.back().distance},
+            {"mean_trace", path.meanTrace},
+            {"goal_trace", path.goalTrace},
+            {"length_share", path.lengthShare},
+            {"uncertainty_share", 1. - path.lengthShare}};
 }
 
 /// The predicted views at the waypoints, and the contributions of their pixels.
@@ -73,6 +79,23 @@ std::vector<ReportView> waypointViews(const EvaluatedPath& path, const Config& c
                                        contributionImage(view, camera, config.photometric)))});
     }
     return views;
+}
+
+/// What the cost of each path consists of.
+ReportTable costTable(const PlanOutcome& outcome, const std::optional<EvaluatedPath>& baseline,
+                      const json& result) {
+    ReportTable table{"Cost", {}};
+    const bool isAutomatic = result.at("kappa_is_automatic");
+    table.rows = {{"alpha", fmt::format("{}", outcome.alpha)},
+                  {"kappa", fmt::format("{:.4g} 1/m{}", result.at("kappa").get<double>(),
+                                        isAutomatic ? ", automatic" : "")}};
+    const auto add = [&](const EvaluatedPath& path) {
+        table.rows.emplace_back("J of " + path.planner,
+                                fmt::format("{:.4g}: {}", path.cost, costShares(path)));
+    };
+    add(*outcome.path);
+    if (baseline) add(*baseline);
+    return table;
 }
 
 TopView topView(const Config& config, const World& world, const PlanOutcome& outcome,
@@ -118,7 +141,7 @@ void writeTrajectory(const fs::path& file, const EvaluatedPath& path, const Pose
 
 }  // namespace
 
-json planResult(const Config& config, const PlanOutcome& outcome,
+json planResult(const Config& config, double kappa, const PlanOutcome& outcome,
                 const std::optional<EvaluatedPath>& baseline, bool interrupted) {
     const double tree = outcome.planSeconds - outcome.viewSeconds - outcome.beliefSeconds;
     json result{{"schema", 1},
@@ -130,6 +153,8 @@ json planResult(const Config& config, const PlanOutcome& outcome,
                 {"information", config.viewModel.name},
                 {"space", spaceName(config.space)},
                 {"alpha", outcome.alpha},
+                {"kappa", kappa},
+                {"kappa_is_automatic", isAutomatic(config.belief.kappa)},
                 {"characteristic_length", config.belief.characteristicLength},
                 {"cost", nullptr},
                 {"planner_cost", nullptr},
@@ -159,6 +184,10 @@ json planResult(const Config& config, const PlanOutcome& outcome,
     if (!outcome.path) return result;
     result.update(jsonOf(*outcome.path));
     result["planner_cost"] = outcome.plannerCost;
+    if (baseline && outcome.isSolved()) {
+        const std::string reason = noAdvantage(*outcome.path, *baseline, outcome.alpha);
+        if (!reason.empty()) result["verdict"] = reason;
+    }
     for (const BeliefPoint& point : outcome.path->points) result["path"].push_back(jsonOf(point));
     return result;
 }
@@ -229,6 +258,7 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
         report.views = waypointViews(*outcome.path, config, world);
     }
     report.progress = outcome.progress;
+    if (outcome.isSolved()) report.tables.push_back(costTable(outcome, baseline, result));
 
     std::vector<NamedFigure> figures =
         planFigures(config, world, problem, outcome, recorded, report.paths);

@@ -14,7 +14,8 @@ namespace photonav {
 
 /// result.json of `photonav plan`; time.total_s (until the report is drawn) is the caller's to
 /// fill.
-nlohmann::json planResult(const Config& config, const PlanOutcome& outcome,
+/// @param kappa of the cost [1/m]
+nlohmann::json planResult(const Config& config, double kappa, const PlanOutcome& outcome,
                           const std::optional<EvaluatedPath>& baseline, bool interrupted);
 
 /// Writes config.yaml, top_view.png, report.json and report.html; with a path also path.tum,

@@ -86,6 +86,7 @@ Pose CameraConfig::T_b_c() const { return cameraMount(mountDegrees(mount).value(
 
 BeliefOptions defaultBelief() {
     BeliefOptions belief;
+    belief.kappa = kAutomaticKappa;
     belief.initialCovariance.diagonal() << 1e-2, 1e-2, 1e-2, 1e-5, 1e-5, 1e-4;
     belief.motionNoise.diagonal() << 1e-4, 1e-4, 1e-4, 4.5e-6, 4.5e-6, 1.35e-4;
     return belief;

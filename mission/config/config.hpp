@@ -2,6 +2,8 @@
 // A planning problem as a YAML file describes it, with the default of every key.
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,7 +46,11 @@ struct ViewModelConfig {
     double kappa = 2.5;         ///< metres of detour that 1 m of flight at a penalty of 1 is worth
 };
 
-/// BeliefOptions with the variances of a small robot.
+/// In place of BeliefOptions::kappa: PlanningProblem::kappa() chooses it.
+inline constexpr double kAutomaticKappa = std::numeric_limits<double>::quiet_NaN();
+inline bool isAutomatic(double kappa) { return std::isnan(kappa); }
+
+/// BeliefOptions with the variances of a small robot, kappa automatic.
 BeliefOptions defaultBelief();
 
 struct Config {

@@ -181,6 +181,16 @@ void addNoise(KeyTable& keys, Config& c) {
                 c.viewModel.features.referenceCount, {kTiny, kLargest});
 }
 
+void readKappa(YamlMap& map, double& kappa) {
+    if (!map.has("kappa")) return;
+    std::string word;
+    map.read("kappa", word);
+    kappa = kAutomaticKappa;
+    if (word == "auto") return;
+    kappa = 0.;
+    map.readNumber("kappa", kappa, 0., kLargest);
+}
+
 /// What the planner optimises.
 void addObjective(KeyTable& keys, Config& c) {
     keys.beginSection("planner");
@@ -189,9 +199,18 @@ void addObjective(KeyTable& keys, Config& c) {
                 viewModelNames());
     keys.number({"alpha", "", "1: the shortest path, 0: the most certain one"}, c.belief.alpha,
                 {0., 1.});
-    keys.number(
-        {"kappa", "1/m", "metres of detour that 1 m of flight at tr(Sigma) = 1 m^2 is worth"},
-        c.belief.kappa, {0., kLargest});
+    keys.add(
+        {.words = {"kappa", "1/m",
+                   "metres of detour that 1 m of flight at tr(Sigma) = 1 m^2 is worth; `auto`: "
+                   "[both terms weigh the same on the shortest path]"
+                   "(planner.md#alpha-and-kappa)"},
+         .allowed = fmt::format("auto, 0 to {}", numberText(kLargest)),
+         .read = [&c](YamlMap& map) { readKappa(map, c.belief.kappa); },
+         .value =
+             [&c] {
+                 return isAutomatic(c.belief.kappa) ? YAML::Node("auto")
+                                                    : yamlNumber(c.belief.kappa);
+             }});
     keys.number({"ds", "m", "longest distance flown between views"}, c.belief.ds,
                 {1e-3, kFarthest});
     keys.flag({"view_at_start", "", "plans count the view from the start, which a flight takes"},

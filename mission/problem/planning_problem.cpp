@@ -24,6 +24,7 @@ namespace {
 constexpr int kFreeHeadings = 8;               // goals offered where the goal has no yaw
 constexpr std::size_t kProgressInterval = 50;  // vertices
 constexpr double kShowInterval = 0.5;          // of progress without new vertices [s]
+constexpr double kMostKappa = 1e12;            // as in a config
 constexpr std::size_t kMaxSamples = 200;       // per requested vertex: beyond, planning gives up
 
 /// The solution may come from an earlier tree than the one audited.
@@ -36,6 +37,18 @@ std::vector<const ob::State*> solutionOf(const BeliefPlanner& planner) {
     const auto path = planner.getProblemDefinition()->getSolutionPath();
     const auto& states = path->as<ompl::geometric::PathGeometric>()->getStates();
     return {states.begin(), states.end()};
+}
+
+/// What the trace of a path is charged: its integral, or its sum over the vertices.
+double chargeOf(const std::vector<BeliefPoint>& points, CostRule rule) {
+    double charge = 0.;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        const BeliefPoint &last = points[i - 1], &next = points[i];
+        charge += rule == CostRule::perVertex
+                      ? next.trace
+                      : 0.5 * (next.distance - last.distance) * (last.trace + next.traceBefore);
+    }
+    return charge;
 }
 
 /// Lets a flag end what looks at `current`, until the end of the scope.
@@ -82,7 +95,7 @@ PlanningProblem::PlanningProblem(const Config& config, const World& world,
       field_(makeField("photometric")),
       plannersField_(config.viewModel.name == "photometric" ? field_
                                                             : makeField(config.viewModel.name)),
-      evaluator_(makeModel(field_)) {}
+      evaluator_(std::make_shared<BeliefModel>(space_, field_, optionsWith(config.belief.kappa))) {}
 
 PlanningProblem::PlanningProblem(const PlanningProblem& other, double alpha)
     : config_(withAlpha(other.config_, alpha)),
@@ -93,7 +106,8 @@ PlanningProblem::PlanningProblem(const PlanningProblem& other, double alpha)
       si_(other.si_),
       field_(other.field_),
       plannersField_(other.plannersField_),
-      evaluator_(makeModel(field_)) {}
+      evaluator_(std::make_shared<BeliefModel>(space_, field_, optionsWith(config_.belief.kappa))) {
+}
 
 void PlanningProblem::checkPlaces() const {
     checkPlace("start", config_.start);
@@ -124,6 +138,7 @@ std::string PlanningProblem::statusOf(const PlanOutcome& outcome) const {
 
 PlanOutcome PlanningProblem::solve(const std::string& name, const std::atomic<bool>& interrupted,
                                    const OnPlanProgress& onProgress) {
+    kappa(interrupted);
     return solve(makePlanner(name), interrupted, onProgress);
 }
 
@@ -180,13 +195,18 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
 
 std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& name,
                                                             std::optional<std::uint32_t> seed) {
+    return makePlanner(name, plannersModel(), seed.value_or(config_.seed));
+}
+
+std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& name,
+                                                            std::shared_ptr<BeliefModel> model,
+                                                            std::uint32_t seed) {
     GrowthOptions growth = config_.growth;
-    growth.seed = seed.value_or(config_.seed);
+    growth.seed = seed;
     growth.obstacleReach = config_.robotRadius;
     growth.maxVertices = config_.vertices;
     growth.maxIterations = kMaxSamples * config_.vertices;
-    auto planner =
-        photonav::makePlanner(name, si_, makeModel(plannersField_), config_.search, growth);
+    auto planner = photonav::makePlanner(name, si_, std::move(model), config_.search, growth);
     planner->setProblemDefinition(definition());
     planner->setup();
     std::erase_if(planners_, [](const auto& made) { return made.expired(); });
@@ -231,11 +251,45 @@ std::shared_ptr<InformationField> PlanningProblem::makeField(const std::string& 
     return field(photometric_);
 }
 
-std::shared_ptr<BeliefModel> PlanningProblem::makeModel(
-    std::shared_ptr<InformationField> field) const {
+BeliefOptions PlanningProblem::optionsWith(double kappa) const {
     BeliefOptions options = config_.belief;
-    if (field->hasPenalties()) options.kappa = config_.viewModel.kappa;
-    return std::make_shared<BeliefModel>(space_, std::move(field), options);
+    options.kappa = isAutomatic(kappa) ? 0. : kappa;
+    return options;
+}
+
+std::shared_ptr<BeliefModel> PlanningProblem::plannersModel() {
+    const double weight = plannersField_->hasPenalties() ? config_.viewModel.kappa : kappa();
+    return std::make_shared<BeliefModel>(space_, plannersField_, optionsWith(weight));
+}
+
+BeliefModel& PlanningProblem::evaluator() {
+    kappa();
+    return *evaluator_;
+}
+
+double PlanningProblem::kappa(const std::atomic<bool>& interrupted) {
+    if (isAutomatic(config_.belief.kappa)) {
+        config_.belief.kappa = balancedKappa(interrupted);
+        evaluator_ =
+            std::make_shared<BeliefModel>(space_, field_, optionsWith(config_.belief.kappa));
+    }
+    return config_.belief.kappa;
+}
+
+double PlanningProblem::balancedKappa(const std::atomic<bool>& interrupted) {
+    const InterruptionScope scope(*interruption_, interrupted);
+    const auto planner = makePlanner("rrt_star", evaluator_, config_.seed);
+    planner->solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+    std::vector<const ob::State*> path;
+    const auto line = definition();
+    if (planner->getProblemDefinition()->hasExactSolution()) {
+        path = solutionOf(*planner);
+    } else {
+        path = {line->getStartState(0), line->getGoal()->as<ob::GoalStates>()->getState(0)};
+    }
+    const std::vector<BeliefPoint> points = evaluator_->evaluate(path);
+    const double charged = chargeOf(points, config_.belief.cost);
+    return charged > 0. ? std::min(points.back().distance / charged, kMostKappa) : 0.;
 }
 
 ob::ProblemDefinitionPtr PlanningProblem::definition() const {
@@ -265,6 +319,7 @@ std::optional<EvaluatedPath> PlanningProblem::descend(const std::vector<Pose>& w
         path.append(state.get());
     }
     if (waypoints.empty() || !path.check()) return std::nullopt;
+    kappa(interrupted);
     PathDescent descent(si_, evaluator_, options);
     descent.begin({path.getStates().begin(), path.getStates().end()});
     descent.descend(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
@@ -284,6 +339,7 @@ EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
 EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
                                         const std::vector<Place>& waypoints,
                                         const std::atomic<bool>& interrupted) {
+    kappa(interrupted);
     const InterruptionScope scope(*interruption_, interrupted);
     std::vector<ob::ScopedState<>> states;
     std::vector<const ob::State*> pointers;
@@ -298,19 +354,24 @@ EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
 
 EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
                                         const std::vector<const ob::State*>& path) {
-    EvaluatedPath evaluated{.planner = planner, .points = evaluator_->evaluate(path)};
-    double integral = 0.;
-    for (std::size_t i = 1; i < evaluated.points.size(); ++i) {
-        const BeliefPoint& last = evaluated.points[i - 1];
-        const BeliefPoint& next = evaluated.points[i];
-        integral += 0.5 * (next.distance - last.distance) * (last.trace + next.traceBefore);
-    }
+    EvaluatedPath evaluated;
+    evaluated.planner = planner;
+    evaluated.points = evaluator().evaluate(path);
+    const double integral = chargeOf(evaluated.points, CostRule::integral);
     const BeliefPoint& goal = evaluated.points.back();
     evaluated.cost = goal.cost;
+    if (goal.cost > 0.) evaluated.lengthShare = config_.belief.alpha * goal.distance / goal.cost;
     evaluated.length = goal.length;
     evaluated.meanTrace = goal.distance > 0. ? integral / goal.distance : goal.trace;
     evaluated.goalTrace = goal.trace;
     return evaluated;
+}
+
+Config withKappa(Config config, const World& world, const std::atomic<bool>& interrupted) {
+    if (isAutomatic(config.belief.kappa)) {
+        config.belief.kappa = PlanningProblem(config, world).kappa(interrupted);
+    }
+    return config;
 }
 
 }  // namespace photonav

@@ -20,10 +20,11 @@ namespace photonav {
 struct EvaluatedPath {
     std::string planner;
     std::vector<BeliefPoint> points;
-    double cost = 0.;       ///< with the problem's alpha, and the config's kappa
-    double length = 0.;     ///< of the positions [m]
-    double meanTrace = 0.;  ///< integral of the trace over the distance flown, divided by it
-    double goalTrace = 0.;  ///< after the last view
+    double cost = 0.;         ///< with the problem's alpha, and the config's kappa
+    double length = 0.;       ///< of the positions [m]
+    double lengthShare = 1.;  ///< of the cost: alpha times the length, turns counted
+    double meanTrace = 0.;    ///< integral of the trace over the distance flown, divided by it
+    double goalTrace = 0.;    ///< after the last view
 
     /// Positions of the points in x and y of w [m].
     std::vector<Eigen::Vector2d> fromAbove() const;
@@ -100,6 +101,14 @@ class PlanningProblem {
                                          const DescentOptions& options,
                                          const std::atomic<bool>& interrupted);
 
+    /// The kappa of all costs: the config's, or, where that is automatic, the one with which both
+    /// terms weigh the same on the path of rrt_star with the seed of the config, or on the straight
+    /// line where it finds none: the length of the path, turns counted, by its charged trace (0
+    /// where nothing is charged). Chosen when it is needed first, and the same from then on,
+    /// whatever becomes of the map.
+    /// @throws RenderingStopped when it is interrupted inside a large view
+    double kappa(const std::atomic<bool>& interrupted = kNotInterrupted);
+
     /// Evaluates a path given by its waypoints.
     /// @throws RenderingStopped when it is interrupted inside a large view
     EvaluatedPath evaluate(const std::string& planner, const std::vector<Place>& waypoints,
@@ -140,13 +149,20 @@ class PlanningProblem {
 
   private:
     void checkPlace(const std::string& key, const Place& place) const;
+    double balancedKappa(const std::atomic<bool>& interrupted);
+    BeliefOptions optionsWith(double kappa) const;
+    std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
+                                               std::shared_ptr<BeliefModel> model,
+                                               std::uint32_t seed);
     std::shared_ptr<InformationField> makeField(const std::string& viewModel) const;
     std::shared_ptr<const ViewSource> interruptibleViews() const;
-    std::shared_ptr<BeliefModel> makeModel(std::shared_ptr<InformationField> field) const;
+    std::shared_ptr<BeliefModel> plannersModel();
+    /// Costs and beliefs of paths.
+    BeliefModel& evaluator();
     EvaluatedPath evaluate(const std::string& planner,
                            const std::vector<const ompl::base::State*>& path);
 
-    const Config config_;
+    Config config_;  // its kappa may be automatic until it is needed
     const World& world_;
     /// What ends the rendering of views, in solve() alone; of all problems over the same views.
     std::shared_ptr<const std::atomic<bool>*> interruption_ =
@@ -154,10 +170,15 @@ class PlanningProblem {
     InformationModel photometric_;
     FlightSpace space_;
     ompl::base::SpaceInformationPtr si_;
-    std::shared_ptr<InformationField> field_;          // photometric, of evaluator_
-    std::shared_ptr<InformationField> plannersField_;  // of the planner
-    std::shared_ptr<BeliefModel> evaluator_;
+    std::shared_ptr<InformationField> field_;             // photometric, of evaluator_
+    std::shared_ptr<InformationField> plannersField_;     // of the planner
+    std::shared_ptr<BeliefModel> evaluator_;              // without costs while kappa is automatic
     std::vector<std::weak_ptr<BeliefPlanner>> planners_;  // made here
 };
+
+/// The config with a number as kappa, for problems that have to share it: those of other seeds, or
+/// with other numbers of vertices.
+Config withKappa(Config config, const World& world,
+                 const std::atomic<bool>& interrupted = kNotInterrupted);
 
 }  // namespace photonav
