@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "dataset/image_file.hpp"
+#include "dataset/trajectory.hpp"
 #include "figures/images.hpp"
 #include "figures/trace.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
-#include "recording/image_file.hpp"
-#include "recording/trajectory.hpp"
 #include "report/check_figures.hpp"
 #include "report/fly_figures.hpp"
 #include "report/fly_report.hpp"

@@ -9,9 +9,9 @@
 #include <iterator>
 #include <sstream>
 
+#include "dataset/trajectory.hpp"
 #include "io/reading.hpp"
 #include "io/text_table.hpp"
-#include "recording/trajectory.hpp"
 
 namespace photonav {
 namespace {
