@@ -45,7 +45,11 @@ TEST(Arrival, PositionOfTheBodyFollowsFromTheCamerasBelief) {
     std::mt19937_64 random(3);
     Vector6 variances;
     variances << 1e-2, 4e-2, 1e-3, 1e-2, 1e-4, 2e-3;
-    const UncertainPose T_c_w{expSE3(draw(Matrix6::Identity(), random)), variances.asDiagonal()};
+    Matrix6 correlated = Matrix6::Identity();
+    correlated.bottomLeftCorner<3, 3>().setConstant(0.5);  // rotations with translations
+    const Matrix6 spread = variances.cwiseSqrt().asDiagonal() * correlated;
+    const UncertainPose T_c_w{expSE3(draw(Matrix6::Identity(), random)),
+                              spread * spread.transpose()};
     const PositionBelief position = bodyPosition(T_c_w, T_b_c);
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     const Matrix6 root = rootOf(1e-2 * T_c_w.covariance);  // small: to first order

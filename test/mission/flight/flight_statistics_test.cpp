@@ -32,6 +32,8 @@ TEST(FlightSummary, ComparesErrorsWithWhatWasPredicted) {
     const FlightSummary s = summarise(set);
     EXPECT_EQ(s.arrived, 1U);
     EXPECT_NEAR(s.positionRmse, std::sqrt(0.45), 1e-12);
+    EXPECT_NEAR(positionRmse(flight), std::sqrt(0.45), 1e-12);
+    EXPECT_EQ(std::pair(s.neesLow, s.neesHigh), neesBounds(1)) << "at the goal, of one flight";
     EXPECT_NEAR(s.believedSigma, std::sqrt(0.03), 1e-12);
     EXPECT_NEAR(s.predictedSigma, std::sqrt(0.075), 1e-12);
     EXPECT_NEAR(s.nees, 0.5 * (9. + 81.) / 6., 1e-12);
@@ -90,6 +92,21 @@ TEST(FlightSummary, CountsEndsAndAveragesTheRest) {
     EXPECT_EQ(s.photometric, 1U);
     EXPECT_EQ(s.photometricBefore, 0.3);
     EXPECT_NEAR(s.photometricAfter, 0.1, 1e-12);
+}
+
+TEST(FlightSummary, CountsErrorsWithinThreePredictedSigmas) {
+    FlightSet set;
+    set.plan = {PlannedView{}};
+    set.plan.front().covariance = 0.01 * Matrix6::Identity();  // 3 sigma: 0.52 m
+    FlightResult flight;
+    for (const double error : {0.4, 0.5, 0.55}) {
+        FlightSample sample;
+        sample.belief.covariance = 1e-4 * Matrix6::Identity();
+        sample.T_c_w.translation().y() = error;
+        flight.samples.push_back(sample);
+    }
+    set.flights = {flight};
+    EXPECT_NEAR(summarise(set).within3Sigma, 2. / 3., 1e-12);
 }
 
 TEST(PredictedSigma, IsInterpolatedBetweenViewsAndConstantBeyond) {
