@@ -12,7 +12,7 @@ namespace photonav {
 namespace {
 
 /// The same pixels for OpenCV.
-cv::Mat wrapped(const ImageF& image) {
+cv::Mat asMat(const ImageF& image) {
     return {static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_32F,
             image.bitmap};
 }
@@ -35,8 +35,7 @@ std::vector<float> unitPowerKernel(double sigma) {
 ImageF blurred(const ImageF& image, double sigma) {
     const int side = 2 * static_cast<int>(std::ceil(3. * sigma)) + 1;
     ImageF result(image.getHeight(), image.getWidth());
-    cv::GaussianBlur(wrapped(image), wrapped(result), {side, side}, sigma, sigma,
-                     cv::BORDER_REPLICATE);
+    cv::GaussianBlur(asMat(image), asMat(result), {side, side}, sigma, sigma, cv::BORDER_REPLICATE);
     return result;
 }
 
@@ -78,7 +77,7 @@ ImageNoise assumedNoise(const PhotometricOptions& options) {
     return [kernel, sigma](ImageF& image, std::mt19937_64& random) {
         std::normal_distribution<float> normal(0.F, sigma);
         const auto border = static_cast<int>(kernel.size()) - 1;
-        cv::Mat pixels = wrapped(image);
+        cv::Mat pixels = asMat(image);
         cv::Mat1f noise(pixels.rows + border, pixels.cols + border);
         for (float& value : noise) value = normal(random);
         cv::Mat1f smooth;
