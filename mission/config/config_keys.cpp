@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "geometry/constants.hpp"
 #include "io/number.hpp"
 #include "planners/planner_table.hpp"
@@ -11,15 +13,21 @@ namespace photonav {
 namespace {
 
 constexpr double kTiny = 1e-6;
-constexpr double kFarthest = 1e5;  // of lengths [m]
-constexpr double kLargest = 1e12;  // of weights: what is larger overflows in products
+constexpr double kFarthest = 1e5;        // of lengths [m]
+constexpr double kLargestHeading = 1e3;  // [rad]: of 1e16 no digit is left within a turn
+constexpr double kLargest = 1e12;        // of weights: what is larger overflows in products
 
 Place readPlace(YamlMap& root, const std::string& key, const Eigen::AlignedBox3d& bounds) {
     if (!root.has(key)) root.fail(key, "missing");
     std::vector<double> numbers;
     root.readNumbers(key, numbers, 3, 4);
     Place place{Eigen::Vector3d(numbers[0], numbers[1], numbers[2]), std::nullopt};
-    if (numbers.size() == 4) place.yaw = numbers[3];
+    if (numbers.size() == 4) {
+        if (std::abs(numbers[3]) > kLargestHeading) {
+            root.fail(key, fmt::format("heading beyond {} rad", kLargestHeading));
+        }
+        place.yaw = numbers[3];
+    }
     if (!bounds.contains(place.position)) root.fail(key, "outside the bounds");
     return place;
 }

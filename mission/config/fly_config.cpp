@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include "config/config_keys.hpp"
 #include "geometry/constants.hpp"
 
 namespace photonav {
 namespace {
+
+constexpr double kLatest = 1e6;  // [s]
 
 /// When and how images arrive.
 void addImages(KeyTable& keys, FlyConfig& c) {
@@ -20,6 +24,9 @@ void addImages(KeyTable& keys, FlyConfig& c) {
                   [&c](YamlMap& map) {
                       map.readVector("blackout", c.blackout);
                       if ((c.blackout.array() < 0.).any()) map.fail("blackout", "negative time");
+                      if ((c.blackout.array() > kLatest).any()) {
+                          map.fail("blackout", fmt::format("time beyond {} s", kLatest));
+                      }
                   },
               .value =
                   [&c] {

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -124,24 +125,55 @@ std::string gltfJson(const std::string& file, bool isBinary) {
     return {bytes.begin() + kHeader, bytes.begin() + kHeader + length};
 }
 
+/// Finds the first key that is twice in an object, as the text goes by.
+class RepeatedKey : public nlohmann::json_sax<json> {
+  public:
+    const std::optional<std::string>& found() const { return found_; }
+
+    bool start_object(std::size_t /*elements*/) override {
+        keys_.emplace_back();
+        return true;
+    }
+    bool end_object() override {
+        keys_.pop_back();
+        return true;
+    }
+    bool key(string_t& name) override {
+        if (keys_.back().insert(name).second) return true;
+        found_ = name;
+        return false;
+    }
+    bool null() override { return true; }
+    bool boolean(bool /*value*/) override { return true; }
+    bool number_integer(number_integer_t /*value*/) override { return true; }
+    bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
+    bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
+    bool string(string_t& /*value*/) override { return true; }
+    bool binary(binary_t& /*value*/) override { return true; }
+    bool start_array(std::size_t /*elements*/) override { return true; }
+    bool end_array() override { return true; }
+    bool parse_error(std::size_t /*place*/, const std::string& /*token*/,
+                     const nlohmann::detail::exception& /*error*/) override {
+        return false;
+    }
+
+  private:
+    std::vector<std::set<std::string>> keys_;  // of the objects around the present value
+    std::optional<std::string> found_;
+};
+
 /// Nothing may be read here in another way than by assimp's own parser, which takes text that is no
 /// UTF-8, and of two equal keys the first one.
 json parseStrictly(const std::string& file, const std::string& text) {
     if (nestingDepth(text) > kMostJsonDepth) {
         throw InputError(file, "", fmt::format("JSON nested deeper than {}", kMostJsonDepth));
     }
-    std::vector<std::set<std::string>> keys;  // of the objects around the present value
-    const auto onEvent = [&](int /*depth*/, json::parse_event_t event, const json& value) {
-        if (event == json::parse_event_t::object_start) keys.emplace_back();
-        if (event == json::parse_event_t::object_end) keys.pop_back();
-        if (event == json::parse_event_t::key && !keys.back().insert(value).second) {
-            throw InputError(file, value, "is there twice in the same JSON object");
-        }
-        return true;
-    };
-    json root = json::parse(text, onEvent, false);
-    if (root.is_discarded()) throw InputError(file, "", "is not JSON");
-    return root;
+    RepeatedKey repeated;
+    if (!json::sax_parse(text, &repeated)) {
+        if (!repeated.found()) throw InputError(file, "", "is not JSON");
+        throw InputError(file, *repeated.found(), "is there twice in the same JSON object");
+    }
+    return json::parse(text);
 }
 
 /// Assimp follows nodes by recursion, whatever their depth, and in circles.

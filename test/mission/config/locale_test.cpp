@@ -53,7 +53,7 @@ TEST(Locale, MapsCloudsAndManifests) {
     const GermanLocale german;
     const std::string file = folder.file("map.ot");
     saveTexturedOcTree(map, file);
-    EXPECT_NE(contentOf(file).find("\nres 0.05\n"), std::string::npos);
+    EXPECT_NE(contentOf(file).find("\nres 0.05"), std::string::npos);
     EXPECT_EQ(loadTexturedOcTree(file)->size(), map.size());
 
     std::string points;
