@@ -33,7 +33,8 @@ class Manifest {
     /// A file of the folder that is not listed or was changed since; nothing when all are listed.
     std::optional<std::filesystem::path> foreignFile(const std::filesystem::path& folder) const;
 
-    /// Removes the files that are listed.
+    /// Removes the files of the folder that are listed. Links are not followed, and what a line
+    /// names outside of the folder stays.
     void removeFiles(const std::filesystem::path& folder) const;
 
     /// Takes a file up that the program has written again. Does nothing without a manifest.
@@ -80,9 +81,8 @@ class FolderTransaction {
 
     /// @param target need not exist; a link to a folder stays a link
     /// @throws InputError when the target holds files that no manifest of ours lists, is the
-    /// current
-    ///         directory, a mount point or no folder, when another process writes it, and when the
-    ///         working folder cannot be made
+    ///         current directory, a mount point or no folder, when another process writes it, and
+    ///         when the working folder cannot be made or is none of ours
     explicit FolderTransaction(const std::filesystem::path& target,
                                Unfinished unfinished = Unfinished::removed);
     ~FolderTransaction();

@@ -19,8 +19,8 @@ struct MeshOptions {
     double scale = 1.;              ///< metres per unit of the file
 };
 
-/// Reads glTF 2.0 (.gltf, .glb), OBJ with its .mtl, PLY, STL or any other format of assimp: node
-/// transforms applied, polygons triangulated, points and lines dropped, degenerate triangles too.
+/// Reads glTF 2.0 (.gltf, .glb), OBJ with its .mtl, or PLY, as its name says: node transforms
+/// applied, polygons triangulated, points and lines dropped, degenerate triangles too.
 ///
 /// Grey values are display-referred: base-colour textures (sRGB) are decoded, multiplied by the
 /// linear base-colour factor, summed to luma in linear light and encoded again. Where there is no

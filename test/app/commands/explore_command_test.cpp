@@ -77,6 +77,7 @@ class ExploreCommand : public testing::Test {
     void killAfter(const std::string& name, std::size_t count) const {
         const fs::path unfinished = folder_ / (name + ".unfinished");
         fs::create_directories(unfinished);
+        std::ofstream(unfinished / Manifest::kFileName);  // the lock
         std::istringstream lines(fileOf(name, "trials.jsonl"));
         std::ofstream kept(unfinished / "trials.jsonl");
         std::string line;
@@ -162,6 +163,9 @@ TEST_F(ExploreCommand, RecordsTheFlight) {
     const Execution again = explore("b", "--time-limit 2 --record " + at("flight"));
     EXPECT_EQ(again.exitCode, 2);
     EXPECT_NE(again.output.find("holds a recording already"), std::string::npos) << again.output;
+    for (const char* inside : {"b", "b/flight", "."}) {
+        expectBadInput(explore("b", std::string("--record ") + at(inside)), "need to be apart");
+    }
     EXPECT_FALSE(fs::exists(folder_ / "b"));
 }
 

@@ -73,6 +73,7 @@ class SweepCommand : public testing::Test {
         const std::string kept = cutAfter(name, count);
         const fs::path unfinished = folder_ / (name + ".unfinished");
         fs::create_directories(unfinished);
+        std::ofstream(unfinished / Manifest::kFileName);  // the lock
         fs::rename(folder_ / name / "runs.jsonl", unfinished / "runs.jsonl");
         fs::remove_all(folder_ / name);
         return kept;
