@@ -1,11 +1,11 @@
 // A planner of one's own: start, the best of some random places, goal. Its paths are judged by the
 // same beliefs as those of every other planner.
 //! [planner]
-#include <iostream>
-#include <limits>
 #include <ompl/base/Planner.h>
 #include <ompl/base/terminationconditions/IterationTerminationCondition.h>
 #include <ompl/geometric/PathGeometric.h>
+#include <iostream>
+#include <limits>
 #include <photonav/io/error.hpp>
 #include <photonav/problem/planning_problem.hpp>
 
