@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kTimeSlack = 1e-9;                       // of sums of time steps [s]
 constexpr std::uint64_t kDepthSeed = 0x9e3779b97f4a7c15;  // for random numbers of its own
+constexpr std::uint64_t kVerticalSeed = 0xd1b54a32d192ed03;
 
 }  // namespace
 
@@ -20,7 +21,8 @@ SimulatedCamera::SimulatedCamera(const ViewSource& world, const Camera& camera, 
       noise_(std::move(noise)),
       options_(options),
       random_(seed),
-      depthRandom_(seed ^ kDepthSeed) {
+      depthRandom_(seed ^ kDepthSeed),
+      verticalRandom_(seed ^ kVerticalSeed) {
     if (!(options.period > 0.) || !(options.latency >= 0.)) {
         throw std::invalid_argument("simulated camera: no period, or negative latency");
     }
@@ -50,8 +52,16 @@ std::optional<Exposed> SimulatedCamera::expose(double time, const Pose& T_c_w) {
     if (isDropped) return exposed;
     measureDepth(T_c_w, view);
     view.intensity = exposed.image;
-    onTheWay_.push_back({time, std::move(view)});
+    onTheWay_.push_back({time, std::move(view), measureVertical(T_c_w)});
     return exposed;
+}
+
+std::optional<MeasuredVertical> SimulatedCamera::measureVertical(const Pose& T_c_w) {
+    if (options_.verticalSigma <= 0.) return {};
+    std::normal_distribution<double> normal(0., options_.verticalSigma);
+    const Eigen::Vector3d tilt_w(normal(verticalRandom_), normal(verticalRandom_), 0.);
+    const Eigen::Vector3d up_w = (Eigen::Vector3d::UnitZ() + tilt_w).normalized();
+    return MeasuredVertical{T_c_w.linear() * up_w, options_.verticalSigma};
 }
 
 /// Replaces the true depth of an ideal view by the measured one.

@@ -29,6 +29,8 @@ struct SimulatedCameraOptions {
     /// Noise of the pictures that `stereo` matches: the sensor's own, where that of the images may
     /// stand for errors of a model as well. None: no noise.
     ImageNoise pairNoise = {};
+    /// Of the vertical that is measured with every image [rad]; 0: it is not measured.
+    double verticalSigma = 0.;
     double period = 0.25;        ///< between exposures [s]
     double latency = 0.;         ///< from the exposure to the image being there [s]
     double dropRate = 0.;        ///< share of the frames that never arrive
@@ -64,6 +66,7 @@ class SimulatedCamera {
 
   private:
     bool isBlack(double time);
+    std::optional<MeasuredVertical> measureVertical(const Pose& T_c_w);
     void measureDepth(const Pose& T_c_w, View& view);
     vpImage<unsigned char> pictureOf(ImageF ideal);
     vpImage<unsigned char> rightImage(const Pose& T_c_w);
@@ -72,7 +75,7 @@ class SimulatedCamera {
     Camera camera_;
     ImageNoise noise_;
     SimulatedCameraOptions options_;
-    std::mt19937_64 random_, depthRandom_;
+    std::mt19937_64 random_, depthRandom_, verticalRandom_;
     std::optional<StereoDepth> stereo_;
     double next_ = 0.;  // exposure [s]
     std::deque<CameraFrame> onTheWay_;

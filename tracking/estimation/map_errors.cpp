@@ -61,6 +61,11 @@ void MapErrors::propagate(const Pose& T_next_now) {
     if (!poses_.empty()) cross_ = (adjoint(T_next_now) * cross_).eval();
 }
 
+void MapErrors::observe(const Matrix6& covariance, const Matrix6& information) {
+    const Matrix6 left = Matrix6::Identity() + covariance * information;
+    cross_ = left.partialPivLu().solve(cross_).eval();
+}
+
 MapErrors::Shares MapErrors::sharesOf(const View& map, const Camera& camera,
                                       const Pose& T_c_w) const {
     Shares shares;

@@ -40,6 +40,10 @@ class MapErrors {
     /// The camera has moved. @param T_next_now its motion
     void propagate(const Pose& T_next_now);
 
+    /// Something else than the map has informed of the pose in the world.
+    /// @param covariance of the pose before; both in the camera frame, left
+    void observe(const Matrix6& covariance, const Matrix6& information);
+
     /// @param map view predicted from the believed pose
     Relation relate(const View& map, const Camera& camera, const UncertainPose& T_c_w) const;
 

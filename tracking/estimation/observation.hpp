@@ -10,10 +10,17 @@
 
 namespace photonav {
 
+/// The vertical as an accelerometer measures it.
+struct MeasuredVertical {
+    Eigen::Vector3d up_c = Eigen::Vector3d::UnitZ();  ///< unit vector, camera frame
+    double sigma = 0.;  ///< standard deviation of its angle about each horizontal axis [rad]
+};
+
 /// An image, and when it was exposed.
 struct CameraFrame {
     double time = 0.;  ///< [s]
     View view;         ///< depth 0 where it was not measured, empty without a depth sensor
+    std::optional<MeasuredVertical> vertical = {};  ///< at the exposure
 };
 
 /// What was measured between the observation before and `time`.

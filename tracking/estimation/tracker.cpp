@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "geometry/se3.hpp"
+
 namespace photonav {
 
 class Tracker::MapAligner {
@@ -63,18 +65,19 @@ std::vector<TrackedFrame> Tracker::update(const Observation& observation) {
         odometry_.add(now_, *observation.T_next_now);
     }
     std::vector<TrackedFrame> tracked;
-    for (const CameraFrame& frame : observation.frames)
-        tracked.push_back(track(frame.view, frame.time));
+    for (const CameraFrame& frame : observation.frames) tracked.push_back(track(frame));
     if (hasOdometry_) loss_.onTime(now_);
     return tracked;
 }
 
-TrackedFrame Tracker::track(const View& view, double time) {
-    now_ = std::max(now_, time);
+TrackedFrame Tracker::track(const CameraFrame& image) {
+    const View& view = image.view;
+    now_ = std::max(now_, image.time);
     const Pose stayed = belief_.mean;
-    predict(time);
+    predict(image.time);
+    if (image.vertical) level(*image.vertical);
     TrackedFrame frame;
-    frame.time = time;
+    frame.time = image.time;
     if (const auto match = find(view, stayed, frame)) {
         take(view, *match, stayed, frame);
     } else {
@@ -93,6 +96,19 @@ void Tracker::predict(double time) {
     belief_ = compound(motion, belief_);
     sinceTracked_ = compound(motion, {Pose::Identity(), sinceTracked_}).covariance;
     if (options_.mapErrors) options_.mapErrors->propagate(motion.mean);
+}
+
+/// The vertical of a camera turned by exp(phi^) is up_c + phi x up_c to first order.
+void Tracker::level(const MeasuredVertical& measured) {
+    const Eigen::Vector3d up_c = belief_.mean.linear().col(2);
+    Eigen::Matrix<double, 3, 6> J = Eigen::Matrix<double, 3, 6>::Zero();
+    J.rightCols<3>() = -hat(up_c);
+    const double weight = 1. / (measured.sigma * measured.sigma);
+    const Matrix6 information = weight * J.transpose() * J;
+    const Vector6 right = weight * J.transpose() * (measured.up_c - up_c);
+    if (options_.mapErrors) options_.mapErrors->observe(belief_.covariance, information);
+    belief_.covariance = updateCovariance(belief_.covariance, information);
+    belief_.mean = expSE3(belief_.covariance * right) * belief_.mean;
 }
 
 /// What the map in view owes to which keyframes.

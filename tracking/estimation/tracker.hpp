@@ -35,6 +35,8 @@ struct TrackerOptions {
 /// is propagated with odometry, or, without any, with the velocity so far; each image is aligned to
 /// the map with the belief as prior, or to keyframes, and the belief is then that of the alignment.
 ///
+/// A measured vertical corrects the belief before the image of the same time is aligned.
+///
 /// A rejected image leaves the prediction. Tracking counts as lost after several of them
 /// (LossOptions); then the same images are aligned in a wider neighbourhood, and to remembered
 /// keyframes, and one ends the loss when it explains the image and leaves no direction as wide as
@@ -60,7 +62,7 @@ class Tracker {
     /// The next image of a camera without odometry.
     /// @param view of the camera's size @throws std::invalid_argument otherwise
     /// @param time [s] larger than the one before
-    TrackedFrame track(const View& view, double time);
+    TrackedFrame track(const View& view, double time) { return track({time, view}); }
 
     /// Belief at the last image.
     const UncertainPose& beliefAtLastImage() const { return belief_; }
@@ -84,7 +86,9 @@ class Tracker {
     };
     class MapAligner;
 
+    TrackedFrame track(const CameraFrame& image);
     void predict(double time);
+    void level(const MeasuredVertical& measured);
     void relateToMap();
     UncertainPose priorInMap() const;
     Matrix6 covarianceOf(const Match& match);

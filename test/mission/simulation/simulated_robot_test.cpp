@@ -38,6 +38,27 @@ TEST(SimulatedMav, ItsOdometryHasTheStatedCovariance) {
     EXPECT_NEAR(sum / kFlights, 1., 0.1);
 }
 
+TEST(SimulatedCamera, MeasuresTheVerticalAsExactlyAsItSays) {
+    const MeshRenderer floor(test::floorOf(valueNoise({.seed = 3})));
+    const Pose T_c_w = cameraAt({0., 0., 2.}, test::kOblique);
+    SimulatedCamera camera(floor, makeCamera(8, 8, 1.), {}, {.verticalSigma = 0.02, .period = 0.1},
+                           1);
+    const Eigen::Vector3d up_c = T_c_w.linear().col(2);
+    double sum = 0.;
+    constexpr int kImages = 2000;
+    for (int i = 0; i < kImages; ++i) {
+        camera.expose(0.1 * i, T_c_w);
+        const auto image = camera.receive(0.1 * i);
+        ASSERT_TRUE(image && image->vertical);
+        EXPECT_EQ(image->vertical->sigma, 0.02);
+        sum += image->vertical->up_c.cross(up_c).squaredNorm();
+    }
+    EXPECT_NEAR(std::sqrt(sum / kImages / 2.), 0.02, 1e-3);
+    SimulatedCamera without(floor, makeCamera(8, 8, 1.), {}, {.period = 0.1}, 1);
+    without.expose(0., T_c_w);
+    EXPECT_FALSE(without.receive(0.)->vertical);
+}
+
 TEST(SimulatedCamera, DeliversLateDropsAndGoesBlack) {
     const MeshRenderer floor(test::floorOf(valueNoise({.seed = 3})));
     const Pose T_c_w = cameraAt({0., 0., 2.}, kDown);

@@ -102,6 +102,19 @@ TEST_F(OwnMapErrors, WhatAnImageHardlyInformsOfStaysAsItWas) {
     EXPECT_EQ(MapErrors::withoutWeak(alignment, prior).T_c_w.matrix(), alignment.T_c_w.matrix());
 }
 
+/// The map, made at the pose of before, keeps the errors that the pose has lost.
+TEST_F(OwnMapErrors, WhatElseInformsOfThePoseDoesNotCorrectTheMap) {
+    const Matrix6 before = 1e-2 * Matrix6::Identity();
+    addKeyframe(0., before);
+    Matrix6 information = Matrix6::Zero();
+    information.diagonal() << 0., 0., 0., 400., 900., 0.;
+    errors.observe(before, information);
+    const Matrix6 after = updateCovariance(before, information);
+    const auto relation = errors.relate(viewAt(0.), camera, {poseAt(0.), after});
+    EXPECT_LT((relation.relative - (before - after)).norm(), 1e-3 * before.norm());
+    EXPECT_LT((relation.ofMap - before).norm(), 1e-3 * before.norm());
+}
+
 TEST_F(OwnMapErrors, ALossIsResolvedToTheErrorsOfTheMapInView) {
     const Matrix6 start = kFirst * Matrix6::Identity();
     addKeyframe(0., start);

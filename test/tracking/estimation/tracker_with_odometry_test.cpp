@@ -53,6 +53,32 @@ class HoverOver {
 
 UncertainPose narrow(const Pose& T_c_w) { return {T_c_w, 1e-6 * Matrix6::Identity()}; }
 
+TEST(TrackerWithOdometry, TheVerticalCorrectsRollAndPitchAlone) {
+    const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
+    const Pose truth = cameraAt({0., 0., 2.}, test::kDown);
+    Vector6 error;
+    error << 0.01, -0.02, 0.03, 0., 0., 0.;
+    const Eigen::Vector3d up_c = truth.linear().col(2);
+    const Eigen::Vector3d level_c = up_c.unitOrthogonal();
+    error.tail<3>() = 0.03 * level_c + 0.05 * up_c;
+    const UncertainPose start{expSE3(error) * truth, 1e-3 * Matrix6::Identity()};
+    Tracker tracker(white, hoverCamera(), start);
+    View view;
+    white->render(hoverCamera(), truth, view);
+    Observation observation;
+    observation.time = 0.25;
+    observation.T_next_now = UncertainPose{};
+    observation.frames.push_back({0.25, {view.intensity, {}}, MeasuredVertical{up_c, 1e-3}});
+    const UncertainPose belief = tracker.update(observation).front().T_c_w;
+    const Vector6 left = deviation(belief.mean, truth);
+    EXPECT_NEAR(left.tail<3>().dot(level_c), 0., 1e-3);
+    EXPECT_NEAR(left.tail<3>().dot(up_c), 0.05, 2e-3);
+    const Eigen::Matrix3d covariance = belief.covariance.bottomRightCorner<3, 3>();
+    EXPECT_NEAR(level_c.dot(covariance * level_c), 1e-6, 1e-7);
+    EXPECT_NEAR(up_c.dot(covariance * up_c), 1e-3, 1e-5);
+    EXPECT_NEAR(belief.covariance(0, 0), 1e-3, 1e-5);
+}
+
 /// A plan may lead over a surface without texture: such an image agrees with the map.
 TEST(TrackerWithOdometry, AnImageThatDoesNotInformIsNoLoss) {
     const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
