@@ -51,6 +51,7 @@ json jsonOf(const ExplorationResult& flight, double characteristicLength) {
             {"duration_s", flight.duration},
             {"length", flight.flown},
             {"goal_error_m", flight.goalError},
+            {"arrival_probability", flight.arrivalProbability},
             {"position_rmse_m", finiteOrNull(positionRmse(flight))},
             {"nees_per_dof", finiteOrNull(neesPerDof(flight))},
             {"least_clearance_m", finiteOrNull(flight.leastClearance)},

@@ -41,6 +41,10 @@ void addKeys(KeyTable& keys, ExploreConfig& c) {
     keys.number({"depth_missing", "", "share of its pixels without a measurement"}, c.depthMissing,
                 {0., 1.});
     keys.number({"baseline", "m", "between the cameras of `stereo`"}, c.baseline, {0.01, 10.});
+    keys.number({"vertical_sigma", "rad",
+                 "standard deviation of the vertical, which the accelerometer measures with every "
+                 "image; 0: it is not measured"},
+                c.verticalSigma, {0., 1.});
     keys.number({"range", "m", "farther surfaces are not mapped"}, c.range, {0.5, 12.});
     keys.number({"resolution", "m", "edge of the map's cells"}, c.resolution, {0.01, 0.5});
     keys.choice({"unknown", "",
@@ -72,6 +76,12 @@ void addKeys(KeyTable& keys, ExploreConfig& c) {
                     "variances at the start, in place of `noise.initial`: an unknown scene has no "
                     "frame but that of the start"},
                    c.initialCovariance);
+    keys.number({"goal_tolerance", "m", "distance to the goal of a flight that arrived"},
+                c.goalTolerance, {0.01, 100.});
+    keys.number({"goal_confidence", "",
+                 "an arrival is claimed where the robot believes with at least this probability "
+                 "to be within `goal_tolerance` of the goal"},
+                c.goalConfidence, {0., 0.9999});
     keys.number({"time_limit", "s", "of a flight"}, c.timeLimit, {1., 1e5});
     keys.count({"trials", "", "flights per planner"}, c.trials, {1., 1e6});
     keys.add({.words = {"planners", "",

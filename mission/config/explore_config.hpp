@@ -25,11 +25,12 @@ struct ExploreConfig {
     ExploreConfig();
 
     ExploreSensor sensor = ExploreSensor::depth;
-    double depthSigma = 0.0015;  ///< of the depth sensor at 1 m, growing with depth squared [m]
-    double depthMissing = 0.02;  ///< share of its pixels without a measurement
-    double baseline = 0.11;      ///< of the stereo camera [m]
-    double range = 4.;           ///< farther surfaces are not mapped [m]
-    double resolution = 0.05;    ///< edge of the map's cells [m]
+    double depthSigma = 0.0015;   ///< of the depth sensor at 1 m, growing with depth squared [m]
+    double depthMissing = 0.02;   ///< share of its pixels without a measurement
+    double baseline = 0.11;       ///< of the stereo camera [m]
+    double verticalSigma = 0.01;  ///< of the vertical by the accelerometer [rad]; 0: not measured
+    double range = 4.;            ///< farther surfaces are not mapped [m]
+    double resolution = 0.05;     ///< edge of the map's cells [m]
     UnknownSpace unknown = UnknownSpace::optimistic;
     UnknownInformation unknownInformation = UnknownInformation::none;
     double keyframeDistance = 0.25;  ///< an image this far from the last one fused is fused [m]
@@ -40,6 +41,8 @@ struct ExploreConfig {
     unsigned viewTurns = 4;          ///< views that changed are rendered again in as many updates
     double commitment = 0.1;         ///< a path is left for one that costs less by this share
     Matrix6 initialCovariance;       ///< of the pose at the start, body frame
+    double goalTolerance = 0.3;      ///< distance to the goal of a flight that arrived [m]
+    double goalConfidence = 0.5;     ///< least believed probability of an arrival that is claimed
     double timeLimit = 600.;         ///< of a flight [s]
     unsigned trials = 1;             ///< per planner
     std::vector<std::string> planners;  ///< that are compared; empty: planner.name

@@ -19,6 +19,8 @@ namespace {
 
 constexpr double kHidden = 0.3;  // around the robot, that such a camera does not see [m]
 constexpr int kMostInVain = 6;   // updates in a row without a way, before there is none
+constexpr int kBlindInVain = 1;  // steps into what was not seen that showed nothing either, before
+                                 // there is no way
 constexpr double kWait = 1.;     // before an update without a keyframe, while nothing moves [s]
 
 Matrix6 inCameraFrame(const Matrix6& covariance, const Pose& T_b_c) {
@@ -37,6 +39,8 @@ class Exploration {
     void onImage(const TrackedFrame& tracked, const View& image);
     void updatePlan(const UncertainPose& T_c_w, MapChange change, double fuseSeconds);
     void flyOn(const UncertainPose& T_c_w);
+    bool mayStepBlindly() const;
+    void hover(const UncertainPose& T_c_w);
     bool isWaiting() const;
     bool hasEnded();
     const ExplorationResult& resultSoFar();
@@ -56,6 +60,7 @@ class Exploration {
     Mapper mapper_;
     bool isWhole_ = false;    // the plan flown leads to the goal
     int withoutWay_ = 0;      // updates in a row
+    int blindInVain_ = 0;     // steps since the map last grew
     double lastUpdate_ = 0.;  // [s]
     FlightEvaluator evaluator_;
     ExplorationResult result_;
@@ -170,6 +175,7 @@ void Exploration::updatePlan(const UncertainPose& T_c_w, MapChange change, doubl
     PlanUpdate update;
     update.time = robot_.time();
     Stopwatch watch;
+    if (!change.occupancy.empty()) blindInVain_ = 0;
     change.join(map_.addBody(bodyOf(T_c_w.mean).translation()));
     update.fuseSeconds = fuseSeconds + watch.seconds();
     result_.keyframes = mapper_.keyframes();
@@ -185,18 +191,28 @@ void Exploration::updatePlan(const UncertainPose& T_c_w, MapChange change, doubl
 /// Gives the pilot the part of the plan that is safe, or lets it hover.
 void Exploration::flyOn(const UncertainPose& T_c_w) {
     const std::vector<BeliefPoint>& path = planner_.path();
-    if (path.empty()) {
-        ++withoutWay_;
-        isWhole_ = false;
-        return pilot_.setPlan(stayingAt(T_c_w, setup_.truth.T_b_c));
-    }
-    withoutWay_ = 0;
+    if (path.empty()) return hover(T_c_w);
     // Hovering over the goal is not interrupted by a way of a few centimetres to it.
     if (isWhole_ && pilot_.route().isAtGoal()) return;
     FlyablePart way = flyablePart(path, space_);
+    if (way.isBlind && !mayStepBlindly()) return hover(T_c_w);
+    withoutWay_ = 0;
+    blindInVain_ += way.isBlind;
     isWhole_ = way.isWhole;
     result_.blindSteps += way.isBlind;
     pilot_.setPlan(std::move(way.plan));
+}
+
+/// A camera without a depth sensor has to move before it sees anything.
+bool Exploration::mayStepBlindly() const {
+    const bool isMonocular = setup_.config.explore.sensor == ExploreSensor::monocular;
+    return blindInVain_ < (isMonocular ? kMostInVain : kBlindInVain);
+}
+
+void Exploration::hover(const UncertainPose& T_c_w) {
+    ++withoutWay_;
+    isWhole_ = false;
+    pilot_.setPlan(stayingAt(T_c_w, setup_.truth.T_b_c));
 }
 
 const ExplorationResult& Exploration::resultSoFar() {
@@ -215,6 +231,7 @@ std::string Exploration::reasonForNoWay() const {
     if (clearance < setup_.config.robotRadius) {
         return fmt::format("the goal is in collision: clearance {:.2f} m in the map", clearance);
     }
+    if (!planner_.path().empty()) return "the sensor does not show the way ahead";
     return "the map shows no way to the goal";
 }
 
@@ -233,7 +250,8 @@ bool Exploration::hasEnded() {
         return endAs(FlightEnd::outOfTime, "the time limit was reached");
     }
     if (!isWhole_ || !pilot_.hasArrived(tracker_, time)) return false;
-    const FlightEnd end = evaluator_.endAtGoal(tracker_, setup_.flight.arrivalTolerance);
+    const FlightEnd end = evaluator_.endAtGoal(tracker_, setup_.flight.arrivalTolerance,
+                                               setup_.config.explore.goalConfidence);
     if (end == FlightEnd::arrived) return endAs(end, "");
     if (end == FlightEnd::uncertain) {
         return endAs(end, fmt::format("at the goal with a probability of {:.3f} only",
@@ -267,6 +285,8 @@ ExplorationSetup setUpExploration(const PlanningProblem& problem) {
     camera.depth = depthSensorOf(config.explore.sensor);
     camera.depthNoise = {config.explore.depthSigma, config.explore.depthMissing};
     camera.baseline = config.explore.baseline;
+    camera.verticalSigma = config.explore.verticalSigma;
+    setup.flight.arrivalTolerance = config.explore.goalTolerance;
     PhotometricOptions ofSensor = config.photometric;
     ofSensor.scale = 1.;
     camera.pairNoise = config.fly.camera == "real" ? realNoise() : assumedNoise(ofSensor);

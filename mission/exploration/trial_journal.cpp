@@ -161,6 +161,7 @@ json TrialKind::save(const ExplorationResult& flight, const fs::path& folder) {
             {"lost_s", flight.lostTime},
             {"times_lost", flight.timesLost},
             {"goal_error", flight.goalError},
+            {"arrival_probability", flight.arrivalProbability},
             {"least_clearance", finiteOrNull(flight.leastClearance)},
             {"images", flight.images},
             {"rejected_images", flight.rejectedImages},
@@ -183,6 +184,7 @@ ExplorationResult TrialKind::load(const json& line, const fs::path& folder) {
     flight.lostTime = positive(line, "lost_s");
     flight.timesLost = countOf(line, "times_lost");
     flight.goalError = positive(line, "goal_error");
+    flight.arrivalProbability = positive(line, "arrival_probability");
     flight.leastClearance = orNone(line, "least_clearance");
     flight.images = countOf(line, "images");
     flight.rejectedImages = countOf(line, "rejected_images");

@@ -120,12 +120,12 @@ void FlightEvaluator::onStep(const std::vector<TrackedFrame>& tracked, const Tra
     }
 }
 
-FlightEnd FlightEvaluator::endAtGoal(const Tracker& tracker, double tolerance) {
+FlightEnd FlightEvaluator::endAtGoal(const Tracker& tracker, double tolerance, double confidence) {
     PositionBelief believed = bodyPosition(tracker.belief(), world_.T_b_c);
     believed.covariance *= corrections_.varianceFactor();
     result_.believedGoal = believed;
     result_.arrivalProbability = probabilityWithin(believed, goal_w_, tolerance);
-    if (result_.arrivalProbability < kArrivalConfidence) return FlightEnd::uncertain;
+    if (result_.arrivalProbability < confidence) return FlightEnd::uncertain;
     return goalError() <= tolerance ? FlightEnd::arrived : FlightEnd::astray;
 }
 

@@ -103,8 +103,9 @@ class FlightEvaluator {
     double goalError() const { return (robot_.T_w_b().translation() - goal_w_).norm(); }
     /// Of a robot whose estimate is at the goal: an arrival is reported where the belief, as wide
     /// as the corrections by the last images ask for, is within `tolerance` [m] of the goal with
-    /// kArrivalConfidence.
-    FlightEnd endAtGoal(const Tracker& tracker, double tolerance);
+    /// the probability `confidence`.
+    FlightEnd endAtGoal(const Tracker& tracker, double tolerance,
+                        double confidence = kArrivalConfidence);
     FlightResult& result() { return result_; }
     /// Enters what is known at the end.
     void finish(const Tracker& tracker);

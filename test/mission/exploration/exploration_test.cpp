@@ -97,6 +97,91 @@ TEST_F(RoomToExplore, SaysThatTheGoalIsInAnObstacle) {
     EXPECT_GT(flight.leastClearance, 0.125);
 }
 
+/// A depth sensor that measures nothing: the robot does not fly into what it cannot see.
+TEST_F(RoomToExplore, SaysThatItSeesNothingOfTheWay) {
+    config.explore.depthMissing = 1.;
+    const ExplorationResult flight = flown(room());
+    EXPECT_EQ(nameOf(flight.end), "no way");
+    EXPECT_NE(flight.reason.find("sensor does not show"), std::string::npos) << flight.reason;
+    EXPECT_LT(flight.way, 0.5);
+}
+
+/// Without texture odometry is all there is. The arrival is claimed if it is more likely than not,
+/// with its probability.
+TEST_F(RoomToExplore, ArrivesByOdometryWhereNothingHasTexture) {
+    Scene scene;
+    const auto grey = addTexture(scene, uniformTexture(0.6F));
+    addBox(scene, {0., 0., 0.}, {8., 4., 3.}, grey, BoxInside::hollow);
+    config.goal.position.x() = 5.;
+    config.belief.motionNoise.diagonal() << 2e-3, 2e-3, 2e-3, 2e-5, 2e-5, 1e-3;
+    const ExplorationResult flight = flown(scene);
+    ASSERT_EQ(nameOf(flight.end), "arrived") << flight.reason;
+    EXPECT_LT(flight.goalError, 0.3);
+    EXPECT_GT(flight.arrivalProbability, 0.5);
+    EXPECT_LT(flight.arrivalProbability, 0.995);
+    EXPECT_LT(neesPerDof(flight), 3.);
+    config.explore.goalConfidence = 0.995;
+    EXPECT_EQ(nameOf(flown(std::move(scene)).end), "uncertain arrival");
+}
+
+/// One world until it becomes another.
+class ChangingViews : public ViewSource {
+  public:
+    ChangingViews(const World& before, const World& after, const std::atomic<bool>& hasChanged)
+        : before_(before), after_(after), hasChanged_(hasChanged) {}
+    void render(const Camera& camera, const Pose& T_c_w, View& view) const override {
+        (hasChanged_ ? after_ : before_).views().render(camera, T_c_w, view);
+    }
+
+  private:
+    const World& before_;
+    const World& after_;
+    const std::atomic<bool>& hasChanged_;
+};
+
+/// A box comes down on the way, in free space of the map, a good metre in front of the robot.
+TEST_F(RoomToExplore, FliesAroundABoxThatAppearsInFrontOfIt) {
+    config.explore.range = 4.;
+    Scene boxed = room();
+    addBox(boxed, {3.2, 1.3, 0.}, {3.6, 2.7, 3.}, addTexture(boxed, valueNoise({.seed = 5})));
+    const World before(room(), config), after(boxed, config);
+    const PlanningProblem problem(config, before);
+    ExplorationSetup setup = setUpExploration(problem);
+    std::atomic<bool> hasChanged = false;
+    setup.truth.truth = std::make_shared<ChangingViews>(before, after, hasChanged);
+    setup.truth.clearance = [&](const Eigen::Vector3d& p_w) {
+        return (hasChanged ? after : before).clearance(p_w);
+    };
+    const ExplorationResult flight = explore(
+        setup, config.planner, 1, kNotInterrupted,
+        [&](const ExplorationResult& soFar) { hasChanged = hasChanged || soFar.way > 0.8; });
+    ASSERT_TRUE(hasChanged);
+    EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
+    EXPECT_GT(flight.leastClearance, 0.125);
+    EXPECT_LT(flight.goalError, 0.3);
+}
+
+/// Images that are black or missing for a while, and depth that is missing for most pixels.
+TEST_F(RoomToExplore, ArrivesThroughABlackoutWithFewDepths) {
+    config.fly.blackout = {3., 4.};
+    config.fly.drop = 0.2;
+    config.explore.depthMissing = 0.5;
+    const ExplorationResult flight = flown(room());
+    EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
+    EXPECT_GT(flight.rejectedImages, 10);
+    EXPECT_GT(flight.leastClearance, 0.125);
+}
+
+TEST_F(RoomToExplore, SaysThatTheGoalIsWalledOff) {
+    Scene scene = room();
+    addBox(scene, {5.8, 0., 0.}, {6., 4., 3.}, addTexture(scene, valueNoise({.seed = 5})));
+    const ExplorationResult flight = flown(std::move(scene));
+    EXPECT_EQ(nameOf(flight.end), "no way");
+    EXPECT_NE(flight.reason.find("no way to the goal"), std::string::npos) << flight.reason;
+    EXPECT_GT(flight.leastClearance, 0.125);
+    EXPECT_GT(flight.map->size(), 1000U);
+}
+
 TEST_F(RoomToExplore, RefusesAStartInCollision) {
     config.start.position = {4.7, 2., 1.1};
     try {
