@@ -103,7 +103,7 @@ TEST_F(RoomToExplore, SaysThatItSeesNothingOfTheWay) {
     const ExplorationResult flight = flown(room());
     EXPECT_EQ(nameOf(flight.end), "no way");
     EXPECT_NE(flight.reason.find("sensor does not show"), std::string::npos) << flight.reason;
-    EXPECT_LT(flight.way, 0.5);
+    EXPECT_LT(flight.flown, 0.5);
 }
 
 /// Without texture odometry is all there is. The arrival is claimed if it is more likely than not,
@@ -154,7 +154,7 @@ TEST_F(RoomToExplore, FliesAroundABoxThatAppearsInFrontOfIt) {
     };
     const ExplorationResult flight = explore(
         setup, config.planner, 1, kNotInterrupted,
-        [&](const ExplorationResult& soFar) { hasChanged = hasChanged || soFar.way > 0.8; });
+        [&](const ExplorationResult& soFar) { hasChanged = hasChanged || soFar.flown > 0.8; });
     ASSERT_TRUE(hasChanged);
     EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
     EXPECT_GT(flight.leastClearance, 0.125);
