@@ -22,7 +22,8 @@ Camera scaled(const Camera& camera, double factor) {
     const auto centre = [&](double c) { return (c + 0.5) * factor - 0.5; };
     return {pixels(camera.width), pixels(camera.height),
             vpCameraParameters(camera.fx() * factor, camera.fy() * factor, centre(camera.cx()),
-                               centre(camera.cy()))};
+                               centre(camera.cy())),
+            camera.hasPointSpread};
 }
 
 Pose cameraMount(double belowHorizon) {

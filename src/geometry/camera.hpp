@@ -13,6 +13,7 @@ struct Camera {
     unsigned width = 188;   ///< pixels (default: the paper's quarter-size image)
     unsigned height = 120;  ///< pixels
     vpCameraParameters intrinsics;
+    bool hasPointSpread = true;  ///< false: rendered pixels are single rays (applyPointSpread())
 
     double fx() const { return intrinsics.get_px(); }
     double fy() const { return intrinsics.get_py(); }

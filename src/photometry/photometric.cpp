@@ -63,6 +63,9 @@ float contrastOf(const PhotometricOptions& options) {
 /// First row and column in use: the border of one pixel and half a stride.
 int firstInStride(int stride) { return 1 + stride / 2; }
 
+/// Where in its pixel a gradient is, right of and below the centre [pixels].
+double shiftOf(GradientStencil gradient) { return gradient == GradientStencil::square ? 0.5 : 0.; }
+
 /// Harmonic mean over the diagonal of the image (near surfaces have most of the information); 0
 /// without any surface.
 float typicalDepth(const View& view) {
@@ -95,6 +98,7 @@ class Kernel {
         : view_(view),
           camera_(camera),
           jump_(static_cast<float>(options.depthJump)),
+          gradient_(options.gradient),
           width_(camera.width),
           vectors_((width_ - 2 + simd::kWidth - 1) / simd::kWidth),
           pivot_(typicalDepth(view)),
@@ -103,7 +107,8 @@ class Kernel {
           jacobian_(vectors_) {
         for (auto& row : inverseDepth_) row.resize(width_);
         for (std::size_t u = 0; u < width_; ++u) {
-            x_[u] = static_cast<float>((static_cast<double>(u) - camera.cx()) / camera.fx());
+            const double column = static_cast<double>(u) + shiftOf(gradient_);
+            x_[u] = static_cast<float>((column - camera.cx()) / camera.fx());
         }
         float* contrast = reinterpret_cast<float*>(contrast_.data());
         const std::size_t lanes = vectors_ * simd::kWidth;
@@ -118,7 +123,10 @@ class Kernel {
         for (next_ = std::max(next_, v - 1); next_ <= v + 1; ++next_) {
             for (std::size_t i = 0; i <= vectors_; ++i) invert(next_, i);
         }
-        fill(v);
+        if (gradient_ == GradientStencil::square)
+            fill<GradientStencil::square>(v);
+        else
+            fill<GradientStencil::central>(v);
         // The divisions for the row after next run during the first pass: they take long but leave
         // other units free.
         const unsigned ahead = std::min(next_++, camera_.height - 1);
@@ -176,9 +184,10 @@ class Kernel {
         simd::store(inverseDepth(v) + u, inverseDepthOf(simd::load<Float>(view_.depth[v] + u)));
     }
 
+    template <GradientStencil kGradient>
     void fill(unsigned v) {
         // x and y are scaled by the ratio of the focal lengths where the gradients would have to be
-        const double row = v - camera_.cy();
+        const double row = v + shiftOf(kGradient) - camera_.cy();
         const float yOfGradient = static_cast<float>(row / camera_.fx());
         const float y = static_cast<float>(row * camera_.fx() / (camera_.fy() * camera_.fy()));
         const float jump = jump_;
@@ -202,8 +211,15 @@ class Kernel {
             const auto masked = [&counts](const Float& value) {
                 return reinterpret_cast<Float>(reinterpret_cast<Int>(value) & counts);
             };
-            const Float gx = masked(at(I + 1) - at(I - 1));
-            const Float gy = masked(at(belowI) - at(aboveI));
+            Float gx, gy;
+            if constexpr (kGradient == GradientStencil::square) {
+                const Float falling = at(belowI + 1) - at(I), rising = at(I + 1) - at(belowI);
+                gx = masked(falling + rising);
+                gy = masked(falling - rising);
+            } else {
+                gx = masked(at(I + 1) - at(I - 1));
+                gy = masked(at(belowI) - at(aboveI));
+            }
             const Float x = at(xs);
             const Float s = x * gx + yOfGradient * gy;
             const Float a = gx * w;
@@ -240,6 +256,7 @@ class Kernel {
     const View& view_;
     const Camera& camera_;
     float jump_;
+    GradientStencil gradient_;
     std::size_t width_, vectors_;
     float pivot_;  ///< depth of the point that rotations are about, on the optical axis
     std::vector<float> x_;
@@ -253,15 +270,29 @@ class Kernel {
 };
 
 /// Whether row v has no gradient. Not inlined: the kernel needs all registers.
-[[gnu::noinline]] bool isBlank(const ImageF& intensity, unsigned v) {
-    const float* I = intensity[v];
+[[gnu::noinline]] bool isBlank(const ImageF& intensity, unsigned v, GradientStencil gradient) {
+    const bool isSquare = gradient == GradientStencil::square;
+    const float* I = intensity[v] + (isSquare ? 1 : 0);
+    const float* above = intensity[isSquare ? v : v - 1] + 1;
     const std::size_t bytes = (intensity.getWidth() - 2) * sizeof(float);
-    return I[0] == I[2] && std::memcmp(I, I + 2, bytes) == 0 &&
-           std::memcmp(intensity[v - 1] + 1, intensity[v + 1] + 1, bytes) == 0;
+    return *above == intensity[v + 1][1] && std::memcmp(intensity[v] + 2, I, bytes) == 0 &&
+           std::memcmp(above, intensity[v + 1] + 1, bytes) == 0;
 }
 
 double weight(const PhotometricOptions& options) {
     return options.scale * options.stride * options.stride / (options.sigma * options.sigma);
+}
+
+/// [1/pixel]
+Eigen::RowVector2d gradientAt(const ImageF& I, unsigned u, unsigned v, GradientStencil gradient) {
+    const auto difference = [&I](unsigned v1, unsigned u1, unsigned v0, unsigned u0) {
+        return static_cast<double>(I[v1][u1]) - I[v0][u0];
+    };
+    if (gradient == GradientStencil::central) {
+        return {0.5 * difference(v, u + 1, v, u - 1), 0.5 * difference(v + 1, u, v - 1, u)};
+    }
+    return {0.5 * (difference(v, u + 1, v, u) + difference(v + 1, u + 1, v + 1, u)),
+            0.5 * (difference(v + 1, u, v, u) + difference(v + 1, u + 1, v, u + 1))};
 }
 
 /// For images narrower than a vector.
@@ -291,7 +322,7 @@ Matrix6 photometricInformation(const View& view, const Camera& camera,
     }
     Kernel kernel(view, camera, options);
     for (unsigned v = firstInStride(options.stride); v + 1 < camera.height; v += options.stride) {
-        if (!isBlank(view.intensity, v)) kernel.add(v);
+        if (!isBlank(view.intensity, v, options.gradient)) kernel.add(v);
     }
     return weight(options) * kernel.sum();
 }
@@ -315,12 +346,12 @@ Vector6 pixelJacobian(const View& view, const Camera& camera, unsigned u, unsign
         return Vector6::Zero();
     }
 
-    const double gu = 0.5 * (static_cast<double>(I[v][u + 1]) - I[v][u - 1]);
-    const double gv = 0.5 * (static_cast<double>(I[v + 1][u]) - I[v - 1][u]);
-    const Eigen::Vector3d p = camera.unproject(u, v, view.depth[v][u]);
+    const Eigen::RowVector2d g = gradientAt(I, u, v, options.gradient);
+    const double shift = shiftOf(options.gradient);
+    const Eigen::Vector3d p = camera.unproject(u + shift, v + shift, view.depth[v][u]);
     Eigen::Matrix<double, 3, 6> motion;  // d p / d xi = [1 | -p^]
     motion << Eigen::Matrix3d::Identity(), -hat(p);
-    return (Eigen::RowVector2d(gu, gv) * camera.projectionJacobian(p) * motion).transpose();
+    return (g * camera.projectionJacobian(p) * motion).transpose();
 }
 
 ImageF contributionImage(const View& view, const Camera& camera, const Vector6& direction,

@@ -6,6 +6,13 @@
 
 namespace photonav {
 
+/// What stands for the gradient at a pixel.
+enum class GradientStencil {
+    central,  ///< central differences, over three pixels: of views with a point spread
+    square    ///< of the square of a pixel and those to its right and below: half as wide, at its
+              ///< middle; of views without a point spread
+};
+
 struct PhotometricOptions {
     double sigma = 0.02;  ///< standard deviation of the image noise, grey values in [0, 1]
     double scale = 1.0;   ///< factor on the information, because neighbouring pixels are correlated
@@ -13,16 +20,18 @@ struct PhotometricOptions {
     double depthJump = 0.05;   ///< relative second difference of inverse depth that is an occlusion
     double saturation = 1e-3;  ///< grey values within this of 0 or 1 are saturated: such a pixel
                                ///< does not respond to motion and is left out
+    GradientStencil gradient = GradientStencil::central;
 };
 
 /// Fisher information of the camera pose from one view, in the camera frame, for the left
 /// perturbation T_c_w = exp(xi^) mean:
 ///     Lambda = scale / sigma^2 * sum J^T J,   J = grad I * dpi/dp * [1 | -p^]
-/// (the paper's eqs. (19) and (20)). The gradient is the central difference of the predicted image;
-/// a border of one pixel is left out. A pixel is used if it and its four neighbours have depth,
-/// none of them lies across a depth discontinuity, and it is not saturated. Nothing is stored per
-/// pixel. Sums are single precision within 16 rows and double across them, with rotations about a
-/// point in view, so that the trace of the inverse is accurate to six digits.
+/// (the paper's eqs. (19) and (20)). The gradient is that of the predicted image
+/// (`options.gradient`); a border of one pixel is left out. A pixel is used if it and its four
+/// neighbours have depth, none of them lies across a depth discontinuity, and it is not saturated.
+/// Nothing is stored per pixel. Sums are single precision within 16 rows and double across them,
+/// with rotations about a point in view, so that the trace of the inverse is accurate to six
+/// digits.
 Matrix6 photometricInformation(const View& view, const Camera& camera,
                                const PhotometricOptions& options = {});
 

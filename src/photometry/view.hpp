@@ -43,7 +43,8 @@ inline bool hasDepthAround(const View& view, unsigned u, unsigned v) {
 /// Whether a recorded image is black, as with a covered lens: a mean grey value below 5 of 255.
 bool isBlack(const ImageF& image);
 
-/// The camera's point spread, applied by every renderer as its last step: a 3x3 binomial filter of
+/// The camera's point spread, applied by every renderer as its last step (unless the camera has
+/// none): a 3x3 binomial filter of
 /// the intensity, so that edges are about three pixels wide and central differences approximate
 /// their gradients. Pixels with an invalid neighbour (depth 0) keep their value, the image is
 /// extrapolated linearly beyond its border, and a constant image stays bit-identical.

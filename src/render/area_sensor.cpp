@@ -24,7 +24,8 @@ void AreaSensor::renderAtOnce(const Camera& camera, const Pose& T_c_w, View& vie
     const auto centre = [n](double c) { return n * (c + 0.5) - 0.5; };
     const Camera fine{n * camera.width, n * camera.height,
                       vpCameraParameters(n * camera.fx(), n * camera.fy(), centre(camera.cx()),
-                                         centre(camera.cy()))};
+                                         centre(camera.cy())),
+                      camera.hasPointSpread};
     View rays;
     world_.render(fine, T_c_w, rays);
     view.intensity.resize(camera.height, camera.width);

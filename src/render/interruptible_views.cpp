@@ -9,7 +9,8 @@ namespace {
 /// The rows from `first` up to, not including, `end` of a camera's image.
 Camera rowsOf(const Camera& camera, unsigned first, unsigned end) {
     return {camera.width, end - first,
-            vpCameraParameters(camera.fx(), camera.fy(), camera.cx(), camera.cy() - first)};
+            vpCameraParameters(camera.fx(), camera.fy(), camera.cx(), camera.cy() - first),
+            camera.hasPointSpread};
 }
 
 /// Copies whole rows.

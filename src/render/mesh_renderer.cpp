@@ -149,7 +149,7 @@ void MeshRenderer::render(const Camera& camera, const Pose& T_c_w, View& view) c
         impl_->caster.cast(camera, T_c_w, visible);
     }
     impl_->shader.shade(camera, T_c_w, visible, view);
-    applyPointSpread(view);
+    if (camera.hasPointSpread) applyPointSpread(view);
 }
 
 }  // namespace photonav

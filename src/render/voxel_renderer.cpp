@@ -19,7 +19,7 @@ void VoxelRenderer::render(const Camera& camera, const Pose& T_c_w, View& view) 
     view.intensity.resize(camera.height, camera.width);
     view.depth.resize(camera.height, camera.width);
     tracePackets(grid_, camera, T_c_w, view);
-    applyPointSpread(view);
+    if (camera.hasPointSpread) applyPointSpread(view);
 }
 
 }  // namespace photonav

@@ -108,6 +108,37 @@ TEST(PixelJacobian, ConvergesToTheRenderedDerivativeWithThePixelPitch) {
     }
 }
 
+/// The square's gradient is that of its middle. Its depth is that of the pixel, so that the error
+/// falls with the pitch, not with its square.
+TEST(PixelJacobian, OfASquareIsTheDerivativeAtItsMiddle) {
+    const Camera camera = defaultCamera();
+    const PhotometricOptions options{.gradient = GradientStencil::square};
+    for (const Case& c : cases()) {
+        std::vector<double> error;
+        for (unsigned factor : {2U, 4U, 8U}) {
+            const Camera fine = refined(camera, factor);
+            const View view = c.plane.view(fine, c.T_c_w);
+            double sum = 0., size = 0.;
+            for (const auto& [u, v] : somePixels(camera)) {
+                // the square to the left of and above a pixel has its middle at (u, v) in this
+                // camera
+                Camera shifted = fine;
+                shifted.intrinsics.initPersProjWithoutDistortion(fine.fx(), fine.fy(),
+                                                                 fine.cx() - 0.5, fine.cy() - 0.5);
+                const Vector6 truth = -renderedDerivative(c, shifted, factor * u, factor * v, 1e-5);
+                const Vector6 J = pixelJacobian(view, fine, factor * u, factor * v, options);
+                ASSERT_FALSE(J.isZero()) << c.name << " " << u << " " << v;
+                sum += (J - truth).squaredNorm();
+                size += truth.squaredNorm();
+            }
+            error.push_back(std::sqrt(sum / size));
+        }
+        EXPECT_LT(error[0], 0.02) << c.name;
+        EXPECT_LT(error[1], 0.55 * error[0]) << c.name;
+        EXPECT_LT(error[2], 0.55 * error[1]) << c.name;
+    }
+}
+
 /// The other second-order error: halving the pose step must quarter the distance to J, once the
 /// error of the pixel pitch is extrapolated away.
 TEST(PixelJacobian, IsTheLimitOfPoseDifferences) {
@@ -194,12 +225,15 @@ TEST(Information, KernelAgreesAtAnySizeStrideAndAspect) {
                                                             0.4 * width, 0.7 * height);
             const View view = randomView(camera, width);
             for (int stride : {1, 2, 3, 4, 7}) {
-                PhotometricOptions options;
-                options.stride = stride;
-                const Matrix6 plain = informationByPixels(view, camera, options);
-                const Matrix6 kernel = photometricInformation(view, camera, options);
-                EXPECT_LE((kernel - plain).norm(), 1e-6 * plain.norm())
-                    << width << "x" << height << " stride " << stride;
+                for (const auto gradient : {GradientStencil::central, GradientStencil::square}) {
+                    PhotometricOptions options;
+                    options.stride = stride;
+                    options.gradient = gradient;
+                    const Matrix6 plain = informationByPixels(view, camera, options);
+                    const Matrix6 kernel = photometricInformation(view, camera, options);
+                    EXPECT_LE((kernel - plain).norm(), 1e-6 * plain.norm())
+                        << width << "x" << height << " stride " << stride;
+                }
             }
         }
     }
@@ -253,6 +287,25 @@ TEST(Information, StrideKeepsTheCovariance) {
             const double strided = traceOfInverse(photometricInformation(view, camera, options));
             EXPECT_NEAR(strided / full, 1., 0.12) << c.name << " stride " << stride;
         }
+    }
+}
+
+/// Columns that alternate are blank to central differences, rows that do as well.
+TEST(Information, ASquareSeesWhatAlternatesFromPixelToPixel) {
+    const Camera camera = makeCamera(40, 30, 1.2);
+    for (const bool inRows : {false, true}) {
+        View view = randomView(camera, 3);
+        view.depth = 2.F;
+        for (unsigned v = 0; v < camera.height; ++v) {
+            for (unsigned u = 0; u < camera.width; ++u) {
+                view.intensity[v][u] = (inRows ? v : u) % 2 == 0 ? 0.3F : 0.7F;
+            }
+        }
+        EXPECT_TRUE(photometricInformation(view, camera).isZero(0.));
+        const PhotometricOptions options{.gradient = GradientStencil::square};
+        const Matrix6 information = photometricInformation(view, camera, options);
+        EXPECT_GT(information(inRows ? 1 : 0, inRows ? 1 : 0), 1e3);
+        EXPECT_LT(relative(information, informationByPixels(view, camera, options)), 1e-6);
     }
 }
 

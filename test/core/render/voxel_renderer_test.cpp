@@ -195,6 +195,15 @@ TEST(VoxelRenderer, InterpolatesBetweenFaceCentres) {
                     (y - j) * ((i + 1 - x) * grey(i, j + 1) + (x - i) * grey(i + 1, j + 1)));
             }
         }
+        Camera sharp = camera;
+        sharp.hasPointSpread = false;
+        View rays;
+        VoxelRenderer(map, UnknownPolicy::free).render(sharp, T_c_w, rays);
+        for (unsigned i = 0; i < rays.intensity.getSize(); ++i) {
+            ASSERT_NEAR(rays.intensity.bitmap[i], expected.intensity.bitmap[i], 5e-5);
+        }
+        applyPointSpread(rays);
+        EXPECT_TRUE(rays.intensity == view.intensity);
         applyPointSpread(expected);
         for (unsigned i = 0; i < view.intensity.getSize(); ++i) {
             ASSERT_NEAR(view.intensity.bitmap[i], expected.intensity.bitmap[i], 5e-5);
