@@ -84,13 +84,32 @@ Motion BeliefModel::motion(const ob::State* from, const ob::State* to) const {
     return {from, to, length, steps, {}, 0};
 }
 
-Belief BeliefModel::propagate(const Belief& belief, Motion& motion, bool backward) {
-    updateViews(motion);
-    if (field_->hasPenalties()) return chargePenalties(belief, motion, backward);
+std::optional<Belief> BeliefModel::propagateWithin(double limit, const Belief& belief,
+                                                   Motion& motion, bool backward) {
+    if (field_->hasPenalties()) {
+        updateViews(motion);
+        return chargePenalties(belief, motion, backward);
+    }
+    if (motion.views.empty()) {
+        motion.views.resize(motion.steps + 1);
+        motion.epoch = field_->epoch();
+    }
     const auto start = std::chrono::steady_clock::now();
+    const double viewSeconds = field_->seconds();
+    const auto arrival = flyWithin(limit, belief, motion, backward);
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() -
+                (field_->seconds() - viewSeconds);
+    return arrival;
+}
+
+std::optional<Belief> BeliefModel::flyWithin(double limit, const Belief& belief, Motion& motion,
+                                             bool backward) {
     const bool perVertex = options_.cost == CostRule::perVertex;
     const double step = motion.length / motion.steps;
     const double shareOfView = perVertex ? 1. : step / options_.ds;
+    const double price = (1. - options_.alpha) * options_.kappa;
+    const double begin = belief.cost + options_.alpha * motion.length;
+    const double least = leastCharge(motion) / motion.steps;
     const bool turns = space_.kind() != StateKind::position;  // else all steps are alike
 
     Matrix6 covariance = belief.covariance;
@@ -100,8 +119,7 @@ Belief BeliefModel::propagate(const Belief& belief, Motion& motion, bool backwar
     Pose T_w_c = cameraPose(motion, backward ? motion.steps : 0);
     for (int k = 1; k <= motion.steps; ++k) {
         const int at = backward ? motion.steps - k : k;
-        const auto& view = *motion.views[at];
-        prefetch(view);
+        if (motion.views[at] != nullptr) prefetch(*motion.views[at]);
         if (turns || k == 1) {
             const Pose T_w_next = cameraPose(motion, at);
             adjointOfStep = translationAdjoint(T_w_c.translation() - T_w_next.translation());
@@ -112,15 +130,26 @@ Belief BeliefModel::propagate(const Belief& belief, Motion& motion, bool backwar
         fallbacks_ += moved.fellBack ? 1 : 0;
         covariance = moved.covariance;
         charge += 0.5 * step * (traceAfter + trace(covariance));  // the trace before the update
+        if (!perVertex && begin + price * charge + (motion.steps - k) * least > limit) return {};
+        const auto& view = viewAt(motion, at);
         if (!view.isZero) {
             covariance = updateCovariance(covariance, shareOfView * view.information);
         }
         traceAfter = trace(covariance);
     }
     if (perVertex) charge = traceAfter;
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return {covariance, belief.cost + options_.alpha * motion.length +
-                            (1. - options_.alpha) * options_.kappa * charge};
+    const auto*& unused = motion.views[backward ? motion.steps : 0];
+    if (unused != nullptr && unused->isStale) unused = nullptr;
+    motion.epoch = field_->epoch();
+    return Belief{covariance, begin + price * charge};
+}
+
+/// Covers fourth-order terms by 1 %.
+double BeliefModel::leastCharge(const Motion& motion) const {
+    constexpr double kSafety = 0.99;
+    if (options_.cost == CostRule::perVertex || field_->hasPenalties()) return 0.;
+    return kSafety * (1. - options_.alpha) * options_.kappa * 0.5 * noiseTrace() * motion.length *
+           motion.length / motion.steps;
 }
 
 /// The penalty of the views in place of the trace: a motion costs the same for every belief.
@@ -147,20 +176,23 @@ double BeliefModel::penaltyAt(const Motion& motion, int k) const {
     return motion.views[k]->penalty.along(t_w);
 }
 
-/// Finds the views of a motion, or updates those that became stale by a change of the map.
+/// Finds all views of a motion, or updates those that became stale by a change of the map.
 void BeliefModel::updateViews(Motion& motion) {
-    if (!motion.views.empty()) {
-        if (motion.epoch == field_->epoch()) return;
-        for (const auto* view : motion.views) field_->current(*view);
-    } else {
-        std::vector<const InformationField::Entry*> views(motion.steps + 1);
-        for (int k = 0; k <= motion.steps; ++k) {
-            views[k] = &field_->at(
-                space_.poseBetween(motion.from, motion.to, static_cast<double>(k) / motion.steps));
-        }
-        motion.views = std::move(views);
-    }
+    motion.views.resize(motion.steps + 1);
+    for (int k = 0; k <= motion.steps; ++k) viewAt(motion, k);
     motion.epoch = field_->epoch();
+}
+
+/// The k-th view of a motion, as the map is now.
+const InformationField::Entry& BeliefModel::viewAt(Motion& motion, int k) {
+    const auto*& view = motion.views[k];
+    if (view == nullptr) {
+        view = &field_->at(
+            space_.poseBetween(motion.from, motion.to, static_cast<double>(k) / motion.steps));
+    } else if (motion.epoch != field_->epoch()) {
+        field_->current(*view);
+    }
+    return *view;
 }
 
 Pose BeliefModel::cameraPose(const Motion& motion, int k) const {

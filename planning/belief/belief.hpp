@@ -3,9 +3,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "belief/information_field.hpp"
+#include "geometry/constants.hpp"
 #include "geometry/uncertain_pose.hpp"
 #include "space/flight_space.hpp"
 
@@ -51,8 +53,9 @@ struct Motion {
     const ompl::base::State* to = nullptr;
     double length = 0.;  ///< metric of the flight space [m]
     int steps = 0;
-    std::vector<const InformationField::Entry*> views;  ///< steps + 1 of them, or none yet
-    std::uint32_t epoch = 0;  ///< of the field, when the views were current
+    /// steps + 1 of them, null where none was asked for yet; or none at all
+    std::vector<const InformationField::Entry*> views;
+    std::uint32_t epoch = 0;  ///< of the field, when the views that are there were current
 };
 
 /// One point of an evaluated path.
@@ -89,10 +92,22 @@ class BeliefModel {
     /// For each step: propagate, charge, update by the view at the end of the step. A step shorter
     /// than ds counts as its share of a view, so the same path gives the same information wherever
     /// its vertices are.
-    Belief propagate(const Belief& belief, Motion& motion, bool backward = false);
+    Belief propagate(const Belief& belief, Motion& motion, bool backward = false) {
+        return *propagateWithin(kInfinity, belief, motion, backward);
+    }
+
+    /// The same, but nothing if the cost at the end exceeds a limit: as soon as this is certain, no
+    /// more views are rendered.
+    std::optional<Belief> propagateWithin(double limit, const Belief& belief, Motion& motion,
+                                          bool backward = false);
 
     /// Cost of a motion that no belief can undercut: alpha times its length.
     double lowerBound(double length) const { return options_.alpha * length; }
+
+    /// A higher one: the noise of each step is charged before the next view.
+    double lowerBound(const Motion& motion) const {
+        return lowerBound(motion.length) + leastCharge(motion);
+    }
 
     /// The belief at every step of a path. A slow and independent implementation (compound() in the
     /// camera frame, Eigen's LU, its own poses and costs) to check propagate().
@@ -124,7 +139,11 @@ class BeliefModel {
     void clear();                                         ///< resets the counters, not the field
 
   private:
+    std::optional<Belief> flyWithin(double limit, const Belief& belief, Motion& motion,
+                                    bool backward);
     void updateViews(Motion& motion);
+    const InformationField::Entry& viewAt(Motion& motion, int k);
+    double leastCharge(const Motion& motion) const;
     Belief chargePenalties(const Belief& belief, const Motion& motion, bool backward) const;
     double penaltyAt(const Motion& motion, int k) const;
     BeliefPoint penalisedPoint(const BeliefPoint& last, const Motion& motion, int k);

@@ -63,10 +63,8 @@ void CostToGo::findBaseCosts(const Roadmap& roadmap, const std::deque<Vertex>& v
                              const std::vector<Vertex*>& goals, BeliefModel& model) {
     const BeliefOptions& options = model.options();
     model_ = &model;
-    alpha_ = options.alpha;
     const bool byCovariance = options.cost == CostRule::integral && !model.field().hasPenalties();
-    charge_ = byCovariance ? kSafety * (1. - alpha_) * options.kappa : 0.;
-    noise_ = 0.5 * charge_ * model.noiseTrace();
+    charge_ = byCovariance ? kSafety * (1. - options.alpha) * options.kappa : 0.;
     const double unreached = goals.empty() ? 0. : kInfinity;
     toGoal_.assign(vertices.size(), unreached);
     for (const Vertex* goal : goals) toGoal_[goal->index] = 0.;
@@ -101,8 +99,7 @@ bool CostToGo::isUncertain(const Start& start) const {
 }
 
 double CostToGo::baseCostOf(const Roadmap::Edge& edge) const {
-    const double length = edge.motion.length;
-    return length * (alpha_ + noise_ * length / edge.motion.steps);
+    return model_->lowerBound(edge.motion);
 }
 
 /// An older vertex no farther than views are apart, whose view was evaluated.

@@ -86,9 +86,7 @@ class CostToGo {
     }
 
     BeliefModel* model_ = nullptr;
-    double alpha_ = 1.;
     double charge_ = 0.;              // per metre and m^2
-    double noise_ = 0.;               // charged per metre flown and metre of a step
     std::vector<double> toGoal_;      // by vertex: distance
     std::vector<double> baseCost_;    // by vertex: least sum of base costs to a goal
     std::vector<Observed> observes_;  // by vertex

@@ -49,10 +49,6 @@ void PathDescent::begin(const std::vector<const ob::State*>& path, const Belief&
         node.arrival = model_->motion(last.state.get(), node.state.get());
         node.belief = model_->propagate(last.belief, node.arrival);
     }
-    rest_.assign(nodes_.size(), 0.);
-    for (std::size_t i = nodes_.size() - 1; i > 0; --i) {
-        rest_[i - 1] = rest_[i] + nodes_[i].arrival.length;
-    }
 }
 
 /// Repeats rounds from coarse to fine shifts: a large shift that failed may help in another
@@ -150,10 +146,10 @@ bool PathDescent::tryReplace(std::size_t first, std::size_t last,
     ++tried_;
     const double limit = cost() * (1. - kMinGain);
     std::vector<Node> fresh;
-    double rest = rest_[last];
+    double rest = leastRest(last);
     const auto addMotion = [&](const ob::State* from, const StatePtr& to) {
         fresh.push_back({to, model_->motion(from, to.get()), {}});
-        rest += fresh.back().arrival.length;
+        rest += model_->lowerBound(fresh.back().arrival);
     };
     for (const StatePtr& state : between) {
         addMotion(fresh.empty() ? nodes_[first].state.get() : fresh.back().state.get(), state);
@@ -163,11 +159,13 @@ bool PathDescent::tryReplace(std::size_t first, std::size_t last,
 
     Belief belief = nodes_[first].belief;
     for (Node& node : fresh) {
-        if (belief.cost + model_->lowerBound(rest) >= limit) return false;
+        if (belief.cost + rest >= limit) return false;
         if (node.arrival.length == 0.) return false;
         if (!si_->checkMotion(node.arrival.from, node.arrival.to)) return false;
-        belief = node.belief = model_->propagate(belief, node.arrival);
-        rest -= node.arrival.length;
+        rest -= model_->lowerBound(node.arrival);
+        const auto arrival = model_->propagateWithin(limit - rest, belief, node.arrival);
+        if (!arrival) return false;
+        belief = node.belief = *arrival;
     }
     std::vector<Belief> beliefs;
     if (!propagateRest(last, belief, beliefs)) return false;
@@ -178,11 +176,22 @@ bool PathDescent::tryReplace(std::size_t first, std::size_t last,
     const auto end = nodes_.begin() + static_cast<std::ptrdiff_t>(last) + 1;
     nodes_.insert(nodes_.erase(begin, end), std::make_move_iterator(fresh.begin()),
                   std::make_move_iterator(fresh.end()));
-    rest_.assign(nodes_.size(), 0.);
-    for (std::size_t i = nodes_.size() - 1; i > 0; --i) {
-        rest_[i - 1] = rest_[i] + nodes_[i].arrival.length;
-    }
+    for (std::size_t i = 0; i <= first; ++i) nodes_[i].leastRest.reset();
     return true;
+}
+
+/// Least cost of the path after a node: that of a robot which knows there exactly where it is. The
+/// cost of the rest grows with the covariance, and the views are those of the path as it is.
+double PathDescent::leastRest(std::size_t i) {
+    auto& least = nodes_[i].leastRest;
+    if (!least) {
+        Belief exact;
+        for (std::size_t k = i + 1; k < nodes_.size(); ++k) {
+            exact = model_->propagate(exact, nodes_[k].arrival);
+        }
+        least = exact.cost;
+    }
+    return *least;
 }
 
 /// The beliefs after node `last`, if it is reached with this belief. Stops as soon as the path
@@ -190,7 +199,7 @@ bool PathDescent::tryReplace(std::size_t first, std::size_t last,
 bool PathDescent::propagateRest(std::size_t last, Belief belief, std::vector<Belief>& beliefs) {
     const double limit = cost() * (1. - kMinGain);
     for (std::size_t i = last;; ++i) {
-        if (belief.cost + model_->lowerBound(rest_[i]) >= limit) return false;
+        if (belief.cost + leastRest(i) >= limit) return false;
         if (i + 1 == nodes_.size()) return true;
         if (belief.cost >= nodes_[i].belief.cost &&
             isNowhereBetter(belief.covariance, nodes_[i].belief.covariance)) {

@@ -8,6 +8,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "belief/belief.hpp"
@@ -52,6 +53,7 @@ class PathDescent {
         StatePtr state;
         Motion arrival;  // from the node before
         Belief belief;
+        std::optional<double> leastRest = {};  // see leastRest()
     };
 
     void removeVertices();
@@ -63,6 +65,7 @@ class PathDescent {
                      double step);
     bool tryReplace(std::size_t first, std::size_t last, const std::vector<StatePtr>& between);
     bool propagateRest(std::size_t last, Belief belief, std::vector<Belief>& beliefs);
+    double leastRest(std::size_t i);
 
     StatePtr parallel(const ompl::base::State& from, const ompl::base::State& to,
                       const ompl::base::State& follower) const;
@@ -75,9 +78,8 @@ class PathDescent {
     ompl::base::StateSamplerPtr sampler_;
     const ompl::base::PlannerTerminationCondition* ptc_ = nullptr;
     std::vector<Node> nodes_;
-    std::vector<double> rest_;  // by node: length of the path after it
-    double step_ = 0.;          // of the round of shifts that comes next
-    unsigned lastMove_ = 0;     // of this call of descend()
+    double step_ = 0.;       // of the round of shifts that comes next
+    unsigned lastMove_ = 0;  // of this call of descend()
     unsigned tried_ = 0;
     unsigned accepted_ = 0;
 };

@@ -190,7 +190,7 @@ void PerceptionRRTstar::renewBeliefs() {
 
 bool PerceptionRRTstar::hasStaleViews(const Motion& motion) const {
     return std::any_of(motion.views.begin(), motion.views.end(),
-                       [](const InformationField::Entry* view) { return view->isStale; });
+                       [](const auto* view) { return view != nullptr && view->isStale; });
 }
 
 /// Lines 8 to 11 of Algorithm 2: rewires around every vertex whose information changed.

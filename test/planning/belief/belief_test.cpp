@@ -61,6 +61,37 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values(StateKind::position, StateKind::positionYaw, StateKind::se3),
                      testing::Values(CostRule::integral, CostRule::perVertex)));
 
+TEST(Belief, GivesUpAMotionAsSoonAsItIsSureToCostTooMuch) {
+    for (const bool backward : {false, true}) {
+        Flight flight{Problem{}};
+        flight.between({3, 1, 2}, {3, 9, 2});
+        const auto motion = [&] {
+            return backward ? flight.model.motion(flight.b.get(), flight.a.get())
+                            : flight.model.motion(flight.a.get(), flight.b.get());
+        };
+        const Belief root = flight.model.root(flight.a.get());
+        const auto viewsWithin = [&](double limit, bool isPossible) {
+            flight.model.field().clear();
+            Motion fresh = motion();
+            EXPECT_EQ(flight.model.propagateWithin(limit, root, fresh, backward).has_value(),
+                      isPossible);
+            return flight.model.field().views();
+        };
+        Motion whole = motion();
+        const Belief end = flight.model.propagate(root, whole, backward);
+        Motion again = motion();
+        const auto within =
+            flight.model.propagateWithin(end.cost * (1. + 1e-12), root, again, backward);
+        ASSERT_TRUE(within);
+        EXPECT_EQ(within->cost, end.cost);
+        EXPECT_EQ(within->covariance, end.covariance);
+        const std::size_t all = viewsWithin(kInfinity, true);
+        EXPECT_LT(viewsWithin(root.cost + 0.5 * (end.cost - root.cost), false), 0.9 * all);
+        EXPECT_EQ(viewsWithin(root.cost, false), 0U);
+        EXPECT_LT(root.cost + flight.model.lowerBound(whole), end.cost);
+    }
+}
+
 TEST(Belief, CutsMotionsInStepsNoLongerThanDs) {
     Flight flight{Problem{}};
     flight.between({0, 0, 2}, {1, 0, 2});

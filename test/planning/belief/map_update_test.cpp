@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <random>
 
+#include "planning/planners/changing_world.hpp"
+
 #include "planning/fixture.hpp"
 #include "render/voxel_renderer.hpp"
 
@@ -166,6 +168,36 @@ TEST_P(FieldOverAMap, EntriesThatAreNotStaleEqualFreshOnes) {
                 100. * share, 100. * needless);
     EXPECT_LT(share, 0.15);
     EXPECT_LT(needless, 0.6);  // bricks are as large as a change here, and grow by two cells
+}
+
+/// A motion that was given up, and one that was flown the other way before, see the map as it is.
+TEST(FieldUpdate, MotionsThatAreFlownAgainSeeTheMapAsItIs) {
+    for (const bool wasGivenUp : {false, true}) {
+        test::ChangingWorld world(test::problemIn(test::SceneKind::flat).bounds);
+        std::mt19937 random(3);
+        std::uniform_real_distribution<float> grey(0.F, 1.F);
+        world.paintFloor(test::kFloor, [&] { return grey(random); });
+        const FlightSpace space(StateKind::position, test::box({0, 0, 2}, {8, 8, 2}));
+        const auto field = fieldOf(world.freshViews(), std::numbers::pi / 2);
+        BeliefModel model(space, field, test::Problem::defaultBelief());
+        ompl::base::ScopedState<> a(space.space()), b(space.space());
+        space.setState(a.get(), {1., 1., 2.}, 0.);
+        space.setState(b.get(), {5., 1., 2.}, 0.);
+        const Belief root = model.root(a.get());
+        Motion other = model.motion(a.get(), b.get()), motion = other;
+        const double limit = (1. - 1e-6) * model.propagate(root, other).cost;
+        EXPECT_NE(model.propagateWithin(wasGivenUp ? limit : kInfinity, root, motion).has_value(),
+                  wasGivenUp);
+        const MapChange change = world.paintFloor(test::kFloor, [&] { return grey(random); });
+        field->update(world.freshViews(), change);
+        for (const bool backward : {false, true}) {
+            const auto freshField = fieldOf(world.freshViews(), std::numbers::pi / 2);
+            BeliefModel freshModel(space, freshField, test::Problem::defaultBelief());
+            Motion fresh = freshModel.motion(a.get(), b.get());
+            EXPECT_EQ(model.propagate(root, motion, backward).cost,
+                      freshModel.propagate(root, fresh, backward).cost);
+        }
+    }
 }
 
 /// Each update renders a share of what changed; after as many as there are turns all is as new.
