@@ -126,8 +126,9 @@ Perspective perspective(const Config& config, const World& world, const PlanOutc
     const double margin = 0.1 * box.sizes().maxCoeff();
     box.min().array() -= margin;
     box.max().array() += margin;
-    box = box.intersection(world.extent()).merged(config.bounds);
-    box.min().z() = std::min(box.min().z(), world.extent().min().z());
+    const Eigen::AlignedBox3d extent = world.extent();
+    box = box.intersection(extent).merged(config.bounds);
+    box.min().z() = std::min(box.min().z(), extent.min().z());
     return {fmt::format("{}, alpha {}", config.planner, outcome.alpha), box, paths};
 }
 

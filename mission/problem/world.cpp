@@ -92,7 +92,6 @@ World::World(std::shared_ptr<const TexturedOcTree> map,
 void World::useScene(Scene scene, const Config& config) {
     auto renderer = std::make_unique<MeshRenderer>(std::move(scene));
     scene_ = &renderer->scene();
-    extent_ = scene_->boundingBox();
     distances_ =
         DistanceMap(*scene_, config.clearanceResolution, config.bounds,
                     {.maxDistance = reach(config.robotRadius, config.clearanceResolution)});
@@ -104,7 +103,6 @@ void World::useMap(std::shared_ptr<const TexturedOcTree> map,
     distances_ = DistanceMap(*obstacles, config.bounds,
                              {.maxDistance = reach(config.robotRadius, map->getResolution()),
                               .unknown = config.unknownToPlanner});
-    extent_ = extentOf(*map);
     map_ = std::move(map);
     obstacles_ = std::move(obstacles);
 }
@@ -114,7 +112,10 @@ void World::mapChanged(const MapChange& change) {
     if (change.empty()) return;
     distances_.update(*obstacles_, change);
     views_ = snapshots_->update(*map_, change);
-    extent_ = extentOf(*map_);
+}
+
+Eigen::AlignedBox3d World::extent() const {
+    return scene_ != nullptr ? scene_->boundingBox() : extentOf(*map_);
 }
 
 ImageF World::pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const {
@@ -126,7 +127,7 @@ ImageF World::pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double
     const unsigned width = std::max(kTile, pixels(area.sizes().x()));
     const unsigned height = std::max(kTile, pixels(area.sizes().y()));
     const double step = area.sizes().x() / width;
-    const double depth = std::max(z - extent_.min().z(), pixelSize);
+    const double depth = std::max(z - extent().min().z(), pixelSize);
     const Camera camera = makeCamera(kTile, kTile, 2. * std::atan(0.5 * kTile * step / depth));
     Pose T_w_c = Pose::Identity();  // image right is world x, image down is world -y
     T_w_c.linear() = Eigen::Vector3d(1., -1., -1.).asDiagonal();

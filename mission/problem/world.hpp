@@ -43,8 +43,8 @@ class World {
     bool hasTexture() const { return hasTexture_; }
     double clearance(const Eigen::Vector3d& p_w) const { return distances_.clearance(p_w); }
 
-    /// Box of everything that can be seen [m].
-    const Eigen::AlignedBox3d& extent() const { return extent_; }
+    /// Box of everything that can be seen [m]. Goes through all cells of a map.
+    Eigen::AlignedBox3d extent() const;
 
     /// The scene or the map that the world was made from; null if it was made from the other.
     const Scene* scene() const { return scene_; }
@@ -62,7 +62,6 @@ class World {
     std::optional<VoxelSnapshots> snapshots_;  // that views_ is of, where the map may change
     bool hasTexture_ = true;
     DistanceMap distances_;
-    Eigen::AlignedBox3d extent_;
     std::shared_ptr<const TexturedOcTree> map_;
     std::shared_ptr<const TexturedOcTree> obstacles_;
     const Scene* scene_ = nullptr;  // of the renderer in views_
