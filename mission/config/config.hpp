@@ -73,6 +73,7 @@ struct Config {
     PhotometricOptions photometric;
     BeliefOptions belief = defaultBelief();
     InformationField::Options field;
+    bool quickViews = false;  ///< for the planners: see PlanningProblem
 
     std::string planner = "belief_rrt_star";
     ViewModelConfig viewModel;

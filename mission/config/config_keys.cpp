@@ -241,6 +241,10 @@ void addObjective(KeyTable& keys, Config& c) {
                 c.field.positionPitch, {kTiny, kFarthest});
     keys.number({"view_rotation_pitch", "rad", "the same of its rotations"}, c.field.rotationPitch,
                 {kTiny, 3.2});
+    keys.flag({"quick_views", "",
+               "rank paths by views of half the size, and judge the best ones by whole views at "
+               "their exact poses ([quick views](planner.md#quick-views))"},
+              c.quickViews);
 }
 
 /// How it searches.

@@ -11,23 +11,25 @@
 #include "geometry/segment.hpp"
 #include "io/stopwatch.hpp"
 #include "planners/planner_table.hpp"
+#include "planners/shortened_path.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
 namespace {
 
-constexpr unsigned kLeastSide = 8;  // of views [pixels]
+// A planner that looks at nothing gets the time that views take of others: so many times the
+// vertices, and changes by which its path is smoothed.
+constexpr unsigned kVerticesWithoutViews = 10;
+constexpr unsigned kChangesWithoutViews = 1000;
 
-/// The config of plans in a map that grows. Views are of half the size: four times cheaper, and as
-/// many pixels fewer, for which the information is scaled. A view stands for a cell of twice the
-/// size: most views are seen once before the map changes again.
-Config configOf(Config config) {
+/// The config of plans in a map that grows. A view stands for a cell of twice the size: most views
+/// are seen once before the map changes again.
+Config configOf(Config config, const std::string& planner) {
     config.vertices = config.explore.vertices;
+    if (!usesViews(planner)) config.vertices *= kVerticesWithoutViews;
     config.search.shortcut = config.explore.shortcut;
     config.search.commitment = config.explore.commitment;
-    config.camera.width = std::max(kLeastSide, config.camera.width / 2);
-    config.camera.height = std::max(kLeastSide, config.camera.height / 2);
-    config.photometric.scale *= 4.;
+    config.quickViews = true;
     config.field.positionPitch *= 2.;
     config.field.rotationPitch *= 2.;
     config.field.turns = config.explore.viewTurns;
@@ -47,10 +49,12 @@ std::shared_ptr<ob::State> copyOf(const ob::SpaceInformationPtr& si, const ob::S
 
 OnlinePlanner::OnlinePlanner(const Config& config, const OwnMap& map, const ExplorePlanner& kind,
                              std::uint32_t seed)
-    : config_(configOf(config)),
+    : config_(configOf(config, kind.name)),
       world_(map.cells(), map.obstacles(), config_),
       problem_(config_, world_, alphaOf(kind.name, config_.belief.alpha),
-               map.information(config_.camera.camera(), config_.photometric)),
+               [&map](const Camera& camera, const PhotometricOptions& options) {
+                   return map.information(camera, options);
+               }),
       kind_(kind),
       seed_(seed),
       planner_(problem_.makePlanner(kind.name, seed)) {}
@@ -81,8 +85,10 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
     world_.mapChanged(change);
     update.clearanceSeconds = watch.seconds();
     const auto field = planner_->model().sharedField();
-    const std::size_t markedBefore = field->marked(), viewsBefore = field->views();
-    const double viewSecondsBefore = field->seconds();
+    const InformationField& exact = problem_.evaluator().field();
+    const std::size_t markedBefore = field->marked();
+    const std::size_t viewsBefore = field->views() + exact.views();
+    const double viewSecondsBefore = field->seconds() + exact.seconds();
     watch = {};
     problem_.mapChanged(change);
 
@@ -99,9 +105,9 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
         if (!plan_.empty()) evaluatePath(T_w_b, T_c_w.covariance);
     }
     update.planSeconds = watch.seconds();
-    update.viewSeconds = field->seconds() - viewSecondsBefore;
+    update.viewSeconds = field->seconds() + exact.seconds() - viewSecondsBefore;
     update.viewsMarked = field->marked() - markedBefore;
-    update.viewsRendered = field->views() - viewsBefore;
+    update.viewsRendered = field->views() + exact.views() - viewsBefore;
     const bool isFound = !path_.empty();
     update.cost = isFound ? path_.back().cost : std::numeric_limits<double>::quiet_NaN();
     update.length = isFound ? path_.back().length : std::numeric_limits<double>::quiet_NaN();
@@ -122,7 +128,7 @@ UpdateCounts OnlinePlanner::planFrom(const ob::State* state, const Belief& belie
         planner_ = problem_.makePlanner(kind_.name, ++seed_);
         solveFrom(state, belief, interrupted);
     }
-    plan_ = solution();
+    plan_ = solution(interrupted);
     return planner_->lastUpdate();
 }
 
@@ -134,17 +140,25 @@ bool OnlinePlanner::solveFrom(const ob::State* state, const Belief& belief,
     return planner_->getProblemDefinition()->hasExactSolution();
 }
 
-/// The planner's path, with the kind's headings; empty: there is none.
-OnlinePlanner::States OnlinePlanner::solution() const {
+/// The planner's path, smoothed if it has seen no views, with the kind's headings; empty: there
+/// is none.
+OnlinePlanner::States OnlinePlanner::solution(const std::atomic<bool>& interrupted) const {
     const auto definition = planner_->getProblemDefinition();
     if (!definition->hasExactSolution()) return {};
     auto& path = *definition->getSolutionPath()->as<ompl::geometric::PathGeometric>();
-    const std::vector<const ob::State*> states(path.getStates().begin(), path.getStates().end());
+    std::vector<const ob::State*> states(path.getStates().begin(), path.getStates().end());
     const auto& si = problem_.spaceInformation();
-    if (kind_.headings) return withHeadings(si, problem_.space(), states, *kind_.headings);
-    States copies;
-    for (const ob::State* state : states) copies.push_back(copyOf(si, state));
-    return copies;
+    States plan;
+    if (usesViews(kind_.name)) {
+        for (const ob::State* state : states) plan.push_back(copyOf(si, state));
+    } else {
+        plan = shortened(si, problem_.space(), states, kChangesWithoutViews,
+                         ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+    }
+    if (!kind_.headings) return plan;
+    states.clear();
+    for (const auto& state : plan) states.push_back(state.get());
+    return withHeadings(si, problem_.space(), states, *kind_.headings);
 }
 
 /// What is left of a plan for a robot that flies along it; empty: an obstacle was seen on it.
@@ -170,7 +184,7 @@ OnlinePlanner::States OnlinePlanner::restOf(const States& plan, const ob::State*
 /// Beliefs along the plan. A view of the map that the robot made itself never makes its pose
 /// better than the map is, of which the belief here is a bound.
 void OnlinePlanner::evaluatePath(const Pose& T_w_b, const Matrix6& covariance) {
-    BeliefModel& model = planner_->model();
+    BeliefModel& model = problem_.evaluator();
     BeliefPoint here{.T_w_b = T_w_b, .covariance = covariance, .isWaypoint = true};
     here.traceBefore = here.trace = weightedTrace(covariance, config_.belief.characteristicLength);
     path_.push_back(here);

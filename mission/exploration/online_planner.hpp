@@ -54,7 +54,7 @@ class OnlinePlanner {
                           const std::atomic<bool>& interrupted);
     bool solveFrom(const ompl::base::State* state, const Belief& belief,
                    const std::atomic<bool>& interrupted);
-    States solution() const;
+    States solution(const std::atomic<bool>& interrupted) const;
     States restOf(const States& plan, const ompl::base::State* state) const;
     void evaluatePath(const Pose& T_w_b, const Matrix6& covariance);
 

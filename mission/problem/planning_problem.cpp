@@ -26,6 +26,14 @@ constexpr std::size_t kProgressInterval = 50;  // vertices
 constexpr double kShowInterval = 0.5;          // of progress without new vertices [s]
 constexpr double kMostKappa = 1e12;            // as in a config
 constexpr std::size_t kMaxSamples = 200;       // per requested vertex: beyond, planning gives up
+constexpr std::size_t kMostExactViews = 1000;  // kept when the map changes: a few paths
+
+// Where views only rank, it is not worth many of them to find the best path of the roadmap: the
+// descent from any good one gains more.
+constexpr double kInflationByQuickViews = 0.7;
+
+/// Cells so small that the view from a cell is that from any pose in it.
+constexpr InformationField::Options kExactPoses{.positionPitch = 1e-6, .rotationPitch = 1e-6};
 
 /// The solution may come from an earlier tree than the one audited.
 void includePath(Audit& audit, double stored, double replayed) {
@@ -83,19 +91,20 @@ std::vector<Eigen::Vector2d> EvaluatedPath::fromAbove() const {
 }
 
 PlanningProblem::PlanningProblem(const Config& config, const World& world,
-                                 std::optional<double> alpha, InformationModel photometric)
+                                 std::optional<double> alpha, MakeInformationModel photometric)
     : config_(withAlpha(config, alpha.value_or(config.belief.alpha))),
       world_(world),
-      photometric_(photometric ? std::move(photometric)
-                               : photometricModel(config.camera.camera(), config.photometric)),
+      photometric_(std::move(photometric)),
       space_(config.space, config.bounds, config.rotationWeight, config.start.yaw.value_or(0.)),
       si_(makeSpaceInformation(
           space_, [&world](const Eigen::Vector3d& p_w) { return world.clearance(p_w); },
           config.robotRadius)),
       field_(makeField("photometric")),
-      plannersField_(config.viewModel.name == "photometric" ? field_
-                                                            : makeField(config.viewModel.name)),
-      evaluator_(std::make_shared<BeliefModel>(space_, field_, optionsWith(config.belief.kappa))) {}
+      plannersField_(hasQuickViews()                          ? makeQuickField()
+                     : config.viewModel.name == "photometric" ? field_
+                                                              : makeField(config.viewModel.name)),
+      evaluator_(std::make_shared<BeliefModel>(space_, field_, optionsWith(config_.belief.kappa))) {
+}
 
 PlanningProblem::PlanningProblem(const PlanningProblem& other, double alpha)
     : config_(withAlpha(other.config_, alpha)),
@@ -206,7 +215,10 @@ std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& n
     growth.obstacleReach = config_.robotRadius;
     growth.maxVertices = config_.vertices;
     growth.maxIterations = kMaxSamples * config_.vertices;
-    auto planner = photonav::makePlanner(name, si_, std::move(model), config_.search, growth);
+    SearchOptions search = config_.search;
+    if (hasQuickViews()) search.inflation = kInflationByQuickViews;
+    auto planner = photonav::makePlanner(name, si_, std::move(model), search, growth);
+    if (hasQuickViews()) planner->judgeBy(evaluator_);
     planner->setProblemDefinition(definition());
     planner->setup();
     std::erase_if(planners_, [](const auto& made) { return made.expired(); });
@@ -216,6 +228,7 @@ std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& n
 
 void PlanningProblem::mapChanged(const MapChange& change) {
     const auto views = interruptibleViews();
+    if (hasQuickViews() && field_->size() > kMostExactViews) field_->forget();
     field_->update(views, change);
     if (plannersField_ != field_) plannersField_->update(views, change);
     for (const auto& made : planners_) {
@@ -236,7 +249,7 @@ std::shared_ptr<InformationField> PlanningProblem::makeField(const std::string& 
     }
     const auto field = [&](const auto& model) {
         return std::make_shared<InformationField>(interruptibleViews(), camera, model, T_b_c,
-                                                  config_.field);
+                                                  hasQuickViews() ? kExactPoses : config_.field);
     };
     const FeatureOptions& features = config_.viewModel.features;
     if (viewModel == "feature_reprojection") {
@@ -248,7 +261,24 @@ std::shared_ptr<InformationField> PlanningProblem::makeField(const std::string& 
             camera, config_.photometric,
             {.priorSigma = config_.viewModel.mapPriorSigma, .baseline = config_.belief.ds}));
     }
-    return field(photometric_);
+    return field(photometric_(camera, config_.photometric));
+}
+
+bool PlanningProblem::hasQuickViews() const {
+    return config_.quickViews && config_.viewModel.name == "photometric" && world_.hasTexture();
+}
+
+/// Half the size is a quarter of the time. Without the point spread, and with gradients over as
+/// much of the surface as those of a whole view, each pixel stands for the four of a whole view.
+std::shared_ptr<InformationField> PlanningProblem::makeQuickField() const {
+    Camera camera = scaled(config_.camera.camera(), 0.5);
+    camera.hasPointSpread = false;
+    PhotometricOptions options = config_.photometric;
+    options.gradient = GradientStencil::square;
+    options.scale *= 4.;
+    return std::make_shared<InformationField>(interruptibleViews(), camera,
+                                              photometric_(camera, options), config_.camera.T_b_c(),
+                                              config_.field);
 }
 
 BeliefOptions PlanningProblem::optionsWith(double kappa) const {

@@ -66,14 +66,18 @@ inline const std::atomic<bool> kNotInterrupted{false};
 ///     const Config config = loadConfig("config/two_textures.yaml");
 ///     const World world(config);
 ///     const PlanOutcome outcome = PlanningProblem(config, world).solve(config.planner);
+///
+/// Planners and evaluate() share views from the centres of cells (InformationField). With
+/// Config::quickViews, planners rank paths by views of half the size there, and evaluate(), which
+/// also judges for planners what may be the best path, uses whole views from the exact poses.
 class PlanningProblem {
   public:
     /// @param world must outlive it
     /// @param alpha of the cost; default: the config's, whatever its planner. The cost that the
     ///        planner of a config minimises, for rrt_star the length, has alphaOf(its name, ...).
-    /// @param photometric information of a view, in place of photometricInformation()
+    /// @param photometric makes the information of views, in place of photometricModel()
     PlanningProblem(const Config& config, const World& world, std::optional<double> alpha = {},
-                    InformationModel photometric = {});
+                    MakeInformationModel photometric = photometricModel);
     /// The same problem with another trade-off, over the same views.
     PlanningProblem(const PlanningProblem& other, double alpha);
 
@@ -137,6 +141,8 @@ class PlanningProblem {
     void mapChanged(const MapChange& change);
     const Config& config() const { return config_; }
     const World& world() const { return world_; }
+    /// The model that paths are evaluated by.
+    BeliefModel& evaluator() { return *evaluator_; }
     /// Evaluates the solution of a planner that has one.
     EvaluatedPath evaluate(const BeliefPlanner& planner);
     /// Evaluates a path of any planner of OMPL.
@@ -155,6 +161,8 @@ class PlanningProblem {
                                                std::shared_ptr<BeliefModel> model,
                                                std::uint32_t seed);
     std::shared_ptr<InformationField> makeField(const std::string& viewModel) const;
+    std::shared_ptr<InformationField> makeQuickField() const;
+    bool hasQuickViews() const;
     std::shared_ptr<const ViewSource> interruptibleViews() const;
     std::shared_ptr<BeliefModel> plannersModel();
     /// Costs and beliefs of paths.
@@ -167,7 +175,7 @@ class PlanningProblem {
     /// What ends the rendering of views, in solve() alone; of all problems over the same views.
     std::shared_ptr<const std::atomic<bool>*> interruption_ =
         std::make_shared<const std::atomic<bool>*>(&kNotInterrupted);
-    InformationModel photometric_;
+    MakeInformationModel photometric_;
     FlightSpace space_;
     ompl::base::SpaceInformationPtr si_;
     std::shared_ptr<InformationField> field_;             // photometric, of evaluator_

@@ -157,13 +157,17 @@ std::size_t InformationField::stale() const {
                          [](const Entry& entry) { return entry.isStale; });
 }
 
-void InformationField::clear() {
+void InformationField::forget() {
     index_.clear();
     entries_.clear();
     cells_.clear();
     extents_.clear();
     bounds_.clear();
     isTouched_.clear();
+}
+
+void InformationField::clear() {
+    forget();
     views_ = marked_ = cacheHits_ = 0;
     seconds_ = 0.;
 }

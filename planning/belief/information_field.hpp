@@ -58,8 +58,8 @@ class InformationField {
     InformationField(const PenaltyFormula& formula, const Pose& T_b_c, const Options& options);
 
     /// The information of the view from the cell of T_w_b in the map as it is now, or as it was
-    /// less than `turns` updates ago. The reference stays valid until clear(); update() may make
-    /// the entry stale.
+    /// less than `turns` updates ago. The reference stays valid until forget() or clear(); update()
+    /// may make the entry stale.
     const Entry& at(const Pose& T_w_b);
 
     /// The same, but an entry that is stale is not evaluated again.
@@ -92,6 +92,7 @@ class InformationField {
     std::size_t views() const { return views_; }          ///< evaluated, repeated ones included
     std::size_t cacheHits() const { return cacheHits_; }  ///< queries answered without a view
     double seconds() const { return seconds_; }           ///< spent on views
+    void forget();                                        ///< all entries; the counters stay
     void clear();
 
   private:

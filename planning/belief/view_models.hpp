@@ -21,6 +21,10 @@ using InformationFormula = std::function<Matrix6(const Pose& T_c_w)>;
 /// The model of the paper: the sum of the photometric Jacobians over the predicted image.
 InformationModel photometricModel(const Camera& camera, const PhotometricOptions& options);
 
+/// Makes the model of a camera's views, such as photometricModel().
+using MakeInformationModel =
+    std::function<InformationModel(const Camera& camera, const PhotometricOptions& options)>;
+
 /// Information of the visible corners' reprojection errors (Achtelik et al. 2014).
 InformationModel featureReprojectionModel(const Camera& camera, const FeatureOptions& options);
 

@@ -265,7 +265,10 @@ void BeliefPlanner::remove(const std::vector<Vertex*>& vertices) {
 }
 
 void BeliefPlanner::offer(double cost, const std::vector<const ob::State*>& path) {
-    if (cost >= best_.cost) return;
+    if (cost < best_.cost) replaceBest(cost, path);
+}
+
+void BeliefPlanner::replaceBest(double cost, const std::vector<const ob::State*>& path) {
     si_->freeStates(best_.states);
     best_.states.clear();
     for (const ob::State* state : path) best_.states.push_back(si_->cloneState(state));

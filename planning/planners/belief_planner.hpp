@@ -92,6 +92,10 @@ class BeliefPlanner : public ompl::base::Planner {
     /// @param belief as those of BeliefModel; costs are counted from its cost
     void moveRoot(const ompl::base::State* state, const Belief& belief);
 
+    /// Another model, of the same belief but with better views, that decides between paths that
+    /// may be the best: model() only ranks them then. Costs of the planner stay those of model().
+    void judgeBy(std::shared_ptr<BeliefModel> judge) { judge_ = std::move(judge); }
+
     void clear() override;
     void getPlannerData(ompl::base::PlannerData& data) const override;
 
@@ -188,6 +192,13 @@ class BeliefPlanner : public ompl::base::Planner {
     /// The best path so far, from a root on; empty if there is none.
     const std::vector<ompl::base::State*>& bestPath() const { return best_.states; }
 
+    /// Whether another model than model() decides what path is best.
+    bool hasJudge() const { return judge_ != nullptr; }
+    /// What a path from a root on costs by judgeBy(), views at hand or not.
+    double judgedCost(const std::vector<ompl::base::State*>& path);
+    /// Takes a path (start first) in place of the best one, whatever it costs.
+    void replaceBest(double cost, const std::vector<const ompl::base::State*>& path);
+
     /// Time until the deadline of solve(double) [s]; infinite without one.
     double secondsLeft() const;
 
@@ -231,12 +242,14 @@ class BeliefPlanner : public ompl::base::Planner {
     void joinRootToBest();
     void reevaluateBest();
     std::optional<double> costOf(const std::vector<ompl::base::State*>& path);
+    const Root* rootAt(const ompl::base::State* state) const;
     void setStartOfProblem(const ompl::base::State* state);
     void addSolution();
     ompl::base::PlannerStatus report();
     void freeMemory();
 
     GrowthOptions growth_;
+    std::shared_ptr<BeliefModel> judge_;  // null: model_
     std::shared_ptr<ompl::NearestNeighbors<Vertex*>> neighbours_;
     ompl::base::StateSamplerPtr sampler_;
     ompl::RNG rng_;

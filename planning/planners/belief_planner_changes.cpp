@@ -147,10 +147,8 @@ void BeliefPlanner::reevaluateBest() {
 }
 
 std::optional<double> BeliefPlanner::costOf(const std::vector<ob::State*>& path) {
-    const auto root = std::find_if(roots_.begin(), roots_.end(), [&](const Root& r) {
-        return si_->equalStates(r.vertex->state, path.front());
-    });
-    if (root == roots_.end() || !si_->isValid(path.front())) return {};
+    const Root* root = rootAt(path.front());
+    if (root == nullptr || !si_->isValid(path.front())) return {};
     for (std::size_t i = 1; i < path.size(); ++i) {
         if (!si_->checkMotion(path[i - 1], path[i])) return {};
     }
@@ -160,6 +158,23 @@ std::optional<double> BeliefPlanner::costOf(const std::vector<ob::State*>& path)
         belief = propagate(belief, motion, false);
     }
     return belief.cost;
+}
+
+double BeliefPlanner::judgedCost(const std::vector<ob::State*>& path) {
+    BeliefModel& judge = judge_ ? *judge_ : *model_;
+    Belief belief = rootAt(path.front())->belief;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        Motion motion = judge.motion(path[i - 1], path[i]);
+        belief = judge.propagate(belief, motion);
+    }
+    return belief.cost;
+}
+
+const BeliefPlanner::Root* BeliefPlanner::rootAt(const ob::State* state) const {
+    const auto root = std::find_if(roots_.begin(), roots_.end(), [&](const Root& r) {
+        return si_->equalStates(r.vertex->state, state);
+    });
+    return root == roots_.end() ? nullptr : &*root;
 }
 
 }  // namespace photonav

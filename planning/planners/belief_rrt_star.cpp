@@ -44,6 +44,7 @@ BeliefRRTstar::BeliefRRTstar(const ob::SpaceInformationPtr& si, std::shared_ptr<
     declare("informed", options_.informed);
     declare("shortcut", options_.shortcut);
     declare("commitment", options_.commitment);
+    declare("inflation", options_.inflation);
     addPlannerProgressProperty("shortcuts tried INTEGER",
                                [this] { return std::to_string(shortcutsTried_); });
     addPlannerProgressProperty("shortcuts taken INTEGER",
@@ -53,6 +54,11 @@ BeliefRRTstar::BeliefRRTstar(const ob::SpaceInformationPtr& si, std::shared_ptr<
 /// A roadmap that has changed is searched before it grows, unless there is a path still.
 void BeliefRRTstar::begin(const ob::PlannerTerminationCondition& ptc) {
     keptCost_ = isFollowing_ ? bestCost() : kInfinity;
+    kept_.reset();
+    if (isFollowing_ && hasJudge()) {
+        kept_.emplace(si_);
+        for (const ob::State* state : bestPath()) kept_->append(state);
+    }
     if (isSearchDue_ && !isFollowing_ && !goals_.empty()) search(ptc);
 }
 
@@ -129,6 +135,7 @@ void BeliefRRTstar::follow(const ob::PlannerTerminationCondition& ptc) {
     if (!path_.empty()) {
         const double kept = bestCost();
         descend(ptc, options_.shortcut);
+        judgeKept();
         const bool wasInVain = bestCost() >= kept;
         gain_ = bestCost() / pathCost_ * (wasInVain ? kCaution : 1.);
     } else if (options_.shortcut > 0) {
@@ -140,6 +147,15 @@ void BeliefRRTstar::follow(const ob::PlannerTerminationCondition& ptc) {
     if (ptc) return;
     isFollowing_ = false;
     limitOfUpdate_ = kInfinity;
+}
+
+/// Returns to the path that an update has kept, unless the judge as well finds the other one
+/// better.
+void BeliefRRTstar::judgeKept() {
+    if (!kept_ || bestCost() == keptCost_) return;
+    auto& kept = kept_->getStates();
+    if (judgedCost(bestPath()) <= (1. - options_.commitment) * judgedCost(kept)) return;
+    replaceBest(keptCost_, {kept.begin(), kept.end()});
 }
 
 /// The path that an update has kept comes from a descent, which lowers the cost of a path over the
@@ -176,6 +192,8 @@ void BeliefRRTstar::search(const ob::PlannerTerminationCondition& ptc) {
     std::vector<CostToGo::Start> starts;
     for (const Root& root : roots_) starts.push_back({root.vertex, root.belief.covariance});
     toGo_.update(roadmap_, vertices_, goals_, *model_, starts, isWellObserved_);
+
+    raise_ = isWellObserved_ ? 1. + options_.inflation * (overBase_ - 1.) : 1.;
 
     Open open;
     for (const Root& root : roots_) {
@@ -221,7 +239,8 @@ void BeliefRRTstar::expand(int label, Open& open) const {
     for (Roadmap::Edge* edge : roadmap_.of(vertex)) {
         Vertex* next = edge->otherEnd(vertex);
         if (isFull(*next) || !*edge->isFree) continue;
-        push(open, {belief.cost + toGo_.over(*edge, *vertex, variances), label, edge, next});
+        push(open,
+             {belief.cost + raise_ * toGo_.over(*edge, *vertex, variances), label, edge, next});
     }
 }
 
@@ -229,11 +248,13 @@ void BeliefRRTstar::expand(int label, Open& open) const {
 bool BeliefRRTstar::propagateTo(Candidate& candidate) {
     Roadmap::Edge& edge = *candidate.edge;
     const Vertex& vertex = *candidate.vertex;
-    const Belief arrival =
-        propagate(settled_[candidate.parent].belief, edge.motion, candidate.vertex == edge.from);
-    if (isDominated(vertex, arrival)) return false;
-    candidate.bound = arrival.cost + toGo_.from(vertex, toGo_.variances(arrival.covariance));
-    candidate.belief = std::make_unique<Belief>(arrival);
+    const auto arrival = model_->propagateWithin(limit() - raise_ * toGo_.baseCost(vertex),
+                                                 settled_[candidate.parent].belief, edge.motion,
+                                                 candidate.vertex == edge.from);
+    if (!arrival || isDominated(vertex, *arrival)) return false;
+    candidate.bound =
+        arrival->cost + raise_ * toGo_.from(vertex, toGo_.variances(arrival->covariance));
+    candidate.belief = std::make_unique<Belief>(*arrival);
     return candidate.bound <= limit();
 }
 
@@ -259,7 +280,8 @@ bool BeliefRRTstar::isDominated(const Vertex& vertex, const Belief& belief) cons
 void BeliefRRTstar::keepPath(int label) {
     pathCost_ = settled_[label].belief.cost;
     const Label& start = settled_.front();
-    isWellObserved_ = pathCost_ - start.belief.cost < kWellObserved * toGo_.baseCost(*start.vertex);
+    overBase_ = (pathCost_ - start.belief.cost) / toGo_.baseCost(*start.vertex);
+    isWellObserved_ = overBase_ < kWellObserved;
     std::vector<const ob::State*> path;
     for (; label >= 0; label = settled_[label].parent) {
         path.push_back(settled_[label].vertex->state);
@@ -355,6 +377,7 @@ void BeliefRRTstar::clear() {
     isSearchDue_ = false;
     gain_ = 1.;
     isWellObserved_ = true;
+    overBase_ = raise_ = 1.;
     searchSeconds_ = descentSeconds_ = 0.;
     shortcutsTried_ = shortcutsTaken_ = 0;
 }

@@ -2,6 +2,8 @@
 // Belief search over a sampled roadmap: the default planner.
 #pragma once
 
+#include <ompl/geometric/PathGeometric.h>
+
 #include <atomic>
 
 #include "geometry/constants.hpp"
@@ -20,6 +22,11 @@ struct SearchOptions {
     /// change a little with every view of a new map, and a robot that follows each of these changes
     /// turns to and fro. Changes of the kept path itself are always taken.
     double commitment = 0.;
+    /// Where there is much to see, paths cost more than the bound on the cost-to-go by about the
+    /// same share everywhere. A search raises its bound by this part, from 0 to 1, of the share
+    /// that the search before has found. It looks at much less then, and its path costs at most as
+    /// much more than the best one over the roadmap as the bound is raised.
+    double inflation = 0.;
 };
 
 /// Grows the roadmap that RRT* would (same samples, same connection radius), keeps all its edges,
@@ -103,19 +110,23 @@ class BeliefRRTstar : public BeliefPlanner {
     PathDescent descentAt(const std::vector<const ompl::base::State*>& path,
                           double firstStep) const;
     void follow(const ompl::base::PlannerTerminationCondition& ptc);
+    void judgeKept();
 
     SearchOptions options_;
     Roadmap roadmap_;
     CostToGo toGo_;
-    std::vector<Label> settled_;                  // in the order they were settled
-    std::vector<std::vector<int>> labelsOf_;      // by vertex, into settled_
-    std::size_t searched_ = 0;                    // number of vertices at the last complete search
-    bool isSearchDue_ = false;                    // something has changed since
-    bool isFollowing_ = false;                    // an update has kept a path
-    double keptCost_ = kInfinity;                 // of this path
-    double limitOfUpdate_ = kInfinity;            // see limitOfUpdate()
-    bool isWellObserved_ = true;                  // along the last path
-    double gain_ = 1.;                            // see limitOfUpdate()
+    std::vector<Label> settled_;              // in the order they were settled
+    std::vector<std::vector<int>> labelsOf_;  // by vertex, into settled_
+    std::size_t searched_ = 0;                // number of vertices at the last complete search
+    bool isSearchDue_ = false;                // something has changed since
+    bool isFollowing_ = false;                // an update has kept a path
+    double keptCost_ = kInfinity;             // of this path
+    std::optional<ompl::geometric::PathGeometric> kept_;  // the same, for the judge
+    double limitOfUpdate_ = kInfinity;                    // see limitOfUpdate()
+    bool isWellObserved_ = true;                          // along the last path
+    double overBase_ = 1.;                                // its cost over its base cost
+    double raise_ = 1.;                                   // factor on the bound, in this search
+    double gain_ = 1.;                                    // see limitOfUpdate()
     std::vector<bool> promising_;                 // by vertex, from the last search while growing
     std::vector<const ompl::base::State*> path_;  // the best over the roadmap
     double pathCost_ = kInfinity;

@@ -49,6 +49,31 @@ TEST(PlanningProblem, PathsAreEvaluatedByWaypointsToo) {
     EXPECT_NEAR(path.length, std::hypot(6., 4.) + std::hypot(4., 5.), 1e-9);
 }
 
+/// Planners look at views of half the size, in the middle of cells; paths are evaluated by whole
+/// views at their own poses.
+TEST(PlanningProblem, QuickViewsRankAndExactViewsEvaluate) {
+    Config config = smallProblem(0.1);
+    config.quickViews = true;
+    const World world(config);
+    PlanningProblem problem(config, world);
+    const auto planner = problem.makePlanner("belief_rrt_star");
+    const Camera camera = config.camera.camera();
+    for (int i = 0; i < 20; ++i) {
+        const Eigen::Vector3d inCell(2.5 + 0.35 * i + 0.01, 1.13 + 0.35 * i, 2.1);
+        const Pose T_w_b(Eigen::Translation3d{inCell});
+        View view;
+        world.views().render(camera, (T_w_b * config.camera.T_b_c()).inverse(), view);
+        const Matrix6 exact = photometricInformation(view, camera, config.photometric);
+        EXPECT_TRUE(problem.informationAt(T_w_b).isApprox(exact, 1e-4)) << i;
+        const Pose T_w_centre(Eigen::Translation3d{(inCell / 0.5).array().round() * 0.5});
+        const double whole = problem.informationAt(T_w_centre).topLeftCorner<3, 3>().trace();
+        const double quick = planner->model().informationAt(T_w_b).topLeftCorner<3, 3>().trace();
+        if (whole < 1.) continue;  // of a blank floor
+        EXPECT_GT(quick / whole, 0.6) << i;
+        EXPECT_LT(quick / whole, 1.6) << i;
+    }
+}
+
 /// Absurd noise or information can overflow the cost of a path that is there.
 TEST(PlanningProblem, APathWhoseCostIsNotFiniteHasFailed) {
     const Config config = smallProblem(0.5);
@@ -263,8 +288,9 @@ TEST(PlanningProblem, ThePlannersViewModelIsNotThatOfTheEvaluation) {
 TEST(PlanningProblem, ViewsInformAsTheProgramSays) {
     const Config config = smallProblem(0.5);
     const World world(config);
-    PlanningProblem problem(config, world, {},
-                            [](const View&) -> Matrix6 { return 4. * Matrix6::Identity(); });
+    PlanningProblem problem(config, world, {}, [](const Camera&, const PhotometricOptions&) {
+        return [](const View&) -> Matrix6 { return 4. * Matrix6::Identity(); };
+    });
     EXPECT_NEAR(problem.informationAt(Pose::Identity()).trace(), 24., 1e-9);
 }
 

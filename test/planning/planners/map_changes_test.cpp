@@ -288,6 +288,33 @@ TEST(ChangedFloor, VerticesWhoseInformationChangedAreRewired) {
     EXPECT_LT(planner.bestCost(), 0.99 * before);
 }
 
+/// The new texture is worth a detour to the planner's views, not to those of the judge.
+TEST(ChangedFloor, APathIsOnlyLeftForOneThatTheJudgeFindsBetter) {
+    const auto lengthAfterPainting = [](bool isJudged, double& before) {
+        ChangingFlight flight("belief_rrt_star", SceneKind::overTexture, 4);
+        flight.plan();
+        flight.plan();
+        BeliefPlanner& planner = flight.planner();
+        const auto length = [&] {
+            return planner.getProblemDefinition()->getSolutionPath()->length();
+        };
+        if (isJudged) {
+            const auto blind = std::make_shared<InformationField>(
+                InformationFormula{}, planner.model().field().mount(), InformationField::Options{});
+            planner.judgeBy(std::make_shared<BeliefModel>(planner.model().space(), blind,
+                                                          planner.model().options()));
+        }
+        before = length();
+        flight.paint({Eigen::Vector2d(4., 0.), Eigen::Vector2d(8., 5.)}, 0.8);
+        flight.plan();
+        flight.check();
+        return length();
+    };
+    double before = 0.;
+    EXPECT_GT(lengthAfterPainting(false, before), 1.02 * before);
+    EXPECT_EQ(lengthAfterPainting(true, before), before);
+}
+
 TEST(ChangedFloor, BeliefRRTstarRendersOnlyTheViewsThatItsSearchAsksFor) {
     ChangingFlight flight("belief_rrt_star", SceneKind::overTexture, 5);
     flight.paint(kFloor, 0.8);

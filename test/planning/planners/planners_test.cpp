@@ -386,6 +386,31 @@ TEST(BeliefRRTstar, SearchesWhatItHasWhenItsSamplesRunOut) {
     EXPECT_LT(planner->bestCost(), 50.);
 }
 
+/// Where all views inform, the bound is too low everywhere by about the same share.
+TEST(BeliefRRTstar, ARaisedBoundLooksAtLessForNearlyTheSamePath) {
+    Problem problem;
+    problem.kind = StateKind::positionYaw;
+    problem.bounds = box({0, 0, 1.5}, {10, 10, 2.5});
+    problem.clearance = sphereClearance;
+    problem.start = {1., 5., 2.};
+    problem.goal = {9., 5., 2.};
+    problem.information = [](const Pose& T_c_w) {
+        return inRotatedAxes(vector6(900., 900., 400., 3e3, 3e3, 2e3).asDiagonal(), T_c_w.linear());
+    };
+    std::vector<double> cost, views;
+    for (const char* inflation : {"0", "0.7"}) {
+        const auto planner = problem.planner("belief_rrt_star");
+        planner->params().setParam("shortcut", "0");
+        planner->params().setParam("inflation", inflation);
+        grow(*planner, 800);
+        expectBeliefsToReplay(*planner);
+        cost.push_back(planner->bestCost());
+        views.push_back(static_cast<double>(planner->model().field().views()));
+    }
+    EXPECT_LT(views[1], 0.7 * views[0]);
+    EXPECT_LT(cost[1], 1.05 * cost[0]);  // or less: the searches guide the samples
+}
+
 TEST(BeliefRRTstar, MoreLabelsAreNeverWorseHere) {
     std::vector<double> costs;
     for (const unsigned labels : {1U, 2U, 5U, 20U}) {
