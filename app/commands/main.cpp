@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <new>
 #include <string_view>
@@ -366,7 +368,9 @@ int main(int argc, char** argv) {
         return code;
     };
     try {
-        return run(argc, argv);
+        const int code = run(argc, argv);
+        if (std::fflush(stdout) == 0) return code;
+        return fail(kNoAnswer, std::string("standard output: ") + std::strerror(errno));
     } catch (const InputError& error) {
         return fail(kBadInput, error.what());
     } catch (const std::filesystem::filesystem_error& error) {

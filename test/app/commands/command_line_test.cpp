@@ -244,6 +244,13 @@ TEST_F(CommandLine, AFolderThatCannotBeWrittenIsRefusedBeforeWork) {
     expectBadInput(photonav("plan " + config("two_textures") + " --out /proc/photonav"), "/proc");
 }
 
+TEST_F(CommandLine, OutputThatCannotBeWrittenIsNoSuccess) {
+    const Execution run =
+        execute(std::string("{ ") + PHOTONAV_BINARY + " --version > /dev/full; }");
+    EXPECT_EQ(run.exitCode, 1);
+    EXPECT_EQ(run.output, "photonav: standard output: No space left on device\n");
+}
+
 TEST_F(CommandLine, CtrlCKeepsTheBestPathSoFar) {
     const std::string command = "timeout -s INT 3 " + std::string(PHOTONAV_BINARY) + " plan " +
                                 config("two_textures") + " --set planner.vertices=1000000" +
