@@ -6,10 +6,8 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <new>
 #include <string_view>
@@ -369,8 +367,8 @@ int main(int argc, char** argv) {
     };
     try {
         const int code = run(argc, argv);
-        if (std::fflush(stdout) == 0) return code;
-        return fail(kNoAnswer, std::string("standard output: ") + std::strerror(errno));
+        if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+        return fail(kNoAnswer, "standard output cannot be written");
     } catch (const InputError& error) {
         return fail(kBadInput, error.what());
     } catch (const std::filesystem::filesystem_error& error) {
