@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files that earlier runs left: the journals of a sweep and of explorations, the table of
-// reference paths, the report's data, the manifest of a result folder.
+// reference paths, the report's data, the log of a flight, the manifest of a result folder.
 #include "exploration/trial_journal.hpp"
+#include "flightlog/flight_log.hpp"
 #include "fuzz_input.hpp"
 #include "io/folder_transaction.hpp"
 #include "report/report.hpp"
@@ -30,7 +31,7 @@ void readTrials(std::string_view input) {
 }  // namespace
 
 void photonav::fuzz::run(std::string_view input) {
-    const unsigned choice = takeChoice(input, 5);
+    const unsigned choice = takeChoice(input, 6);
     check([&] {
         if (choice == 0) {
             write("runs.jsonl", input);
@@ -42,6 +43,8 @@ void photonav::fuzz::run(std::string_view input) {
         } else if (choice == 2) {
             readReportJson(write("report.json", input));
         } else if (choice == 3) {
+            readFlightLog(write("flight.json", input));
+        } else if (choice == 4) {
             write("result/.photonav", input);
             Manifest::read(folder() / "result").foreignFile(folder() / "result");
         } else {

@@ -41,8 +41,10 @@ set(folders_mission_exploration ${core} ${planning} ${tracking} result config pr
 set(folders_drawing_plot io)
 set(folders_drawing_figures io geometry photometry plot)
 set(everything ${core} ${planning} ${tracking} ${mission} plot figures)
+set(folders_app_flightlog ${everything})
+set(folders_app_live ${everything} flightlog)
 foreach(folder IN ITEMS commands report)
-    set(folders_app_${folder} ${everything} commands report)
+    set(folders_app_${folder} ${everything} flightlog live commands report)
 endforeach()
 
 file(GLOB_RECURSE sources RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/src/*.?pp ${SOURCE_DIR}/planning/*.?pp
@@ -94,4 +96,5 @@ only_in("nlohmann" src/scene/mesh_check.cpp mission/ app/)
 only_in("boost/math" mission/flight/flight_statistics.cpp)
 only_in("tbb/" mission/)
 only_in("opencv2" src/ tracking/ mission/ app/ drawing/plot/color.cpp)
+only_in("httplib" app/live/live_server.cpp)
 only_in("cairo" drawing/plot/)

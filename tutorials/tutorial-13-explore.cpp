@@ -110,8 +110,8 @@ int main(int argc, char** argv) {
         std::printf("%4.1f s  %12zu  %13zu  %7.2f m\n", update.time, soFar.map->size(),
                     update.counts.edgesInvalidated, update.length);
     };
-    const ExplorationResult flight =
-        explore(setUpExploration(problem), "belief_rrt_star", 1, kNotInterrupted, onUpdate);
+    const ExplorationResult flight = explore(setUpExploration(problem), "belief_rrt_star", 1,
+                                             kNotInterrupted, {.update = onUpdate});
     //! [explore]
     if (const auto code = checkAnswers(argc, argv, exercises(flight.samples))) return *code;
     std::printf("%s after %.1f m, %.0f mm from the goal\n", nameOf(flight.end).c_str(),

@@ -3,13 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "commands/flight_recording.hpp"
+#include "commands/flight_watch.hpp"
 #include "commands/result_folder.hpp"
 #include "exploration/trial_journal.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
+#include "report/explore_film.hpp"
 #include "report/explore_report.hpp"
 #include "report/fly_report.hpp"
+#include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
@@ -66,15 +71,28 @@ void print(const ExploreOutcome& outcome, const fs::path& folder) {
     fmt::print("report: {}\n", (folder / "report.html").string());
 }
 
-/// The last step of every exploration: report, print.
+/// @throws InputError where the first flight has no log
+void film(const ExploreOptions& options, const ExplorationSetup& setup, const World& world,
+          const fs::path& folder, const ExploreOutcome& outcome,
+          const std::atomic<bool>& interrupted) {
+    if (!outcome.log || outcome.log->moments.empty()) return;
+    ProgressLine line(options.quiet);
+    writeFilm(folder / "film.webm", *outcome.log, viewFromAbove(setup.config, world, {}),
+              interrupted,
+              [&](double share) { line.show(fmt::format("film: {:.0f} %", 100. * share)); });
+}
+
+/// The last step of every exploration: report, film, print.
 int conclude(const ExploreOptions& options, const ExplorationSetup& setup, const World& world,
-             FolderTransaction& folder, ExploreOutcome outcome, const Stopwatch& watch) {
+             FolderTransaction& folder, ExploreOutcome outcome, const Stopwatch& watch,
+             const std::atomic<bool>& interrupted) {
     outcome.commandLine = options.commandLine;
     outcome.summaries =
         summariesByPlanner(outcome.flights, setup.config.belief.characteristicLength);
     nlohmann::json result = exploreResult(setup, outcome);
     result["time"]["total_s"] = watch.seconds();
     writeExploreReport(folder.path(), setup, world, outcome, result);
+    if (options.film) film(options, setup, world, folder.path(), outcome, interrupted);
     commitResult(folder, result);
     if (options.json) {
         fmt::print("{}", jsonText(result));
@@ -118,12 +136,14 @@ std::optional<ExplorationResult> flyMissing(const ExploreOptions& options,
                                             const ExplorationSetup& setup,
                                             const std::vector<TrialItem>& items,
                                             TrialJournal& journal, FlightRecording& recording,
+                                            FlightWatch& watch, const fs::path& folder,
                                             const std::atomic<bool>& interrupted) {
     const std::vector<TrialItem> open = journal.missing(items);
     std::optional<ExplorationResult> cut;
     ExploreProgress progress(options.quiet, items.size(), open);
     const auto onEnd = [&](ExplorationResult flight) {
         const bool isFirst = itemOf(flight) == items.front();
+        if (isFirst) watch.finish(flight, folder);
         if (flight.end != FlightEnd::stopped) {
             progress.onEnd(flight);
             if (!isFirst) flight.map.reset();
@@ -133,7 +153,10 @@ std::optional<ExplorationResult> flyMissing(const ExploreOptions& options,
         }
     };
     const auto onUpdate = [&](const ExplorationResult& soFar) { progress.onUpdate(soFar); };
-    exploreMany(setup, open, options.jobs, interrupted, {onEnd, onUpdate, recording.onExposure()});
+    const bool isWatched = !open.empty() && open.front() == items.front();
+    exploreMany(setup, open, options.jobs, interrupted,
+                {onEnd, onUpdate, recording.onExposure(),
+                 isWatched ? watch.onMoment() : OnExplorationMoment{}});
     return cut;
 }
 
@@ -143,18 +166,29 @@ std::vector<TrialItem> itemsOfShard(const Shard& shard, const Config& config) {
     throw InputError("--shard", toString(shard), fmt::format("of {} flights none", all.size()));
 }
 
-/// @throws InputError where the first flight, which is recorded, was flown before
-void checkRecord(const ExploreOptions& options, const std::vector<ExplorationResult>& flown,
-                 const TrialItem& first) {
-    if (options.record.empty()) return;
-    for (const ExplorationResult& flight : flown) {
-        if (!(itemOf(flight) == first)) continue;
+/// @throws InputError where the first flight, which is to be recorded or watched, was flown before
+void checkIsOpen(const ExploreOptions& options, bool isFlown) {
+    if (!isFlown) return;
+    if (!options.record.empty()) {
         throw InputError("--record", "", "the first flight has been flown: it has no images now");
+    }
+    if (!options.serve.empty()) {
+        throw InputError("--serve", "",
+                         "the first flight has been flown: its report shows it again");
     }
 }
 
+/// The log of the first flight, which was flown before: in the folder that is being written, or in
+/// the result that it will replace.
+std::optional<FlightLog> earlierLog(const FolderTransaction& folder, const TrialItem& first) {
+    std::optional<FlightLog> log = readFlightLog(folder.path(), first);
+    return log ? log : readFlightLog(folder.target(), first);
+}
+
 int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupted) {
-    const Stopwatch watch;
+    const Stopwatch stopwatch;
+    const auto address =
+        options.serve.empty() ? std::optional<ServerAddress>{} : parseServerAddress(options.serve);
     const Config config = loadExploreConfig(options, options.config);
     const Shard shard = shardOf(options);
     const std::vector<TrialItem> items = itemsOfShard(shard, config);
@@ -162,6 +196,10 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     const PlanningProblem problem(config, world);
     const ExplorationSetup setup = setUpExploration(problem);
     const std::string name = fs::path(options.config).stem().string();
+    FlightWatch watch(config, world, items.front());
+    if (address) {
+        watch.serve(*address, livePage(setup, world, name, options.commandLine, watch.log()));
+    }
     FolderTransaction folder =
         beginExploration(options, config, folderOf(options, TrialKind::kWords, name, shard));
     FlightRecording recording(options.record, folder.target(), setup.truth.camera,
@@ -169,22 +207,46 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     const JournalHeader header{name, toYaml(config), TrialKind::identity(config), shard};
     std::vector<ExplorationResult> earlier = runsSoFar<TrialKind>(options, folder, header);
     keepMapOf(items.front(), earlier);
-    checkRecord(options, earlier, items.front());
+    const bool isFlown = std::any_of(
+        earlier.begin(), earlier.end(),
+        [&](const ExplorationResult& flight) { return itemOf(flight) == items.front(); });
+    checkIsOpen(options, isFlown);
+    std::optional<FlightLog> log;
+    if (isFlown) log = earlierLog(folder, items.front());
     TrialJournal journal = TrialJournal::create(folder.path(), header, std::move(earlier));
+    if (log) writeFlightLog(folder.path(), *log);
 
-    const auto cut = flyMissing(options, setup, items, journal, recording, interrupted);
+    const auto cut =
+        flyMissing(options, setup, items, journal, recording, watch, folder.path(), interrupted);
     recording.commit();
+    if (!isFlown) log = watch.log();
     std::vector<ExplorationResult> flights = journal.runsOf(items);
     const std::size_t ended = flights.size();
     if (cut) flights.insert(flights.begin(), *cut);
     return conclude(options, setup, world, folder,
-                    {name, "", std::move(flights), {}, ended, items.size(), ended < items.size()},
-                    watch);
+                    {name,
+                     "",
+                     std::move(flights),
+                     {},
+                     ended,
+                     items.size(),
+                     ended < items.size(),
+                     std::move(log)},
+                    stopwatch, interrupted);
 }
 
-int mergeExplorations(const ExploreOptions& options) {
+/// The log of the first flight of a merged exploration, in the folder of its shard.
+std::optional<FlightLog> logOfShards(const ExploreOptions& options, const TrialItem& first) {
+    for (const std::string& folder : options.merge) {
+        if (auto log = readFlightLog(folder, first)) return log;
+    }
+    return {};
+}
+
+int mergeExplorations(const ExploreOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
     if (!options.record.empty()) throw InputError("--merge", "", "goes without --record");
+    if (!options.serve.empty()) throw InputError("--merge", "", "goes without --serve");
     const auto shards = readShards<TrialKind>(options.merge);
     JournalHeader header = shards.front().header();
     const fs::path target = folderOf(options, TrialKind::kWords, header.name, {});
@@ -206,15 +268,24 @@ int mergeExplorations(const ExploreOptions& options) {
     FolderTransaction folder = beginExploration(options, config, target);
     header.shard = {};
     TrialJournal::create(folder.path(), header, flights);
+    std::optional<FlightLog> log = logOfShards(options, items.front());
+    if (log) writeFlightLog(folder.path(), *log);
     return conclude(options, setup, world, folder,
-                    {header.name, "", std::move(flights), {}, items.size(), items.size(), false},
-                    watch);
+                    {header.name,
+                     "",
+                     std::move(flights),
+                     {},
+                     items.size(),
+                     items.size(),
+                     false,
+                     std::move(log)},
+                    watch, interrupted);
 }
 
 }  // namespace
 
 int runExplore(const ExploreOptions& options, const std::atomic<bool>& interrupted) {
-    return isMerge(options, TrialKind::kWords) ? mergeExplorations(options)
+    return isMerge(options, TrialKind::kWords) ? mergeExplorations(options, interrupted)
                                                : exploreAll(options, interrupted);
 }
 

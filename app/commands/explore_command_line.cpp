@@ -51,6 +51,11 @@ Command exploreCommand(CLI::App& app, const Invocation& invocation) {
     parser
         ->add_option("--record", options->record, "write the first flight as a TUM RGB-D recording")
         ->type_name("DIR");
+    parser
+        ->add_option("--serve", options->serve,
+                     "show the first flight to browsers while it is flown; 0: at a free port")
+        ->type_name("[ADDRESS:]PORT");
+    parser->add_flag("--film", options->film, "write a film of the first flight (film.webm)");
     addSeed(*parser, options->seed, "of all random numbers, of the first trial");
     addKeyOptions(*parser, options->keys, {"planners"});
     return {parser, [options, parser, &interrupted = invocation.interrupted] {

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/explore_figures.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+
+#include "evaluation/averages.hpp"
 #include "flight/flight_statistics.hpp"
 
 namespace photonav {
@@ -22,6 +26,57 @@ Plot panel(const std::string& label, bool isLog) {
 
 Style styleOf(const ExplorationResult& flight) {
     return {.color = plannerColor(flight.planner), .opacity = 0.7, .name = flight.planner};
+}
+
+constexpr int kShares = 100;      // of the way, that bands are drawn at
+constexpr double kInBand = 0.95;  // of the flights
+
+/// Trace of the belief at a distance, between the samples of a flight.
+double traceAt(const std::vector<FlightSample>& samples, double distance, double length) {
+    const auto after =
+        std::lower_bound(samples.begin(), samples.end(), distance,
+                         [](const FlightSample& sample, double d) { return sample.distance < d; });
+    const auto trace = [&](const FlightSample& sample) {
+        return weightedTrace(sample.belief.covariance, length);
+    };
+    if (after == samples.begin()) return trace(samples.front());
+    if (after == samples.end()) return trace(samples.back());
+    const FlightSample& before = *std::prev(after);
+    const double share = (distance - before.distance) / (after->distance - before.distance);
+    return trace(before) + share * (trace(*after) - trace(before));
+}
+
+/// @param values sorted
+double quantile(const std::vector<double>& values, double share) {
+    const double at = share * static_cast<double>(values.size() - 1);
+    const auto low = static_cast<std::size_t>(at);
+    const std::size_t high = std::min(low + 1, values.size() - 1);
+    return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
+}
+
+/// Adds the flights of a planner.
+void addBand(Plot& plot, const std::vector<const ExplorationResult*>& flights, double length) {
+    Plot::Points low, middle, high;
+    for (int i = 0; i <= kShares; ++i) {
+        const double share = static_cast<double>(i) / kShares;
+        std::vector<double> traces;
+        for (const ExplorationResult* flight : flights) {
+            const double way = flight->samples.back().distance;
+            traces.push_back(traceAt(flight->samples, share * way, length));
+        }
+        std::sort(traces.begin(), traces.end());
+        low.emplace_back(share, quantile(traces, 0.5 * (1. - kInBand)));
+        middle.emplace_back(share, mean(traces, 0.));
+        high.emplace_back(share, quantile(traces, 0.5 * (1. + kInBand)));
+    }
+    Style style = styleOf(*flights.front());
+    style.opacity = 1.;
+    style.width = 2.6;
+    if (flights.size() > 1) {
+        style.name = fmt::format("{}, {} flights", flights.front()->planner, flights.size());
+        plot.band(low, high, {.color = style.color, .opacity = 0.2});
+    }
+    plot.curve(middle, style);
 }
 
 }  // namespace
@@ -79,6 +134,19 @@ Figure explorationFigure(const std::vector<ExplorationResult>& flights,
         updates.dots(ofUpdate, {.color = plannerColor(flight.planner), .width = 5.});
     }
     return {"Beliefs along the way", {{traces}, {nees}, {updates}}};
+}
+
+Figure traceBandsFigure(const std::vector<ExplorationResult>& flights,
+                        double characteristicLength) {
+    Plot plot = panel("trace of the belief [m²]", true);
+    plot.height = 340.;
+    plot.x = {.min = 0., .max = 1., .label = "share of the way flown"};
+    std::map<std::string, std::vector<const ExplorationResult*>> ofPlanner;
+    for (const ExplorationResult& flight : flights) {
+        if (!flight.samples.empty()) ofPlanner[flight.planner].push_back(&flight);
+    }
+    for (const auto& [planner, own] : ofPlanner) addBand(plot, own, characteristicLength);
+    return {"Beliefs along the normalised way", {{plot}}};
 }
 
 }  // namespace photonav

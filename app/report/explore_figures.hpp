@@ -20,4 +20,8 @@ DrawnPath drawnBeliefs(const ExplorationResult& flight, double characteristicLen
 Figure explorationFigure(const std::vector<ExplorationResult>& flights,
                          double characteristicLength);
 
+/// Trace of the beliefs over the share of the way flown: for every planner the mean of its flights
+/// and, of several, the band in which 95 % of them are.
+Figure traceBandsFigure(const std::vector<ExplorationResult>& flights, double characteristicLength);
+
 }  // namespace photonav

@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "dataset/belief_trajectory.hpp"
-#include "exploration/trial_journal.hpp"
+#include "exploration/plan_update_json.hpp"
 #include "flight/flight_statistics.hpp"
 #include "map/octree_file.hpp"
 #include "report/explore_figures.hpp"
+#include "report/flight_log_figures.hpp"
 #include "report/fly_report.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
@@ -120,7 +121,8 @@ ReportTable tableOfUpdates(const ExplorationResult& flight) {
 }
 
 std::vector<NamedFigure> figuresOf(const ExplorationSetup& setup, const World& world,
-                                   const std::vector<ExplorationResult>& flights) {
+                                   const ExploreOutcome& outcome) {
+    const std::vector<ExplorationResult>& flights = outcome.flights;
     TopView view = viewFromAbove(setup.config, world, {});
     view.title = "The true scene, and the true positions of the flights";
     for (const ExplorationResult& flight : flights) view.trees.push_back(drawnWay(flight));
@@ -132,17 +134,35 @@ std::vector<NamedFigure> figuresOf(const ExplorationSetup& setup, const World& w
     mapped.unknownToPlanner = UnknownPolicy::free;
     map.background = World(flights.front().map, mapped)
                          .pictureFromAbove(map.area, setup.config.bounds.max().z(), kMapPixel);
-    return {{"map.png",
-             {"What the first flight mapped, from above, and where it believed to be, with 3σ "
-              "ellipses; the true positions beside it.",
-              topViewFigure(map).png()}},
-            {"top_view.png",
-             {"The true scene from above, with the true positions of all flights.",
-              topViewFigure(view).png()}},
-            {"trace.png",
-             {"Trace of the belief and NEES (1: consistent) over the way flown, and the time of "
-              "the updates.",
-              explorationFigure(flights, setup.config.belief.characteristicLength).png()}}};
+    std::vector<NamedFigure> figures{
+        {"map.png",
+         {"What the first flight mapped, from above, and where it believed to be, with 3σ "
+          "ellipses; the true positions beside it.",
+          topViewFigure(map).png()}},
+        {"top_view.png",
+         {"The true scene from above, with the true positions of all flights.",
+          topViewFigure(view).png()}},
+        {"trace.png",
+         {"Trace of the belief and NEES (1: consistent) over the way flown, and the time of "
+          "the updates.",
+          explorationFigure(flights, setup.config.belief.characteristicLength).png()}},
+        {"bands.png",
+         {"Trace of the beliefs along the normalised way: mean of the flights of a planner, and "
+          "the band in which 95 % of them are.",
+          traceBandsFigure(flights, setup.config.belief.characteristicLength).png()}}};
+    if (!outcome.log || outcome.log->moments.empty()) return figures;
+    view.trees.clear();
+    figures.push_back({"stages.png",
+                       {"The first flight in stages. Above: the true scene, the way flown and, "
+                        "transparent, the plan. In the middle: what is free at the height of the "
+                        "robot (white), too near to an obstacle (brown), an obstacle (black) or "
+                        "not seen yet (grey). Below: the information of views with the robot's "
+                        "heading.",
+                        stagesFigure(*outcome.log, view).png()}});
+    figures.push_back({"plans.png",
+                       {"Plans of the first flight, dark to bright over time, and the way flown.",
+                        plansFigure(*outcome.log, view).png()}});
+    return figures;
 }
 
 }  // namespace
@@ -170,6 +190,18 @@ json exploreResult(const ExplorationSetup& setup, const ExploreOutcome& outcome)
     return result;
 }
 
+std::string livePage(const ExplorationSetup& setup, const World& world, const std::string& name,
+                     const std::string& commandLine, const FlightLog& log) {
+    ReportData report = problemReport(setup.config, world, commandLine, {{"command", "explore"}});
+    report.title = name + ", being explored";
+    report.subtitle = "The first flight, while it is flown.";
+    report.mesh = {};
+    report.voxels = {};
+    report.fieldOfView = fieldOfView(setup.truth.camera);
+    report.flight = {{"header", headerJson(log)}, {"live", true}};
+    return reportPage(reportJson(report));
+}
+
 void writeExploreReport(const fs::path& folder, const ExplorationSetup& setup, const World& world,
                         const ExploreOutcome& outcome, const json& result) {
     const std::vector<ExplorationResult>& flights = outcome.flights;
@@ -180,15 +212,19 @@ void writeExploreReport(const fs::path& folder, const ExplorationSetup& setup, c
     report.subtitle =
         "A flight to the goal in a scene unknown to the robot: its own map, path and beliefs.";
     report.mesh = {};
-    report.voxels = makeReportVoxels(*first.map);
     report.fieldOfView = fieldOfView(setup.truth.camera);
-    report.paths.push_back(drawnBeliefs(first, config.belief.characteristicLength));
-    report.trees.push_back(drawnWay(first));
+    if (outcome.log) {
+        report.flight = flightLogJson(*outcome.log);
+    } else {
+        report.voxels = makeReportVoxels(*first.map);
+        report.paths.push_back(drawnBeliefs(first, config.belief.characteristicLength));
+        report.trees.push_back(drawnWay(first));
+    }
     for (const ExplorationSummary& s : outcome.summaries) report.tables.push_back(tableOf(s));
     report.tables.push_back(tableOfUpdates(first));
     writeFlownTrajectory(folder, first);
     saveTexturedOcTree(*first.map, (folder / "map.ot").string());
-    writeResultFolder(folder, report, figuresOf(setup, world, flights));
+    writeResultFolder(folder, report, figuresOf(setup, world, outcome));
 }
 
 }  // namespace photonav

@@ -49,12 +49,16 @@ Eigen::Vector2d fieldOfView(const Camera& camera) {
             2. * std::atan(0.5 * camera.height / camera.fy())};
 }
 
-void writeReport(const std::filesystem::path& file, std::string_view content) {
+std::string reportPage(std::string_view content) {
     const std::size_t mark = kReportPage.find(kDataMark);
     std::string page(kReportPage.substr(0, mark));
     page += escapedForScript(content);
     page += kReportPage.substr(mark + kDataMark.size());
-    replaceFile(file, page);
+    return page;
+}
+
+void writeReport(const std::filesystem::path& file, std::string_view content) {
+    replaceFile(file, reportPage(content));
 }
 
 void writeResultFolder(const std::filesystem::path& folder, ReportData& report,

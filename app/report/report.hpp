@@ -72,6 +72,7 @@ struct ReportData {
     std::vector<ReportFigure> figures;
     std::vector<ReportFigure> frames;  ///< one after the other, as an animation
     std::vector<ReportTable> tables;
+    nlohmann::json flight;  ///< flightLogJson() of a flight to be watched; null: none
 };
 
 /// Full angles of a camera, horizontal and vertical [rad].
@@ -92,6 +93,10 @@ std::string reportJson(const ReportData& data);
 /// The content of report.json.
 /// @throws InputError naming file and reason if it is missing, cut or not ours
 std::string readReportJson(const std::filesystem::path& file);
+
+/// The page, HTML.
+/// @param content of reportJson() or readReportJson()
+std::string reportPage(std::string_view content);
 
 /// Writes the page, whole or not at all.
 /// @param content of reportJson() or readReportJson()

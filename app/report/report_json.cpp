@@ -2,11 +2,11 @@
 // ReportData to JSON.
 #include <bit>
 
+#include "io/base64.hpp"
 #include "io/error.hpp"
 #include "io/image_bytes.hpp"
 #include "io/json_nesting.hpp"
 #include "io/reading.hpp"
-#include "report/base64.hpp"
 #include "report/report.hpp"
 
 namespace photonav {
@@ -104,6 +104,7 @@ std::string reportJson(const ReportData& data) {
     writeFigures("frames", data.frames);
     for (const ReportTable& table : data.tables)
         root["tables"].push_back({{"title", table.title}, {"rows", table.rows}});
+    if (!data.flight.is_null()) root["flight"] = data.flight;
     root["planner_colors"] = json::object();
     for (const json& planner : data.result.value("planners", json::array()))
         if (planner.is_string()) {

@@ -67,7 +67,9 @@ void addRoute(Plot& plot, const TopView& view, std::size_t index) {
         {.color = path.color, .width = width, .name = path.name, .halo = isLowest ? 1.2 : 0.});
 }
 
-Plot mapOf(const TopView& view, double side) {
+}  // namespace
+
+Plot topViewPlot(const TopView& view, double side) {
     Plot plot = Plot::map(view.area, side);
     if (view.background.getSize() > 0) plot.picture(lightened(view.background), view.area, true);
     for (const DrawnTree& tree : view.trees)
@@ -86,10 +88,8 @@ Plot mapOf(const TopView& view, double side) {
     return plot;
 }
 
-}  // namespace
-
 Figure topViewFigure(const TopView& view) {
-    return {view.title, {{mapOf(view, 820.)}}, Figure::Legend::right};
+    return {view.title, {{topViewPlot(view, 820.)}}, Figure::Legend::right};
 }
 
 Figure mapsFigure(const std::vector<std::vector<TopView>>& rows) {
@@ -98,7 +98,7 @@ Figure mapsFigure(const std::vector<std::vector<TopView>>& rows) {
         auto& plots = figure.rows.emplace_back();
         for (TopView view : row) {
             view.ellipseScale = 0.;
-            Plot& plot = plots.emplace_back(mapOf(view, 420.));
+            Plot& plot = plots.emplace_back(topViewPlot(view, 420.));
             plot.title = view.title;
             if (&row != &rows.back()) plot.x.label.clear();
             if (plots.size() > 1) plot.y.label.clear();

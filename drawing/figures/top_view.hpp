@@ -26,6 +26,11 @@ struct TopView {
                                 ///< this much larger (the legend states it); 0: none
 };
 
+/// The map alone, for figures of several panels.
+/// @param side the longer one [px]
+/// @throws std::invalid_argument if the area is empty
+Plot topViewPlot(const TopView& view, double side);
+
 /// @throws std::invalid_argument if the area is empty
 Figure topViewFigure(const TopView& view);
 

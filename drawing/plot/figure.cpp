@@ -5,6 +5,7 @@
 #include <cairo-svg.h>
 
 #include <algorithm>
+#include <cstring>
 #include <set>
 #include <stdexcept>
 
@@ -260,14 +261,16 @@ Surface drawn(const Figure& figure, const Create& create) {
     return surface;
 }
 
+cairo_surface_t* imageSurface(double width, double height) {
+    return cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width),
+                                      static_cast<int>(height));
+}
+
 }  // namespace
 
 std::string Figure::png() const {
     std::string bytes;
-    const Surface surface = drawn(*this, [](double width, double height) {
-        return cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width),
-                                          static_cast<int>(height));
-    });
+    const Surface surface = drawn(*this, imageSurface);
     cairo_surface_write_to_png_stream(surface.get(), &appendTo, &bytes);
     return bytes;
 }
@@ -286,6 +289,26 @@ std::string Figure::pdf() const {
         return cairo_pdf_surface_create_for_stream(&appendTo, &bytes, width, height);
     });
     return bytes;
+}
+
+Picture Figure::picture() const {
+    const Surface surface = drawn(*this, imageSurface);
+    cairo_surface_flush(surface.get());
+    const unsigned char* bytes = cairo_image_surface_get_data(surface.get());
+    const int stride = cairo_image_surface_get_stride(surface.get());
+    const int height = cairo_image_surface_get_height(surface.get());
+    Picture picture{{}, cairo_image_surface_get_width(surface.get())};
+    picture.pixels.reserve(static_cast<std::size_t>(height) * picture.columns);
+    for (int v = 0; v < height; ++v) {
+        for (int u = 0; u < picture.columns; ++u) {
+            std::uint32_t pixel = 0;  // 0x00RRGGBB
+            std::memcpy(&pixel, bytes + static_cast<std::ptrdiff_t>(v) * stride + 4 * u, 4);
+            picture.pixels.push_back({static_cast<std::uint8_t>(pixel >> 16U),
+                                      static_cast<std::uint8_t>(pixel >> 8U),
+                                      static_cast<std::uint8_t>(pixel)});
+        }
+    }
+    return picture;
 }
 
 void Figure::save(const std::filesystem::path& file) const {

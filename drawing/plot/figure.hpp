@@ -22,6 +22,9 @@ struct Figure {
     std::string svg() const;
     std::string pdf() const;
 
+    /// Its pixels. @throws std::invalid_argument without panels
+    Picture picture() const;
+
     /// Writes .png, .svg or .pdf.
     /// @throws InputError if the name ends otherwise, or the file cannot be written
     void save(const std::filesystem::path& file) const;

@@ -32,12 +32,12 @@ Matrix6 inCameraFrame(const Matrix6& covariance, const Pose& T_b_c) {
 class Exploration {
   public:
     Exploration(const ExplorationSetup& setup, const std::string& planner, std::uint32_t seed,
-                const std::atomic<bool>& interrupted, const OnPlanUpdate& onUpdate);
-    ExplorationResult run(const OnExposure& onExposure);
+                const std::atomic<bool>& interrupted, const OnExploration& on);
+    ExplorationResult run();
 
   private:
     void onImage(const TrackedFrame& tracked, const View& image);
-    void updatePlan(const UncertainPose& T_c_w, MapChange change, double fuseSeconds);
+    void updatePlan(const UncertainPose& T_c_w, MapChange& change, double fuseSeconds);
     void flyOn(const UncertainPose& T_c_w);
     bool mayStepBlindly() const;
     void hover(const UncertainPose& T_c_w);
@@ -50,7 +50,7 @@ class Exploration {
 
     const ExplorationSetup& setup_;
     const std::atomic<bool>& interrupted_;
-    const OnPlanUpdate& onUpdate_;
+    const OnExploration& on_;
     OwnMap map_;
     OnlinePlanner planner_;
     SimulatedRobot robot_;
@@ -111,10 +111,10 @@ std::vector<PlannedView> stayingAt(const UncertainPose& T_c_w, const Pose& T_b_c
 
 Exploration::Exploration(const ExplorationSetup& setup, const std::string& planner,
                          std::uint32_t seed, const std::atomic<bool>& interrupted,
-                         const OnPlanUpdate& onUpdate)
+                         const OnExploration& on)
     : setup_(setup),
       interrupted_(interrupted),
-      onUpdate_(onUpdate),
+      on_(on),
       map_(setup.config),
       planner_(setup.config, map_, explorePlanner(planner), seed),
       robot_(setup.truth.truth, setup.truth.camera, setup.truth.T_b_c,
@@ -138,12 +138,12 @@ Exploration::Exploration(const ExplorationSetup& setup, const std::string& plann
     result_.map = map_.cells();
 }
 
-ExplorationResult Exploration::run(const OnExposure& onExposure) {
+ExplorationResult Exploration::run() {
     BodyVelocity command;
     const double dt = setup_.flight.timeStep;
     for (double seconds = 0.;; seconds = dt) {
         const Observation observation = robot_.fly(command, seconds);
-        if (onExposure && robot_.exposed()) onExposure(*robot_.exposed());
+        if (on_.exposure && robot_.exposed()) on_.exposure(*robot_.exposed());
         const std::vector<TrackedFrame> tracked = tracker_.update(observation);
         evaluator_.onStep(tracked, tracker_, evaluator_.result().flown);
         for (std::size_t i = 0; i < tracked.size(); ++i) {
@@ -167,11 +167,15 @@ void Exploration::onImage(const TrackedFrame& tracked, const View& image) {
     planner_.views()->render(robot_.camera(), tracked.T_c_w.mean, shown);
     Stopwatch watch;
     auto change = mapper_.add(tracked, image, shown, isWaiting());
-    if (change) updatePlan(tracked.T_c_w, std::move(*change), watch.seconds());
+    if (!change) return;
+    updatePlan(tracked.T_c_w, *change, watch.seconds());
+    if (!on_.moment) return;
+    on_.moment({resultSoFar(), planner_, map_, *change, tracked.T_c_w, image, shown});
 }
 
 /// Plans from here on in a map that has changed.
-void Exploration::updatePlan(const UncertainPose& T_c_w, MapChange change, double fuseSeconds) {
+/// @param change the space of the body is added
+void Exploration::updatePlan(const UncertainPose& T_c_w, MapChange& change, double fuseSeconds) {
     PlanUpdate update;
     update.time = robot_.time();
     Stopwatch watch;
@@ -185,7 +189,7 @@ void Exploration::updatePlan(const UncertainPose& T_c_w, MapChange change, doubl
     lastUpdate_ = robot_.time();
     flyOn(T_c_w);
     result_.updates.push_back(update);
-    if (onUpdate_) onUpdate_(resultSoFar());
+    if (on_.update) on_.update(resultSoFar());
 }
 
 /// Gives the pilot the part of the plan that is safe, or lets it hover.
@@ -295,10 +299,9 @@ ExplorationSetup setUpExploration(const PlanningProblem& problem) {
 
 ExplorationResult explore(const ExplorationSetup& setup, const std::string& planner,
                           std::uint32_t seed, const std::atomic<bool>& interrupted,
-                          const OnPlanUpdate& onUpdate, const OnExposure& onExposure) {
+                          const OnExploration& on) {
     const Stopwatch watch;
-    ExplorationResult flight =
-        Exploration(setup, planner, seed, interrupted, onUpdate).run(onExposure);
+    ExplorationResult flight = Exploration(setup, planner, seed, interrupted, on).run();
     flight.wallSeconds = watch.seconds();
     return flight;
 }

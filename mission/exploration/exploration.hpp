@@ -39,12 +39,31 @@ ExplorationSetup setUpExploration(const PlanningProblem& problem);
 /// Called after every update of the plan.
 using OnPlanUpdate = std::function<void(const ExplorationResult& soFar)>;
 
+/// A flight right after an update of its plan, for logs and figures.
+struct ExplorationMoment {
+    const ExplorationResult& soFar;
+    const OnlinePlanner& planner;
+    const OwnMap& map;
+    const MapChange& change;     ///< of the map, since the last moment
+    const UncertainPose& T_c_w;  ///< believed
+    const View& image;           ///< that was tracked last
+    const View& predicted;       ///< view of the map before this update, from the believed pose
+};
+using OnExplorationMoment = std::function<void(const ExplorationMoment& moment)>;
+
+/// Who is informed of a flight. Nothing that they do changes it; each may be empty.
+struct OnExploration {
+    OnPlanUpdate update = {};
+    OnExposure exposure = {};
+    OnExplorationMoment moment = {};  ///< after `update`
+};
+
 /// Flies from start to goal with the robot's own camera as only sensor: the map is made, and the
 /// plan repaired, as the scene comes into view. Deterministic for a seed: planning ends by work,
 /// not by time.
 /// @param planner as explorePlanner() takes it
 ExplorationResult explore(const ExplorationSetup& setup, const std::string& planner,
                           std::uint32_t seed, const std::atomic<bool>& interrupted,
-                          const OnPlanUpdate& onUpdate = {}, const OnExposure& onExposure = {});
+                          const OnExploration& on = {});
 
 }  // namespace photonav

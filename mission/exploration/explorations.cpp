@@ -20,8 +20,10 @@ void exploreMany(const ExplorationSetup& setup, const std::vector<TrialItem>& it
     };
     workInOrder(items.size(), jobs, [&](std::size_t i) {
         if (interrupted && i > 0) return false;
-        ExplorationResult flight = explore(setup, items[i].planner, items[i].seed, interrupted,
-                                           report, i == 0 ? on.exposure : OnExposure{});
+        OnExploration onThis{.update = report};
+        if (i == 0) onThis = {report, on.exposure, on.moment};
+        ExplorationResult flight =
+            explore(setup, items[i].planner, items[i].seed, interrupted, onThis);
         const std::lock_guard lock(mutex);
         if (on.end) on.end(std::move(flight));
         return true;

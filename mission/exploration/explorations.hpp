@@ -29,7 +29,8 @@ std::vector<TrialItem> trialItems(const Config& config);
 struct OnExplorations {
     std::function<void(ExplorationResult)> end = {};  ///< as flights end, in any order
     OnPlanUpdate update = {};
-    OnExposure exposure = {};  ///< of the first item
+    OnExposure exposure = {};         ///< of the first item
+    OnExplorationMoment moment = {};  ///< of the first item
 };
 
 /// Flies `items` on `jobs` threads. When interrupted, flights end as FlightEnd::stopped and no

@@ -43,6 +43,7 @@ class OnlinePlanner {
     /// The present map as it is seen.
     std::shared_ptr<const ViewSource> views() const { return world_.sharedViews(); }
     const World& world() const { return world_; }
+    const BeliefPlanner& planner() const { return *planner_; }
     const Config& config() const { return config_; }
     double clearance(const Eigen::Vector3d& p_w) const { return world_.clearance(p_w); }
 

@@ -6,6 +6,7 @@
 
 #include <stdexcept>
 
+#include "exploration/plan_update_json.hpp"
 #include "geometry/constants.hpp"
 #include "map/octree_file.hpp"
 
@@ -18,17 +19,6 @@ constexpr double kFarthestPosition = 1e6;  // from the origin [m]
 
 void require(bool holds, const char* what) {
     if (!holds) throw std::out_of_range(what);
-}
-
-/// A duration, length or share of them.
-double positive(const json& line, const char* key) {
-    const auto value = line.at(key).get<double>();
-    require(value >= 0., key);
-    return value;
-}
-
-double orNone(const json& line, const char* key) {
-    return line.at(key).is_null() ? kNone : line.at(key).get<double>();
 }
 
 int countOf(const json& line, const char* key) { return wholeNumber<int>(line.at(key)); }
@@ -75,37 +65,10 @@ json lineOf(const FlightSample& sample) {
 FlightSample sampleFrom(const json& line) {
     const auto covariance = matrixFrom<6, 6>(line.at("covariance"));
     require(covariance.diagonal().minCoeff() >= 0., "covariance");
-    return {positive(line, "time"),
-            positive(line, "distance"),
+    return {nonNegative(line, "time"),
+            nonNegative(line, "distance"),
             poseFrom(line.at("T_c_w")),
             {poseFrom(line.at("believed_T_c_w")), covariance}};
-}
-
-json lineOf(const PlanUpdate& update) {
-    json line = untimedJson(update);
-    line["fuse_s"] = update.fuseSeconds;
-    line["clearance_s"] = update.clearanceSeconds;
-    line["views_s"] = update.viewSeconds;
-    line["plan_s"] = update.planSeconds;
-    return line;
-}
-
-PlanUpdate updateFrom(const json& line) {
-    const auto count = [&](const char* key) { return wholeNumber<std::size_t>(line.at(key)); };
-    return {.time = positive(line, "time"),
-            .counts = {.verticesInvalidated = count("vertices_invalidated"),
-                       .edgesInvalidated = count("edges_invalidated"),
-                       .verticesAdded = count("vertices_added"),
-                       .verticesRewired = count("vertices_rewired")},
-            .viewsMarked = count("views_marked"),
-            .viewsRendered = count("views_rendered"),
-            .fuseSeconds = positive(line, "fuse_s"),
-            .clearanceSeconds = positive(line, "clearance_s"),
-            .viewSeconds = positive(line, "views_s"),
-            .planSeconds = positive(line, "plan_s"),
-            .cost = orNone(line, "cost"),
-            .length = orNone(line, "length"),
-            .trace = orNone(line, "trace")};
 }
 
 /// The end of a flight that was not stopped.
@@ -124,19 +87,6 @@ json linesOf(const std::vector<Element>& elements) {
 }
 
 }  // namespace
-
-json untimedJson(const PlanUpdate& u) {
-    return {{"time", u.time},
-            {"vertices_invalidated", u.counts.verticesInvalidated},
-            {"edges_invalidated", u.counts.edgesInvalidated},
-            {"vertices_added", u.counts.verticesAdded},
-            {"vertices_rewired", u.counts.verticesRewired},
-            {"views_marked", u.viewsMarked},
-            {"views_rendered", u.viewsRendered},
-            {"cost", finiteOrNull(u.cost)},
-            {"length", finiteOrNull(u.length)},
-            {"trace", finiteOrNull(u.trace)}};
-}
 
 Identity TrialKind::identity(const Config& config) {
     Identity identity =
@@ -179,20 +129,20 @@ ExplorationResult TrialKind::load(const json& line, const fs::path& folder) {
     flight.seed = wholeNumber<std::uint32_t>(line.at("seed"));
     flight.end = endFrom(line.at("end"));
     flight.reason = line.at("reason");
-    flight.duration = positive(line, "duration_s");
-    flight.flown = positive(line, "way");
-    flight.lostTime = positive(line, "lost_s");
+    flight.duration = nonNegative(line, "duration_s");
+    flight.flown = nonNegative(line, "way");
+    flight.lostTime = nonNegative(line, "lost_s");
     flight.timesLost = countOf(line, "times_lost");
-    flight.goalError = positive(line, "goal_error");
-    flight.arrivalProbability = positive(line, "arrival_probability");
-    flight.leastClearance = orNone(line, "least_clearance");
+    flight.goalError = nonNegative(line, "goal_error");
+    flight.arrivalProbability = nonNegative(line, "arrival_probability");
+    flight.leastClearance = numberOrNone(line, "least_clearance");
     flight.images = countOf(line, "images");
     flight.rejectedImages = countOf(line, "rejected_images");
     flight.keyframes = countOf(line, "keyframes");
     flight.blindSteps = countOf(line, "blind_steps");
-    flight.wallSeconds = positive(line, "wall_s");
+    flight.wallSeconds = nonNegative(line, "wall_s");
     for (const json& sample : line.at("samples")) flight.samples.push_back(sampleFrom(sample));
-    for (const json& update : line.at("updates")) flight.updates.push_back(updateFrom(update));
+    for (const json& update : line.at("updates")) flight.updates.push_back(planUpdateFrom(update));
     if (line.at("has_map").get<bool>() && fs::exists(folder / kMapFile)) {
         flight.map = loadTexturedOcTree(folder / kMapFile);
     }

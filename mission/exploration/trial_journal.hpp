@@ -30,10 +30,6 @@ struct TrialKind {
 
 using TrialJournal = Journal<TrialKind>;
 
-/// An update as journals and results hold it, but for the wall-clock times, which journals keep in
-/// seconds and results in milliseconds. Costs and lengths are null where there is no path.
-nlohmann::json untimedJson(const PlanUpdate& update);
-
 /// A result shows the map of its first flight: the others drop theirs. A first flight that has none
 /// is dropped, to be flown again.
 void keepMapOf(const TrialItem& first, std::vector<ExplorationResult>& flights);

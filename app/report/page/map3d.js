@@ -2,70 +2,83 @@
 'use strict';
 
 /// @param textureFrom gives a texture for the URI of a picture
-/// @returns group to be shown, box around it, setCut(height) that hides what is higher
+/// @returns group to be shown, box around it, hidden (uniforms of Cubes), setCut(height) that hides
+///          what is higher, hideNearWalls(eye) that hides the outer walls between it and the inside
 function createMap3d(textureFrom) {
   const cutPlane = new THREE.Plane(new THREE.Vector3(0, 0, -1), 1e9);
-  const voxelUniforms = {size: {value: data.voxels.size}, cut: {value: 1e9}};
+  const hidden = {cut: {value: 1e9}, low: {value: new THREE.Vector3()}, high: {value: new THREE.Vector3()}};
   const box = new THREE.Box3();
   const group = new THREE.Group();
+  const walls = [];  // meshes of an outer wall: {mesh, axis, sign of the side}
 
   function addMesh() {
     const positions = floatsOf(data.mesh.positions), uv = floatsOf(data.mesh.uv);
     const textures = indicesOf(data.mesh.textures);
-    const parts = data.mesh.images.map(() => ({positions: [], uv: []}));
+    box.union(new THREE.Box3().setFromArray(positions));
+    const parts = new Map();  // by texture and side
     textures.forEach((texture, i) => {
-      for (let k = 9 * i; k < 9 * i + 9; ++k) parts[texture].positions.push(positions[k]);
-      for (let k = 6 * i; k < 6 * i + 6; ++k) parts[texture].uv.push(uv[k]);
+      const corners = positions.subarray(9 * i, 9 * i + 9), side = outerSide(corners);
+      const key = `${texture} ${side}`;
+      if (!parts.has(key)) parts.set(key, {texture, side, positions: [], uv: []});
+      parts.get(key).positions.push(...corners);
+      parts.get(key).uv.push(...uv.subarray(6 * i, 6 * i + 6));
     });
-    parts.forEach((part, i) => {
-      if (!part.positions.length) return;
+    const materials = data.mesh.images.map((image) => new THREE.MeshBasicMaterial({
+      map: textureFrom(image), side: THREE.DoubleSide, clippingPlanes: [cutPlane],
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1}));
+    for (const part of parts.values()) {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.Float32BufferAttribute(part.positions, 3));
       geometry.setAttribute('uv', new THREE.Float32BufferAttribute(part.uv, 2));
-      group.add(new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({
-        map: textureFrom(data.mesh.images[i]), side: THREE.DoubleSide, clippingPlanes: [cutPlane],
-        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1})));
-    });
-    box.union(new THREE.Box3().setFromArray(positions));
+      const mesh = new THREE.Mesh(geometry, materials[part.texture]);
+      if (part.side) walls.push({mesh, axis: part.side.slice(1), sign: part.side[0] === '-' ? -1 : 1});
+      group.add(mesh);
+    }
   }
 
-  /// Cubes as instances of the three faces that look at the camera.
+  /// How thick the outer walls are at most, and what hangs on them [m].
+  const wallSize = () => 0.02 * box.getSize(new THREE.Vector3()).length();
+
+  /// The side of the box that a triangle lies in: '-x', '+x', '-y' or '+y'; '' for others.
+  function outerSide(corners) {
+    const near = wallSize();
+    for (const [axis, name] of [[0, 'x'], [1, 'y']]) {
+      const values = [corners[axis], corners[3 + axis], corners[6 + axis]];
+      if (values.every((value) => value < box.min[name] + near)) return `-${name}`;
+      if (values.every((value) => value > box.max[name] - near)) return `+${name}`;
+    }
+    return '';
+  }
+
+  const isOutside = (eye, axis, sign) => sign < 0 ? eye[axis] < box.min[axis] : eye[axis] > box.max[axis];
+  function hideNearWalls(eye) {
+    for (const {mesh, axis, sign} of walls) mesh.visible = !isOutside(eye, axis, sign);
+    const size = wallSize();
+    for (const axis of ['x', 'y']) {
+      hidden.low.value[axis] = isOutside(eye, axis, -1) ? box.min[axis] + size : -1e9;
+      hidden.high.value[axis] = isOutside(eye, axis, 1) ? box.max[axis] - size : 1e9;
+    }
+    hidden.low.value.z = box.min.z + size / 2;  // the floor stays
+  }
+
   function addVoxels() {
-    const centers = floatsOf(data.voxels.centers);
-    const geometry = new THREE.InstancedBufferGeometry();
-    const corners = [];
-    for (let axis = 0; axis < 3; ++axis)
-      for (const [u, v] of [[-1, -1], [1, -1], [1, 1], [-1, -1], [1, 1], [-1, 1]]) {
-        const corner = [0, 0, 0];
-        corner[axis] = 1; corner[(axis + 1) % 3] = u; corner[(axis + 2) % 3] = v;
-        corners.push(...corner, axis);
-      }
-    const interleaved = new THREE.InterleavedBuffer(new Float32Array(corners), 4);
-    geometry.setAttribute('position', new THREE.InterleavedBufferAttribute(interleaved, 3, 0));
-    geometry.setAttribute('axis', new THREE.InterleavedBufferAttribute(interleaved, 1, 3));
-    geometry.setAttribute('center', new THREE.InstancedBufferAttribute(centers, 3));
-    geometry.setAttribute('grey', new THREE.InstancedBufferAttribute(bytesOf(data.voxels.grey), 1, true));
-    const mesh = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
-      side: THREE.DoubleSide, uniforms: voxelUniforms,
-      vertexShader: `
-        attribute vec3 center; attribute float grey, axis;
-        uniform float size, cut; varying float shade;
-        void main() {
-          vec3 side = mix(vec3(-1.), vec3(1.), step(center, cameraPosition));
-          shade = grey * (axis > 1.5 ? 1. : axis > .5 ? .92 : .84);
-          gl_Position = projectionMatrix * viewMatrix * vec4(center + .5 * size * position * side, 1.);
-          if (center.z > cut) gl_Position = vec4(0., 0., 2., 1.);
-        }`,
-      fragmentShader: 'varying float shade; void main() { gl_FragColor = vec4(vec3(shade), 1.); }'}));
-    mesh.frustumCulled = false;
-    group.add(mesh);
+    const centers = floatsOf(data.voxels.centers), greys = bytesOf(data.voxels.grey);
+    const cubes = new Cubes(data.voxels.size, hidden);
+    cubes.reserve(greys.length);
+    greys.forEach((grey, i) => cubes.add(centers[3 * i], centers[3 * i + 1], centers[3 * i + 2], grey));
+    cubes.commit();
+    group.add(cubes.mesh);
     box.union(new THREE.Box3().setFromArray(centers));
   }
 
   if (data.mesh.positions) addMesh();
   if (data.voxels.centers) addVoxels();
+  if (data.flight) {
+    const [least, largest] = data.flight.header.scene;
+    box.union(new THREE.Box3(point3(least), point3(largest)));
+  }
   return {
-    group, box,
-    setCut(height) { cutPlane.constant = voxelUniforms.cut.value = height; },
+    group, box, hidden, hideNearWalls,
+    setCut(height) { cutPlane.constant = hidden.cut.value = height; },
   };
 }

@@ -1,111 +1,6 @@
 // The page around view and charts.
 'use strict';
 
-const element = (id) => document.getElementById(id);
-
-function make(tag, text, attributes = {}) {
-  const node = document.createElement(tag);
-  if (text !== undefined) node.textContent = text;
-  return Object.assign(node, attributes);
-}
-
-// Head --------------------------------------------------------------------------------------------
-function verdict() {
-  if (sweep) return sweepVerdict();
-  if (data.result.command === 'fly') return flyVerdict();
-  if (data.result.verdict) return `${data.result.verdict[0].toUpperCase()}${data.result.verdict.slice(1)}.`;
-  if (!paths.length) return data.result.command === 'plan' ? 'No path was found.' : '';
-  if (!hasBeliefs) return '';
-  const ours = summaries[0], other = summaries[1];
-  if (!other)
-    return `The path is ${say(ours.length, 'm')} long and ends with a predicted position error of ` +
-           `${say(100 * ours.goalSigma, 'cm')} (1σ, worst direction).`;
-  const percent = Math.round(100 * (ours.length / other.length - 1));
-  const length = percent === 0 ? `as long, ${say(ours.length, 'm')}`
-      : `${say(ours.length, 'm')} long instead of ${say(other.length, 'm')} ` +
-        `(${percent > 0 ? '+' : '−'}${Math.abs(percent)} %)`;
-  const goal = `the predicted position error at the goal is ${say(100 * ours.goalSigma, 'cm')} instead of ` +
-      `${say(100 * other.goalSigma, 'cm')} (1σ, worst direction)${factorOf(ours.goalSigma, other.goalSigma)}`;
-  // What the planner lowers is the uncertainty along the path; the one at the goal may be higher.
-  const mean = ours.goalSigma < other.goalSigma ? ''
-      : `, the mean trace along the path is ${say(ours.meanTrace)} instead of ${say(other.meanTrace, 'm² + rad²')}` +
-        factorOf(ours.meanTrace, other.meanTrace);
-  return `Compared with ${paths[1].name}, the path is ${length}${mean}, and ${goal}.`;
-}
-
-function factorOf(ours, other) {
-  const ratio = other / ours;
-  return !(ratio > 0 && isFinite(ratio)) ? ''
-      : ratio >= 1 ? `: ${ratio.toPrecision(2)} times smaller` : `: ${(1 / ratio).toPrecision(2)} times larger`;
-}
-
-/// Actual and predicted errors of the flights.
-function flyVerdict() {
-  const flown = ({planner, flights, arrived, position_rmse_m: error, predicted_sigma_m: predicted,
-                  nees_per_dof: nees}) => !flights ? `${planner} was not flown`
-      : `${planner}: ${arrived} of ${flights} flights arrived, with a position error of ` +
-        `${say(100 * error, 'cm')} rms (predicted ${say(100 * predicted, 'cm')}; NEES ${say(nees)})`;
-  const {planners} = data.result;
-  return planners.length ? `${planners.map(flown).join('; ')}.` : 'No path was found.';
-}
-
-function fillHead() {
-  document.title = `${data.title} – photonav`;
-  element('brand').textContent = ['photonav', data.version, data.result.command].filter(Boolean).join(' · ');
-  element('title').textContent = data.title;
-  element('subtitle').textContent = data.subtitle;
-  element('verdict').textContent = verdict();
-  element('verdict').hidden = !verdict();
-}
-
-function replayTiles({ate_rmse_m: ate, rpe, nees_per_dof: nees, tracked, frames, lost,
-  fps_with_reading: fps}) {
-  const second = rpe.second || rpe.frame || {}, over = rpe.second ? 'a second' : 'a frame';
-  return [
-    ['frames tracked', tracked, `of ${frames}`], ['frames lost', lost, ''],
-    ['absolute error, rms', times(1000, ate), 'mm'],
-    [`position error over ${over}, rms`, 1000 * second.translation_m, 'mm'],
-    [`rotation error over ${over}, rms`, second.rotation_deg, '°'],
-    ['NEES per degree of freedom', nees, ''], ['frames per second, with reading', fps, ''],
-  ];
-}
-
-/// A number times a factor, but null stays null.
-const times = (factor, value) => (value === null ? null : factor * value);
-
-function flyTiles({planners}) {
-  return planners.flatMap((flown) => [
-    [`${flown.planner}: arrived`, flown.arrived, `of ${flown.flights}`],
-    ['position error, rms', times(100, flown.position_rmse_m), 'cm'],
-    ['predicted, 1σ', times(100, flown.predicted_sigma_m), 'cm'],
-    ['NEES per degree of freedom', flown.nees_per_dof, ''],
-  ]);
-}
-
-function fillTiles() {
-  const {result} = data, ours = hasBeliefs ? summaries[0] : {};
-  const seconds = (result.time || {}).total_s;
-  const tiles = sweep ? sweepTiles() : result.command === 'replay' ? replayTiles(result)
-      : result.command === 'fly' ? flyTiles(result) : [
-    ['path length', ours.length ?? result.length, 'm'],
-    ['goal position, 1σ', 100 * ours.goalSigma, 'cm'],
-    ['goal trace', ours.goalTrace ?? result.goal_trace, 'm² + rad²'],
-    ['mean trace', ours.meanTrace ?? result.mean_trace, 'm² + rad²'],
-    ['cost', ours.cost ?? result.cost, ''],
-    ['vertices', result.vertices, ''],
-    ['views predicted', result.views, ''],
-    ['planning time', seconds, 's'],
-  ];
-  for (const [name, value, unit] of tiles) {
-    if (typeof value !== 'number' || !isFinite(value)) continue;
-    const tile = make('div', undefined, {className: 'tile'});
-    const number = make('b', say(value));
-    if (unit) number.append(make('small', unit));
-    tile.append(number, make('span', name));
-    element('tiles').append(tile);
-  }
-}
-
 // Waypoints ---------------------------------------------------------------------------------------
 function rows(table, pairs) {
   table.replaceChildren(...pairs.map(([name, value]) => {
@@ -285,14 +180,15 @@ function addLayerSwitches() {
 
 function setUpExaggeration() {
   const factors = [1, 2, 5, 10, 20, 50, 100], slider = element('exaggeration');
-  element('exaggeration-box').hidden = !hasBeliefs;
+  element('exaggeration-box').hidden = !hasBeliefs && !flight;
   slider.max = factors.length - 1;
   const apply = () => {
     const factor = factors[slider.value];
     view3d.setExaggeration(factor);
+    if (flight3d) flight3d.setExaggeration(factor);
     element('exaggeration-value').textContent = factor === 1 ? 'true size' : `${factor} × larger`;
   };
-  slider.value = factors.indexOf(view3d.suggestedExaggeration);
+  slider.value = factors.indexOf(flight ? 1 : view3d.suggestedExaggeration);
   slider.addEventListener('input', apply);
   apply();
 }
@@ -302,9 +198,10 @@ function setUpCut() {
   const slider = element('cut'), {min, max} = view3d.mapBox;
   element('cut-box').hidden = !(max.z - min.z > 0.05);
   if (element('cut-box').hidden) return;
-  const highest = Math.max(...paths.flatMap((path) => path.points.map((point) => point.position[2])));
+  const highest = flight ? flight.header.box[1][2]
+      : Math.max(...paths.flatMap((path) => path.points.map((point) => point.position[2])));
   Object.assign(slider, {min: min.z, max: max.z + 0.01});
-  slider.value = paths.length ? Math.min(max.z + 0.01, highest + 0.3) : max.z + 0.01;
+  slider.value = paths.length || flight ? Math.min(max.z + 0.01, highest + 0.3) : max.z + 0.01;
   const apply = () => {
     const height = Number(slider.value);
     view3d.setCut(height);
@@ -326,20 +223,51 @@ function setUpView() {
   element('perspective').addEventListener('click', view3d.views.perspective);
   element('top').addEventListener('click', view3d.views.top);
   element('scene-caption').textContent =
-      (hasBeliefs ? `Paths with the 3σ ellipsoids of the ${isRecorded ? 'estimated' : 'predicted'} position` : paths.length ? 'Paths' : 'The map') +
+      (hasBeliefs ? `Paths with the 3σ ellipsoids of the ${isRecorded ? 'estimated' : 'predicted'} position` : paths.length ? 'Paths'
+          : flight ? 'The map that the robot makes, its plan, and the way flown' : 'The map') +
       `, grid of ${say(view3d.gridStep, 'm')}. Drag to turn, right button or two fingers to move, ` +
       'wheel to zoom after a click.' +
       (waypoints.length ? ` Click a white ${placeName.toLowerCase()}, or use ← and →, to see ${data.views.length ? 'through the camera there' : 'its numbers'}.` : '');
 }
 
+/// Walks along the path, as a flight would.
+function setUpWalk() {
+  const button = element('walk');
+  let timer = 0;
+  const stop = () => {
+    clearInterval(timer);
+    timer = 0;
+    button.textContent = 'Play';
+  };
+  const speed = () => 250 / Number(element('walk-speed').value);
+  const step = () => {
+    if (selected + 1 < waypoints.length) select(selected + 1); else stop();
+  };
+  button.addEventListener('click', () => {
+    if (timer) return stop();
+    if (selected + 1 === waypoints.length) select(0);
+    button.textContent = 'Pause';
+    timer = setInterval(step, speed());
+  });
+  element('walk-speed').addEventListener('change', () => {
+    if (!timer) return;
+    clearInterval(timer);
+    timer = setInterval(step, speed());
+  });
+  for (const id of ['waypoint', 'previous', 'next'])
+    element(id).addEventListener(id === 'waypoint' ? 'input' : 'click', stop);
+}
+
 function setUpWaypoints() {
   element('panel').hidden = !waypoints.length;
-  element('stage').classList.toggle('alone', !waypoints.length);
+  element('stage').classList.toggle('alone', !waypoints.length && !flight);
+  element('stage').classList.toggle('watched', flight !== null);
   if (!waypoints.length) return;
   element('waypoint').max = waypoints.length - 1;
   element('waypoint').addEventListener('input', (event) => select(Number(event.target.value)));
   element('previous').addEventListener('click', () => select(selected - 1));
   element('next').addEventListener('click', () => select(selected + 1));
+  setUpWalk();
   addEventListener('keydown', (event) => {
     if (event.target.tagName === 'INPUT' || event.altKey || event.ctrlKey || event.metaKey) return;
     if (event.key === 'ArrowLeft') select(selected - 1);
@@ -361,10 +289,13 @@ const charts = createCharts(select);
 element('trace-log').checked = paths.length > 0;
 element('trace-log').addEventListener('change', () => charts.drawAll(element('trace-log').checked));
 charts.drawAll(element('trace-log').checked);
+const flight3d = flight && view3d ? createFlight3d(view3d, flight) : null;
 setUpView();
 setUpWaypoints();
+const flightPanel = flight ? createFlightPanel(flight3d) : null;
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
   charts.drawAll(element('trace-log').checked);
   if (sweepCharts.length) drawSweepCharts();
   if (view3d) view3d.drawGround();
+  if (flightPanel) flightPanel.redraw();
 });

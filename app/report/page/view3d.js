@@ -22,7 +22,6 @@ function createView3d(canvas, onPick) {
   sun.position.set(0.4, -0.7, 1.5);
   scene.add(sun);
 
-  const point3 = (a) => new THREE.Vector3(a[0], a[1], a[2]);
   const layers = {};  // name: {label, color, object}
   let waiting = 0;    // textures that are still being decoded
   let frame = 0;
@@ -33,6 +32,7 @@ function createView3d(canvas, onPick) {
     camera.near = Math.max(extent / 2000, distance - 2 * extent);
     camera.far = distance + 4 * extent;
     camera.updateProjectionMatrix();
+    map.hideNearWalls(camera.position);
     renderer.render(scene, camera);
     if (waiting === 0) publishColors();
   }
@@ -160,37 +160,16 @@ function createView3d(canvas, onPick) {
     });
   }
 
-  class Polyline extends THREE.Curve {
-    constructor(points) { super(); this.points = points; }
-    getPoint(t) {
-      const last = this.points.length - 1, i = Math.min(last - 1, Math.floor(t * last + 1e-9));
-      return this.points[i].clone().lerp(this.points[i + 1], t * last - i);
-    }
-    getPointAt(t) { return this.getPoint(t); }  // samples fall on the points, whatever their spacing
-  }
-
   function addPath(path, i) {
-    const points = path.points.map((point) => point3(point.position))
-        .filter((point, k, all) => k === 0 || point.distanceTo(all[k - 1]) > 1e-9);
     const group = new THREE.Group();
-    if (points.length > 1)
-      group.add(new THREE.Mesh(
-          new THREE.TubeBufferGeometry(new Polyline(points), points.length - 1, thick, 8),
-          new THREE.MeshLambertMaterial({color: path.color, emissive: path.color, emissiveIntensity: 0.12})));
+    const tube = tubeAlong(path.points.map((point) => point.position), thick, path.color);
+    if (tube) group.add(tube);
     addLayer(`path${i}`, path.name, path.color, group);
-  }
-
-  /// Lower triangular L with L L^T = covariance; positive semi-definite is enough.
-  function cholesky(c) {
-    const root = (x) => Math.sqrt(Math.max(x, 1e-14));
-    const a = root(c[0]), b = c[3] / a, d = c[6] / a;
-    const e = root(c[4] - b * b), f = (c[7] - d * b) / e, g = root(c[8] - d * d - f * f);
-    return [a, 0, 0, b, e, 0, d, f, g];
   }
 
   const ellipsoids = [];
   function addEllipsoids() {
-    const group = new THREE.Group(), sphere = new THREE.SphereBufferGeometry(1, 28, 18);
+    const group = new THREE.Group();
     for (const path of paths) {
       const material = new THREE.MeshLambertMaterial(
           {color: path.color, transparent: true, opacity: 0.22, depthWrite: false});
@@ -199,43 +178,23 @@ function createView3d(canvas, onPick) {
       path.points.forEach((point, i) => {
         if (point.distance < next - 1e-9 && i + 1 < path.points.length) return;
         next = point.distance + step;
-        const mesh = new THREE.Mesh(sphere, material);
-        mesh.matrixAutoUpdate = false;
-        ellipsoids.push({mesh, shape: cholesky(point.position_covariance), at: point.position});
-        group.add(mesh);
+        ellipsoids.push(new Ellipsoid(material, point.position, point.position_covariance));
+        group.add(ellipsoids[ellipsoids.length - 1]);
       });
     }
     addLayer('ellipsoids', '3σ ellipsoids', '#8b93a0', group);
   }
 
   function setExaggeration(factor) {
-    for (const {mesh, shape: l, at} of ellipsoids) {
-      const s = 3 * factor;
-      mesh.matrix.set(s * l[0], 0, 0, at[0], s * l[3], s * l[4], 0, at[1],
-                      s * l[6], s * l[7], s * l[8], at[2], 0, 0, 0, 1);
-      mesh.matrixWorldNeedsUpdate = true;
-    }
+    for (const ellipsoid of ellipsoids) ellipsoid.scaleTo(3 * factor);
     requestRender();
   }
 
   // Cameras -------------------------------------------------------------------------------------
-  /// Corners of the image at a depth, from the upper left one clockwise, in the world.
-  function imageCorners(point, depth) {
-    const rows = point.T_w_c_rows;
-    const [right, down] = data.field_of_view.map((angle) => depth * Math.tan(angle / 2));
-    return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([u, v]) => {
-      const c = [u * right, v * down, depth, 1];
-      return new THREE.Vector3(...[0, 4, 8].map((r) => c.reduce((sum, x, k) => sum + rows[r + k] * x, 0)));
-    });
-  }
-  function frustumLines(point, depth) {
-    const apex = point3(point.position), corners = imageCorners(point, depth);
-    return corners.flatMap((corner, i) => [apex, corner, corner, corners[(i + 1) % 4]]);
-  }
   function addFrusta() {
     const every = Math.ceil(waypoints.length / 40);
     const lines = waypoints.filter((_, i) => i % every === 0)
-        .flatMap((waypoint) => frustumLines(waypoint.point, 0.02 * extent));
+        .flatMap((waypoint) => frustumLines(waypoint.point.T_w_c_rows, 0.02 * extent));
     addLayer('cameras', 'cameras', '#3f4b59', new THREE.LineSegments(
         new THREE.BufferGeometry().setFromPoints(lines),
         new THREE.LineBasicMaterial({color: cssColor('--quiet'), transparent: true, opacity: 0.8})));
@@ -273,15 +232,11 @@ function createView3d(canvas, onPick) {
     selection.remove(...selection.children);
     const depth = 0.075 * extent;
     selection.add(new THREE.LineSegments(
-        new THREE.BufferGeometry().setFromPoints(frustumLines(waypoint.point, depth)),
+        new THREE.BufferGeometry().setFromPoints(frustumLines(waypoint.point.T_w_c_rows, depth)),
         new THREE.LineBasicMaterial({color: cssColor('--ink')})));
     if (waypoint.view && waypoint.view.image) {
-      const [a, b, c, d] = imageCorners(waypoint.point, depth);
-      const geometry = new THREE.BufferGeometry().setFromPoints([a, b, c, a, c, d]);
-      geometry.setAttribute('uv', new THREE.Float32BufferAttribute([0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1], 2));
       waypoint.texture = waypoint.texture || textureFrom(waypoint.view.image);
-      selection.add(new THREE.Mesh(geometry, new THREE.MeshBasicMaterial(
-          {map: waypoint.texture, side: THREE.DoubleSide})));
+      selection.add(imagePlane(waypoint.point.T_w_c_rows, depth, waypoint.texture));
     }
     requestRender();
   }
@@ -318,28 +273,35 @@ function createView3d(canvas, onPick) {
       : new THREE.Vector3(((i & 1 ? high : low)[0] + (i & 1 ? 1.2 : -0.6)) * gridStep,
                           ((i & 2 ? high : low)[1] + (i & 2 ? 1.2 : -0.6)) * gridStep, box.min.z));
 
-  /// Looks from a direction, from where everything fits and stands in the middle of the picture.
+  /// Looks from a direction, from where everything fits. The view turns about the middle of the box,
+  /// and the picture is moved so that it fills the canvas.
   /// @param fov vertical field of view [degrees]; a small one is nearly an orthographic projection
   function lookFrom(direction, fov) {
     camera.fov = fov;
     const back = direction.clone().normalize();
     const right = new THREE.Vector3().crossVectors(camera.up, back).normalize();
     const up = new THREE.Vector3().crossVectors(back, right);
+    const {clientWidth: width, clientHeight: height} = canvas.parentElement;
     const tanV = Math.tan(THREE.Math.degToRad(camera.fov / 2)), tanH = tanV * camera.aspect;
     const target = box.getCenter(new THREE.Vector3());
-    let distance = 0;
-    for (let round = 0; round < 4; ++round) {
-      const seen = corners.map((corner) => corner.clone().sub(target))
-          .map((c) => ({x: c.dot(right), y: c.dot(up), z: c.dot(back)}));
-      distance = Math.max(...seen.map(
-          ({x, y, z}) => z + 1.05 * Math.max(Math.abs(x) / tanH, Math.abs(y) / tanV)));
-      for (const [axis, step] of [['x', right], ['y', up]]) {
-        const slopes = seen.map((c) => c[axis] / (distance - c.z));
-        target.addScaledVector(step, (Math.min(...slopes) + Math.max(...slopes)) / 2 * distance * 0.7);
-      }
+    const seen = corners.map((corner) => corner.clone().sub(target));
+    /// Least and largest place across the picture; 1 and -1 are its borders.
+    const range = (distance, axis, tan) => {
+      const places = seen.map((c) => c.dot(axis) / (distance - c.dot(back)) / tan);
+      return [Math.min(...places), Math.max(...places)];
+    };
+    const half = ([least, largest]) => (largest - least) / 2;
+    let near = Math.max(...seen.map((c) => c.dot(back))), far = 100 * extent;
+    for (let i = 0; i < 50; ++i) {
+      const distance = (near + far) / 2;
+      const fits = half(range(distance, right, tanH)) < 1 / (1.05 + 60 / width) &&
+                   half(range(distance, up, tanV)) < 1 / (1.05 + 30 / height);
+      if (fits) far = distance; else near = distance;
     }
+    const middle = (axis, tan) => range(far, axis, tan).reduce((a, b) => a + b) / 2;
+    camera.setViewOffset(width, height, middle(right, tanH) * width / 2, -middle(up, tanV) * height / 2, width, height);
     controls.target.copy(target);
-    camera.position.copy(target).addScaledVector(back, distance);
+    camera.position.copy(target).addScaledVector(back, far);
     controls.update();
     scaleLabels();
   }
@@ -364,6 +326,7 @@ function createView3d(canvas, onPick) {
   controls.addEventListener('start', () => { touched = true; });
   function resize() {
     const width = canvas.parentElement.clientWidth, height = canvas.parentElement.clientHeight;
+    if (!width || !height) return;  // not shown now
     renderer.setSize(width, height, false);
     camera.aspect = width / height;
     if (!touched) views.perspective();
@@ -379,8 +342,10 @@ function createView3d(canvas, onPick) {
       addFrusta();
       addWaypoints();
     }
-    addMarker('start', data.start, '#15803d');
-    addMarker(isRecorded ? 'end' : 'goal', data.goal, '#a21caf');
+  }
+  if (paths.length || data.flight) {
+    addMarker('start', data.start, cssColor('--start'));
+    addMarker(isRecorded ? 'end' : 'goal', data.goal, cssColor('--goal'));
   }
   drawGround();
   new ResizeObserver(resize).observe(canvas.parentElement);
@@ -389,8 +354,8 @@ function createView3d(canvas, onPick) {
   const largest = Math.max(0, ...paths.flatMap((path) => path.points.map(
       (point) => worstSigma(point.position_covariance))));
   return {
-    layers, select, setExaggeration, setCut, views, gridStep, mapBox: map.box,
-    drawGround,
+    layers, select, setExaggeration, setCut, views, gridStep, mapBox: map.box, hidden: map.hidden,
+    drawGround, addLayer, requestRender, thick, extent,
     show: (name, visible) => { layers[name].object.visible = visible; requestRender(); },
     suggestedExaggeration: [1, 2, 5, 10, 20, 50, 100].find((k) => 3 * k * largest > 0.025 * extent) || 100,
   };

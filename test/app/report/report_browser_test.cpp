@@ -8,8 +8,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "app/flightlog/sample_log.hpp"
 #include "app/report/sample_report.hpp"
-#include "report/base64.hpp"
+#include "io/base64.hpp"
+#include "live/live_server.hpp"
 #include "report/report.hpp"
 #include "temporary_folder.hpp"
 
@@ -48,15 +50,18 @@ class ReportBrowserTest : public testing::Test {
         if (!script.empty())
             std::ofstream(folder_ / "report.html", std::ios::app)
                 << "<script>" << script << "</script>";
+        return openAddress("file://" + (folder_ / "report.html").string() + hash, options);
+    }
+
+    Outcome openAddress(const std::string& address, const std::string& options = "") const {
         const std::string command =
             std::string(kChromium) +
             " --headless --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader"
             " --disable-background-networking --disable-component-update --disable-sync"
             " --no-first-run --enable-logging=stderr --virtual-time-budget=8000"
             " --window-size=1400,2200 --user-data-dir=" +
-            (folder_ / "profile").string() + " " + options + " --dump-dom 'file://" +
-            (folder_ / "report.html").string() + hash + "' >" + (folder_ / "dom").string() + " 2>" +
-            (folder_ / "log").string();
+            (folder_ / "profile").string() + " " + options + " --dump-dom '" + address + "' >" +
+            (folder_ / "dom").string() + " 2>" + (folder_ / "log").string();
         EXPECT_EQ(std::system(command.c_str()), 0) << test::contentOf(folder_ / "log");
         return {test::contentOf(folder_ / "dom"), test::contentOf(folder_ / "log")};
     }
@@ -199,6 +204,79 @@ TEST_F(ReportBrowserTest, RecordedFlightsHaveFramesAndNeitherGoalNorCost) {
     EXPECT_FALSE(contains(outcome.dom, "Waypoint 2"));
     EXPECT_FALSE(contains(outcome.dom, "<th>Cost so far</th>"));
     EXPECT_FALSE(contains(outcome.dom, "<span>cost</span>"));
+}
+
+/// The report of a flight that is logged, or shown live.
+ReportData flightReport(const nlohmann::json& flight) {
+    ReportData data;
+    data.title = "A flight";
+    data.start = {0, 1, 1.5};
+    data.goal = {3, 1, 1.5};
+    data.result = {{"command", "explore"}};
+    data.flight = flight;
+    return data;
+}
+
+/// What the page shows of the flight at this time.
+constexpr const char* kPublishFlight = R"js(
+  setTimeout(() => {
+    const result = document.documentElement.dataset, text = (id) => document.getElementById(id).textContent;
+    const shown = () => [flight3d.cubes(), text('flight-clock'), result.moment].join('|');
+    const slider = document.getElementById('flight-time');
+    const moveTo = (time) => {
+      slider.value = time;
+      slider.dispatchEvent(new Event('input'));
+    };
+    result.atEnd = shown();
+    moveTo(1.6);
+    result.back = shown();
+    result.numbers = text('flight-numbers');
+    moveTo(3.2);
+    result.forth = shown();
+    moveTo(0.2);
+    document.getElementById('flight-play').click();
+    setTimeout(() => {
+      result.played = slider.value;
+      result.button = text('flight-play');
+      const canvas = document.getElementById('obstacles'), pen = canvas.getContext('2d');
+      const colors = new Set(new Uint32Array(pen.getImageData(0, 0, canvas.width, canvas.height).data.buffer));
+      result.grid = colors.size;
+    }, 4000);
+  }, 1500);
+)js";
+
+TEST_F(ReportBrowserTest, AFlightIsShownAgainAtAnyTime) {
+    const Outcome outcome =
+        open(flightReport(flightLogJson(test::sampleLog())), "", "", kPublishFlight);
+    expectNoErrors(outcome);
+    EXPECT_EQ(published(outcome.dom, "canvas"), "drawn");
+    // Six new cells a moment; at the third one, one goes and one is painted otherwise.
+    EXPECT_EQ(published(outcome.dom, "at-end"), "17|3.5 of 3.5&nbsp;s|2");
+    EXPECT_EQ(published(outcome.dom, "back"), "12|1.6 of 3.5&nbsp;s|1");
+    EXPECT_EQ(published(outcome.dom, "forth"), "17|3.2 of 3.5&nbsp;s|2");
+    EXPECT_TRUE(contains(published(outcome.dom, "numbers"), "Update2 of 3, at 1.5&nbsp;s"));
+    EXPECT_TRUE(contains(published(outcome.dom, "numbers"), "3, 40, 5"));
+    EXPECT_EQ(published(outcome.dom, "played"), "3.5");  // to its end
+    EXPECT_EQ(published(outcome.dom, "button"), "Play");
+    EXPECT_GT(std::atoi(published(outcome.dom, "grid").c_str()), 3);
+    EXPECT_TRUE(contains(outcome.dom, "class=\"good\">arrived</span>"));
+}
+
+TEST_F(ReportBrowserTest, AFlightIsFollowedWhileItIsFlown) {
+    const FlightLog log = test::sampleLog();
+    const std::string page =
+        reportPage(reportJson(flightReport({{"header", headerJson(log)}, {"live", true}})));
+    LiveServer server({}, page);
+    for (const LoggedMoment& moment : log.moments) {
+        server.publish("moment", momentJson(log, moment).dump());
+    }
+    server.publish("end", endJson(log).dump());
+    const Outcome outcome = openAddress(server.url());
+    expectNoErrors(outcome);
+    EXPECT_EQ(published(outcome.dom, "canvas"), "drawn");
+    EXPECT_EQ(published(outcome.dom, "moment"), "2");
+    EXPECT_TRUE(contains(outcome.dom, "<output id=\"flight-clock\">3.5 of 3.5&nbsp;s</output>"));
+    EXPECT_TRUE(contains(outcome.dom, "class=\"good\">arrived</span>"));
 }
 
 TEST_F(ReportBrowserTest, WithoutWebGLThePageSaysSoAndTheRestWorks) {

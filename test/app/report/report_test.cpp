@@ -11,8 +11,8 @@
 
 #include "app/report/sample_report.hpp"
 #include "io/atomic_file.hpp"
+#include "io/base64.hpp"
 #include "io/error.hpp"
-#include "report/base64.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {

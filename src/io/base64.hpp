@@ -9,4 +9,7 @@ namespace photonav {
 
 std::string base64Encode(std::string_view bytes);
 
+/// @throws std::invalid_argument for a character or a length that no encoded text has
+std::string base64Decode(std::string_view text);
+
 }  // namespace photonav
