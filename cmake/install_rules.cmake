@@ -15,6 +15,14 @@ install(DIRECTORY src/ planning/ tracking/ mission/ DESTINATION include/photonav
     PATTERN "config_keys.hpp" EXCLUDE PATTERN "recording_config.hpp" EXCLUDE
     PATTERN "map_config.hpp" EXCLUDE PATTERN "replay_config.hpp" EXCLUDE PATTERN "simd.hpp" EXCLUDE
     PATTERN "product_sums.hpp" EXCLUDE PATTERN "keyframe_points.hpp" EXCLUDE)
+# Completion of command lines, printed by the executable itself.
+set(_completions ${PROJECT_BINARY_DIR}/completions)
+file(MAKE_DIRECTORY ${_completions})
+add_custom_command(TARGET photonav POST_BUILD
+    COMMAND photonav completion bash > ${_completions}/photonav
+    COMMAND photonav completion zsh > ${_completions}/_photonav VERBATIM)
+install(FILES ${_completions}/photonav DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${_completions}/_photonav DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/photonav/config)
 install(EXPORT photonav_targets NAMESPACE photonav:: DESTINATION ${_config_dir})
 configure_package_config_file(cmake/photonavConfig.cmake.in

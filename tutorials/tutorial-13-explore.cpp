@@ -36,6 +36,7 @@ Config flightThrough() {
     config.camera.mount = "front45";
     config.camera.width = 94;
     config.camera.height = 60;
+    config.belief.kappa = 2.5;
     config.explore.range = 3.;
     return config;
 }

@@ -28,6 +28,8 @@ struct Invocation {
 };
 
 Command checkCommand(CLI::App& app, const Invocation& invocation);
+/// Of all commands that `app` has when it runs.
+Command completionCommand(CLI::App& app);
 Command exploreCommand(CLI::App& app, const Invocation& invocation);
 Command flyCommand(CLI::App& app, const Invocation& invocation);
 Command mapCommand(CLI::App& app, const Invocation& invocation);

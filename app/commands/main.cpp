@@ -15,6 +15,7 @@
 #include "commands/benchmark_command.hpp"
 #include "commands/command_line.hpp"
 #include "commands/compare_command.hpp"
+#include "commands/doctor_command.hpp"
 #include "commands/info_command.hpp"
 #include "commands/map_info.hpp"
 #include "commands/plan_command.hpp"
@@ -270,6 +271,15 @@ Command reportCommand(CLI::App& app) {
             }};
 }
 
+Command doctorCommand(CLI::App& app) {
+    CLI::App* parser = app.add_subcommand(
+        "doctor", "Does it work here? Versions, processor, programs, a sample plan.");
+    return {parser, [] {
+                hasOwnFiles = true;
+                return runDoctor();
+            }};
+}
+
 std::string withNearest(const std::string& complaint, const std::string& word,
                         const std::vector<std::string>& names) {
     const std::string near = nearestWord(word, names);
@@ -325,7 +335,9 @@ int run(int argc, char** argv) {
                               replayCommand(app, invocation),
                               checkCommand(app, invocation),
                               reportCommand(app),
-                              keysCommand(app)};
+                              keysCommand(app),
+                              completionCommand(app),
+                              doctorCommand(app)};
     app.footer(  // after the commands, which would inherit it
 
         "plan, check, fly, explore, sweep, benchmark, info, map and replay write result.json, "

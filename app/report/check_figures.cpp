@@ -112,7 +112,7 @@ Figure headingsFigure(const CheckedTrajectory& checked) {
         own.emplace_back(place.length, degrees(yawOf(place.T_w_b)));
         best.emplace_back(place.length, degrees(place.best->yaw));
     }
-    plot.dots(own, {.color = kWhite, .width = 5., .name = "heading of the trajectory"});
+    plot.dots(own, {.color = {255, 190, 60}, .width = 5., .name = "heading of the trajectory"});
     plot.dots(best, {.color = kLost, .width = 4., .name = "best heading"});
     plot.colorBar(scale);
     plot.x = {.min = 0., .max = length, .label = "distance along the trajectory [m]"};

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-constexpr std::size_t kMaxViews = 60;  // pictures in the report
+constexpr std::size_t kMostViews = 60;  // pictures in the report
 
 json jsonOf(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -164,7 +164,7 @@ json turnedJson(const std::optional<CheckedTrajectory>& turned) {
 std::vector<ReportView> viewsAlong(const CheckReport& report) {
     std::vector<ReportView> views;
     const auto& places = report.checked.places;
-    const std::size_t stride = 1 + places.size() / kMaxViews;
+    const std::size_t stride = 1 + places.size() / kMostViews;
     const Camera camera = report.config.camera.camera();
     View view;
     for (std::size_t i = 0; i < places.size(); i += stride) {

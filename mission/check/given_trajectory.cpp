@@ -16,7 +16,7 @@
 namespace photonav {
 namespace {
 
-constexpr double kFarthest = 1e5;  // of positions, as of the bounds of a config [m]
+constexpr double kFarthestPose = 1e5;  // of positions, as of the bounds of a config [m]
 constexpr std::size_t kTumColumns = 8;
 constexpr double kLeastSlope = 1e-3;  // a steeper motion has no direction from above
 
@@ -99,8 +99,8 @@ Row rowOf(const TextRow& row, const Columns& columns) {
     if (columns[kTime]) read.time = number(kTime);
     if (columns[kYaw]) read.yaw = number(kYaw);
     read.position = {number(kX), number(kY), number(kZ)};
-    if (read.position.cwiseAbs().maxCoeff() > kFarthest) {
-        row.fail(fmt::format("farther than {} m from the origin", kFarthest));
+    if (read.position.cwiseAbs().maxCoeff() > kFarthestPose) {
+        row.fail(fmt::format("farther than {} m from the origin", kFarthestPose));
     }
     return read;
 }
@@ -146,9 +146,9 @@ std::vector<double> headingsOf(const std::vector<Row>& rows, const GivenHeading&
 GivenTrajectory readPoses(const std::string& file, const Pose& T_b_c) {
     GivenTrajectory trajectory{TrajectoryFormat::cameraPoses, true, {}};
     for (const StampedPose& pose : readTrajectory(file)) {
-        if (pose.T_w_c.translation().cwiseAbs().maxCoeff() > kFarthest) {
+        if (pose.T_w_c.translation().cwiseAbs().maxCoeff() > kFarthestPose) {
             throw InputError(file, fmt::format("pose at time {}", pose.timestamp),
-                             fmt::format("farther than {} m from the origin", kFarthest));
+                             fmt::format("farther than {} m from the origin", kFarthestPose));
         }
         trajectory.poses.push_back({pose.timestamp, pose.T_w_c * T_b_c.inverse()});
     }

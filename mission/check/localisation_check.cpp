@@ -18,7 +18,7 @@ namespace {
 constexpr double kLeastGain = 0.1;  // share of the trace that another heading must gain
 
 /// A pose along the trajectory.
-struct Stop {
+struct WayPlace {
     std::optional<double> time;
     Pose T_w_b = Pose::Identity();
     double length = 0., distance = 0.;
@@ -37,25 +37,26 @@ std::optional<double> timeBetween(const GivenPose& a, const GivenPose& b, double
 }
 
 /// Poses every `ds` along the straight motions of a trajectory, and its last one.
-std::vector<Stop> stopsOf(const GivenTrajectory& trajectory, double ds, double rotationWeight) {
+std::vector<WayPlace> placesAlong(const GivenTrajectory& trajectory, double ds,
+                                  double rotationWeight) {
     const std::vector<GivenPose>& poses = trajectory.poses;
-    std::vector<Stop> stops{{poses.front().time, poses.front().T_w_b, 0., 0.}};
+    std::vector<WayPlace> places{{poses.front().time, poses.front().T_w_b, 0., 0.}};
     double length = 0., distance = 0., next = ds;
     for (std::size_t i = 1; i < poses.size(); ++i) {
         const GivenPose &a = poses[i - 1], &b = poses[i];
         const auto [way, metric] = wayBetween(a.T_w_b, b.T_w_b, rotationWeight);
         for (; metric > 0. && next <= distance + metric; next += ds) {
             const double share = (next - distance) / metric;
-            stops.push_back({timeBetween(a, b, share), interpolate(a.T_w_b, b.T_w_b, share),
-                             length + share * way, next});
+            places.push_back({timeBetween(a, b, share), interpolate(a.T_w_b, b.T_w_b, share),
+                              length + share * way, next});
         }
         length += way;
         distance += metric;
     }
-    if (stops.back().distance < distance - 1e-6 * ds) {
-        stops.push_back({poses.back().time, poses.back().T_w_b, length, distance});
+    if (places.back().distance < distance - 1e-6 * ds) {
+        places.push_back({poses.back().time, poses.back().T_w_b, length, distance});
     }
-    return stops;
+    return places;
 }
 
 /// When the camera is lost, from place to place.
@@ -110,15 +111,17 @@ class Walk {
         noise_ = toCamera * config.belief.motionNoise * toCamera.transpose();
     }
 
-    CheckedPlace begin(const Stop& stop) {
-        belief_.mean = cameraAt(stop.T_w_b);
-        return see(stop, config_.belief.viewAtStart ? 1. : 0.);
+    CheckedPlace begin(const WayPlace& at) {
+        belief_.mean = cameraAt(at.T_w_b);
+        return see(at, config_.belief.viewAtStart ? 1. : 0.);
     }
 
-    CheckedPlace next(const Stop& stop, double step) {
-        const UncertainPose motion{cameraAt(stop.T_w_b) * belief_.mean.inverse(), step * noise_};
-        belief_ = compound(motion, belief_, config_.belief.order);
-        return see(stop, step / config_.belief.ds);
+    CheckedPlace next(const WayPlace& at, double step) {
+        const Pose T_c_w = cameraAt(at.T_w_b);
+        const UncertainPose motion{T_c_w * belief_.mean.inverse(), step * noise_};
+        // The mean is not accumulated: rounding errors of rotations would double at every step.
+        belief_ = {T_c_w, compound(motion, belief_, config_.belief.order).covariance};
+        return see(at, step / config_.belief.ds);
     }
 
     const UncertainPose& belief() const { return belief_; }
@@ -137,17 +140,17 @@ class Walk {
     }
 
     /// Takes an image that counts as a share of one.
-    CheckedPlace see(const Stop& stop, double share) {
+    CheckedPlace see(const WayPlace& at, double share) {
         const PredictedImage image = images_.at(belief_.mean);
-        CheckedPlace place{.time = stop.time,
-                           .T_w_b = stop.T_w_b,
-                           .length = stop.length,
-                           .distance = stop.distance,
+        CheckedPlace place{.time = at.time,
+                           .T_w_b = at.T_w_b,
+                           .length = at.length,
+                           .distance = at.distance,
                            .traceBefore = trace(belief_.covariance),
                            .overlap = image.alignment.overlap,
                            .verdict = image.alignment.verdict,
                            .openDirections = image.alignment.openDirections};
-        if (options_.headings > 0) place.best = bestHeading(stop.T_w_b);
+        if (options_.headings > 0) place.best = bestHeading(at.T_w_b);
         if (loss_.accepts(image.alignment, belief_.covariance)) {
             belief_.covariance = updateCovariance(belief_.covariance, share * image.information);
         }
@@ -254,13 +257,14 @@ CheckedTrajectory checkLocalisation(const GivenTrajectory& trajectory, const Con
                                     const World& world, const CheckOptions& options,
                                     const std::atomic<bool>& interrupted,
                                     const std::function<void(double)>& onProgress) {
-    const std::vector<Stop> stops = stopsOf(trajectory, config.belief.ds, config.rotationWeight);
+    const std::vector<WayPlace> places =
+        placesAlong(trajectory, config.belief.ds, config.rotationWeight);
     Walk walk(config, world, options);
     CheckedTrajectory checked;
-    checked.places.push_back(walk.begin(stops.front()));
-    for (std::size_t i = 1; i < stops.size() && !interrupted; ++i) {
-        checked.places.push_back(walk.next(stops[i], stops[i].distance - stops[i - 1].distance));
-        if (onProgress) onProgress(static_cast<double>(i) / static_cast<double>(stops.size() - 1));
+    checked.places.push_back(walk.begin(places.front()));
+    for (std::size_t i = 1; i < places.size() && !interrupted; ++i) {
+        checked.places.push_back(walk.next(places[i], places[i].distance - places[i - 1].distance));
+        if (onProgress) onProgress(static_cast<double>(i) / static_cast<double>(places.size() - 1));
     }
     checked.length = checked.places.back().length;
     checked.meanTrace = meanTraceOf(checked.places);

@@ -19,7 +19,7 @@ struct CheckOptions {
     int headings = 24;  ///< compared at every place, evenly spread; 0: none
     /// Standard deviation of the position along its weakest direction above which the camera counts
     /// as lost [m]; none: what the tracker's search covers.
-    std::optional<double> maxSigma;
+    std::optional<double> maxSigma = {};
 };
 
 /// Why the camera is lost at a place.

@@ -9,7 +9,7 @@
 namespace photonav {
 namespace {
 
-constexpr double kStep = 0.02;  // between the places looked at [m]
+constexpr double kLookEvery = 0.02;  // between the places looked at [m]
 
 /// Stretches of places that have something in common, seen in their order.
 class Stretches {
@@ -44,7 +44,7 @@ Obstruction obstructionOf(const GivenTrajectory& trajectory, const Config& confi
     see(last, 0.);
     for (const GivenPose& pose : trajectory.poses) {
         const Eigen::Vector3d way = pose.T_w_b.translation() - last;
-        const int steps = static_cast<int>(std::ceil(way.norm() / kStep));
+        const int steps = static_cast<int>(std::ceil(way.norm() / kLookEvery));
         for (int k = 1; k <= steps; ++k) {
             const double share = static_cast<double>(k) / steps;
             see(last + share * way, length + share * way.norm());

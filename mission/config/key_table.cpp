@@ -224,8 +224,10 @@ void KeyTable::read(YamlMap& root) const {
             key.read(section->second);
         }
     }
-    for (const auto& [name, section] : sections) section.finish();
-    root.finish();
+    std::vector<std::string> paths;
+    for (const ConfigKey& key : keys_) paths.push_back(key.path());
+    for (const auto& [name, section] : sections) section.finish(paths);
+    root.finish(paths);
 }
 
 void KeyTable::read(const std::string& file) const {

@@ -28,6 +28,15 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
+/// Those of the dotted paths that end with a key.
+std::vector<std::string> pathsOf(const std::string& key, const std::vector<std::string>& paths) {
+    std::vector<std::string> found;
+    for (const std::string& path : paths) {
+        if (path == key || path.ends_with("." + key)) found.push_back(path);
+    }
+    return found;
+}
+
 }  // namespace
 
 std::string nearestWord(std::string_view word, const std::vector<std::string>& candidates) {
@@ -134,10 +143,14 @@ std::vector<YamlMap> YamlMap::list(const std::string& key) {
     return maps;
 }
 
-void YamlMap::finish() const {
+void YamlMap::finish(const std::vector<std::string>& elsewhere) const {
     for (const auto& entry : node_) {
         const auto key = entry.first.as<std::string>();
         if (known_.contains(key)) continue;
+        const std::vector<std::string> paths = pathsOf(key, elsewhere);
+        if (!paths.empty()) {
+            fail(key, fmt::format("unknown key, did you mean '{}'?", fmt::join(paths, "' or '")));
+        }
         const auto nearest = nearestWord(key, {known_.begin(), known_.end()});
         fail(key, nearest.empty() ? fmt::format("unknown key; known: {}", fmt::join(known_, ", "))
                                   : fmt::format("unknown key, did you mean '{}'?", nearest));

@@ -84,8 +84,11 @@ class YamlMap {
     /// The mappings of the sequence below `key`; empty when the key is absent.
     std::vector<YamlMap> list(const std::string& key);
 
-    /// @throws InputError for the first key that was not read, naming the nearest known one
-    void finish() const;
+    /// @param elsewhere dotted paths of keys of other mappings of the file
+    /// @throws InputError for the first key that was not read, naming the path of a key of that
+    /// name
+    ///         elsewhere, or else the nearest known one
+    void finish(const std::vector<std::string>& elsewhere = {}) const;
 
     /// @throws InputError naming this file and the dotted key
     [[noreturn]] void fail(const std::string& key, const std::string& reason) const;

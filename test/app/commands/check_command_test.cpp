@@ -94,20 +94,20 @@ TEST_F(CheckCommand, CollisionsAndBoundsAreReportedNotRefused) {
     EXPECT_NEAR(result()["out_of_bounds"][0][0].get<double>(), 5.5, 0.03);
     const std::string low = folder_.write("low.txt", "6 4 2\n6 4 0.1\n6 6 0.1\n");
     check(low + " --headings 0 " + scene());
-    EXPECT_NEAR(result()["collisions"][0][0].get<double>(), 1.8, 0.08);
+    EXPECT_NEAR(result()["collisions"][0][0].get<double>(), 1.8, 0.12);
 }
 
 TEST_F(CheckCommand, FlightsAlongTheTrajectoryFollowFromTheSeed) {
     const std::string file = folder_.write("way.txt", "6 1 2\n6 4 2\n");
     const std::string arguments =
-        file + " --headings 0 --flights 2 --seed 3 --config " + config("two_textures");
-    ASSERT_EQ(check(arguments).exitCode, 0);
+        file + " --headings 0 --flights 2 --config " + config("two_textures");
+    ASSERT_EQ(check(arguments + " --seed 3").exitCode, 0);
     const json first = result()["flights"];
     EXPECT_EQ(first["flights"], 2);
     EXPECT_EQ(first["arrived"], 2);
-    check(arguments);
+    check(arguments + " --set seed=3");
     EXPECT_EQ(result()["flights"], first);
-    check(arguments + " --set seed=4");
+    check(arguments + " --seed 4");
     EXPECT_NE(result()["flights"]["position_rmse_m"], first["position_rmse_m"]);
 }
 

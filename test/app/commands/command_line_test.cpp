@@ -88,6 +88,25 @@ TEST_F(CommandLine, TheDetourReducesUncertainty) {
     EXPECT_LT(r["cost"].get<double>(), r["baseline"]["cost"].get<double>());
 }
 
+/// The share of each term is printed; where the shortest path is no worse, that is said.
+TEST_F(CommandLine, PlansSayWhatTheirCostConsistsOf) {
+    expectBadInput(plan("--kappa much"), "planner.kappa: cannot read");
+    expectBadInput(plan("--alpha 2"), "planner.alpha: 2 is outside [0, 1]");
+    const Execution usual = plan("--kappa auto --alpha 0.4" + std::string(kQuickPlan));
+    EXPECT_EQ(usual.exitCode, 0) << usual.output;
+    const json r = result();
+    EXPECT_EQ(r["alpha"], 0.4);
+    EXPECT_EQ(r["kappa_is_automatic"], true);
+    EXPECT_NEAR(r["baseline"]["length_share"].get<double>(), 0.4, 1e-9);
+    EXPECT_NEAR(r["baseline"]["uncertainty_share"].get<double>(), 0.6, 1e-9);
+    EXPECT_FALSE(r.contains("verdict"));
+    EXPECT_NE(usual.output.find("% uncertainty (alpha 0.4, kappa "), std::string::npos);
+    const Execution little = plan("--kappa 1e-6" + std::string(kQuickPlan));
+    EXPECT_NE(little.output.find("no advantage over the shortest path: uncertainty is only"),
+              std::string::npos)
+        << little.output;
+}
+
 TEST_F(CommandLine, PlansAreDeterministicAndConfigsRerunnable) {
     ASSERT_EQ(plan(std::string("--seed 7") + kQuickPlan).exitCode, 0);
     const json first = result();
@@ -313,6 +332,36 @@ TEST(KeysCommand, ListsThoseOfMapsAndReplaysAsDocumented) {
             << "run scripts/update-docs --run build";
     }
     EXPECT_EQ(photonav("keys --of nothing").exitCode, 2);
+}
+
+/// What a shell offers for the words typed so far, the last one unfinished.
+std::string completed(const std::string& words, const std::string& script) {
+    return execute(fmt::format("bash -c 'source {0}; COMP_WORDS=({1}); "
+                               "COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); compopt() {{ :; }}; "
+                               "_photonav; echo \"${{COMPREPLY[*]}}\"'",
+                               script, words))
+        .output;
+}
+
+TEST(Completion, OffersCommandsOptionsAndKeys) {
+    const test::TemporaryFolder folder;
+    const Execution bash = photonav("completion bash");
+    EXPECT_EQ(bash.exitCode, 0);
+    const std::string script = folder.write("photonav.bash", bash.output);
+    EXPECT_EQ(completed("photonav re", script), "reference replay report\n");
+    EXPECT_EQ(completed("photonav plan --al", script), "--alpha\n");
+    EXPECT_EQ(completed("photonav plan a.yaml --set planner.al", script), "planner.alpha=\n");
+    EXPECT_EQ(completed("photonav plan " + folder.file("photonav.b"), script), script + "\n");
+    const std::string zsh = photonav("completion zsh").output;
+    EXPECT_TRUE(zsh.starts_with("#compdef photonav\n"));
+    EXPECT_NE(zsh.find("*--alpha[1 the shortest path"), std::string::npos);
+    EXPECT_EQ(photonav("completion fish").exitCode, 2);
+}
+
+TEST(Doctor, FindsNothingWrongHere) {
+    const Execution run = photonav("doctor");
+    EXPECT_EQ(run.exitCode, 0) << run.output;
+    EXPECT_NE(run.output.find("ok        sample plan"), std::string::npos) << run.output;
 }
 
 }  // namespace

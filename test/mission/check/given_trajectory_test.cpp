@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/given_trajectory.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "geometry/camera.hpp"

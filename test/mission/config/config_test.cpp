@@ -12,6 +12,7 @@
 #include "io/error.hpp"
 #include "io/yaml_reader.hpp"
 #include "problem/world.hpp"
+#include "reason_of.hpp"
 
 namespace photonav {
 namespace {
@@ -228,6 +229,40 @@ TEST(Config, ComplaintsAboutTheFileItself) {
     std::ofstream(file) << "just a word\n";
     EXPECT_NE(complaint({}, file.string()).find("key: value"), std::string::npos);
     fs::remove(file);
+}
+
+TEST(Config, KappaIsANumberOrAutomatic) {
+    EXPECT_EQ(loadConfig(kTwoTextures).belief.kappa, 2.5);
+    const Config automatic = loadConfig(kTwoTextures, {"planner.kappa=auto"});
+    EXPECT_TRUE(isAutomatic(automatic.belief.kappa));
+    EXPECT_NE(toYaml(automatic).find("kappa: auto"), std::string::npos);
+    EXPECT_TRUE(isAutomatic(Config().belief.kappa));
+    expectComplaint("planner.kappa=automatic", "planner.kappa", "cannot read");
+    expectComplaint("planner.kappa=-1", "planner.kappa", "outside");
+    expectComplaint("planner.kappa=.nan", "planner.kappa", "outside");
+}
+
+/// Who types a key without its section, or in a wrong one, learns where it belongs.
+TEST(Config, AKeyInTheWrongPlaceIsNamedWithItsPath) {
+    expectComplaint("alpha=0.3", "alpha", "did you mean 'planner.alpha'?");
+    expectComplaint("planner.hfov=60", "planner.hfov", "did you mean 'camera.hfov'?");
+    expectComplaint("planner.seed=3", "planner.seed", "did you mean 'seed'?");
+    expectComplaint("alhpa=0.3", "alhpa", "unknown key");
+}
+
+TEST(Config, TextIsReadAsAFileIs) {
+    const std::string text =
+        "scene: {file: a.yaml}\nbounds: [[0, 0, 0], [9, 9, 1]]\n"
+        "start: [1, 1, 1]\ngoal: [8, 8, 1]\n";
+    const Config config = parseConfig(text, "/somewhere/given", {"planner.alpha=0.4"});
+    EXPECT_EQ(config.sceneFile, "/somewhere/a.yaml");
+    EXPECT_EQ(config.belief.alpha, 0.4);
+    EXPECT_EQ(config.goal.position, Eigen::Vector3d(8., 8., 1.));
+    EXPECT_EQ(test::reasonOf([&] { parseConfig("start: [1", "given"); }).substr(0, 7), "given: ");
+    EXPECT_NE(test::reasonOf([&] {
+                  parseConfig(text + "gaol: 1\n", "given");
+              }).find("given: gaol: unknown key, did you mean 'goal'?"),
+              std::string::npos);
 }
 
 }  // namespace
