@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cameras, poses and covariances.
+#include "bindings.hpp"
+#include "config/config_keys.hpp"
+#include "conversions.hpp"
+#include "geometry/camera.hpp"
+#include "geometry/constants.hpp"
+#include "geometry/se3.hpp"
+#include "geometry/uncertain_pose.hpp"
+
+namespace photonav::python {
+namespace {
+
+Array cameraPose(const Array& position, double yaw, const py::object& mount) {
+    const auto degrees = mountDegrees(py::str(mount));
+    if (!degrees) {
+        throw py::value_error(
+            "mount: expected down, front45, forward or degrees below the horizon");
+    }
+    Pose T_w_b = Pose::Identity();
+    T_w_b.translation() = vectorOf(position, 3, "position");
+    T_w_b.rotate(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
+    return arrayOf((T_w_b * cameraMount(*degrees * kDegree)).inverse());
+}
+
+Matrix6 covarianceOf(const Array& array, const char* name) {
+    const Matrix6 matrix = matrixOf(array, name);
+    if (!isCovariance(matrix)) {
+        throw py::value_error(std::string(name) + ": not positive semi-definite");
+    }
+    return matrix;
+}
+
+}  // namespace
+
+void bindGeometry(py::module_& module) {
+    using namespace py::literals;
+    py::class_<Camera>(module, "Camera",
+                       "An undistorted pinhole camera with square pixels, principal point in the "
+                       "centre.")
+        .def(py::init([](unsigned width, unsigned height, double hfov) {
+                 return makeCamera(width, height, hfov * kDegree);
+             }),
+             "width"_a = 188, "height"_a = 120, "hfov"_a = 70.,
+             "hfov: horizontal field of view in degrees.")
+        .def_readonly("width", &Camera::width)
+        .def_readonly("height", &Camera::height)
+        .def_property_readonly("fx", &Camera::fx)
+        .def_property_readonly("fy", &Camera::fy)
+        .def_property_readonly("cx", &Camera::cx)
+        .def_property_readonly("cy", &Camera::cy);
+    module.def("camera_pose", &cameraPose, "position"_a, "yaw"_a = 0., "mount"_a = "down",
+               "T_c_w of a camera on a level body at a position [m] with a heading [rad]. mount: "
+               "down, front45, forward or degrees below the horizon.");
+    module.def(
+        "exp_se3", [](const Array& xi) { return arrayOf(expSE3(vectorOf(xi, 6, "xi"))); }, "xi"_a,
+        "The rigid motion of a twist (translation, rotation).");
+    module.def(
+        "log_se3", [](const Array& T) -> Vector6 { return logSE3(poseOf(T, "T")); }, "T"_a,
+        "The twist of a rigid motion, of at most half a turn.");
+    module.def(
+        "adjoint", [](const Array& T) -> Matrix6 { return adjoint(poseOf(T, "T")); }, "T"_a,
+        "Ad(T): T exp(xi) T^-1 = exp(Ad(T) xi).");
+    module.def(
+        "compound",
+        [](const Array& T_c_b, const Array& motion, const Array& T_b_a, const Array& covariance) {
+            const UncertainPose T_c_a =
+                compound({poseOf(T_c_b, "T_c_b"), covarianceOf(motion, "motion")},
+                         {poseOf(T_b_a, "T_b_a"), covarianceOf(covariance, "covariance")});
+            return py::make_tuple(arrayOf(T_c_a.mean), T_c_a.covariance);
+        },
+        "T_c_b"_a, "motion"_a, "T_b_a"_a, "covariance"_a,
+        "T_c_a = T_c_b T_b_a with its covariance, to fourth order.");
+    module.def(
+        "update",
+        [](const Array& covariance, const Array& information) -> Matrix6 {
+            return updateCovariance(covarianceOf(covariance, "covariance"),
+                                    covarianceOf(information, "information"));
+        },
+        "covariance"_a, "information"_a,
+        "Covariance after a measurement: (information + covariance^-1)^-1, also for singular "
+        "ones.");
+}
+
+}  // namespace photonav::python
