@@ -47,7 +47,7 @@ json datasetJson(const MapCommandOptions& options, const Recording& recording) {
     const Sequence& sequence = recording.sequence;
     json camera = cameraJson(sequence.camera);
     camera["assumed"] = sequence.cameraAssumed;
-    camera["depth_registered_here"] = sequence.depthIntrinsics.has_value();
+    camera["depth_registered_here"] = sequence.depthCamera.has_value();
     const Eigen::Matrix3d R = worldUpRotation(recording.up);
     return {{"folder", fs::absolute(options.dataset).lexically_normal().string()},
             {"layout", recording.layout},

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "dataset/depth_camera.hpp"
 #include "photometry/view.hpp"
 
 namespace photonav {
@@ -33,8 +34,8 @@ struct Sequence {
     };
 
     Camera camera;  ///< of the colour images, and of the views loaded
-    /// Of the depth images when it differs; same size and centre of projection are assumed.
-    std::optional<vpCameraParameters> depthIntrinsics;
+    /// Of the depth images, when they are not registered to the colour images.
+    std::optional<DepthCamera> depthCamera;
     std::string cameraFile;      ///< that says so; empty when it is assumed
     bool cameraAssumed = false;  ///< the dataset does not say; this is the format's usual one
     double depthScale = 5000.;   ///< depth image value of one metre

@@ -123,15 +123,43 @@ vpCameraParameters readIntrinsics(YamlMap& yaml, const Camera& camera) {
             required("cx", -10. * width, 10. * width), required("cy", -10. * height, 10. * height)};
 }
 
-void readCamera(const std::string& file, Sequence& sequence) {
-    YamlMap yaml(file, loadYaml(file));
+void readSize(YamlMap& yaml, Camera& camera) {
     const auto readPixels = [&](const std::string& key, unsigned& value) {
-        if (!yaml.has(key)) yaml.fail(key, "missing");
         yaml.read(key, value);
         if (value == 0) yaml.fail(key, "is zero");
     };
-    readPixels("width", sequence.camera.width);
-    readPixels("height", sequence.camera.height);
+    readPixels("width", camera.width);
+    readPixels("height", camera.height);
+}
+
+/// Of the size of the colour camera unless the file says otherwise.
+DepthCamera readDepthCamera(YamlMap yaml, const Camera& colour) {
+    DepthCamera depth;
+    depth.camera = colour;
+    readSize(yaml, depth.camera);
+    depth.camera.intrinsics = readIntrinsics(yaml, depth.camera);
+    Eigen::Matrix<double, 7, 1> T_c_d;  // position, quaternion
+    T_c_d << 0., 0., 0., 0., 0., 0., 1.;
+    yaml.readVector("T_colour_depth", T_c_d);
+    if (!(std::abs(T_c_d.tail<4>().norm() - 1.) <= 0.01)) {
+        yaml.fail("T_colour_depth", "is not x, y, z, qx, qy, qz, qw with a unit quaternion");
+    }
+    const Eigen::Quaterniond q(T_c_d[6], T_c_d[3], T_c_d[4], T_c_d[5]);
+    depth.T_c_d.linear() = q.normalized().toRotationMatrix();
+    depth.T_c_d.translation() = T_c_d.head<3>();
+    std::string posesOf = "colour";
+    yaml.readChoice("poses", posesOf, {"colour", "depth"});
+    depth.hasPoses = posesOf == "depth";
+    yaml.finish();
+    return depth;
+}
+
+void readCamera(const std::string& file, Sequence& sequence) {
+    YamlMap yaml(file, loadYaml(file));
+    for (const char* key : {"width", "height"}) {
+        if (!yaml.has(key)) yaml.fail(key, "missing");
+    }
+    readSize(yaml, sequence.camera);
     sequence.camera.intrinsics = readIntrinsics(yaml, sequence.camera);
     yaml.readNumber("depth_scale", sequence.depthScale, 1e-6, 1e12);
     if (yaml.has("information_scale")) {
@@ -140,41 +168,9 @@ void readCamera(const std::string& file, Sequence& sequence) {
     if (yaml.has("blur")) yaml.readNumber("blur", sequence.blur.emplace(), 0., 10.);
     yaml.readNumber("depth_error", sequence.depthError, 0., 1.);
     if (yaml.has("depth_camera")) {
-        YamlMap depthCamera = yaml.map("depth_camera");
-        sequence.depthIntrinsics = readIntrinsics(depthCamera, sequence.camera);
-        depthCamera.finish();
+        sequence.depthCamera = readDepthCamera(yaml.map("depth_camera"), sequence.camera);
     }
     yaml.finish();
-}
-
-/// For every colour column (or row) the depth column of the same ray, or -1 outside the image.
-std::vector<int> depthPixels(unsigned count, double focal, double centre, double depthFocal,
-                             double depthCentre) {
-    std::vector<int> pixels(count);
-    for (unsigned i = 0; i < count; ++i) {
-        const double j = std::round((i - centre) * depthFocal / focal + depthCentre);
-        pixels[i] = j >= 0. && j < count ? static_cast<int>(j) : -1;
-    }
-    return pixels;
-}
-
-/// @param source the file and keys that give the camera's size, for messages
-void loadDepth(const Sequence& sequence, const std::string& file, const std::string& source,
-               ImageF& metres) {
-    const Camera& camera = sequence.camera;
-    const vpImage<std::uint16_t> values = readDepth16(file, camera, source);
-    const vpCameraParameters& k = camera.intrinsics;
-    const vpCameraParameters& d = sequence.depthIntrinsics.value_or(k);
-    const auto columns = depthPixels(camera.width, k.get_px(), k.get_u0(), d.get_px(), d.get_u0());
-    const auto rows = depthPixels(camera.height, k.get_py(), k.get_v0(), d.get_py(), d.get_v0());
-    const auto unit = static_cast<float>(1. / sequence.depthScale);
-    for (unsigned v = 0; v < camera.height; ++v) {
-        if (rows[v] < 0) continue;
-        const std::uint16_t* z = values[rows[v]];
-        for (unsigned u = 0; u < camera.width; ++u) {
-            if (columns[u] >= 0) metres[v][u] = unit * z[columns[u]];
-        }
-    }
 }
 
 void addPoses(const std::string& groundtruth, const std::vector<Pair>& pairs,
@@ -185,12 +181,16 @@ void addPoses(const std::string& groundtruth, const std::vector<Pair>& pairs,
         trajectory = readTrajectory(groundtruth, options.forgiving ? &badRows : nullptr);
     }
     for (const InputError& row : badRows) sequence.skipped.push_back({groundtruth, row.reason()});
+    const auto& depthCamera = sequence.depthCamera;
+    const Pose T_colour_posed =
+        depthCamera && depthCamera->hasPoses ? depthCamera->T_c_d : Pose::Identity();
     bool anyPose = false;
     for (const auto& [timestamp, colour, depth] : pairs) {
         const auto T_w_c = poseAt(trajectory, timestamp, options.tolerance, options.maxPoseGap);
         anyPose = anyPose || T_w_c;
         if (T_w_c || options.forgiving) {
-            sequence.frames.push_back({timestamp, T_w_c ? T_w_c->inverse() : Pose::Identity(),
+            sequence.frames.push_back({timestamp,
+                                       T_w_c ? T_colour_posed * T_w_c->inverse() : Pose::Identity(),
                                        T_w_c.has_value(), colour, depth.file});
         } else {
             sequence.skipped.push_back(
@@ -227,18 +227,37 @@ Sequence readTumTables(const std::string& folder, const TumOptions& options) {
     return sequence;
 }
 
+/// The file and keys that give a camera's size, for messages.
+std::string sourceOfSize(const Sequence& sequence, const std::string& keys) {
+    if (sequence.cameraAssumed) return "the camera assumed without a camera.yaml";
+    return fmt::format("{} ({})", sequence.cameraFile, keys);
+}
+
 }  // namespace
 
 Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
     return reading(folder, [&] { return readTumTables(folder, options); });
 }
 
+ImageF loadDepth(const Sequence& sequence, std::size_t index) {
+    const bool isOther = sequence.depthCamera.has_value();
+    const Camera& camera = isOther ? sequence.depthCamera->camera : sequence.camera;
+    const vpImage<std::uint16_t> values = readDepth16(
+        sequence.frames.at(index).depthFile, camera,
+        sourceOfSize(sequence, isOther ? "depth_camera.width, height" : "width, height"));
+    const auto unit = static_cast<float>(1. / sequence.depthScale);
+    ImageF metres(values.getHeight(), values.getWidth());
+    for (unsigned i = 0; i < values.getSize(); ++i) {
+        metres.bitmap[i] = unit * static_cast<float>(values.bitmap[i]);
+    }
+    return metres;
+}
+
 RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
     const Sequence::Entry& entry = sequence.frames.at(index);
     const Camera& camera = sequence.camera;
-    const std::string source = sequence.cameraAssumed ? "the camera assumed without a camera.yaml"
-                                                      : sequence.cameraFile + " (width, height)";
-    const vpImage<unsigned char> grey = readGrey8(entry.colourFile, camera, source);
+    const vpImage<unsigned char> grey =
+        readGrey8(entry.colourFile, camera, sourceOfSize(sequence, "width, height"));
     RecordedFrame frame{entry.T_c_w, {}, entry.timestamp};
     frame.view.intensity.resize(camera.height, camera.width);
     frame.view.depth.resize(camera.height, camera.width, 0.F);
@@ -247,9 +266,13 @@ RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
     }
     if (entry.depthFile.empty()) return frame;
     try {
-        loadDepth(sequence, entry.depthFile, source, frame.view.depth);
+        frame.view.depth = loadDepth(sequence, index);
     } catch (const InputError&) {
         if (sequence.needsDepth) throw;
+        return frame;
+    }
+    if (sequence.depthCamera) {
+        frame.view.depth = registeredDepth(frame.view.depth, *sequence.depthCamera, camera);
     }
     return frame;
 }

@@ -31,18 +31,24 @@ struct TumOptions {
 /// - `camera.yaml` when there: width, height, fx, fy, cx, cy [pixels], depth_scale (default 5000),
 ///   information_scale (none), blur (point spread [pixels]), depth_error (0; relative,
 ///   of its scale and registration), and for depth images that are not registered to the colour
-///   images `depth_camera` with its own fx, fy, cx, cy. Without it the benchmark's Kinect is
-///   assumed: 640x480, 525, 525, 319.5, 239.5.
+///   images `depth_camera` with its own fx, fy, cx, cy, width and height (those of the colour
+///   camera), T_colour_depth (`[x, y, z, qx, qy, qz, qw]`, default: the same place) and whose poses
+///   are recorded (poses: colour, or depth). Without a file the benchmark's Kinect is assumed:
+///   640x480, 525, 525, 319.5, 239.5.
 /// Images without partner or pose are listed as skipped.
 /// @throws InputError naming file, line or key, and reason; also when no frame is left, or no pose
 ///         belongs to any frame. Timestamps may repeat but never decrease.
 Sequence readTumSequence(const std::string& folder, const TumOptions& options = {});
 
 /// Loads the images of frame `index`: 8-bit colour by OpenCV's grey conversion to [0, 1], 16-bit
-/// depth to metres along the optical axis, looked up where the colour camera's pixels lie in it; 0
+/// depth to metres along the optical axis, as the colour camera sees it (registeredDepth()); 0
 /// everywhere in a frame without depth image, or, where the sequence needs none, without a usable
 /// one.
 /// @throws InputError for a file that is missing, damaged or of another size than the camera's
 RecordedFrame loadFrame(const Sequence& sequence, std::size_t index);
+
+/// The depth image of frame `index` as it was recorded, in the depth camera's frame [m].
+/// @throws InputError as loadFrame(), and for a frame without depth image
+ImageF loadDepth(const Sequence& sequence, std::size_t index);
 
 }  // namespace photonav

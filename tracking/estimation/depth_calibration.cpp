@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "estimation/depth_calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "alignment/normal_equations.hpp"
+#include "geometry/se3.hpp"
+
+namespace photonav {
+namespace {
+
+using Matrix86 = Eigen::Matrix<double, 8, 6>;
+
+constexpr double kBlurs[] = {4., 2., 1.};  // of the images, coarse to fine [pixels]
+constexpr int kIterations = 6;             // at each blur
+constexpr std::size_t kBlocks = 16;        // of pairs that are left out together, at most
+constexpr int kReach = 5;                  // of the differences that give normals [pixels]
+constexpr double kBend = 1.5;              // KeyframeOptions::maxBend
+constexpr double kGrazing = 0.2;           // least cosine between ray and normal
+constexpr double kOutlier = 7.;            // medians of the absolute residuals
+constexpr double kLeastOutlier = 0.01;     // [grey value]
+
+struct Surfel {
+    Eigen::Vector3f point, normal;  // depth camera's frame
+};
+
+/// Two images and the surfaces of the first.
+struct Pair {
+    cv::Mat first, second;
+    std::vector<Surfel> surfels;
+    Pose T_second_first;
+    double gain = 1., offset = 0.;
+};
+
+cv::Mat matOf(const ImageF& image) {
+    return cv::Mat(static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()),
+                   CV_32FC1, image.bitmap)
+        .clone();
+}
+
+/// A blurred image and its gradient.
+struct Smooth {
+    cv::Mat grey, gx, gy;
+
+    Smooth(const cv::Mat& image, double blur) {
+        cv::GaussianBlur(image, grey, {}, blur);
+        cv::Sobel(grey, gx, CV_32F, 1, 0, 1, 0.5);
+        cv::Sobel(grey, gy, CV_32F, 0, 1, 1, 0.5);
+    }
+
+    struct Sample {
+        double grey;
+        Eigen::RowVector2d gradient;
+    };
+    /// Between four pixels; nothing at the border and beyond.
+    std::optional<Sample> at(const Eigen::Vector2d& pixel) const {
+        const double u = pixel.x(), v = pixel.y();
+        if (!(u >= 1. && v >= 1. && u < grey.cols - 2 && v < grey.rows - 2)) return {};
+        const int x = static_cast<int>(u), y = static_cast<int>(v);
+        const double a = u - x, b = v - y;
+        const auto between = [&](const cv::Mat& m) {
+            const float* above = m.ptr<float>(y) + x;
+            const float* below = m.ptr<float>(y + 1) + x;
+            return (1. - b) * ((1. - a) * above[0] + a * above[1]) +
+                   b * ((1. - a) * below[0] + a * below[1]);
+        };
+        return Sample{between(grey), {between(gx), between(gy)}};
+    }
+};
+
+/// Normal equations of one pair about the depth camera's pose; those of its motion and exposure
+/// (xi, gain, offset) are `own`.
+struct PairEquations {
+    Matrix6 information = Matrix6::Zero();
+    Vector6 right = Vector6::Zero();
+    Matrix8 own = Matrix8::Zero();
+    Matrix86 coupling = Matrix86::Zero();
+    Vector8 ownRight = Vector8::Zero();
+
+    void add(const Eigen::Matrix<double, 1, 6>& J, const Eigen::Matrix<double, 1, 8>& ofOwn,
+             double r, double weight) {
+        information += weight * J.transpose() * J;
+        right -= weight * r * J.transpose();
+        own += weight * ofOwn.transpose() * ofOwn;
+        coupling += weight * ofOwn.transpose() * J;
+        ownRight -= weight * r * ofOwn.transpose();
+    }
+
+    /// Motion and exposure that belong to a step of the depth camera.
+    Vector8 ownStep(const Vector6& x) const { return own.ldlt().solve(ownRight - coupling * x); }
+
+    void eliminateOwn() {
+        own.diagonal().array() += 1e-9 * own.trace() + 1e-12;
+        const Matrix86 solved = own.ldlt().solve(coupling);
+        information -= coupling.transpose() * solved;
+        right -= solved.transpose() * ownRight;
+    }
+};
+
+double medianOf(std::vector<float>& values) {
+    if (values.empty()) return 0.;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace
+
+class DepthCalibrator::Problem {
+  public:
+    Problem(const Camera& colour, const DepthCamera& start, const DepthCalibrationOptions& options)
+        : colour_(colour), depth_(start), options_(options) {}
+
+    void add(const ImageF& first, const ImageF& depth_d, const ImageF& second,
+             const Pose& T_second_first);
+    std::size_t pairs() const { return pairs_.size(); }
+    DepthCalibration solve();
+
+  private:
+    std::optional<Surfel> surfelAt(const ImageF& depth_d, unsigned u, unsigned v) const;
+    PairEquations equationsOf(const Pair& pair, const Pose& T_c_d, double blur,
+                              std::vector<float>& residuals) const;
+    void descend(bool movesDepthCamera, DepthCalibration& result);
+    void step(bool movesDepthCamera, double blur, DepthCalibration& result);
+    Matrix6 informationOf(const std::vector<PairEquations>& pairs, Vector6& step) const;
+
+    Camera colour_;
+    DepthCamera depth_;
+    DepthCalibrationOptions options_;
+    std::vector<Pair> pairs_;
+    double outlier_ = 0.;  ///< residual that counts a quarter [grey value]
+};
+
+/// The point of a pixel and the normal there, where the surface is smooth.
+std::optional<Surfel> DepthCalibrator::Problem::surfelAt(const ImageF& depth_d, unsigned u,
+                                                         unsigned v) const {
+    const float z = depth_d[v][u], left = depth_d[v][u - kReach], right = depth_d[v][u + kReach];
+    const float above = depth_d[v - kReach][u], below = depth_d[v + kReach][u];
+    if (!(z >= options_.minDepth && z <= options_.maxDepth)) return {};
+    if (!(std::min({left, right, above, below}) > 0.F)) return {};
+    const Camera& camera = depth_.camera;
+    const double alongRow = z / left + z / right - 2., alongColumn = z / above + z / below - 2.;
+    if (std::abs(alongRow) > kBend * kReach / camera.fx()) return {};
+    if (std::abs(alongColumn) > kBend * kReach / camera.fy()) return {};
+    const Eigen::Vector3d across =
+        camera.unproject(u + kReach, v, right) - camera.unproject(u - kReach, v, left);
+    const Eigen::Vector3d down =
+        camera.unproject(u, v + kReach, below) - camera.unproject(u, v - kReach, above);
+    const Eigen::Vector3d point = camera.unproject(u, v, z);
+    const Eigen::Vector3d normal = across.cross(down).normalized();
+    if (!(std::abs(normal.dot(point)) > kGrazing * point.norm())) return {};
+    return Surfel{point.cast<float>(), normal.cast<float>()};
+}
+
+void DepthCalibrator::Problem::add(const ImageF& first, const ImageF& depth_d, const ImageF& second,
+                                   const Pose& T_second_first) {
+    const auto fits = [](const ImageF& image, const Camera& camera) {
+        return image.getWidth() == camera.width && image.getHeight() == camera.height;
+    };
+    if (!fits(first, colour_) || !fits(second, colour_) || !fits(depth_d, depth_.camera)) {
+        throw std::invalid_argument("depth calibration: image and camera differ in size");
+    }
+    Pair pair{matOf(first), matOf(second), {}, T_second_first};
+    const auto stride = static_cast<unsigned>(options_.stride);
+    for (unsigned v = kReach; v + kReach < depth_d.getHeight(); v += stride) {
+        for (unsigned u = kReach; u + kReach < depth_d.getWidth(); u += stride) {
+            if (const auto surfel = surfelAt(depth_d, u, v)) pair.surfels.push_back(*surfel);
+        }
+    }
+    pairs_.push_back(std::move(pair));
+}
+
+PairEquations DepthCalibrator::Problem::equationsOf(const Pair& pair, const Pose& T_c_d,
+                                                    double blur,
+                                                    std::vector<float>& residuals) const {
+    const Smooth first(pair.first, blur), second(pair.second, blur);
+    const Eigen::Matrix3d R = pair.T_second_first.linear();
+    PairEquations equations;
+    for (const Surfel& surfel : pair.surfels) {
+        const Eigen::Vector3d p = T_c_d * surfel.point.cast<double>();
+        const Eigen::Vector3d q = pair.T_second_first * p;
+        if (!(p.z() > 0.1 && q.z() > 0.1)) continue;
+        const auto before = first.at(colour_.project(p)), after = second.at(colour_.project(q));
+        if (!before || !after) continue;
+        // The mean gradient of both images, by the motion of a surface parallel to them.
+        const Eigen::Matrix<double, 2, 3> ofFirst = colour_.projectionJacobian(p);
+        const Eigen::Matrix<double, 2, 3> ofSecond = colour_.projectionJacobian(q) * R;
+        const Eigen::Matrix2d warp =
+            ofSecond * ofFirst.transpose() * (ofFirst * ofFirst.transpose()).inverse();
+        const Eigen::RowVector2d gradient =
+            0.5 * (pair.gain * before->gradient * warp.inverse() + after->gradient);
+        const Eigen::RowVector3d byPoint = gradient * ofSecond;  // per motion of p
+        const Eigen::RowVector3d n = (T_c_d.linear() * surfel.normal.cast<double>()).transpose();
+        const Eigen::RowVector3d byNormal = byPoint.dot(p.transpose()) / n.dot(p.transpose()) * n;
+        const Eigen::RowVector3d byMotion = byPoint * R.transpose();
+        Eigen::Matrix<double, 1, 6> J;
+        J << byNormal, -byNormal * hat(p);
+        Eigen::Matrix<double, 1, 8> ofOwn;
+        ofOwn << byMotion, -byMotion * hat(q), -before->grey, -1.;
+        const double r = after->grey - (pair.gain * before->grey + pair.offset);
+        residuals.push_back(static_cast<float>(std::abs(r)));
+        const double root = 1. / (1. + r * r / (outlier_ * outlier_));  // Geman and McClure
+        equations.add(J, ofOwn, r, root * root);
+    }
+    equations.eliminateOwn();
+    return equations;
+}
+
+/// The information of all pairs, from the scatter of blocks of them (jackknife), and the step that
+/// they ask for.
+Matrix6 DepthCalibrator::Problem::informationOf(const std::vector<PairEquations>& pairs,
+                                                Vector6& step) const {
+    const std::size_t count = std::min(kBlocks, pairs.size());
+    std::vector<Matrix6> information(count, Matrix6::Zero());
+    std::vector<Vector6> right(count, Vector6::Zero());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        information[i * count / pairs.size()] += pairs[i].information;
+        right[i * count / pairs.size()] += pairs[i].right;
+    }
+    Matrix6 sum = Matrix6::Zero();
+    Vector6 sumRight = Vector6::Zero();
+    for (std::size_t b = 0; b < count; ++b) {
+        sum += information[b];
+        sumRight += right[b];
+    }
+    sum += 1e-9 * sum.trace() * Matrix6::Identity();
+    const Matrix6 inverse = sum.inverse();
+    step = inverse * sumRight;
+    Matrix6 scatter = Matrix6::Zero();
+    for (std::size_t b = 0; b < count; ++b) {
+        const Vector6 without = (Matrix6::Identity() - information[b] * inverse)
+                                    .partialPivLu()
+                                    .solve(right[b] - information[b] * step);
+        scatter += without * without.transpose();
+    }
+    // The inverse of a covariance of few draws is too large (residual_covariance.cpp).
+    const double few = double(count) / std::max(1., double(count) - 7.);
+    const Matrix6 covariance = few * inverse * scatter * inverse;
+    return (covariance + 1e-12 * Matrix6::Identity()).inverse();
+}
+
+void DepthCalibrator::Problem::step(bool movesDepthCamera, double blur, DepthCalibration& result) {
+    std::vector<PairEquations> equations;
+    std::vector<float> residuals;
+    for (const Pair& pair : pairs_) {
+        equations.push_back(equationsOf(pair, result.T_c_d, blur, residuals));
+    }
+    Vector6 x = Vector6::Zero();
+    if (movesDepthCamera) {
+        const Matrix6 information = informationOf(equations, x);
+        Vector6 prior;
+        prior << Eigen::Vector3d::Constant(options_.translationSigma),
+            Eigen::Vector3d::Constant(options_.rotationSigma);
+        const Vector6 weight = prior.cwiseAbs2().cwiseInverse();
+        const Vector6 away = logSE3(result.T_c_d * depth_.T_c_d.inverse());
+        const Matrix6 both = information + Matrix6(weight.asDiagonal());
+        x = both.ldlt().solve(information * x - weight.cwiseProduct(away));
+        result.covariance = both.inverse();
+    }
+    result.T_c_d = expSE3(x) * result.T_c_d;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+        const Vector8 own = equations[i].ownStep(x);
+        pairs_[i].T_second_first = expSE3(own.head<6>()) * pairs_[i].T_second_first;
+        pairs_[i].gain += own[6];
+        pairs_[i].offset += own[7];
+    }
+    result.residualAfter = medianOf(residuals);
+    outlier_ = std::max(kLeastOutlier, kOutlier * result.residualAfter);
+}
+
+void DepthCalibrator::Problem::descend(bool movesDepthCamera, DepthCalibration& result) {
+    outlier_ = 0.05;  // before there are residuals
+    for (const double blur : kBlurs) {
+        for (int i = 0; i < kIterations; ++i) step(movesDepthCamera, blur, result);
+    }
+}
+
+DepthCalibration DepthCalibrator::Problem::solve() {
+    if (pairs_.size() < kLeastPairs) throw std::invalid_argument("depth calibration: few pairs");
+    DepthCalibration result;
+    result.T_c_d = depth_.T_c_d;
+    descend(false, result);
+    result.residualBefore = result.residualAfter;
+    descend(true, result);
+    return result;
+}
+
+DepthCalibrator::DepthCalibrator(const Camera& colour, const DepthCamera& start,
+                                 const DepthCalibrationOptions& options)
+    : problem_(std::make_unique<Problem>(colour, start, options)) {}
+DepthCalibrator::~DepthCalibrator() = default;
+DepthCalibrator::DepthCalibrator(DepthCalibrator&&) noexcept = default;
+DepthCalibrator& DepthCalibrator::operator=(DepthCalibrator&&) noexcept = default;
+
+void DepthCalibrator::add(const ImageF& first, const ImageF& depth_d, const ImageF& second,
+                          const Pose& T_second_first) {
+    problem_->add(first, depth_d, second, T_second_first);
+}
+
+std::size_t DepthCalibrator::pairs() const { return problem_->pairs(); }
+
+DepthCalibration DepthCalibrator::solve() { return problem_->solve(); }
+
+}  // namespace photonav
