@@ -334,6 +334,7 @@ int run(int argc, char** argv) {
                               referenceCommand(app),
                               replayCommand(app, invocation),
                               checkCommand(app, invocation),
+                              calibrateDepthCommand(app, invocation),
                               reportCommand(app),
                               keysCommand(app),
                               completionCommand(app),
@@ -343,7 +344,8 @@ int run(int argc, char** argv) {
         "plan, check, fly, explore, sweep, benchmark, info, map and replay write result.json, "
         "figures,\n"
         "report.html and config.yaml (complete, re-runnable) into their folder (--out);\n"
-        "compare writes tables, figures and result.json, reference its table alone.\n"
+        "compare writes tables, figures and result.json, reference its table alone;\n"
+        "calibrate-depth writes camera.yaml and result.json.\n"
         "photonav COMMAND --help lists the options of a command, photonav keys those of a config.\n"
         "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by Ctrl-C, 143 "
         "by\n"

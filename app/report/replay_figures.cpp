@@ -39,7 +39,7 @@ Curves curvesOf(const ReplayRun& run, const ReplayErrors& errors) {
         const double t = frame.pair.timestamp - start;
         c.positionError.emplace_back(t, frame.positionError);
         c.rotationError.emplace_back(t, frame.rotationError / kDegree);
-        if (frame.nees) c.nees.emplace_back(t, *frame.nees);
+        if (frame.normalised) c.nees.emplace_back(t, frame.normalised->pose);
     }
     for (const auto& [from, to] : lostIntervals(run)) c.lost.emplace_back(from - start, to - start);
     return c;

@@ -17,8 +17,7 @@ EvaluatedFrame evaluateFrame(const ReplayRun& run, std::size_t i, bool beginsTru
     result.rotationError = errors.rotation[0];
     result.positionSigma = std::sqrt(belief.covariance.diagonal().head<3>().sum());
     result.rotationSigma = std::sqrt(belief.covariance.diagonal().tail<3>().sum());
-    if (beginsTrue) result.nees = squaredNormalisedError(belief, *frame.truth_c_w);
-    if (result.nees) *result.nees /= 6.;
+    if (beginsTrue) result.normalised = normalisedError(belief, *frame.truth_c_w);
     return result;
 }
 

@@ -18,9 +18,9 @@ struct EvaluatedFrame {
     double rotationError = 0.;  ///< [rad]
     double positionSigma = 0.;  ///< root of the trace of the position's covariance [m]
     double rotationSigma = 0.;  ///< the same of the rotation's [rad]
-    /// Per degree of freedom. None where odometry did not begin at a true pose: what its errors
-    /// are relative to is not where its covariances began.
-    std::optional<double> nees;
+    /// None where odometry did not begin at a true pose: what its errors are relative to is not
+    /// where its covariances began.
+    std::optional<NormalisedError> normalised;
 };
 
 /// Errors of a run. Odometry is evaluated after a rigid alignment of its positions to the true ones

@@ -37,12 +37,28 @@ json summaryJson(const PoseErrors& errors) {
             {"p90_rotation_deg", kDegrees * r.p90}};
 }
 
-std::vector<double> neesOf(const ReplayErrors& errors) {
+std::vector<double> neesOf(const ReplayErrors& errors, double NormalisedError::*part) {
     std::vector<double> all;
     for (const EvaluatedFrame& frame : errors.frames) {
-        if (frame.nees) all.push_back(*frame.nees);
+        if (frame.normalised) all.push_back((*frame.normalised).*part);
     }
     return all;
+}
+
+json meanAndMedian(const std::vector<double>& values) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    return {{"mean", finiteOrNull(mean(values, none))},
+            {"median", finiteOrNull(median(values, none))}};
+}
+
+/// Frames that converged, and are off by more than five of their standard deviations.
+std::size_t countBeyond(const ReplayRun& run, const ReplayErrors& errors) {
+    constexpr double kFar = 5.;
+    return static_cast<std::size_t>(
+        std::ranges::count_if(errors.frames, [&](const EvaluatedFrame& f) {
+            return f.normalised && f.normalised->largest > kFar &&
+                   run.frames[f.frame].tracked.alignment.verdict == Verdict::converged;
+        }));
 }
 
 json framesPerSecond(double frames, double seconds) {
@@ -172,7 +188,7 @@ json replayResult(const Sequence& sequence, const ReplayRun& run, const ReplayEr
     const double looked = tracked > 0 ? double(tracked + lost) : 0.;
     const ErrorSummary absolute = summarise(errors.absolute.translation);
     const bool evaluated = !errors.frames.empty();
-    const std::vector<double> nees = neesOf(errors);
+    const std::vector<double> nees = neesOf(errors, &NormalisedError::pose);
     const double none = std::numeric_limits<double>::quiet_NaN();
     const auto degenerate = std::count_if(run.frames.begin(), run.frames.end(), [](const auto& f) {
         return f.status == FrameStatus::tracked &&
@@ -206,6 +222,9 @@ json replayResult(const Sequence& sequence, const ReplayRun& run, const ReplayEr
               {"metre", summaryJson(errors.perMetre)}}},
             {"nees_per_dof", finiteOrNull(mean(nees, none))},
             {"nees_median_per_dof", finiteOrNull(median(nees, none))},
+            {"nees_position_per_dof", meanAndMedian(neesOf(errors, &NormalisedError::position))},
+            {"nees_rotation_per_dof", meanAndMedian(neesOf(errors, &NormalisedError::rotation))},
+            {"converged_beyond_5_sigma", countBeyond(run, errors)},
             {"fps", framesPerSecond(looked, run.trackSeconds)},
             {"fps_with_reading", framesPerSecond(looked, run.trackSeconds + run.loadSeconds)},
             {"depth_density", densityJson(run)},

@@ -177,4 +177,19 @@ std::optional<double> squaredNormalisedError(const UncertainPose& T_c_w, const P
     return e.dot(llt.solve(e));
 }
 
+std::optional<NormalisedError> normalisedError(const UncertainPose& T_c_w,
+                                               const Pose& T_c_w_truth) {
+    const auto squared = squaredNormalisedError(T_c_w, T_c_w_truth);
+    if (!squared) return {};
+    const Vector6 xi = deviation(T_c_w_truth, T_c_w.mean);
+    const Matrix6 covariance = transported(T_c_w.covariance, xi);
+    const auto part = [&](int begin) {
+        const Eigen::Vector3d e = xi.segment<3>(begin);
+        return e.dot(covariance.block<3, 3>(begin, begin).llt().solve(e)) / 3.;
+    };
+    const Vector6 sigmas = covariance.diagonal().cwiseSqrt();
+    return NormalisedError{*squared / 6., part(0), part(3),
+                           xi.cwiseQuotient(sigmas).cwiseAbs().maxCoeff()};
+}
+
 }  // namespace photonav

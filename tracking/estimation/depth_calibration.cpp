@@ -102,6 +102,14 @@ struct PairEquations {
     }
 };
 
+/// Motion of a point by a twist.
+Eigen::Matrix<double, 3, 6> byTwist(const Eigen::Vector3d& p) {
+    Eigen::Matrix<double, 3, 6> motion;
+    motion.leftCols<3>().setIdentity();
+    motion.rightCols<3>() = -hat(p);
+    return motion;
+}
+
 double medianOf(std::vector<float>& values) {
     if (values.empty()) return 0.;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -198,10 +206,11 @@ PairEquations DepthCalibrator::Problem::equationsOf(const Pair& pair, const Pose
         const Eigen::RowVector3d n = (T_c_d.linear() * surfel.normal.cast<double>()).transpose();
         const Eigen::RowVector3d byNormal = byPoint.dot(p.transpose()) / n.dot(p.transpose()) * n;
         const Eigen::RowVector3d byMotion = byPoint * R.transpose();
-        Eigen::Matrix<double, 1, 6> J;
-        J << byNormal, -byNormal * hat(p);
+        const Eigen::Matrix<double, 1, 6> J = byNormal * byTwist(p);
         Eigen::Matrix<double, 1, 8> ofOwn;
-        ofOwn << byMotion, -byMotion * hat(q), -before->grey, -1.;
+        ofOwn.head<6>() = byMotion * byTwist(q);
+        ofOwn[6] = -before->grey;
+        ofOwn[7] = -1.;
         const double r = after->grey - (pair.gain * before->grey + pair.offset);
         residuals.push_back(static_cast<float>(std::abs(r)));
         const double root = 1. / (1. + r * r / (outlier_ * outlier_));  // Geman and McClure

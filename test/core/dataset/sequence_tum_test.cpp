@@ -80,9 +80,40 @@ TEST_F(TumSequence, UnregisteredDepthIsLookedUpAlongTheSameRay) {
               "depth_camera: {fx: 60, fy: 80, cx: 39, cy: 30}\n");
     const View view = loadFrame(read({.cameraFile = camera}), 0).view;
     // u = 59 is the ray x = 0.5, v = 19 the ray y = -0.25.
-    EXPECT_FLOAT_EQ(view.depth[19][59], (5000 + 100 * 10 + 69) / 5000.F);
+    EXPECT_NEAR(view.depth[19][59], (5000 + 100 * 10 + 69) / 5000., 1e-5);
     EXPECT_EQ(view.depth[0][40], 0.F);  // above the depth image
     EXPECT_EQ(view.depth[29][79], 0.F);
+}
+
+TEST_F(TumSequence, PosesMayBeThoseOfTheDepthCamera) {
+    const std::string camera = "width: 80\nheight: 60\nfx: 60\nfy: 60\ncx: 39.5\ncy: 29.5\n";
+    const std::string depthCamera =
+        "depth_camera: {fx: 60, fy: 60, cx: 39.5, cy: 29.5, "
+        "T_colour_depth: [-0.02, 0.01, 0, 0, 0, 0.6, 0.8]";
+    writeText(path / "camera.yaml", camera + depthCamera + "}\n");
+    const Sequence ofColour = read();
+    writeText(path / "camera.yaml", camera + depthCamera + ", poses: depth}\n");
+    const Sequence ofDepth = read();
+    const Pose T_c_d = ofDepth.depthCamera->T_c_d;
+    EXPECT_TRUE(T_c_d.translation().isApprox(Eigen::Vector3d(-0.02, 0.01, 0.)));
+    EXPECT_NEAR(T_c_d.linear()(0, 1), -0.96, 1e-12);
+    EXPECT_TRUE(ofDepth.frames[1].T_c_w.isApprox(T_c_d * ofColour.frames[1].T_c_w, 1e-12));
+}
+
+TEST_F(TumSequence, DepthImagesMayHaveASizeOfTheirOwn) {
+    cv::imwrite((path / "depth/0.png").string(), cv::Mat(30, 40, CV_16UC1, 5000.));
+    const std::string colour = "width: 80\nheight: 60\nfx: 60\nfy: 60\ncx: 39.5\ncy: 29.5\n";
+    writeText(
+        path / "camera.yaml",
+        colour + "depth_camera: {width: 40, height: 30, fx: 30, fy: 30, cx: 19.5, cy: 14.5}\n");
+    const View view = loadFrame(read(), 0).view;
+    EXPECT_EQ(view.depth.getWidth(), 80U);
+    EXPECT_NEAR(view.depth[30][40], 1., 1e-6);
+    EXPECT_EQ(loadDepth(read(), 0).getWidth(), 40U);
+    writeText(
+        path / "camera.yaml",
+        colour + "depth_camera: {width: 41, height: 30, fx: 30, fy: 30, cx: 19.5, cy: 14.5}\n");
+    expectInputError([&] { loadFrame(read(), 0); }, {"40x30", "41x30", "depth_camera"});
 }
 
 TEST_F(TumSequence, WithoutCameraFileTheBenchmarksKinectIsAssumed) {

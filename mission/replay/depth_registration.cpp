@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replay/depth_registration.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "alignment/keyframe_model.hpp"
+#include "dataset/sequence_tum.hpp"
+#include "io/error.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr double kApart = 0.05;         // translation between the images of a pair [mean depths]
+constexpr std::size_t kMostPairs = 80;  // which bounds memory
+
+/// The first image of a pair, and how far the camera has come since.
+struct Open {
+    std::size_t frame;
+    ImageF image;
+    KeyframeModel keyframe;
+    Pose T_now_first = Pose::Identity();
+
+    Open(std::size_t i, const View& view, const Camera& camera)
+        : frame(i), image(view.intensity), keyframe(view, camera) {}
+};
+
+/// The frames that can be loaded are taken one after the other.
+class Pairing {
+  public:
+    explicit Pairing(const Sequence& sequence)
+        : sequence_(sequence), calibrator_(sequence.camera, *sequence.depthCamera) {}
+
+    void add(std::size_t i) {
+        View view;
+        try {
+            view = loadFrame(sequence_, i).view;
+        } catch (const InputError&) {
+            return;
+        }
+        if (!open_) {
+            open_.emplace(i, view, sequence_.camera);
+            return;
+        }
+        const Alignment a = open_->keyframe.align(view.intensity, open_->T_now_first);
+        if (a.verdict != Verdict::converged) {
+            open_.emplace(i, view, sequence_.camera);
+            return;
+        }
+        open_->T_now_first = a.T_c_w;
+        if (a.T_c_w.translation().norm() < kApart * a.meanDepth) return;
+        if (calibrator_.pairs() < kMostPairs) {
+            calibrator_.add(open_->image, loadDepth(sequence_, open_->frame), view.intensity,
+                            a.T_c_w);
+        }
+        open_.emplace(i, view, sequence_.camera);
+    }
+
+    DepthCalibrator& calibrator() { return calibrator_; }
+
+  private:
+    const Sequence& sequence_;
+    DepthCalibrator calibrator_;
+    std::optional<Open> open_;
+};
+
+Sequence openSequence(const RecordingOptions& options) {
+    RecordingOptions reading = options;
+    reading.forgiving = true;
+    reading.needsDepth = true;
+    Sequence sequence = readRecording(reading).sequence;
+    if (!sequence.hasDepth()) {
+        throw InputError(options.dataset, "", "has no depth images to calibrate");
+    }
+    if (!sequence.depthCamera) sequence.depthCamera = DepthCamera{sequence.camera};
+    return sequence;
+}
+
+}  // namespace
+
+DepthRegistration registerDepth(
+    const RecordingOptions& options, const std::function<bool()>& isStopped,
+    const std::function<void(std::size_t done, std::size_t all)>& progress) {
+    DepthRegistration result;
+    result.sequence = openSequence(options);
+    Pairing pairing(result.sequence);
+    const std::size_t count = result.sequence.frames.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        result.isInterrupted = isStopped && isStopped();
+        if (result.isInterrupted) return result;
+        pairing.add(i);
+        if (progress) progress(i + 1, count);
+    }
+    result.pairs = pairing.calibrator().pairs();
+    if (result.pairs < DepthCalibrator::kLeastPairs) {
+        throw InputError(
+            options.dataset, "",
+            fmt::format("the camera moves too little: {} pairs of images that are {:.0f} % of the "
+                        "depth in view apart, {} are needed",
+                        result.pairs, 100. * kApart, DepthCalibrator::kLeastPairs));
+    }
+    result.calibration = pairing.calibrator().solve();
+    result.sequence.depthCamera->T_c_d = result.calibration.T_c_d;
+    return result;
+}
+
+std::string cameraYaml(const Sequence& sequence) {
+    const auto intrinsics = [](const Camera& c, const char* separator) {
+        return fmt::format("width: {1}{0}height: {2}{0}fx: {3}{0}fy: {4}{0}cx: {5}{0}cy: {6}",
+                           separator, c.width, c.height, c.fx(), c.fy(), c.cx(), c.cy());
+    };
+    std::string text = intrinsics(sequence.camera, "\n");
+    text += fmt::format("\ndepth_scale: {}\n", sequence.depthScale);
+    if (const auto& scale = sequence.informationScale) {
+        text += fmt::format("information_scale: {}\n", *scale);
+    }
+    if (sequence.blur) text += fmt::format("blur: {}\n", *sequence.blur);
+    if (sequence.depthError > 0.) text += fmt::format("depth_error: {}\n", sequence.depthError);
+    if (!sequence.depthCamera) return text;
+    const DepthCamera& depth = *sequence.depthCamera;
+    const Eigen::Vector3d p = depth.T_c_d.translation();
+    const Eigen::Quaterniond q(depth.T_c_d.linear());
+    text += fmt::format(
+        "depth_camera: {{{},\n  T_colour_depth: [{:.6f}, {:.6f}, {:.6f}, {:.7f}, {:.7f}, {:.7f}, "
+        "{:.7f}], poses: {}}}\n",
+        intrinsics(depth.camera, ", "), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(),
+        depth.hasPoses ? "depth" : "colour");
+    return text;
+}
+
+}  // namespace photonav
