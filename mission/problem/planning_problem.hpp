@@ -142,7 +142,7 @@ class PlanningProblem {
     const Config& config() const { return config_; }
     const World& world() const { return world_; }
     /// The model that paths are evaluated by.
-    BeliefModel& evaluator() { return *evaluator_; }
+    BeliefModel& evaluator();
     /// Evaluates the solution of a planner that has one.
     EvaluatedPath evaluate(const BeliefPlanner& planner);
     /// Evaluates a path of any planner of OMPL.
@@ -165,8 +165,6 @@ class PlanningProblem {
     bool hasQuickViews() const;
     std::shared_ptr<const ViewSource> interruptibleViews() const;
     std::shared_ptr<BeliefModel> plannersModel();
-    /// Costs and beliefs of paths.
-    BeliefModel& evaluator();
     EvaluatedPath evaluate(const std::string& planner,
                            const std::vector<const ompl::base::State*>& path);
 

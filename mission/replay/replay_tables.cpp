@@ -43,10 +43,11 @@ std::string row(const ReplayedFrame& frame, const EvaluatedFrame* evaluated) {
                             a.exposure.offset, 1e3 * frame.seconds);
     }
     if (evaluated) {
-        line += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{}", evaluated->positionError,
-                            evaluated->rotationError / kDegree, evaluated->positionSigma,
-                            evaluated->rotationSigma / kDegree,
-                            evaluated->nees ? fmt::format("{:.6g}", *evaluated->nees) : "");
+        line += fmt::format(
+            ",{:.6g},{:.6g},{:.6g},{:.6g},{}", evaluated->positionError,
+            evaluated->rotationError / kDegree, evaluated->positionSigma,
+            evaluated->rotationSigma / kDegree,
+            evaluated->normalised ? fmt::format("{:.6g}", evaluated->normalised->pose) : "");
     } else {
         line += ",,,,,";
     }
