@@ -14,7 +14,7 @@ namespace {
 
 using Cells = std::map<std::array<int, 3>, std::uint8_t>;
 
-void apply(const CellChanges& changes, Cells& cells) {
+void accumulate(const CellChanges& changes, Cells& cells) {
     ASSERT_EQ(changes.indices.size(), 3 * changes.greys.size());
     for (std::size_t i = 0; i < changes.greys.size(); ++i) {
         const auto* at = changes.indices.data() + 3 * i;
@@ -72,7 +72,7 @@ TEST_P(RandomMap, ChangesAddUpToTheMap) {
             change.occupancy.emplace_back(cell.unaryExpr([](int x) { return x >> 2; }));
         }
         change.normalize();
-        apply(drawn.update(map, change), cells);
+        accumulate(drawn.update(map, change), cells);
     }
     const auto expected = occupied(map, side);
     ASSERT_EQ(cells.size(), expected.size());
