@@ -152,9 +152,10 @@ TEST_F(RoomToExplore, FliesAroundABoxThatAppearsInFrontOfIt) {
     setup.truth.clearance = [&](const Eigen::Vector3d& p_w) {
         return (hasChanged ? after : before).clearance(p_w);
     };
-    const ExplorationResult flight = explore(
-        setup, config.planner, 1, kNotInterrupted,
-        [&](const ExplorationResult& soFar) { hasChanged = hasChanged || soFar.flown > 0.8; });
+    const ExplorationResult flight = explore(setup, config.planner, 1, kNotInterrupted,
+                                             {.update = [&](const ExplorationResult& soFar) {
+                                                 hasChanged = hasChanged || soFar.flown > 0.8;
+                                             }});
     ASSERT_TRUE(hasChanged);
     EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
     EXPECT_GT(flight.leastClearance, 0.125);
