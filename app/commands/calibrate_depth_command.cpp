@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "commands/command_line.hpp"
+#include "commands/command_io.hpp"
 #include "commands/result_folder.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
@@ -58,43 +58,16 @@ ReportTable summaryOf(const DepthRegistration& found) {
 
 }  // namespace
 
-int runCalibrateDepth(const CalibrateDepthOptions& options, const std::atomic<bool>& interrupted) {
-    ProgressLine line(options.quiet);
+CalibrateDepthReport runCalibrateDepth(const CalibrateDepthOptions& options,
+                                       const std::atomic<bool>& interrupted) {
     const DepthRegistration found = registerDepth(
-        options, [&] { return interrupted.load(); },
-        [&](std::size_t done, std::size_t all) {
-            line.show(fmt::format("{} of {} images", done, all));
-        });
-    line.clear();
-    if (found.isInterrupted) return kInterrupted;
+        options, [&] { return interrupted.load(); }, options.progress);
+    if (found.isInterrupted) return {.result = {}, .summary = {}, .exitCode = kInterrupted};
     FolderTransaction folder = beginResult(options.out, {options.dataset, options.cameraFile});
-    const json result = resultOf(options, found);
+    CalibrateDepthReport report{resultOf(options, found), summaryOf(found), kDone};
     writeFileAtomically(folder.path() / "camera.yaml", cameraYaml(found.sequence));
-    commitResult(folder, result);
-    std::filesystem::path out = options.out;
-    bool quiet = options.quiet, asJson = options.json;
-    printOutput({out, quiet, asJson}, result, summaryOf(found), {"camera.yaml", "result.json"});
-    return kDone;
-}
-
-Command calibrateDepthCommand(CLI::App& app, const Invocation& invocation) {
-    auto options = std::make_shared<CalibrateDepthOptions>();
-    CLI::App* parser = app.add_subcommand(
-        "calibrate-depth",
-        "Find where the depth camera of a recording sits beside its colour camera.");
-    parser->add_option("dataset", options->dataset, "folder in the TUM RGB-D layout")->required();
-    parser->add_option("--camera", options->cameraFile,
-                       "instead of the dataset's camera.yaml; its depth_camera is where to start");
-    parser->add_option("--frames", options->frames, "\"a:b\": frames from a on and before b");
-    parser->add_option("--every", options->every, "use every n-th frame");
-    addOutput(*parser, {options->out, options->quiet, options->json},
-              "out/calibrate-depth-<dataset>");
-    return {parser, [options, &interrupted = invocation.interrupted] {
-                if (options->out.empty()) {
-                    options->out = "out/calibrate-depth-" + folderName(options->dataset);
-                }
-                return runCalibrateDepth(*options, interrupted);
-            }};
+    commitResult(folder, report.result);
+    return report;
 }
 
 }  // namespace photonav

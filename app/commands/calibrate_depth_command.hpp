@@ -4,9 +4,9 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 
-#include "commands/command_io.hpp"
 #include "recording/recording.hpp"
 #include "report/report.hpp"
 
@@ -14,13 +14,21 @@ namespace photonav {
 
 struct CalibrateDepthOptions : RecordingOptions {
     std::filesystem::path out;  ///< folder for the results; made when missing
-    bool quiet = false;
-    bool json = false;
+
+    /// Called after each image with the number done and the number there are.
+    std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
-/// Writes camera.yaml, with the pose of the depth camera, and result.json into options.out.
-/// @return the exit code
+struct CalibrateDepthReport {
+    nlohmann::json result;
+    ReportTable summary;
+    int exitCode = 0;
+};
+
+/// Writes camera.yaml, with the pose of the depth camera, and result.json into options.out; nothing
+/// when interrupted.
 /// @throws InputError as registerDepth(), and for a folder that cannot be written
-int runCalibrateDepth(const CalibrateDepthOptions& options, const std::atomic<bool>& interrupted);
+CalibrateDepthReport runCalibrateDepth(const CalibrateDepthOptions& options,
+                                       const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

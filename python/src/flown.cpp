@@ -19,7 +19,7 @@ py::dict resultOf(const FlightResult& flight) {
     result["end"] = nameOf(flight.end);
     result["duration"] = flight.duration;
     result["goal_error"] = flight.goalError;
-    result["lost"] = flight.lost;
+    result["lost"] = flight.lostTime;
     result["times_lost"] = flight.timesLost;
     result["nees"] = neesPerDof(flight);
     result["time"] = stacked(times);
