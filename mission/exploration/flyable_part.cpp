@@ -114,6 +114,8 @@ FlyablePart flyablePart(const std::vector<BeliefPoint>& path, const SpaceAhead& 
     } else if (auto look = isToLook ? lookAt(unseen.p_w, path.front()) : std::nullopt) {
         way.plan = std::move(*look);
     } else if (std::min(seen, free) >= kShort) {
+        // Not even what lies beyond the hidden places was seen.
+        way.isBlind = space.hidden > 0. && seen < space.hidden + kStep && seen <= free;
         way.plan = cut(plan, std::min({seen, free, whole}));
     } else {
         way.isBlind = true;
