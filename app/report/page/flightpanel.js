@@ -197,7 +197,7 @@ function createFlightPanel(flight3d) {
 
   // Time --------------------------------------------------------------------------------------------
   function stop() {
-    cancelAnimationFrame(playing);
+    clearInterval(playing);
     playing = 0;
     element('flight-play').textContent = 'Play';
   }
@@ -214,14 +214,14 @@ function createFlightPanel(flight3d) {
     following = false;
     element('flight-play').textContent = 'Pause';
     let before = performance.now();
-    const step = (now) => {
+    const step = () => {
+      const now = performance.now();
       const next = time + (now - before) / 1000 * Number(element('flight-speed').value);
       before = now;
-      playing = requestAnimationFrame(step);
       show(next);
       if (next >= flight.duration && !flight.live) stop();
     };
-    playing = requestAnimationFrame(step);
+    playing = setInterval(step, 40);
   }
 
   // Live --------------------------------------------------------------------------------------------

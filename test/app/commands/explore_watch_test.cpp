@@ -67,7 +67,8 @@ TEST_F(ExploreWatch, TheLogHoldsTheFlight) {
     std::size_t flown = log.rest.size();
     for (const LoggedMoment& moment : log.moments) flown += moment.flown.size();
     EXPECT_GT(flown, 10U);
-    EXPECT_NEAR(log.rest.back().way, result["length"].get<double>(), 1e-3);
+    // The robot flies a little after the last image.
+    EXPECT_NEAR(log.rest.back().way, result["length"].get<double>(), 0.05);
     EXPECT_FALSE(log.moments.front().pictures.observed.empty());
     EXPECT_FALSE(log.moments.front().pictures.tree.empty());
     EXPECT_GT(log.moments.front().cells.greys.size(), 50U);
@@ -138,7 +139,7 @@ TEST_F(ExploreWatch, RefusesAPortThatCannotBeUsed) {
     };
     refuses("--serve " + port, fmt::format("127.0.0.1:{}: the port is in use", port));
     refuses("--serve 65536", "65536: the port is not between 0 and 65535");
-    refuses("--serve=-1", "-1: is not PORT, ADDRESS:PORT or [IPV6]:PORT");
+    refuses("--serve=-1", "-1: the port is not between 0 and 65535");
     refuses("--serve lab:port", "lab:port: is not PORT, ADDRESS:PORT or [IPV6]:PORT");
 }
 

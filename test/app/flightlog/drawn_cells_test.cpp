@@ -58,7 +58,7 @@ TEST_P(RandomMap, ChangesAddUpToTheMap) {
     std::mt19937 random(1);
     std::uniform_int_distribution<int> place(-12, 12), what(0, 3);
     std::uniform_real_distribution<float> grey(0.F, 1.F);
-    for (int step = 0; step < 30; ++step) {
+    for (int step = 0; step < 15; ++step) {
         MapChange change{.resolution = resolution};
         for (int i = 0; i < 80; ++i) {
             const Eigen::Array3i cell(place(random), place(random), place(random));
@@ -82,7 +82,7 @@ TEST_P(RandomMap, ChangesAddUpToTheMap) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, RandomMap, testing::Values(4., 10., 20., 40., 100.));
+INSTANTIATE_TEST_SUITE_P(Sizes, RandomMap, testing::Values(4., 10., 40.));
 
 TEST(DrawnCells, SmallChangesOfGreyAreLeftOutUntilTheyAddUp) {
     DrawnCells drawn({Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()}, 0.1);
