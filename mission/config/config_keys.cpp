@@ -211,7 +211,7 @@ void addObjective(KeyTable& keys, Config& c) {
         {.words = {"kappa", "1/m",
                    "metres of detour that 1 m of flight at tr(Sigma) = 1 m^2 is worth; `auto`: "
                    "[both terms weigh the same on the shortest path]"
-                   "(planner.md#alpha-and-kappa)"},
+                   "(concepts/cost.md#which-kappa)"},
          .allowed = fmt::format("auto, 0 to {}", numberText(kLargest)),
          .read = [&c](YamlMap& map) { readKappa(map, c.belief.kappa); },
          .value =

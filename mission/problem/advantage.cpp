@@ -9,13 +9,15 @@
 namespace photonav {
 namespace {
 
-constexpr double kLittle =
-    0.05;  // a share of the cost that cannot pay for a detour worth a mention
+constexpr double kLittle = 0.05;  // share of the cost that cannot pay for a detour worth a mention
 
 bool isInformed(const EvaluatedPath& path) {
     return std::any_of(path.points.begin(), path.points.end(),
                        [](const BeliefPoint& point) { return point.information.trace() > 0.; });
 }
+
+/// The part of the cost that is charged for uncertainty.
+double uncertaintyOf(const EvaluatedPath& path) { return (1. - path.lengthShare) * path.cost; }
 
 bool isAlike(double a, double b) { return std::abs(a - b) <= kLeastAdvantage * std::abs(b); }
 
@@ -28,9 +30,12 @@ std::string reasonOf(const EvaluatedPath& path, const EvaluatedPath& shortest, d
     if (uncertainty < kLittle) {
         return fmt::format(
             "uncertainty is only {:.2g} % of the cost of the shortest path; with a larger kappa, "
-            "or "
-            "kappa: auto, it counts more",
+            "or kappa: auto, it counts more",
             100. * uncertainty);
+    }
+    if (path.cost < (1. - kLeastAdvantage) * shortest.cost) {
+        return "the path that was found is cheaper, but not because it is more certain: with more "
+               "vertices RRT* may find it, too";
     }
     if (isAlike(path.length, shortest.length) && isAlike(path.meanTrace, shortest.meanTrace)) {
         return "the shortest path is also as certain as the one that was found";
@@ -45,7 +50,9 @@ std::string reasonOf(const EvaluatedPath& path, const EvaluatedPath& shortest, d
 }  // namespace
 
 std::string noAdvantage(const EvaluatedPath& path, const EvaluatedPath& shortest, double alpha) {
-    if (path.cost < (1. - kLeastAdvantage) * shortest.cost) return "";
+    const double gain = shortest.cost - path.cost;
+    const double ofCertainty = uncertaintyOf(shortest) - uncertaintyOf(path);
+    if (std::min(gain, ofCertainty) > kLeastAdvantage * shortest.cost) return "";
     return "no advantage over the shortest path: " + reasonOf(path, shortest, alpha);
 }
 

@@ -44,12 +44,17 @@ struct Meeting {
     return {outward ? height : -height, outward ? rate : -rate, face, plane != 0};
 }
 
+/// A plane on the border of its cell, as a floor at a multiple of the cells' edge, lies beyond the
+/// cell by as much as planes are rounded: half a unit of the offset and of the slopes [cells].
+inline constexpr float kPlaneRounding =
+    0.5F * SurfacePlane::kOffsetUnit + 0.5F * SurfacePlane::kSlopeUnit;
+
 /// Where rays meet a single plane.
 [[gnu::always_inline]] inline Meeting meetPlane(const PlaneView& plane, const simd::Float& toExit,
                                                 const simd::Float& back) {
     const simd::Int facing = plane.rate < 0.F;
     const simd::Float after = plane.height / (facing ? -plane.rate : simd::splat(1.F));
-    const simd::Int met = facing ? after <= toExit : plane.height <= 0.F;
+    const simd::Int met = facing ? plane.heightAt(toExit) <= kPlaneRounding : plane.height <= 0.F;
     return {met, simd::max(after, -back), facing ? plane.face : simd::splat(Rays::kNoPlane)};
 }
 

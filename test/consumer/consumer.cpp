@@ -1,5 +1,5 @@
 #include <iostream>
-#include <photonav/dataset/recording.hpp>
+#include <photonav/recording/recording.hpp>
 #include <photonav/geometry/uncertain_pose.hpp>
 #include <photonav/io/error.hpp>
 #include <photonav/problem/planning_problem.hpp>

@@ -290,7 +290,9 @@ TEST(FailingWrites, OfReferenceTables) {
         [&](bool hasError, const std::string& when) {
             ReferenceTable table(file);
             ASSERT_NO_THROW(table.read()) << when;
-            EXPECT_EQ(table.alphas().size(), hasError ? 1U : 2U) << when;
+            // The new table may be in place already when its folder cannot be synchronised.
+            EXPECT_LE(table.alphas().size(), 2U) << when;
+            if (!hasError) EXPECT_EQ(table.alphas().size(), 2U) << when;
             ASSERT_NE(table.at(0.5), nullptr) << when;
             EXPECT_EQ(table.at(0.5)->waypoints.size(), 2U) << when;
         });

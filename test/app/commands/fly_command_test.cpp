@@ -214,10 +214,12 @@ TEST_F(FlyCommand, RejectsBadInput) {
     expect(fly("x", "--least-sigma -1"), "--least-sigma: -1 is outside [0, 1000]");
     expect(fly("x", "--record /proc/x"), "/proc/x: cannot be made");
     fs::create_directories(folder_ / "old" / "rgb");
-    fs::create_directories(folder_ / "x");
-    std::ofstream(folder_ / "x" / "result.json") << "{}";  // of an earlier run
     expect(fly("x", "--record " + at("old")), "old: holds a recording already");
+    fs::create_directories(folder_ / "x");
+    std::ofstream(folder_ / "x" / "result.json") << "{}";  // not of an earlier run
+    expect(fly("x", "--record " + at("new")), "x/result.json: is not as an earlier result wrote it");
     EXPECT_TRUE(fs::exists(folder_ / "x" / "result.json"));
+    EXPECT_FALSE(fs::exists(folder_ / "new"));
     fs::remove_all(folder_ / "x");
     expect(fly("x", "--seed abc"), "--seed");
     expect(fly("x", "--map " + at("gone.ot")), "gone.ot");

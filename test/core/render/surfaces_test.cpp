@@ -241,6 +241,29 @@ TEST(Surfaces, OfNoisyDepthAreMeans) {
     EXPECT_LT(errors.missing, 0.02);
 }
 
+/// Rounding puts such a floor on either side of the border between two layers of cells.
+TEST(Surfaces, OnTheBorderOfCellsHaveNoHoles) {
+    const Camera camera = makeCamera(94, 60, 1.2);
+    for (const double height : {0., 1e-6, -1e-6, 1e-5}) {
+        for (const Pose& T_c_w : {test::lookDown(0.013, 0.021, 1.2, test::kDown),
+                                  lookAt({-1., 0.1, 1.2}, {0.3, 0.2, 0.})}) {
+            TexturedOcTree map(kEdge);
+            const View floor = test::floorView(camera, T_c_w, test::carpet, height);
+            fuse(map, floor, camera, T_c_w);
+            View seen;
+            VoxelRenderer(map, UnknownPolicy::free).render(camera, T_c_w, seen);
+            std::size_t holes = 0, all = 0;
+            for (unsigned i = 0; i < seen.depth.getSize(); ++i) {
+                all += floor.depth.bitmap[i] > 0.F;
+                holes += floor.depth.bitmap[i] > 0.F &&
+                         !(std::abs(seen.depth.bitmap[i] - floor.depth.bitmap[i]) < 0.02F);
+            }
+            EXPECT_GT(all, 1000U);
+            EXPECT_LT(holes, all / 100) << height;
+        }
+    }
+}
+
 TEST(Surfaces, GoWithTheirCells) {
     const Camera camera = makeCamera(64, 48, 1.);
     const Pose T_c_w = test::lookDown(0., 0., 1.2, test::kDown);

@@ -126,6 +126,7 @@ Config emptySpace() {
     config.vertices = 150;
     config.camera = {.mount = "forward", .width = 48, .height = 32};
     config.unknownToPlanner = UnknownPolicy::free;
+    config.belief.kappa = 2.5;  // not that of the shortest path, which depends on the map
     return config;
 }
 
