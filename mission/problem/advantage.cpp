@@ -23,15 +23,15 @@ bool isAlike(double a, double b) { return std::abs(a - b) <= kLeastAdvantage * s
 
 std::string reasonOf(const EvaluatedPath& path, const EvaluatedPath& shortest, double alpha) {
     if (alpha >= 1.) return "alpha is 1, only the length counts";
-    if (!isInformed(path) && !isInformed(shortest)) {
-        return "no view along either path has information";
-    }
     const double uncertainty = 1. - shortest.lengthShare;
     if (uncertainty < kLittle) {
         return fmt::format(
             "uncertainty is only {:.2g} % of the cost of the shortest path; with a larger kappa, "
             "or kappa: auto, it counts more",
             100. * uncertainty);
+    }
+    if (!isInformed(path) && !isInformed(shortest)) {
+        return "no view along either path has information";
     }
     if (path.cost < (1. - kLeastAdvantage) * shortest.cost) {
         return "the path that was found is cheaper, but not because it is more certain: with more "

@@ -379,7 +379,7 @@ EvaluatedPath pathOf(double cost, double lengthShare, double length, double mean
 
 TEST(Advantage, IsDeniedWithItsReason) {
     const EvaluatedPath shortest = pathOf(10., 0.5, 10., 1.);
-    EXPECT_EQ(noAdvantage(pathOf(9.8, 0.5, 11., 0.5), shortest, 0.5), "");
+    EXPECT_EQ(noAdvantage(pathOf(9.8, 0.56, 11., 0.8), shortest, 0.5), "");
     const auto reason = [&](const EvaluatedPath& path, const EvaluatedPath& other, double alpha) {
         const std::string text = noAdvantage(path, other, alpha);
         EXPECT_TRUE(text.starts_with("no advantage over the shortest path: ")) << text;
@@ -392,6 +392,7 @@ TEST(Advantage, IsDeniedWithItsReason) {
     EXPECT_TRUE(has(reason(shortest, shortest, 0.5), "as certain"));
     EXPECT_TRUE(has(reason(pathOf(10., 0.9, 12., 0.3), shortest, 0.5), "costs in length"));
     EXPECT_TRUE(has(reason(pathOf(11., 0.9, 12., 0.9), shortest, 0.5), "more vertices"));
+    EXPECT_TRUE(has(reason(pathOf(9., 0.44, 8., 1.), shortest, 0.5), "not because it is more"));
     EXPECT_TRUE(has(reason(pathOf(10., 1., 10., 1.), pathOf(10., 0.998, 10., 1.), 0.5),
                     "only 0.2 % of the cost"));
     EvaluatedPath blind = shortest;
