@@ -115,6 +115,7 @@ std::string uncertaintyText(const CheckedPlace& place) {
 std::string stretchesText(const std::vector<Stretch>& stretches) {
     if (stretches.empty()) return "none";
     std::vector<std::string> texts;
+    texts.reserve(stretches.size());
     for (const Stretch& s : stretches)
         texts.push_back(fmt::format("{:.2f} to {:.2f} m", s.begin, s.end));
     constexpr std::size_t kMost = 4;

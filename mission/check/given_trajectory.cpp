@@ -20,8 +20,8 @@ constexpr double kFarthestPose = 1e5;  // of positions, as of the bounds of a co
 constexpr std::size_t kTumColumns = 8;
 constexpr double kLeastSlope = 1e-3;  // a steeper motion has no direction from above
 
-enum Column { kTime, kX, kY, kZ, kYaw, kColumns };
-using Columns = std::array<std::optional<std::size_t>, kColumns>;
+enum Column { kTime, kX, kY, kZ, kYaw, kColumnCount };
+using Columns = std::array<std::optional<std::size_t>, kColumnCount>;
 
 /// The first line that is not blank, nor a comment.
 std::string firstLine(const std::string& file) {
@@ -46,7 +46,7 @@ std::size_t fieldsOf(const std::string& line, bool hasCommas) {
 }
 
 std::optional<Column> columnNamed(const std::string& name) {
-    static const std::array<std::vector<std::string>, kColumns> kNames{
+    static const std::array<std::vector<std::string>, kColumnCount> kNames{
         {{"t", "time", "timestamp"}, {"x"}, {"y"}, {"z"}, {"yaw", "heading"}}};
     std::string lower = name;
     std::transform(lower.begin(), lower.end(), lower.begin(),

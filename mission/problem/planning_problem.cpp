@@ -207,9 +207,8 @@ std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& n
     return makePlanner(name, plannersModel(), seed.value_or(config_.seed));
 }
 
-std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& name,
-                                                            std::shared_ptr<BeliefModel> model,
-                                                            std::uint32_t seed) {
+std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(
+    const std::string& name, const std::shared_ptr<BeliefModel>& model, std::uint32_t seed) {
     GrowthOptions growth = config_.growth;
     growth.seed = seed;
     growth.obstacleReach = config_.robotRadius;
@@ -217,7 +216,7 @@ std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& n
     growth.maxIterations = kMaxSamples * config_.vertices;
     SearchOptions search = config_.search;
     if (hasQuickViews()) search.inflation = kInflationByQuickViews;
-    auto planner = photonav::makePlanner(name, si_, std::move(model), search, growth);
+    auto planner = photonav::makePlanner(name, si_, model, search, growth);
     if (hasQuickViews()) planner->judgeBy(evaluator_);
     planner->setProblemDefinition(definition());
     planner->setup();

@@ -158,7 +158,7 @@ class PlanningProblem {
     double balancedKappa(const std::atomic<bool>& interrupted);
     BeliefOptions optionsWith(double kappa) const;
     std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
-                                               std::shared_ptr<BeliefModel> model,
+                                               const std::shared_ptr<BeliefModel>& model,
                                                std::uint32_t seed);
     std::shared_ptr<InformationField> makeField(const std::string& viewModel) const;
     std::shared_ptr<InformationField> makeQuickField() const;
