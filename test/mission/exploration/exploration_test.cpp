@@ -124,44 +124,6 @@ TEST_F(RoomToExplore, ArrivesByOdometryWhereNothingHasTexture) {
     EXPECT_EQ(nameOf(flown(std::move(scene)).end), "uncertain arrival");
 }
 
-/// One world until it becomes another.
-class ChangingViews : public ViewSource {
-  public:
-    ChangingViews(const World& before, const World& after, const std::atomic<bool>& hasChanged)
-        : before_(before), after_(after), hasChanged_(hasChanged) {}
-    void render(const Camera& camera, const Pose& T_c_w, View& view) const override {
-        (hasChanged_ ? after_ : before_).views().render(camera, T_c_w, view);
-    }
-
-  private:
-    const World& before_;
-    const World& after_;
-    const std::atomic<bool>& hasChanged_;
-};
-
-/// A box comes down on the way, in free space of the map, a good metre in front of the robot.
-TEST_F(RoomToExplore, FliesAroundABoxThatAppearsInFrontOfIt) {
-    config.explore.range = 4.;
-    Scene boxed = room();
-    addBox(boxed, {3.2, 1.3, 0.}, {3.6, 2.7, 3.}, addTexture(boxed, valueNoise({.seed = 5})));
-    const World before(room(), config), after(boxed, config);
-    const PlanningProblem problem(config, before);
-    ExplorationSetup setup = setUpExploration(problem);
-    std::atomic<bool> hasChanged = false;
-    setup.truth.truth = std::make_shared<ChangingViews>(before, after, hasChanged);
-    setup.truth.clearance = [&](const Eigen::Vector3d& p_w) {
-        return (hasChanged ? after : before).clearance(p_w);
-    };
-    const ExplorationResult flight = explore(setup, config.planner, 1, kNotInterrupted,
-                                             {.update = [&](const ExplorationResult& soFar) {
-                                                 hasChanged = hasChanged || soFar.flown > 0.8;
-                                             }});
-    ASSERT_TRUE(hasChanged);
-    EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
-    EXPECT_GT(flight.leastClearance, 0.125);
-    EXPECT_LT(flight.goalError, 0.3);
-}
-
 /// Images that are black or missing for a while, and depth that is missing for most pixels.
 TEST_F(RoomToExplore, ArrivesThroughABlackoutWithFewDepths) {
     config.fly.blackout = {3., 4.};
