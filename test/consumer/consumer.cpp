@@ -1,8 +1,8 @@
 #include <iostream>
-#include <photonav/recording/recording.hpp>
 #include <photonav/geometry/uncertain_pose.hpp>
 #include <photonav/io/error.hpp>
 #include <photonav/problem/planning_problem.hpp>
+#include <photonav/recording/recording.hpp>
 
 /// Links the planning problem of the installed library; there is no such config here.
 bool namesMissingConfig() {
