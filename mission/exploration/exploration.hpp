@@ -51,7 +51,7 @@ struct ExplorationMoment {
 };
 using OnExplorationMoment = std::function<void(const ExplorationMoment& moment)>;
 
-/// Who is informed of a flight. Nothing that they do changes it; each may be empty.
+/// Callbacks of a flight. They do not change it; each may be empty.
 struct OnExploration {
     OnPlanUpdate update = {};
     OnExposure exposure = {};
