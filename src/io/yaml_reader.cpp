@@ -2,13 +2,14 @@
 #include "io/yaml_reader.hpp"
 
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numeric>
 
 #include "io/number.hpp"
+#include "io/reading.hpp"
 
 namespace photonav {
 namespace {
@@ -26,6 +27,39 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
         }
     }
     return row.back();
+}
+
+/// Where the documents of a YAML text start; what they hold is passed over.
+struct DocumentStarts final : YAML::EventHandler {
+    std::vector<YAML::Mark> marks;
+
+    void OnDocumentStart(const YAML::Mark& mark) override { marks.push_back(mark); }
+    void OnDocumentEnd() override {}
+    void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+    void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+    void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  const std::string& /*value*/) override {}
+    void OnSequenceStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/,
+                         YAML::anchor_t /*anchor*/, YAML::EmitterStyle::value /*style*/) override {}
+    void OnSequenceEnd() override {}
+    void OnMapStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/,
+                    YAML::anchor_t /*anchor*/, YAML::EmitterStyle::value /*style*/) override {}
+    void OnMapEnd() override {}
+};
+
+/// Refuses a second document. yaml-cpp finds one document after another, without end, where a text
+/// goes on with what cannot start a value, such as a comma: so at most two are asked for.
+void requireOneDocument(const std::string& file, std::istream& text) {
+    DocumentStarts starts;
+    YAML::Parser parser(text);
+    while (starts.marks.size() < 2 && parser.HandleNextDocument(starts)) {
+    }
+    if (starts.marks.size() < 2) return;
+    const YAML::Mark &first = starts.marks[0], &second = starts.marks[1];
+    if (first.pos == second.pos) {
+        throw InputError(file, fmt::format("line {}", first.line + 1), "is not YAML");
+    }
+    throw InputError(file, "", "holds several documents ('---'); only one is read");
 }
 
 /// Those of the dotted paths that end with a key.
@@ -53,14 +87,13 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& c
 }
 
 YAML::Node loadYaml(const std::string& file) {
-    if (!std::filesystem::exists(file)) throw InputError(file, "", "no such file");
-    if (!std::filesystem::is_regular_file(file)) throw InputError(file, "", "not a file");
+    std::ifstream stream = openToRead(file);
+    if (!stream) throw InputError(file, "", "no such file");
     try {
-        const std::vector<YAML::Node> documents = YAML::LoadAllFromFile(file);
-        if (documents.size() > 1) {
-            throw InputError(file, "", "holds several documents ('---'); only one is read");
-        }
-        return documents.empty() ? YAML::Node() : documents.front();
+        requireOneDocument(file, stream);
+        stream.clear();
+        stream.seekg(0);
+        return YAML::Load(stream);
     } catch (const YAML::ParserException& error) {
         throw InputError(file, fmt::format("line {}", error.mark.line + 1), error.msg);
     } catch (const YAML::Exception& error) {

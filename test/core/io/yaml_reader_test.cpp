@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/yaml_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include "reason_of.hpp"
+#include "temporary_folder.hpp"
+
+namespace photonav::test {
+namespace {
+
+/// What is said about a YAML file of these bytes, or nothing.
+std::string saidAbout(std::string_view bytes) {
+    const TemporaryFolder folder;
+    const std::string file = folder.write("a.yaml", std::string(bytes));
+    const std::string reason = reasonOf([&] { loadYaml(file); });
+    const auto start = reason.find("a.yaml: ");
+    return start == std::string::npos ? reason : reason.substr(start);
+}
+
+TEST(YamlFile, WhatCannotStartAValueIsRefusedAndNotReadWithoutEnd) {
+    EXPECT_EQ(saidAbout(",1,2\n"), "a.yaml: line 1: is not YAML");
+    EXPECT_EQ(saidAbout("\n\n, a: 1\n"), "a.yaml: line 3: is not YAML");
+    EXPECT_EQ(saidAbout(std::string_view("\0,\0\0# a\n: b", 12)), "a.yaml: line 1: is not YAML");
+}
+
+TEST(YamlFile, SecondDocumentsAreRefused) {
+    EXPECT_EQ(saidAbout("a: 1\n---\nb: 2\n"),
+              "a.yaml: holds several documents ('---'); only one is read");
+    EXPECT_EQ(saidAbout("---\na: 1\n"), "nothing was thrown");
+    EXPECT_EQ(saidAbout("a: 1\n"), "nothing was thrown");
+    EXPECT_EQ(saidAbout(""), "nothing was thrown");
+    EXPECT_EQ(saidAbout("# only a comment\n"), "nothing was thrown");
+}
+
+}  // namespace
+}  // namespace photonav::test
