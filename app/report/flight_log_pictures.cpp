@@ -6,7 +6,7 @@
 #include <functional>
 #include <opencv2/imgcodecs.hpp>
 
-#include "io/image_bytes.hpp"
+#include "io/image_decoder.hpp"
 
 namespace photonav {
 namespace {
@@ -18,10 +18,9 @@ constexpr Color kUnseen{122, 130, 140}, kOccupied{24, 28, 33}, kTooNear{198, 170
 /// The grey levels of a file; empty where it is damaged or too large.
 cv::Mat decoded(const std::string& file) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(file.data());
-    const std::vector<std::uint8_t> sound = soundImage({bytes, file.size()});
-    const auto size = declaredSize(sound);
-    if (!size || size->width > kLargestSide || size->height > kLargestSide) return {};
-    return cv::imdecode(sound, cv::IMREAD_GRAYSCALE);
+    return decodedImage({bytes, file.size()}, cv::IMREAD_GRAYSCALE, [](const ImageSize& size) {
+        return size.width <= kLargestSide && size.height <= kLargestSide;
+    });
 }
 
 Picture pictureOf(const std::string& file, const std::function<Color(std::uint8_t)>& colorOf) {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "io/error.hpp"
-#include "io/image_bytes.hpp"
+#include "io/image_decoder.hpp"
 #include "photometry/view.hpp"
 
 namespace photonav {
@@ -17,18 +17,15 @@ namespace {
 
 cv::Mat readImage(const std::string& file, int flags, const Camera& camera,
                   const std::string& source) {
-    const auto bytes = soundImage(readBytes(file));
-    const auto checkSize = [&](std::uint64_t width, std::uint64_t height) {
-        if (width == camera.width && height == camera.height) return;
+    const auto isOfCamera = [&](const ImageSize& size) {
+        if (size.width == camera.width && size.height == camera.height) return true;
         throw InputError(file, "",
-                         fmt::format("{}x{} pixels, not the {}x{} of {}", width, height,
+                         fmt::format("{}x{} pixels, not the {}x{} of {}", size.width, size.height,
                                      camera.width, camera.height, source));
     };
-    const auto size = declaredSize(bytes);
-    if (size) checkSize(size->width, size->height);  // before anything is decoded
-    cv::Mat image = size ? cv::imdecode(bytes, flags) : cv::Mat();
+    cv::Mat image = decodedImage(readBytes(file), flags, isOfCamera);
     if (image.empty()) throw InputError(file, "", "not an image, or damaged");
-    checkSize(image.cols, image.rows);
+    isOfCamera({static_cast<std::uint64_t>(image.cols), static_cast<std::uint64_t>(image.rows)});
     return image;
 }
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "io/error.hpp"
-#include "io/image_bytes.hpp"
+#include "io/image_decoder.hpp"
 
 namespace photonav {
 namespace {
@@ -263,15 +263,15 @@ ImageF readGrey(const std::string& file, const std::array<double, 3>& factor) {
 
 ImageF decodeGrey(std::span<const std::uint8_t> encoded, const std::string& name,
                   const std::array<double, 3>& factor) {
-    const auto bytes = soundImage(encoded);
-    const auto size = declaredSize(bytes);
-    if (size &&
-        static_cast<double>(size->width) * static_cast<double>(size->height) > kMostTexels) {
+    const auto bounded = [&](const ImageSize& size) {
+        if (static_cast<double>(size.width) * static_cast<double>(size.height) <= kMostTexels) {
+            return true;
+        }
         throw InputError(name, "",
                          fmt::format("{}x{} pixels: textures have at most {:.0f} million",
-                                     size->width, size->height, 1e-6 * kMostTexels));
-    }
-    const cv::Mat image = size ? cv::imdecode(bytes, cv::IMREAD_UNCHANGED) : cv::Mat();
+                                     size.width, size.height, 1e-6 * kMostTexels));
+    };
+    const cv::Mat image = decodedImage(encoded, cv::IMREAD_UNCHANGED, bounded);
     if (image.empty()) throw InputError(name, "", "not an image, or damaged");
     return greyOf(image, factor);
 }

@@ -71,6 +71,17 @@ TEST(ImageBytes, WhatIsTooLargeIsNotDecoded) {
 }
 
 /// Legal, of no use to us, and what libpng likes to comment on: gone before it is decoded.
+TEST(ImageBytes, HeadersThatTheDecoderReadsInAnotherWayAreDamaged) {
+    const std::string grey = "P5\n429496#65362P5)5\n0 1 4r_y\n89";
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(grey.data());
+    try {
+        decodeGrey({bytes, grey.size()}, "a.pgm");
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(), "a.pgm: not an image, or damaged");
+    }
+}
+
 TEST(ImageBytes, ChunksThatAreNoPictureAreLeftOut) {
     auto png = encoded(".png");
     const std::string chunk = std::string("\0\0\0\4tEXtphot", 12) + "\x2F\x72\x2E\x01";

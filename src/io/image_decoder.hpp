@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <opencv2/core/mat.hpp>
+#include <span>
+
+#include "io/image_bytes.hpp"
+
+namespace photonav {
+
+/// Decodes an image whose size is wanted: PNG, JPEG, BMP, PGM or PPM.
+/// @param flags   those of cv::imdecode
+/// @param wanted  is asked with the size that the header declares, before anything is decoded; what
+///                it throws passes through
+/// @returns an empty matrix where it is not an image, damaged, or of a size that is not wanted
+cv::Mat decodedImage(std::span<const std::uint8_t> encoded, int flags,
+                     const std::function<bool(const ImageSize&)>& wanted);
+
+}  // namespace photonav
