@@ -22,14 +22,8 @@ void readExplorers(YamlMap& explore, std::vector<std::string>& planners) {
     }
 }
 
-}  // namespace
-
-ExploreConfig::ExploreConfig() : initialCovariance(Matrix6::Zero()) {
-    initialCovariance.diagonal() << 1e-6, 1e-6, 1e-6, 1e-8, 1e-8, 1e-8;
-}
-
-void addKeys(KeyTable& keys, ExploreConfig& c) {
-    keys.beginSection("explore");
+/// The sensors, and what of their images is mapped.
+void addMappingKeys(KeyTable& keys, ExploreConfig& c) {
     keys.choice(
         {"sensor", "",
          "that maps: a depth camera, a second camera beside the first, or the camera alone, "
@@ -60,6 +54,9 @@ void addKeys(KeyTable& keys, ExploreConfig& c) {
                 c.keyframeAngle, {0.01, 3.2});
     keys.number({"keyframe_new", "", "share of the surfaces in view that the map lacks: the same"},
                 c.keyframeNew, {0.01, 1.});
+}
+
+void addPlanningKeys(KeyTable& keys, ExploreConfig& c) {
     keys.count({"vertices", "", "of the tree or roadmap, in place of `planner.vertices`"},
                c.vertices, {2., 1e8});
     keys.count({"shortcut", "", "changes tried on each path, in place of `planner.shortcut`"},
@@ -72,6 +69,10 @@ void addKeys(KeyTable& keys, ExploreConfig& c) {
                  "a way is left for another one only if that costs less by this share "
                  "(`belief_rrt_star`)"},
                 c.commitment, {0., 0.9});
+}
+
+/// Flights, when they have arrived, and how many are compared.
+void addFlightKeys(KeyTable& keys, ExploreConfig& c) {
     keys.variances({"initial", "m^2, rad^2",
                     "variances at the start, in place of `noise.initial`: an unknown scene has no "
                     "frame but that of the start"},
@@ -91,6 +92,19 @@ void addKeys(KeyTable& keys, ExploreConfig& c) {
                         "`/replan`; a plan made once, `/once`"},
               .read = [&c](YamlMap& map) { readExplorers(map, c.planners); },
               .value = [&c] { return yamlList(c.planners); }});
+}
+
+}  // namespace
+
+ExploreConfig::ExploreConfig() : initialCovariance(Matrix6::Zero()) {
+    initialCovariance.diagonal() << 1e-6, 1e-6, 1e-6, 1e-8, 1e-8, 1e-8;
+}
+
+void addKeys(KeyTable& keys, ExploreConfig& c) {
+    keys.beginSection("explore");
+    addMappingKeys(keys, c);
+    addPlanningKeys(keys, c);
+    addFlightKeys(keys, c);
 }
 
 }  // namespace photonav

@@ -143,10 +143,9 @@ bool OnlinePlanner::solveFrom(const ob::State* state, const Belief& belief,
 /// The planner's path, smoothed if it has seen no views, with the kind's headings; empty: there
 /// is none.
 OnlinePlanner::States OnlinePlanner::solution(const std::atomic<bool>& interrupted) const {
-    const auto definition = planner_->getProblemDefinition();
-    if (!definition->hasExactSolution()) return {};
-    auto& path = *definition->getSolutionPath()->as<ompl::geometric::PathGeometric>();
-    std::vector<const ob::State*> states(path.getStates().begin(), path.getStates().end());
+    const auto& best = planner_->bestPath();
+    if (best.empty()) return {};
+    std::vector<const ob::State*> states(best.begin(), best.end());
     const auto& si = problem_.spaceInformation();
     States plan;
     if (usesViews(kind_.name)) {

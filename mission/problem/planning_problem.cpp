@@ -2,18 +2,15 @@
 #include "problem/planning_problem.hpp"
 
 #include <fmt/format.h>
-#include <ompl/base/goals/GoalState.h>
 #include <ompl/base/goals/GoalStates.h>
-#include <ompl/geometric/PathGeometric.h>
 
 #include <numbers>
 #include <utility>
 
-#include "geometry/se3.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
-#include "planners/path_descent.hpp"
 #include "planners/planner_table.hpp"
+#include "problem/interruption_scope.hpp"
 #include "problem/tree_evolution.hpp"
 #include "render/interruptible_views.hpp"
 
@@ -24,7 +21,6 @@ namespace {
 constexpr int kFreeHeadings = 8;               // goals offered where the goal has no yaw
 constexpr std::size_t kProgressInterval = 50;  // vertices
 constexpr double kShowInterval = 0.5;          // of progress without new vertices [s]
-constexpr double kMostKappa = 1e12;            // as in a config
 constexpr std::size_t kMaxSamples = 200;       // per requested vertex: beyond, planning gives up
 constexpr std::size_t kMostExactViews = 1000;  // kept when the map changes: a few paths
 
@@ -41,54 +37,12 @@ void includePath(Audit& audit, double stored, double replayed) {
     if (!(error <= audit.maxCostError)) audit.maxCostError = error;
 }
 
-std::vector<const ob::State*> solutionOf(const BeliefPlanner& planner) {
-    const auto path = planner.getProblemDefinition()->getSolutionPath();
-    const auto& states = path->as<ompl::geometric::PathGeometric>()->getStates();
-    return {states.begin(), states.end()};
-}
-
-/// What the trace of a path is charged: its integral, or its sum over the vertices.
-double chargeOf(const std::vector<BeliefPoint>& points, CostRule rule) {
-    double charge = 0.;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-        const BeliefPoint &last = points[i - 1], &next = points[i];
-        charge += rule == CostRule::perVertex
-                      ? next.trace
-                      : 0.5 * (next.distance - last.distance) * (last.trace + next.traceBefore);
-    }
-    return charge;
-}
-
-/// Lets a flag end what looks at `current`, until the end of the scope.
-class InterruptionScope {
-  public:
-    InterruptionScope(const std::atomic<bool>*& current, const std::atomic<bool>& flag)
-        : current_(current) {
-        current_ = &flag;
-    }
-    InterruptionScope(const InterruptionScope&) = delete;
-    InterruptionScope& operator=(const InterruptionScope&) = delete;
-    ~InterruptionScope() { current_ = &kNotInterrupted; }
-
-  private:
-    const std::atomic<bool>*& current_;
-};
-
 Config withAlpha(Config config, double alpha) {
     config.belief.alpha = alpha;
     return config;
 }
 
 }  // namespace
-
-std::vector<Eigen::Vector2d> EvaluatedPath::fromAbove() const {
-    std::vector<Eigen::Vector2d> positions;
-    positions.reserve(points.size());
-    for (const BeliefPoint& point : points) {
-        positions.emplace_back(point.T_w_b.translation().head<2>());
-    }
-    return positions;
-}
 
 PlanningProblem::PlanningProblem(const Config& config, const World& world,
                                  std::optional<double> alpha, MakeInformationModel photometric)
@@ -193,10 +147,11 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
     outcome.beliefSeconds = model.seconds();
     outcome.tree = drawnEdges(*planner);
     outcome.audit = auditTree(*planner);
-    if (planner->getProblemDefinition()->hasExactSolution()) {
+    const auto& path = planner->bestPath();
+    if (!path.empty()) {
         outcome.path = evaluate(*planner);
         outcome.plannerCost = planner->bestCost();
-        const double replayed = planner->model().evaluate(solutionOf(*planner)).back().cost;
+        const double replayed = planner->model().evaluate({path.begin(), path.end()}).back().cost;
         includePath(outcome.audit, outcome.plannerCost, replayed);
     }
     return outcome;
@@ -291,36 +246,6 @@ std::shared_ptr<BeliefModel> PlanningProblem::plannersModel() {
     return std::make_shared<BeliefModel>(space_, plannersField_, optionsWith(weight));
 }
 
-BeliefModel& PlanningProblem::evaluator() {
-    kappa();
-    return *evaluator_;
-}
-
-double PlanningProblem::kappa(const std::atomic<bool>& interrupted) {
-    if (isAutomatic(config_.belief.kappa)) {
-        config_.belief.kappa = balancedKappa(interrupted);
-        evaluator_ =
-            std::make_shared<BeliefModel>(space_, field_, optionsWith(config_.belief.kappa));
-    }
-    return config_.belief.kappa;
-}
-
-double PlanningProblem::balancedKappa(const std::atomic<bool>& interrupted) {
-    const InterruptionScope scope(*interruption_, interrupted);
-    const auto planner = makePlanner("rrt_star", evaluator_, config_.seed);
-    planner->solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
-    std::vector<const ob::State*> path;
-    const auto line = definition();
-    if (planner->getProblemDefinition()->hasExactSolution()) {
-        path = solutionOf(*planner);
-    } else {
-        path = {line->getStartState(0), line->getGoal()->as<ob::GoalStates>()->getState(0)};
-    }
-    const std::vector<BeliefPoint> points = evaluator_->evaluate(path);
-    const double charged = chargeOf(points, config_.belief.cost);
-    return charged > 0. ? std::min(points.back().distance / charged, kMostKappa) : 0.;
-}
-
 ob::ProblemDefinitionPtr PlanningProblem::definition() const {
     auto definition = std::make_shared<ob::ProblemDefinition>(si_);
     ob::ScopedState<> state(si_);
@@ -336,71 +261,6 @@ ob::ProblemDefinitionPtr PlanningProblem::definition() const {
     }
     definition->setGoal(goals);
     return definition;
-}
-
-std::optional<EvaluatedPath> PlanningProblem::descend(const std::vector<Pose>& waypoints,
-                                                      const DescentOptions& options,
-                                                      const std::atomic<bool>& interrupted) {
-    ompl::geometric::PathGeometric path(si_);
-    ob::ScopedState<> state(si_);
-    for (const Pose& T_w_b : waypoints) {
-        space_.setState(state.get(), T_w_b.translation(), yawOf(T_w_b));
-        path.append(state.get());
-    }
-    if (waypoints.empty() || !path.check()) return std::nullopt;
-    kappa(interrupted);
-    PathDescent descent(si_, evaluator_, options);
-    descent.begin({path.getStates().begin(), path.getStates().end()});
-    descent.descend(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
-    return evaluate("descent", descent.path());
-}
-
-EvaluatedPath PlanningProblem::evaluate(const BeliefPlanner& planner) {
-    return evaluate(planner.getName(), solutionOf(planner));
-}
-
-EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
-                                        ompl::geometric::PathGeometric& path) {
-    const auto& states = path.getStates();
-    return evaluate(planner, std::vector<const ob::State*>(states.begin(), states.end()));
-}
-
-EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
-                                        const std::vector<Place>& waypoints,
-                                        const std::atomic<bool>& interrupted) {
-    kappa(interrupted);
-    const InterruptionScope scope(*interruption_, interrupted);
-    std::vector<ob::ScopedState<>> states;
-    std::vector<const ob::State*> pointers;
-    states.reserve(waypoints.size());
-    pointers.reserve(waypoints.size());
-    for (const Place& place : waypoints) {
-        pointers.push_back(states.emplace_back(si_).get());
-        space_.setState(states.back().get(), place.position, place.yaw.value_or(0.));
-    }
-    return evaluate(planner, pointers);
-}
-
-EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
-                                        const std::vector<const ob::State*>& path) {
-    EvaluatedPath evaluated;
-    evaluated.planner = planner;
-    evaluated.points = evaluator().evaluate(path);
-    const double integral = chargeOf(evaluated.points, CostRule::integral);
-    const BeliefPoint& goal = evaluated.points.back();
-    evaluated.cost = goal.cost;
-    if (goal.cost > 0.) evaluated.lengthShare = config_.belief.alpha * goal.distance / goal.cost;
-    evaluated.length = goal.length;
-    evaluated.meanTrace = goal.distance > 0. ? integral / goal.distance : goal.trace;
-    evaluated.goalTrace = goal.trace;
-    return evaluated;
-}
-
-Config withKappa(Config config, const World& world, const std::atomic<bool>& interrupted) {
-    if (isAutomatic(config.belief.kappa)) {
-        config.belief.kappa = PlanningProblem(config, world).kappa(interrupted);
-    }
-    return config;
 }
 
 }  // namespace photonav

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "problem/tree_evolution.hpp"
 
-#include <ompl/geometric/PathGeometric.h>
-
 #include <set>
 
 namespace photonav {
 namespace ob = ompl::base;
+
 TreeEvolution growInStages(PlanningProblem& problem, const std::string& name,
                            const std::vector<std::size_t>& vertices,
                            const std::atomic<bool>& interrupted) {
@@ -19,9 +18,8 @@ TreeEvolution growInStages(PlanningProblem& problem, const std::string& name,
         TreeStage& stage = evolution.stages.emplace_back();
         stage.vertices = planner->vertices();
         stage.tree = drawnEdges(*planner);
-        const auto path = planner->getProblemDefinition()->getSolutionPath();
-        if (path == nullptr) continue;
-        for (const ob::State* state : path->as<ompl::geometric::PathGeometric>()->getStates()) {
+        if (planner->bestPath().empty()) continue;
+        for (const ob::State* state : planner->bestPath()) {
             stage.path.push_back(space.position(state));
         }
         stage.cost = problem.evaluate(*planner).cost;

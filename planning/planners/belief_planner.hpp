@@ -102,6 +102,9 @@ class BeliefPlanner : public ompl::base::Planner {
     std::size_t vertices() const { return vertices_.size() - unused_.size(); }
     std::size_t iterations() const { return iterations_; }
     double bestCost() const { return best_.cost; }  ///< infinite until the goal is reached
+    /// The best path so far, from a root on; empty if there is none. The planner owns the states:
+    /// they are those of the path until it goes on or is changed.
+    const std::vector<ompl::base::State*>& bestPath() const { return best_.states; }
     /// The belief at the root, once moveRoot() has set it.
     const std::optional<Belief>& movedRoot() const { return movedRoot_; }
     BeliefModel& model() const { return *model_; }
@@ -188,9 +191,6 @@ class BeliefPlanner : public ompl::base::Planner {
 
     /// Stores a path (start first) if it is the best so far.
     void offer(double cost, const std::vector<const ompl::base::State*>& path);
-
-    /// The best path so far, from a root on; empty if there is none.
-    const std::vector<ompl::base::State*>& bestPath() const { return best_.states; }
 
     /// Whether another model than model() decides what path is best.
     bool hasJudge() const { return judge_ != nullptr; }
