@@ -170,6 +170,17 @@ std::string degenerateText(const json& result) {
     return count > 0 ? fmt::format(" ({} degenerate)", count) : "";
 }
 
+/// What the covariances of odometry allow for, when that is not nothing.
+std::string depthErrorText(const json& dataset) {
+    std::string text =
+        fmt::format("{:g} % of the motion", 100. * dataset["depth_error"].get<double>());
+    if (dataset["depth_error_assumed"].get<bool>()) {
+        text += fmt::format(", assumed (noise {:.1f} mm at 1 m, no depth_error in camera.yaml)",
+                            1e3 * dataset["depth_noise_m"].get<double>());
+    }
+    return text;
+}
+
 }  // namespace
 
 ReportTable replaySummary(const json& result) {
@@ -187,6 +198,10 @@ ReportTable replaySummary(const json& result) {
     table.rows.emplace_back(
         isStereo ? "pixels with depth from stereo" : "pixels with recorded depth",
         number(result["depth_density"], 100., "{:.1f} %", "none"));
+    if (const json& error = result["dataset"]["depth_error"]; error.is_number() && error != 0.) {
+        table.rows.emplace_back("error of depth that repeats from image to image",
+                                depthErrorText(result["dataset"]));
+    }
     table.rows.emplace_back(
         isStereo ? "tracking; with reading images and stereo" : "tracking; with reading images",
         number(result["fps"], 1., "{:.0f} frames/s; ", "nothing tracked; ") +

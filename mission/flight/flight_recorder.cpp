@@ -53,7 +53,7 @@ FlightRecorder::FlightRecorder(const std::filesystem::path& folder, const Camera
     writeFileAtomically(
         folder_ / "camera.yaml",
         fmt::format("width: {}\nheight: {}\nfx: {}\nfy: {}\ncx: {}\ncy: {}\ndepth_scale: {}\n"
-                    "information_scale: {}\nblur: {:.4g}\n",
+                    "information_scale: {}\nblur: {:.4g}\ndepth_error: 0\n",
                     camera.width, camera.height, camera.fx(), camera.fy(), camera.cx(), camera.cy(),
                     kDepthScale, informationScale, blur));
 }

@@ -116,7 +116,7 @@ std::string cameraYaml(const Sequence& sequence) {
         text += fmt::format("information_scale: {}\n", *scale);
     }
     if (sequence.blur) text += fmt::format("blur: {}\n", *sequence.blur);
-    if (sequence.depthError > 0.) text += fmt::format("depth_error: {}\n", sequence.depthError);
+    if (sequence.depthError) text += fmt::format("depth_error: {}\n", *sequence.depthError);
     if (!sequence.depthCamera) return text;
     const DepthCamera& depth = *sequence.depthCamera;
     const Eigen::Vector3d p = depth.T_c_d.translation();

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "estimation/calibration.hpp"
-#include "evaluation/averages.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
 #include "mapping/map_config.hpp"
@@ -127,11 +126,11 @@ UncertainPose startOf(const ReplayOptions& options, const Sequence& sequence) {
 }
 
 AlignmentOptions alignmentOf(const ReplayOptions& options, const Sequence& sequence,
-                             const TrackingMap& map) {
+                             const TrackingMap& map, const DepthError& depthError) {
     AlignmentOptions alignment;
     if (options.odometry) {
         alignment = KeyframeOptions().alignment;
-        alignment.modelErrors.depthScale = sequence.depthError;
+        alignment.modelErrors.depthScale = depthError.relative;
     } else {
         alignment = realCameraOptions(comparedBlur(map.kind, sequence.blur.value_or(kAreaBlur)));
         alignment.modelErrors.surface = map.surfaceError();
@@ -161,31 +160,8 @@ void setWidth(KeyframeOptions& keyframe, const Camera& camera, int maxWidth) {
     if (keyframe.finest == 0) keyframe.minGradient = 0.02;
 }
 
-/// The median of all depths in a few images spread over the recording [m]; 0 when there are none,
-/// nothing when none of these images can be used.
-std::optional<double> medianDepthOf(const Recording& recording) {
-    constexpr std::size_t kLooks = 5;
-    std::vector<float> depths;
-    bool anyRead = false;
-    const std::size_t count = recording.sequence.frames.size();
-    for (std::size_t i = 0; i < count; i += std::max<std::size_t>(1, count / kLooks)) {
-        View view;
-        try {
-            view = recording.view(i);
-        } catch (const InputError&) {
-            continue;
-        }
-        anyRead = true;
-        for (unsigned k = 0; k < view.depth.getSize(); k += 7) {
-            if (view.depth.bitmap[k] > 0.F) depths.push_back(view.depth.bitmap[k]);
-        }
-    }
-    if (!anyRead) return {};
-    return median(std::move(depths), 0.);
-}
-
-std::optional<double> checkDepths(const ReplayOptions& options, const Recording& recording) {
-    const std::optional<double> depth = medianDepthOf(recording);
+std::optional<double> checkDepths(const ReplayOptions& options, const Recording& recording,
+                                  const std::optional<double>& depth) {
     if (!depth) return {};
     if (*depth > 0.) {
         requirePlausibleDepth(*depth, options, recording.sequence.cameraFile);
@@ -211,12 +187,15 @@ Replay::Replay(const ReplayOptions& options) : options_(options) {
         applyCalibration(options_.odometry ? std::nullopt : std::optional(map_.kind), options_);
     }
     start_ = startOf(options_, recording_.sequence);
-    alignment_ = alignmentOf(options_, recording_.sequence, map_);
+    const DepthLook look = lookAtDepth(recording_);
+    medianDepth_ = checkDepths(options, recording_, look.median);
+    depthNoise_ = look.noise.atOneMetre();
+    depthError_ = depthErrorOf(recording_, look.noise);
+    alignment_ = alignmentOf(options_, recording_.sequence, map_, depthError_);
     options_.stereo = recording_.stereo;
     options_.scale = alignment_.informationScale;
     options_.leastSigma = alignment_.trust.leastSigma;
     options_.leastSigmaRotation = alignment_.trust.leastSigmaRotation;
-    medianDepth_ = checkDepths(options, recording_);
 }
 
 ReplayTracker Replay::makeTracker() const {

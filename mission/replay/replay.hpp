@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "problem/tracking_map.hpp"
+#include "replay/depth_sensor.hpp"
 #include "replay/replay_options.hpp"
 #include "replay/replay_run.hpp"
 
@@ -28,6 +29,9 @@ class Replay {
     const TrackingMap& map() const { return map_; }            ///< empty for odometry
     /// Of all depths in a few images spread over the recording [m]; nothing when there are none.
     const std::optional<double>& medianDepth() const { return medianDepth_; }
+    /// Of the depth in these images: standard deviation at 1 m [m].
+    double depthNoise() const { return depthNoise_; }
+    const DepthError& depthError() const { return depthError_; }
 
     /// Tracks the recording from its first image on. The path of odometry is moved so that its
     /// first pose is the true one.
@@ -47,6 +51,8 @@ class Replay {
     UncertainPose start_;
     AlignmentOptions alignment_;
     std::optional<double> medianDepth_;
+    double depthNoise_ = 0.;
+    DepthError depthError_;
 };
 
 }  // namespace photonav

@@ -46,8 +46,8 @@ struct Sequence {
     /// average over their area.
     std::optional<double> blur;
     /// Relative error of depth that repeats from image to image: a wrong scale, or depth images
-    /// that do not fit the colour images.
-    double depthError = 0.;
+    /// that do not fit the colour images. None: not known.
+    std::optional<double> depthError;
     std::vector<Entry> frames;  ///< in order of time
     std::size_t recorded = 0;   ///< images that the dataset lists
     std::vector<Skipped> skipped;

@@ -166,7 +166,9 @@ void readCamera(const std::string& file, Sequence& sequence) {
         yaml.readNumber("information_scale", sequence.informationScale.emplace(), 1e-6, 1e12);
     }
     if (yaml.has("blur")) yaml.readNumber("blur", sequence.blur.emplace(), 0., 10.);
-    yaml.readNumber("depth_error", sequence.depthError, 0., 1.);
+    if (yaml.has("depth_error")) {
+        yaml.readNumber("depth_error", sequence.depthError.emplace(), 0., 1.);
+    }
     if (yaml.has("depth_camera")) {
         sequence.depthCamera = readDepthCamera(yaml.map("depth_camera"), sequence.camera);
     }

@@ -29,7 +29,7 @@ struct TumOptions {
 ///   first file lies in a folder `depth`), whose pairs are taken as they are;
 /// - `groundtruth.txt`: the pose at the time of the colour image (see poseAt);
 /// - `camera.yaml` when there: width, height, fx, fy, cx, cy [pixels], depth_scale (default 5000),
-///   information_scale (none), blur (point spread [pixels]), depth_error (0; relative,
+///   information_scale (none), blur (point spread [pixels]), depth_error (unknown; relative,
 ///   of its scale and registration), and for depth images that are not registered to the colour
 ///   images `depth_camera` with its own fx, fy, cx, cy, width and height (those of the colour
 ///   camera), T_colour_depth (`[x, y, z, qx, qy, qz, qw]`, default: the same place) and whose poses

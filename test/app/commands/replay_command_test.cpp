@@ -216,7 +216,11 @@ TEST(ReplaySummary, NamesWhatIsNotRight) {
                    {"depth_density", nullptr},
                    {"fps", 10.},
                    {"fps_with_reading", 5.},
-                   {"dataset", {{"layout", "TUM RGB-D"}}}};
+                   {"dataset",
+                    {{"layout", "TUM RGB-D"},
+                     {"depth_noise_m", 7e-4},
+                     {"depth_error", 0.1},
+                     {"depth_error_assumed", true}}}};
     const auto said = [&](const std::string& words) {
         const ReportTable table = replaySummary(result);
         return std::ranges::any_of(table.rows, [&](const auto& row) {
@@ -225,6 +229,9 @@ TEST(ReplaySummary, NamesWhatIsNotRight) {
     };
     EXPECT_TRUE(said("overconfident, errors are 7.0 times the predicted ones"));
     EXPECT_TRUE(said("9 (2 degenerate), 0, 0"));
+    EXPECT_TRUE(said("10 % of the motion, assumed (noise 0.7 mm at 1 m"));
+    result["dataset"]["depth_error"] = 0.;
+    EXPECT_FALSE(said("of the motion"));
     result["nees_per_dof"] = 1.2;
     EXPECT_FALSE(said("overconfident"));
 }
