@@ -9,6 +9,7 @@
 #include "figures/images.hpp"
 #include "plot/figure.hpp"
 #include "scene/scene.hpp"
+#include "scene/texture.hpp"
 
 using namespace photonav;
 
@@ -87,20 +88,41 @@ Plot drawErrors(const std::vector<FlightSample>& samples) {
     return plot;
 }
 
-/// Both answers are read off the lower figure.
-std::vector<Exercise> exercises(const std::vector<FlightSample>& samples) {
-    return {{[&] { return errorsOf(samples.back())[0]; }, 0.15},
-            {[&] {
-                 double largest = 0.;
-                 for (const FlightSample& s : samples) largest = std::max(largest, errorsOf(s)[1]);
-                 return largest;
+/// What odometry alone would believe at the goal of the straight way, where no image informs: its
+/// standard deviation of the position [mm].
+double odometryAlone(Config config) {
+    Scene scene;
+    addPlane(scene, {0., 0., 0.}, {8., 0., 0.}, {0., 4., 0.},
+             addTexture(scene, uniformTexture(0.5)));
+    config.belief.initialCovariance = config.explore.initialCovariance;
+    const World world(std::move(scene), config);
+    PlanningProblem problem(config, world);
+    const EvaluatedPath way = problem.evaluate("straight", {config.start, config.goal});
+    return 1e3 * std::sqrt(way.points.back().covariance.topLeftCorner<3, 3>().trace());
+}
+
+/// From a place beside the box, past its corner: a tangent of the circle about the corner, and the
+/// arc up to where the way is parallel to the box [m].
+double towardsTheBox(const Eigen::Vector2d& corner, double radius) {
+    const double distance = corner.norm();
+    const double turned = std::atan2(corner.y(), corner.x()) + std::asin(radius / distance);
+    return std::sqrt(distance * distance - radius * radius) + radius * turned;
+}
+
+/// Neither answer depends on how the exploration went.
+std::vector<Exercise> exercises(const Config& config) {
+    const double radius = config.robotRadius;
+    return {{[&] { return odometryAlone(config); }, 0.05},
+            {[=] {
+                 return towardsTheBox({3.5, 0.6}, radius) + 0.5 + towardsTheBox({2., 0.6}, radius);
              },
-             0.15}};
+             0.005}};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (const auto code = checkAnswers(argc, argv, exercises(flightThrough()))) return *code;
     //! [explore]
     const Config config = flightThrough();
     const World truth(room(), config);  // that the robot does not know
@@ -114,7 +136,6 @@ int main(int argc, char** argv) {
     const ExplorationResult flight = explore(setUpExploration(problem), "belief_rrt_star", 1,
                                              kNotInterrupted, {.update = onUpdate});
     //! [explore]
-    if (const auto code = checkAnswers(argc, argv, exercises(flight.samples))) return *code;
     std::printf("%s after %.1f m, %.0f mm from the goal\n", nameOf(flight.end).c_str(),
                 flight.flown, 1e3 * flight.goalError);
     Figure{"The robot's own map, and its errors",
