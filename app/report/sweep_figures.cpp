@@ -148,22 +148,15 @@ Figure costOverTimeFigure(const std::string& title, const std::vector<std::strin
     return {title, {{plot}}};
 }
 
-std::vector<DrawnPath> pathsByAlpha(const std::string& planner, const std::vector<SweepRun>& runs) {
+std::map<double, const SweepRun*> cheapestRuns(const std::string& planner,
+                                               const std::vector<SweepRun>& runs) {
     std::map<double, const SweepRun*> best;
     for (const SweepRun& run : runs) {
         if (run.item.planner != planner || !run.isSolved()) continue;
         const SweepRun*& known = best[run.item.alpha];
         if (known == nullptr || run.cost < known->cost) known = &run;
     }
-    std::vector<DrawnPath> paths;
-    for (const auto& [alpha, run] : best) {
-        DrawnPath path{fmt::format("alpha {}", alpha), viridis(0.94 * alpha)};
-        for (const Eigen::Vector3d& p : run->path) {
-            append(path, {.position = p, .T_w_c = Pose(Eigen::Translation3d(p))});
-        }
-        paths.push_back(path);
-    }
-    return paths;
+    return best;
 }
 
 std::vector<std::size_t> paretoFront(const std::string& planner,

@@ -2,6 +2,7 @@
 // Results of many runs.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,9 @@ Figure frontFigure(const std::string& title, const std::vector<SweepCell>& cells
 Figure costOverTimeFigure(const std::string& title, const std::vector<std::string>& planners,
                           const std::vector<BenchmarkCurve>& curves);
 
-/// The cheapest path of a planner for every alpha, coloured from dark (0) to bright (1).
-std::vector<DrawnPath> pathsByAlpha(const std::string& planner, const std::vector<SweepRun>& runs);
+/// The cheapest run of a planner for every alpha that has a path, by alpha.
+std::map<double, const SweepRun*> cheapestRuns(const std::string& planner,
+                                               const std::vector<SweepRun>& runs);
 
 /// Indices of the cells of one planner whose mean length and mean trace are not both beaten by
 /// another one's of the same planner, by increasing length.

@@ -47,6 +47,21 @@ std::string statusOf(const SweepOutcome& outcome) {
     return anySolved ? "done" : "no path";
 }
 
+/// The cheapest path of the first planner for every alpha with its beliefs, coloured from dark
+/// (alpha 0) to bright (1). Runs keep headings alone: in se3 the beliefs are those of level flight.
+std::vector<DrawnPath> pathsByAlpha(const Config& config, const World& world,
+                                    const std::vector<SweepRun>& runs) {
+    std::vector<DrawnPath> paths;
+    PlanningProblem problem(config, world);  // whose views all share
+    for (const auto& [alpha, run] : cheapestRuns(config.sweep.planners.front(), runs)) {
+        const EvaluatedPath path = PlanningProblem(problem, alpha).evaluate("", run->path);
+        paths.push_back(drawnPath(path, config.camera.T_b_c()));
+        paths.back().name = fmt::format("alpha {}", alpha);
+        paths.back().color = viridis(0.94 * alpha);
+    }
+    return paths;
+}
+
 TopView pathsView(const Config& config, const World& world, const std::vector<DrawnPath>& paths) {
     TopView view = viewFromAbove(config, world, paths);
     view.title = fmt::format("{}: the cheapest path per alpha", config.sweep.planners.front());
@@ -171,7 +186,7 @@ void writeSweepReport(const fs::path& folder, const Config& config, const World&
                     config.vertices, counted(config.sweep.planners.size(), "planner"),
                     counted(config.sweep.alphas.size(), "value", " of alpha"),
                     counted(config.sweep.runs, "seed"));
-    report.paths = pathsByAlpha(config.sweep.planners.front(), outcome.runs);
+    report.paths = pathsByAlpha(config, world, outcome.runs);
 
     writeFileAtomically(folder / "runs.csv", toCsv(result["runs"], kRunKeys));
     writeFileAtomically(folder / "summary.csv", toCsv(result["summary"], summaryKeys(reference)));

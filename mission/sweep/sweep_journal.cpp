@@ -26,7 +26,9 @@ json toJson(const SweepRun& run) {
 json SweepKind::save(const SweepRun& run, const std::filesystem::path& /*folder*/) {
     json line = toJson(run);
     line["path"] = json::array();
-    for (const Eigen::Vector3d& p : run.path) line["path"].push_back({p.x(), p.y(), p.z()});
+    for (const auto& [p, yaw] : run.path) {
+        line["path"].push_back({p.x(), p.y(), p.z(), yaw.value_or(0.)});
+    }
     return line;
 }
 
@@ -49,7 +51,9 @@ SweepRun SweepKind::load(const json& line, const std::filesystem::path& /*folder
         line.at("status"),
         {}};
     if (run.isSolved() != std::isfinite(run.cost)) throw std::out_of_range("cost");
-    for (const json& p : line.at("path")) run.path.emplace_back(p.at(0), p.at(1), p.at(2));
+    for (const json& p : line.at("path")) {
+        run.path.push_back({Eigen::Vector3d(p.at(0), p.at(1), p.at(2)), p.at(3).get<double>()});
+    }
     return run;
 }
 

@@ -17,10 +17,10 @@ struct SweepRun {
     SweepItem item;
     double cost, length, meanTrace, goalTrace;  ///< as in EvaluatedPath, with the item's alpha
     std::size_t vertices = 0;
-    std::size_t views = 0;              ///< rendered by this run alone, with no cached views
-    double seconds = 0.;                ///< planning with no cached views; wall clock
-    std::string status;                 ///< "done", or why there is no path
-    std::vector<Eigen::Vector3d> path;  ///< its waypoints in w [m]
+    std::size_t views = 0;    ///< rendered by this run alone, with no cached views
+    double seconds = 0.;      ///< planning with no cached views; wall clock
+    std::string status;       ///< "done", or why there is no path
+    std::vector<Place> path;  ///< its waypoints, the body's
 
     bool isSolved() const { return status == "done"; }
 };

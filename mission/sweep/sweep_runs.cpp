@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "geometry/constants.hpp"
+#include "geometry/se3.hpp"
 #include "render/interruptible_views.hpp"
 
 namespace photonav {
@@ -49,7 +50,7 @@ void setPath(SweepRun& run, const EvaluatedPath& path) {
     run.meanTrace = path.meanTrace;
     run.goalTrace = path.goalTrace;
     for (const BeliefPoint& point : path.points) {
-        if (point.isWaypoint) run.path.push_back(point.T_w_b.translation());
+        if (point.isWaypoint) run.path.push_back({point.T_w_b.translation(), yawOf(point.T_w_b)});
     }
 }
 

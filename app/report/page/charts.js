@@ -65,7 +65,7 @@ function createCharts(onPick) {
         scales: {x: chartAxis(xTitle, false), y: {...chartAxis(yTitle, log), beginAtZero: alongPath && !log}},
         plugins: {
           legend: {display: names, align: 'start',
-                   labels: {boxWidth: 14, boxHeight: 2, color: cssColor('--ink')}},
+                   labels: {boxWidth: 14, boxHeight: 2, color: cssColor('--ink'), sort: (a, b) => a.datasetIndex - b.datasetIndex}},
           tooltip: {callbacks: {
             title: (items) => `${xTitle.replace(/ \[.*/, '')} ${say(items[0].parsed.x, alongPath ? 'm' : '')}`,
             label: (item) => `${item.dataset.label}: ${say(item.parsed.y)}`,
@@ -100,13 +100,20 @@ function createCharts(onPick) {
         borderColor: paths.length ? paths[0].color : cssColor('--accent'),
         backgroundColor: cssColor('--accent'),
       }], 'vertices', 'best cost', {alongPath: false});
-    for (const [id, shown] of [['trace-box', hasBeliefs], ['cost-box', hasCost],
+    for (const [id, shown] of [['trace-box', hasBeliefs], ['cost-box', hasCost && !sweep],
                                ['progress-box', progress.length]])
       document.getElementById(id).hidden = !shown;
   }
 
   return {
     drawAll,
+    /// Draws one of the paths above the others, which are thin.
+    choose(index) {
+      for (const chart of charts)
+        chart.data.datasets.forEach((dataset, i) => Object.assign(dataset, i === index
+            ? {borderWidth: 3.4, order: 0} : {borderWidth: 0.8, order: 1}));
+      for (const chart of charts) chart.update();
+    },
     select(index) {
       selectedDistance = waypoints[index].point.distance;
       for (const chart of charts) chart.draw();

@@ -81,7 +81,7 @@ function addTable(title, pairs) {
 }
 
 function addComparison() {
-  if (paths.length < 2 || !hasBeliefs || data.result.command === 'replay') return;
+  if (paths.length < 2 || !hasBeliefs || data.result.command === 'replay' || sweep) return;
   const box = make('div', undefined, {className: 'wide'}), table = make('table');
   const head = make('tr'), body = make('tbody');
   head.append(...['Path', 'Length', 'Cost', 'Mean trace', 'Trace at the goal', '1σ at the goal'].map((t) => make('th', t)));
@@ -279,6 +279,11 @@ function setUpWaypoints() {
   if (selected < 0) select(Math.floor(waypoints.length / 2));
 }
 
+function redrawCharts() {
+  charts.drawAll(element('trace-log').checked);
+  if (chosenPath >= 0) charts.choose(chosenPath);
+}
+
 fillHead();
 fillTiles();
 fillSweep();
@@ -287,14 +292,19 @@ element('panel').hidden = !waypoints.length;
 const view3d = createView3d(element('scene'), select);
 const charts = createCharts(select);
 element('trace-log').checked = paths.length > 0;
-element('trace-log').addEventListener('change', () => charts.drawAll(element('trace-log').checked));
+element('trace-log').addEventListener('change', redrawCharts);
 charts.drawAll(element('trace-log').checked);
 const flight3d = flight && view3d ? createFlight3d(view3d, flight) : null;
 setUpView();
 setUpWaypoints();
+const chooseAlpha = (index) => {
+  if (view3d) view3d.choose(index);
+  charts.choose(index);
+};
+setUpAlpha(chooseAlpha);
 const flightPanel = flight ? createFlightPanel(flight3d) : null;
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
-  charts.drawAll(element('trace-log').checked);
+  redrawCharts();
   if (sweepCharts.length) drawSweepCharts();
   if (view3d) view3d.drawGround();
   if (flightPanel) flightPanel.redraw();

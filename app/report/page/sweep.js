@@ -36,6 +36,57 @@ function sweepTiles() {
   ];
 }
 
+// One alpha -----------------------------------------------------------------------------------------
+
+let chosenPath = -1;  // index in `paths`, which are those of the first planner by alpha
+
+const alphaOf = (path) => Number(path.name.replace('alpha ', ''));
+
+/// A ring around the point of the chosen alpha.
+const chosenPoint = {
+  id: 'chosenPoint',
+  afterDatasetsDraw(chart) {
+    if (!paths[chosenPath]) return;
+    const {ctx, scales: {x, y}} = chart, curve = chart.data.datasets.find(({label}) => label === sweep.planners[0]);
+    const point = curve && curve.data.find(({alpha}) => alpha === alphaOf(paths[chosenPath]));
+    if (!point) return;
+    ctx.save();
+    ctx.strokeStyle = cssColor('--ink');
+    ctx.lineWidth = 2;
+    ctx.beginPath();
+    ctx.arc(x.getPixelForValue(point.x), y.getPixelForValue(point.y), 8, 0, 2 * Math.PI);
+    ctx.stroke();
+    ctx.restore();
+  },
+};
+
+function describeChosen() {
+  const s = summaries[chosenPath], run = cheapestRun(alphaOf(paths[chosenPath]));
+  return `${alphaOf(paths[chosenPath])}: ${say(run.length, 'm')}, mean trace ${say(run.mean_trace, 'm² + rad²')}, ` +
+         `${say(100 * s.goalSigma, 'cm')} at the goal (1σ, worst direction)`;
+}
+
+const cheapestRun = (alpha) => sweep.runs
+    .filter((run) => run.planner === sweep.planners[0] && run.alpha === alpha && run.status === 'done')
+    .reduce((best, run) => run.cost < best.cost ? run : best);
+
+/// The slider that chooses one of the paths. @param onChoose called with its index
+function setUpAlpha(onChoose) {
+  const slider = element('alpha');
+  element('alpha-bar').hidden = !sweep || !paths.length;
+  if (element('alpha-bar').hidden) return;
+  slider.max = paths.length - 1;
+  const choose = (index) => {
+    chosenPath = slider.value = index;
+    slider.setAttribute('aria-valuetext', element('alpha-value').textContent = describeChosen());
+    document.documentElement.dataset.alpha = alphaOf(paths[index]);
+    onChoose(index);
+    for (const chart of sweepCharts) chart.draw();
+  };
+  slider.addEventListener('input', () => choose(Number(slider.value)));
+  choose(0);
+}
+
 // Curves ------------------------------------------------------------------------------------------
 
 /// One standard deviation up and down.
@@ -80,7 +131,7 @@ function drawSweepChart(id, datasets, xTitle, yTitle, log) {
   sweepCharts.push(new Chart(element(id), {
     type: 'line',
     data: {datasets},
-    plugins: [whiskers],
+    plugins: [whiskers, chosenPoint],
     options: {
       animation: false, responsive: true, maintainAspectRatio: false, parsing: false, normalized: true,
       interaction: {mode: 'nearest', intersect: false},

@@ -167,10 +167,33 @@ function createView3d(canvas, onPick) {
     addLayer(`path${i}`, path.name, path.color, group);
   }
 
+  /// The paths of a sweep: one is chosen, the others are thin beside it.
+  const chosenPaths = new THREE.Group(), otherPaths = new THREE.Group();
+  function addAlternatives() {
+    for (const path of paths) {
+      const positions = path.points.map((point) => point.position);
+      for (const [group, radius] of [[chosenPaths, 1.3 * thick], [otherPaths, 0.35 * thick]])
+        group.add(tubeAlong(positions, radius, path.color) || new THREE.Group());
+    }
+    addLayer('chosen', 'path of the chosen alpha', cssColor('--ink'), chosenPaths);
+    addLayer('others', 'other values of alpha', '#8b93a0', otherPaths);
+  }
+
+  /// Shows one of the alternatives with its ellipsoids.
+  function choose(index) {
+    const showOnly = (group, isShown) => group.children.forEach((child, i) => { child.visible = isShown(i); });
+    showOnly(chosenPaths, (i) => i === index);
+    showOnly(otherPaths, (i) => i !== index);
+    if (layers.ellipsoids) showOnly(layers.ellipsoids.object, (i) => i === index);
+    requestRender();
+  }
+
   const ellipsoids = [];
   function addEllipsoids() {
-    const group = new THREE.Group();
+    const group = new THREE.Group();  // a group per path
     for (const path of paths) {
+      const ofPath = new THREE.Group();
+      group.add(ofPath);
       const material = new THREE.MeshLambertMaterial(
           {color: path.color, transparent: true, opacity: 0.22, depthWrite: false});
       const step = path.points[path.points.length - 1].distance / 30;
@@ -179,7 +202,7 @@ function createView3d(canvas, onPick) {
         if (point.distance < next - 1e-9 && i + 1 < path.points.length) return;
         next = point.distance + step;
         ellipsoids.push(new Ellipsoid(material, point.position, point.position_covariance));
-        group.add(ellipsoids[ellipsoids.length - 1]);
+        ofPath.add(ellipsoids[ellipsoids.length - 1]);
       });
     }
     addLayer('ellipsoids', '3σ ellipsoids', '#8b93a0', group);
@@ -335,7 +358,7 @@ function createView3d(canvas, onPick) {
 
   if (map.group.children.length) addLayer('map', data.voxels.centers ? 'map' : 'scene', '#9aa3ae', map.group);
   addTrees();
-  paths.forEach(addPath);
+  if (sweep) addAlternatives(); else paths.forEach(addPath);
   if (paths.length) {
     if (hasBeliefs) addEllipsoids();
     if (waypoints.length) {
@@ -354,7 +377,7 @@ function createView3d(canvas, onPick) {
   const largest = Math.max(0, ...paths.flatMap((path) => path.points.map(
       (point) => worstSigma(point.position_covariance))));
   return {
-    layers, select, setExaggeration, setCut, views, gridStep, mapBox: map.box, hidden: map.hidden,
+    layers, select, choose, setExaggeration, setCut, views, gridStep, mapBox: map.box, hidden: map.hidden,
     drawGround, addLayer, requestRender, thick, extent,
     show: (name, visible) => { layers[name].object.visible = visible; requestRender(); },
     suggestedExaggeration: [1, 2, 5, 10, 20, 50, 100].find((k) => 3 * k * largest > 0.025 * extent) || 100,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The report page in a real browser: headless Chromium with a software renderer.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -13,6 +14,8 @@
 #include "io/base64.hpp"
 #include "live/live_server.hpp"
 #include "report/report.hpp"
+#include "report/sweep_report.hpp"
+#include "sweep_run.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {
@@ -285,6 +288,59 @@ TEST_F(ReportBrowserTest, WithoutWebGLThePageSaysSoAndTheRestWorks) {
     EXPECT_EQ(published(outcome.dom, "canvas"), "");
     EXPECT_TRUE(contains(outcome.dom, "<p class=\"notice\" id=\"no-webgl\">"));
     EXPECT_TRUE(contains(outcome.dom, "Waypoint 2 of"));
+}
+
+/// A sweep of one planner with a path for each of three values of alpha.
+ReportData sampleSweepReport() {
+    Config config;
+    SweepOutcome outcome;
+    config.sweep.planners = {"belief_rrt_star"};
+    config.sweep.alphas = {0.1, 0.4, 0.7};
+    ReportData data = sampleReport();
+    const DrawnPath path = data.paths.front();
+    data.paths.clear();
+    data.views.clear();
+    for (const double alpha : config.sweep.alphas) {
+        outcome.runs.push_back(test::makeRun({"belief_rrt_star", alpha, 1}, 1., 12. - alpha, 0.2));
+        data.paths.push_back(path);
+        data.paths.back().name = fmt::format("alpha {}", alpha);
+        data.paths.back().color = viridis(alpha);
+    }
+    outcome.asked = outcome.runs.size();
+    data.result = sweepResult(config, outcome, {});
+    return data;
+}
+
+constexpr const char* kDragAlpha = R"js(
+  setTimeout(() => {
+    const slider = document.getElementById('alpha');
+    slider.value = 1;
+    slider.dispatchEvent(new Event('input'));
+    const shown = (name) => view3d.layers[name].object.children.map((child) => child.visible).join();
+    Object.assign(document.documentElement.dataset, {
+      chosen: shown('chosen'), others: shown('others'), ellipsoids: shown('ellipsoids'),
+      said: document.getElementById('alpha-value').textContent});
+  }, 1500);
+)js";
+
+TEST_F(ReportBrowserTest, TheSliderOfASweepShowsThePathOfOneAlphaWithItsEllipsoids) {
+    const Outcome before = open(sampleSweepReport());
+    expectNoErrors(before);
+    EXPECT_EQ(published(before.dom, "alpha"), "0.1");
+    const Outcome outcome = open(sampleSweepReport(), "", "", kDragAlpha);
+    expectNoErrors(outcome);
+    EXPECT_EQ(published(outcome.dom, "alpha"), "0.4");
+    EXPECT_EQ(published(outcome.dom, "chosen"), "false,true,false");
+    EXPECT_EQ(published(outcome.dom, "others"), "true,false,true");
+    EXPECT_EQ(published(outcome.dom, "ellipsoids"), "false,true,false");
+    EXPECT_TRUE(contains(published(outcome.dom, "said"), "0.4: 11.6"))
+        << published(outcome.dom, "said");
+}
+
+TEST_F(ReportBrowserTest, OnlySweepsHaveASliderOverAlpha) {
+    const Outcome outcome = open(sampleReport());
+    EXPECT_EQ(published(outcome.dom, "alpha"), "");
+    EXPECT_TRUE(contains(outcome.dom, "id=\"alpha-bar\" hidden"));
 }
 
 }  // namespace

@@ -44,16 +44,14 @@ TEST(SweepFigures, TheFrontHoldsWhatNothingBeats) {
 }
 
 TEST(SweepFigures, TheCheapestPathOfEveryAlphaIsDrawn) {
-    SweepRun better = makeRun({"pa_rrt_star", 0.5, 2}, 1., 9., 0.1);
-    better.path = {{0., 0., 2.}, {3., 4., 2.}};
-    const auto paths =
-        pathsByAlpha("pa_rrt_star", {makeRun({"pa_rrt_star", 0.5, 1}, 2., 9., 0.1), better,
+    const std::vector<SweepRun> runs{makeRun({"pa_rrt_star", 0.5, 1}, 2., 9., 0.1),
+                                     makeRun({"pa_rrt_star", 0.5, 2}, 1., 9., 0.1),
                                      makeRun({"belief_rrt_star", 0.5, 1}, 0.5, 9., 0.1),
-                                     makeRun({"pa_rrt_star", 0.1, 1}, 2., 9., 0.1)});
-    ASSERT_EQ(paths.size(), 2U);
-    EXPECT_EQ(paths[0].name, "alpha 0.1");
-    EXPECT_DOUBLE_EQ(paths[1].points.back().distance, 5.);
-    EXPECT_FALSE(paths[0].color == paths[1].color);
+                                     makeRun({"pa_rrt_star", 0.1, 1}, 2., 9., 0.1)};
+    const auto best = cheapestRuns("pa_rrt_star", runs);
+    ASSERT_EQ(best.size(), 2U);
+    EXPECT_EQ(best.at(0.1), &runs[3]);
+    EXPECT_EQ(best.at(0.5), &runs[1]);
 }
 
 }  // namespace

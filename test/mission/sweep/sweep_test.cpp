@@ -189,7 +189,8 @@ TEST_F(SweepFiles, AJournalGivesBackWhatWasWritten) {
     EXPECT_EQ(journal.runs()[0].item, solved);
     EXPECT_EQ(journal.runs()[0].cost, 0.1 + 0.2);  // to the last bit
     EXPECT_EQ(journal.runs()[0].meanTrace, 1e-300);
-    EXPECT_EQ(journal.runs()[0].path[1].x(), 1. / 3.);
+    EXPECT_EQ(journal.runs()[0].path[1].position.x(), 1. / 3.);
+    EXPECT_EQ(journal.runs()[0].path[1].yaw, 0.5);
     EXPECT_TRUE(std::isnan(journal.runs()[1].cost));
     EXPECT_EQ(journal.runs()[1].status, "no path");
     const SweepItem open{"rrt_star", 0.15, 5};
