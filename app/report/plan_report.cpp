@@ -22,6 +22,8 @@ namespace {
 
 constexpr std::size_t kMaxViews = 60;  // pictures in the report
 constexpr int kHeatMapCells = 28;
+constexpr std::size_t kViewRows = 2;  // of the figure of views
+constexpr std::size_t kViewsPerRow = 3;
 
 const char* spaceName(StateKind kind) {
     return kind == StateKind::position ? "xyz" : kind == StateKind::positionYaw ? "xyz_yaw" : "se3";
@@ -79,6 +81,21 @@ std::vector<ReportView> waypointViews(const EvaluatedPath& path, const Config& c
                                        contributionImage(view, camera, config.photometric)))});
     }
     return views;
+}
+
+/// The predicted views at places of the path evenly apart, from the start to the goal.
+Figure viewsFigure(const EvaluatedPath& path, const Config& config, const World& world) {
+    const Camera camera = config.camera.camera();
+    constexpr std::size_t kViews = kViewRows * kViewsPerRow;
+    std::vector<std::vector<CaptionedImage>> rows(kViewRows);
+    for (std::size_t k = 0; k < kViews; ++k) {
+        const BeliefPoint& point = path.points[k * (path.points.size() - 1) / (kViews - 1)];
+        View view;
+        world.views().render(camera, (point.T_w_b * config.camera.T_b_c()).inverse(), view);
+        rows[k / kViewsPerRow].push_back(
+            {fmt::format("at {:.1f} m", point.length), predictedPicture(view)});
+    }
+    return imagesFigure(rows, 300.);
 }
 
 /// What the cost of each path consists of.
@@ -223,6 +240,11 @@ std::vector<NamedFigure> planFigures(const Config& config, const World& world,
         figures.push_back({"trace.png",
                            {"Trace of the pose covariance along the path.",
                             traceFigure("Uncertainty along the path", paths, true).png()}});
+    }
+    if (outcome.path && world.hasTexture()) {
+        figures.push_back({"views.png",
+                           {"What the camera would see along the path, from the start to the goal.",
+                            viewsFigure(*outcome.path, config, world).png()}});
     }
     if (recorded) {
         const auto mean = meanDifference(*recorded);

@@ -43,7 +43,7 @@ TEST_F(CommandLine, PlanWritesEverythingItPromises) {
     const Execution run = plan(std::string("--audit") + kQuickPlan);
     ASSERT_EQ(run.exitCode, 0) << run.output;
     for (const char* name : {"result.json", "config.yaml", "path.tum", "top_view.png", "trace.png",
-                             "information.png", "report.json", "report.html"}) {
+                             "views.png", "information.png", "report.json", "report.html"}) {
         EXPECT_TRUE(fs::exists(folder_ / name)) << name;
     }
     const json r = result();
