@@ -26,6 +26,26 @@ function chartAxis(title, log) {
   };
 }
 
+/// A plugin that draws a dashed line across a chart.
+/// @param valueOf where on the x axis; null: no line
+function verticalLine(valueOf, color) {
+  return {
+    id: 'verticalLine',
+    afterDatasetsDraw(chart) {
+      if (valueOf() === null) return;
+      const x = chart.scales.x.getPixelForValue(valueOf()), {top, bottom} = chart.chartArea;
+      chart.ctx.save();
+      chart.ctx.strokeStyle = cssColor(color);
+      chart.ctx.setLineDash([4, 4]);
+      chart.ctx.beginPath();
+      chart.ctx.moveTo(x, top);
+      chart.ctx.lineTo(x, bottom);
+      chart.ctx.stroke();
+      chart.ctx.restore();
+    },
+  };
+}
+
 /// @param onPick called with the index of the waypoint nearest to a click
 function createCharts(onPick) {
   const charts = [];
@@ -35,22 +55,7 @@ function createCharts(onPick) {
       Math.abs(waypoint.point.distance - distance) <
       Math.abs(waypoints[best].point.distance - distance) ? i : best, 0);
 
-  /// A vertical line where the selected waypoint is.
-  const selectionLine = {
-    id: 'selectionLine',
-    afterDatasetsDraw(chart) {
-      if (selectedDistance === null) return;
-      const x = chart.scales.x.getPixelForValue(selectedDistance), {top, bottom} = chart.chartArea;
-      chart.ctx.save();
-      chart.ctx.strokeStyle = cssColor('--quiet');
-      chart.ctx.setLineDash([4, 4]);
-      chart.ctx.beginPath();
-      chart.ctx.moveTo(x, top);
-      chart.ctx.lineTo(x, bottom);
-      chart.ctx.stroke();
-      chart.ctx.restore();
-    },
-  };
+  const selectionLine = verticalLine(() => selectedDistance, '--quiet');
 
   function draw(id, curves, xTitle, yTitle, {log = false, alongPath = true} = {}) {
     const names = curves.length > 1;

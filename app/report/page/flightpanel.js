@@ -149,20 +149,7 @@ function createFlightPanel(flight3d) {
 
   // Charts ------------------------------------------------------------------------------------------
   const charts = [];
-  const cursor = {
-    id: 'cursor',
-    afterDatasetsDraw(chart) {
-      const x = chart.scales.x.getPixelForValue(time), {top, bottom} = chart.chartArea;
-      chart.ctx.save();
-      chart.ctx.strokeStyle = cssColor('--ink');
-      chart.ctx.setLineDash([4, 4]);
-      chart.ctx.beginPath();
-      chart.ctx.moveTo(x, top);
-      chart.ctx.lineTo(x, bottom);
-      chart.ctx.stroke();
-      chart.ctx.restore();
-    },
-  };
+  const cursor = verticalLine(() => time, '--ink');
   const kParts = [['fusion', 'fuse_s', '#4477aa'], ['clearance', 'clearance_s', '#ccbb44'], ['planning', 'plan_s', '#ee6677']];
 
   function drawChart(id, type, datasets, yTitle, log, stacked) {
