@@ -21,7 +21,9 @@ constexpr double kHidden = 0.3;  // around the robot, that such a camera does no
 constexpr int kMostInVain = 6;   // updates in a row without a way, before there is none
 constexpr int kBlindInVain = 1;  // steps into what was not seen that showed nothing either, before
                                  // there is no way
-constexpr double kWait = 1.;     // before an update without a keyframe, while nothing moves [s]
+constexpr double kMostStopped = 10.;  // before an obstacle in view that the map does not get,
+                                      // before there is no way [s]
+constexpr double kWait = 1.;  // before an update without a keyframe, while nothing moves [s]
 
 Matrix6 inCameraFrame(const Matrix6& covariance, const Pose& T_b_c) {
     const Matrix6 toCamera = adjoint(T_b_c.inverse());
@@ -47,6 +49,8 @@ class Exploration {
     bool endAs(FlightEnd end, const std::string& reason);
     std::string reasonForNoWay() const;
     Pose bodyOf(const Pose& T_c_w) const { return (setup_.truth.T_b_c * T_c_w).inverse(); }
+    bool isInTheWay(const TrackedFrame& tracked, const View& image);
+    double clearance(const Eigen::Vector3d& p_w) const;
 
     const ExplorationSetup& setup_;
     const std::atomic<bool>& interrupted_;
@@ -58,10 +62,14 @@ class Exploration {
     Pilot pilot_;
     SpaceAhead space_;
     Mapper mapper_;
+    double toStop_;           // flown until the robot stands, from an image on [m]
+    double tube_;             // radius of the way that must be free in every depth image [m]
+    ObstaclesInView inView_;  // of the last image
     bool isWhole_ = false;    // the plan flown leads to the goal
     int withoutWay_ = 0;      // updates in a row
-    int blindInVain_ = 0;     // steps since the map last grew
-    double lastUpdate_ = 0.;  // [s]
+    std::optional<double> stoppedSince_;  // by an obstacle in view [s]
+    int blindInVain_ = 0;                 // steps since the map last grew
+    double lastUpdate_ = 0.;              // [s]
     FlightEvaluator evaluator_;
     ExplorationResult result_;
 };
@@ -76,6 +84,25 @@ DepthSensor depthSensorOf(ExploreSensor sensor) {
             break;
     }
     return DepthSensor::none;
+}
+
+/// Flown from the exposure of an image that shows an obstacle until the robot stands, at full speed
+/// and if the image after it is missing.
+double stoppingDistance(const FlightOptions& flight) {
+    const MotionLimits& limits = flight.pilot.route.limits;
+    const SimulatedCameraOptions& camera = flight.robot.camera;
+    const double seconds = 2. * camera.period + camera.latency + flight.pilot.route.responseTime;
+    return limits.maxSpeed * (seconds + 0.5 * limits.maxSpeed / limits.maxAcceleration);
+}
+
+/// Half the width of the way that must be free until the robot stands: its body, and three
+/// standard deviations of odometry and depth over this distance; not more than plans keep free.
+double stoppingRadius(const ExplorationSetup& setup, double distance) {
+    const Config& config = setup.config;
+    const Eigen::Matrix3d odometry = config.belief.motionNoise.topLeftCorner<3, 3>();
+    const double depth = depthSigmaAtOneMetre(config) * distance * distance;
+    const double variance = distance * odometry.diagonal().maxCoeff() + depth * depth;
+    return std::min(config.robotRadius, setup.flight.bodyRadius + 3. * std::sqrt(variance));
 }
 
 /// The belief at take-off.
@@ -124,10 +151,12 @@ Exploration::Exploration(const ExplorationSetup& setup, const std::string& plann
       pilot_(stayingAt(startOf(setup), setup.truth.T_b_c), planner_.views(), robot_.camera(),
              setup.truth.T_b_c, pilotFor(setup, planner_)),
       mapper_(setup.config, map_),
+      toStop_(stoppingDistance(setup.flight)),
+      tube_(stoppingRadius(setup, toStop_)),
       evaluator_(setup.truth, robot_, setup.config.goal.position) {
     const Config& config = setup.config;
     const bool isAhead = looksAhead(setup.truth.T_b_c);
-    space_ = {.clearance = [this](const Eigen::Vector3d& p_w) { return planner_.clearance(p_w); },
+    space_ = {.clearance = [this](const Eigen::Vector3d& p_w) { return clearance(p_w); },
               .isSeen = [this](const Eigen::Vector3d& p_w) { return map_.isSeen(p_w); },
               .radius = config.robotRadius,
               .hidden = isAhead ? kHidden : 0.,
@@ -162,11 +191,29 @@ bool Exploration::isWaiting() const {
     return !isWhole_ && (pilot_.route().isAtGoal() || robot_.time() - lastUpdate_ > kWait);
 }
 
+/// Above the robot's radius the same as in the map. The last image shows obstacles before the map
+/// does; from them the body keeps away as far as it must to stop.
+double Exploration::clearance(const Eigen::Vector3d& p_w) const {
+    const double inView = inView_.clearance(p_w) + setup_.config.robotRadius - tube_;
+    return std::min(planner_.clearance(p_w), inView);
+}
+
+/// Whether an image shows that the way to be flown next is not free.
+bool Exploration::isInTheWay(const TrackedFrame& tracked, const View& image) {
+    if (image.depth.getSize() == 0) return false;
+    inView_ = map_.obstaclesIn(image.depth, robot_.camera(), tracked.T_c_w.mean, toStop_ + tube_);
+    std::vector<Eigen::Vector3d> way{bodyOf(tracker_.belief().mean).translation()};
+    for (const PlannedView& view : pilot_.route().ahead()) way.push_back(view.T_w_b.translation());
+    return !inView_.newWalls().empty() || inView_.isOn(way, tube_);
+}
+
 void Exploration::onImage(const TrackedFrame& tracked, const View& image) {
     View shown;
     planner_.views()->render(robot_.camera(), tracked.T_c_w.mean, shown);
     Stopwatch watch;
-    auto change = mapper_.add(tracked, image, shown, isWaiting());
+    const bool isStopped = isInTheWay(tracked, image);
+    auto change = mapper_.add(tracked, image, shown, isWaiting() || isStopped);
+    if (!change && isStopped) change.emplace();  // plan without a new map
     if (!change) return;
     updatePlan(tracked.T_c_w, *change, watch.seconds());
     if (!on_.moment) return;
@@ -201,6 +248,8 @@ void Exploration::flyOn(const UncertainPose& T_c_w) {
     FlyablePart way = flyablePart(path, space_);
     if (way.isBlind && !mayStepBlindly()) return hover(T_c_w);
     withoutWay_ = 0;
+    if (!way.isStopped) stoppedSince_.reset();
+    if (way.isStopped && !stoppedSince_) stoppedSince_ = robot_.time();
     blindInVain_ += way.isBlind;
     isWhole_ = way.isWhole;
     result_.blindSteps += way.isBlind;
@@ -250,6 +299,9 @@ bool Exploration::hasEnded() {
         return endAs(FlightEnd::lost, "tracking was lost for good");
     }
     if (withoutWay_ >= kMostInVain) return endAs(FlightEnd::noWay, reasonForNoWay());
+    if (stoppedSince_ && time - *stoppedSince_ > kMostStopped) {
+        return endAs(FlightEnd::noWay, "an obstacle in view that the map does not show");
+    }
     if (time > setup_.config.explore.timeLimit) {
         return endAs(FlightEnd::outOfTime, "the time limit was reached");
     }

@@ -110,6 +110,7 @@ FlyablePart flyablePart(const std::vector<BeliefPoint>& path, const SpaceAhead& 
         way.plan = plan;
         way.isWhole = true;
     } else if (free < kShort) {
+        way.isStopped = true;
         way.plan = hovering(path.front().T_w_b, path.front().covariance);
     } else if (auto look = isToLook ? lookAt(unseen.p_w, path.front()) : std::nullopt) {
         way.plan = std::move(*look);

@@ -23,6 +23,7 @@ struct FlyablePart {
     std::vector<PlannedView> plan;  ///< at least two views; the robot stays where they are equal
     bool isWhole = false;           ///< it leads to the end of the path
     bool isBlocked = false;         ///< by an obstacle: the path is out of date
+    bool isStopped = false;         ///< the obstacle is right ahead: the robot stays
     bool isBlind = false;           ///< into space that was not seen and cannot be looked at first
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "exploration/obstacles_in_view.hpp"
 #include "map/brick_leaves.hpp"
 
 namespace photonav {
@@ -12,7 +13,6 @@ namespace {
 
 constexpr int kEdge = MapChange::kBrickEdge;
 constexpr double kBelow = 3., kAbove = 1.;  // heights outside the bounds that matter [m]
-constexpr int kWall = 4;                    // occupied cells of a column that go on upward
 
 enum class CellState : char { unknown, free, occupied };
 
@@ -101,19 +101,23 @@ void ObstacleMap::updateColumn(const TexturedOcTree& map, const Eigen::Array2i& 
     std::array<int, kEdge * kEdge> walls{};  // occupied cells without a free one between
     for (int height = lowest_; height <= highest_; ++height) {
         const Eigen::Array3i brick(column.x(), column.y(), height);
-        const Brick states = statesOf(map, brick);
+        Brick states = statesOf(map, brick);
         bool hasChanged = false;
         for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
+            const Eigen::Array3i cell =
+                kEdge * brick + Eigen::Array3i(i % kEdge, i / kEdge % kEdge, i / (kEdge * kEdge));
+            const octomap::OcTreeKey key = keyOfCell(cell.x(), cell.y(), cell.z());
+            if (states[i] == CellState::free && forgotten_.contains(key)) {
+                states[i] = CellState::unknown;
+            }
             int& wall = walls[i % (kEdge * kEdge)];
             if (states[i] == CellState::occupied) ++wall;
             if (states[i] == CellState::free) wall = 0;
             const bool isUnknown = states[i] == CellState::unknown;
             if (isUnknown && unknown_ == UnknownSpace::pessimistic) continue;
-            const Eigen::Array3i cell =
-                kEdge * brick + Eigen::Array3i(i % kEdge, i / kEdge % kEdge, i / (kEdge * kEdge));
             const bool isOccupied =
-                states[i] == CellState::occupied || (isUnknown && wall >= kWall);
-            hasChanged |= set(keyOfCell(cell.x(), cell.y(), cell.z()), isOccupied);
+                states[i] == CellState::occupied || (isUnknown && wall >= kWallCells);
+            hasChanged |= set(key, isOccupied);
         }
         if (hasChanged) changed.occupancy.push_back(brick);
     }
@@ -130,6 +134,28 @@ MapChange ObstacleMap::update(const TexturedOcTree& map, const MapChange& change
     for (const auto& [x, y] : columns) updateColumn(map, {x, y}, changed);
     changed.normalize();
     return changed;
+}
+
+MapChange ObstacleMap::forget(const TexturedOcTree& map,
+                              const std::vector<octomap::OcTreeKey>& cells) {
+    MapChange changed;
+    for (const octomap::OcTreeKey& key : cells) {
+        if (forgotten_.insert(key).second) changed.occupancy.push_back(brickOf(key));
+    }
+    return update(map, changed);
+}
+
+MapChange ObstacleMap::remember(const TexturedOcTree& map, const ImageF& depth,
+                                const Camera& camera, const Pose& T_c_w) {
+    MapChange changed;
+    std::erase_if(forgotten_, [&](const octomap::OcTreeKey& key) {
+        const octomap::point3d p_w = map.keyToCoord(key);
+        const bool isFree =
+            isSeenThrough({p_w.x(), p_w.y(), p_w.z()}, depth, camera, T_c_w, map.getResolution());
+        if (isFree) changed.occupancy.push_back(brickOf(key));
+        return isFree;
+    });
+    return update(map, changed);
 }
 
 MapChange ObstacleMap::addHidden(const TexturedOcTree& map, const View& image, const Camera& camera,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <unordered_set>
 
 #include "config/explore_config.hpp"
 #include "map/map_change.hpp"
@@ -10,6 +11,9 @@
 #include "photometry/view.hpp"
 
 namespace photonav {
+
+/// Occupied cells of a column, one above the other, that go on upward.
+inline constexpr int kWallCells = 4;
 
 /// A camera that looks down sees the foot of a wall, but seldom the wall at the height at which the
 /// robot flies. Obstacles are therefore continued upward: above at least four occupied cells of a
@@ -29,6 +33,14 @@ class ObstacleMap {
     /// @return bricks whose obstacles changed
     MapChange update(const TexturedOcTree& map, const MapChange& change);
 
+    /// A wall has appeared below cells that may have been seen free before: until they are seen
+    /// free again, nothing is known of them. @return bricks whose obstacles changed
+    MapChange forget(const TexturedOcTree& map, const std::vector<octomap::OcTreeKey>& cells);
+    /// An image shows surfaces behind forgotten cells.
+    /// @return bricks whose obstacles changed
+    MapChange remember(const TexturedOcTree& map, const ImageF& depth, const Camera& camera,
+                       const Pose& T_c_w);
+
     /// Columns near a camera that looks down whose floor is in the image but hidden by a nearer
     /// surface, and of which nothing was seen. They and their eight neighbours count as occupied
     /// from `radius` below the camera upward.
@@ -47,6 +59,7 @@ class ObstacleMap {
     std::shared_ptr<TexturedOcTree> cells_;
     int lowest_, highest_;  // bricks that obstacles are looked for in
     UnknownSpace unknown_;
+    std::unordered_set<octomap::OcTreeKey, octomap::OcTreeKey::KeyHash> forgotten_;
 };
 
 }  // namespace photonav

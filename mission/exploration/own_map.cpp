@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "exploration/own_map.hpp"
 
+#include <cmath>
+
+#include "map/brick_leaves.hpp"
+
 namespace photonav {
 namespace {
 
 constexpr double kLooksAhead = 0.25;  // horizontal part of the axis of such a camera
 
-constexpr double kBeside = 0.02;      // [cells]
+constexpr double kBeside = 0.02;    // [cells]
+constexpr double kDisparity = 0.2;  // standard deviation of block matching [pixels]
+// Hits in a row after which a cell is occupied however long it was free, less a half for rounding.
+// A wrong hit beside a surface makes a cell occupied with the square of its probability.
+constexpr float kHitsToOccupy = 1.5F;
 constexpr float kForgotten = -0.01F;  // log odds: free, until a surface is seen there once
-
-Eigen::Array3i brickOf(const octomap::OcTreeKey& key) {
-    return Eigen::Array3i(key[0] - kKeyOfZero, key[1] - kKeyOfZero, key[2] - kKeyOfZero)
-        .unaryExpr([](int cell) { return cell >> 2; });
-}
 
 /// Depths that are fused; the others are 0.
 ImageF fusedDepth(const ImageF& depth, const FusionOptions& fusion) {
@@ -28,15 +31,26 @@ ImageF fusedDepth(const ImageF& depth, const FusionOptions& fusion) {
 
 bool looksAhead(const Pose& T_b_c) { return T_b_c.linear().col(2).head<2>().norm() > kLooksAhead; }
 
+double depthSigmaAtOneMetre(const Config& config) {
+    const ExploreConfig& explore = config.explore;
+    if (explore.sensor == ExploreSensor::depth) return explore.depthSigma;
+    return kDisparity / (config.camera.camera().fx() * explore.baseline);
+}
+
 OwnMap::OwnMap(const Config& config)
     : cells_(std::make_shared<TexturedOcTree>(config.explore.resolution)),
       obstacles_(config.explore.resolution, config.bounds, config.explore.unknown),
+      doubted_(config.explore.resolution, config.explore.range),
       errors_(std::make_shared<MapErrors>(config.explore.resolution)),
       photometric_(config.photometric),
+      precise_(std::sqrt(config.explore.resolution / (3. * depthSigmaAtOneMetre(config)))),
+      lowest_(config.bounds.min().z() - config.robotRadius),
+      highest_(config.bounds.max().z() + config.robotRadius),
       radius_(config.robotRadius),
       looksDown_(!looksAhead(config.camera.T_b_c())) {
     if (config.explore.unknownInformation == UnknownInformation::predicted) unseen_.emplace();
     fusion_.maxRange = config.explore.range;
+    cells_->setClampingThresMin(octomap::probability(-kHitsToOccupy * cells_->getProbHitLog()));
 }
 
 void OwnMap::compare(const View& shown, const ImageF& image, const Camera& camera) {
@@ -45,13 +59,23 @@ void OwnMap::compare(const View& shown, const ImageF& image, const Camera& camer
 }
 
 MapChange OwnMap::fuse(const View& image, const Camera& camera, const Pose& T_c_w, int number) {
+    const ObstaclesInView seen = obstaclesIn(image.depth, camera, T_c_w, fusion_.maxRange);
     MapChange change = photonav::fuse(*cells_, image, camera, T_c_w, fusion_);
     errors_->addSurfaces(number, fusedDepth(image.depth, fusion_), camera);
     change.join(obstacles_.update(*cells_, change));
+    change.join(obstacles_.forget(*cells_, seen.aboveNewWalls()));
+    change.join(obstacles_.remember(*cells_, image.depth, camera, T_c_w));
+    doubted_.doubtAround(seen.newWalls());
+    doubted_.look(image.depth, camera, T_c_w);
     if (looksDown_) {
         change.join(obstacles_.addHidden(*cells_, image, camera, T_c_w, 2. * radius_));
     }
     return change;
+}
+
+ObstaclesInView OwnMap::obstaclesIn(const ImageF& depth, const Camera& camera, const Pose& T_c_w,
+                                    double distance) const {
+    return {depth, camera, T_c_w, *cells_, {distance, precise_, lowest_, highest_}};
 }
 
 MapChange OwnMap::forget(const View& shown, const Camera& camera, const Pose& T_c_w) {
@@ -89,6 +113,7 @@ InformationModel OwnMap::information(const Camera& camera,
 }
 
 bool OwnMap::isSeen(const Eigen::Vector3d& p_w) const {
+    if (doubted_.contains(p_w)) return false;
     const double cell = cells_->getResolution();
     for (double below = 0.; below <= fusion_.maxRange; below += cell) {
         if (cells_->search(p_w.x(), p_w.y(), p_w.z() - below) != nullptr) return true;

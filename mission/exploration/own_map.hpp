@@ -6,8 +6,10 @@
 
 #include "config/config.hpp"
 #include "estimation/map_errors.hpp"
+#include "exploration/doubted_columns.hpp"
 #include "exploration/map_noise.hpp"
 #include "exploration/obstacle_map.hpp"
+#include "exploration/obstacles_in_view.hpp"
 #include "exploration/unseen_information.hpp"
 #include "map/map_fusion.hpp"
 
@@ -15,6 +17,10 @@ namespace photonav {
 
 /// Whether a camera looks ahead of its robot, rather than at the place below.
 bool looksAhead(const Pose& T_b_c);
+
+/// Standard deviation of the depths of a config's sensor at 1 m, growing with depth squared [m]; of
+/// stereo and monocular depth that of 0.2 pixels of disparity.
+double depthSigmaAtOneMetre(const Config& config);
 
 /// Map, obstacles in it, and how wrong it is, all from the images fused.
 class OwnMap {
@@ -40,7 +46,13 @@ class OwnMap {
         return obstacles_.addBody(*cells_, p_w, radius_);
     }
 
-    /// Whether a surface or free space was seen at a place or below it, within the sensor's range.
+    /// What an image shows that is not fused yet, near enough to matter.
+    /// @param distance from the camera [m]
+    ObstaclesInView obstaclesIn(const ImageF& depth, const Camera& camera, const Pose& T_c_w,
+                                double distance) const;
+
+    /// Whether a surface or free space was seen at a place or below it, within the sensor's range,
+    /// and no new obstacle near by has made this doubtful since.
     bool isSeen(const Eigen::Vector3d& p_w) const;
 
     const std::shared_ptr<TexturedOcTree>& cells() const { return cells_; }
@@ -54,12 +66,15 @@ class OwnMap {
   private:
     std::shared_ptr<TexturedOcTree> cells_;
     ObstacleMap obstacles_;
+    DoubtedColumns doubted_;
     std::shared_ptr<MapErrors> errors_;
     MapNoise noise_;
     std::optional<UnseenInformation> unseen_;
     PhotometricOptions photometric_;
     FusionOptions fusion_;
-    double radius_;  // of the robot [m]
+    double precise_;           // depth at which three standard deviations are a cell [m]
+    double lowest_, highest_;  // that obstacles matter at [m]
+    double radius_;            // of the robot [m]
     bool looksDown_;
 };
 

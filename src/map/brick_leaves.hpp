@@ -7,6 +7,12 @@
 
 namespace photonav {
 
+/// The brick of a cell: its index in the world, as in MapChange.
+inline Eigen::Array3i brickOf(const octomap::OcTreeKey& key) {
+    return Eigen::Array3i(key[0] - kKeyOfZero, key[1] - kKeyOfZero, key[2] - kKeyOfZero)
+        .unaryExpr([](int cell) { return cell >> 2; });
+}
+
 inline bool hasChildren(const TexturedOcTree& map, const TexturedOcTreeNode& node) {
     for (unsigned i = 0; i < 8; ++i) {
         if (map.nodeChildExists(&node, i)) return true;

@@ -124,6 +124,47 @@ TEST_F(RoomToExplore, ArrivesByOdometryWhereNothingHasTexture) {
     EXPECT_EQ(nameOf(flown(std::move(scene)).end), "uncertain arrival");
 }
 
+/// One world until it becomes another.
+class ChangingViews : public ViewSource {
+  public:
+    ChangingViews(const World& before, const World& after, const bool& hasChanged)
+        : before_(before), after_(after), hasChanged_(hasChanged) {}
+    void render(const Camera& camera, const Pose& T_c_w, View& view) const override {
+        (hasChanged_ ? after_ : before_).views().render(camera, T_c_w, view);
+    }
+
+  private:
+    const World& before_;
+    const World& after_;
+    const bool& hasChanged_;
+};
+
+/// A box comes down on the way, in space that the map has free, when the robot is 1.4 m before it.
+TEST_F(RoomToExplore, FliesAroundABoxThatAppearsInFrontOfIt) {
+    Scene boxed = room();
+    addBox(boxed, {3.2, 1.3, 0.}, {3.6, 2.7, 3.}, addTexture(boxed, valueNoise({.seed = 5})));
+    const World before(room(), config), after(boxed, config);
+    const PlanningProblem problem(config, before);
+    for (const std::uint32_t seed : {1U, 2U, 3U, 4U}) {
+        bool hasChanged = false;
+        ExplorationSetup setup = setUpExploration(problem);
+        setup.truth.truth = std::make_shared<ChangingViews>(before, after, hasChanged);
+        setup.truth.clearance = [&](const Eigen::Vector3d& p_w) {
+            return (hasChanged ? after : before).clearance(p_w);
+        };
+        const auto onExposure = [&](const Exposed& exposed) {
+            const Pose T_w_b = (setup.truth.T_b_c * exposed.T_c_w).inverse();
+            hasChanged = hasChanged || T_w_b.translation().x() > 1.8;
+        };
+        const ExplorationResult flight =
+            explore(setup, "rrt_star/forward", seed, kNotInterrupted, {.exposure = onExposure});
+        EXPECT_TRUE(hasChanged);
+        EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason << ", seed " << seed;
+        EXPECT_GT(flight.leastClearance, 0.15);
+        EXPECT_LT(flight.goalError, 0.3);
+    }
+}
+
 /// Images that are black or missing for a while, and depth that is missing for most pixels.
 TEST_F(RoomToExplore, ArrivesThroughABlackoutWithFewDepths) {
     config.fly.blackout = {3., 4.};

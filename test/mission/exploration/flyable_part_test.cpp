@@ -113,10 +113,11 @@ TEST(FlyablePart, NeverLeadsIntoAnObstacle) {
     space.clearance = [](const Vector3d& p_w) { return 2.5 - p_w.x(); };
     const FlyablePart way = flyablePart(straightPath(0.), space);
     EXPECT_TRUE(way.isBlocked);
-    EXPECT_FALSE(way.isWhole);
+    EXPECT_FALSE(way.isWhole || way.isStopped);
     EXPECT_NEAR(endOf(way), 1.95, 0.06);
     space.clearance = [](const Vector3d& p_w) { return 0.35 - p_w.x(); };
     EXPECT_EQ(endOf(flyablePart(straightPath(0.), space)), 0.);
+    EXPECT_TRUE(flyablePart(straightPath(0.), space).isStopped);
     // A robot that is too near may fly away, but not nearer.
     space.clearance = [](const Vector3d& p_w) { return 0.2 + p_w.x(); };
     EXPECT_TRUE(flyablePart(straightPath(0.), space).isWhole);

@@ -53,6 +53,33 @@ TEST(ObstacleMap, PessimismKeepsWhatIsKnownToBeFree) {
     EXPECT_EQ(ObservedColumn("ooooo..?????").obstacles(UnknownSpace::pessimistic), "ooooo..?????");
 }
 
+/// What was seen free above a wall before it came says nothing of its height.
+TEST(ObstacleMap, NewWallsGoOnThroughForgottenCells) {
+    ObservedColumn column("ooooo.......");
+    ObstacleMap obstacles(kCell, {Vector3d(-1., -1., 0.), Vector3d(1., 1., 1.)},
+                          UnknownSpace::optimistic);
+    obstacles.update(column.map, column.change);
+    const auto isObstacle = [&](double z) {
+        const auto* node = obstacles.cells()->search(0.05, 0.05, z);
+        return node != nullptr && obstacles.cells()->isNodeOccupied(*node);
+    };
+    EXPECT_FALSE(isObstacle(0.55));
+    std::vector<octomap::OcTreeKey> above;
+    for (const double z : {0.55, 0.65}) above.push_back(column.map.coordToKey(0.05, 0.05, z));
+    EXPECT_FALSE(obstacles.forget(column.map, above).empty());
+    EXPECT_TRUE(isObstacle(0.55) && isObstacle(0.65));
+    EXPECT_FALSE(isObstacle(0.75));
+    // A camera level with them sees a surface behind, then.
+    const Camera camera = makeCamera(94, 60, 1.2);
+    const Pose T_c_w = test::cameraAt({-1., 0.05, 0.6}, 0.);
+    ImageF depth(camera.height, camera.width, 1.F);
+    EXPECT_TRUE(obstacles.remember(column.map, depth, camera, T_c_w).empty());
+    depth = 2.F;
+    EXPECT_FALSE(obstacles.remember(column.map, depth, camera, T_c_w).empty());
+    EXPECT_FALSE(isObstacle(0.55) || isObstacle(0.65));
+    EXPECT_TRUE(obstacles.remember(column.map, depth, camera, T_c_w).empty());
+}
+
 TEST(ObstacleMap, TheBodysOwnPlaceIsFree) {
     ObservedColumn column("oo??????????");
     ObstacleMap obstacles(kCell, {Vector3d(-1., -1., 0.), Vector3d(1., 1., 1.)},

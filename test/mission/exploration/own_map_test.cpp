@@ -94,6 +94,57 @@ TEST_F(MapOfABox, ForgetsWhatIsInView) {
     EXPECT_FALSE(lists(0.05, -1.5, -0.05));
 }
 
+/// Free for ever so long, and occupied after two images of a box that was not there before; free
+/// again when it has gone.
+TEST_F(MapOfABox, FollowsWhatMoves) {
+    View empty;
+    MeshRenderer(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})))
+        .render(camera, T_c_w, empty);
+    OwnMap map(config);
+    const int pose = map.addPose({T_c_w, 1e-4 * Matrix6::Identity()});
+    const auto isOccupied = [&] { return isObstacle(map, 0.05, 0.35, 1.05); };
+    for (int i = 0; i < 20; ++i) map.fuse(empty, camera, T_c_w, pose);
+    EXPECT_TRUE(map.isSeen({0., -1.2, 1.}));
+    map.fuse(image, camera, T_c_w, pose);
+    EXPECT_FALSE(isOccupied());
+    map.fuse(image, camera, T_c_w, pose);
+    EXPECT_TRUE(isOccupied());
+    for (int i = 0; i < 20; ++i) map.fuse(image, camera, T_c_w, pose);
+    for (int i = 0; i < 4; ++i) map.fuse(empty, camera, T_c_w, pose);
+    EXPECT_FALSE(isOccupied());
+}
+
+/// Beyond the border of the image that shows it, a new box may go on.
+TEST_F(MapOfABox, DoubtsWhatIsNotInViewAroundANewOne) {
+    View empty;
+    const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
+    OwnMap map(config);
+    const auto look = [&](double x) {
+        const Pose there = test::cameraAt({x, 0., 2.}, test::kDown);
+        floor.render(camera, there, empty);
+        map.fuse(empty, camera, there, map.addPose({there, 1e-4 * Matrix6::Identity()}));
+    };
+    look(1.2);
+    look(0.);
+    const Eigen::Vector3d beyond(1.05, 0.35, 1.2), farBeyond(1.5, 0.35, 1.2);
+    ASSERT_TRUE(map.isSeen(beyond) && map.isSeen(farBeyond));
+    map.fuse(image, camera, T_c_w, map.addPose({T_c_w, 1e-4 * Matrix6::Identity()}));
+    EXPECT_FALSE(map.isSeen(beyond));
+    EXPECT_TRUE(map.isSeen(farBeyond));
+    EXPECT_TRUE(map.isSeen({0., -0.5, 1.2}));   // in view
+    EXPECT_FALSE(map.isSeen({0., 0.75, 1.2}));  // behind the box
+    look(1.2);
+    EXPECT_TRUE(map.isSeen(beyond));
+}
+
+TEST(DepthSigma, OfStereoIsThatOfDisparities) {
+    Config config;
+    EXPECT_EQ(depthSigmaAtOneMetre(config), config.explore.depthSigma);
+    config.explore.sensor = ExploreSensor::stereo;
+    const double f = config.camera.camera().fx();
+    EXPECT_NEAR(depthSigmaAtOneMetre(config), 0.2 / (f * config.explore.baseline), 1e-12);
+}
+
 TEST_F(MapOfABox, IsSeenAboveSurfacesWithinRange) {
     const OwnMap map = fused();
     EXPECT_TRUE(map.isSeen({0., -0.5, 1.}));

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Explorations in which a box, 1.2 m wide and 3 m high, appears ahead of the robot in space that
+// was seen free: a flight per seed, planner and distance flown until then. The face of the box
+// is 1.4 m from the robot, across its motion. "collided": the body, half of robot.radius, has
+// touched something. Usage: appearing_box_bench [scene = room | CONFIG] [seeds = 3] [away = 1.4]
+// [planners = rrt_star,belief_rrt_star]
+#include <fmt/format.h>
+#include <ompl/util/Console.h>
+
+#include <optional>
+#include <sstream>
+
+#include "exploration/exploration.hpp"
+#include "flight/flight_statistics.hpp"
+#include "thread_time.hpp"
+
+using namespace photonav;
+
+namespace {
+
+/// A room of 8 x 4 m; a box as high as the room stands between start and goal.
+Config roomConfig() {
+    Config config;
+    config.bounds = {Eigen::Vector3d(0.4, 0.4, 0.8), Eigen::Vector3d(7.6, 3.6, 1.4)};
+    config.start.position = {1., 2., 1.1};
+    config.start.yaw = 0.;
+    config.goal.position = {7., 2., 1.1};
+    config.space = StateKind::positionYaw;
+    config.robotRadius = 0.25;
+    config.camera.mount = "front45";
+    config.camera.width = 94;
+    config.camera.height = 60;
+    config.explore.vertices = 250;
+    config.explore.timeLimit = 120.;
+    return config;
+}
+
+Scene roomScene() {
+    Scene scene;
+    const auto floor = addTexture(scene, valueNoise({.size = {8., 4.}, .seed = 1}));
+    const auto walls = addTexture(scene, valueNoise({.size = {8., 3.}, .seed = 2}));
+    addBox(scene, {0., 0., 0.}, {8., 4., 3.}, walls, BoxInside::hollow);
+    addPlane(scene, {0., 0., 0.01}, {8., 0., 0.}, {0., 4., 0.}, floor);
+    addBox(scene, {4.5, 1.4, 0.}, {5., 2.6, 3.}, walls);
+    return scene;
+}
+
+/// A world that gets a box when told to.
+class BoxedWorld : public ViewSource {
+  public:
+    BoxedWorld(const Scene& scene, const Config& config)
+        : scene_(scene), config_(config), before_(scene, config) {}
+
+    void render(const Camera& camera, const Pose& T_c_w, View& view) const override {
+        now().views().render(camera, T_c_w, view);
+    }
+    double clearance(const Eigen::Vector3d& p_w) const { return now().clearance(p_w); }
+    const World& before() const { return before_; }
+    bool hasBox() const { return after_.has_value(); }
+
+    void addBoxAhead(const Eigen::Vector2d& p, const Eigen::Vector2d& ahead, double away) {
+        constexpr double kThickness = 0.4, kWidth = 1.2, kHeight = 3.;
+        const Eigen::Vector2d side(-ahead.y(), ahead.x());
+        const Eigen::Vector2d middle = p + (away + 0.5 * kThickness) * ahead;
+        Scene boxed = scene_;
+        addWall(boxed,
+                {.footprint = {middle - 0.5 * kWidth * side, middle + 0.5 * kWidth * side},
+                 .height = kHeight,
+                 .thickness = kThickness},
+                addTexture(boxed, valueNoise({.seed = 5})));
+        after_.emplace(std::move(boxed), config_);
+    }
+
+  private:
+    const World& now() const { return after_ ? *after_ : before_; }
+
+    Scene scene_;
+    Config config_;
+    World before_;
+    std::optional<World> after_;
+};
+
+void fly(const Scene& scene, Config config, const std::string& planner, std::uint32_t seed,
+         double flownBefore, double away) {
+    config.planner = planner;
+    auto world = std::make_shared<BoxedWorld>(scene, config);
+    const PlanningProblem problem(config, world->before());
+    ExplorationSetup setup = setUpExploration(problem);
+    setup.truth.truth = world;
+    setup.truth.clearance = [&](const Eigen::Vector3d& p_w) { return world->clearance(p_w); };
+    std::optional<Eigen::Vector3d> last;
+    double flown = 0., appeared = 0.;
+    const auto onExposure = [&](const Exposed& exposed) {
+        const Eigen::Vector3d p_w = (setup.truth.T_b_c * exposed.T_c_w).inverse().translation();
+        const Eigen::Vector3d moved = p_w - last.value_or(p_w);
+        last = p_w;
+        flown += moved.norm();
+        constexpr double kFlying = 0.1;  // between exposures [m]
+        if (world->hasBox() || flown < flownBefore || moved.head<2>().norm() < kFlying) return;
+        world->addBoxAhead(p_w.head<2>(), moved.head<2>().normalized(), away);
+        appeared = exposed.time;
+    };
+    const double begin = threadTime();
+    const ExplorationResult flight =
+        explore(setup, planner, seed, kNotInterrupted, {.exposure = onExposure});
+    fmt::print(
+        "{:16} {:4} {:5.1f} {:>18} {:8.3f} {:7.1f} {:7.1f} {:5.1f} {:4} {:8} {:6.2f} {:6.2f} "
+        "{:7.1f} {}\n",
+        planner, seed, flownBefore, world->hasBox() ? nameOf(flight.end) : "no box",
+        flight.leastClearance, flight.flown, flight.duration, appeared, flight.timesLost,
+        flight.rejectedImages, flight.goalError, neesPerDof(flight), 1e-3 * (threadTime() - begin),
+        flight.reason);
+    std::fflush(stdout);
+}
+
+std::string argument(int argc, char** argv, int i, const char* none) {
+    return argc > i ? argv[i] : none;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    ompl::msg::setLogLevel(ompl::msg::LOG_WARN);
+    const std::string name = argument(argc, argv, 1, "room");
+    const auto seeds = static_cast<std::uint32_t>(std::stoul(argument(argc, argv, 2, "3")));
+    const double away = std::stod(argument(argc, argv, 3, "1.4"));
+    const bool isRoom = name == "room";
+    const Config config = isRoom ? roomConfig() : loadConfig(name);
+    const Scene scene = isRoom ? roomScene() : loadScene(config.sceneFile);
+    fmt::print(
+        "planner          seed after                end clearance  flown  seconds  box lost "
+        "rejected  error   NEES CPU [s]\n");
+    std::istringstream planners(argument(argc, argv, 4, "rrt_star,belief_rrt_star"));
+    for (std::string planner; std::getline(planners, planner, ',');) {
+        for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+            for (const double flown : {0.8, 2.}) fly(scene, config, planner, seed, flown, away);
+        }
+    }
+}
