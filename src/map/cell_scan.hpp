@@ -26,6 +26,7 @@ struct CellPixels {
     double greySum = 0.;
     unsigned count = 0;
     float firstGrey = 0.F;
+    bool isBetween = false;  ///< no pixel shows it: these are points between pixels
     std::array<Sums, 6> faces{};
 
     static constexpr float kLeastWeight = 0.05F;  ///< of a pixel for one face: less is not summed

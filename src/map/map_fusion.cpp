@@ -2,8 +2,10 @@
 #include "map/map_fusion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "map/cell_scan.hpp"
@@ -20,6 +22,7 @@ using Eigen::Vector3d;
 constexpr double kMaxCells = 8.5e8;
 
 constexpr double kLeastReach = 0.025;  // of the differences for normals [m]
+constexpr double kMostBetween = 16.;   // cells from a pixel to the next, to fill those between
 
 /// Whether the pixel is at a depth edge: on a plane, inverse depth is linear in the image.
 bool atDepthEdge(const ImageF& depth, unsigned v, unsigned u, double jump) {
@@ -39,6 +42,7 @@ struct CellFrame {
     Vector3d eye;
     const Camera& camera;
     double resolution;
+    double longestRay = 1.;                  ///< to depth 1 [m]
     std::vector<Vector3d> columnDirections;  ///< of rays at depth 1, to be added to rowDirection()
 
     CellFrame(const Camera& cam, const Pose& T_c_w, double cellSize)
@@ -46,6 +50,11 @@ struct CellFrame {
           eye(-R * T_c_w.translation()),
           camera(cam),
           resolution(cellSize) {
+        for (const double u : {0., camera.width - 1.}) {
+            for (const double v : {0., camera.height - 1.}) {
+                longestRay = std::max(longestRay, camera.unproject(u, v).norm());
+            }
+        }
         for (unsigned u = 0; u < camera.width; ++u) {
             columnDirections.emplace_back((u - camera.cx()) / camera.fx() * R.col(0));
         }
@@ -100,6 +109,76 @@ bool remains(const ImageF& depth, const CellFrame& frame, const Vector3d& point)
         }
     }
     return false;
+}
+
+/// The surface between a pixel and the three next to it, right and below.
+struct Quad {
+    std::array<double, 4> inverseDepth;  ///< of (u, v), (u + 1, v), (u, v + 1), (u + 1, v + 1)
+    std::array<double, 4> grey;
+    int columns, rows;  ///< points that leave no cell out
+
+    static double mean(const std::array<double, 4>& at, double x, double y) {
+        return (1. - y) * ((1. - x) * at[0] + x * at[1]) + y * ((1. - x) * at[2] + x * at[3]);
+    }
+};
+
+/// Where neighbouring pixels of one surface are farther apart than the map's cells; else nothing.
+std::optional<Quad> sparseQuad(const View& seen, const CellFrame& frame,
+                               const FusionOptions& options, unsigned u, unsigned v) {
+    const float z = seen.depth[v][u], right = seen.depth[v][u + 1], below = seen.depth[v + 1][u];
+    if (!(z >= options.minRange && z <= options.maxRange)) return {};
+    // No more than the distance along the rays and that across them.
+    const double across = z / std::min(frame.camera.fx(), frame.camera.fy());
+    const double along = std::max(std::abs(right - z), std::abs(below - z));
+    if (frame.longestRay * along + across < frame.resolution) return {};
+    Quad quad{};
+    for (unsigned k = 0; k < 4; ++k) {
+        const unsigned column = u + k % 2, row = v + k / 2;
+        const float depth = seen.depth[row][column];
+        if (!(depth >= options.minRange && depth <= options.maxRange)) return {};
+        if (atDepthEdge(seen.depth, row, column, options.depthJump)) return {};
+        quad.inverseDepth[k] = 1. / depth;
+        quad.grey[k] = seen.intensity[row][column];
+    }
+    const Vector3d point = frame.point(u, v, z);
+    const double toRight = (frame.point(u + 1., v, right) - point).norm();
+    const double toBelow = (frame.point(u, v + 1., below) - point).norm();
+    if (std::max(toRight, toBelow) > kMostBetween) return {};
+    quad.columns = static_cast<int>(std::ceil(toRight));
+    quad.rows = static_cast<int>(std::ceil(toBelow));
+    return quad;
+}
+
+/// Cells that no pixel shows, since pixels of one surface are farther apart than cells, are hit by
+/// the surface between the pixels. Far away, and at grazing angles, the surface would otherwise
+/// have holes.
+void fillBetween(CellScan& scan, const View& seen, const CellFrame& frame,
+                 const FusionOptions& options, DepthNormals& normals) {
+    for (unsigned v = 1; v + 2 < frame.camera.height; ++v) {
+        bool hasNormals = false;
+        for (unsigned u = 1; u + 2 < frame.camera.width; ++u) {
+            const auto quad = sparseQuad(seen, frame, options, u, v);
+            if (!quad) continue;
+            if (options.surfaces && !hasNormals) normals.computeRow(v);
+            hasNormals = true;
+            for (int k = 1; k < quad->columns * quad->rows; ++k) {
+                const double x = double(k % quad->columns) / quad->columns;
+                const double y = double(k / quad->columns) / quad->rows;
+                const Vector3d end =
+                    frame.point(u + x, v + y, 1. / Quad::mean(quad->inverseDepth, x, y));
+                const Array3i cell = end.array().floor().cast<int>();
+                CellPixels& pixels = scan.obtain(cell);
+                if (pixels.count > 0 && !pixels.isBetween) continue;
+                if (pixels.count == 0) scan.addRay(end);
+                pixels.isBetween = true;
+                const auto grey = static_cast<float>(Quad::mean(quad->grey, x, y));
+                pixels.add(grey);
+                if (!options.surfaces) continue;
+                const Vector3d fromCentre = end - (cell.cast<double>() + 0.5).matrix();
+                pixels.addSurface(fromCentre.cast<float>(), normals.at(u), grey);
+            }
+        }
+    }
 }
 
 double farthest(const ImageF& depth, double maxRange) {
@@ -160,6 +239,7 @@ MapChange fuse(TexturedOcTree& map, const View& observed, const Camera& camera, 
             }
         }
     }
+    fillBetween(scan, observed, frame, options, normals);
     scan.castRays(frame.eye);
     return scan.apply(map, frame.eye, options,
                       [&](const Vector3d& point) { return remains(observed.depth, frame, point); });

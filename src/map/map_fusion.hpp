@@ -31,11 +31,13 @@ struct FusionOptions {
 /// raised, once per view. In every other cell that is crossed by the ray from the camera to the
 /// first such point, occupancy is lowered, once per view. One ray is cast per end cell, not per
 /// pixel, because neighbouring rays cross the same cells. A cell that is both crossed and an end is
-/// treated as an end. Behind surfaces, and along pixels without depth (not positive, or below
-/// minRange), nothing changes: unknown cells stay unknown. An
-/// occupied cell with surfaces stays as it is, too, where rays pass by them: unless some image
-/// point shows through the mean point of every surface. So a ray that arrives at a grazing angle,
-/// or passes close by, does not delete the surface next to it.
+/// treated as an end. Where neighbouring pixels of one surface are more than a cell apart, as far
+/// away, at grazing angles and in fine maps, the points between them count as pixels in cells that
+/// no pixel ends in: surfaces have no holes. Behind surfaces, and along pixels without depth (not
+/// positive, or below minRange), nothing changes: unknown cells stay unknown. An occupied cell with
+/// surfaces stays as it is, too, where rays pass by them: unless some image point shows through the
+/// mean point of every surface. So a ray that arrives at a grazing angle, or passes close by, does
+/// not delete the surface next to it.
 ///
 /// Surfaces: every pixel has a normal n from the depth image, and counts with n_a^2 for the face of
 /// its end cell that n points to along each axis a. Where these are at least 15 % of the cell's

@@ -137,6 +137,50 @@ TEST(MapFusion, DropsPixelsAtDepthEdges) {
     EXPECT_EQ(smeared(0.05), 0);
 }
 
+/// Share of the columns of cells in a square around the origin in which views show a surface at a
+/// height.
+double floorKept(const TexturedOcTree& map, double reach, double height) {
+    int kept = 0, all = 0;
+    const double cell = map.getResolution();
+    for (double x = -reach; x < reach; x += cell) {
+        for (double y = -reach; y < reach; y += cell, ++all) {
+            const auto shows = [&](double z) {
+                const auto* leaf = map.search(x + 0.3 * cell, y + 0.3 * cell, z);
+                return leaf != nullptr && map.isNodeOccupied(leaf) &&
+                       !leaf->surfaces.shown().empty();
+            };
+            kept += shows(height - 0.2 * cell) || shows(height + 0.2 * cell) ? 1 : 0;
+        }
+    }
+    return double(kept) / all;
+}
+
+/// Here pixels are farther apart than cells, rows as far as five. From one half of the square to
+/// the other, images see it at a grazing angle. Where the floor is on the border between two layers
+/// of cells, noise moves its depth from one to the other.
+TEST(MapFusion, AFineMapKeepsItsFloor) {
+    const Camera camera = makeCamera(94, 60, 1.2);
+    std::mt19937 random(4);
+    std::normal_distribution<float> normal(0.F, 1.5e-3F);
+    for (const double height : {0.005, 0.01}) {
+        TexturedOcTree map(0.01);
+        double first = 0.;
+        for (int i = 0; i < 6; ++i) {
+            const double yaw = 2. * EIGEN_PI * i / 6;
+            const Pose T_c_w = lookDown(-1.2 * std::cos(yaw), -1.2 * std::sin(yaw), 0.8, 0.6, yaw);
+            View view = floorView(camera, T_c_w, test::carpet, height);
+            for (unsigned p = 0; p < view.depth.getSize(); ++p) {
+                float& z = view.depth.bitmap[p];
+                z += normal(random) * z * z;
+            }
+            fuse(map, view, camera, T_c_w, {.maxRange = 2.5});
+            if (i == 0) first = floorKept(map, 0.3, height);
+        }
+        EXPECT_GT(first, 0.97) << height;
+        EXPECT_GT(floorKept(map, 0.3, height), 0.99) << height;
+    }
+}
+
 TEST(MapFusion, RefusesInputThatDoesNotFit) {
     const Camera camera = makeCamera(16, 12, 1.2);
     TexturedOcTree map(0.05);
