@@ -11,6 +11,7 @@
 #include "io/number.hpp"
 #include "io/stopwatch.hpp"
 #include "map/octree_file.hpp"
+#include "render/interruptible_views.hpp"
 #include "report/check_report.hpp"
 #include "result/json_values.hpp"
 
@@ -149,8 +150,11 @@ int runCheck(const CheckCommandOptions& options, const std::atomic<bool>& interr
         if (options.check.headings > 0 && !interrupted) {
             CheckOptions same = options.check;
             same.headings = 0;
-            report.turned = checkLocalisation(withBestHeadings(report.checked), config,
-                                              report.world, same, interrupted);
+            try {
+                report.turned = checkLocalisation(withBestHeadings(report.checked), config,
+                                                  report.world, same, interrupted);
+            } catch (const RenderingStopped&) {  // before its first place
+            }
         }
         report.flights = flightsAlong(report, options, line, interrupted);
     }

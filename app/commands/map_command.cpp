@@ -13,6 +13,7 @@
 #include "map/octree_file.hpp"
 #include "map/surface_cloud.hpp"
 #include "recording/view_difference.hpp"
+#include "render/interruptible_views.hpp"
 #include "render/voxel_renderer.hpp"
 #include "report/comparison_images.hpp"
 #include "report/convergence_figure.hpp"
@@ -57,7 +58,8 @@ void compareFrames(const MapCommandOptions& options, const Recording& recording,
                    const TexturedOcTree& map, const std::atomic<bool>& interrupted, MapRun& run) {
     if (options.compareEvery < 1) return;
     const Sequence& sequence = recording.sequence;
-    const VoxelRenderer renderer(map, options.unknownToCamera);
+    const InterruptibleViews views(std::make_shared<VoxelRenderer>(map, options.unknownToCamera),
+                                   [&] { return interrupted.load(); });
     const auto step = std::size_t(options.compareEvery);
     const std::size_t count = (sequence.frames.size() + step - 1) / step;
     std::size_t pictures = 0;
@@ -65,7 +67,7 @@ void compareFrames(const MapCommandOptions& options, const Recording& recording,
     for (std::size_t k = 0; k < count && !interrupted; ++k) {
         const RecordedFrame frame = recording.load(k * step);
         if (isBlack(frame.view.intensity)) continue;
-        renderer.render(sequence.camera, frame.T_c_w, predicted);
+        views.render(sequence.camera, frame.T_c_w, predicted);
         const ViewDifference d = compareViews(frame.view, predicted);
         run.compared.push_back({{"timestamp", frame.timestamp},
                                 {"predicted", d.predicted},
@@ -74,6 +76,7 @@ void compareFrames(const MapCommandOptions& options, const Recording& recording,
                                 {"contrast", orNull(d.contrast)},
                                 {"mean_abs_depth", orNull(d.meanDepth)},
                                 {"median_abs_depth", orNull(d.medianDepth)}});
+        if (interrupted) return;
         const std::size_t every = std::max<std::size_t>(1, count / kCompared);
         if (k % every == every / 2 && pictures < kCompared) {
             const auto images = comparisonImages(
@@ -110,7 +113,10 @@ MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& inte
     writeMaps(folder.path(), map, run.trajectory);
     time["write_s"] = watch.lap();
 
-    compareFrames(options, recording, map, interrupted, run);
+    try {
+        compareFrames(options, recording, map, interrupted, run);
+    } catch (const RenderingStopped&) {  // the map is whole
+    }
     time["compare_s"] = watch.lap();
     run.interrupted = interrupted;
     MapReport report;

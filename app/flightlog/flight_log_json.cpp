@@ -244,11 +244,12 @@ FlightLog flightLogFrom(const json& content) {
 }
 
 FlightLog readFlightLog(const std::filesystem::path& file) {
-    constexpr std::size_t kMostDepth = 20;  // of nested lists in a log, which has six
     return reading(file.string(), [&] {
         const auto bytes = readBytes(file.string());
         const std::string text(bytes.begin(), bytes.end());
-        if (nestingDepth(text) > kMostDepth) throw InputError(file.string(), "", "nested too deep");
+        if (nestingDepth(text) > kMostJsonDepth) {
+            throw InputError(file.string(), "", "nested too deep");
+        }
         return flightLogFrom(json::parse(text));
     });
 }

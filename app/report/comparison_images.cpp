@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "geometry/constants.hpp"
+#include "recording/halved_view.hpp"
 
 namespace photonav {
 namespace {
@@ -15,13 +16,17 @@ constexpr double kFullDifference = 0.5;  // grey values; brightest colour of the
 std::vector<CaptionedImage> comparisonImages(const View& observed, const View& predicted,
                                              const std::string& caption) {
     const ViewDifference difference = compareViews(observed, predicted);
-    return {{caption, greyPicture(observed.intensity)},
+    View seen = observed, shown = predicted;
+    const int halvings = halvingsToShow(observed.intensity.getWidth());
+    halve(seen, halvings);
+    halve(shown, halvings);
+    return {{caption, greyPicture(seen.intensity)},
             {fmt::format("predicted ({:.0f} % of the pixels)", 100. * difference.predicted),
-             predictedPicture(predicted)},
+             predictedPicture(shown)},
             {difference.meanIntensity ? fmt::format("difference (mean {:.3f}; yellow: ≥ {})",
                                                     *difference.meanIntensity, kFullDifference)
                                       : "no pixel is predicted",
-             differencePicture(observed.intensity, predicted, kFullDifference)}};
+             differencePicture(seen.intensity, shown, kFullDifference)}};
 }
 
 Figure recordedFramesFigure(const RecordedComparison& comparison) {

@@ -15,7 +15,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kSchema = 1;
-constexpr std::size_t kMostDepth = 100;  // of nested lists in a report, which has about ten
 constexpr std::string_view kPngPrefix = "data:image/png;base64,";
 static_assert(std::endian::native == std::endian::little,
               "arrays are stored as they lie in memory");
@@ -58,7 +57,7 @@ json treeToJson(const DrawnTree& tree) {
 }
 
 void checkReport(const std::string& file, const std::string& text) {
-    if (nestingDepth(text) > kMostDepth) throw InputError(file, "", "nested too deep");
+    if (nestingDepth(text) > kMostJsonDepth) throw InputError(file, "", "nested too deep");
     const json content = json::parse(text, nullptr, false);
     if (content.is_discarded()) throw InputError(file, "", "not JSON, or only a part of it");
     if (!content.is_object() || !content.contains("schema"))

@@ -26,7 +26,6 @@ using Columns = std::array<std::optional<std::size_t>, kColumnCount>;
 /// The first line that is not blank, nor a comment.
 std::string firstLine(const std::string& file) {
     std::ifstream in = openToRead(file);
-    if (!in) throw InputError(file, "", "no such file");
     for (std::string line; std::getline(in, line);) {
         const std::size_t begin = line.find_first_not_of(" \t\r");
         if (begin != std::string::npos && line[begin] != '#') return line.substr(begin);

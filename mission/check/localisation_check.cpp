@@ -11,6 +11,7 @@
 #include "flight/arrival.hpp"
 #include "flight/flight_setup.hpp"
 #include "geometry/se3.hpp"
+#include "render/interruptible_views.hpp"
 
 namespace photonav {
 namespace {
@@ -99,12 +100,14 @@ class LossRule {
 /// The belief along a trajectory.
 class Walk {
   public:
-    Walk(const Config& config, const World& world, const CheckOptions& options)
+    /// @param views of the world
+    Walk(const Config& config, const World& world, const ViewSource& views,
+         const CheckOptions& options)
         : config_(config),
           options_(options),
           camera_(config.camera.camera()),
           T_b_c_(config.camera.T_b_c()),
-          images_(world.views(), camera_, config.photometric, alignmentIn(config, world)),
+          images_(views, camera_, config.photometric, alignmentIn(config, world)),
           loss_(options_, camera_) {
         const Matrix6 toCamera = adjoint(T_b_c_.inverse());
         belief_.covariance = toCamera * config.belief.initialCovariance * toCamera.transpose();
@@ -259,12 +262,18 @@ CheckedTrajectory checkLocalisation(const GivenTrajectory& trajectory, const Con
                                     const std::function<void(double)>& onProgress) {
     const std::vector<WayPlace> places =
         placesAlong(trajectory, config.belief.ds, config.rotationWeight);
-    Walk walk(config, world, options);
+    const InterruptibleViews views(world.sharedViews(), [&] { return interrupted.load(); });
+    Walk walk(config, world, views, options);
     CheckedTrajectory checked;
     checked.places.push_back(walk.begin(places.front()));
-    for (std::size_t i = 1; i < places.size() && !interrupted; ++i) {
-        checked.places.push_back(walk.next(places[i], places[i].distance - places[i - 1].distance));
-        if (onProgress) onProgress(static_cast<double>(i) / static_cast<double>(places.size() - 1));
+    try {
+        for (std::size_t i = 1; i < places.size() && !interrupted; ++i) {
+            checked.places.push_back(
+                walk.next(places[i], places[i].distance - places[i - 1].distance));
+            if (onProgress)
+                onProgress(static_cast<double>(i) / static_cast<double>(places.size() - 1));
+        }
+    } catch (const RenderingStopped&) {  // the places so far are whole
     }
     checked.length = checked.places.back().length;
     checked.meanTrace = meanTraceOf(checked.places);

@@ -86,6 +86,7 @@ struct CheckedTrajectory {
 /// Views are rendered exactly where the trajectory has them, not at the centres of the planner's
 /// cells.
 /// @param interrupted the places so far are returned when it is set
+/// @throws RenderingStopped when there are none yet, inside a large view
 /// @param onProgress share done, in [0, 1]
 CheckedTrajectory checkLocalisation(const GivenTrajectory& trajectory, const Config& config,
                                     const World& world, const CheckOptions& options = {},

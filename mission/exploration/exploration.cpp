@@ -13,6 +13,7 @@
 #include "geometry/se3.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
+#include "render/interruptible_views.hpp"
 
 namespace photonav {
 namespace {
@@ -38,6 +39,8 @@ class Exploration {
     ExplorationResult run();
 
   private:
+    void flyToTheEnd();
+    void stopIfInterrupted() const;
     void onImage(const TrackedFrame& tracked, const View& image);
     void updatePlan(const UncertainPose& T_c_w, MapChange& change, double fuseSeconds);
     void flyOn(const UncertainPose& T_c_w);
@@ -51,6 +54,12 @@ class Exploration {
     Pose bodyOf(const Pose& T_c_w) const { return (setup_.truth.T_b_c * T_c_w).inverse(); }
     bool isInTheWay(const TrackedFrame& tracked, const View& image);
     double clearance(const Eigen::Vector3d& p_w) const;
+    std::shared_ptr<const ViewSource> interruptible(std::shared_ptr<const ViewSource> views) const {
+        return std::make_shared<InterruptibleViews>(std::move(views),
+                                                    [this] { return interrupted_.load(); });
+    }
+    /// Views of the present map.
+    std::shared_ptr<const ViewSource> views() const { return interruptible(planner_.views()); }
 
     const ExplorationSetup& setup_;
     const std::atomic<bool>& interrupted_;
@@ -144,11 +153,11 @@ Exploration::Exploration(const ExplorationSetup& setup, const std::string& plann
       on_(on),
       map_(setup.config),
       planner_(setup.config, map_, explorePlanner(planner), seed),
-      robot_(setup.truth.truth, setup.truth.camera, setup.truth.T_b_c,
+      robot_(interruptible(setup.truth.truth), setup.truth.camera, setup.truth.T_b_c,
              drawStart(startOf(setup), setup.truth.T_b_c, seed), setup.truth.noise,
              setup.flight.robot, seed),
-      tracker_(planner_.views(), robot_.camera(), startOf(setup), trackerFor(setup, map_)),
-      pilot_(stayingAt(startOf(setup), setup.truth.T_b_c), planner_.views(), robot_.camera(),
+      tracker_(views(), robot_.camera(), startOf(setup), trackerFor(setup, map_)),
+      pilot_(stayingAt(startOf(setup), setup.truth.T_b_c), views(), robot_.camera(),
              setup.truth.T_b_c, pilotFor(setup, planner_)),
       mapper_(setup.config, map_),
       toStop_(stoppingDistance(setup.flight)),
@@ -168,22 +177,37 @@ Exploration::Exploration(const ExplorationSetup& setup, const std::string& plann
 }
 
 ExplorationResult Exploration::run() {
+    try {
+        flyToTheEnd();
+    } catch (const RenderingStopped&) {
+        endAs(FlightEnd::stopped, "interrupted");
+    }
+    evaluator_.finish(tracker_);
+    return resultSoFar();
+}
+
+void Exploration::flyToTheEnd() {
     BodyVelocity command;
     const double dt = setup_.flight.timeStep;
     for (double seconds = 0.;; seconds = dt) {
         const Observation observation = robot_.fly(command, seconds);
+        stopIfInterrupted();
         if (on_.exposure && robot_.exposed()) on_.exposure(*robot_.exposed());
         const std::vector<TrackedFrame> tracked = tracker_.update(observation);
         evaluator_.onStep(tracked, tracker_, evaluator_.result().flown);
         for (std::size_t i = 0; i < tracked.size(); ++i) {
+            stopIfInterrupted();
             pilot_.observe(tracker_, tracked[i], observation.frames[i].view.intensity);
             onImage(tracked[i], observation.frames[i].view);
         }
-        if (hasEnded()) break;
+        if (hasEnded()) return;
         command = pilot_.command(tracker_, observation.time, dt);
     }
-    evaluator_.finish(tracker_);
-    return resultSoFar();
+}
+
+/// Between the steps that take long where images are large.
+void Exploration::stopIfInterrupted() const {
+    if (interrupted_) throw RenderingStopped();
 }
 
 /// Whether the robot is where its plan ends for now.
@@ -209,10 +233,11 @@ bool Exploration::isInTheWay(const TrackedFrame& tracked, const View& image) {
 
 void Exploration::onImage(const TrackedFrame& tracked, const View& image) {
     View shown;
-    planner_.views()->render(robot_.camera(), tracked.T_c_w.mean, shown);
+    views()->render(robot_.camera(), tracked.T_c_w.mean, shown);
     Stopwatch watch;
     const bool isStopped = isInTheWay(tracked, image);
     auto change = mapper_.add(tracked, image, shown, isWaiting() || isStopped);
+    stopIfInterrupted();
     if (!change && isStopped) change.emplace();  // plan without a new map
     if (!change) return;
     updatePlan(tracked.T_c_w, *change, watch.seconds());
@@ -231,8 +256,8 @@ void Exploration::updatePlan(const UncertainPose& T_c_w, MapChange& change, doub
     update.fuseSeconds = fuseSeconds + watch.seconds();
     result_.keyframes = mapper_.keyframes();
     planner_.update(change, T_c_w, update, interrupted_);
-    tracker_.setMap(planner_.views());
-    pilot_.setMap(planner_.views());
+    tracker_.setMap(views());
+    pilot_.setMap(views());
     lastUpdate_ = robot_.time();
     flyOn(T_c_w);
     result_.updates.push_back(update);
@@ -290,7 +315,7 @@ std::string Exploration::reasonForNoWay() const {
 
 bool Exploration::hasEnded() {
     const double time = robot_.time();
-    if (interrupted_) return endAs(FlightEnd::stopped, "interrupted");
+    stopIfInterrupted();
     const double clearance = evaluator_.result().leastClearance;
     if (clearance < setup_.flight.bodyRadius) {
         return endAs(FlightEnd::collided, fmt::format("an obstacle {:.2f} m away", clearance));

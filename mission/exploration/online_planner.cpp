@@ -81,6 +81,7 @@ std::optional<Eigen::Vector3d> OnlinePlanner::flyableNear(const Eigen::Vector3d&
 
 void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, PlanUpdate& update,
                            const std::atomic<bool>& interrupted) {
+    const InterruptionScope scope = problem_.interruptedBy(interrupted);
     Stopwatch watch;
     world_.mapChanged(change);
     update.clearanceSeconds = watch.seconds();

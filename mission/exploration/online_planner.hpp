@@ -34,6 +34,7 @@ class OnlinePlanner {
 
     /// Plans from a believed pose, once the map has changed.
     /// @param update all but `time` and `fuseSeconds` is set
+    /// @throws RenderingStopped when it is interrupted inside a large view
     void update(const MapChange& change, const UncertainPose& T_c_w, PlanUpdate& update,
                 const std::atomic<bool>& interrupted);
 

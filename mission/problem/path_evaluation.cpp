@@ -7,7 +7,6 @@
 
 #include "geometry/se3.hpp"
 #include "planners/path_descent.hpp"
-#include "problem/interruption_scope.hpp"
 #include "problem/planning_problem.hpp"
 
 namespace photonav {
@@ -71,7 +70,7 @@ EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
                                         const std::vector<Place>& waypoints,
                                         const std::atomic<bool>& interrupted) {
     kappa(interrupted);
-    const InterruptionScope scope(*interruption_, interrupted);
+    const InterruptionScope scope = interruptedBy(interrupted);
     std::vector<ob::ScopedState<>> states;
     std::vector<const ob::State*> pointers;
     states.reserve(waypoints.size());
@@ -120,7 +119,7 @@ double PlanningProblem::kappa(const std::atomic<bool>& interrupted) {
 }
 
 double PlanningProblem::balancedKappa(const std::atomic<bool>& interrupted) {
-    const InterruptionScope scope(*interruption_, interrupted);
+    const InterruptionScope scope = interruptedBy(interrupted);
     const auto planner = makePlanner("rrt_star", evaluator_, config_.seed);
     planner->solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
     std::vector<const ob::State*> path(planner->bestPath().begin(), planner->bestPath().end());

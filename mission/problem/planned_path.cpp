@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/error.hpp"
+#include "io/json_nesting.hpp"
 #include "io/reading.hpp"
 
 namespace photonav {
@@ -46,8 +47,11 @@ PlanSource findPlan(const std::string& argument) {
 EvaluatedPath readPlannedPath(const fs::path& resultFile, PlanningProblem& problem,
                               const std::atomic<bool>& interrupted) {
     std::ifstream stream = openToRead(resultFile.string());
-    if (!stream) throw InputError(resultFile.string(), "", "cannot be read");
-    const json result = json::parse(stream, nullptr, false);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (nestingDepth(text) > kMostJsonDepth) {
+        throw InputError(resultFile.string(), "", "nested too deep");
+    }
+    const json result = json::parse(text, nullptr, false);
     if (!result.is_object()) throw InputError(resultFile.string(), "", "not a JSON object");
     if (result.value("command", "") != "plan") {
         throw InputError(resultFile.string(), "command", "not a result of photonav plan");

@@ -10,7 +10,6 @@
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "planners/planner_table.hpp"
-#include "problem/interruption_scope.hpp"
 #include "problem/tree_evolution.hpp"
 #include "render/interruptible_views.hpp"
 
@@ -131,7 +130,7 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
         return interrupted.load();
     };
     {
-        const InterruptionScope scope(*interruption_, interrupted);
+        const InterruptionScope scope = interruptedBy(interrupted);
         planner->solve(ob::PlannerTerminationCondition(isDone));
     }
     show(outcome.progress.emplace_back(progress()));

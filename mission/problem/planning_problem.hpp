@@ -12,6 +12,7 @@
 
 #include "config/config.hpp"
 #include "planners/audit.hpp"
+#include "problem/interruption_scope.hpp"
 #include "problem/world.hpp"
 
 namespace photonav {
@@ -58,8 +59,6 @@ struct PlanOutcome {
     /// In a word or two: "done", "failed" or "no path".
     std::string status() const { return isSolved() ? "done" : path ? "failed" : "no path"; }
 };
-
-inline const std::atomic<bool> kNotInterrupted{false};
 
 /// Start, goal and robot of a config in a world, and the planners that solve them:
 ///
@@ -135,6 +134,11 @@ class PlanningProblem {
     /// @param seed default: the config's
     std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
                                                std::optional<std::uint32_t> seed = {});
+    /// Lets a flag end the large views of planners and of evaluations, which throw
+    /// RenderingStopped.
+    [[nodiscard]] InterruptionScope interruptedBy(const std::atomic<bool>& interrupted) {
+        return {*interruption_, interrupted};
+    }
     /// Updates the cached views and the planners made here, once the map of the world has changed
     /// and World::mapChanged() was called. Planners keep what is still valid: solve() goes on from
     /// there. Call it for every problem in the world, one by one.
@@ -170,7 +174,7 @@ class PlanningProblem {
 
     Config config_;  // its kappa may be automatic until it is needed
     const World& world_;
-    /// What ends the rendering of views, in solve() alone; of all problems over the same views.
+    /// What ends the rendering of views; of all problems over the same views.
     std::shared_ptr<const std::atomic<bool>*> interruption_ =
         std::make_shared<const std::atomic<bool>*>(&kNotInterrupted);
     MakeInformationModel photometric_;

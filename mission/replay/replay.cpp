@@ -12,6 +12,7 @@
 #include "io/error.hpp"
 #include "io/number.hpp"
 #include "mapping/map_config.hpp"
+#include "render/interruptible_views.hpp"
 #include "replay/calibration_file.hpp"
 
 namespace photonav {
@@ -198,7 +199,7 @@ Replay::Replay(const ReplayOptions& options) : options_(options) {
     options_.leastSigmaRotation = alignment_.trust.leastSigmaRotation;
 }
 
-ReplayTracker Replay::makeTracker() const {
+ReplayTracker Replay::makeTracker(const std::function<bool()>& isStopped) const {
     const Camera& camera = recording_.sequence.camera;
     if (options_.odometry) {
         KeyframeChainOptions odometry;
@@ -208,13 +209,15 @@ ReplayTracker Replay::makeTracker() const {
     }
     TrackerOptions tracker;
     tracker.map = alignment_;
-    return mapTracker(map_.views, camera, start_, tracker,
+    std::shared_ptr<const ViewSource> views = map_.views;
+    if (isStopped) views = std::make_shared<InterruptibleViews>(views, isStopped);
+    return mapTracker(views, camera, start_, tracker,
                       static_cast<unsigned>(options_.maxWidth.value_or(kWidthInMap)));
 }
 
 ReplayRun Replay::run(const std::function<bool()>& isStopped,
                       const std::function<void(std::size_t)>& progress) const {
-    ReplayRun run = replay(recording_, makeTracker(), isStopped, progress);
+    ReplayRun run = replay(recording_, makeTracker(isStopped), isStopped, progress);
     if (options_.odometry) alignToTruth(run);
     return run;
 }

@@ -35,7 +35,8 @@ class Replay {
 
     /// Tracks the recording from its first image on. The path of odometry is moved so that its
     /// first pose is the true one.
-    /// @param isStopped asked before every frame; the run ends with the frames that were tracked
+    /// @param isStopped asked before every frame, and in large views of a map; the run ends with
+    /// the frames that were tracked
     /// @param progress called after every frame with the number done
     /// @throws InputError when none of the first ten frames can be loaded, with the reason of the
     ///         first
@@ -43,7 +44,7 @@ class Replay {
                   const std::function<void(std::size_t done)>& progress = {}) const;
 
   private:
-    ReplayTracker makeTracker() const;
+    ReplayTracker makeTracker(const std::function<bool()>& isStopped) const;
 
     ReplayOptions options_;
     Recording recording_;

@@ -8,11 +8,14 @@
 
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
+#include "recording/halved_view.hpp"
+#include "render/interruptible_views.hpp"
 
 namespace photonav {
 namespace {
 
 constexpr std::size_t kStrips = 5;
+constexpr unsigned kStripWidth = 640;     // of their views, at most [pixels]
 constexpr std::size_t kFirstFrames = 10;  // at least one of them must be readable
 
 bool isStripFrame(std::size_t i, std::size_t count) {
@@ -77,11 +80,13 @@ void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, Repla
 ReplayStrip stripOf(const Recording& recording, const ReplayTracker& tracker, const ReplayRun& run,
                     View observed) {
     const ReplayedFrame& frame = run.frames.back();
+    const int halvings = halvingsToShow(tracker.camera.width);
+    halve(observed, halvings);
     std::optional<TrackedView> keyframe;
     if (frame.tracked.keyframe) {
         const ReplayedFrame& earlier = frameAt(run, *frame.tracked.keyframe);
         keyframe = {recording.view(earlier.index), earlier.tracked};
-        halve(keyframe->view, tracker.halvings);
+        halve(keyframe->view, tracker.halvings + halvings);
     }
     const TrackedView seen{std::move(observed), frame.tracked};
     View predicted = tracker.predict(seen, keyframe);
@@ -89,46 +94,58 @@ ReplayStrip stripOf(const Recording& recording, const ReplayTracker& tracker, co
     return {fmt::format("frame {}: {}", frame.index, frame.words), seen.view, std::move(predicted)};
 }
 
+struct Counts {
+    std::size_t tracked = 0, lost = 0;
+    std::size_t notFound = 0;  ///< though there was something to be seen
+};
+
+/// Loads and tracks the next frame.
+/// @throws RenderingStopped as the views of a map do; the frames so far are whole
+void addFrame(const Recording& recording, const ReplayTracker& tracker, ReplayRun& run,
+              Counts& counts) {
+    const std::vector<Sequence::Entry>& entries = recording.sequence.frames;
+    const std::size_t i = run.frames.size();
+    ReplayedFrame frame;
+    frame.index = i;
+    frame.timestamp = entries[i].timestamp;
+    if (entries[i].hasPose) frame.truth_c_w = entries[i].T_c_w;
+    Stopwatch watch;
+    std::optional<View> view = tryToLoad(recording, frame);
+    run.loadSeconds += watch.seconds();
+    if (view) track(tracker, *view, frame, run);
+    run.frames.push_back(frame);
+    if (!view) return;
+    const bool isFirstLoss = frame.tracked.rejected && counts.lost == 0;
+    ++(frame.tracked.rejected ? counts.lost : counts.tracked);
+    counts.notFound += frame.tracked.rejected && !frame.isBlack;
+    if (isFirstLoss || isStripFrame(i, entries.size())) {
+        run.strips.push_back(stripOf(recording, tracker, run, std::move(*view)));
+    }
+}
+
 }  // namespace
 
 ReplayRun replay(const Recording& recording, const ReplayTracker& tracker,
                  const std::function<bool()>& isStopped,
                  const std::function<void(std::size_t)>& progress) {
-    const std::vector<Sequence::Entry>& entries = recording.sequence.frames;
     ReplayRun run;
     run.odometry = tracker.odometry;
     run.scale = tracker.scale;
-    Stopwatch watch;
-    std::size_t tracked = 0;
-    std::size_t lost = 0;
-    std::size_t notFound = 0;  // though there was something to be seen
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        if (isStopped && isStopped()) {
+    Counts counts;
+    while (run.frames.size() < recording.sequence.frames.size()) {
+        run.interrupted = isStopped && isStopped();
+        if (run.interrupted) break;
+        try {
+            addFrame(recording, tracker, run, counts);
+        } catch (const RenderingStopped&) {
             run.interrupted = true;
             break;
         }
-        ReplayedFrame frame;
-        frame.index = i;
-        frame.timestamp = entries[i].timestamp;
-        if (entries[i].hasPose) frame.truth_c_w = entries[i].T_c_w;
-        watch.lap();
-        std::optional<View> view = tryToLoad(recording, frame);
-        run.loadSeconds += watch.lap();
-        if (view) track(tracker, *view, frame, run);
-        run.frames.push_back(frame);
-        if (view) {
-            const bool isFirstLoss = frame.tracked.rejected && lost == 0;
-            if (isFirstLoss || isStripFrame(i, entries.size())) {
-                run.strips.push_back(stripOf(recording, tracker, run, std::move(*view)));
-            }
-            ++(frame.tracked.rejected ? lost : tracked);
-            notFound += frame.tracked.rejected && !frame.isBlack;
-        }
         checkReadable(run.frames, recording);
         if (progress) progress(run.frames.size());
-        if (tracked == 0 && notFound > 0 && notFound == tracker.patience) {
-            run.stopped =
-                fmt::format("none of {} images that show something could be found", notFound);
+        if (counts.tracked == 0 && counts.notFound > 0 && counts.notFound == tracker.patience) {
+            run.stopped = fmt::format("none of {} images that show something could be found",
+                                      counts.notFound);
             break;
         }
     }

@@ -30,7 +30,8 @@ struct ReplayedFrame {
     std::string words;              ///< the alignment's verdict, or why the frame is unreadable
 };
 
-/// The observed view of a frame, and the one predicted at the believed pose with its exposure.
+/// The observed view of a frame, and the one predicted at the believed pose with its exposure,
+/// small enough to be looked at.
 struct ReplayStrip {
     std::string caption;
     View observed, predicted;

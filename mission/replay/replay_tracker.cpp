@@ -38,23 +38,13 @@ View seenFrom(const View& keyframe, const Camera& camera, const Pose& T_k_c,
     return result;
 }
 
-View halvedView(const View& view) {
-    View half;
-    half.intensity = halvedAsRendered(view.intensity);
-    half.depth.resize(half.intensity.getHeight(), half.intensity.getWidth());
-    for (unsigned v = 0; v < half.depth.getHeight(); ++v) {
-        for (unsigned u = 0; u < half.depth.getWidth(); ++u) {
-            half.depth[v][u] = view.depth[2 * v][2 * u];
-        }
-    }
-    return half;
+/// The camera of a view that was halved some times.
+Camera cameraOf(const View& view, Camera camera) {
+    while (camera.width > view.intensity.getWidth()) camera = halved(camera);
+    return camera;
 }
 
 }  // namespace
-
-void halve(View& view, int times) {
-    for (int i = 0; i < times; ++i) view = halvedView(view);
-}
 
 ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
                               const KeyframeChainOptions& options) {
@@ -76,7 +66,7 @@ ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
             return nothing;
         }
         const Pose T_k_c = keyframe->tracked.T_c_w.mean * frame.tracked.T_c_w.mean.inverse();
-        return seenFrom(keyframe->view, camera, T_k_c, frame.view.depth);
+        return seenFrom(keyframe->view, cameraOf(frame.view, camera), T_k_c, frame.view.depth);
     };
     return tracker;
 }
@@ -101,7 +91,7 @@ ReplayTracker mapTracker(const std::shared_ptr<const ViewSource>& map, const Cam
     };
     tracker.predict = [map, small = tracker.camera](const TrackedView& frame, const auto&) {
         View view;
-        map->render(small, frame.tracked.T_c_w.mean, view);
+        map->render(cameraOf(frame.view, small), frame.tracked.T_c_w.mean, view);
         return view;
     };
     return tracker;

@@ -19,7 +19,8 @@ struct TrackedView {
 struct ReplayTracker {
     std::function<TrackedFrame(const View& view, double timestamp)> track;
     /// The view of a frame as the model predicts it at the believed pose; depth 0: nothing there.
-    /// @param keyframe that the frame was aligned to, if any
+    /// Of the size of the frame's view, which may have been halved some more times.
+    /// @param keyframe that the frame was aligned to, if any; of the same size
     std::function<View(const TrackedView& frame, const std::optional<TrackedView>& keyframe)>
         predict;
     bool odometry = false;  ///< without a map
@@ -39,8 +40,5 @@ ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
 ReplayTracker mapTracker(const std::shared_ptr<const ViewSource>& map, const Camera& camera,
                          const UncertainPose& start, const TrackerOptions& options,
                          unsigned maxWidth);
-
-/// Halves a view: grey values by halvedAsRendered(), depth taken from the first of four pixels.
-void halve(View& view, int times);
 
 }  // namespace photonav

@@ -9,6 +9,7 @@
 
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "io/json_nesting.hpp"
 #include "io/reading.hpp"
 #include "result/json_values.hpp"
 
@@ -51,7 +52,7 @@ JournalHeader JournalFile::read(const std::function<void(const json&)>& onLine) 
 }
 
 JournalHeader JournalFile::readLines(const std::function<void(const json&)>& onLine) {
-    std::ifstream stream = openToRead(path_.string());
+    std::ifstream stream = openIfThere(path_.string());
     if (!stream) {
         throw InputError(path_.string(), "",
                          fmt::format("no such file; is this {}?", words_.aWhole));
@@ -61,6 +62,7 @@ JournalHeader JournalFile::readLines(const std::function<void(const json&)>& onL
     for (std::string text; std::getline(stream, text) && !stream.eof();) {
         ++number;
         try {
+            if (nestingDepth(text) > kMostJsonDepth) throw std::out_of_range("nested too deep");
             const json line = json::parse(text);
             if (number == 1)
                 header = headerFrom(line, words_);

@@ -32,7 +32,6 @@ template <typename Row>
 std::vector<std::string> readCsv(const fs::path& file, const std::string& header,
                                  std::size_t columns, Row row) {
     std::ifstream stream = openToRead(file.string());
-    if (!stream) throw InputError(file.string(), "", "cannot be read");
     std::vector<std::string> notes;
     std::string line;
     while (std::getline(stream, line) && line.starts_with('#')) notes.push_back(line);

@@ -59,7 +59,6 @@ Statistic statisticOf(const std::vector<double>& values) {
 
 ReferenceCosts::ReferenceCosts(const std::string& file) {
     std::ifstream stream = openToRead(file);
-    if (!stream) throw InputError(file, "", "cannot be read");
     std::string line;
     int number = 1;
     while (std::getline(stream, line) && line.starts_with('#')) ++number;

@@ -28,7 +28,7 @@ namespace {
 constexpr const char* kFirstLine = "photonav files 1";
 
 std::uint32_t checksumOf(const fs::path& file) {
-    std::ifstream stream = openToRead(file.string());
+    std::ifstream stream = openIfThere(file.string());
     std::vector<char> block(1U << 20U);
     uLong sum = crc32(0L, Z_NULL, 0);
     while (stream) {
@@ -137,7 +137,7 @@ Manifest Manifest::of(const fs::path& folder) {
 Manifest Manifest::read(const fs::path& folder) {
     Manifest manifest;
     const fs::path file = folder / kFileName;
-    std::ifstream stream = openToRead(file.string());
+    std::ifstream stream = openIfThere(file.string());
     std::string line;
     if (!stream || !std::getline(stream, line)) return manifest;
     const auto fail = [&] { throw InputError(file.string(), "", "is damaged"); };

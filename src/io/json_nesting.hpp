@@ -7,6 +7,9 @@
 
 namespace photonav {
 
+/// Of JSON that photonav writes, which has about ten: deeper text is something else.
+inline constexpr std::size_t kMostJsonDepth = 100;
+
 /// How deep arrays and objects are nested in JSON text. Programs that read or write JSON by
 /// recursion run out of stack where that is 1e5.
 inline std::size_t nestingDepth(std::string_view text) {

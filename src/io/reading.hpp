@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <locale>
@@ -30,16 +32,30 @@ auto reading(const std::string& file, const Read& read) {
 
 /// A file to read; one that is missing gives a stream that is not open. An error on the way throws;
 /// of its own accord a stream would just end early.
-/// @throws InputError for folders, pipes and devices, some of which never end
-inline std::ifstream openToRead(const std::string& file) {
-    std::error_code missing;
-    const auto status = std::filesystem::status(file, missing);
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+/// @throws InputError for folders, pipes and devices, some of which never end, and for a file that
+///         may not be read
+inline std::ifstream openIfThere(const std::string& file) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    const bool isThere = std::filesystem::exists(status);
+    if (isThere && !std::filesystem::is_regular_file(status)) {
         throw InputError(file, "", "not a file");
     }
+    errno = 0;
     std::ifstream stream(file, std::ios::binary);
+    if (isThere && !stream) {
+        throw InputError(file, "", std::string("cannot be opened: ") + std::strerror(errno));
+    }
     stream.imbue(std::locale::classic());
     stream.exceptions(std::ios::badbit);
+    return stream;
+}
+
+/// A file to read that must be there, as openIfThere() opens it.
+/// @throws InputError "no such file" as well
+inline std::ifstream openToRead(const std::string& file) {
+    std::ifstream stream = openIfThere(file);
+    if (!stream) throw InputError(file, "", "no such file");
     return stream;
 }
 

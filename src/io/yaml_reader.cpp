@@ -88,7 +88,6 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& c
 
 YAML::Node loadYaml(const std::string& file) {
     std::ifstream stream = openToRead(file);
-    if (!stream) throw InputError(file, "", "no such file");
     try {
         requireOneDocument(file, stream);
         stream.clear();

@@ -195,9 +195,6 @@ void clearInnerFaces(TexturedOcTree& map, Node& node) {
 
 std::unique_ptr<TexturedOcTree> readOcTree(const std::string& file) {
     std::ifstream stream = openToRead(file);
-    if (!stream || std::filesystem::is_directory(file)) {
-        throw InputError(file, "", "cannot be opened");
-    }
     const Header header = readHeader(stream, file);
     auto map = std::make_unique<TexturedOcTree>(header.resolution);
     NodeReader reader(stream, file, header.nodes, *map);

@@ -54,7 +54,6 @@ unsigned PointCloudFile::Element::rowBytes() const {
 PointCloudFile::PointCloudFile(std::string file) : file_(std::move(file)) {
     reading(file_, [&] {
         std::ifstream stream = openToRead(file_);
-        if (!stream || !std::filesystem::is_regular_file(file_)) fail("no such file");
         readHeader(stream);
         locateColumns();
         readScanner(stream);

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-constexpr std::size_t kMostJsonDepth = 200;
+constexpr std::size_t kMostGltfDepth = 200;
 constexpr unsigned kMostNodeDepth = 500;  // of a node in a scene; real scenes have tens
 
 std::size_t binarySize(const std::string& type) {
@@ -165,8 +165,8 @@ class RepeatedKey : public nlohmann::json_sax<json> {
 /// Nothing may be read here in another way than by assimp's own parser, which takes text that is no
 /// UTF-8, and of two equal keys the first one.
 json parseStrictly(const std::string& file, const std::string& text) {
-    if (nestingDepth(text) > kMostJsonDepth) {
-        throw InputError(file, "", fmt::format("JSON nested deeper than {}", kMostJsonDepth));
+    if (nestingDepth(text) > kMostGltfDepth) {
+        throw InputError(file, "", fmt::format("JSON nested deeper than {}", kMostGltfDepth));
     }
     RepeatedKey repeated;
     if (!json::sax_parse(text, &repeated)) {

@@ -283,8 +283,7 @@ class MeshReader {
 }  // namespace
 
 Scene loadMesh(const std::string& file, const MeshOptions& options) {
-    if (!std::filesystem::exists(file)) throw InputError(file, "", "no such file");
-    if (!std::filesystem::is_regular_file(file)) throw InputError(file, "", "not a file");
+    openToRead(file);
     if (std::filesystem::file_size(file) == 0) throw InputError(file, "", "the file is empty");
     checkMeshFile(file);
     std::vector<std::string> files;  // outlives the importer, which owns the RememberingFiles

@@ -31,7 +31,10 @@ TEST(Reading, OpensFilesOnly) {
     for (const std::string& file : {pipe, folder.path().string(), std::string("/dev/zero")}) {
         EXPECT_EQ(test::messageOf<InputError>([&] { openToRead(file); }), file + ": not a file");
     }
-    EXPECT_FALSE(openToRead(folder.file("missing")).is_open());
+    const std::string missing = folder.file("missing");
+    EXPECT_FALSE(openIfThere(missing).is_open());
+    EXPECT_EQ(test::messageOf<InputError>([&] { openToRead(missing); }),
+              missing + ": no such file");
     EXPECT_TRUE(openToRead(folder.write("there", "")).is_open());
 }
 

@@ -190,7 +190,7 @@ TEST_F(MapFile, CloudCompareOpensTheSurfaces) {
 TEST_F(MapFile, DamagedOrForeignFilesAreNamed) {
     std::ofstream(file("text.ot")) << "a letter\n";
     EXPECT_NE(complaint("text.ot").find("not an OctoMap file"), std::string::npos);
-    EXPECT_NE(complaint("none.ot").find("cannot be opened"), std::string::npos);
+    EXPECT_NE(complaint("none.ot").find("no such file"), std::string::npos);
     EXPECT_NE(complaint("").find("not a file"), std::string::npos);
     std::ofstream(file("stamped.ot"))
         << "# Octomap OcTree file\nid OcTreeStamped\nsize 1\nres 0.1\ndata\n";

@@ -6,6 +6,7 @@
 #include "check/obstruction.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
+#include "render/interruptible_views.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {
@@ -234,6 +235,15 @@ TEST_F(Corridor, AnInterruptedCheckKeepsThePlacesSoFar) {
                                            [&](double share) { interrupted = share >= 0.5; });
     EXPECT_EQ(checked.places.size(), 21U);
     EXPECT_NEAR(checked.length, 5., 1e-9);
+}
+
+TEST(LocalisationCheck, IsInterruptedInsideALargeView) {
+    const Config config = twoTextures({"camera.width=2000", "camera.height=1100"});
+    const World world(config);
+    const std::atomic<bool> interrupted{true};
+    EXPECT_THROW(checkLocalisation(through({{6., 3., 2., 0.}, {7., 3., 2., 0.}}), config, world,
+                                   kWithoutHeadings, interrupted),
+                 RenderingStopped);
 }
 
 }  // namespace

@@ -78,6 +78,36 @@ TEST_F(RoomToExplore, CamerasWithoutDepthMapItAsWell) {
     }
 }
 
+/// Views whose first part interrupts the flight.
+class InterruptingViews : public ViewSource {
+  public:
+    explicit InterruptingViews(std::shared_ptr<const ViewSource> views)
+        : views_(std::move(views)) {}
+    void render(const Camera& camera, const Pose& T_c_w, View& view) const override {
+        ++parts;
+        interrupted = true;
+        views_->render(camera, T_c_w, view);
+    }
+    mutable std::atomic<bool> interrupted{false};
+    mutable int parts = 0;
+
+  private:
+    std::shared_ptr<const ViewSource> views_;
+};
+
+TEST_F(RoomToExplore, IsInterruptedInsideALargeImage) {
+    config.camera.width = 2000;
+    config.camera.height = 1100;
+    const World world(room(), config);
+    const PlanningProblem problem(config, world);
+    ExplorationSetup setup = setUpExploration(problem);
+    const auto views = std::make_shared<InterruptingViews>(setup.truth.truth);
+    setup.truth.truth = views;
+    const ExplorationResult flight = explore(setup, config.planner, 1, views->interrupted);
+    EXPECT_EQ(nameOf(flight.end), "stopped");
+    EXPECT_EQ(views->parts, 1);
+}
+
 TEST_F(RoomToExplore, IsTheSameForTheSameSeed) {
     config.goal.position.x() = 3.;
     const ExplorationResult a = flown(room()), b = flown(room()), other = flown(room(), 2);

@@ -6,6 +6,7 @@
 #include "map/octree_file.hpp"
 #include "mapping/recording_map.hpp"
 #include "mission/replay/replay_fixture.hpp"
+#include "render/interruptible_views.hpp"
 #include "replay/replay_calibration.hpp"
 
 namespace photonav {
@@ -47,6 +48,37 @@ TEST_F(ReplayFixture, OdometryAtTheWidthAskedFor) {
     EXPECT_NE(errorAt(40), byDefault);
     EXPECT_LT(errorAt(160), 3e-3);
     EXPECT_NE(errorAt(160), byDefault);
+}
+
+/// A tracker of large images whose third one is stopped.
+ReplayTracker stoppedTracker(const Camera& camera) {
+    ReplayTracker tracker;
+    tracker.camera = camera;
+    tracker.track = [count = 0](const View&, double) mutable -> TrackedFrame {
+        if (++count == 3) throw RenderingStopped();
+        return {};
+    };
+    tracker.predict = [](const TrackedView& frame, const auto&) { return frame.view; };
+    return tracker;
+}
+
+TEST(Replaying, KeepsTheFramesBeforeAViewThatWasStopped) {
+    Recording recording;
+    recording.sequence.camera = makeCamera(1500, 20, 1.2);
+    for (int i = 0; i < 5; ++i) {
+        Sequence::Entry entry;
+        entry.timestamp = i;
+        recording.sequence.frames.push_back(entry);
+    }
+    recording.view = [](std::size_t) {
+        return View{ImageF(20, 1500, 0.5F), ImageF(20, 1500, 1.F)};
+    };
+    const ReplayRun run = replay(recording, stoppedTracker(recording.sequence.camera), {}, {});
+    EXPECT_TRUE(run.interrupted);
+    EXPECT_EQ(run.frames.size(), 2U);
+    ASSERT_EQ(run.strips.size(), 2U);
+    EXPECT_EQ(run.strips[0].observed.intensity.getWidth(), 375U);  // halved twice
+    EXPECT_EQ(run.strips[0].predicted.depth.getHeight(), 5U);
 }
 
 TEST_F(ReplayFixture, StopsWhenAsked) {
