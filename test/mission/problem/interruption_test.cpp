@@ -14,7 +14,7 @@ TEST(InterruptionScope, EndsLargeViewsWhileItIsThere) {
     const World world(config);
     PlanningProblem problem(config, world);
     Pose T_w_b = Pose::Identity();
-    T_w_b.translation() = {6., 3., 2.};
+    T_w_b.translation() << 6., 3., 2.;
     {
         const std::atomic<bool> interrupted{true};
         const InterruptionScope outer = problem.interruptedBy(interrupted);
