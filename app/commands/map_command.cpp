@@ -66,6 +66,7 @@ void compareFrames(const MapCommandOptions& options, const Recording& recording,
     View predicted;
     for (std::size_t k = 0; k < count && !interrupted; ++k) {
         const RecordedFrame frame = recording.load(k * step);
+        if (interrupted) return;
         if (isBlack(frame.view.intensity)) continue;
         views.render(sequence.camera, frame.T_c_w, predicted);
         const ViewDifference d = compareViews(frame.view, predicted);

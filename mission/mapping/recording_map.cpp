@@ -97,6 +97,7 @@ FusedRecording fuseRecording(TexturedOcTree& map, const Recording& recording,
     while (fused.frames < sequence.frames.size() && !(isStopped && isStopped())) {
         const RecordedFrame frame = recording.load(fused.frames);
         fused.loadSeconds += watch.lap();
+        if (isStopped && isStopped()) break;
         checkPosition(options, frame);
         if (!isDepthChecked) isDepthChecked = checkDepths(options, sequence, frame.view);
         if (isBlack(frame.view.intensity)) {

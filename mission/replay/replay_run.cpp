@@ -100,9 +100,14 @@ struct Counts {
 };
 
 /// Loads and tracks the next frame.
-/// @throws RenderingStopped as the views of a map do; the frames so far are whole
-void addFrame(const Recording& recording, const ReplayTracker& tracker, ReplayRun& run,
-              Counts& counts) {
+/// @throws RenderingStopped when it is stopped in between, also by the views of a map; the frames
+///         so far are whole
+void addFrame(const Recording& recording, const ReplayTracker& tracker,
+              const std::function<bool()>& isStopped, ReplayRun& run, Counts& counts) {
+    const auto stopWhenAsked = [&] {
+        if (isStopped && isStopped()) throw RenderingStopped();
+    };
+    stopWhenAsked();
     const std::vector<Sequence::Entry>& entries = recording.sequence.frames;
     const std::size_t i = run.frames.size();
     ReplayedFrame frame;
@@ -112,12 +117,14 @@ void addFrame(const Recording& recording, const ReplayTracker& tracker, ReplayRu
     Stopwatch watch;
     std::optional<View> view = tryToLoad(recording, frame);
     run.loadSeconds += watch.seconds();
+    stopWhenAsked();
     if (view) track(tracker, *view, frame, run);
     run.frames.push_back(frame);
     if (!view) return;
     const bool isFirstLoss = frame.tracked.rejected && counts.lost == 0;
     ++(frame.tracked.rejected ? counts.lost : counts.tracked);
     counts.notFound += frame.tracked.rejected && !frame.isBlack;
+    stopWhenAsked();
     if (isFirstLoss || isStripFrame(i, entries.size())) {
         run.strips.push_back(stripOf(recording, tracker, run, std::move(*view)));
     }
@@ -133,10 +140,8 @@ ReplayRun replay(const Recording& recording, const ReplayTracker& tracker,
     run.scale = tracker.scale;
     Counts counts;
     while (run.frames.size() < recording.sequence.frames.size()) {
-        run.interrupted = isStopped && isStopped();
-        if (run.interrupted) break;
         try {
-            addFrame(recording, tracker, run, counts);
+            addFrame(recording, tracker, isStopped, run, counts);
         } catch (const RenderingStopped&) {
             run.interrupted = true;
             break;

@@ -12,6 +12,7 @@
 #include <new>
 #include <opencv2/imgcodecs.hpp>
 
+#include "check/given_trajectory.hpp"
 #include "commands/result_folder.hpp"
 #include "config/config.hpp"
 #include "dataset/sequence_tum.hpp"
@@ -158,6 +159,16 @@ TEST(FailingAllocations, OfReadersOfRecordings) {
     const std::string euroc = folder.file("euroc");
     test::WallDataset().write(euroc);
     expectAllOrOneLine(euroc, [&] { return readEurocSequence(euroc).frames.size(); });
+}
+
+TEST(FailingAllocations, OfReadersOfTrajectories) {
+    const TemporaryFolder folder;
+    const std::string table = folder.write("table.csv", "t,x,y,z,yaw\n0,1,2,3,0\n1,2,3,4,0.5\n");
+    const std::string tum = folder.write("poses.tum", "0 1 2 3 0 0 0 1\n1 2 3 4 0 0 0 1\n");
+    for (const std::string& file : {table, tum}) {
+        expectAllOrOneLine(
+            file, [&] { return readGivenTrajectory(file, Pose::Identity()).poses.size(); });
+    }
 }
 
 /// But JSON: nlohmann's destructor allocates, and may not throw.

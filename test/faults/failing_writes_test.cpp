@@ -13,8 +13,11 @@
 #include <cstring>
 #include <functional>
 
+#include "app/flightlog/sample_log.hpp"
+#include "commands/flight_watch.hpp"
 #include "commands/result_folder.hpp"
 #include "dataset/sequence_tum.hpp"
+#include "exploration/trial_journal.hpp"
 #include "flight/flight_recorder.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
@@ -259,6 +262,56 @@ TEST(FailingWrites, OfRunsOfASweep) {
             EXPECT_EQ(read.runs().size(), hasError ? 1U : 2U) << when;
             read.append(runOf(3));
             EXPECT_EQ(SweepJournal::read(folder.path()).runs().back().item.seed, 3U) << when;
+        });
+}
+
+ExplorationResult flightOf(std::uint32_t seed) {
+    ExplorationResult flight;
+    flight.planner = "rrt_star";
+    flight.seed = seed;
+    flight.end = FlightEnd::noWay;
+    return flight;
+}
+
+/// So is a flight of an exploration, and the map of the first one, which is a file of its own.
+TEST(FailingWrites, OfFlightsOfAnExploration) {
+    const TemporaryFolder folder;
+    std::optional<TrialJournal> journal;
+    failInTurn(
+        folder.path().string(),
+        [&] {
+            fs::remove(folder.file(TrialKind::kMapFile));
+            journal = TrialJournal::create(folder.path(), {"name", "config", {}, {1, 1}});
+            journal->append(flightOf(2));
+        },
+        [&] {
+            ExplorationResult first = flightOf(1);
+            first.map = std::make_shared<TexturedOcTree>(smallMap());
+            journal->append(std::move(first));
+        },
+        [&](bool hasError, const std::string& when) {
+            journal.reset();
+            TrialJournal read = TrialJournal::read(folder.path());
+            ASSERT_EQ(read.runs().size(), hasError ? 1U : 2U) << when;
+            if (!hasError) EXPECT_TRUE(read.runs()[1].map) << when;
+            read.append(flightOf(3));
+            EXPECT_EQ(TrialJournal::read(folder.path()).runs().back().seed, 3U) << when;
+        });
+}
+
+TEST(FailingWrites, OfFlightLogs) {
+    const FlightLog log = test::sampleLog();
+    const TemporaryFolder folder;
+    failInTurn(
+        folder.path().string(), [&] { folder.write(FlightLog::kFileName, "old"); },
+        [&] { writeFlightLog(folder.path(), log); },
+        [&](bool hasError, const std::string& when) {
+            const std::string file = folder.file(FlightLog::kFileName);
+            if (hasError) {
+                EXPECT_EQ(test::contentOf(file), "old") << when;
+            } else {
+                EXPECT_EQ(readFlightLog(file).moments.size(), log.moments.size()) << when;
+            }
         });
 }
 

@@ -20,6 +20,7 @@ class DenseAligner::RenderedModel : public Comparison {
         options_.photometric.sigma *= noise;
         options_.photometric.scale *= noise * noise;
         Camera c = full;
+        levels_.reserve(std::max(1, options.levels));  // or all images are copied at each growth
         for (int l = 0; l < std::max(1, options.levels); ++l) {
             levels_.push_back({c,
                                ViewComparison(c, options.photometric, options.modelNoise),
