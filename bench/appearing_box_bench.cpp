@@ -2,7 +2,8 @@
 // Explorations in which a box, 1.2 m wide and 3 m high, appears ahead of the robot in space that
 // was seen free: a flight per seed, planner and distance flown until then. The face of the box
 // is 1.4 m from the robot, across its motion. "collided": the body, half of robot.radius, has
-// touched something. Usage: appearing_box_bench [scene = room | CONFIG] [seeds = 3] [away = 1.4]
+// touched something; "in view": images that have the middle of the face in view, as far as it is
+// below the camera. Usage: appearing_box_bench [scene = room | CONFIG] [seeds = 3] [away = 1.4]
 // [planners = rrt_star,belief_rrt_star]
 #include <fmt/format.h>
 #include <ompl/util/Console.h>
@@ -62,6 +63,7 @@ class BoxedWorld : public ViewSource {
         constexpr double kThickness = 0.4, kWidth = 1.2, kHeight = 3.;
         const Eigen::Vector2d side(-ahead.y(), ahead.x());
         const Eigen::Vector2d middle = p + (away + 0.5 * kThickness) * ahead;
+        face_ = p + away * ahead;
         Scene boxed = scene_;
         addWall(boxed,
                 {.footprint = {middle - 0.5 * kWidth * side, middle + 0.5 * kWidth * side},
@@ -71,12 +73,27 @@ class BoxedWorld : public ViewSource {
         after_.emplace(std::move(boxed), config_);
     }
 
+    /// Whether the middle of the box's face is in an image, at some height below the camera.
+    bool isInView(const Camera& camera, const Pose& T_c_w) const {
+        const double top = T_c_w.inverse().translation().z();
+        for (double z = 0.; z < top; z += 0.05) {
+            const Eigen::Vector3d p_c = T_c_w * Eigen::Vector3d(face_.x(), face_.y(), z);
+            if (p_c.z() <= 0.) continue;
+            const Eigen::Vector2d pixel = camera.project(p_c);
+            if (pixel.minCoeff() >= 0. && pixel.x() < camera.width && pixel.y() < camera.height) {
+                return hasBox();
+            }
+        }
+        return false;
+    }
+
   private:
     const World& now() const { return after_ ? *after_ : before_; }
 
     Scene scene_;
     Config config_;
     World before_;
+    Eigen::Vector2d face_ = Eigen::Vector2d::Zero();  // its middle
     std::optional<World> after_;
 };
 
@@ -90,11 +107,13 @@ void fly(const Scene& scene, Config config, const std::string& planner, std::uin
     setup.truth.clearance = [&](const Eigen::Vector3d& p_w) { return world->clearance(p_w); };
     std::optional<Eigen::Vector3d> last;
     double flown = 0., appeared = 0.;
+    int inView = 0;
     const auto onExposure = [&](const Exposed& exposed) {
         const Eigen::Vector3d p_w = (setup.truth.T_b_c * exposed.T_c_w).inverse().translation();
         const Eigen::Vector3d moved = p_w - last.value_or(p_w);
         last = p_w;
         flown += moved.norm();
+        inView += world->isInView(setup.truth.camera, exposed.T_c_w);
         constexpr double kFlying = 0.1;  // between exposures [m]
         if (world->hasBox() || flown < flownBefore || moved.head<2>().norm() < kFlying) return;
         world->addBoxAhead(p_w.head<2>(), moved.head<2>().normalized(), away);
@@ -104,12 +123,12 @@ void fly(const Scene& scene, Config config, const std::string& planner, std::uin
     const ExplorationResult flight =
         explore(setup, planner, seed, kNotInterrupted, {.exposure = onExposure});
     fmt::print(
-        "{:16} {:4} {:5.1f} {:>18} {:8.3f} {:7.1f} {:7.1f} {:5.1f} {:4} {:8} {:6.2f} {:6.2f} "
+        "{:16} {:4} {:5.1f} {:>18} {:8.3f} {:7.1f} {:7.1f} {:5.1f} {:4} {:8} {:7} {:6.2f} {:6.2f} "
         "{:7.1f} {}\n",
         planner, seed, flownBefore, world->hasBox() ? nameOf(flight.end) : "no box",
         flight.leastClearance, flight.flown, flight.duration, appeared, flight.timesLost,
-        flight.rejectedImages, flight.goalError, neesPerDof(flight), 1e-3 * (threadTime() - begin),
-        flight.reason);
+        flight.rejectedImages, inView, flight.goalError, neesPerDof(flight),
+        1e-3 * (threadTime() - begin), flight.reason);
     std::fflush(stdout);
 }
 
@@ -129,7 +148,7 @@ int main(int argc, char** argv) {
     const Scene scene = isRoom ? roomScene() : loadScene(config.sceneFile);
     fmt::print(
         "planner          seed after                end clearance  flown  seconds  box lost "
-        "rejected  error   NEES CPU [s]\n");
+        "rejected in view  error   NEES CPU [s]\n");
     std::istringstream planners(argument(argc, argv, 4, "rrt_star,belief_rrt_star"));
     for (std::string planner; std::getline(planners, planner, ',');) {
         for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
