@@ -13,11 +13,9 @@
 #include "estimation/tracker.hpp"
 #include "geometry/se3.hpp"
 #include "map/map_fusion.hpp"
-#include "render/area_sensor.hpp"
 #include "render/mesh_renderer.hpp"
 #include "render/voxel_renderer.hpp"
 #include "simulation/camera_noise.hpp"
-#include "thread_time.hpp"
 #include "tracking_scenes.hpp"
 
 using namespace photonav;
@@ -185,94 +183,6 @@ void flights(const std::string& name, const ViewSource& world, const ViewSource&
     std::fflush(stdout);
 }
 
-double medianOf(std::vector<double> values) {
-    if (values.empty()) return 0.;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-/// Alignments to a model that did not make the images, with a prior as tracking has one.
-void photographs(const std::string& name, const ViewSource& world, const ViewSource& model,
-                 const Camera& camera, const AlignmentOptions& options, const Picture& picture,
-                 int count) {
-    DenseAligner aligner(model, camera, options);
-    Random random(11);
-    const Matrix6 P = startSigmas().cwiseAbs2().asDiagonal();
-    std::vector<double> nees, millimetres, degrees;
-    int open = 0, beyond = 0;
-    double milliseconds = 0.;
-    View view;
-    for (int i = 0; i < count; ++i) {
-        const Pose truth = randomPose(random);
-        world.render(camera, truth, view);
-        const ImageF image = picture(view.intensity, random);
-        const UncertainPose prior{expSE3(draw(startSigmas(), random)) * truth, P};
-        const double begin = threadTime();
-        const Alignment a = aligner.align(image, prior);
-        milliseconds += threadTime() - begin;
-        open += a.verdict == Verdict::degenerate ? 1 : 0;
-        if (isLost(a.verdict)) continue;
-        const Vector6 xi = logSE3(truth * a.T_c_w.inverse());
-        const Vector6 sigma = a.covariance.diagonal().cwiseSqrt();
-        nees.push_back(xi.dot(a.covariance.ldlt().solve(xi)) / 6.);
-        millimetres.push_back(1e3 * xi.head<3>().norm());
-        degrees.push_back(xi.tail<3>().norm() * 180. / std::numbers::pi);
-        beyond += (xi.cwiseAbs().array() > 5. * sigma.array()).any() ? 1 : 0;
-    }
-    double mean = 0.;
-    for (const double value : nees) mean += value / static_cast<double>(nees.size());
-    fmt::print(
-        "{:<40} {:6.2f} mm {:6.3f} deg  NEES median {:7.3f} mean {:7.2f}; {} of {} beyond 5 sigma, "
-        "{} lost, {} degenerate; {:.1f} ms\n",
-        name, medianOf(millimetres), medianOf(degrees), medianOf(nees), mean, beyond, nees.size(),
-        count - static_cast<int>(nees.size()), open, milliseconds / count);
-    std::fflush(stdout);
-}
-
-/// A light from the side, that the model does not have.
-ImageF lightFromTheSide(const ImageF& ideal, Random& random) {
-    ImageF image = independentNoise(ideal, random);
-    for (unsigned v = 0; v < image.getHeight(); ++v) {
-        for (unsigned u = 0; u < image.getWidth(); ++u) {
-            image[v][u] *= 0.95F + 0.1F * static_cast<float>(u) / image.getWidth();
-        }
-    }
-    return image;
-}
-
-ImageF withoutNoise(const ImageF& ideal, Random& /*random*/) { return ideal; }
-
-/// Covariances by the assumed noise, and by the residuals.
-void photographTable(int count) {
-    const double fieldOfView = 70. * std::numbers::pi / 180.;
-    const MeshRenderer room(furnishedHall()), floor(texturedFloor());
-    const AreaSensor roomSeen(room, 6), floorSeen(floor, 6);
-    for (const bool measured : {false, true}) {
-        AlignmentOptions plain;
-        plain.measureCovariance = measured;
-        plain.blur = measured ? kAreaBlur : kRenderedBlur;
-        AlignmentOptions exposed = plain;
-        exposed.exposure = ExposurePrior{.gainSigma = 0.1, .offsetSigma = 0.003};
-        exposed.blur = std::hypot(kAreaBlur, CameraNoiseOptions{}.blur);
-        const auto rows = [&](const std::string& scene, const ViewSource& world,
-                              const ViewSource& model, const Camera& camera) {
-            const std::string name = fmt::format("{}x{} {}, {}: ", camera.width, camera.height,
-                                                 scene, measured ? "residuals" : "sigma");
-            photographs(name + "exact", world, model, camera, plain, withoutNoise, count);
-            photographs(name + "noise", world, model, camera, plain, independentNoise, count);
-            photographs(name + "light", world, model, camera, plain, lightFromTheSide, count);
-            photographs(name + "real camera", world, model, camera, exposed, realCamera(0.03),
-                        count);
-        };
-        for (const unsigned width : {188U, 376U}) {
-            const Camera camera = makeCamera(width, 120 * width / 188, fieldOfView);
-            rows("room", roomSeen, room, camera);
-            rows("floor", floorSeen, floor, camera);
-        }
-    }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -318,5 +228,4 @@ int main(int argc, char** argv) {
             count);
     flights("flights over floor, real camera", floor, floor, realCameraOptions(), picture, count);
     flights("flights in room, real camera", room, room, realCameraOptions(), picture, count);
-    photographTable(count / 3);
 }

@@ -26,7 +26,6 @@ Equations onTheLeft(Equations e, const Pose& T) {
 }  // namespace
 
 KeyframeOptions::KeyframeOptions() {
-    alignment.photometric.scale = 0.7;
     alignment.measureCovariance = true;
     alignment.trust.residualSigmas = 0.;
     alignment.levels = 3;

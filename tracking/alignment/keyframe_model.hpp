@@ -31,8 +31,7 @@ struct KeyframeOptions {
 ///     r = observed(pi(T p)) - (gain * I + offset),   T <- T exp(xi^),   r = -gain * J xi,
 /// J the Jacobian of photometricInformation() at the keyframe. Both images are noisy and so are the
 /// gradients, which makes covariances less consistent than those of alignment to a rendered map
-/// (dense_aligner.hpp). They follow from the residuals; the default `scale`, which weighs images
-/// against priors on the way, is measured on simulated pairs (docs/tracking.md).
+/// (dense_aligner.hpp). They follow from the residuals.
 class KeyframeModel {
   public:
     /// @param view of the camera's size; depth 0: not measured

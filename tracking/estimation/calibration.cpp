@@ -139,7 +139,6 @@ AlignmentOptions photographOptions(double blur) {
 AlignmentOptions realCameraOptions(double blur) {
     AlignmentOptions options = photographOptions(blur);
     options.exposure = {.gainSigma = 0.1, .offsetSigma = 0.003};
-    options.photometric.scale = 0.65;
     return options;
 }
 
