@@ -8,7 +8,10 @@
 #include <filesystem>
 #include <utility>
 
+#include "dataset/trajectory.hpp"
 #include "estimation/calibration.hpp"
+#include "geometry/constants.hpp"
+#include "geometry/se3.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
 #include "mapping/map_config.hpp"
@@ -16,6 +19,7 @@
 #include "replay/calibration_file.hpp"
 
 namespace photonav {
+namespace fs = std::filesystem;
 namespace {
 
 constexpr int kWidthInMap = 320;  // [pixels]
@@ -59,7 +63,7 @@ void applyCalibration(std::optional<MapKind> map, ReplayOptions& options) {
 /// fitted to another part of it would turn the recording against the map.
 std::string upOfMap(const std::string& mapFile) {
     if (const auto map = optionsOfMap(mapFile)) return map->up;
-    const auto config = std::filesystem::path(mapFile).parent_path() / "config.yaml";
+    const auto config = fs::path(mapFile).parent_path() / "config.yaml";
     throw InputError("--up", "floor",
                      fmt::format("the map's own is taken, but there is no {} of a recorded map; "
                                  "give an axis or x,y,z",
@@ -97,6 +101,44 @@ Pose parsePose(const std::string& text) {
     T_w_c.linear() = q.normalized().toRotationMatrix();
     T_w_c.translation() = v.head<3>();
     return T_w_c;
+}
+
+/// T_c_w of the images that `photonav map` made a map of, which it writes beside it; else none.
+Trajectory makersOf(const std::string& mapFile) {
+    const fs::path map(mapFile);
+    const fs::path file = map.parent_path() / "trajectory.tum";
+    if (map.extension() != ".ot" || !fs::exists(file)) return {};
+    return readTrajectory(file.string());
+}
+
+/// How far a map of depth that does not fit its images is displaced where an image shows it: what
+/// the sensor gets wrong is a share of the motion between two images (`depth_error`), here since
+/// the nearest of those that the map was made of. Images of a tracker agree with the map, so that
+/// the pose in the world is uncertain by this much more.
+Matrix6 displacementOfMap(double share, const Trajectory& makers, const Pose& T_c_w,
+                          double meanDepth) {
+    Vector6 least = Vector6::Constant(kInfinity);
+    const auto motionOfImage = [&](const Vector6& xi) {  // [rad]
+        return xi.head<3>().norm() / meanDepth + xi.tail<3>().norm();
+    };
+    for (const StampedPose& maker : makers) {
+        const Vector6 xi = logSE3(T_c_w * maker.T_w_c);
+        if (motionOfImage(xi) < motionOfImage(least)) least = xi;
+    }
+    Vector6 variance;
+    variance << Eigen::Vector3d::Constant(least.head<3>().squaredNorm()),
+        Eigen::Vector3d::Constant(least.tail<3>().squaredNorm());
+    return (share * share * variance).asDiagonal();
+}
+
+ReplayTracker inDisplacedMap(ReplayTracker tracker, double share, const Trajectory& makers) {
+    tracker.track = [=, track = tracker.track](const View& view, double timestamp) {
+        TrackedFrame frame = track(view, timestamp);
+        frame.T_c_w.covariance +=
+            displacementOfMap(share, makers, frame.T_c_w.mean, frame.alignment.meanDepth);
+        return frame;
+    };
+    return tracker;
 }
 
 /// Belief of the first frame's T_c_w.
@@ -192,6 +234,7 @@ Replay::Replay(const ReplayOptions& options) : options_(options) {
     medianDepth_ = checkDepths(options, recording_, look.median);
     depthNoise_ = look.noise.atOneMetre();
     depthError_ = depthErrorOf(recording_, look.noise);
+    makersOf(options_.mapFile);  // throws here rather than in a run
     alignment_ = alignmentOf(options_, recording_.sequence, map_, depthError_);
     options_.stereo = recording_.stereo;
     options_.scale = alignment_.informationScale;
@@ -211,8 +254,12 @@ ReplayTracker Replay::makeTracker(const std::function<bool()>& isStopped) const 
     tracker.map = alignment_;
     std::shared_ptr<const ViewSource> views = map_.views;
     if (isStopped) views = std::make_shared<InterruptibleViews>(views, isStopped);
-    return mapTracker(views, camera, start_, tracker,
-                      static_cast<unsigned>(options_.maxWidth.value_or(kWidthInMap)));
+    ReplayTracker inMap =
+        mapTracker(views, camera, start_, tracker,
+                   static_cast<unsigned>(options_.maxWidth.value_or(kWidthInMap)));
+    const double share = depthError_.relative;
+    const Trajectory makers = makersOf(options_.mapFile);
+    return share > 0. && !makers.empty() ? inDisplacedMap(inMap, share, makers) : inMap;
 }
 
 ReplayRun Replay::run(const std::function<bool()>& isStopped,

@@ -149,6 +149,36 @@ TEST_F(ReplayInMap, LocalisesInTheMapOfItsOwnFirstHalf) {
     EXPECT_LT(result["ate_rmse_m"].get<double>(), 0.02);
 }
 
+/// The farther an image was taken from those that the map was made of, the more does depth that
+/// does not fit its images displace what it shows.
+TEST_F(ReplayInMap, DepthErrorsOfTheSensorAreInTheMap) {
+    MapOptions map;
+    map.dataset = data.string();
+    map.resolution = 0.025;
+    map.frames = ":6";
+    const Trajectory makers = useMapOf(map).trajectory;
+    const std::string beside = (folder.path() / "trajectory.tum").string();
+    writeTrajectory(beside, makers);
+    run();
+    const ReplayRun registered = replayed;
+    std::ofstream(data / "camera.yaml", std::ios::app) << "depth_error: 0.1\n";
+    run();
+    for (const std::size_t i : {std::size_t(3), registered.frames.size() - 1}) {
+        const UncertainPose& before = registered.frames[i].tracked.T_c_w;
+        const UncertainPose& now = replayed.frames[i].tracked.T_c_w;
+        EXPECT_EQ(now.mean.matrix(), before.mean.matrix());
+        const Pose T_c_k = now.mean * makers[std::min(i, makers.size() - 1)].T_w_c;
+        const double added = (now.covariance - before.covariance)(0, 0);
+        EXPECT_NEAR(std::sqrt(added), 0.1 * T_c_k.translation().norm(), 2e-3) << i;
+    }
+    fs::remove(beside);
+    run();
+    EXPECT_EQ(replayed.frames.back().tracked.T_c_w.covariance,
+              registered.frames.back().tracked.T_c_w.covariance);
+    writeText(beside, "0 0 0\n");
+    expectRejected({"trajectory.tum"});
+}
+
 TEST_F(ReplayInMap, UpFromTheFloorIsTheMapsOwn) {
     useMap();
     options.up = "floor";
