@@ -2,6 +2,7 @@
 #include "estimation/depth_calibration.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -16,17 +17,20 @@ namespace {
 
 using Matrix86 = Eigen::Matrix<double, 8, 6>;
 
-constexpr double kBlurs[] = {4., 2., 1.};  // of the images, coarse to fine [pixels]
-constexpr int kIterations = 6;             // at each blur
-constexpr std::size_t kBlocks = 16;        // of pairs that are left out together, at most
-constexpr int kReach = 5;                  // of the differences that give normals [pixels]
-constexpr double kBend = 1.5;              // KeyframeOptions::maxBend
-constexpr double kGrazing = 0.2;           // least cosine between ray and normal
-constexpr double kOutlier = 7.;            // medians of the absolute residuals
-constexpr double kLeastOutlier = 0.01;     // [grey value]
+constexpr double kBlurs[] = {4., 2., 1.};           // of the images, coarse to fine [pixels]
+constexpr int kIterations = 6;                      // at each blur
+constexpr std::size_t kBlocks = 16;                 // of pairs that are left out together, at most
+constexpr int kRegionColumns = 4, kRegionRows = 3;  // of the depth image, likewise
+constexpr std::size_t kRegions = kRegionColumns * kRegionRows;
+constexpr int kReach = 5;               // of the differences that give normals [pixels]
+constexpr double kBend = 1.5;           // KeyframeOptions::maxBend
+constexpr double kGrazing = 0.2;        // least cosine between ray and normal
+constexpr double kOutlier = 7.;         // medians of the absolute residuals
+constexpr double kLeastOutlier = 0.01;  // [grey value]
 
 struct Surfel {
     Eigen::Vector3f point, normal;  // depth camera's frame
+    std::size_t region;             // of the depth image
 };
 
 /// Two images and the surfaces of the first.
@@ -73,34 +77,91 @@ struct Smooth {
     }
 };
 
-/// Normal equations of one pair about the depth camera's pose; those of its motion and exposure
-/// (xi, gain, offset) are `own`.
-struct PairEquations {
+/// Sums over the residuals of a part of a pair: about the depth camera's pose, and about the pair's
+/// own motion and exposure (xi, gain, offset).
+struct PartEquations {
     Matrix6 information = Matrix6::Zero();
     Vector6 right = Vector6::Zero();
-    Matrix8 own = Matrix8::Zero();
     Matrix86 coupling = Matrix86::Zero();
     Vector8 ownRight = Vector8::Zero();
 
-    void add(const Eigen::Matrix<double, 1, 6>& J, const Eigen::Matrix<double, 1, 8>& ofOwn,
-             double r, double weight) {
-        information += weight * J.transpose() * J;
-        right -= weight * r * J.transpose();
+    PartEquations& operator+=(const PartEquations& other) {
+        information += other.information;
+        right += other.right;
+        coupling += other.coupling;
+        ownRight += other.ownRight;
+        return *this;
+    }
+};
+
+/// Normal equations of a cluster of residuals about the depth camera's pose; what belongs to
+/// motions and exposures is eliminated.
+struct Cluster {
+    Matrix6 information = Matrix6::Zero();
+    Vector6 right = Vector6::Zero();
+
+    Cluster& operator+=(const Cluster& other) {
+        information += other.information;
+        right += other.right;
+        return *this;
+    }
+};
+
+/// Normal equations of one pair, by the regions of its depth image.
+struct PairEquations {
+    std::array<PartEquations, kRegions> parts;
+    Matrix8 own = Matrix8::Zero();
+
+    void add(std::size_t region, const Eigen::Matrix<double, 1, 6>& J,
+             const Eigen::Matrix<double, 1, 8>& ofOwn, double r, double weight) {
+        PartEquations& part = parts[region];
+        part.information += weight * J.transpose() * J;
+        part.right -= weight * r * J.transpose();
+        part.coupling += weight * ofOwn.transpose() * J;
+        part.ownRight -= weight * r * ofOwn.transpose();
         own += weight * ofOwn.transpose() * ofOwn;
-        coupling += weight * ofOwn.transpose() * J;
-        ownRight -= weight * r * ofOwn.transpose();
+    }
+
+    PartEquations sum() const {
+        PartEquations all;
+        for (const PartEquations& part : parts) all += part;
+        return all;
     }
 
     /// Motion and exposure that belong to a step of the depth camera.
-    Vector8 ownStep(const Vector6& x) const { return own.ldlt().solve(ownRight - coupling * x); }
-
-    void eliminateOwn() {
-        own.diagonal().array() += 1e-9 * own.trace() + 1e-12;
-        const Matrix86 solved = own.ldlt().solve(coupling);
-        information -= coupling.transpose() * solved;
-        right -= solved.transpose() * ownRight;
+    Vector8 ownStep(const Vector6& x) const {
+        const PartEquations all = sum();
+        return own.ldlt().solve(all.ownRight - all.coupling * x);
     }
+
+    /// What each region contributes when motion and exposure follow the whole image.
+    std::array<Cluster, kRegions> withoutOwn() const {
+        const Matrix86 solved = own.ldlt().solve(sum().coupling);
+        std::array<Cluster, kRegions> clusters;
+        for (std::size_t i = 0; i < kRegions; ++i) {
+            clusters[i].information = parts[i].information - solved.transpose() * parts[i].coupling;
+            clusters[i].right = parts[i].right - solved.transpose() * parts[i].ownRight;
+        }
+        return clusters;
+    }
+
+    void regularise() { own.diagonal().array() += 1e-9 * own.trace() + 1e-12; }
 };
+
+/// Scatter of the step H^-1 b if clusters are left out one at a time (jackknife).
+Matrix6 scatterOf(const std::vector<Cluster>& clusters, const Matrix6& inverse,
+                  const Vector6& step) {
+    Matrix6 scatter = Matrix6::Zero();
+    for (const Cluster& cluster : clusters) {
+        const Vector6 without = (Matrix6::Identity() - cluster.information * inverse)
+                                    .partialPivLu()
+                                    .solve(cluster.right - cluster.information * step);
+        scatter += without * without.transpose();
+    }
+    // The inverse of a covariance of few draws is too large (residual_covariance.cpp).
+    const auto count = static_cast<double>(clusters.size());
+    return count / std::max(1., count - 7.) * inverse * scatter * inverse.transpose();
+}
 
 /// Motion of a point by a twist.
 Eigen::Matrix<double, 3, 6> byTwist(const Eigen::Vector3d& p) {
@@ -162,7 +223,9 @@ std::optional<Surfel> DepthCalibrator::Problem::surfelAt(const ImageF& depth_d, 
     const Eigen::Vector3d point = camera.unproject(u, v, z);
     const Eigen::Vector3d normal = across.cross(down).normalized();
     if (!(std::abs(normal.dot(point)) > kGrazing * point.norm())) return {};
-    return Surfel{point.cast<float>(), normal.cast<float>()};
+    const std::size_t region = v * kRegionRows / depth_d.getHeight() * kRegionColumns +
+                               u * kRegionColumns / depth_d.getWidth();
+    return Surfel{point.cast<float>(), normal.cast<float>(), region};
 }
 
 void DepthCalibrator::Problem::add(const ImageF& first, const ImageF& depth_d, const ImageF& second,
@@ -214,42 +277,32 @@ PairEquations DepthCalibrator::Problem::equationsOf(const Pair& pair, const Pose
         const double r = after->grey - (pair.gain * before->grey + pair.offset);
         residuals.push_back(static_cast<float>(std::abs(r)));
         const double root = 1. / (1. + r * r / (outlier_ * outlier_));  // Geman and McClure
-        equations.add(J, ofOwn, r, root * root);
+        equations.add(surfel.region, J, ofOwn, r, root * root);
     }
-    equations.eliminateOwn();
+    equations.regularise();
     return equations;
 }
 
-/// The information of all pairs, from the scatter of blocks of them (jackknife), and the step that
-/// they ask for.
+/// The information of all pairs, and the step that they ask for. Two kinds of errors scatter:
+/// those of what is in view, which neighbouring pairs share, and those of the cameras' intrinsics
+/// and distortion, which a region of the image has in all pairs. Blocks of pairs are left out for
+/// the ones and regions for the others, and the covariances are added.
 Matrix6 DepthCalibrator::Problem::informationOf(const std::vector<PairEquations>& pairs,
                                                 Vector6& step) const {
-    const std::size_t count = std::min(kBlocks, pairs.size());
-    std::vector<Matrix6> information(count, Matrix6::Zero());
-    std::vector<Vector6> right(count, Vector6::Zero());
+    std::vector<Cluster> blocks(std::min(kBlocks, pairs.size())), regions(kRegions);
+    Cluster sum;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        information[i * count / pairs.size()] += pairs[i].information;
-        right[i * count / pairs.size()] += pairs[i].right;
+        const auto parts = pairs[i].withoutOwn();
+        for (std::size_t k = 0; k < kRegions; ++k) {
+            blocks[i * blocks.size() / pairs.size()] += parts[k];
+            regions[k] += parts[k];
+            sum += parts[k];
+        }
     }
-    Matrix6 sum = Matrix6::Zero();
-    Vector6 sumRight = Vector6::Zero();
-    for (std::size_t b = 0; b < count; ++b) {
-        sum += information[b];
-        sumRight += right[b];
-    }
-    sum += 1e-9 * sum.trace() * Matrix6::Identity();
-    const Matrix6 inverse = sum.inverse();
-    step = inverse * sumRight;
-    Matrix6 scatter = Matrix6::Zero();
-    for (std::size_t b = 0; b < count; ++b) {
-        const Vector6 without = (Matrix6::Identity() - information[b] * inverse)
-                                    .partialPivLu()
-                                    .solve(right[b] - information[b] * step);
-        scatter += without * without.transpose();
-    }
-    // The inverse of a covariance of few draws is too large (residual_covariance.cpp).
-    const double few = double(count) / std::max(1., double(count) - 7.);
-    const Matrix6 covariance = few * inverse * scatter * inverse;
+    sum.information += 1e-9 * sum.information.trace() * Matrix6::Identity();
+    const Matrix6 inverse = sum.information.inverse();
+    step = inverse * sum.right;
+    const Matrix6 covariance = scatterOf(blocks, inverse, step) + scatterOf(regions, inverse, step);
     return (covariance + 1e-12 * Matrix6::Identity()).inverse();
 }
 

@@ -36,8 +36,9 @@ struct DepthCalibration {
 /// g the image gradient, D the derivative of the projection and t the translation of T: a surface
 /// moves along its normal, and pixels by their parallax. (By the gradients of both images at p
 /// alone, whose noise does not cancel as the gradients do, steps are a fifth as long as they should
-/// be.) Motions and exposures are estimated as well, and the pairs' scatter gives the covariance:
-/// neighbouring pairs see the same surfaces, so that blocks of pairs are left out, not single ones.
+/// be.) Motions and exposures are estimated as well. The covariance is what leaving out blocks of
+/// pairs changes, since neighbouring pairs see the same surfaces, and what leaving out regions of
+/// the image changes, where the errors of intrinsics and distortion are the same in all pairs.
 class DepthCalibrator {
   public:
     /// @param start where the depth camera is believed to be; its intrinsics are taken as exact
