@@ -82,6 +82,19 @@ TEST_F(UnregisteredDepth, IsRegisteredByTheImages) {
     EXPECT_LT(found.calibration.residualAfter, 0.8 * found.calibration.residualBefore);
 }
 
+/// Intrinsics that are wrong displace a region of the image in all pairs alike: their scatter shows
+/// nothing of it, that of the regions does.
+TEST_F(UnregisteredDepth, IsLessCertainWithWrongIntrinsics) {
+    Sequence wrong;
+    wrong.camera = colourCamera();
+    wrong.depthCamera = DepthCamera{makeCamera(200, 150, 1.26)};
+    writeText(folder_.path() / "camera.yaml", cameraYaml(wrong));
+    const DepthCalibration found = registerDepth(options()).calibration;
+    const Vector6 error = logSE3(T_colour_depth() * found.T_c_d.inverse());
+    EXPECT_GT(error.norm(), 0.02) << "too easy";
+    EXPECT_LT(error.dot(found.covariance.ldlt().solve(error)) / 6., 3.);
+}
+
 TEST_F(UnregisteredDepth, CameraFileSaysWhereTheDepthCameraIs) {
     Sequence sequence = readTumSequence(options().dataset, {.forgiving = true});
     sequence.depthCamera->T_c_d = T_colour_depth();
