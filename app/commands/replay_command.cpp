@@ -3,6 +3,7 @@
 
 #include "commands/command_io.hpp"
 #include "commands/result_folder.hpp"
+#include "dataset/colmap_model.hpp"
 #include "io/atomic_file.hpp"
 #include "io/stopwatch.hpp"
 #include "replay/calibration_file.hpp"
@@ -67,6 +68,22 @@ json calibrateReplay(const fs::path& folder, const ReplayRun& run, MapKind map) 
             {"nees_after", calibration->neesAfter}};
 }
 
+/// The images that were tracked with their estimated poses, as a model of COLMAP: their files are
+/// named as from the folder of the dataset. Rectified images of two cameras are no files.
+void writeColmap(const fs::path& folder, const Replay& replay, const ReplayRun& run) {
+    const Recording& recording = replay.recording();
+    if (!recording.stereo.empty()) return;
+    const fs::path dataset = fs::absolute(replay.options().dataset).lexically_normal();
+    std::vector<ColmapImage> images;
+    for (const ReplayedFrame& frame : run.frames) {
+        if (frame.status != FrameStatus::tracked) continue;
+        const fs::path file = recording.sequence.frames[frame.index].colourFile;
+        images.push_back(
+            {fs::absolute(file).lexically_relative(dataset).string(), frame.tracked.T_c_w.mean});
+    }
+    writeColmapModel(folder.string(), recording.sequence.camera, images);
+}
+
 /// Everything the replay depended on, with the values in use.
 std::string configOf(const ReplayCommandOptions& options, const Replay& replay) {
     ReplayCommandOptions used = options;
@@ -116,6 +133,7 @@ ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bo
     }
     report.summary = replaySummary(result);
     writeReplayTables(folder.path(), run, errors);
+    writeColmap(folder.path(), replay, run);
     writeReplayReport(folder.path(), options, configOf(options, replay), result, replay, run,
                       errors);
     commitResult(folder, result);

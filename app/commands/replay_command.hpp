@@ -33,8 +33,9 @@ struct ReplayReport {
 };
 
 /// Replays a dataset and writes into options.out: result.json, config.yaml (complete), frames.csv
-/// (a row per frame), trajectory.tum, trajectory.cov, trajectory.ov and groundtruth.tum (camera to
-/// world), errors.png, strips.png, top_view.png and report.html.
+/// (a row per frame), trajectory.tum, .kitti, .cov and .ov and groundtruth.tum (camera to world),
+/// cameras.txt, images.txt and points3D.txt (a model of COLMAP), errors.png, strips.png,
+/// top_view.png and report.html.
 /// @param interrupted checked between frames; what is there then is written
 /// @throws InputError for a dataset or map that cannot be used, an option out of range and a folder
 ///         that cannot be written, the last before any work is done

@@ -18,7 +18,8 @@ struct ReplayArguments : ReplayCommandOptions {
 void addOptions(CLI::App& parser, ReplayArguments& options) {
     parser
         .add_option("dataset", options.dataset,
-                    "folder in the TUM RGB-D or the EuRoC layout; or the config.yaml of an earlier "
+                    "folder in the TUM RGB-D, the EuRoC or the COLMAP layout; or the config.yaml "
+                    "of an earlier "
                     "replay")
         ->required();
     addKeyOptions(parser, options.keys, {"dataset"});

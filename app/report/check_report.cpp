@@ -338,6 +338,7 @@ void writeCheckReport(const fs::path& folder, const CheckReport& report,
         trajectory.push_back({place.time.value_or(place.length), place.T_w_b * T_b_c});
     }
     writeTrajectory((folder / "path.tum").string(), trajectory);
+    writeKittiTrajectory((folder / "path.kitti").string(), trajectory);
     writeResultFolder(folder, page, checkFigures(report, page.paths));
 }
 

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "dataset/trajectory.hpp"
+#include "io/number.hpp"
 #include "io/reading.hpp"
 #include "io/text_table.hpp"
 
@@ -17,7 +18,7 @@ namespace photonav {
 namespace {
 
 constexpr double kFarthestPose = 1e5;  // of positions, as of the bounds of a config [m]
-constexpr std::size_t kTumColumns = 8;
+constexpr std::size_t kTumColumns = 8, kKittiColumns = 12;
 constexpr double kLeastSlope = 1e-3;  // a steeper motion has no direction from above
 
 enum Column { kTime, kX, kY, kZ, kYaw, kColumnCount };
@@ -142,14 +143,18 @@ std::vector<double> headingsOf(const std::vector<Row>& rows, const GivenHeading&
     return headings;
 }
 
-GivenTrajectory readPoses(const std::string& file, const Pose& T_b_c) {
+GivenTrajectory readPoses(const std::string& file, const Pose& T_b_c, bool isKitti) {
     GivenTrajectory trajectory{TrajectoryFormat::cameraPoses, true, {}};
-    for (const StampedPose& pose : readTrajectory(file)) {
-        if (pose.T_w_c.translation().cwiseAbs().maxCoeff() > kFarthestPose) {
-            throw InputError(file, fmt::format("pose at time {}", pose.timestamp),
+    for (const auto& [timestamp, T_w_c] :
+         isKitti ? readKittiTrajectory(file) : readTrajectory(file)) {
+        if (T_w_c.translation().cwiseAbs().maxCoeff() > kFarthestPose) {
+            throw InputError(file,
+                             isKitti ? fmt::format("pose {}", 1. + timestamp)
+                                     : fmt::format("pose at time {}", timestamp),
                              fmt::format("farther than {} m from the origin", kFarthestPose));
         }
-        trajectory.poses.push_back({pose.timestamp, pose.T_w_c * T_b_c.inverse()});
+        const std::optional<double> time = isKitti ? std::nullopt : std::optional(timestamp);
+        trajectory.poses.push_back({time, T_w_c * T_b_c.inverse()});
     }
     return trajectory;
 }
@@ -187,10 +192,13 @@ GivenTrajectory readGivenTrajectory(const std::string& file, const Pose& T_b_c,
                                     const GivenHeading& heading) {
     return reading(file, [&] {
         const std::string first = firstLine(file);
-        const bool isTum =
-            first.find(',') == std::string::npos && fieldsOf(first, false) == kTumColumns;
-        GivenTrajectory trajectory =
-            isTum ? readPoses(file, T_b_c) : readPlaces(file, first, heading);
+        const bool hasCommas = first.find(',') != std::string::npos;
+        const std::size_t fields = hasCommas ? 0 : fieldsOf(first, false);
+        const bool isKitti =
+            fields == kKittiColumns && numberIn(first.substr(0, first.find_first_of(" \t")));
+        GivenTrajectory trajectory = isKitti || fields == kTumColumns
+                                         ? readPoses(file, T_b_c, isKitti)
+                                         : readPlaces(file, first, heading);
         check(trajectory, file);
         return trajectory;
     });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trajectories of other programs: TUM files, CSV tables and lists of waypoints.
+// Trajectories of other programs: TUM and KITTI files, CSV tables and lists of waypoints.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ struct GivenPose {
 };
 
 enum class TrajectoryFormat {
-    cameraPoses,  ///< TUM: `t tx ty tz qx qy qz qw`, camera to world
+    cameraPoses,  ///< camera to world; TUM: `t tx ty tz qx qy qz qw`, KITTI: rows of the matrix
     table         ///< positions of the body, and perhaps times and headings
 };
 
@@ -29,7 +29,8 @@ struct GivenTrajectory {
     std::vector<GivenPose> poses;  ///< at least two; times never decrease
 };
 
-/// Reads a trajectory. Eight columns without commas are a TUM file. Any other table has columns x,
+/// Reads a trajectory. Eight columns without commas are a TUM file, twelve numbers without commas
+/// one of KITTI, which has no times. Any other table has columns x,
 /// y, z and perhaps t and yaw [s, m, rad], with blanks or commas between them: in the order of the
 /// names in its first line, or else x,y,z or t,x,y,z,yaw. Other columns, if they have a name, are
 /// passed over.

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "dataset/colmap_model.hpp"
 #include "dataset/floor_plane.hpp"
 #include "dataset/sequence_euroc.hpp"
 #include "dataset/sequence_tum.hpp"
@@ -131,6 +132,34 @@ Recording readDepthRecording(const RecordingOptions& options) {
     return recording;
 }
 
+/// The images of a COLMAP model, without depth.
+Recording readColmapRecording(const RecordingOptions& options) {
+    const auto refuse = [](const char* option) {
+        throw InputError(option, "", "means nothing for a COLMAP model");
+    };
+    if (!options.stereo.empty()) refuse("--stereo");
+    if (options.depthScale) refuse("--depth-scale");
+    if (!options.cameraFile.empty()) refuse("--camera");
+    if (options.needsDepth) {
+        throw InputError(options.dataset, "",
+                         "a COLMAP model has no depth images; without them there is `map --depth "
+                         "monocular`, and `replay --map`");
+    }
+    Recording recording;
+    recording.layout = "COLMAP";
+    recording.sequence = readColmapSequence(options.dataset);
+    recording.note = "without times: the images are taken a second apart";
+    recording.view = [all = recording.sequence](std::size_t i) { return loadFrame(all, i).view; };
+    return recording;
+}
+
+Recording readLayout(const RecordingOptions& options) {
+    if (isEurocFolder(options.dataset)) return readStereoRecording(options);
+    const bool isTum = fs::exists(fs::path(options.dataset) / "rgb.txt");
+    if (!isTum && isColmapFolder(options.dataset)) return readColmapRecording(options);
+    return readDepthRecording(options);
+}
+
 /// Only these frames, with their images.
 void keepFrames(Recording& recording, const std::vector<std::size_t>& indices) {
     std::vector<Sequence::Entry> kept;
@@ -200,8 +229,7 @@ std::pair<std::size_t, std::size_t> parseFrames(const std::string& text, std::si
 
 Recording readRecording(const RecordingOptions& options) {
     checkReading(options);
-    Recording recording =
-        isEurocFolder(options.dataset) ? readStereoRecording(options) : readDepthRecording(options);
+    Recording recording = readLayout(options);
     if (!options.forgiving) skipWithoutPose(options, recording);
     const auto given = parseUp(options.up);
     recording.up = given ? *given : upByFloor(recording);

@@ -14,7 +14,7 @@ namespace photonav {
 
 /// What is mapped, and what a plan in that map is compared with.
 struct RecordingOptions {
-    std::string dataset;      ///< folder in the TUM RGB-D or the EuRoC layout
+    std::string dataset;      ///< folder in the TUM RGB-D, the EuRoC or the COLMAP layout
     std::string up = "z";     ///< what points up in the recorded world: an axis (x ... -z), a
                               ///< direction "x,y,z", or "floor": found in the depth images
     int every = 1;            ///< use every n-th frame
@@ -31,7 +31,7 @@ struct RecordingOptions {
 struct Recording {
     Sequence sequence;  ///< the frames to use, in the world of the map (z up)
     Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< in the recorded world
-    std::string layout;                             ///< "TUM RGB-D", "EuRoC"
+    std::string layout;                             ///< "TUM RGB-D", "EuRoC", "COLMAP"
     std::string stereo;                             ///< how depth is found; empty: it is recorded
     std::string note;  ///< about the poses, for a reader of the results
 

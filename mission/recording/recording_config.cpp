@@ -4,7 +4,7 @@
 namespace photonav {
 
 void addKeys(KeyTable& keys, RecordingOptions& options) {
-    keys.requiredFile({"dataset", "", "folder in the TUM RGB-D or the EuRoC layout"},
+    keys.requiredFile({"dataset", "", "folder in the TUM RGB-D, the EuRoC or the COLMAP layout"},
                       options.dataset);
     keys.file({"camera", "", "camera file instead of the dataset's"}, options.cameraFile);
     keys.text({"up", "", "upward direction of the recorded world: x ... -z, \"x,y,z\" or floor"},

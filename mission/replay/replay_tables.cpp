@@ -86,6 +86,7 @@ void writeReplayTables(const std::filesystem::path& folder, const ReplayRun& run
     const std::vector<StampedBelief> beliefs = beliefsOf(run);
     const auto file = [&](const char* name) { return (folder / name).string(); };
     writeTrajectory(file("trajectory.tum"), meansOf(beliefs));
+    writeKittiTrajectory(file("trajectory.kitti"), meansOf(beliefs));
     writeCovariances(file("trajectory.cov"), beliefs);
     writeOpenVinsTrajectory(file("trajectory.ov"), beliefs);
     if (!truth.empty()) writeTrajectory(file("groundtruth.tum"), truth);

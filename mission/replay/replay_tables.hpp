@@ -12,8 +12,8 @@ namespace photonav {
 
 std::vector<StampedBelief> beliefsOf(const ReplayRun& run);  ///< of the frames tracked
 
-/// Writes frames.csv (a row per frame), trajectory.tum, .cov and .ov of the frames tracked, and
-/// groundtruth.tum of the frames used, in the same world and of the same camera.
+/// Writes frames.csv (a row per frame), trajectory.tum, .kitti, .cov and .ov of the frames tracked,
+/// and groundtruth.tum of the frames used, in the same world and of the same camera.
 /// @throws InputError for a file that cannot be written
 void writeReplayTables(const std::filesystem::path& folder, const ReplayRun& run,
                        const ReplayErrors& errors);

@@ -66,6 +66,32 @@ void writeTrajectory(const std::string& file, const Trajectory& trajectory) {
     writeFileAtomically(file, text);
 }
 
+Trajectory readKittiTrajectory(const std::string& file) {
+    Trajectory trajectory;
+    for (const TextRow& row : readTable(file, 12)) {
+        Eigen::Matrix<double, 3, 4> T_w_c;
+        for (int i = 0; i < 12; ++i) T_w_c(i / 4, i % 4) = row.number(static_cast<std::size_t>(i));
+        const Eigen::Matrix3d R = T_w_c.leftCols<3>();
+        const double off = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+        if (!(off <= 0.01 && R.determinant() > 0.)) row.fail("the matrix is no rotation");
+        trajectory.push_back(poseOfRow(row, static_cast<double>(trajectory.size()), T_w_c.col(3),
+                                       Eigen::Quaterniond(R)));
+    }
+    if (trajectory.empty()) throw InputError(file, "", "no poses");
+    return trajectory;
+}
+
+void writeKittiTrajectory(const std::string& file, const Trajectory& trajectory) {
+    std::string text;
+    for (const StampedPose& pose : trajectory) {
+        for (int i = 0; i < 12; ++i) {
+            text += fmt::format("{}{:.9g}", i > 0 ? " " : "", pose.T_w_c.matrix()(i / 4, i % 4));
+        }
+        text += '\n';
+    }
+    writeFileAtomically(file, text);
+}
+
 std::optional<Pose> poseAt(const Trajectory& trajectory, double timestamp, double tolerance,
                            double maxGap) {
     if (trajectory.empty()) return {};

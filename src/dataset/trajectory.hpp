@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Camera trajectories and their files (TUM format, which evo reads).
+// Camera trajectories and their files (TUM and KITTI, which evo reads).
 #pragma once
 
 #include <functional>
@@ -45,6 +45,15 @@ std::string toLine(const StampedPose& pose);
 /// Writes what readTrajectory reads; translations and quaternions with 9 digits.
 /// @throws InputError when the file cannot be written
 void writeTrajectory(const std::string& file, const Trajectory& trajectory);
+
+/// Reads lines of 12 numbers: the upper three rows of T_w_c, row by row, as those of the KITTI
+/// odometry benchmark. They have no times: the poses are taken a second apart.
+/// @throws InputError as readTrajectory(), and for what is no rotation within 0.01
+Trajectory readKittiTrajectory(const std::string& file);
+
+/// Writes what readKittiTrajectory() reads, without the times.
+/// @throws InputError when the file cannot be written
+void writeKittiTrajectory(const std::string& file, const Trajectory& trajectory);
 
 /// The pose at a time: interpolated (translation linearly, rotation by slerp) between the poses
 /// before and after when these are at most `maxGap` apart, else the nearest one within `tolerance`,

@@ -2,6 +2,7 @@
 #include "commands/replay_command.hpp"
 
 #include "app/executable.hpp"
+#include "dataset/colmap_model.hpp"
 #include "dataset/trajectory.hpp"
 #include "flight_dataset.hpp"
 #include "replay/calibration_file.hpp"
@@ -66,6 +67,17 @@ TEST_F(ReplayCommand, WritesWhatOtherProgramsRead) {
     ASSERT_EQ(truth.size(), 12U);
     EXPECT_TRUE(truth[5].T_w_c.isApprox(flight.T_w_c(5), 1e-5));
     EXPECT_TRUE(estimate[5].T_w_c.isApprox(flight.T_w_c(5), 5e-3));
+    const Trajectory kitti = readKittiTrajectory((options.out / "trajectory.kitti").string());
+    ASSERT_EQ(kitti.size(), 12U);
+    EXPECT_TRUE(kitti[5].T_w_c.isApprox(estimate[5].T_w_c, 1e-6));
+    const Sequence model = readColmapSequence(options.out.string());
+    ASSERT_EQ(model.frames.size(), 12U);
+    for (const Sequence::Entry& image : model.frames) {  // named as in the folder of the dataset
+        EXPECT_TRUE(test::fs::exists(
+            data / test::fs::path(image.colourFile).lexically_relative(options.out)))
+            << image.colourFile;
+    }
+    EXPECT_TRUE(model.frames[0].T_c_w.isApprox(estimate[0].T_w_c.inverse(), 1e-6));
     const auto covariances = numbers("trajectory.cov");
     const auto openVins = numbers("trajectory.ov");
     ASSERT_EQ(covariances.size(), 12U);

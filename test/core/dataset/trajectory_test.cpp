@@ -41,6 +41,24 @@ TEST(Trajectory, SurvivesAFile) {
     }
 }
 
+TEST(Trajectory, OfKittiHasRowsOfTheMatrixAndNoTimes) {
+    const test::TemporaryFolder folder;
+    const std::string file =
+        folder.write("00.txt", "0 -1 0 1  1 0 0 2  0 0 1 3\n\n1 0 0 4 0 1 0 5 0 0 1 6\n");
+    const Trajectory read = readKittiTrajectory(file);
+    ASSERT_EQ(read.size(), 2U);
+    EXPECT_TRUE(read[0].T_w_c.isApprox(pose({1., 2., 3.}, EIGEN_PI / 2.), 1e-12));
+    EXPECT_EQ(read[1].timestamp, 1.);
+    const std::string copy = (folder.path() / "copy.txt").string();
+    writeKittiTrajectory(copy, read);
+    EXPECT_TRUE(readKittiTrajectory(copy)[0].T_w_c.isApprox(read[0].T_w_c, 1e-8));
+    expectInputError([&] { readKittiTrajectory(folder.write("a", "2 0 0 4 0 2 0 5 0 0 2 6\n")); },
+                     {"line 1", "no rotation"});
+    expectInputError([&] { readKittiTrajectory(folder.write("b", "-1 0 0 4 0 1 0 5 0 0 1 6\n")); },
+                     {"line 1", "no rotation"});
+    expectInputError([&] { readKittiTrajectory(folder.write("c", "\n")); }, {"no poses"});
+}
+
 TEST(Trajectory, PosesAreInterpolatedAcrossShortGapsOnly) {
     const Trajectory trajectory = {
         {1., pose({0., 0., 0.}, 0.)}, {1.1, pose({1., 2., 0.}, 0.4)}, {2., pose({5., 5., 5.}, 1.)}};

@@ -42,6 +42,21 @@ TEST_F(GivenTrajectoryTest, CameraPosesBecomeBodyPoses) {
     EXPECT_TRUE(trajectory.poses[0].T_w_b.isApprox(T_w_b, 1e-9));
 }
 
+TEST_F(GivenTrajectoryTest, TwelveNumbersAreThePoseOfACameraWithoutTime) {
+    const GivenTrajectory trajectory = read("0 -1 0 1 1 0 0 2 0 0 1 3\n1 0 0 4 0 1 0 5 0 0 1 6\n");
+    EXPECT_EQ(trajectory.format, TrajectoryFormat::cameraPoses);
+    ASSERT_EQ(trajectory.poses.size(), 2U);
+    EXPECT_FALSE(trajectory.poses[0].time);
+    EXPECT_EQ(trajectory.poses[0].T_w_b.translation(), Eigen::Vector3d(1., 2., 3.));
+    EXPECT_NEAR(yawOf(trajectory.poses[0].T_w_b), EIGEN_PI / 2., 1e-12);
+    // Twelve names are those of a table.
+    EXPECT_EQ(
+        read("x y z a b c d e f g h i\n1 2 3 0 0 0 0 0 0 0 0 0\n2 2 3 0 0 0 0 0 0 0 0 0\n").format,
+        TrajectoryFormat::table);
+    EXPECT_NE(reasonFor("1 0 0 2e5 0 1 0 5 0 0 1 6\n1 0 0 4 0 1 0 5 0 0 1 6\n").find("pose 1"),
+              std::string::npos);
+}
+
 TEST_F(GivenTrajectoryTest, TablesOfFiveColumnsHaveTimesAndHeadings) {
     const GivenTrajectory trajectory = read("0.5,1,2,3,0.25\n0.7,2,2,3,-0.5\n");
     ASSERT_EQ(trajectory.poses.size(), 2U);
