@@ -112,6 +112,13 @@ Plot neesPanel(const Curves& curves) {
     return plot;
 }
 
+std::vector<CaptionedImage> imagesOf(const ReplayStrip& strip) {
+    const ImageF& observed = strip.observed.intensity;
+    return {{strip.caption, greyPicture(observed)},
+            {"predicted", predictedPicture(strip.predicted)},
+            {"difference", differencePicture(observed, strip.predicted, kFullResidual)}};
+}
+
 }  // namespace
 
 Figure replayErrorsFigure(const std::string& title, const ReplayRun& run,
@@ -127,14 +134,12 @@ Figure replayErrorsFigure(const std::string& title, const ReplayRun& run,
 
 Figure stripsFigure(const std::vector<ReplayStrip>& strips) {
     std::vector<std::vector<CaptionedImage>> rows;
-    rows.reserve(strips.size());
-    for (const auto& [caption, observed, predicted] : strips) {
-        rows.push_back(
-            {{caption, greyPicture(observed.intensity)},
-             {"predicted", predictedPicture(predicted)},
-             {"difference", differencePicture(observed.intensity, predicted, kFullResidual)}});
+    for (const ReplayStrip& strip : strips) {
+        if (strip.isSample) rows.push_back(imagesOf(strip));
     }
     return imagesFigure(rows, 320.);
 }
+
+Figure stripFigure(const ReplayStrip& strip) { return imagesFigure({imagesOf(strip)}, 220.); }
 
 }  // namespace photonav

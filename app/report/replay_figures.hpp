@@ -16,8 +16,11 @@ namespace photonav {
 Figure replayErrorsFigure(const std::string& title, const ReplayRun& run,
                           const ReplayErrors& errors);
 
-/// Observed, predicted and difference of every strip, one below the other.
-/// @throws std::invalid_argument without strips
+/// Observed, predicted and difference of the samples among the strips, one below the other.
+/// @throws std::invalid_argument without any
 Figure stripsFigure(const std::vector<ReplayStrip>& strips);
+
+/// The same of one.
+Figure stripFigure(const ReplayStrip& strip);
 
 }  // namespace photonav

@@ -241,6 +241,9 @@ void writeReplayReport(const std::filesystem::path& folder, const ReplayCommandO
         report.start = report.paths[0].points.front().position;
         report.goal = report.paths[0].points.back().position;
     }
+    for (const ReplayStrip& strip : run.strips) {
+        report.frames.push_back({strip.caption, stripFigure(strip).png()});
+    }
     writeResultFolder(folder, report, figuresOf(run, errors, report.paths, name));
 }
 

@@ -14,14 +14,15 @@
 namespace photonav {
 namespace {
 
-constexpr std::size_t kStrips = 5;
+constexpr std::size_t kStrips = 40, kSamples = 5;
 constexpr unsigned kStripWidth = 640;     // of their views, at most [pixels]
 constexpr std::size_t kFirstFrames = 10;  // at least one of them must be readable
 
-bool isStripFrame(std::size_t i, std::size_t count) {
-    if (count <= kStrips) return true;
-    for (std::size_t k = 0; k < kStrips; ++k) {
-        if (i == (2 * k + 1) * count / (2 * kStrips)) return true;
+/// Whether an image is one of `wanted` evenly apart, in the middle of as many equal parts.
+bool isOneOf(std::size_t wanted, std::size_t i, std::size_t count) {
+    if (count <= wanted) return true;
+    for (std::size_t k = 0; k < wanted; ++k) {
+        if (i == (2 * k + 1) * count / (2 * wanted)) return true;
     }
     return false;
 }
@@ -125,8 +126,10 @@ void addFrame(const Recording& recording, const ReplayTracker& tracker,
     ++(frame.tracked.rejected ? counts.lost : counts.tracked);
     counts.notFound += frame.tracked.rejected && !frame.isBlack;
     stopWhenAsked();
-    if (isFirstLoss || isStripFrame(i, entries.size())) {
+    const bool isSample = isFirstLoss || isOneOf(kSamples, i, entries.size());
+    if (isSample || isOneOf(kStrips, i, entries.size())) {
         run.strips.push_back(stripOf(recording, tracker, run, std::move(*view)));
+        run.strips.back().isSample = isSample;
     }
 }
 

@@ -35,13 +35,14 @@ struct ReplayedFrame {
 struct ReplayStrip {
     std::string caption;
     View observed, predicted;
+    bool isSample = false;  ///< one of the few that stand for all, or the first that was lost
 };
 
 struct ReplayRun {
     bool odometry = false;  ///< tracked without a map
     double scale = 1.;      ///< factor on the information of the alignments that was in use
     std::vector<ReplayedFrame> frames;
-    std::vector<ReplayStrip> strips;
+    std::vector<ReplayStrip> strips;          ///< of at most some forty frames, evenly apart
     std::optional<std::size_t> alignedFrame;  ///< at which alignToTruth() set the estimate
     std::string stopped;  ///< why it ended before the last frame; empty: it did not
     bool interrupted = false;

@@ -34,6 +34,34 @@ function showWaypoint(index) {
   document.documentElement.dataset.waypoint = index;
 }
 
+// Playing -----------------------------------------------------------------------------------------
+
+/// A button that plays and pauses what has a next step.
+/// @param speed select with a factor  @param interval of steps at speed 1 [ms]
+function createPlayer(button, speed, interval, {isAtEnd, next, rewind}) {
+  let timer = 0;
+  const stop = () => {
+    clearInterval(timer);
+    timer = 0;
+    button.textContent = 'Play';
+  };
+  const start = () => {
+    clearInterval(timer);
+    button.textContent = 'Pause';
+    timer = setInterval(() => {
+      if (!isAtEnd()) next();
+      if (isAtEnd()) stop();
+    }, interval / Number(speed.value));
+  };
+  button.addEventListener('click', () => {
+    if (timer) return stop();
+    if (isAtEnd()) rewind();
+    start();
+  });
+  speed.addEventListener('change', () => { if (timer) start(); });
+  return {stop};
+}
+
 // Tables ------------------------------------------------------------------------------------------
 const kNames = {
   length: ['Length of the path', 'm'], mean_trace: ['Mean trace', 'm² + rad²'],
@@ -103,30 +131,24 @@ function addComparison() {
 
 /// Pictures one after the other: by hand with the slider, or played.
 function setUpFrames() {
-  const {frames} = data, slider = element('frame-slider'), play = element('play');
+  const {frames} = data, slider = element('frame-slider');
   element('frames').hidden = !frames.length;
   if (!frames.length) return;
+  const shown = () => Number(slider.value);
   const show = (index) => {
     slider.value = index;
     element('frame').src = frames[index].image;
-    element('frame-caption').textContent = frames[index].caption;
+    element('frame').alt = element('frame-caption').textContent = frames[index].caption;
+    document.documentElement.dataset.frame = index;
   };
-  let timer = 0;
-  const stop = () => {
-    clearInterval(timer);
-    timer = 0;
-    play.textContent = 'Play';
-  };
-  slider.max = frames.length - 1;
-  slider.addEventListener('input', () => { stop(); show(Number(slider.value)); });
-  play.addEventListener('click', () => {
-    if (timer) return stop();
-    let index = 0;
-    play.textContent = 'Stop';
-    show(index);
-    timer = setInterval(() => (++index < frames.length ? show(index) : stop()), 700);
+  const player = createPlayer(element('play'), element('frame-speed'), 700, {
+    isAtEnd: () => shown() + 1 >= frames.length,
+    next: () => show(shown() + 1),
+    rewind: () => show(0),
   });
-  show(frames.length - 1);
+  slider.max = frames.length - 1;
+  slider.addEventListener('input', () => { player.stop(); show(shown()); });
+  show(isRecorded ? 0 : frames.length - 1);
 }
 
 function fillRest() {
@@ -232,30 +254,13 @@ function setUpView() {
 
 /// Walks along the path, as a flight would.
 function setUpWalk() {
-  const button = element('walk');
-  let timer = 0;
-  const stop = () => {
-    clearInterval(timer);
-    timer = 0;
-    button.textContent = 'Play';
-  };
-  const speed = () => 250 / Number(element('walk-speed').value);
-  const step = () => {
-    if (selected + 1 < waypoints.length) select(selected + 1); else stop();
-  };
-  button.addEventListener('click', () => {
-    if (timer) return stop();
-    if (selected + 1 === waypoints.length) select(0);
-    button.textContent = 'Pause';
-    timer = setInterval(step, speed());
-  });
-  element('walk-speed').addEventListener('change', () => {
-    if (!timer) return;
-    clearInterval(timer);
-    timer = setInterval(step, speed());
+  const player = createPlayer(element('walk'), element('walk-speed'), 250, {
+    isAtEnd: () => selected + 1 >= waypoints.length,
+    next: () => select(selected + 1),
+    rewind: () => select(0),
   });
   for (const id of ['waypoint', 'previous', 'next'])
-    element(id).addEventListener(id === 'waypoint' ? 'input' : 'click', stop);
+    element(id).addEventListener(id === 'waypoint' ? 'input' : 'click', player.stop);
 }
 
 function setUpWaypoints() {

@@ -343,5 +343,28 @@ TEST_F(ReportBrowserTest, OnlySweepsHaveASliderOverAlpha) {
     EXPECT_TRUE(contains(outcome.dom, "id=\"alpha-bar\" hidden"));
 }
 
+constexpr const char* kPlayFrames = R"js(
+  setTimeout(() => {
+    const button = document.getElementById('play'), state = document.documentElement.dataset;
+    const said = () => `${state.frame} ${button.textContent} ${document.getElementById('frame').alt}`;
+    state.before = said();
+    document.getElementById('frame-speed').value = '4';
+    button.click();
+    state.begun = said();
+    setTimeout(() => { state.ended = said(); }, 2000);
+  }, 1500);
+)js";
+
+TEST_F(ReportBrowserTest, PicturesArePlayedAndEnd) {
+    ReportData data = sampleReport();
+    for (const char* caption : {"first", "second", "third"})
+        data.frames.push_back({caption, data.views.front().image});
+    const Outcome outcome = open(data, "", "", kPlayFrames);
+    expectNoErrors(outcome);
+    EXPECT_EQ(published(outcome.dom, "before"), "2 Play third");
+    EXPECT_EQ(published(outcome.dom, "begun"), "0 Pause first");
+    EXPECT_EQ(published(outcome.dom, "ended"), "2 Play third");
+}
+
 }  // namespace
 }  // namespace photonav
