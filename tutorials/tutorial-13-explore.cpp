@@ -37,6 +37,7 @@ Config flightThrough() {
     config.camera.mount = "front45";
     config.camera.width = 94;
     config.camera.height = 60;
+    config.photometric.scale = 1.;  // a grey camera: the noise of its pixels is independent
     config.belief.kappa = 2.5;
     config.explore.range = 3.;
     return config;

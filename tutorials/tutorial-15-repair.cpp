@@ -34,6 +34,7 @@ Config flightThrough() {
     config.camera.mount = "20";  // degrees below the horizon
     config.camera.width = 94;
     config.camera.height = 60;
+    config.photometric.scale = 1.;  // a grey camera: the noise of its pixels is independent
     config.belief.kappa = 1000.;
     config.vertices = 500;
     config.field.positionPitch = 0.25;

@@ -53,6 +53,11 @@ inline bool isAutomatic(double kappa) { return std::isnan(kappa); }
 /// BeliefOptions with the variances of a small robot, kappa automatic.
 BeliefOptions defaultBelief();
 
+/// PhotometricOptions::scale of a camera whose noise is smoothed by a Gaussian of one pixel, about
+/// as by the demosaicing of colour filters: the correlation exp(-d^2 / 4) of pixels at a distance d
+/// sums to 4 pi pixels, which together count as one measurement. Rounded.
+inline constexpr double kSmoothedNoiseScale = 0.08;
+
 struct Config {
     std::string file;  ///< where this was read from
 
@@ -70,7 +75,7 @@ struct Config {
     double clearanceResolution = 0.05;  ///< cells that a scene is sampled into for clearance [m]
 
     CameraConfig camera;
-    PhotometricOptions photometric;
+    PhotometricOptions photometric{.scale = kSmoothedNoiseScale};
     BeliefOptions belief = defaultBelief();
     InformationField::Options field;
     bool quickViews = false;  ///< for the planners: see PlanningProblem

@@ -164,7 +164,9 @@ void addCamera(KeyTable& keys, Config& c) {
         {"sigma", "grey value", "standard deviation of the image noise, grey values in [0, 1]"},
         c.photometric.sigma, {kTiny, 1.});
     keys.number({"information_scale", "",
-                 "factor on the information: neighbouring pixels are not independent"},
+                 "factor on the information, the inverse of the number of pixels that count as one "
+                 "measurement: 1 for independent noise, 1 / (4 pi s^2) for noise smoothed by a "
+                 "Gaussian of s pixels; 0.08: s = 1"},
                 c.photometric.scale, {0., kLargest});
     keys.count({"stride", "pixels", "use every n-th row and column"}, c.photometric.stride,
                {1., 64.});

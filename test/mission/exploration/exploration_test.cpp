@@ -24,6 +24,7 @@ class RoomToExplore : public ::testing::Test {
         config.camera.mount = "front45";
         config.camera.width = 94;
         config.camera.height = 60;
+        config.photometric.scale = 1.;  // independent noise
         config.planner = "rrt_star";
         config.explore.range = 3.;
         config.explore.vertices = 250;
