@@ -26,8 +26,8 @@ void addTree(Plot& plot, const DrawnTree& tree) {
         for (const Eigen::Vector3f& end : edge) ends.emplace_back(end.head<2>().cast<double>());
     const double sparse = std::clamp(60. / static_cast<double>(tree.edges.size()), 0.25, 0.8);
     plot.segments(ends, {.color = tree.color,
-                         .width = tree.isOnTop ? 1.3 : 1.,
-                         .opacity = tree.isOnTop ? 0.6 : sparse,
+                         .width = tree.isOnTop ? 1.8 : 1.,
+                         .opacity = tree.isOnTop ? 0.7 : sparse,
                          .name = tree.name});
 }
 
