@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/scene.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -212,7 +213,7 @@ Matrix6 informationAt(const MeshRenderer& renderer, double x, double y) {
 
 MeshRenderer shipped(const std::string& name) {
     return MeshRenderer(
-        loadScene(std::string(PHOTONAV_SOURCE_DIR) + "/config/scenes/" + name + ".yaml"));
+        loadScene(fmt::format("{}/config/scenes/{}.yaml", PHOTONAV_SOURCE_DIR, name)));
 }
 
 TEST(ShippedScenes, TwoTexturesInformOverTheTextureOnly) {
