@@ -242,7 +242,16 @@ TEST(FailingWrites, OfResults) {
 }
 
 SweepRun runOf(std::uint32_t seed) {
-    return {{"rrt_star", 0.5, seed}, 1., 2., 3., 4., 5, 6, 7., "done", {{1., 2., 3.}}};
+    return {{"rrt_star", 0.5, seed},
+            1.,
+            2.,
+            3.,
+            4.,
+            5,
+            6,
+            7.,
+            "done",
+            {{Eigen::Vector3d(1., 2., 3.), 0.}}};
 }
 
 /// A run that could not be written is missing, those before it are there, and the next one can be.
