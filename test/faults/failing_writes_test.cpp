@@ -302,7 +302,9 @@ TEST(FailingWrites, OfFlightsOfAnExploration) {
             journal.reset();
             TrialJournal read = TrialJournal::read(folder.path());
             ASSERT_EQ(read.runs().size(), hasError ? 1U : 2U) << when;
-            if (!hasError) EXPECT_TRUE(read.runs()[1].map) << when;
+            if (!hasError) {
+                EXPECT_TRUE(read.runs()[1].map) << when;
+            }
             read.append(flightOf(3));
             EXPECT_EQ(TrialJournal::read(folder.path()).runs().back().seed, 3U) << when;
         });
@@ -354,7 +356,9 @@ TEST(FailingWrites, OfReferenceTables) {
             ASSERT_NO_THROW(table.read()) << when;
             // The new table may be in place already when its folder cannot be synchronised.
             EXPECT_LE(table.alphas().size(), 2U) << when;
-            if (!hasError) EXPECT_EQ(table.alphas().size(), 2U) << when;
+            if (!hasError) {
+                EXPECT_EQ(table.alphas().size(), 2U) << when;
+            }
             ASSERT_NE(table.at(0.5), nullptr) << when;
             EXPECT_EQ(table.at(0.5)->waypoints.size(), 2U) << when;
         });
