@@ -42,14 +42,13 @@ json optionsJson(const ReplayOptions& o) {
 
 json datasetJson(const Replay& replay) {
     const Recording& recording = replay.recording();
-    const bool odometry = replay.options().odometry;  // alone allows for depth's errors
     return {{"folder", fs::absolute(replay.options().dataset).lexically_normal().string()},
             {"layout", recording.layout},
             {"note", recording.note},
             {"median_depth_m", orNull(replay.medianDepth())},
             {"depth_noise_m", replay.depthNoise()},
-            {"depth_error", odometry ? json(replay.depthError().relative) : json(nullptr)},
-            {"depth_error_assumed", odometry && replay.depthError().isAssumed},
+            {"depth_error", replay.depthError().relative},
+            {"depth_error_assumed", replay.depthError().isAssumed},
             {"camera", cameraJson(recording.sequence.camera)}};
 }
 

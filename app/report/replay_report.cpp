@@ -198,7 +198,7 @@ ReportTable replaySummary(const json& result) {
     table.rows.emplace_back(
         isStereo ? "pixels with depth from stereo" : "pixels with recorded depth",
         number(result["depth_density"], 100., "{:.1f} %", "none"));
-    if (const json& error = result["dataset"]["depth_error"]; error.is_number() && error != 0.) {
+    if (result["dataset"]["depth_error"] != 0.) {
         table.rows.emplace_back("error of depth that repeats from image to image",
                                 depthErrorText(result["dataset"]));
     }

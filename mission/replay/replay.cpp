@@ -233,8 +233,9 @@ Replay::Replay(const ReplayOptions& options) : options_(options) {
     const DepthLook look = lookAtDepth(recording_);
     medianDepth_ = checkDepths(options, recording_, look.median);
     depthNoise_ = look.noise.atOneMetre();
-    depthError_ = depthErrorOf(recording_, look.noise);
-    makersOf(options_.mapFile);  // throws here rather than in a run
+    if (options_.odometry || !makersOf(options_.mapFile).empty()) {
+        depthError_ = depthErrorOf(recording_, look.noise);
+    }
     alignment_ = alignmentOf(options_, recording_.sequence, map_, depthError_);
     options_.stereo = recording_.stereo;
     options_.scale = alignment_.informationScale;

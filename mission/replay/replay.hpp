@@ -31,6 +31,7 @@ class Replay {
     const std::optional<double>& medianDepth() const { return medianDepth_; }
     /// Of the depth in these images: standard deviation at 1 m [m].
     double depthNoise() const { return depthNoise_; }
+    /// What covariances allow for: none in a map that does not say where its images were taken.
     const DepthError& depthError() const { return depthError_; }
 
     /// Tracks the recording from its first image on. The path of odometry is moved so that its
