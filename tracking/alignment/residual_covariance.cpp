@@ -82,6 +82,7 @@ MatrixXd covarianceOf(const MatrixXd& draws) {
 template <class Effect>
 Matrix8 scatterOfField(const std::vector<ImageBlock>& blocks, const Eigen::Array2i& size,
                        double variance, const Effect& effect) {
+    if (blocks.empty()) return Matrix8::Zero();     // no pixel is compared
     const double length = kFieldLength * size.x();  // [blocks]
     const Eigen::Array2i nodes = (size.cast<double>() / length).ceil().cast<int>() + 3;
     std::vector<Vector8> pull(std::size_t(nodes.prod()), Vector8::Zero());
