@@ -13,10 +13,10 @@
 namespace photonav {
 namespace {
 
-constexpr double kNearest = 0.2;      // depths below are not trusted, as in fusion [m]
+constexpr double kLeastDepth = 0.2;   // depths below are not trusted, as in fusion [m]
 constexpr double kPixelShare = 0.25;  // of the pixels of a cell that faces the camera
 constexpr std::size_t kFewCells = 3;  // as many are an obstacle
-constexpr double kSlack = 0.02;       // of clearances along a way [m]
+constexpr double kWaySlack = 0.02;    // of clearances along a way [m]
 
 using octomap::OcTreeKey;
 
@@ -34,7 +34,7 @@ std::vector<OcTreeKey> cellsHit(const ImageF& depth, const Camera& camera, const
     for (unsigned v = 0; v < depth.getHeight(); ++v) {
         for (unsigned u = 0; u < depth.getWidth(); ++u) {
             const double z = depth[v][u];
-            if (!(z >= kNearest)) continue;
+            if (!(z >= kLeastDepth)) continue;
             const Eigen::Vector3d p_w = T_w_c * camera.unproject(u, v, z);
             if ((p_w - T_w_c.translation()).head<2>().norm() > range) continue;
             OcTreeKey key;
@@ -123,14 +123,14 @@ double ObstaclesInView::clearance(const Eigen::Vector3d& p_w) const {
 
 bool ObstaclesInView::isOn(const std::vector<Eigen::Vector3d>& way, double radius) const {
     if (occupied_.empty() || way.empty()) return false;
-    double least = std::min(radius, clearance(way.front())) - kSlack;
+    double least = std::min(radius, clearance(way.front())) - kWaySlack;
     for (std::size_t i = 1; i < way.size(); ++i) {
         const Eigen::Vector3d leg = way[i] - way[i - 1];
         const int steps = 1 + static_cast<int>(leg.norm() / cell_);
         for (int k = 1; k <= steps; ++k) {
             const double now = clearance(way[i - 1] + static_cast<double>(k) / steps * leg);
             if (now < least) return true;
-            least = std::max(least, std::min(radius, now) - kSlack);
+            least = std::max(least, std::min(radius, now) - kWaySlack);
         }
     }
     return false;

@@ -162,8 +162,8 @@ void fillBetween(CellScan& scan, const View& seen, const CellFrame& frame,
             if (options.surfaces && !hasNormals) normals.computeRow(v);
             hasNormals = true;
             for (int k = 1; k < quad->columns * quad->rows; ++k) {
-                const double x = double(k % quad->columns) / quad->columns;
-                const double y = double(k / quad->columns) / quad->rows;
+                const int column = k % quad->columns, row = k / quad->columns;
+                const double x = double(column) / quad->columns, y = double(row) / quad->rows;
                 const Vector3d end =
                     frame.point(u + x, v + y, 1. / Quad::mean(quad->inverseDepth, x, y));
                 const Array3i cell = end.array().floor().cast<int>();
