@@ -15,7 +15,6 @@ namespace photonav {
 namespace {
 
 constexpr std::size_t kStrips = 40, kSamples = 5;
-constexpr unsigned kStripWidth = 640;     // of their views, at most [pixels]
 constexpr std::size_t kFirstFrames = 10;  // at least one of them must be readable
 
 /// Whether an image is one of `wanted` evenly apart, in the middle of as many equal parts.
