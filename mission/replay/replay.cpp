@@ -225,6 +225,7 @@ Replay::Replay(const ReplayOptions& options) : options_(options) {
     if (!options_.odometry) {
         map_ = loadTrackingMap(options_.mapFile);
         options_.startSigma = options_.startSigma.value_or(kStartSigma);
+        makers_ = makersOf(options_.mapFile);
     }
     if (!options_.calibration.empty()) {
         applyCalibration(options_.odometry ? std::nullopt : std::optional(map_.kind), options_);
@@ -233,7 +234,7 @@ Replay::Replay(const ReplayOptions& options) : options_(options) {
     const DepthLook look = lookAtDepth(recording_);
     medianDepth_ = checkDepths(options, recording_, look.median);
     depthNoise_ = look.noise.atOneMetre();
-    if (options_.odometry || !makersOf(options_.mapFile).empty()) {
+    if (options_.odometry || !makers_.empty()) {
         depthError_ = depthErrorOf(recording_, look.noise);
     }
     alignment_ = alignmentOf(options_, recording_.sequence, map_, depthError_);
@@ -259,8 +260,7 @@ ReplayTracker Replay::makeTracker(const std::function<bool()>& isStopped) const 
         mapTracker(views, camera, start_, tracker,
                    static_cast<unsigned>(options_.maxWidth.value_or(kWidthInMap)));
     const double share = depthError_.relative;
-    const Trajectory makers = makersOf(options_.mapFile);
-    return share > 0. && !makers.empty() ? inDisplacedMap(inMap, share, makers) : inMap;
+    return share > 0. ? inDisplacedMap(inMap, share, makers_) : inMap;
 }
 
 ReplayRun Replay::run(const std::function<bool()>& isStopped,

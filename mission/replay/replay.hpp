@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 
+#include "dataset/trajectory.hpp"
 #include "problem/tracking_map.hpp"
 #include "replay/depth_sensor.hpp"
 #include "replay/replay_options.hpp"
@@ -50,6 +51,7 @@ class Replay {
     ReplayOptions options_;
     Recording recording_;
     TrackingMap map_;
+    Trajectory makers_;  // the images that the map was made of, where it says so
     UncertainPose start_;
     AlignmentOptions alignment_;
     std::optional<double> medianDepth_;
