@@ -44,7 +44,9 @@ PhotometricServo Pilot::servoToGoal() const {
 void Pilot::setPlan(std::vector<PlannedView> plan) {
     route_ = Route(std::move(plan), T_b_c_, options_.route, command_);
     goalServo_ = servoToGoal();
-    if (searchSince_) endSearch();
+    searchSince_.reset();
+    searched_.reset();
+    wayBack_.reset();
     leaveImage();
     atGoalSince_.reset();
     hasMissedGoal_ = hasServoedOnImage_ = false;
@@ -91,6 +93,7 @@ BodyVelocity Pilot::command(const Tracker& tracker, double time, double dt) {
 
 BodyVelocity Pilot::decide(const Tracker& tracker, double time, double dt) {
     const UncertainPose belief = tracker.belief();
+    if (!wayBack_) flown_.moved(bodyOf(belief.mean), bodyOf(tracker.lastCertainView()));
     if (const auto lostSince = tracker.loss().since()) {
         if (time - *lostSince < options_.hoverTime) {
             route_.halt();
@@ -98,6 +101,7 @@ BodyVelocity Pilot::decide(const Tracker& tracker, double time, double dt) {
         }
         if (!searchSince_) beginSearch(tracker, time);
     }
+    if (wayBack_) return follow(wayBack_->advance(belief, dt), belief);
     if (searched_) {
         route_.halt();
         return servo_.toward(belief.mean, route_.cameraAt(*searched_));
@@ -120,6 +124,10 @@ BodyVelocity Pilot::alongRoute(const Tracker& tracker, double time, double dt) {
         atGoalSince_ = time;
         hasMissedGoal_ = isMissed;
     }
+    return follow(reference, belief);
+}
+
+BodyVelocity Pilot::follow(const Route::Reference& reference, const UncertainPose& belief) {
     BodyVelocity velocity = servo_.toward(belief.mean, route_.cameraAt(reference.T_w_b));
     velocity.linear += reference.velocity.linear;
     velocity.yawRate += reference.velocity.yawRate;
@@ -128,16 +136,24 @@ BodyVelocity Pilot::alongRoute(const Tracker& tracker, double time, double dt) {
 
 void Pilot::beginSearch(const Tracker& tracker, double time) {
     searchSince_ = time;
-    searched_ = tracker.loss().isLost()
-                    ? viewToRelocalize(tracker)
-                    : search_.nearest(tracker.belief(), route_.lastWaypoint().T_w_b);
-    if (!searched_ && !tracker.loss().isLost()) endSearch();
+    if (!tracker.loss().isLost()) {
+        searched_ = search_.nearest(tracker.belief(), route_.lastWaypoint().T_w_b);
+        if (!searched_) endSearch();
+    } else if (isCertainViewNearer(tracker)) {
+        route_.halt();
+        wayBack_.emplace(flown_.back(), T_b_c_, options_.route);
+        searched_ = flown_.begin();
+    }
 }
 
 /// An image has arrived.
 void Pilot::continueSearch(const Tracker& tracker, double time) {
     if (tracker.loss().isLost()) return;
     const UncertainPose belief = tracker.belief();
+    if (wayBack_) {
+        route_ = route_.rejoined(bodyOf(belief.mean));
+        return endSearch();
+    }
     const bool isTooLong = time - *searchSince_ > options_.giveUpTime;
     if (!searched_ || isTooLong || !route_.needs(route_.lastWaypoint(), belief)) return endSearch();
     const Eigen::Vector3d p_w = bodyOf(belief.mean).translation();
@@ -149,22 +165,20 @@ void Pilot::continueSearch(const Tracker& tracker, double time) {
 void Pilot::endSearch() {
     searchSince_.reset();
     searched_.reset();
+    wayBack_.reset();
 }
 
-/// The last view that determined the pose, unless one that should narrow the belief lies nearer
-/// ahead on the route: none.
-std::optional<Pose> Pilot::viewToRelocalize(const Tracker& tracker) const {
+/// Whether the last view that determined the pose is nearer than one ahead on the route that should
+/// narrow the belief.
+bool Pilot::isCertainViewNearer(const Tracker& tracker) const {
     const UncertainPose belief = tracker.loss().widened(tracker.belief());
-    const Eigen::Vector3d p_w = bodyOf(belief.mean).translation();
-    const Pose certain = bodyOf(tracker.lastCertainView());
-    const double back = (certain.translation() - p_w).norm();
     for (const PlannedView& view : route_.ahead()) {
         const double way = view.distance - route_.distance();
         if (way < kOtherView) continue;
-        if (way > back) break;
-        if (search_.narrows(belief, view.T_w_b)) return {};
+        if (way > flown_.length()) break;
+        if (search_.narrows(belief, view.T_w_b)) return false;
     }
-    return certain;
+    return true;
 }
 
 bool Pilot::hasArrived(const Tracker& tracker, double time) const {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "control/flown_way.hpp"
 #include "control/photometric_servo.hpp"
 #include "control/route.hpp"
 #include "control/view_search.hpp"
@@ -30,9 +31,9 @@ struct PilotOptions {
 /// believed pose; at the goal on its image. A waypoint at which the belief is much wider than
 /// planned, so that its view cannot have been seen, begins a search for a view around that narrows
 /// it; what is not found in time leaves the route as uncertain as before, and a goal not reached
-/// for certain is given up. While tracking is lost the pilot hovers, then flies back to the last
-/// view that determined the pose, or on along the route to one that should narrow the belief,
-/// whichever is nearer. It gives up after a while.
+/// for certain is given up. While tracking is lost the pilot hovers, then flies back on the way it
+/// came to the last view that determined the pose, or on along the route to one that should narrow
+/// the belief, whichever is nearer. It gives up after a while.
 class Pilot {
   public:
     /// @param plan at least two views @throws std::invalid_argument otherwise
@@ -64,10 +65,11 @@ class Pilot {
   private:
     BodyVelocity decide(const Tracker& tracker, double time, double dt);
     BodyVelocity alongRoute(const Tracker& tracker, double time, double dt);
+    BodyVelocity follow(const Route::Reference& reference, const UncertainPose& belief);
     void beginSearch(const Tracker& tracker, double time);
     void continueSearch(const Tracker& tracker, double time);
     void endSearch();
-    std::optional<Pose> viewToRelocalize(const Tracker& tracker) const;
+    bool isCertainViewNearer(const Tracker& tracker) const;
     Pose bodyOf(const Pose& T_c_w) const { return T_c_w.inverse() * T_b_c_.inverse(); }
     void approachOnImage(const ImageF& image, const Pose& T_w_b);
     void leaveImage();
@@ -83,6 +85,8 @@ class Pilot {
     ViewSearch search_;
     std::optional<double> searchSince_;  ///< [s]
     std::optional<Pose> searched_;       ///< body pose to search from; none: the route goes on
+    FlownWay flown_;                     ///< since the last view that determined the pose
+    std::optional<Route> wayBack_;       ///< to that view, while tracking is lost
     bool hasMissedGoal_ = false;         ///< at the goal, but not for certain
     BodyVelocity command_;
     std::optional<double> atGoalSince_;    ///< [s]

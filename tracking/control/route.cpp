@@ -133,6 +133,30 @@ void Route::passViews(const UncertainPose& belief) {
     if (atGoal_) passed_ = next_;
 }
 
+Route Route::rejoined(const Pose& T_w_b) const {
+    const Eigen::Vector3d p_w = T_w_b.translation();
+    PlannedView nearest = plan_.front();
+    std::size_t after = 1;
+    for (std::size_t i = 1; i <= next_; ++i) {
+        const Eigen::Vector3d from_w = plan_[i - 1].T_w_b.translation();
+        const Eigen::Vector3d leg_w = plan_[i].T_w_b.translation() - from_w;
+        const double length = leg_w.norm();
+        const double share =
+            length > 0. ? std::clamp((p_w - from_w).dot(leg_w) / (length * length), 0., 1.) : 1.;
+        const Eigen::Vector3d on_w = from_w + share * leg_w;
+        if ((on_w - p_w).norm() > (nearest.T_w_b.translation() - p_w).norm()) continue;
+        nearest = plan_[i - 1];
+        nearest.isWaypoint = false;
+        nearest.T_w_b.translation() = on_w;
+        nearest.distance += share * (plan_[i].distance - plan_[i - 1].distance);
+        after = i;
+    }
+    std::vector<PlannedView> plan{nearest, nearest};
+    plan.front().T_w_b = T_w_b;
+    plan.insert(plan.end(), plan_.begin() + static_cast<std::ptrdiff_t>(after), plan_.end());
+    return {std::move(plan), T_b_c_, options_};
+}
+
 double Route::distance() const {
     const SmoothPath::OnLeg place = path_.legAt(phase_);
     const double from = plan_[place.from].distance;

@@ -55,6 +55,10 @@ class Route {
     /// The flight was interrupted: the route goes on from standstill.
     void halt() { rate_ = 0.; }
 
+    /// The same plan after an excursion back along it: from a pose of the body to the nearest place
+    /// of the part that was flown, and on from there.
+    Route rejoined(const Pose& T_w_b) const;
+
     /// Whether the belief was at the goal at the last advance().
     bool isAtGoal() const { return atGoal_; }
 

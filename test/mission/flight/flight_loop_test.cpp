@@ -27,6 +27,7 @@ class ObedientRobot : public Robot {
         time_ += seconds;
         Observation observation{time_, UncertainPose{T_now_next.inverse()}, {}};
         observation.T_next_now->covariance = 1e-6 * Matrix6::Identity();
+        if (isBlind) return observation;
         CameraFrame& frame = observation.frames.emplace_back();
         frame.time = time_;
         world_->render(camera_, (T_w_b * T_b_c_).inverse(), frame.view);
@@ -37,6 +38,7 @@ class ObedientRobot : public Robot {
 
     Pose T_w_b = Pose::Identity();
     BodyVelocity lastCommand;
+    bool isBlind = false;
 
   private:
     std::shared_ptr<const ViewSource> world_;
@@ -65,7 +67,9 @@ class FlightLoop : public ::testing::Test {
         TrackerOptions options;
         options.T_b_c = robot.T_b_c();
         tracker.emplace(floor, robot.camera(), start, options);
-        pilot.emplace(straightTo(1.), floor, robot.camera(), robot.T_b_c(), PilotOptions{});
+        PilotOptions flown;
+        flown.route.responseTime = 0.;  // of an obedient robot
+        pilot.emplace(straightTo(1.), floor, robot.camera(), robot.T_b_c(), flown);
     }
 
     /// @return duration of the flight [s]
@@ -78,11 +82,22 @@ class FlightLoop : public ::testing::Test {
         return time;
     }
 
+    /// One step, whether or not there is an image in it.
+    void flyOnce(double time) {
+        const Observation observation = robot.fly(command, 0.1);
+        const std::vector<TrackedFrame> tracked = tracker->update(observation);
+        for (std::size_t i = 0; i < tracked.size(); ++i) {
+            pilot->observe(*tracker, tracked[i], observation.frames[i].view.intensity);
+        }
+        command = pilot->command(*tracker, time + 0.1, 0.1);
+    }
+
     std::shared_ptr<const ViewSource> floor =
         std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
     ObedientRobot robot{floor};
     std::optional<Tracker> tracker;
     std::optional<Pilot> pilot;
+    BodyVelocity command;
 };
 
 TEST_F(FlightLoop, FliesAnyRobot) {
@@ -131,6 +146,37 @@ TEST_F(FlightLoop, ANewPlanOnTheWayDoesNotStopIt) {
     EXPECT_EQ(plans, 5);
     EXPECT_GT(slowest, 0.9);
     EXPECT_NEAR(robot.T_w_b.translation().x(), 3.7, 0.05);
+}
+
+/// Images fail before a corner and come again where the last one was. The straight line back would
+/// lead across the corner, 0.3 m off the way.
+TEST_F(FlightLoop, FliesBackOnTheWayItCameAndOnAlongThePlan) {
+    std::vector<PlannedView> plan = straightTo(1.5);
+    plan.push_back(plan.back());
+    plan.back().T_w_b.translation().y() = 1.;
+    plan.back().distance = 2.5;
+    pilot->setPlan(plan);
+    const auto offPlan = [](const Eigen::Vector3d& p_w) {
+        const Eigen::Vector3d onFirst(std::clamp(p_w.x(), 0., 1.5), 0., 2.);
+        const Eigen::Vector3d onSecond(1.5, std::clamp(p_w.y(), 0., 1.), 2.);
+        return std::min((p_w - onFirst).norm(), (p_w - onSecond).norm());
+    };
+    double farthestOff = 0., time = 0.;
+    bool isBack = false;
+    for (; time < 60. && !pilot->hasArrived(*tracker, time); time += 0.1) {
+        const Eigen::Vector3d p_w = robot.T_w_b.translation();
+        const double way = p_w.x() + p_w.y();
+        isBack = isBack || (tracker->loss().isLost() && way < 1.1);
+        robot.isBlind = way > 1.05 && !isBack;
+        flyOnce(time);
+        farthestOff = std::max(farthestOff, offPlan(robot.T_w_b.translation()));
+        ASSERT_FALSE(pilot->hasGivenUp(*tracker, time));
+    }
+    EXPECT_TRUE(isBack);
+    EXPECT_LT(time, 40.);
+    EXPECT_LT(farthestOff, 0.15);
+    EXPECT_EQ(tracker->loss().timesLost(), 1);
+    EXPECT_LT((robot.T_w_b.translation() - Eigen::Vector3d(1.5, 1., 2.)).norm(), 0.05);
 }
 
 TEST_F(FlightLoop, TimeMustPass) {
