@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // J over time: the best path of belief_rrt_star, of Algorithm 1 and of OMPL's RRTstar after given
 // times, on the paper's two scenarios and in a room. Seconds are processor time of this process
-// (one thread), views included; every planner starts without cached views.
-// Usage: anytime_bench [seeds = 10] [longest time in seconds = 10]
+// (one thread), views included; every planner starts without cached views. The row "known time" has
+// solve(seconds), begun anew for each time, by the wall clock; below it is the share of the time
+// that was used. Usage: anytime_bench [seeds = 10] [longest time in seconds = 10]
 #include <fmt/format.h>
 #include <ompl/geometric/PathGeometric.h>
 #include <ompl/geometric/planners/rrt/RRTstar.h>
 #include <ompl/util/Console.h>
 
+#include <chrono>
 #include <ctime>
 #include <string>
 #include <vector>
@@ -47,6 +49,29 @@ Curve measureOurs(PlanningProblem& problem, const std::string& name, unsigned se
     planner->params().setParam("max_vertices", "0");
     planner->params().setParam("max_iterations", "0");
     return measure(*planner, times, [&] { return planner->bestCost(); });
+}
+
+/// Costs, and the share of each time that was used, when the planner knows the time in advance.
+struct KnownTime {
+    Curve cost, used;
+};
+
+KnownTime measureKnownTime(PlanningProblem& problem, unsigned seed,
+                           const std::vector<double>& times) {
+    KnownTime result;
+    for (const double time : times) {
+        problem.forgetViews();
+        const auto planner = problem.makePlanner("belief_rrt_star");
+        planner->params().setParam("seed", std::to_string(seed));
+        planner->params().setParam("max_vertices", "0");
+        planner->params().setParam("max_iterations", "0");
+        const auto start = std::chrono::steady_clock::now();
+        planner->solve(time);
+        const std::chrono::duration<double> used = std::chrono::steady_clock::now() - start;
+        result.cost.push_back(planner->bestCost());
+        result.used.push_back(used.count() / time);
+    }
+    return result;
 }
 
 /// The shortest path that OMPL's RRTstar finds, with the neighbourhood that ours has.
@@ -108,6 +133,14 @@ void printTable(const std::string& scenario, unsigned seeds, const std::vector<d
         }
         printRow(name, curves);
     }
+    std::vector<Curve> costs, used;
+    for (unsigned seed = 1; seed <= seeds; ++seed) {
+        const KnownTime known = measureKnownTime(problem, seed, times);
+        costs.push_back(known.cost);
+        used.push_back(known.used);
+    }
+    printRow("belief_rrt_star, known time", costs);
+    printRow("share of it that was used", used);
 }
 
 }  // namespace

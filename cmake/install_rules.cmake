@@ -10,11 +10,19 @@ set_target_properties(photonav_tracking PROPERTIES EXPORT_NAME tracking)
 set_target_properties(photonav_mission PROPERTIES EXPORT_NAME mission)
 install(TARGETS photonav_core photonav_planning photonav_tracking photonav_mission EXPORT photonav_targets)
 install(TARGETS photonav)
-install(DIRECTORY src/ planning/ tracking/ mission/ DESTINATION include/photonav FILES_MATCHING PATTERN "*.hpp"
-    PATTERN "yaml_reader.hpp" EXCLUDE PATTERN "key_table.hpp" EXCLUDE
-    PATTERN "config_keys.hpp" EXCLUDE PATTERN "recording_config.hpp" EXCLUDE
-    PATTERN "map_config.hpp" EXCLUDE PATTERN "replay_config.hpp" EXCLUDE PATTERN "simd.hpp" EXCLUDE
-    PATTERN "product_sums.hpp" EXCLUDE PATTERN "keyframe_points.hpp" EXCLUDE)
+# Public headers. In the source tree they include each other by folder ("geometry/camera.hpp"); installed
+# they say <photonav/...>, so that a program may have folders of the same names.
+foreach(root src planning tracking mission)
+    file(GLOB_RECURSE _headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/${root} ${root}/*.hpp)
+    list(FILTER _headers EXCLUDE REGEX
+        "/(yaml_reader|key_table|config_keys|recording_config|map_config|replay_config|simd|product_sums|keyframe_points|voxel_rays|surface_meeting)\\.hpp$")
+    foreach(header IN LISTS _headers)
+        list(APPEND _public_headers ${root}/${header})
+    endforeach()
+endforeach()
+install(CODE "set(PHOTONAV_HEADERS \"${_public_headers}\")
+set(PHOTONAV_SOURCE_DIR \"${PROJECT_SOURCE_DIR}\")
+include(\"${PROJECT_SOURCE_DIR}/cmake/install_headers.cmake\")")
 # Completion of command lines, printed by the executable itself.
 set(_completions ${PROJECT_BINARY_DIR}/completions)
 file(MAKE_DIRECTORY ${_completions})

@@ -117,7 +117,7 @@ void addFlight(KeyTable& keys, Config& c) {
     };
     place({"start", "m, rad", "position, heading of the body"}, c.start);
     place({"goal", "m, rad",
-           "position and heading; without heading, in a space that has one, any will do"},
+           "position and heading; without a heading, the robot may arrive with any heading"},
           c.goal);
     keys.add({.words = {"space", "",
                         "`xyz` (the heading stays the start's), `xyz_yaw`, `se3`; `auto`: "

@@ -48,11 +48,13 @@ void addMappingKeys(KeyTable& keys, ExploreConfig& c) {
                  "information of views of such space: `none` (the paper), or as `predicted` from "
                  "the views flown through lately"},
                 c.unknownInformation, {"none", "predicted"});
-    keys.number({"keyframe_distance", "m", "from the last image fused: the next one is fused"},
+    keys.number({"keyframe_distance", "m",
+                 "an image is fused once the robot is this far from where the last one was"},
                 c.keyframeDistance, {0.01, 10.});
-    keys.number({"keyframe_angle", "rad", "turned since the last image fused: the same"},
-                c.keyframeAngle, {0.01, 3.2});
-    keys.number({"keyframe_new", "", "share of the surfaces in view that the map lacks: the same"},
+    keys.number({"keyframe_angle", "rad", "or has turned this far since"}, c.keyframeAngle,
+                {0.01, 3.2});
+    keys.number({"keyframe_new", "",
+                 "or an image shows at least this share of surfaces that the map lacks"},
                 c.keyframeNew, {0.01, 1.});
 }
 
@@ -80,8 +82,8 @@ void addFlightKeys(KeyTable& keys, ExploreConfig& c) {
     keys.number({"goal_tolerance", "m", "distance to the goal of a flight that arrived"},
                 c.goalTolerance, {0.01, 100.});
     keys.number({"goal_confidence", "",
-                 "an arrival is claimed where the robot believes with at least this probability "
-                 "to be within `goal_tolerance` of the goal"},
+                 "an arrival is reported once the estimated probability that the robot is within "
+                 "`goal_tolerance` of the goal is at least this"},
                 c.goalConfidence, {0., 0.9999});
     keys.number({"time_limit", "s", "of a flight"}, c.timeLimit, {1., 1e5});
     keys.count({"trials", "", "flights per planner"}, c.trials, {1., 1e6});

@@ -27,7 +27,7 @@ struct FlightSetup {
 FlightSetup setUpFlight(const PlanningProblem& problem);
 
 /// How images are aligned under the conditions of the section `fly`: covariances follow from their
-/// residuals, whoever took them.
+/// residuals.
 /// @param map what images are compared with; @param cellSize of a map of cells [m]
 AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellSize);
 

@@ -41,9 +41,9 @@ struct DepthError {
     bool isAssumed = false;  ///< the recording does not say
 };
 
-/// As `depth_error` of camera.yaml says. Without it, noise tells rendered depth, which is exact,
-/// from that of a sensor, for which the error of depth that is not registered is assumed: of what
-/// sensors are known to get wrong, the most.
+/// As `depth_error` of camera.yaml says. Without it, the noise decides: rendered depth is exact;
+/// for that of a sensor the error of depth that is not registered is assumed, the largest that
+/// sensors are known to have.
 DepthError depthErrorOf(const Recording& recording, const DepthNoise& noise);
 
 }  // namespace photonav

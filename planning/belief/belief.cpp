@@ -96,14 +96,14 @@ std::optional<Belief> BeliefModel::propagateWithin(double limit, const Belief& b
     }
     const auto start = std::chrono::steady_clock::now();
     const double viewSeconds = field_->seconds();
-    const auto arrival = flyWithin(limit, belief, motion, backward);
+    const auto arrival = propagateNow(limit, belief, motion, backward);
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() -
                 (field_->seconds() - viewSeconds);
     return arrival;
 }
 
-std::optional<Belief> BeliefModel::flyWithin(double limit, const Belief& belief, Motion& motion,
-                                             bool backward) {
+std::optional<Belief> BeliefModel::propagateNow(double limit, const Belief& belief, Motion& motion,
+                                                bool backward) {
     const bool perVertex = options_.cost == CostRule::perVertex;
     const double step = motion.length / motion.steps;
     const double shareOfView = perVertex ? 1. : step / options_.ds;

@@ -139,8 +139,8 @@ class BeliefModel {
     void clear();                                         ///< resets the counters, not the field
 
   private:
-    std::optional<Belief> flyWithin(double limit, const Belief& belief, Motion& motion,
-                                    bool backward);
+    std::optional<Belief> propagateNow(double limit, const Belief& belief, Motion& motion,
+                                       bool backward);
     void updateViews(Motion& motion);
     const InformationField::Entry& viewAt(Motion& motion, int k);
     double leastCharge(const Motion& motion) const;

@@ -19,6 +19,7 @@ namespace {
 constexpr double kExploration = 0.2;     // share of the samples that are accepted anywhere
 constexpr int kMostFailures = 500;       // in a row: the updated space cannot be reached
 constexpr double kMaxFinishShare = 0.5;  // largest share of the time limit for finish()
+constexpr double kAnotherRound = 2.;     // times as long as finish() took must be left to grow on
 
 /// OMPL's nearest-neighbour tree seeds its choice of pivots by the clock, and the order of vertices
 /// at the same distance depends on the pivots. Here the seed is always the same.
@@ -103,12 +104,18 @@ ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& pt
 void BeliefPlanner::growUntil(const ob::PlannerTerminationCondition& ptc) {
     begin(ptc);
     ob::ScopedState<> goalOrSample(si_);
-    while (!ptc && !isGrown()) {
-        ++iterations_;
-        grow(goalOrSample.get(), ptc);
-        publishProgress();
+    for (bool isTimeLeft = true; isTimeLeft;) {
+        const std::size_t before = vertices();
+        while (!ptc && !isGrown() && !isTimeToFinish()) {
+            ++iterations_;
+            grow(goalOrSample.get(), ptc);
+            publishProgress();
+        }
+        const double left = secondsLeft();
+        finish(ptc);
+        isTimeLeft = deadline_ && !ptc && !isGrown() && vertices() > before &&
+                     secondsLeft() > kAnotherRound * (left - secondsLeft());
     }
-    finish(ptc);
 }
 
 double BeliefPlanner::range() const {
@@ -134,8 +141,11 @@ double BeliefPlanner::secondsLeft() const {
 bool BeliefPlanner::isGrown() const {
     return (growth_.maxVertices > 0 && vertices() >= growth_.maxVertices) ||
            (growth_.maxIterations > 0 &&
-            iterations_ - iterationsAtChange_ >= growth_.maxIterations) ||
-           (deadline_ && secondsLeft() <= std::min(timeToFinish(), kMaxFinishShare * budget_));
+            iterations_ - iterationsAtChange_ >= growth_.maxIterations);
+}
+
+bool BeliefPlanner::isTimeToFinish() const {
+    return deadline_ && secondsLeft() <= std::min(timeToFinish(), kMaxFinishShare * budget_);
 }
 
 /// One sample, and a new vertex toward it.

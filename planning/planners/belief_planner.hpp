@@ -225,6 +225,7 @@ class BeliefPlanner : public ompl::base::Planner {
     void publishProgress();
     bool addStarts();
     bool isGrown() const;
+    bool isTimeToFinish() const;
     double range() const;
     void growUntil(const ompl::base::PlannerTerminationCondition& ptc);
     void grow(ompl::base::State* target, const ompl::base::PlannerTerminationCondition& ptc);

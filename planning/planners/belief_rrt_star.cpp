@@ -184,6 +184,7 @@ double BeliefRRTstar::timeToFinish() const {
 /// label's bound, so the first label that is settled at a goal is the best one, given the labels
 /// kept.
 void BeliefRRTstar::search(const ob::PlannerTerminationCondition& ptc) {
+    if (ptc) return;
     const auto start = std::chrono::steady_clock::now();
     roadmap_.resize(vertices_.size());
     settled_.clear();

@@ -217,7 +217,7 @@ TEST_F(FlyCommand, RejectsBadInput) {
     fs::create_directories(folder_ / "x");
     std::ofstream(folder_ / "x" / "result.json") << "{}";  // not of an earlier run
     expect(fly("x", "--record " + at("new")),
-           "x/result.json: is not as an earlier result wrote it");
+           "x/result.json: is not of an earlier result, or was changed since");
     EXPECT_TRUE(fs::exists(folder_ / "x" / "result.json"));
     EXPECT_FALSE(fs::exists(folder_ / "new"));
     fs::remove_all(folder_ / "x");

@@ -30,7 +30,7 @@ TEST(PlanProgress, TheTimeLeftFollowsThePowerOfTheGrowth) {
 TEST(PlanProgress, TheFirstSearchIsNoMeasureOfTheGrowth) {
     RemainingGrowth growth(2500);
     growth.add({50, 0.001, kInfinity, 0});
-    growth.add({100, 0.002, kInfinity, 0});
+    growth.add({100, 0.002, 25., 0});  // a path that is free, but not searched for
     growth.add({150, 0.5, 20., 0});
     EXPECT_FALSE(growth.seconds());
     growth.add({200, 0.6, 20., 0});

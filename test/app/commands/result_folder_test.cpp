@@ -49,7 +49,7 @@ TEST(ResultFolder, ACommandRefusesAFolderOfSomeoneElse) {
     const auto run = photonav("plan " PHOTONAV_SOURCE_DIR "/config/two_textures.yaml --out " +
                               (folder.path() / "mine").string());
     EXPECT_EQ(run.exitCode, 2);
-    EXPECT_NE(run.output.find("mine/trace.png: is not as an earlier result wrote it"),
+    EXPECT_NE(run.output.find("mine/trace.png: is not of an earlier result, or was changed since"),
               std::string::npos)
         << run.output;
     EXPECT_EQ(test::contentOf(folder.path() / "mine/trace.png"), "mine");
