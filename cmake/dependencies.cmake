@@ -13,6 +13,7 @@ find_package(nlohmann_json 3 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(TBB REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(BZip2 REQUIRED)
 find_package(Boost 1.74 REQUIRED)  # Math, headers only
 
 # Packages that export variables instead of targets, wrapped so that they read alike.
@@ -35,4 +36,7 @@ _photonav_wrap(photonav_visp "${_visp_cxx20};${VISP_INCLUDE_DIRS}" "${VISP_LIBRA
 _photonav_wrap(photonav_octomap "${OCTOMAP_INCLUDE_DIRS}" "${OCTOMAP_LIBRARIES}")
 _photonav_wrap(photonav_ompl "${OMPL_INCLUDE_DIRS}" "${OMPL_LIBRARIES}")
 _photonav_wrap(photonav_opencv "${OpenCV_INCLUDE_DIRS}" "opencv_core;opencv_calib3d;opencv_features2d;opencv_imgproc;opencv_imgcodecs")
+find_library(LZ4_LIBRARY lz4 REQUIRED)
+find_path(LZ4_INCLUDE_DIR lz4frame.h REQUIRED)
+_photonav_wrap(photonav_lz4 "${LZ4_INCLUDE_DIR}" "${LZ4_LIBRARY}")
 _photonav_wrap(photonav_embree "${EMBREE_INCLUDE_DIRS}" "embree")

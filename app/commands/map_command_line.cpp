@@ -23,11 +23,11 @@ struct MapArguments : MapCommandOptions {
 
 void addOptions(CLI::App& parser, MapArguments& options) {
     parser
-        .add_option(
-            "dataset", options.dataset,
-            "folder in the TUM RGB-D, the EuRoC or the COLMAP layout; or a coloured point cloud "
-            "(.ply), or a folder with one per station of the scanner; or the config.yaml "
-            "of an earlier map")
+        .add_option("dataset", options.dataset,
+                    "folder in the TUM RGB-D, the EuRoC or the COLMAP layout, or a ROS 1 bag; or a "
+                    "coloured point cloud (.ply), or a folder with one per station of the scanner; "
+                    "or the config.yaml "
+                    "of an earlier map")
         ->required();
     addKeyOptions(parser, options.keys, {"dataset"});
     addKeyOptions(parser, options.scanKeys, {"scans", "resolution", "max_range"});

@@ -30,6 +30,8 @@ json optionsJson(const ReplayOptions& o) {
             {"camera", o.cameraFile},
             {"depth_scale", orNull(o.depthScale)},
             {"stereo", o.stereo.empty() ? json(nullptr) : json(o.stereo)},
+            {"topics", o.topics},
+            {"mount", o.mount},
             {"start", o.start},
             {"start_sigma", orNull(o.startSigma)},
             {"sigma", o.sigma},
@@ -68,10 +70,10 @@ json calibrateReplay(const fs::path& folder, const ReplayRun& run, MapKind map) 
 }
 
 /// The images that were tracked with their estimated poses, as a model of COLMAP: their files are
-/// named as from the folder of the dataset. Rectified images of two cameras are no files.
+/// named as from the folder of the dataset. Rectified images, and those of a bag, are no files.
 void writeColmap(const fs::path& folder, const Replay& replay, const ReplayRun& run) {
     const Recording& recording = replay.recording();
-    if (!recording.stereo.empty()) return;
+    if (!recording.hasImageFiles) return;
     const fs::path dataset = fs::absolute(replay.options().dataset).lexically_normal();
     std::vector<ColmapImage> images;
     for (const ReplayedFrame& frame : run.frames) {

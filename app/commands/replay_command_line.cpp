@@ -18,9 +18,8 @@ struct ReplayArguments : ReplayCommandOptions {
 void addOptions(CLI::App& parser, ReplayArguments& options) {
     parser
         .add_option("dataset", options.dataset,
-                    "folder in the TUM RGB-D, the EuRoC or the COLMAP layout; or the config.yaml "
-                    "of an earlier "
-                    "replay")
+                    "folder in the TUM RGB-D, the EuRoC or the COLMAP layout, or a ROS 1 bag; "
+                    "or the config.yaml of an earlier replay")
         ->required();
     addKeyOptions(parser, options.keys, {"dataset"});
     parser

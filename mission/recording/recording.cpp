@@ -16,6 +16,7 @@
 #include "evaluation/averages.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
+#include "recording/bag_recording.hpp"
 #include "recording/stereo_recording.hpp"
 
 namespace photonav {
@@ -153,7 +154,17 @@ Recording readColmapRecording(const RecordingOptions& options) {
     return recording;
 }
 
+void refuseOptionsOfBags(const RecordingOptions& options) {
+    const auto refuse = [](bool isGiven, const char* option) {
+        if (isGiven) throw InputError(option, "", "is for ROS bags");
+    };
+    refuse(!options.topics.empty(), "--topics");
+    refuse(!options.mount.empty(), "--mount");
+}
+
 Recording readLayout(const RecordingOptions& options) {
+    if (isBagRecording(options.dataset)) return readBagRecording(options);
+    refuseOptionsOfBags(options);
     if (isEurocFolder(options.dataset)) return readStereoRecording(options);
     const bool isTum = fs::exists(fs::path(options.dataset) / "rgb.txt");
     if (!isTum && isColmapFolder(options.dataset)) return readColmapRecording(options);
@@ -197,6 +208,23 @@ void requirePlausibleDepth(double median, const RecordingOptions& options,
                                  "{} by a factor of about {:.0e}",
                                  median, median > 1. ? "too small" : "too large",
                                  std::max(median / kUsual, kUsual / median)));
+}
+
+Pose parsePose(const std::string& text, const char* option) {
+    const auto numbers = numbersIn(text, ',');
+    if (!numbers || numbers->size() != 7) {
+        throw InputError(option, "", fmt::format("'{}' is not x,y,z,qx,qy,qz,qw", text));
+    }
+    const Eigen::Map<const Eigen::Matrix<double, 7, 1>> v(numbers->data());
+    const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
+    if (!(std::abs(q.norm() - 1.) <= 0.1)) {
+        throw InputError(option, "",
+                         fmt::format("'{}' is not x,y,z,qx,qy,qz,qw with a unit quaternion", text));
+    }
+    Pose pose = Pose::Identity();
+    pose.linear() = q.normalized().toRotationMatrix();
+    pose.translation() = v.head<3>();
+    return pose;
 }
 
 std::optional<Eigen::Vector3d> parseUp(const std::string& text) {

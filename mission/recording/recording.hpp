@@ -14,7 +14,7 @@ namespace photonav {
 
 /// What is mapped, and what a plan in that map is compared with.
 struct RecordingOptions {
-    std::string dataset;      ///< folder in the TUM RGB-D, the EuRoC or the COLMAP layout
+    std::string dataset;      ///< folder in the TUM RGB-D, the EuRoC or the COLMAP layout, or a bag
     std::string up = "z";     ///< what points up in the recorded world: an axis (x ... -z), a
                               ///< direction "x,y,z", or "floor": found in the depth images
     int every = 1;            ///< use every n-th frame
@@ -26,12 +26,15 @@ struct RecordingOptions {
     std::string cameraFile;   ///< instead of the dataset's camera.yaml
     std::optional<double> depthScale;  ///< depth image value of one metre, instead of the dataset's
     std::string stereo;  ///< EuRoC: "bm" or "sgbm", block matching (the default) or semi-global
+    std::string topics;  ///< bags: "image=/a,depth=/b,camera=/c,pose=/d", those that need a name
+    std::string mount;   ///< bags: "x,y,z,qx,qy,qz,qw" of the camera on what the poses are of
 };
 
 struct Recording {
     Sequence sequence;  ///< the frames to use, in the world of the map (z up)
     Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< in the recorded world
-    std::string layout;                             ///< "TUM RGB-D", "EuRoC", "COLMAP"
+    std::string layout;                             ///< "TUM RGB-D", "EuRoC", "COLMAP", "ROS bag"
+    bool hasImageFiles = true;                      ///< false: images are not files as they are
     std::string stereo;                             ///< how depth is found; empty: it is recorded
     std::string note;  ///< about the poses, for a reader of the results
 
@@ -59,6 +62,10 @@ Recording readRecording(const RecordingOptions& options);
 /// @throws InputError unless the median lies in 5 cm to 100 m
 void requirePlausibleDepth(double median, const RecordingOptions& options,
                            const std::string& cameraFile);
+
+/// A pose from "x,y,z,qx,qy,qz,qw".
+/// @throws InputError naming the option for anything else
+Pose parsePose(const std::string& text, const char* option);
 
 /// An axis name or "x,y,z"; nothing for anything else.
 std::optional<Eigen::Vector3d> parseUp(const std::string& text);

@@ -4,8 +4,9 @@
 namespace photonav {
 
 void addKeys(KeyTable& keys, RecordingOptions& options) {
-    keys.requiredFile({"dataset", "", "folder in the TUM RGB-D, the EuRoC or the COLMAP layout"},
-                      options.dataset);
+    keys.requiredFile(
+        {"dataset", "", "folder in the TUM RGB-D, the EuRoC or the COLMAP layout, or a ROS 1 bag"},
+        options.dataset);
     keys.file({"camera", "", "camera file instead of the dataset's"}, options.cameraFile);
     keys.text({"up", "", "upward direction of the recorded world: x ... -z, \"x,y,z\" or floor"},
               options.up);
@@ -19,6 +20,13 @@ void addKeys(KeyTable& keys, RecordingOptions& options) {
         {"stereo", "",
          "bm: block matching (none: this), sgbm: semi-global matching; of EuRoC recordings"},
         options.stereo, {"bm", "sgbm"});
+    keys.text({"topics", "",
+               "of a bag, where a type has more than one: \"image=/a,depth=/b,camera=/c,pose=/d\""},
+              options.topics);
+    keys.text({"mount", "m",
+               "\"x,y,z,qx,qy,qz,qw\": pose of the camera on what the poses of a bag are of; none: "
+               "they are the camera's"},
+              options.mount);
 }
 
 }  // namespace photonav

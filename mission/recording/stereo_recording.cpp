@@ -54,6 +54,7 @@ Recording readStereoRecording(const RecordingOptions& options) {
     const auto images = std::make_shared<StereoSequence>(readEurocSequence(options.dataset, euroc));
     Recording recording;
     recording.layout = "EuRoC";
+    recording.hasImageFiles = false;  // they are rectified
     recording.stereo = options.stereo.empty() ? "bm" : options.stereo;
     recording.note = noteOn(*images);
     const auto stereo = stereoOf(*images, recording.stereo);

@@ -86,23 +86,6 @@ Recording openRecording(const ReplayOptions& options) {
     return recording;
 }
 
-Pose parsePose(const std::string& text) {
-    const auto numbers = numbersIn(text, ',');
-    if (!numbers || numbers->size() != 7) {
-        throw InputError("--start", "", fmt::format("'{}' is not x,y,z,qx,qy,qz,qw", text));
-    }
-    const Eigen::Map<const Eigen::Matrix<double, 7, 1>> v(numbers->data());
-    const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
-    if (!(std::abs(q.norm() - 1.) <= 0.1)) {
-        throw InputError("--start", "",
-                         fmt::format("'{}' is not x,y,z,qx,qy,qz,qw with a unit quaternion", text));
-    }
-    Pose T_w_c = Pose::Identity();
-    T_w_c.linear() = q.normalized().toRotationMatrix();
-    T_w_c.translation() = v.head<3>();
-    return T_w_c;
-}
-
 /// T_c_w of the images that `photonav map` made a map of, which it writes beside it; else none.
 Trajectory makersOf(const std::string& mapFile) {
     const fs::path map(mapFile);
@@ -148,7 +131,7 @@ UncertainPose startOf(const ReplayOptions& options, const Sequence& sequence) {
         start.covariance = *options.startSigma * *options.startSigma * Matrix6::Identity();
     }
     if (!options.start.empty()) {
-        start.mean = parsePose(options.start).inverse();
+        start.mean = parsePose(options.start, "--start").inverse();
         if (options.odometry && sequence.hasPoses()) {
             throw InputError(
                 "--start", "",

@@ -170,12 +170,8 @@ void addPoses(const fs::path& folder, const EurocOptions& options, StereoSequenc
         frame.T_c_w = (*T_w_s * T_s_c).inverse();
     }
     if (anyPose) return;
-    throw InputError(
-        file, "",
-        fmt::format("no pose within {} s of any image: poses from {:.3f} to {:.3f} s, images from "
-                    "{:.3f} to {:.3f} s",
-                    options.tolerance, trajectory.front().timestamp, trajectory.back().timestamp,
-                    sequence.frames.front().timestamp, sequence.frames.back().timestamp));
+    throw noPoseNear(file, trajectory, options.tolerance, sequence.frames.front().timestamp,
+                     sequence.frames.back().timestamp);
 }
 
 StereoSequence readEurocTables(const std::string& folder, const EurocOptions& options) {

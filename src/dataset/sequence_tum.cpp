@@ -9,12 +9,12 @@
 #include <functional>
 
 #include "dataset/association.hpp"
+#include "dataset/camera_file.hpp"
 #include "dataset/image_file.hpp"
 #include "dataset/time_order.hpp"
 #include "dataset/trajectory.hpp"
 #include "io/reading.hpp"
 #include "io/text_table.hpp"
-#include "io/yaml_reader.hpp"
 
 namespace photonav {
 namespace {
@@ -108,73 +108,6 @@ void forgetMissingDepth(std::vector<Pair>& pairs) {
     }
 }
 
-/// Fields of view up to 179 degrees, principal points up to ten images outside: beyond, a number
-/// has gone wrong.
-vpCameraParameters readIntrinsics(YamlMap& yaml, const Camera& camera) {
-    const auto required = [&](const std::string& key, double least, double most) {
-        if (!yaml.has(key)) yaml.fail(key, "missing");
-        double value = 0.;
-        yaml.readNumber(key, value, least, most);
-        return value;
-    };
-    const double width = camera.width;
-    const double height = camera.height;
-    return {required("fx", 0.005 * width, 1e9), required("fy", 0.005 * height, 1e9),
-            required("cx", -10. * width, 10. * width), required("cy", -10. * height, 10. * height)};
-}
-
-void readSize(YamlMap& yaml, Camera& camera) {
-    const auto readPixels = [&](const std::string& key, unsigned& value) {
-        yaml.read(key, value);
-        if (value == 0) yaml.fail(key, "is zero");
-    };
-    readPixels("width", camera.width);
-    readPixels("height", camera.height);
-}
-
-/// Of the size of the colour camera unless the file says otherwise.
-DepthCamera readDepthCamera(YamlMap yaml, const Camera& colour) {
-    DepthCamera depth;
-    depth.camera = colour;
-    readSize(yaml, depth.camera);
-    depth.camera.intrinsics = readIntrinsics(yaml, depth.camera);
-    Eigen::Matrix<double, 7, 1> T_c_d;  // position, quaternion
-    T_c_d << 0., 0., 0., 0., 0., 0., 1.;
-    yaml.readVector("T_colour_depth", T_c_d);
-    if (!(std::abs(T_c_d.tail<4>().norm() - 1.) <= 0.01)) {
-        yaml.fail("T_colour_depth", "is not x, y, z, qx, qy, qz, qw with a unit quaternion");
-    }
-    const Eigen::Quaterniond q(T_c_d[6], T_c_d[3], T_c_d[4], T_c_d[5]);
-    depth.T_c_d.linear() = q.normalized().toRotationMatrix();
-    depth.T_c_d.translation() = T_c_d.head<3>();
-    std::string posesOf = "colour";
-    yaml.readChoice("poses", posesOf, {"colour", "depth"});
-    depth.hasPoses = posesOf == "depth";
-    yaml.finish();
-    return depth;
-}
-
-void readCamera(const std::string& file, Sequence& sequence) {
-    YamlMap yaml(file, loadYaml(file));
-    for (const char* key : {"width", "height"}) {
-        if (!yaml.has(key)) yaml.fail(key, "missing");
-    }
-    readSize(yaml, sequence.camera);
-    sequence.camera.intrinsics = readIntrinsics(yaml, sequence.camera);
-    yaml.readNumber("depth_scale", sequence.depthScale, 1e-6, 1e12);
-    if (yaml.has("information_scale")) {
-        yaml.readNumber("information_scale", sequence.informationScale.emplace(), 1e-6, 1e12);
-    }
-    if (yaml.has("blur")) yaml.readNumber("blur", sequence.blur.emplace(), 0., 10.);
-    if (yaml.has("depth_error")) {
-        yaml.readNumber("depth_error", sequence.depthError.emplace(), 0., 1.);
-    }
-    if (yaml.has("depth_camera")) {
-        sequence.depthCamera = readDepthCamera(yaml.map("depth_camera"), sequence.camera);
-    }
-    yaml.finish();
-}
-
 void addPoses(const std::string& groundtruth, const std::vector<Pair>& pairs,
               const TumOptions& options, Sequence& sequence) {
     Trajectory trajectory;
@@ -200,13 +133,8 @@ void addPoses(const std::string& groundtruth, const std::vector<Pair>& pairs,
         }
     }
     if (!anyPose && !trajectory.empty()) {
-        throw InputError(
-            groundtruth, "",
-            fmt::format("no pose within {} s of any image: poses from {:.3f} to {:.3f} s, images "
-                        "from {:.3f} to {:.3f} s",
-                        options.tolerance, trajectory.front().timestamp,
-                        trajectory.back().timestamp, pairs.front().timestamp,
-                        pairs.back().timestamp));
+        throw noPoseNear(groundtruth, trajectory, options.tolerance, pairs.front().timestamp,
+                         pairs.back().timestamp);
     }
 }
 
@@ -215,8 +143,7 @@ Sequence readTumTables(const std::string& folder, const TumOptions& options) {
     Sequence sequence;
     const std::string inFolder = (fs::path(folder) / "camera.yaml").string();
     if (!options.cameraFile.empty() || fs::exists(inFolder)) {
-        sequence.cameraFile = options.cameraFile.empty() ? inFolder : options.cameraFile;
-        readCamera(sequence.cameraFile, sequence);
+        readCameraFile(options.cameraFile.empty() ? inFolder : options.cameraFile, sequence);
     } else {
         sequence.camera = {640, 480, vpCameraParameters(525., 525., 319.5, 239.5)};
         sequence.cameraAssumed = true;

@@ -28,13 +28,9 @@ struct TumOptions {
 ///   there, `assoc.txt` or `associations.txt` (`t file t file`, colour first; depth first when the
 ///   first file lies in a folder `depth`), whose pairs are taken as they are;
 /// - `groundtruth.txt`: the pose at the time of the colour image (see poseAt);
-/// - `camera.yaml` when there: width, height, fx, fy, cx, cy [pixels], depth_scale (default 5000),
-///   information_scale (none), blur (point spread [pixels]), depth_error (unknown; relative,
-///   of its scale and registration), and for depth images that are not registered to the colour
-///   images `depth_camera` with its own fx, fy, cx, cy, width and height (those of the colour
-///   camera), T_colour_depth (`[x, y, z, qx, qy, qz, qw]`, default: the same place) and whose poses
-///   are recorded (poses: colour, or depth). Without a file the benchmark's Kinect is assumed:
-///   640x480, 525, 525, 319.5, 239.5.
+/// - `camera.yaml` when there: what readCameraFile() reads. Without a file the benchmark's Kinect
+/// is
+///   assumed: 640x480, 525, 525, 319.5, 239.5, with depth_scale 5000.
 /// Images without partner or pose are listed as skipped.
 /// @throws InputError naming file, line or key, and reason; also when no frame is left, or no pose
 ///         belongs to any frame. Timestamps may repeat but never decrease.

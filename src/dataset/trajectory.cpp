@@ -116,6 +116,15 @@ std::optional<Pose> poseAt(const Trajectory& trajectory, double timestamp, doubl
     return nearest->T_w_c;
 }
 
+InputError noPoseNear(const std::string& file, const Trajectory& trajectory, double tolerance,
+                      double first, double last) {
+    return {file, "",
+            fmt::format("no pose within {} s of any image: poses from {:.3f} to {:.3f} s, images "
+                        "from {:.3f} to {:.3f} s",
+                        tolerance, trajectory.front().timestamp, trajectory.back().timestamp, first,
+                        last)};
+}
+
 const std::vector<std::string>& axisNames() {
     static const std::vector<std::string> names = {"x", "y", "z", "-x", "-y", "-z"};
     return names;

@@ -61,6 +61,11 @@ void writeKittiTrajectory(const std::string& file, const Trajectory& trajectory)
 std::optional<Pose> poseAt(const Trajectory& trajectory, double timestamp, double tolerance,
                            double maxGap);
 
+/// What to throw when poseAt() has a pose for none of the images of a recording.
+/// @param first and last time of an image [s]
+InputError noPoseNear(const std::string& file, const Trajectory& trajectory, double tolerance,
+                      double first, double last);
+
 /// The names worldUpRotation understands: x, y, z, -x, -y, -z.
 const std::vector<std::string>& axisNames();
 

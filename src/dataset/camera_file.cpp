@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/camera_file.hpp"
+
+#include <cmath>
+
+#include "io/yaml_reader.hpp"
+
+namespace photonav {
+namespace {
+
+/// Fields of view up to 179 degrees, principal points up to ten images outside: beyond, a number
+/// has gone wrong.
+vpCameraParameters readIntrinsics(YamlMap& yaml, const Camera& camera) {
+    const auto required = [&](const std::string& key, double least, double most) {
+        if (!yaml.has(key)) yaml.fail(key, "missing");
+        double value = 0.;
+        yaml.readNumber(key, value, least, most);
+        return value;
+    };
+    const double width = camera.width;
+    const double height = camera.height;
+    return {required("fx", 0.005 * width, 1e9), required("fy", 0.005 * height, 1e9),
+            required("cx", -10. * width, 10. * width), required("cy", -10. * height, 10. * height)};
+}
+
+void readSize(YamlMap& yaml, Camera& camera) {
+    const auto readPixels = [&](const std::string& key, unsigned& value) {
+        yaml.read(key, value);
+        if (value == 0) yaml.fail(key, "is zero");
+    };
+    readPixels("width", camera.width);
+    readPixels("height", camera.height);
+}
+
+/// Of the size of the colour camera unless the file says otherwise.
+DepthCamera readDepthCamera(YamlMap yaml, const Camera& colour) {
+    DepthCamera depth;
+    depth.camera = colour;
+    readSize(yaml, depth.camera);
+    depth.camera.intrinsics = readIntrinsics(yaml, depth.camera);
+    Eigen::Matrix<double, 7, 1> T_c_d;  // position, quaternion
+    T_c_d << 0., 0., 0., 0., 0., 0., 1.;
+    yaml.readVector("T_colour_depth", T_c_d);
+    if (!(std::abs(T_c_d.tail<4>().norm() - 1.) <= 0.01)) {
+        yaml.fail("T_colour_depth", "is not x, y, z, qx, qy, qz, qw with a unit quaternion");
+    }
+    const Eigen::Quaterniond q(T_c_d[6], T_c_d[3], T_c_d[4], T_c_d[5]);
+    depth.T_c_d.linear() = q.normalized().toRotationMatrix();
+    depth.T_c_d.translation() = T_c_d.head<3>();
+    std::string posesOf = "colour";
+    yaml.readChoice("poses", posesOf, {"colour", "depth"});
+    depth.hasPoses = posesOf == "depth";
+    yaml.finish();
+    return depth;
+}
+
+}  // namespace
+
+void readCameraFile(const std::string& file, Sequence& sequence) {
+    sequence.cameraFile = file;
+    YamlMap yaml(file, loadYaml(file));
+    for (const char* key : {"width", "height"}) {
+        if (!yaml.has(key)) yaml.fail(key, "missing");
+    }
+    readSize(yaml, sequence.camera);
+    sequence.camera.intrinsics = readIntrinsics(yaml, sequence.camera);
+    yaml.readNumber("depth_scale", sequence.depthScale, 1e-6, 1e12);
+    if (yaml.has("information_scale")) {
+        yaml.readNumber("information_scale", sequence.informationScale.emplace(), 1e-6, 1e12);
+    }
+    if (yaml.has("blur")) yaml.readNumber("blur", sequence.blur.emplace(), 0., 10.);
+    if (yaml.has("depth_error")) {
+        yaml.readNumber("depth_error", sequence.depthError.emplace(), 0., 1.);
+    }
+    if (yaml.has("depth_camera")) {
+        sequence.depthCamera = readDepthCamera(yaml.map("depth_camera"), sequence.camera);
+    }
+    yaml.finish();
+}
+
+}  // namespace photonav
