@@ -16,6 +16,7 @@
 #include "commands/command_line.hpp"
 #include "commands/compare_command.hpp"
 #include "commands/doctor_command.hpp"
+#include "commands/export_command.hpp"
 #include "commands/info_command.hpp"
 #include "commands/map_info.hpp"
 #include "commands/plan_command.hpp"
@@ -271,6 +272,21 @@ Command reportCommand(CLI::App& app) {
             }};
 }
 
+Command exportCommand(CLI::App& app) {
+    auto folder = std::make_shared<std::filesystem::path>();
+    auto file = std::make_shared<std::filesystem::path>();
+    auto quiet = std::make_shared<bool>(false);
+    CLI::App* parser =
+        app.add_subcommand("export", "Write a result as an MCAP file, to be watched in Foxglove.");
+    parser->add_option("folder", *folder, "result folder")->required();
+    parser->add_option("--out", *file, "the file (default: <folder>.mcap)");
+    parser->add_flag("--quiet", *quiet, "prints nothing");
+    return {parser, [folder, file, quiet] {
+                hasOwnFiles = true;
+                return runExport(*folder, *file, *quiet);
+            }};
+}
+
 Command doctorCommand(CLI::App& app) {
     CLI::App* parser = app.add_subcommand(
         "doctor", "Does it work here? Versions, processor, programs, a sample plan.");
@@ -336,16 +352,17 @@ int run(int argc, char** argv) {
                               checkCommand(app, invocation),
                               calibrateDepthCommand(app, invocation),
                               reportCommand(app),
+                              exportCommand(app),
                               keysCommand(app),
                               completionCommand(app),
                               doctorCommand(app)};
     app.footer(  // after the commands, which would inherit it
 
-        "plan, check, fly, explore, sweep, benchmark, info, map and replay write result.json, "
-        "figures,\n"
-        "report.html and config.yaml (complete, re-runnable) into their folder (--out);\n"
+        "plan, check, fly, explore, sweep, benchmark, info, map and replay write "
+        "result.json,\n"
+        "figures, report.html and config.yaml (complete, re-runnable) into their folder (--out);\n"
         "compare writes tables, figures and result.json, reference its table alone;\n"
-        "calibrate-depth writes camera.yaml and result.json.\n"
+        "calibrate-depth writes camera.yaml and result.json, export a file.\n"
         "photonav COMMAND --help lists the options of a command, photonav keys those of a config.\n"
         "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by Ctrl-C, 143 "
         "by\n"

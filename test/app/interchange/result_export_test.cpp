@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "interchange/result_export.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "app/executable.hpp"
+#include "dataset/trajectory.hpp"
+#include "flight_dataset.hpp"
+#include "interchange/mcap_writer.hpp"
+
+namespace photonav {
+namespace {
+
+using nlohmann::json;
+
+/// {topic: [schema, messages, first time, last time]} of a file, read by an independent reader.
+json topicsOf(const std::string& file) {
+    const Execution reader = execute(
+        fmt::format("python3 {}/test/scripts/mcap_reader.py {}", PHOTONAV_SOURCE_DIR, file));
+    EXPECT_EQ(reader.exitCode, 0) << reader.output;
+    return json::parse(reader.output, nullptr, false);
+}
+
+TEST(McapWriter, PutsMessagesInOrderAndChunks) {
+    const test::TemporaryFolder folder;
+    McapWriter writer;
+    const std::string schema = R"({"type":"object","properties":{"x":{"type":"string"}}})";
+    const auto a = writer.addChannel("/a", "X", schema), b = writer.addChannel("/b", "X", schema);
+    for (const int i : {5, 3, 4, 0, 2, 1}) {  // 0.4 MB each: two or three a chunk
+        writer.add(i % 2 == 0 ? a : b, 0.25 * i, json{{"x", std::string(400000, 'x')}}.dump());
+    }
+    const json topics = topicsOf(folder.write("a.mcap", writer.content()));
+    EXPECT_EQ(topics, (json{{"/a", {"X", 3, 0., 1.}}, {"/b", {"X", 3, 0.25, 1.25}}}));
+    EXPECT_EQ(topicsOf(folder.write("b.mcap", McapWriter().content())), json::object());
+    EXPECT_THROW(writer.add(a, -1., "{}"), std::invalid_argument);
+}
+
+TEST(ResultExport, OfAPlanHasItsSceneAndItsPathsInTime) {
+    const test::TemporaryFolder folder;
+    const std::string out = folder.file("plan");
+    ASSERT_EQ(photonav("plan " + config("two_textures") +
+                       " --set planner.vertices=60 --quiet --out " + out)
+                  .exitCode,
+              0);
+    const Execution run = photonav("export " + out + "/");
+    EXPECT_EQ(run.exitCode, 0) << run.output;
+    EXPECT_NE(run.output.find("plan.mcap: "), std::string::npos) << run.output;
+    const json topics = topicsOf(out + ".mcap");
+    EXPECT_EQ(topics["/map"][0], "foxglove.PointCloud");
+    EXPECT_EQ(topics["/path/belief_rrt_star"][0], "foxglove.SceneUpdate");
+    const json poses = topics["/pose/rrt_star"];
+    EXPECT_EQ(poses[0], "foxglove.PoseInFrame");
+    EXPECT_EQ(topics["/belief/rrt_star"][1], poses[1]);
+    const Trajectory path = readTrajectory(out + "/path.tum");
+    EXPECT_EQ(topics["/pose/belief_rrt_star"][1], path.size());
+}
+
+TEST(ResultExport, OfAReplayKeepsTheTimesOfTheRecording) {
+    const test::TemporaryFolder folder;
+    test::FlightDataset flight;
+    flight.frames = 4;
+    flight.write(folder.path() / "flight");
+    const std::string out = folder.file("replay");
+    photonav("replay " + folder.file("flight") + " --odometry --quiet --out " + out);
+    photonav("export " + out + " --quiet --out " + folder.file("a.mcap"));
+    const json estimate = topicsOf(folder.file("a.mcap"))["/pose/estimate"];
+    ASSERT_TRUE(estimate.is_array());
+    EXPECT_EQ(estimate[1], 4);
+    EXPECT_NEAR(estimate[2].get<double>(), test::FlightDataset::time(0), 1e-6);
+    EXPECT_NEAR(estimate[3].get<double>(), test::FlightDataset::time(3), 1e-6);
+}
+
+TEST(ResultExport, OfWhatIsNoResultIsRefused) {
+    const test::TemporaryFolder folder;
+    Execution run = photonav("export " + folder.path().string());
+    EXPECT_EQ(run.exitCode, 2);
+    EXPECT_NE(run.output.find("not a result folder of photonav"), std::string::npos) << run.output;
+    folder.write("report.json", R"({"schema": 1, "voxels": {"centers": "AAAA", "grey": "AAAA"},)"
+                                R"("mesh": {}, "paths": []})");
+    run = photonav("export " + folder.path().string());
+    EXPECT_EQ(run.exitCode, 2);
+    EXPECT_NE(run.output.find("report.json: "), std::string::npos) << run.output;
+    EXPECT_FALSE(test::fs::exists(folder.path().string() + ".mcap"));
+}
+
+}  // namespace
+}  // namespace photonav
