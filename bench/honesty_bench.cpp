@@ -171,6 +171,7 @@ std::shared_ptr<TexturedOcTree> mapOf(const Place& place, double resolution) {
 AlignmentOptions optionsIn(MapKind kind, double cellSize) {
     AlignmentOptions options = realCameraOptions(comparedBlur(kind, kAreaBlur));
     options.modelErrors.surface = surfaceError(kind, cellSize);
+    options.cellSize = kind == MapKind::mesh ? 0. : cellSize;
     options.robust = RobustWeight::huber;
     return options;
 }

@@ -24,6 +24,9 @@ constexpr int kBlindInVain = 1;  // steps into what was not seen that showed not
                                  // there is no way
 constexpr double kMostStopped = 10.;  // before an obstacle in view that the map does not get,
                                       // before there is no way [s]
+constexpr double kMostAtGoal = 30.;   // around the goal without an arrival, before the flight ends
+                                      // as certain as it is [s]
+constexpr double kAroundGoal = 2.;    // [m]
 constexpr double kWait = 1.;  // before an update without a keyframe, while nothing moves [s]
 
 Matrix6 inCameraFrame(const Matrix6& covariance, const Pose& T_b_c) {
@@ -47,7 +50,9 @@ class Exploration {
     bool mayStepBlindly() const;
     void hover(const UncertainPose& T_c_w);
     bool isWaiting() const;
+    bool isStuckAtGoal();
     bool hasEnded();
+    bool endAtGoal();
     const ExplorationResult& resultSoFar();
     bool endAs(FlightEnd end, const std::string& reason);
     std::string reasonForNoWay() const;
@@ -79,21 +84,10 @@ class Exploration {
     std::optional<double> stoppedSince_;  // by an obstacle in view [s]
     int blindInVain_ = 0;                 // steps since the map last grew
     double lastUpdate_ = 0.;              // [s]
+    std::optional<double> atGoalSince_;   // reached, and not left by far [s]
     FlightEvaluator evaluator_;
     ExplorationResult result_;
 };
-
-DepthSensor depthSensorOf(ExploreSensor sensor) {
-    switch (sensor) {
-        case ExploreSensor::depth:
-            return DepthSensor::rgbd;
-        case ExploreSensor::stereo:
-            return DepthSensor::stereo;
-        case ExploreSensor::monocular:
-            break;
-    }
-    return DepthSensor::none;
-}
 
 /// Flown from the exposure of an image that shows an obstacle until the robot stands, at full speed
 /// and if the image after it is missing.
@@ -313,6 +307,14 @@ std::string Exploration::reasonForNoWay() const {
     return "the map shows no way to the goal";
 }
 
+/// Whether the robot was at its goal and is still around it, but too often lost to arrive.
+bool Exploration::isStuckAtGoal() {
+    const Eigen::Vector3d p_w = bodyOf(tracker_.belief().mean).translation();
+    if ((p_w - setup_.config.goal.position).norm() > kAroundGoal) atGoalSince_.reset();
+    if (!atGoalSince_ && isWhole_ && pilot_.route().isAtGoal()) atGoalSince_ = robot_.time();
+    return atGoalSince_ && robot_.time() - *atGoalSince_ > kMostAtGoal;
+}
+
 bool Exploration::hasEnded() {
     const double time = robot_.time();
     stopIfInterrupted();
@@ -330,7 +332,12 @@ bool Exploration::hasEnded() {
     if (time > setup_.config.explore.timeLimit) {
         return endAs(FlightEnd::outOfTime, "the time limit was reached");
     }
-    if (!isWhole_ || !pilot_.hasArrived(tracker_, time)) return false;
+    if (isStuckAtGoal() || (isWhole_ && pilot_.hasArrived(tracker_, time))) return endAtGoal();
+    return false;
+}
+
+/// As certain of it as the belief is.
+bool Exploration::endAtGoal() {
     const FlightEnd end = evaluator_.endAtGoal(tracker_, setup_.flight.arrivalTolerance,
                                                setup_.config.explore.goalConfidence);
     if (end == FlightEnd::arrived) return endAs(end, "");
@@ -343,36 +350,6 @@ bool Exploration::hasEnded() {
 }
 
 }  // namespace
-
-ExplorationSetup setUpExploration(const PlanningProblem& problem) {
-    const Config& config = problem.config();
-    for (const std::string& name : config.explore.planners) {
-        if (explorePlanner(name).headings && config.space != StateKind::positionYaw) {
-            throw InputError(config.file, "explore.planners",
-                             fmt::format("{}: the robot's heading is not free", name));
-        }
-    }
-    if (!problem.isFlyable(config.start.position)) {
-        throw InputError(
-            config.file, "start",
-            fmt::format("in collision: clearance {:.3f} m, robot.radius {} m",
-                        problem.world().clearance(config.start.position), config.robotRadius));
-    }
-    const FlightSetup flight = setUpFlight(problem);
-    ExplorationSetup setup{config, flight.world, flight.options};
-    setup.flight.tracker.map =
-        flightAlignment(config, MapKind::surfaces, config.explore.resolution);
-    SimulatedCameraOptions& camera = setup.flight.robot.camera;
-    camera.depth = depthSensorOf(config.explore.sensor);
-    camera.depthNoise = {config.explore.depthSigma, config.explore.depthMissing};
-    camera.baseline = config.explore.baseline;
-    camera.verticalSigma = config.explore.verticalSigma;
-    setup.flight.arrivalTolerance = config.explore.goalTolerance;
-    PhotometricOptions ofSensor = config.photometric;
-    ofSensor.scale = 1.;
-    camera.pairNoise = config.fly.camera == "real" ? realNoise() : assumedNoise(ofSensor);
-    return setup;
-}
 
 ExplorationResult explore(const ExplorationSetup& setup, const std::string& planner,
                           std::uint32_t seed, const std::atomic<bool>& interrupted,

@@ -61,6 +61,7 @@ AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellS
     }
     alignment.blur = comparedBlur(map, alignment.blur);
     alignment.modelErrors.surface = surfaceError(map, cellSize);
+    alignment.cellSize = cellSize;
     return alignment;
 }
 

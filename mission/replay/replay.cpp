@@ -160,6 +160,7 @@ AlignmentOptions alignmentOf(const ReplayOptions& options, const Sequence& seque
     } else {
         alignment = realCameraOptions(comparedBlur(map.kind, sequence.blur.value_or(kAreaBlur)));
         alignment.modelErrors.surface = map.surfaceError();
+        alignment.cellSize = map.resolution();
         // The motion is only guessed, so that nothing else stops a pose from sliding away.
         alignment.trust.maxUnexplained = 0.25;
         if (sequence.informationScale) alignment.photometric.scale = *sequence.informationScale;

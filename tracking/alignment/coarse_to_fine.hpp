@@ -28,6 +28,7 @@ struct AlignmentOptions {
     /// The finest level ends below this step [standard deviations, given the residuals]. At the
     /// edges of surfaces visibility changes from pixel to pixel, which keeps steps at about 0.3.
     double fineStep = 0.3;
+    double cellSize = 0.;  ///< of a model made of cells: it shows no finer texture [m]; 0: a mesh
     /// Errors of model and camera that repeat from image to image.
     ModelErrors modelErrors;
     /// Covariance from the residuals (residual_covariance.hpp); else from `photometric.sigma` and

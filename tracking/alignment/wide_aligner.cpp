@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "alignment/hole_margin.hpp"
 #include "alignment/image_pyramid.hpp"
@@ -74,6 +75,18 @@ std::vector<Vector6> placesWithin(const Vector6& sigmas) {
         }
     }
     return places;
+}
+
+/// Mean square of what an image shows finer than cells of this size, noise included. The texture of
+/// cells, means over their area interpolated between their centres, is that of the surface smoothed
+/// with variance 1/12 + 1/6 of the squared edge.
+/// @param cell edge [pixels]
+double finerThan(double cell, const ImageF& image) {
+    const cv::Mat sharp(static_cast<int>(image.getRows()), static_cast<int>(image.getCols()),
+                        CV_32F, image.bitmap);
+    cv::Mat smooth;
+    cv::GaussianBlur(sharp, smooth, {}, 0.5 * cell);
+    return cv::norm(sharp, smooth, cv::NORM_L2SQR) / image.getSize();
 }
 
 /// Share of the pixels that have an image's contrast: the participation ratio of its squares.
@@ -218,6 +231,14 @@ std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const Uncert
     return likely;
 }
 
+/// Variance of the residuals that image noise leaves, and texture too fine for the model.
+/// @param depth of the surfaces in view, mean [m]
+double WideAligner::residualVariance(const ImageF& observed, double depth) const {
+    const double noise = std::pow(aligner_.options().photometric.sigma, 2);
+    const double cell = aligner_.options().cellSize * aligner_.camera().fx() / depth;
+    return cell > 0. ? std::max(noise, finerThan(cell, observed)) : noise;
+}
+
 double WideAligner::pixels() const {
     return double(aligner_.camera().width) * aligner_.camera().height;
 }
@@ -225,7 +246,7 @@ double WideAligner::pixels() const {
 /// Factor that turns mean square residuals into -2 log likelihoods.
 double WideAligner::weight() const {
     const PhotometricOptions& p = aligner_.options().photometric;
-    return p.scale * pixels() / (p.sigma * p.sigma);
+    return p.scale * pixels() / variance_;
 }
 
 /// -2 log likelihood of image and priors.
@@ -237,11 +258,11 @@ double WideAligner::costOf(const Alignment& a, const UncertainPose& prior) const
            squaredDistance(e, transported(prior.covariance, e));
 }
 
-/// Whether image and prediction agree down to the noise, relative to the contrast in view: where a
-/// strip of texture comes into view beside white, the wrong strip differs in few pixels.
+/// Whether image and prediction agree down to what no pose explains, relative to the contrast in
+/// view: where a strip of texture comes into view beside white, the wrong strip differs in few
+/// pixels.
 bool WideAligner::fits(const Alignment& a) const {
-    const double sigma = aligner_.options().photometric.sigma;
-    const double noise = kNoiseSlack * sigma * sigma;
+    const double noise = kNoiseSlack * variance_;
     const double square = a.residual.rms * a.residual.rms;
     return square <= noise || a.residual.unexplained * (1. - noise / square) < kMisfit;
 }
@@ -309,6 +330,7 @@ std::vector<Alignment> WideAligner::alignFrom(const std::vector<Pose>& starts,
 
 Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior) {
     const Alignment first = aligner_.align(observed, prior);
+    variance_ = residualVariance(observed, first.meanDepth);
     if (informationRatio(first, prior) < 1. && fits(first)) return first;
     View expected;
     model_.render(small_.camera(), prior.mean, expected);

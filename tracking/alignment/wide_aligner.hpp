@@ -24,9 +24,10 @@ inline constexpr double kWidestSearchSpacing = 2. * kBasinSigma;
 /// alignments start from the best of these. The best result is then shifted to where other
 /// alignments ended and aligned again: this finds the other bars of a grating.
 ///
-/// The best pose is the result if it explains the image down to the noise, the image has enough
-/// texture, and no other pose explains it almost as well. Otherwise the result is the prior, and
-/// the verdict is `degenerate` along all axes (several poses match) or lost (no pose matches).
+/// The best pose is the result if it explains the image down to the noise and, in a map of cells,
+/// to the texture that is finer than they are, the image has enough texture, and no other pose
+/// explains it almost as well. Otherwise the result is the prior, and the verdict is `degenerate`
+/// along all axes (several poses match) or lost (no pose matches).
 class WideAligner {
   public:
     /// @param model must outlive the aligner
@@ -41,6 +42,7 @@ class WideAligner {
                                    double depth);
     static std::vector<Alignment> alignFrom(const std::vector<Pose>& starts, DenseAligner& aligner,
                                             const ImageF& observed, const UncertainPose& prior);
+    double residualVariance(const ImageF& observed, double depth) const;
     double pixels() const;
     double weight() const;
     double costOf(const Alignment& alignment, const UncertainPose& prior) const;
@@ -54,9 +56,10 @@ class WideAligner {
 
     const ViewSource& model_;
     DenseAligner aligner_;
-    DenseAligner small_;  ///< images of a quarter of the size
-    DenseAligner near_;   ///< starts at the best poses of small images
-    DenseAligner final_;  ///< starts at the best pose, with measured slope
+    DenseAligner small_;    ///< images of a quarter of the size
+    DenseAligner near_;     ///< starts at the best poses of small images
+    DenseAligner final_;    ///< starts at the best pose, with measured slope
+    double variance_ = 0.;  ///< of the residuals of the present image at the right pose
 };
 
 }  // namespace photonav

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "geometry/gaussian.hpp"
+#include "map/map_fusion.hpp"
+#include "render/voxel_renderer.hpp"
 #include "tracking/rooms.hpp"
 
 namespace photonav {
@@ -159,6 +161,39 @@ TEST_F(WideAlignerTest, StripesAreAmbiguous) {
     WideAligner wide(floor, camera, options);
     const UncertainPose belief = prior(cameraAt({0.05, 0., 2.}, kDown), 0.3);
     expectUndecided(wide.align(seen(floor, cameraAt({0.15, 0., 2.}, kDown)), belief), belief);
+}
+
+/// Cells of 5 cm show nothing of the texture that is finer; the rest of it is enough to find the
+/// place, and does not make another floor the right one.
+TEST_F(WideAlignerTest, TextureTooFineForTheCellsOfAMapDoesNotContradict) {
+    camera = makeCamera(188, 120, 1.2);
+    const auto floorOf = [](unsigned seed) {
+        return MeshRenderer(test::floorOf(valueNoise({.size = {20., 20.},
+                                                      .cells = {0.4, 0.2, 0.03},
+                                                      .amplitudes = {0.1, 0.08, 0.15},
+                                                      .seed = seed})));
+    };
+    const MeshRenderer floor = floorOf(3), another = floorOf(4);
+    constexpr double kCell = 0.05;
+    TexturedOcTree map(kCell);
+    for (int i = 0; i < 25; ++i) {
+        const Pose T_c_w = cameraAt({0.4 * (i % 5 - 2), 0.4 * (i / 5 - 2), 1.5}, kDown);
+        View view;
+        floor.render(camera, T_c_w, view);
+        fuse(map, view, camera, T_c_w);
+    }
+    const VoxelRenderer cells(map, UnknownPolicy::free);
+    const Pose truth = cameraAt({0.25, -0.2, 1.55}, kDown);
+    const UncertainPose belief = prior(cameraAt({0., 0., 1.5}, kDown), 0.2);
+    const auto find = [&](const ViewSource& world) {
+        return WideAligner(cells, camera, options).align(seen(world, truth), belief);
+    };
+    EXPECT_TRUE(isLost(find(floor).verdict)) << "nothing finer";
+    options.cellSize = kCell;
+    const Alignment a = find(floor);
+    EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
+    EXPECT_LT(test::errorOf(a, truth).head<3>().norm(), 0.02);
+    EXPECT_NE(find(another).verdict, Verdict::converged) << describe(find(another));
 }
 
 TEST_F(WideAlignerTest, IsLostWhereNoPlaceExplainsTheImage) {
