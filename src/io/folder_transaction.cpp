@@ -87,7 +87,8 @@ void checkTarget(const fs::path& target, const fs::path& resolved) {
         refuse(target, "is a mount point; give a folder in it");
     }
     if (const auto file = Manifest::read(resolved).foreignFile(resolved)) {
-        refuse(target / *file, "is not of an earlier result, or was changed since; give another folder");
+        refuse(target / *file,
+               "is not of an earlier result, or was changed since; give another folder");
     }
 }
 
