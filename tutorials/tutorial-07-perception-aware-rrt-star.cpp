@@ -50,13 +50,13 @@ int main(int argc, char** argv) try {
     Plot plot = Plot::map(area, 460.);
     plot.picture(greyPicture(world.pictureFromAbove(area, 2., 1. / 34.)), area, true);
 
-    std::puts("planner          length [m]  mean trace  goal trace [0.01 m^2]    cost   views");
+    std::puts("planner          length [m]  mean trace [m^2]  goal trace [m^2]    cost   views");
     for (const std::string name : {"rrt_star", "pa_rrt_star", "belief_rrt_star"}) {
         //! [plan]
         const PlanOutcome outcome = PlanningProblem(config, world).solve(name);
         const EvaluatedPath& path = outcome.path.value();
-        std::printf("%-16s %9.2f  %10.2f  %10.2f  %16.3f  %6zu\n", name.c_str(), path.length,
-                    100. * path.meanTrace, 100. * path.goalTrace, path.cost, outcome.views);
+        std::printf("%-16s %10.2f  %16.4f  %16.4f  %7.3f  %6zu\n", name.c_str(), path.length,
+                    path.meanTrace, path.goalTrace, path.cost, outcome.views);
         //! [plan]
         const Color color = plannerColor(name);
         for (std::size_t i = 0; i < path.points.size(); i += 6) {

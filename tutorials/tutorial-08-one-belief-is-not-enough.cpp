@@ -82,12 +82,12 @@ int main(int argc, char** argv) try {
     Plot plot = Plot::map(area, 580.);
     plot.picture(greyPicture(world.pictureFromAbove(area, 2., 1. / 24.)), area, true);
 
-    std::puts("planner               length [m]  mean trace  goal trace [0.01 m^2]    cost");
+    std::puts("planner               length [m]  mean trace [m^2]  goal trace [m^2]    cost");
     for (const auto& [name, planner, labels, color, width] : methods()) {
         config.search.labels = labels;
         const EvaluatedPath path = PlanningProblem(config, world).solve(planner).path.value();
-        std::printf("%-20s %11.2f  %10.2f  %10.2f  %16.3f\n", name, path.length,
-                    100. * path.meanTrace, 100. * path.goalTrace, path.cost);
+        std::printf("%-20s %11.2f  %16.4f  %16.4f  %7.3f\n", name, path.length, path.meanTrace,
+                    path.goalTrace, path.cost);
         plot.curve(path.fromAbove(), {.color = color, .width = width, .name = name, .halo = 1.});
     }
 

@@ -53,11 +53,11 @@ int main(int argc, char** argv) try {
     paths.picture(greyPicture(world.pictureFromAbove(area, 2., 1. / 34.)), area, true);
     Plot tradeOff;
     tradeOff.x.label = "length [m]";
-    tradeOff.y = {.min = 0., .label = "mean trace [0.01 m²]"};
+    tradeOff.y = {.min = 0., .label = "mean trace [m²]"};
     tradeOff.width = tradeOff.height = 440.;
 
     //! [sweep]
-    std::puts("alpha  length [m]  mean trace  goal trace [0.01 m^2]  new views");
+    std::puts("alpha  length [m]  mean trace [m^2]  goal trace [m^2]  new views");
     const PlanningProblem problem(config, world);
     Plot::Points answers;
     std::size_t viewsBefore = 0;
@@ -65,9 +65,9 @@ int main(int argc, char** argv) try {
         const double alpha = 0.05 + 0.1 * i;
         const PlanOutcome outcome = PlanningProblem(problem, alpha).solve("belief_rrt_star");
         const EvaluatedPath& path = outcome.path.value();
-        answers.emplace_back(path.length, 100. * path.meanTrace);
-        std::printf("%5.2f %10.2f  %10.2f  %10.2f  %19zu\n", alpha, answers.back().x(),
-                    answers.back().y(), 100. * path.goalTrace, outcome.views - viewsBefore);
+        answers.emplace_back(path.length, path.meanTrace);
+        std::printf("%5.2f %11.2f  %16.4f  %16.4f  %9zu\n", alpha, answers.back().x(),
+                    answers.back().y(), path.goalTrace, outcome.views - viewsBefore);
         viewsBefore = outcome.views;
         //! [sweep]
         const std::string name =

@@ -65,10 +65,10 @@ void drawHeadings(Plot& plot, const EvaluatedPath& path, const Color& color,
 }
 
 std::vector<Exercise> exercises(PlanningProblem& problem) {
-    const auto meanTrace = [&](double yaw) {  // [0.01 m^2], straight on
+    const auto meanTrace = [&](double yaw) {  // [m^2], straight on
         Place start = problem.config().start, goal = problem.config().goal;
         start.yaw = goal.yaw = yaw;
-        return 100. * problem.evaluate("straight", {start, goal}).meanTrace;
+        return problem.evaluate("straight", {start, goal}).meanTrace;
     };
     return {{[=] { return meanTrace(std::numbers::pi / 2.); }, 0.05},
             {[=] { return meanTrace(-std::numbers::pi / 2.); }, 0.05}};
@@ -96,10 +96,10 @@ int main(int argc, char** argv) {
     auto& planned = *solution->as<ompl::geometric::PathGeometric>();
     //! [planned]
 
-    std::puts("headings   length [m]  mean trace  goal trace [0.01 m^2]");
+    std::puts("headings   length [m]  mean trace [m^2]  goal trace [m^2]");
     const auto show = [&](const std::string& name, const EvaluatedPath& path, const Color& color) {
-        std::printf("%-9s %11.2f %11.3f %11.3f\n", name.c_str(), path.length, 100. * path.meanTrace,
-                    100. * path.goalTrace);
+        std::printf("%-9s %11.2f  %16.2e  %16.2e\n", name.c_str(), path.length, path.meanTrace,
+                    path.goalTrace);
         drawHeadings(view, path, color, name);
         Plot::Points curve;
         for (const BeliefPoint& p : path.points) curve.emplace_back(p.length, p.trace);

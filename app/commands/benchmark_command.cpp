@@ -65,8 +65,8 @@ ReportTable summaryTable(const SweepCell& cell) {
             {{"runs with a path", fmt::format("{} of {}", cell.solved, cell.runs)},
              {"cost", value("cost")},
              {"length [m]", value("length")},
-             {"mean trace [m² + rad²]", value("mean_trace")},
-             {"trace at the goal [m² + rad²]", value("goal_trace")},
+             {"mean trace [m²]", value("mean_trace")},
+             {"trace at the goal [m²]", value("goal_trace")},
              {"vertices", value("vertices")},
              {"views", value("views")},
              {"time [s]", value("seconds")}}};
@@ -141,7 +141,7 @@ int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& inter
         fmt::print("{}", jsonText(result));
     } else if (!options.quiet) {
         fmt::print("{}\nlog: {}\nreport: {}\n",
-                   sweepTable(config.sweep, summarize(config.sweep, outcome.runs, {})),
+                   sweepTable(summarize(config.sweep, outcome.runs, {})),
                    (folder.target() / "benchmark.log").string(),
                    (folder.target() / "report.html").string());
     }

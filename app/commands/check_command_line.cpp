@@ -18,7 +18,8 @@ void addOptions(CLI::App& parser, CheckCommandOptions& options, std::string& see
                       "unless given here, its map or scene");
     parser
         .add_option("--heading", options.heading,
-                    "of a table that has none: forward (where it flies), or an angle [rad]")
+                    "heading of a table without headings: forward (along the motion), or an "
+                    "angle [rad]")
         ->capture_default_str();
     parser
         .add_option("--headings", options.check.headings,
@@ -29,13 +30,13 @@ void addOptions(CLI::App& parser, CheckCommandOptions& options, std::string& see
         .add_option("--max-sigma", options.check.maxSigma,
                     "standard deviation of the position above which the camera counts as lost [m]")
         ->check(CLI::Range(1e-6, 1e5));
-    parser.add_option("--flights", options.flights, "flown along it in simulation")
+    parser.add_option("--flights", options.flights, "flights along the trajectory in simulation")
         ->check(CLI::Range(0, 1000000))
         ->capture_default_str();
     parser.add_option("--jobs", options.jobs, "threads of the flights")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
-    addSeed(parser, seed, "of the flights");
+    addSeed(parser, seed, "seed of the flights");
     addOverrides(parser, options.overrides);
     addOutput(parser, {options.out, options.quiet, options.json}, "out/check-<trajectory>");
 }

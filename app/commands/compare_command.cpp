@@ -191,7 +191,7 @@ CompareRun runMethod(const Config& config, const World& world, const CompareMeth
 
 std::string compareTable(const std::vector<CompareRun>& runs) {
     std::string table =
-        "| planner, information | cost J | length [m] | mean trace [m² + rad²] | goal trace [m² + "
+        "| planner, information | cost J | length [m] | mean trace [m²] | goal trace [m² + "
         "rad²] | "
         "vertices | views | seconds |\n|---|---|---|---|---|---|---|---|\n";
     for (const CompareMethod& method : compareMethods()) {

@@ -38,10 +38,11 @@ Command exploreCommand(CLI::App& app, const Invocation& invocation) {
     auto options = std::make_shared<ExploreArguments>();
     addKeys(options->keys, options->typed);
     options->commandLine = invocation.commandLine;
-    CLI::App* parser = app.add_subcommand(
-        "explore",
-        "Fly to the goal in a scene that the robot does not know, by its own camera: map it, and "
-        "repair the plan, on the way. Exit code 0: a flight of the first planner arrived.");
+    CLI::App* parser =
+        app.add_subcommand("explore",
+                           "Fly to the goal in an unknown scene: map it with the robot's camera, "
+                           "and repair the plan on the way. Exit code 0: a flight of the first "
+                           "planner arrived.");
     addCommon(*parser, *options, false);
     parser
         ->add_option("--planners,--planner", options->planners,
@@ -56,7 +57,7 @@ Command exploreCommand(CLI::App& app, const Invocation& invocation) {
                      "show the first flight to browsers while it is flown; 0: at a free port")
         ->type_name("[ADDRESS:]PORT");
     parser->add_flag("--film", options->film, "write a film of the first flight (film.webm)");
-    addSeed(*parser, options->seed, "of all random numbers, of the first trial");
+    addSeed(*parser, options->seed, "seed of the random numbers of the first trial");
     addKeyOptions(*parser, options->keys, {"planners"});
     return {parser, [options, parser, &interrupted = invocation.interrupted] {
                 override(*parser, *options);

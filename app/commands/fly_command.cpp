@@ -13,6 +13,7 @@
 #include "planners/planner_table.hpp"
 #include "problem/planned_path.hpp"
 #include "replay/calibration_file.hpp"
+#include "report/fly_frames.hpp"
 #include "report/fly_report.hpp"
 #include "result/json_values.hpp"
 
@@ -45,10 +46,13 @@ std::vector<FlightSet> planAll(const Config& config, PlanningProblem& problem, P
     return sets;
 }
 
-void flyAll(std::vector<FlightSet>& sets, const FlightSetup& setup, const FlyOptions& options,
-            FlightRecording& recording, unsigned count, ProgressLine& line,
-            const std::atomic<bool>& interrupted) {
+/// @return the first flight of each plan, to be played
+std::vector<ReportFrame> flyAll(std::vector<FlightSet>& sets, const FlightSetup& setup,
+                                const FlyOptions& options, FlightRecording& recording,
+                                unsigned count, ProgressLine& line,
+                                const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
+    std::vector<ReportFrame> frames;
     std::size_t flown = 0;
     std::size_t arrived = 0;
     for (FlightSet& set : sets) {
@@ -61,12 +65,22 @@ void flyAll(std::vector<FlightSet>& sets, const FlightSetup& setup, const FlyOpt
                                   set.path.planner, flown, all, arrived,
                                   each * (all - static_cast<double>(flown))));
         };
-        const bool isFirst = &set == &sets.front();
-        set.flights =
-            flyMany(set.plan, setup.world, setup.options, count, options.jobs, interrupted,
-                    onFlight, isFirst ? recording.onExposure() : OnExposure{});
+        const OnExposure record = &set == &sets.front() ? recording.onExposure() : OnExposure{};
+        SparseExposures exposures;
+        const auto onExposure = [&](const Exposed& exposed) {
+            exposures.add(exposed);
+            if (record) record(exposed);
+        };
+        set.flights = flyMany(set.plan, setup.world, setup.options, count, options.jobs,
+                              interrupted, onFlight, onExposure);
+        if (set.flights.empty() || set.flights.front().number != 0) continue;
+        for (ReportFrame& frame :
+             flightFrames(set.path.planner, set.flights.front(), exposures.kept(), setup.world)) {
+            frames.push_back(std::move(frame));
+        }
     }
     recording.commit();
+    return frames;
 }
 
 /// The ellipse of where a flight ended, and what it is worth.
@@ -159,15 +173,17 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
                               setup.options.tracker.map);
 
     std::vector<FlightSet> sets;
+    std::vector<ReportFrame> frames;
     {
         ProgressLine line(options.quiet);
         sets = planAll(config, problem, line, interrupted);
-        flyAll(sets, setup, options, recording, config.fly.flights, line, interrupted);
+        frames = flyAll(sets, setup, options, recording, config.fly.flights, line, interrupted);
     }
     const bool stopped = interrupted;
     nlohmann::json result = flyResult(config, sets, setup.options, stopped);
     result["time"]["total_s"] = watch.seconds();
-    writeFlyReport(folder.path(), config, world, sets, options.commandLine, result);
+    writeFlyReport(folder.path(), config, world, sets, std::move(frames), options.commandLine,
+                   result);
     commitResult(folder, result);
 
     if (options.json)

@@ -43,21 +43,21 @@ Command flyCommand(CLI::App& app, const Invocation& invocation) {
     options->commandLine = invocation.commandLine;
     CLI::App* parser =
         app.add_subcommand("fly",
-                           "Fly a plan in closed loop, many times, beside RRT*'s. Exit code 0: a "
+                           "Fly a plan and RRT*'s plan in closed loop, many times. Exit code 0: a "
                            "flight of the config's planner arrived.");
     addCommon(*parser, *options);
     parser->get_option("config")->description("YAML file, or result folder of photonav plan");
     parser->add_option("--jobs", options->jobs, "threads")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
-    addSeed(*parser, options->seed, "of all random numbers");
+    addSeed(*parser, options->seed, "seed of all random numbers");
     addKeyOptions(*parser, options->keys, {"plan"});  // the positional argument
     parser
-        ->add_option(
-            "--calibration", options->calibration,
-            "scale and least sigmas from the calibration.yaml of a replay --calibrate, the "
-            "factor divided by the number of images with correlated errors; --scale, "
-            "--least-sigma and --least-sigma-rotation override it")
+        ->add_option("--calibration", options->calibration,
+                     "scale and least sigmas from the calibration.yaml of a replay "
+                     "--calibrate; the scale is divided by the number of images with "
+                     "correlated errors; --scale, --least-sigma and --least-sigma-rotation "
+                     "override it")
         ->type_name("FILE");
     parser
         ->add_option("--record", options->record, "write the first flight as a TUM RGB-D recording")

@@ -88,7 +88,7 @@ Command planCommand(CLI::App& app, const Invocation& invocation) {
     CLI::App* parser =
         app.add_subcommand("plan", "Plan a perception-aware path in a known scene or map.");
     addCommon(*parser, *options);
-    addSeed(*parser, *seed, "of all random numbers");
+    addSeed(*parser, *seed, "seed of all random numbers");
     addValue(*parser, *options, "--alpha", "planner.alpha",
              "1: the shortest path, 0: the most certain one");
     addValue(*parser, *options, "--kappa", "planner.kappa",
@@ -139,10 +139,12 @@ Command infoCommand(CLI::App& app, const Invocation& invocation) {
     addCommon(*parser, *options);
     parser->get_option("config")->description(
         "YAML file of the planning problem; or a map (.ot, .bt), to see what it holds");
-    parser->add_option("--height", options->height, "of the heat map [m] (default: the start's)")
+    parser
+        ->add_option("--height", options->height,
+                     "height of the heat map [m] (default: the start's)")
         ->check(CLI::Range(-1e5, 1e5));
     parser->add_option("--at", options->at, "x,y,z[,yaw] of the single view (default: the start)");
-    parser->add_option("--cells", options->cells, "along the longer side of the heat map")
+    parser->add_option("--cells", options->cells, "cells along the longer side of the heat map")
         ->check(CLI::Range(1, 2000))
         ->capture_default_str();
     return {parser, [options, parser] {
@@ -177,10 +179,10 @@ Command benchmarkCommand(CLI::App& app, const Invocation& invocation) {
     parser->add_option("--planners", options->lists.planners, "a,b,c")->type_name("NAMES");
     parser->add_option("--runs", options->lists.runs, "seeds per planner");
     addSeed(*parser, options->lists.seed, "the first seed");
-    parser->add_option("--interval", options->interval, "between samples of the progress [s]")
+    parser->add_option("--interval", options->interval, "time between samples of the progress [s]")
         ->check(CLI::Range(1e-3, 1e3))
         ->capture_default_str();
-    parser->add_option("--time-limit", options->timeLimit, "of a run [s]")
+    parser->add_option("--time-limit", options->timeLimit, "time limit of a run [s]")
         ->check(CLI::Range(1e-3, 1e6))
         ->capture_default_str();
     return {parser, [options] { return runBenchmark(*options, interrupted); }};
@@ -198,13 +200,13 @@ Command referenceCommand(CLI::App& app) {
     parser->add_option("--runs", options->runs, "seeds per planner and alpha")
         ->check(CLI::Range(0, 1000000))
         ->capture_default_str();
-    parser->add_option("--vertices", options->vertices, "of each run")
+    parser->add_option("--vertices", options->vertices, "vertices of each run")
         ->check(CLI::Range(2, 100000000))
         ->capture_default_str();
-    parser->add_option("--labels", options->labels, "per vertex")
+    parser->add_option("--labels", options->labels, "labels per vertex")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str();
-    parser->add_option("--moves", options->moves, "tried by the descent from each path")
+    parser->add_option("--moves", options->moves, "changes that the descent tries from each path")
         ->check(CLI::Range(0, 1000000000))
         ->capture_default_str();
     parser->add_option("--file", options->file,

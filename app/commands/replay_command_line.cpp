@@ -24,8 +24,9 @@ void addOptions(CLI::App& parser, ReplayArguments& options) {
     addKeyOptions(parser, options.keys, {"dataset"});
     parser
         .add_option("--calibration", options.calibration,
-                    "scale and least sigmas from the calibration.yaml of a --calibrate; --scale, "
-                    "--least-sigma and --least-sigma-rotation override it")
+                    "scale and least sigmas from the calibration.yaml of an earlier replay "
+                    "--calibrate; --scale, --least-sigma and --least-sigma-rotation "
+                    "override it")
         ->type_name("FILE");
     addOutput(parser, {options.out, options.quiet, options.json}, "out/replay-<dataset>");
 }
@@ -52,8 +53,10 @@ int run(const CLI::App& parser, ReplayArguments& options, const std::atomic<bool
 Command replayCommand(CLI::App& app, const Invocation& invocation) {
     auto options = std::make_shared<ReplayArguments>();
     options->commandLine = invocation.commandLine;
-    CLI::App* parser = app.add_subcommand(
-        "replay", "Track a recorded flight, in a map or by odometry, and say how well.");
+    CLI::App* parser =
+        app.add_subcommand("replay",
+                           "Track a recorded flight, in a map or by odometry, and evaluate the "
+                           "result.");
     addOptions(*parser, *options);
     return {parser, [options, parser, &interrupted = invocation.interrupted] {
                 return run(*parser, *options, interrupted);

@@ -35,8 +35,7 @@ int conclude(const SweepOptions& options, const Config& config, const World& wor
     if (options.json) {
         fmt::print("{}", jsonText(result));
     } else if (!options.quiet) {
-        fmt::print("{}\n",
-                   sweepTable(config.sweep, summarize(config.sweep, outcome.runs, reference)));
+        fmt::print("{}\n", sweepTable(summarize(config.sweep, outcome.runs, reference)));
         std::map<std::string, int> failures;
         for (const SweepRun& run : outcome.runs) {
             if (!run.isSolved()) ++failures[run.item.planner + ": " + run.status];

@@ -90,8 +90,7 @@ Figure headingsFigure(const CheckedTrajectory& checked) {
     for (const CheckedPlace& place : places) {
         values.insert(values.end(), place.best->traces.begin(), place.best->traces.end());
     }
-    const Axis scale =
-        Axis{.log = true, .label = "trace after one view [m² + L² rad²]"}.fittedTo(values);
+    const Axis scale = Axis{.log = true, .label = "trace after one view [m²]"}.fittedTo(values);
     Picture picture{{}, kColumns};
     const double length = std::max(checked.length, 1e-9);
     for (int row = 0; row < kRows; ++row) {

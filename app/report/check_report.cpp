@@ -257,7 +257,7 @@ ReportTable summaryOf(const CheckReport& report) {
     row("at the end", uncertaintyText(checked.places.back()));
     row(fmt::format("within {:g} m of the end", checked.arrivalTolerance),
         fmt::format("with a believed probability of {:.1f} %", 100. * checked.arrivalProbability));
-    row("mean trace", fmt::format("{:.3g} m² + L² rad²", checked.meanTrace));
+    row("mean trace", fmt::format("{:.3g} m²", checked.meanTrace));
     if (report.turned) {
         row("with the best headings",
             fmt::format("{:.3g}; {}", report.turned->meanTrace, verdictOf(*report.turned)));

@@ -209,9 +209,10 @@ json flyResult(const Config& config, const std::vector<FlightSet>& sets,
 }
 
 void writeFlyReport(const fs::path& folder, const Config& config, const World& world,
-                    const std::vector<FlightSet>& sets, const std::string& commandLine,
-                    const json& result) {
+                    const std::vector<FlightSet>& sets, std::vector<ReportFrame> frames,
+                    const std::string& commandLine, const json& result) {
     ReportData report = problemReport(config, world, commandLine, result);
+    report.frames = std::move(frames);
     report.title = titleOf(config);
     report.subtitle = subtitleOf(config.fly);
     for (std::size_t k = 0; k < sets.size(); ++k) {

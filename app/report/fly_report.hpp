@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "flight/flight_set.hpp"
+#include "report/report.hpp"
 
 namespace photonav {
 
@@ -15,9 +16,10 @@ nlohmann::json flyResult(const Config& config, const std::vector<FlightSet>& set
 
 /// Writes config.yaml, the first flight's trajectory files, errors.png, nees.png, top_view.png,
 /// report.json and report.html.
+/// @param frames of flights to be played in the page, see flightFrames()
 void writeFlyReport(const std::filesystem::path& folder, const Config& config, const World& world,
-                    const std::vector<FlightSet>& sets, const std::string& commandLine,
-                    const nlohmann::json& result);
+                    const std::vector<FlightSet>& sets, std::vector<ReportFrame> frames,
+                    const std::string& commandLine, const nlohmann::json& result);
 
 /// trajectory.tum, .cov and .ov (believed), groundtruth.tum.
 void writeFlownTrajectory(const std::filesystem::path& folder, const FlightResult& flight);

@@ -83,13 +83,20 @@ std::vector<ReportView> waypointViews(const EvaluatedPath& path, const Config& c
     return views;
 }
 
-/// The predicted views at places of the path evenly apart, from the start to the goal.
+/// The most informative predicted view of each of several equal parts of the path.
 Figure viewsFigure(const EvaluatedPath& path, const Config& config, const World& world) {
     const Camera camera = config.camera.camera();
     constexpr std::size_t kViews = kViewRows * kViewsPerRow;
     std::vector<std::vector<CaptionedImage>> rows(kViewRows);
     for (std::size_t k = 0; k < kViews; ++k) {
-        const BeliefPoint& point = path.points[k * (path.points.size() - 1) / (kViews - 1)];
+        const auto part = [&](std::size_t i) {
+            return path.points.begin() + static_cast<long>(i * path.points.size() / kViews);
+        };
+        const auto end = std::max(part(k + 1), part(k) + 1);
+        const BeliefPoint& point =
+            *std::max_element(part(k), end, [](const BeliefPoint& a, const BeliefPoint& b) {
+                return a.information.trace() < b.information.trace();
+            });
         View view;
         world.views().render(camera, (point.T_w_b * config.camera.T_b_c()).inverse(), view);
         rows[k / kViewsPerRow].push_back(
@@ -243,7 +250,8 @@ std::vector<NamedFigure> planFigures(const Config& config, const World& world,
     }
     if (outcome.path && world.hasTexture()) {
         figures.push_back({"views.png",
-                           {"What the camera would see along the path, from the start to the goal.",
+                           {"What the camera would see along the path: the most informative view "
+                            "of each sixth of it.",
                             viewsFigure(*outcome.path, config, world).png()}});
     }
     if (recorded) {

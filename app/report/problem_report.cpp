@@ -55,6 +55,7 @@ TopView viewFromAbove(const Config& config, const World& world,
     const double pixel = std::max(kPicturePixel, view.area.sizes().maxCoeff() / kMaxPicturePixels);
     view.background = world.pictureFromAbove(view.area, config.bounds.max().z(), pixel);
     view.paths = paths;
+    view.ellipseScale = readableEllipseScale(paths, view.area.sizes().maxCoeff());
     view.start = config.start.position;
     view.goal = config.goal.position;
     return view;

@@ -77,17 +77,6 @@ Eigen::AlignedBox2d areaOf(const std::vector<DrawnPath>& paths) {
     return {Eigen::Vector2d(area.center() - half), Eigen::Vector2d(area.center() + half)};
 }
 
-/// A power of ten that makes the ellipses a few hundredths of the figure.
-double ellipseScale(const DrawnPath& path, double side) {
-    double variance = 0.;
-    for (const PathPoint& point : path.points) {
-        variance = std::max(variance, point.positionCovariance.trace());
-    }
-    if (!(variance > 0.)) return 0.;
-    const double wanted = 0.03 * side / (3. * std::sqrt(variance));
-    return std::max(1., std::pow(10., std::floor(std::log10(wanted))));
-}
-
 Png topView(const std::vector<DrawnPath>& paths, const std::string& title) {
     TopView view;
     view.title = title;
@@ -96,7 +85,7 @@ Png topView(const std::vector<DrawnPath>& paths, const std::string& title) {
     view.start = paths[0].points.front().position;
     view.goal = paths[0].points.back().position;
     view.goalName = "end";
-    view.ellipseScale = ellipseScale(paths[0], view.area.sizes().maxCoeff());
+    view.ellipseScale = readableEllipseScale({paths[0]}, view.area.sizes().maxCoeff());
     return topViewFigure(view).png();
 }
 
@@ -181,6 +170,15 @@ std::string depthErrorText(const json& dataset) {
     return text;
 }
 
+ReportFrame reportFrame(const ReplayStrip& strip, const ReplayedFrame& frame) {
+    ReportFrame shown{strip.caption, stripFigure(strip).png()};
+    const UncertainPose& T_c_w = frame.tracked.T_c_w;
+    shown.believed = makePathPoint(T_c_w, weightedTrace(T_c_w.covariance), 0., 0.);
+    if (frame.truth_c_w) shown.truth = frame.truth_c_w->inverse().translation();
+    shown.color = kEstimateColor;
+    return shown;
+}
+
 }  // namespace
 
 ReportTable replaySummary(const json& result) {
@@ -242,7 +240,7 @@ void writeReplayReport(const std::filesystem::path& folder, const ReplayCommandO
         report.goal = report.paths[0].points.back().position;
     }
     for (const ReplayStrip& strip : run.strips) {
-        report.frames.push_back({strip.caption, stripFigure(strip).png()});
+        report.frames.push_back(reportFrame(strip, run.frames[strip.frame]));
     }
     writeResultFolder(folder, report, figuresOf(run, errors, report.paths, name));
 }

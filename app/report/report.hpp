@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -46,6 +47,16 @@ struct ReportFigure {
     Png image;
 };
 
+/// A picture of an animation, with the robot of that time in the 3-D view.
+struct ReportFrame {
+    std::string caption;
+    Png image;
+    std::string series = {};                    ///< frames of one name are played in a row
+    std::optional<PathPoint> believed = {};     ///< none: no robot is drawn
+    std::optional<Eigen::Vector3d> truth = {};  ///< of the camera centre, in w [m]
+    Color color = kInk;                         ///< of the robot
+};
+
 struct ReportTable {
     std::string title;
     std::vector<std::pair<std::string, std::string>> rows;  ///< label, value with unit
@@ -70,7 +81,7 @@ struct ReportData {
     std::vector<ReportView> views;
     std::vector<PlanProgress> progress;
     std::vector<ReportFigure> figures;
-    std::vector<ReportFigure> frames;  ///< one after the other, as an animation
+    std::vector<ReportFrame> frames;  ///< one after the other, as an animation
     std::vector<ReportTable> tables;
     nlohmann::json flight;  ///< flightLogJson() of a flight to be watched; null: none
 };

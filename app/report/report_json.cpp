@@ -56,6 +56,16 @@ json treeToJson(const DrawnTree& tree) {
     return {{"name", tree.name}, {"color", hexColor(tree.color)}, {"edges", packed(tree.edges)}};
 }
 
+json frameToJson(const ReportFrame& frame) {
+    json content{{"caption", frame.caption},
+                 {"image", dataUri(frame.image)},
+                 {"series", frame.series},
+                 {"color", hexColor(frame.color)}};
+    if (frame.believed) content["believed"] = pointToJson(*frame.believed);
+    if (frame.truth) content["truth"] = numbers(*frame.truth);
+    return content;
+}
+
 void checkReport(const std::string& file, const std::string& text) {
     if (nestingDepth(text) > kMostJsonDepth) throw InputError(file, "", "nested too deep");
     const json content = json::parse(text, nullptr, false);
@@ -95,12 +105,9 @@ std::string reportJson(const ReportData& data) {
                                     {"seconds", step.seconds},
                                     {"cost", step.cost},
                                     {"views", step.views}});
-    const auto writeFigures = [&](const char* list, const std::vector<ReportFigure>& figures) {
-        for (const ReportFigure& figure : figures)
-            root[list].push_back({{"caption", figure.caption}, {"image", dataUri(figure.image)}});
-    };
-    writeFigures("figures", data.figures);
-    writeFigures("frames", data.frames);
+    for (const ReportFigure& figure : data.figures)
+        root["figures"].push_back({{"caption", figure.caption}, {"image", dataUri(figure.image)}});
+    for (const ReportFrame& frame : data.frames) root["frames"].push_back(frameToJson(frame));
     for (const ReportTable& table : data.tables)
         root["tables"].push_back({{"title", table.title}, {"rows", table.rows}});
     if (!data.flight.is_null()) root["flight"] = data.flight;

@@ -95,8 +95,8 @@ Figure sweepFigure(const std::string& title, const std::vector<SweepCell>& cells
     Figure figure{title};
     for (const Quantity& quantity :
          {Quantity{"length", "length [m]", false, &PaperRow::length},
-          Quantity{"mean_trace", "mean trace [m² + rad²]", true, &PaperRow::meanTrace},
-          Quantity{"goal_trace", "goal trace [m² + rad²]", true, &PaperRow::goalTrace}})
+          Quantity{"mean_trace", "mean trace [m²]", true, &PaperRow::meanTrace},
+          Quantity{"goal_trace", "goal trace [m²]", true, &PaperRow::goalTrace}})
         figure.rows.push_back({quantityPanel(quantity, cells)});
     return figure;
 }
@@ -106,7 +106,7 @@ Figure frontFigure(const std::string& title, const std::vector<SweepCell>& cells
     Plot plot;
     plot.height = 560.;
     plot.x.label = "length [m]";
-    plot.y = {.log = true, .label = "mean trace [m² + rad²]"};
+    plot.y = {.log = true, .label = "mean trace [m²]"};
     Plot::Points paper;
     for (const SweepCell& cell : cells)
         if (cell.paper) paper.emplace_back(cell.paper->length, cell.paper->meanTrace);

@@ -84,9 +84,8 @@ std::string padded(const std::string& text, std::size_t width) {
     return std::string(width > characters ? width - characters : 0, ' ') + text;
 }
 
-/// Of traces in the table.
-double traceUnit(const SweepConfig& config, const std::vector<SweepCell>& cells) {
-    if (!config.paper.empty()) return config.paperTraceUnit;
+/// Decimals of traces in the table: three digits of the smallest one, four at least.
+int traceDecimals(const std::vector<SweepCell>& cells) {
     double smallest = kInfinity;
     for (const SweepCell& cell : cells) {
         for (const char* column : {"mean_trace", "goal_trace"}) {
@@ -94,7 +93,9 @@ double traceUnit(const SweepConfig& config, const std::vector<SweepCell>& cells)
             if (mean > 0.) smallest = std::min(smallest, mean);
         }
     }
-    return smallest < kInfinity ? std::pow(10., std::floor(std::log10(smallest)) + 1.) : 1.;
+    constexpr int kFewest = 4;
+    if (smallest == kInfinity) return kFewest;
+    return std::max(kFewest, 2 - static_cast<int>(std::floor(std::log10(smallest))));
 }
 
 /// A column of the table.
@@ -111,24 +112,24 @@ TextColumn ownColumn(const std::string& heading, std::size_t width, const std::s
             }};
 }
 
-TextColumn paperColumn(double PaperRow::*value, double scale) {
-    return {"paper", 7, [=](const SweepCell& cell) {
+TextColumn paperColumn(double PaperRow::*value, int decimals) {
+    return {"paper", 8, [=](const SweepCell& cell) {
                 const bool isBeside = cell.paper && cell.solved > 0;  // a value of ours
-                return isBeside ? fmt::format("{:.2f}", scale * ((*cell.paper).*value)) : "";
+                return isBeside ? fmt::format("{:.{}f}", (*cell.paper).*value, decimals) : "";
             }};
 }
 
 /// The columns that are not empty for a planner.
-std::vector<TextColumn> textColumns(const std::vector<SweepCell>& cells, double unit) {
+std::vector<TextColumn> textColumns(const std::vector<SweepCell>& cells, int decimals) {
     std::vector<TextColumn> columns{
         {"alpha", 6, [](const SweepCell& cell) { return fmt::format("{}", cell.alpha); }},
         ownColumn("J", 17, "cost", 1., 3),
         ownColumn("length [m]", 15, "length", 1., 2),
-        paperColumn(&PaperRow::length, 1.),
-        ownColumn("mean trace", 16, "mean_trace", 1. / unit, 2),
-        paperColumn(&PaperRow::meanTrace, 1. / unit),
-        ownColumn("goal trace", 16, "goal_trace", 1. / unit, 2),
-        paperColumn(&PaperRow::goalTrace, 1. / unit),
+        paperColumn(&PaperRow::length, 2),
+        ownColumn("mean trace", 19, "mean_trace", 1., decimals),
+        paperColumn(&PaperRow::meanTrace, decimals),
+        ownColumn("goal trace", 19, "goal_trace", 1., decimals),
+        paperColumn(&PaperRow::goalTrace, decimals),
         ownColumn("excess [%]", 15, "excess", 100., 2),
         ownColumn("vertices", 12, "vertices", 1., 0),
         ownColumn("views", 13, "views", 1., 0),
@@ -170,7 +171,7 @@ json sweepResult(const Config& config, const SweepOutcome& outcome,
         result["runs"].push_back(row);
     }
     const auto cells = summarize(config.sweep, outcome.runs, reference);
-    result["trace_unit"] = traceUnit(config.sweep, cells);
+    result["trace_decimals"] = traceDecimals(cells);
     for (const SweepCell& cell : cells) result["summary"].push_back(toJson(cell));
     return result;
 }
@@ -201,14 +202,14 @@ void writeSweepReport(const fs::path& folder, const Config& config, const World&
     writeFileAtomically(folder / "result.json", jsonText(result));
 }
 
-std::string sweepTable(const SweepConfig& config, const std::vector<SweepCell>& cells) {
+std::string sweepTable(const std::vector<SweepCell>& cells) {
     std::string text;
-    const double unit = traceUnit(config, cells);
+    const int decimals = traceDecimals(cells);
     for (auto first = cells.begin(); first != cells.end();) {
         const auto last = std::find_if(
             first, cells.end(), [&](const SweepCell& c) { return c.planner != first->planner; });
-        text += "\n" + first->planner + fmt::format("  (traces in {:g} m^2 + rad^2)\n", unit);
-        const auto columns = textColumns({first, last}, unit);
+        text += "\n" + first->planner + "  (traces in m^2)\n";
+        const auto columns = textColumns({first, last}, decimals);
         for (const TextColumn& column : columns) text += padded(column.heading, column.width);
         text += '\n';
         for (; first != last; ++first) {

@@ -31,8 +31,7 @@ void writeSweepReport(const std::filesystem::path& folder, const Config& config,
                       const SweepOutcome& outcome, const ReferenceCosts& reference,
                       const nlohmann::json& result);
 
-/// The table as text for a terminal. Traces are in the unit of the config's published table,
-/// without one in the power of ten that leaves two digits of the smallest mean.
-std::string sweepTable(const SweepConfig& config, const std::vector<SweepCell>& cells);
+/// The table as text for a terminal; traces with at least three digits of the smallest mean [m^2].
+std::string sweepTable(const std::vector<SweepCell>& cells);
 
 }  // namespace photonav

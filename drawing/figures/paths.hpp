@@ -13,6 +13,7 @@
 namespace photonav {
 
 inline constexpr Color kTreeColor{38, 140, 122};
+inline constexpr Color kStartColor{22, 128, 57}, kGoalColor{160, 28, 92};
 
 /// One point of a path: the belief there, reduced to what is drawn.
 struct PathPoint {

@@ -3,15 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <string>
 
 namespace photonav {
 namespace {
 
 constexpr unsigned kPictureWidth = 960, kPictureHeight = 660;
 constexpr Color kShadow{70, 70, 70};
-constexpr double kHeightOfEye = 0.8;    // above the box, over its longer side
-constexpr double kSurfaceMargin = 0.1;  // a path this far behind a surface is hidden [m]
+constexpr double kHeightOfEye = 0.8;     // above the box, over its longer side
+constexpr double kSurfaceMargin = 0.1;   // a path this far behind a surface is hidden [m]
+constexpr double kPictureMargin = 1.13;  // of the box in the picture, for the labels of the axes
+constexpr double kLabelDistance = 26.;   // of the labels from their axis [px]
 
 /// Depth of the first surface along a direction, 0 when there is none.
 double depthAlong(const ViewSource& world, const Eigen::Vector3d& eye, bool up) {
@@ -68,7 +72,7 @@ Camera cameraAround(const Eigen::AlignedBox3d& box, const Pose& T_c_w) {
     const Eigen::Vector2d half = image.min().cwiseAbs().cwiseMax(image.max().cwiseAbs());
     const double reach = std::max(half.x(), half.y() * kPictureWidth / double{kPictureHeight});
     return makeCamera(kPictureWidth, kPictureHeight,
-                      2. * std::atan(std::clamp(1.03 * reach, 0.1, 2.)));
+                      2. * std::atan(std::clamp(kPictureMargin * reach, 0.1, 2.)));
 }
 
 /// How bright surfaces are drawn: upright ones darker, by the axis that they face. That is found
@@ -124,9 +128,28 @@ class Sketch {
         plot_.segments(visible, {.color = path.color, .width = 4., .name = path.name});
     }
 
-    void stem(const Eigen::Vector3d& p, const Color& color) const {
+    void stem(const Eigen::Vector3d& p, const Color& color, const std::string& name) const {
         plot_.curve({at(p), at(below(p))}, {.color = kShadow, .width = 1.4});
-        plot_.marker(at(p), color, "");
+        plot_.marker(at(p), color, name);
+    }
+
+    /// The edge of the floor of a box along x (0) or y (1) on the side of the eye, with ticks.
+    void axis(const Eigen::AlignedBox3d& box, int along) const {
+        Eigen::Vector3d end = box.min();
+        end[along] = box.max()[along];
+        Eigen::Vector3d inside = box.min();
+        inside[1 - along] += 0.05 * box.sizes()[1 - along];
+        const Plot::Point outward = (at(box.min()) - at(inside)).normalized();
+        plot_.segments({at(box.min()), at(end)}, {.width = 1.2});
+        const Axis scale{.min = box.min()[along], .max = box.max()[along]};
+        for (const Tick& tick : ticksOf(scale, 5)) {
+            Eigen::Vector3d p = box.min();
+            p[along] = tick.value;
+            plot_.segments({at(p), at(p) + 8. * outward}, {.width = 1.2});
+            plot_.text(at(p) + kLabelDistance * outward, tick.label);
+        }
+        plot_.text(at(0.5 * (box.min() + end)) + 2.2 * kLabelDistance * outward,
+                   along == 0 ? "x [m]" : "y [m]");
     }
 
   private:
@@ -180,11 +203,13 @@ Figure perspectiveFigure(const ViewSource& world, const Perspective& perspective
     world.render(camera, T_c_w, view);
     Plot plot = Plot::image(shaded(view, {view, camera, T_c_w}), kPictureWidth, true);
     const Sketch sketch(plot, world, view, camera, T_c_w);
+    for (const int along : {0, 1}) sketch.axis(box, along);
     for (auto path = perspective.paths.rbegin(); path != perspective.paths.rend(); ++path) {
         sketch.route(*path);
         if (path->points.empty()) continue;
-        sketch.stem(path->points.front().position, path->color);
-        sketch.stem(path->points.back().position, path->color);
+        const bool isFirst = path == std::prev(perspective.paths.rend());  // of one legend
+        sketch.stem(path->points.front().position, kStartColor, isFirst ? "start" : "");
+        sketch.stem(path->points.back().position, kGoalColor, isFirst ? "goal" : "");
     }
     return {perspective.title, {{plot}}};
 }

@@ -14,8 +14,8 @@ struct Perspective {
     std::vector<DrawnPath> paths;
 };
 
-/// The box seen from above the corner of its least x and y; paths with their shadows on what is
-/// below them, thinner and pale where something hides them.
+/// The box seen from above the corner of its least x and y, with axes along its floor; paths with
+/// their shadows on what is below them, thinner and pale where something hides them.
 Figure perspectiveFigure(const ViewSource& world, const Perspective& perspective);
 
 }  // namespace photonav

@@ -9,7 +9,6 @@ namespace photonav {
 namespace {
 
 constexpr double kSigmas = 3.;  // size of the ellipses
-constexpr Color kStart{22, 128, 57}, kGoal{160, 28, 92};
 
 /// The background is lightened, so that lines are distinct on it.
 Picture lightened(const ImageF& background) {
@@ -69,6 +68,19 @@ void addRoute(Plot& plot, const TopView& view, std::size_t index) {
 
 }  // namespace
 
+double readableEllipseScale(const std::vector<DrawnPath>& paths, double side) {
+    double variance = 0.;
+    for (const DrawnPath& path : paths) {
+        for (const PathPoint& point : path.points)
+            variance = std::max(variance, point.positionCovariance.diagonal().maxCoeff());
+    }
+    if (!(variance > 0.)) return 1.;
+    const double largest = 0.05 * side / (3. * std::sqrt(variance));
+    if (!(largest >= 1.)) return 1.;
+    const double decade = std::pow(10., std::floor(std::log10(largest)));
+    return (largest >= 5. * decade ? 5. : largest >= 2. * decade ? 2. : 1.) * decade;
+}
+
 Plot topViewPlot(const TopView& view, double side) {
     Plot plot = Plot::map(view.area, side);
     if (view.background.getSize() > 0) plot.picture(lightened(view.background), view.area, true);
@@ -83,8 +95,8 @@ Plot topViewPlot(const TopView& view, double side) {
     for (std::size_t i = view.paths.size(); i-- > 0;) addRoute(plot, view, i);
     for (const DrawnTree& tree : view.trees)
         if (tree.isOnTop) addTree(plot, tree);
-    plot.marker(view.start.head<2>(), kStart, "start");
-    plot.marker(view.goal.head<2>(), kGoal, view.goalName);
+    plot.marker(view.start.head<2>(), kStartColor, "start");
+    plot.marker(view.goal.head<2>(), kGoalColor, view.goalName);
     return plot;
 }
 

@@ -26,6 +26,10 @@ struct TopView {
                                 ///< this much larger (the legend states it); 0: none
 };
 
+/// An ellipseScale of 1, 2, 5, 10, 20, ... with which the largest ellipse of the paths is as large
+/// as it can be without reaching farther than a twentieth of a side [m]; 1 for larger ones.
+double readableEllipseScale(const std::vector<DrawnPath>& paths, double side);
+
 /// The map alone, for figures of several panels.
 /// @param side the longer one [px]
 /// @throws std::invalid_argument if the area is empty

@@ -8,7 +8,7 @@ Figure traceFigure(const std::string& title, const std::vector<DrawnPath>& paths
     plot.x = {.min = 0., .label = "distance along the path [m]"};
     plot.y = {.min = logScale ? Axis::kAuto : 0.,
               .log = logScale,
-              .label = "trace of the pose covariance [m² + L² rad²]"};
+              .label = "trace of the pose covariance [m²]"};
     plot.width = 900.;
     plot.height = 420.;
     for (auto path = paths.rbegin(); path != paths.rend(); ++path) {

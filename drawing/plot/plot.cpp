@@ -142,6 +142,15 @@ void Plot::marker(const Point& at, const Color& color, const std::string& name) 
         [color](Painter& painter, const Frame& f) { drawMarker(painter, middle(f), color); });
 }
 
+void Plot::text(const Point& at, const std::string& words) {
+    add({at}, {},
+        [at, words](Painter& painter, const Mapping& to) {
+            const Font font;
+            painter.text(words, to.at(at) + Point(0., 0.36 * font.size), Align::center, font);
+        },
+        {});
+}
+
 void Plot::picture(Picture picture, const Eigen::AlignedBox2d& box, bool smooth) {
     add({box.min(), box.max()}, {},
         [picture = std::move(picture), box, smooth](Painter& painter, const Mapping& to) {

@@ -56,6 +56,8 @@ class Plot {
     void band(const Points& low, const Points& high, Style style);
     /// Dots set off by white: places.
     void marker(const Point& at, const Color& color, const std::string& name);
+    /// Words in the middle of a place.
+    void text(const Point& at, const std::string& words);
     void picture(Picture picture, const Eigen::AlignedBox2d& box, bool smooth);
     void hatched(std::vector<Eigen::AlignedBox2d> boxes, const std::string& name);
     /// A scale of viridis on the right of the frame.

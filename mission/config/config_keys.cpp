@@ -91,8 +91,8 @@ void addWorld(KeyTable& keys, Config& c) {
               c.mapMadeBy);
     keys.choice({"unknown", "", "how the planner treats cells that no ray has visited"},
                 c.unknownToPlanner, kUnknown);
-    keys.choice({"unknown_to_camera", "", "how predicted views treat them"}, c.unknownToCamera,
-                kUnknown);
+    keys.choice({"unknown_to_camera", "", "how predicted views treat such cells"},
+                c.unknownToCamera, kUnknown);
     keys.beginSection("");
     keys.add({.words = {"bounds", "m", "lower and upper corner; equal heights plan at one height"},
               .allowed = "`[[x, y, z], [x, y, z]]`",
@@ -131,13 +131,13 @@ void addFlight(KeyTable& keys, Config& c) {
                                             ? "auto"
                                             : kNames.at(static_cast<std::size_t>(c.space)));
                   }});
-    keys.count({"seed", "", "of all random numbers"}, c.seed, {1., 4294967295.});
+    keys.count({"seed", "", "seed of all random numbers"}, c.seed, {1., 4294967295.});
     keys.beginSection("robot");
-    keys.number({"radius", "m", "of the sphere that must stay free"}, c.robotRadius,
+    keys.number({"radius", "m", "radius of the sphere that must stay free"}, c.robotRadius,
                 {0., kFarthest});
-    keys.number(
-        {"clearance_resolution", "m", "cells that a scene is sampled into to measure clearance"},
-        c.clearanceResolution, {1e-3, 10.});
+    keys.number({"clearance_resolution", "m",
+                 "edge of the cells in which the clearance of a scene is measured"},
+                c.clearanceResolution, {1e-3, 10.});
 }
 
 void addCamera(KeyTable& keys, Config& c) {
@@ -153,12 +153,13 @@ void addCamera(KeyTable& keys, Config& c) {
                                             "horizon");
                   },
               .value = [&c] { return YAML::Node(c.camera.mount); }});
-    keys.count({"width", "pixels", "of the predicted views"}, c.camera.width, {8., 8192.});
-    keys.count({"height", "pixels", "of the predicted views"}, c.camera.height, {8., 8192.});
+    keys.count({"width", "pixels", "width of the predicted views"}, c.camera.width, {8., 8192.});
+    keys.count({"height", "pixels", "height of the predicted views"}, c.camera.height, {8., 8192.});
     keys.number({"hfov", "degrees", "horizontal field of view"}, c.camera.hfov, {1., 170.});
     keys.number({"blur", "pixels",
-                 "point spread of its images, standard deviation; 0.2887: pixels that average over "
-                 "their area, without defocus. Compared at this sharpness with views of a mesh"},
+                 "standard deviation of the point spread of the images; 0.2887: pixels "
+                 "that average over their area, no defocus. Views of a mesh are compared "
+                 "with images at this sharpness"},
                 c.camera.blur, {0., 2.});
     keys.number(
         {"sigma", "grey value", "standard deviation of the image noise, grey values in [0, 1]"},
@@ -187,8 +188,9 @@ void addNoise(KeyTable& keys, Config& c) {
                 c.viewModel.features.threshold, {1. / 255., 1.});
     keys.number({"pixel_sigma", "pixels", "standard deviation of a tracked corner"},
                 c.viewModel.features.pixelSigma, {kTiny, kLargest});
-    keys.number({"reference_count", "corners", "that halve the penalty of a view"},
-                c.viewModel.features.referenceCount, {kTiny, kLargest});
+    keys.number(
+        {"reference_count", "corners", "number of corners that halves the penalty of a view"},
+        c.viewModel.features.referenceCount, {kTiny, kLargest});
 }
 
 void readKappa(YamlMap& map, double& kappa) {
@@ -225,8 +227,10 @@ void addObjective(KeyTable& keys, Config& c) {
                 {1e-3, kFarthest});
     keys.flag({"view_at_start", "", "plans count the view from the start, which a flight takes"},
               c.belief.viewAtStart);
-    keys.choice({"cost", "", "by the metre flown, or per vertex (the paper's)"}, c.belief.cost,
-                {"integral", "per_vertex"});
+    keys.choice({"cost", "",
+                 "uncertainty is charged by the metre flown, or per vertex (the paper's "
+                 "rule)"},
+                c.belief.cost, {"integral", "per_vertex"});
     keys.number({"characteristic_length", "m", "weighs rad^2 against m^2 in the trace"},
                 c.belief.characteristicLength, {0., kFarthest});
     keys.number({"rotation_weight", "m/rad",
@@ -241,21 +245,22 @@ void addObjective(KeyTable& keys, Config& c) {
                 c.viewModel.mapPriorSigma, {0., kLargest});
     keys.number({"view_pitch", "m", "edge of a cell of the grid of views, see below"},
                 c.field.positionPitch, {kTiny, kFarthest});
-    keys.number({"view_rotation_pitch", "rad", "the same of its rotations"}, c.field.rotationPitch,
-                {kTiny, 3.2});
+    keys.number({"view_rotation_pitch", "rad", "edge of a cell of the grid of views in rotation"},
+                c.field.rotationPitch, {kTiny, 3.2});
     keys.flag({"quick_views", "",
-               "rank paths by views of half the size, and judge the best ones by whole views at "
+               "rank paths by views of half the size, and evaluate the best ones by full views at "
                "their exact poses ([quick views](planner.md#quick-views))"},
               c.quickViews);
 }
 
 /// How it searches.
 void addSearch(KeyTable& keys, Config& c) {
-    keys.count({"vertices", "", "of the tree or roadmap"}, c.vertices, {2., 1e8});
+    keys.count({"vertices", "", "number of vertices of the tree or roadmap"}, c.vertices,
+               {2., 1e8});
     keys.count({"labels", "", "beliefs kept per vertex (`belief_rrt_star`)"}, c.search.labels,
                {1., 1e6});
     keys.flag(
-        {"informed", "", "refuse most samples where no better path can pass (`belief_rrt_star`)"},
+        {"informed", "", "reject most samples where no better path can pass (`belief_rrt_star`)"},
         c.search.informed);
     keys.count({"shortcut", "", "changes tried by the descent; 0: none (`belief_rrt_star`)"},
                c.search.shortcut, {0., 1e9});
@@ -263,8 +268,8 @@ void addSearch(KeyTable& keys, Config& c) {
                 c.growth.range, {0., kFarthest});
     keys.number({"goal_bias", "", "share of samples drawn at the goal until it is reached"},
                 c.growth.goalBias, {1e-4, 1.});
-    keys.number({"rewire_factor", "", "on the connection radius of RRT*"}, c.growth.rewireFactor,
-                {kTiny, kLargest});
+    keys.number({"rewire_factor", "", "factor on the connection radius of RRT*"},
+                c.growth.rewireFactor, {kTiny, kLargest});
     keys.flag({"compare_with_rrt_star", "", "`plan` also runs RRT*"}, c.compareWithRrtStar);
 }
 

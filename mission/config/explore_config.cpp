@@ -24,51 +24,58 @@ void readExplorers(YamlMap& explore, std::vector<std::string>& planners) {
 
 /// The sensors, and what of their images is mapped.
 void addMappingKeys(KeyTable& keys, ExploreConfig& c) {
-    keys.choice(
-        {"sensor", "",
-         "that maps: a depth camera, a second camera beside the first, or the camera alone, "
-         "by its own motion"},
-        c.sensor, {"depth", "stereo", "monocular"});
+    keys.choice({"sensor", "",
+                 "sensor that maps: a depth camera, a second camera beside the first, or "
+                 "the camera alone, by its own motion"},
+                c.sensor, {"depth", "stereo", "monocular"});
     keys.number({"depth_sigma", "m",
                  "standard deviation of the depth camera at 1 m; it grows with depth squared"},
                 c.depthSigma, {0., 1.});
-    keys.number({"depth_missing", "", "share of its pixels without a measurement"}, c.depthMissing,
-                {0., 1.});
-    keys.number({"baseline", "m", "between the cameras of `stereo`"}, c.baseline, {0.01, 10.});
+    keys.number({"depth_missing", "", "share of the depth camera's pixels without a measurement"},
+                c.depthMissing, {0., 1.});
+    keys.number({"baseline", "m", "distance between the cameras of `stereo`"}, c.baseline,
+                {0.01, 10.});
     keys.number({"vertical_sigma", "rad",
                  "standard deviation of the vertical, which the accelerometer measures with every "
                  "image; 0: it is not measured"},
                 c.verticalSigma, {0., 1.});
-    keys.number({"range", "m", "farther surfaces are not mapped"}, c.range, {0.5, 12.});
+    keys.number({"range", "m", "surfaces farther away are not mapped"}, c.range, {0.5, 12.});
     keys.number({"resolution", "m", "edge of the map's cells"}, c.resolution, {0.01, 0.5});
     keys.choice({"unknown", "",
-                 "space never seen: `optimistic` plans lead through it, `pessimistic` ones do not"},
+                 "space that was never seen: `optimistic` plans lead through it, "
+                 "`pessimistic` plans do not"},
                 c.unknown, {"optimistic", "pessimistic"});
     keys.choice({"unknown_information", "",
-                 "information of views of such space: `none` (the paper), or as `predicted` from "
-                 "the views flown through lately"},
+                 "information of views of space that was never seen: `none` (the paper), "
+                 "or `predicted` from the latest views of the flight"},
                 c.unknownInformation, {"none", "predicted"});
-    keys.number({"keyframe_distance", "m",
-                 "an image is fused once the robot is this far from where the last one was"},
-                c.keyframeDistance, {0.01, 10.});
-    keys.number({"keyframe_angle", "rad", "or has turned this far since"}, c.keyframeAngle,
-                {0.01, 3.2});
+    keys.number(
+        {"keyframe_distance", "m", "an image is fused at this distance from the last fused one"},
+        c.keyframeDistance, {0.01, 10.});
+    keys.number(
+        {"keyframe_angle", "rad", "an image is fused after this rotation since the last fused one"},
+        c.keyframeAngle, {0.01, 3.2});
     keys.number({"keyframe_new", "",
-                 "or an image shows at least this share of surfaces that the map lacks"},
+                 "an image is fused where the map lacks this share of the surfaces in "
+                 "view"},
                 c.keyframeNew, {0.01, 1.});
 }
 
 void addPlanningKeys(KeyTable& keys, ExploreConfig& c) {
-    keys.count({"vertices", "", "of the tree or roadmap, in place of `planner.vertices`"},
+    keys.count({"vertices", "",
+                "number of vertices of the tree or roadmap, in place of "
+                "`planner.vertices`"},
                c.vertices, {2., 1e8});
-    keys.count({"shortcut", "", "changes tried on each path, in place of `planner.shortcut`"},
+    keys.count({"shortcut", "",
+                "changes that the descent tries on each path, in place of "
+                "`planner.shortcut`"},
                c.shortcut, {0., 1e9});
     keys.count({"view_turns", "",
-                "of the views that a change of the map has touched, one in so many is rendered "
-                "again at every update, in turn; 1: all of them"},
+                "every update renders one in `view_turns` of the views that changes of "
+                "the map affect, in turn; 1: all of them"},
                c.viewTurns, {1., 1e3});
     keys.number({"commitment", "",
-                 "a way is left for another one only if that costs less by this share "
+                 "the robot takes another path only if its cost is lower by this share "
                  "(`belief_rrt_star`)"},
                 c.commitment, {0., 0.9});
 }
@@ -81,17 +88,18 @@ void addFlightKeys(KeyTable& keys, ExploreConfig& c) {
                    c.initialCovariance);
     keys.number({"goal_tolerance", "m", "distance to the goal of a flight that arrived"},
                 c.goalTolerance, {0.01, 100.});
-    keys.number({"goal_confidence", "",
-                 "an arrival is reported once the estimated probability that the robot is within "
-                 "`goal_tolerance` of the goal is at least this"},
-                c.goalConfidence, {0., 0.9999});
-    keys.number({"time_limit", "s", "of a flight"}, c.timeLimit, {1., 1e5});
+    keys.number(
+        {"goal_confidence", "",
+         "the robot reports its arrival if, by its belief, it is within `goal_tolerance` of the "
+         "goal with at least this probability"},
+        c.goalConfidence, {0., 0.9999});
+    keys.number({"time_limit", "s", "longest duration of a flight"}, c.timeLimit, {1., 1e5});
     keys.count({"trials", "", "flights per planner"}, c.trials, {1., 1e6});
     keys.add({.words = {"planners", "",
-                        "that are compared; none: `planner.name`. A planner may be followed by a "
-                        "policy: headings "
-                        "`/fixed` or along the motion, `/forward`; a new tree after every change, "
-                        "`/replan`; a plan made once, `/once`"},
+                        "planners that are compared; none: `planner.name`. A planner may be "
+                        "followed by a policy: headings fixed, `/fixed`, or along the motion, "
+                        "`/forward`; a new tree after every change, `/replan`; one plan only, "
+                        "`/once`"},
               .read = [&c](YamlMap& map) { readExplorers(map, c.planners); },
               .value = [&c] { return yamlList(c.planners); }});
 }

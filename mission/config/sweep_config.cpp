@@ -97,8 +97,8 @@ void addKeys(KeyTable& keys, SweepConfig& c) {
               .allowed = "0 to 1",
               .read = [&c](YamlMap& map) { readAlphas(map, c.alphas); },
               .value = [&c] { return yamlList(c.alphas); }});
-    keys.count({"runs", "", "per planner and alpha, with seeds `seed`, `seed` + 1, ..."}, c.runs,
-               {1., 1e6});
+    keys.count({"runs", "", "runs per planner and alpha, with the seeds `seed`, `seed` + 1, ..."},
+               c.runs, {1., 1e6});
     keys.add({.words = {"planners", "", "names as of `planner.name`"},
               .read = [&c](YamlMap& map) { readPlanners(map, c.planners); },
               .value = [&c] { return yamlList(c.planners); }});
@@ -107,8 +107,8 @@ void addKeys(KeyTable& keys, SweepConfig& c) {
               .allowed = "`{alpha, length, mean_trace, goal_trace}`",
               .read = [&c](YamlMap& map) { readPaper(map, c.paper); },
               .value = [&c] { return nodeOf(c.paper); }});
-    keys.number({"paper_trace_unit", "m^2 + rad^2", "value of a printed trace of 1"},
-                c.paperTraceUnit, {1e-12, 1e12});
+    keys.number({"paper_trace_unit", "m^2", "value of a printed trace of 1"}, c.paperTraceUnit,
+                {1e-12, 1e12});
 }
 
 std::vector<double> parseAlphas(const std::string& text) {

@@ -21,7 +21,7 @@ struct SweepConfig {
     std::vector<std::string> planners{"belief_rrt_star", "pa_rrt_star", "rrt_star"};
     std::string reference;         ///< CSV of the best known cost per alpha, absolute; may be empty
     std::vector<PaperRow> paper;   ///< what a publication reports for this config
-    double paperTraceUnit = 0.01;  ///< value of a printed trace of 1 [m^2 + rad^2]
+    double paperTraceUnit = 0.01;  ///< value of a printed trace of 1 [m^2]
 };
 
 /// Alphas as typed: "first:last:step" (the last one included where the steps meet it) or a list

@@ -117,6 +117,8 @@ void FlightEvaluator::onStep(const std::vector<TrackedFrame>& tracked, const Tra
                          [&](const FlightSample& s) { return s.time == frame.time; });
         if (!frame.rejected) corrections_.add(sample->belief, frame.T_c_w);
         sample->belief = frame.T_c_w;
+        sample->image = frame.rejected ? ImageUse::rejected : ImageUse::used;
+        if (!frame.rejected) sample->exposure = frame.alignment.exposure;
     }
 }
 

@@ -50,6 +50,13 @@ enum class FlightEnd {
 };
 std::string nameOf(FlightEnd end);
 
+/// What became of an image.
+enum class ImageUse {
+    missing,   ///< it never arrived
+    used,      ///< the belief was updated
+    rejected,  ///< the belief is the predicted one
+};
+
 /// Truth and belief at one exposure: the belief with the image of that exposure; without it if it
 /// never arrived.
 struct FlightSample {
@@ -57,6 +64,8 @@ struct FlightSample {
     double distance = 0.;           ///< along the plan, of its nearest point [m]
     Pose T_c_w = Pose::Identity();  ///< true
     UncertainPose belief;           ///< of T_c_w
+    ImageUse image = ImageUse::missing;
+    Exposure exposure = {};  ///< gain and offset of a used image, as its alignment found them
 };
 
 struct FlightResult {

@@ -37,7 +37,7 @@ KeyTable keysOf(MapOptions& options) {
                "of one camera and their poses"},
               options.depth);
     addResolution(keys, options.resolution);
-    keys.add({.words = {"min_range", "m", "nearest depth entered; monocular: 0.5"},
+    keys.add({.words = {"min_range", "m", "nearest depth that is mapped; monocular: 0.5"},
               .allowed = fmt::format("0 to {}", kFarthestRange),
               .read =
                   [&options](YamlMap& map) {
@@ -46,11 +46,11 @@ KeyTable keysOf(MapOptions& options) {
                       map.readNumber("min_range", range, 0., kFarthestRange);
                   },
               .value = [&options] { return yamlNumber(options.fusion.minRange); }});
-    keys.number({"max_range", "m", "farthest surface entered"}, options.fusion.maxRange,
+    keys.number({"max_range", "m", "farthest surface that is mapped"}, options.fusion.maxRange,
                 {0., kFarthestRange});
     keys.choice({"unknown_to_camera", "",
-                 "how the views that the map is judged by treat cells that no ray has visited, as "
-                 "`map.unknown_to_camera` of a plan"},
+                 "how cells that no ray has visited appear in the views that evaluate "
+                 "the map, as `map.unknown_to_camera` of a plan"},
                 options.unknownToCamera, {"free", "occupied"});
     return keys;
 }
@@ -60,7 +60,7 @@ KeyTable keysOf(ScanMapOptions& options) {
     keys.requiredFile({"scans", "", "point cloud (.ply), or a folder with one per station"},
                       options.scans);
     addResolution(keys, options.resolution);
-    keys.number({"max_range", "m", "farthest point entered"}, options.maxRange,
+    keys.number({"max_range", "m", "farthest point that is mapped"}, options.maxRange,
                 {0., kFarthestRange});
     keys.add({.words = {"scanner", "m", "position of the scanner, where the file does not have it"},
               .allowed = "`[x, y, z]`",

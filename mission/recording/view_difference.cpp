@@ -17,6 +17,13 @@ double meanOf(const std::vector<float>& values) {
 
 }  // namespace
 
+void expose(ImageF& predicted, const Exposure& exposure) {
+    for (unsigned i = 0; i < predicted.getSize(); ++i) {
+        predicted.bitmap[i] =
+            static_cast<float>(exposure.gain * predicted.bitmap[i] + exposure.offset);
+    }
+}
+
 ViewDifference compareViews(const View& observed, const View& predicted) {
     const unsigned size = observed.intensity.getSize();
     if (predicted.intensity.getSize() != size ||

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "alignment/normal_equations.hpp"
 #include "photometry/view.hpp"
 
 namespace photonav {
@@ -20,6 +21,9 @@ struct ViewDifference {
     std::optional<double> medianDepth;  ///< median absolute [m]
     double predicted = 0.;              ///< fraction of all pixels at which the map has a surface
 };
+
+/// A predicted image with the gain and offset of an observed one, to be compared with it.
+void expose(ImageF& predicted, const Exposure& exposure);
 
 /// @throws std::invalid_argument unless both views have the same size
 ViewDifference compareViews(const View& observed, const View& predicted);

@@ -14,27 +14,28 @@ constexpr Range kNotNegative{0., 1e6};
 void addKeys(KeyTable& keys, ReplayOptions& o) {
     addKeys(keys, static_cast<RecordingOptions&>(o));
     keys.file({"map", "", "textured octree (.ot), mesh or scene file to localise in"}, o.mapFile);
-    keys.flag({"odometry", "", "from image to image, without a map"}, o.odometry);
+    keys.flag({"odometry", "", "track from image to image, without a map"}, o.odometry);
     keys.text(
         {"start", "m", "\"x,y,z,qx,qy,qz,qw\": camera pose of the first frame; none: the true one"},
         o.start);
-    keys.number({"start_sigma", "m, rad", "its standard deviation in a map; none: 0.05"},
-                o.startSigma, kPositive);
+    keys.number(
+        {"start_sigma", "m, rad", "standard deviation of the start pose in a map; none: 0.05"},
+        o.startSigma, kPositive);
     keys.number({"sigma", "grey value", "standard deviation of the image noise"}, o.sigma,
                 kPositive);
-    keys.number(
-        {"scale", "", "factor on the information that the residuals of an image say; none: 1"},
-        o.scale, kPositive);
+    keys.number({"scale", "", "factor on the information of an alignment; none: 1"}, o.scale,
+                kPositive);
     keys.number({"least_sigma", "m", "least standard deviation of an aligned position; none: 0"},
                 o.leastSigma, kNotNegative);
-    keys.number({"least_sigma_rotation", "rad", "the same of an aligned rotation"},
-                o.leastSigmaRotation, kNotNegative);
+    keys.number(
+        {"least_sigma_rotation", "rad", "least standard deviation of an aligned rotation; none: 0"},
+        o.leastSigmaRotation, kNotNegative);
     keys.number({"min_overlap", "", "least share of an image that the model must cover"},
                 o.minOverlap, {1e-12, 1. - 1e-12});
-    keys.count(
-        {"max_width", "pixels",
-         "images are halved until they are at most as wide; none: 320 in a map, once in odometry"},
-        o.maxWidth, {1. * kLeastWidth, 1e6});
+    keys.count({"max_width", "pixels",
+                "images are halved until they are at most this wide; none: 320 in a "
+                "map, one halving in odometry"},
+               o.maxWidth, {1. * kLeastWidth, 1e6});
     keys.flag({"exposure", "", "estimate gain and offset of every image"}, o.exposure);
 }
 

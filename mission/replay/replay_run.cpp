@@ -9,6 +9,7 @@
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "recording/halved_view.hpp"
+#include "recording/view_difference.hpp"
 #include "render/interruptible_views.hpp"
 
 namespace photonav {
@@ -52,14 +53,6 @@ double shareKnown(const ImageF& depth) {
     return static_cast<double>(known) / depth.getSize();
 }
 
-/// What the tracker compares the observed image with.
-void expose(ImageF& predicted, const Exposure& exposure) {
-    for (unsigned i = 0; i < predicted.getSize(); ++i) {
-        predicted.bitmap[i] =
-            static_cast<float>(exposure.gain * predicted.bitmap[i] + exposure.offset);
-    }
-}
-
 void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, ReplayRun& run) {
     frame.density = shareKnown(view.depth);
     Stopwatch watch;
@@ -91,7 +84,8 @@ ReplayStrip stripOf(const Recording& recording, const ReplayTracker& tracker, co
     const TrackedView seen{std::move(observed), frame.tracked};
     View predicted = tracker.predict(seen, keyframe);
     expose(predicted.intensity, frame.tracked.alignment.exposure);
-    return {fmt::format("frame {}: {}", frame.index, frame.words), seen.view, std::move(predicted)};
+    return {frame.index, fmt::format("frame {}: {}", frame.index, frame.words), seen.view,
+            std::move(predicted)};
 }
 
 struct Counts {

@@ -33,6 +33,7 @@ struct ReplayedFrame {
 /// The observed view of a frame, and the one predicted at the believed pose with its exposure,
 /// small enough to be looked at.
 struct ReplayStrip {
+    std::size_t frame = 0;  ///< index into ReplayRun::frames
     std::string caption;
     View observed, predicted;
     bool isSample = false;  ///< one of the few that stand for all, or the first that was lost

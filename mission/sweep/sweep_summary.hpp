@@ -42,7 +42,7 @@ struct SweepCell {
     std::size_t runs = 0;
     std::size_t solved = 0;  ///< runs with a path: only these have a cost, length and traces
     std::map<std::string, Statistic> columns;  ///< by name, see sweepColumns()
-    std::optional<PaperRow> paper;  ///< of a planner that uses views; traces in m^2 + rad^2
+    std::optional<PaperRow> paper;             ///< of a planner that uses views; traces in m^2
 };
 
 /// A column of the table: its name in result.json and how a run's value is found.

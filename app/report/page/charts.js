@@ -94,7 +94,7 @@ function createCharts(onPick) {
   function drawAll(log) {
     charts.splice(0).forEach((chart) => chart.destroy());
     if (paths.length) {
-      draw('trace-chart', curvesOf('trace', log), 'distance [m]', 'trace [m² + rad²]', {log});
+      draw('trace-chart', curvesOf('trace', log), 'distance [m]', 'trace [m²]', {log});
       draw('cost-chart', curvesOf('cost', false), 'distance [m]', 'cost');
     }
     const progress = data.progress.filter((step) => typeof step.cost === 'number')

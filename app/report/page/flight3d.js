@@ -13,7 +13,7 @@ function createFlight3d(view3d, flight) {
 
   const group = () => new THREE.Group();
   const [tree, plan, beliefs, robot] = [group(), group(), group(), group()];
-  const way = lineOf(header.color), trueWay = lineOf('#4f8ad0');
+  const way = lineOf(header.color), trueWay = lineOf(kTruthColor);
 
   function lineOf(color) {
     const line = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color}));
@@ -27,16 +27,8 @@ function createFlight3d(view3d, flight) {
   view3d.addLayer('plan', `plan, ${header.planner}`, header.color, plan);
   view3d.addLayer('ellipsoids', '3σ of the plan', header.color, beliefs);
   view3d.addLayer('way', 'believed way', header.color, way);
-  view3d.addLayer('truth', 'true way', '#4f8ad0', trueWay);
+  view3d.addLayer('truth', 'true way', kTruthColor, trueWay);
   view3d.addLayer('robot', 'robot, with 3σ', cssColor('--ink'), robot);
-
-  function empty(parent) {
-    for (const child of [...parent.children]) {
-      parent.remove(child);
-      if (child.geometry !== unitSphere) child.geometry.dispose();
-      child.material.dispose();
-    }
-  }
 
   // Map -----------------------------------------------------------------------------------------
   const kGone = 255;
@@ -80,7 +72,7 @@ function createFlight3d(view3d, flight) {
   function showTree(edges) {
     if (edges === shownTree) return;
     shownTree = edges;
-    empty(tree);
+    empty3d(tree);
     if (!edges) return;
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(edges, 3));
@@ -90,8 +82,8 @@ function createFlight3d(view3d, flight) {
 
   const ellipsoids = () => beliefs.children;
   function showPlan(points) {
-    empty(plan);
-    empty(beliefs);
+    empty3d(plan);
+    empty3d(beliefs);
     const tube = tubeAlong(points.map((point) => point.position), view3d.thick, header.color);
     if (tube) plan.add(tube);
     const every = Math.ceil(points.length / 20);
@@ -111,16 +103,8 @@ function createFlight3d(view3d, flight) {
 
   // Robot ------------------------------------------------------------------------------------------
   function showRobot({rows, covariance}) {
-    empty(robot);
-    robot.add(new THREE.LineSegments(
-        new THREE.BufferGeometry().setFromPoints(frustumLines(rows, 0.05 * view3d.extent)),
-        new THREE.LineBasicMaterial({color: cssColor('--ink')})));
-    const body = new THREE.Mesh(new THREE.SphereBufferGeometry(2.6 * view3d.thick, 20, 14),
-                                new THREE.MeshLambertMaterial({color: cssColor('--ink')}));
-    body.position.set(rows[3], rows[7], rows[11]);
-    robot.add(body, new Ellipsoid(new THREE.MeshLambertMaterial(
-        {color: cssColor('--ink'), transparent: true, opacity: 0.4, depthWrite: false}),
-        [rows[3], rows[7], rows[11]], covariance));
+    empty3d(robot);
+    robot.add(...robotShapes(rows, covariance, cssColor('--ink'), view3d).all);
     scaleEllipsoids();
   }
 

@@ -175,7 +175,7 @@ function createFlightPanel(flight3d) {
     drawChart('flight-trace', 'line', [{
       label: 'trace of the belief', borderColor: flight.header.color, backgroundColor: flight.header.color,
       data: flight.flown.filter((point) => point.trace > 0).map((point) => ({x: point.time, y: point.trace})),
-    }], 'trace [m² + rad²]', true, false);
+    }], 'trace [m²]', true, false);
     drawChart('flight-updates', 'bar', kParts.map(([label, key, color]) => ({
       label, backgroundColor: color, barThickness: 4,
       data: flight.moments.map(({update}) => ({x: update.time, y: 1000 * update[key]})),

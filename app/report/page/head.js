@@ -28,7 +28,7 @@ function verdict() {
       `${say(100 * other.goalSigma, 'cm')} (1σ, worst direction)${factorOf(ours.goalSigma, other.goalSigma)}`;
   // What the planner lowers is the uncertainty along the path; the one at the goal may be higher.
   const mean = ours.goalSigma < other.goalSigma ? ''
-      : `, the mean trace along the path is ${say(ours.meanTrace)} instead of ${say(other.meanTrace, 'm² + rad²')}` +
+      : `, the mean trace along the path is ${say(ours.meanTrace)} instead of ${say(other.meanTrace, 'm²')}` +
         factorOf(ours.meanTrace, other.meanTrace);
   return `Compared with ${paths[1].name}, the path is ${length}${mean}, and ${goal}.`;
 }
@@ -109,8 +109,8 @@ function fillTiles() {
       : result.command === 'explore' ? exploreTiles(result) : [
     ['path length', ours.length ?? result.length, 'm'],
     ['goal position, 1σ', 100 * ours.goalSigma, 'cm'],
-    ['goal trace', ours.goalTrace ?? result.goal_trace, 'm² + rad²'],
-    ['mean trace', ours.meanTrace ?? result.mean_trace, 'm² + rad²'],
+    ['goal trace', ours.goalTrace ?? result.goal_trace, 'm²'],
+    ['mean trace', ours.meanTrace ?? result.mean_trace, 'm²'],
     ['cost', ours.cost ?? result.cost, ''],
     ['vertices', result.vertices, ''],
     ['views predicted', result.views, ''],

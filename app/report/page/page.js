@@ -27,7 +27,7 @@ function showWaypoint(index) {
   const belief = [
     ['1σ in x, y, z', `${sigma.join(', ')}\u00a0cm`],
     ['1σ, worst direction', say(100 * worstSigma(point.position_covariance), 'cm')],
-    ['Trace', say(point.trace, 'm² + rad²')],
+    ['Trace', say(point.trace, 'm²')],
   ];
   if (hasCost) belief.push(['Cost so far', say(point.cost)]);
   rows(element('waypoint-numbers'), hasBeliefs ? [...place, ...belief] : place);
@@ -64,15 +64,15 @@ function createPlayer(button, speed, interval, {isAtEnd, next, rewind}) {
 
 // Tables ------------------------------------------------------------------------------------------
 const kNames = {
-  length: ['Length of the path', 'm'], mean_trace: ['Mean trace', 'm² + rad²'],
-  goal_trace: ['Trace at the goal', 'm² + rad²'],
+  length: ['Length of the path', 'm'], mean_trace: ['Mean trace', 'm²'],
+  goal_trace: ['Trace at the goal', 'm²'],
   metric_length: ['Length with rotations counted', 'm'],
   alpha: ['Alpha (1: only length counts)', ''], cost: ['Cost', ''], views: ['Views predicted', ''],
   cache_hits: ['Views taken from the cache', ''], seed: ['Seed of the random numbers', ''],
   'time.total_s': ['Time, but for this report', 's'], 'time.views_s': ['Time for views', 's'],
   'time.beliefs_s': ['Time for beliefs', 's'], 'time.tree_s': ['Time for the tree', 's'],
   'audit.max_cost_error': ['Audit: largest error of a cost', ''],
-  'audit.max_covariance_error': ['Audit: largest error of a covariance', 'm² + rad²'],
+  'audit.max_covariance_error': ['Audit: largest error of a covariance', 'm²'],
 };
 const kUnits = {_s: 's', _ms: 'ms', _m: 'm', _cm: 'cm', _m2: 'm²', _rad: 'rad', _deg: '°'};
 
@@ -120,35 +120,13 @@ function addComparison() {
     const swatch = make('span', undefined, {className: 'swatch'});
     swatch.style.background = path.color;
     name.append(swatch, path.name);
-    row.append(name, ...[say(s.length, 'm'), say(s.cost), say(s.meanTrace, 'm² + rad²'), say(s.goalTrace, 'm² + rad²'),
+    row.append(name, ...[say(s.length, 'm'), say(s.cost), say(s.meanTrace, 'm²'), say(s.goalTrace, 'm²'),
                          say(100 * s.goalSigma, 'cm')].map((t) => make('td', t)));
     body.append(row);
   });
   table.append(thead, body);
   box.append(make('h2', 'Paths compared'), table);
   element('tables').append(box);
-}
-
-/// Pictures one after the other: by hand with the slider, or played.
-function setUpFrames() {
-  const {frames} = data, slider = element('frame-slider');
-  element('frames').hidden = !frames.length;
-  if (!frames.length) return;
-  const shown = () => Number(slider.value);
-  const show = (index) => {
-    slider.value = index;
-    element('frame').src = frames[index].image;
-    element('frame').alt = element('frame-caption').textContent = frames[index].caption;
-    document.documentElement.dataset.frame = index;
-  };
-  const player = createPlayer(element('play'), element('frame-speed'), 700, {
-    isAtEnd: () => shown() + 1 >= frames.length,
-    next: () => show(shown() + 1),
-    rewind: () => show(0),
-  });
-  slider.max = frames.length - 1;
-  slider.addEventListener('input', () => { player.stop(); show(shown()); });
-  show(isRecorded ? 0 : frames.length - 1);
 }
 
 function fillRest() {
@@ -163,7 +141,6 @@ function fillRest() {
     box.append(image, make('figcaption', figure.caption));
     element('figures').append(box);
   }
-  setUpFrames();
   element('config').textContent = data.config;
   element('config-box').hidden = !data.config;
   element('command').textContent = data.command_line;
@@ -208,6 +185,7 @@ function setUpExaggeration() {
     const factor = factors[slider.value];
     view3d.setExaggeration(factor);
     if (flight3d) flight3d.setExaggeration(factor);
+    if (frames) frames.setExaggeration(factor);
     element('exaggeration-value').textContent = factor === 1 ? 'true size' : `${factor} × larger`;
   };
   slider.value = factors.indexOf(flight ? 1 : view3d.suggestedExaggeration);
@@ -300,6 +278,7 @@ element('trace-log').checked = paths.length > 0;
 element('trace-log').addEventListener('change', redrawCharts);
 charts.drawAll(element('trace-log').checked);
 const flight3d = flight && view3d ? createFlight3d(view3d, flight) : null;
+const frames = createFrames(view3d);
 setUpView();
 setUpWaypoints();
 const chooseAlpha = (index) => {

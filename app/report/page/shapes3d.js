@@ -11,6 +11,7 @@ function cholesky(c) {
   return [a, 0, 0, b, e, 0, d, f, g];
 }
 
+const kTruthColor = '#4f8ad0';
 const unitSphere = new THREE.SphereBufferGeometry(1, 28, 18);
 
 /// Where a position with a covariance is, as a transformed sphere.
@@ -51,6 +52,29 @@ function imagePlane(rows, depth, texture) {
   const geometry = new THREE.BufferGeometry().setFromPoints([a, b, c, a, c, d]);
   geometry.setAttribute('uv', new THREE.Float32BufferAttribute([0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1], 2));
   return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({map: texture, side: THREE.DoubleSide}));
+}
+
+/// The robot at a pose of its camera: frustum, body, and the ellipsoid of its position.
+/// @param view3d as createView3d() gives it
+function robotShapes(rows, covariance, color, {extent, thick}) {
+  const frustum = new THREE.LineSegments(
+      new THREE.BufferGeometry().setFromPoints(frustumLines(rows, 0.05 * extent)),
+      new THREE.LineBasicMaterial({color}));
+  const position = [rows[3], rows[7], rows[11]];
+  const body = new THREE.Mesh(new THREE.SphereBufferGeometry(2.6 * thick, 20, 14),
+                              new THREE.MeshLambertMaterial({color}));
+  body.position.copy(point3(position));
+  const ellipsoid = new Ellipsoid(new THREE.MeshLambertMaterial(
+      {color, transparent: true, opacity: 0.4, depthWrite: false}), position, covariance);
+  return {all: [frustum, body, ellipsoid], ellipsoid};
+}
+
+function empty3d(group) {
+  for (const child of [...group.children]) {
+    group.remove(child);
+    if (child.geometry !== unitSphere) child.geometry.dispose();
+    child.material.dispose();
+  }
 }
 
 class Polyline extends THREE.Curve {

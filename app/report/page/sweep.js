@@ -14,7 +14,7 @@ function sweepVerdict() {
     return failed ? `${failed.planner}: ${failed.status}.` : 'No run was finished.';
   }
   const cells = solved.sort((a, b) => a.alpha - b.alpha), first = cells[0], last = cells[cells.length - 1];
-  const at = (cell) => `${say(cell.length_mean, 'm')} with a mean trace of ${say(cell.mean_trace_mean, 'm² + rad²')} ` +
+  const at = (cell) => `${say(cell.length_mean, 'm')} with a mean trace of ${say(cell.mean_trace_mean, 'm²')} ` +
                        `at alpha ${cell.alpha}`;
   const excess = sweep.planners.flatMap((planner) => {
     const known = cellsOf(planner).filter((cell) => isNumber(cell.excess_mean));
@@ -62,7 +62,7 @@ const chosenPoint = {
 
 function describeChosen() {
   const s = summaries[chosenPath], run = cheapestRun(alphaOf(paths[chosenPath]));
-  return `${alphaOf(paths[chosenPath])}: ${say(run.length, 'm')}, mean trace ${say(run.mean_trace, 'm² + rad²')}, ` +
+  return `${alphaOf(paths[chosenPath])}: ${say(run.length, 'm')}, mean trace ${say(run.mean_trace, 'm²')}, ` +
          `${say(100 * s.goalSigma, 'cm')} at the goal (1σ, worst direction)`;
 }
 
@@ -168,18 +168,18 @@ function sweepCurves(x, y) {
 function drawSweepCharts() {
   sweepCharts.splice(0).forEach((chart) => chart.destroy());
   drawSweepChart('length-chart', sweepCurves('alpha', 'length'), 'alpha', 'length [m]', false);
-  drawSweepChart('mean-chart', sweepCurves('alpha', 'mean_trace'), 'alpha', 'mean trace [m² + rad²]', true);
-  drawSweepChart('goal-chart', sweepCurves('alpha', 'goal_trace'), 'alpha', 'trace at the goal [m² + rad²]', true);
-  drawSweepChart('front-chart', sweepCurves('length', 'mean_trace'), 'length [m]', 'mean trace [m² + rad²]', true);
+  drawSweepChart('mean-chart', sweepCurves('alpha', 'mean_trace'), 'alpha', 'mean trace [m²]', true);
+  drawSweepChart('goal-chart', sweepCurves('alpha', 'goal_trace'), 'alpha', 'trace at the goal [m²]', true);
+  drawSweepChart('front-chart', sweepCurves('length', 'mean_trace'), 'length [m]', 'mean trace [m²]', true);
 }
 
 // Tables ------------------------------------------------------------------------------------------
-const traceScale = sweep ? 1 / sweep.trace_unit : 1;  // of traces in the tables
+const traceDecimals = sweep ? sweep.trace_decimals : 4;
 
 const sweepColumns = [
   ['J', 'cost', 3], ['length [m]', 'length', 2, 'paper_length'],
-  ['mean trace', 'mean_trace', 2, 'paper_mean_trace', traceScale],
-  ['goal trace', 'goal_trace', 2, 'paper_goal_trace', traceScale],
+  ['mean trace [m²]', 'mean_trace', traceDecimals, 'paper_mean_trace'],
+  ['goal trace [m²]', 'goal_trace', traceDecimals, 'paper_goal_trace'],
   ['excess [%]', 'excess', 2, null, 100], ['vertices', 'vertices', 0], ['views', 'views', 0], ['seconds', 'seconds', 2],
 ].filter(([, key]) => !sweep || sweep.summary.some((cell) => isNumber(cell[`${key}_mean`])));
 
@@ -203,7 +203,7 @@ function plannerTable(planner) {
     for (const [, key, decimals, paper, scale = 1] of sweepColumns) {
       row.append(make('td', meanAndDeviation(cell, key, decimals, scale)));
       if (hasPaper(paper))
-        row.append(make('td', isNumber(cell[paper]) ? (scale * cell[paper]).toFixed(2) : '', {className: 'quiet'}));
+        row.append(make('td', isNumber(cell[paper]) ? (scale * cell[paper]).toFixed(decimals) : '', {className: 'quiet'}));
     }
     row.append(make('td', `${cell.solved} of ${cell.runs}`));
     body.append(row);
@@ -213,8 +213,7 @@ function plannerTable(planner) {
   const box = make('div', undefined, {className: 'wide'}), title = make('h2'), swatch = make('span', undefined, {className: 'swatch'});
   swatch.style.background = plannerColor(planner);
   title.append(swatch, planner);
-  box.append(title, table, make('p', `Mean ± standard deviation over ${sweep.runs_per_cell} seeds. Traces in ` +
-    `${sweep.trace_unit} (m² + rad²).`, {className: 'note'}));
+  box.append(title, table, make('p', `Mean ± standard deviation over ${sweep.runs_per_cell} seeds.`, {className: 'note'}));
   return box;
 }
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -67,7 +68,20 @@ TEST_F(FlyCommand, FliesBothPlannersAndWritesWhatOthersRead) {
                              "trajectory.cov", "trajectory.ov"}) {
         EXPECT_TRUE(fs::exists(folder_ / "a" / name)) << name;
     }
+    const json frames = json::parse(std::ifstream(folder_ / "a/report.json"))["frames"];
+    std::map<std::string, int> played;
+    for (const json& frame : frames) ++played[frame["series"]];
+    ASSERT_EQ(played.size(), 2U);
+    EXPECT_GE(played["belief_rrt_star, flight 0"], 3);
+    EXPECT_LE(played["belief_rrt_star, flight 0"], 40);
+    EXPECT_NE(frames[0]["caption"].get<std::string>().find("0.0 s: image used"), std::string::npos);
+    // The robot of the picture is where it believed to be then.
+    const Trajectory believed = readTrajectory(at("a/trajectory.tum"));
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(frames[0]["believed"]["position"][i], believed[0].T_w_c.translation()[i], 1e-6);
+    }
     const Trajectory truth = readTrajectory(at("a/groundtruth.tum"));
+    EXPECT_NEAR(frames[0]["truth"][0], truth[0].T_w_c.translation().x(), 1e-6);
     EXPECT_EQ(readTrajectory(at("a/trajectory.tum")).size(), truth.size());
     const Sequence recorded = readTumSequence(at("recorded"));
     ASSERT_EQ(recorded.frames.size(), truth.size());

@@ -1,96 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report page in a real browser: headless Chromium with a software renderer.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
-#include <sstream>
-
-#include "app/flightlog/sample_log.hpp"
+// What a report page shows, and what clicks and keys do.
+#include "app/report/browser.hpp"
 #include "app/report/sample_report.hpp"
 #include "io/base64.hpp"
-#include "live/live_server.hpp"
-#include "report/report.hpp"
 #include "report/sweep_report.hpp"
 #include "sweep_run.hpp"
-#include "temporary_folder.hpp"
 
 namespace photonav {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr const char* kChromium = "/usr/bin/chromium";
-
-struct Outcome {
-    std::string dom;  ///< the page after its scripts ran
-    std::string log;  ///< what Chromium said, its console included
-};
-
-class ReportBrowserTest : public testing::Test {
-  protected:
-    void SetUp() override {
-#ifdef __SANITIZE_ADDRESS__
-        GTEST_SKIP() << "the page runs in the browser, not under the sanitizers";
-#endif
-        if (!fs::exists(kChromium)) GTEST_SKIP() << kChromium << " is not installed";
-        std::string name = (fs::temp_directory_path() / "photonav_browser_XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
-    void TearDown() override {
-        if (!folder_.empty()) fs::remove_all(folder_);
-    }
-
-    /// Opens the page of `data` and returns it as it stands a few (virtual) seconds later.
-    /// @param script appended to the page: what a visitor would do
-    Outcome open(const ReportData& data, const std::string& hash = "",
-                 const std::string& options = "", const std::string& script = "") const {
-        writeReport(folder_ / "report.html", reportJson(data));
-        if (!script.empty())
-            std::ofstream(folder_ / "report.html", std::ios::app)
-                << "<script>" << script << "</script>";
-        return openAddress("file://" + (folder_ / "report.html").string() + hash, options);
-    }
-
-    Outcome openAddress(const std::string& address, const std::string& options = "") const {
-        const std::string command =
-            std::string(kChromium) +
-            " --headless --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader"
-            " --disable-background-networking --disable-component-update --disable-sync"
-            " --no-first-run --enable-logging=stderr --virtual-time-budget=8000"
-            " --window-size=1400,2200 --user-data-dir=" +
-            (folder_ / "profile").string() + " " + options + " --dump-dom '" + address + "' >" +
-            (folder_ / "dom").string() + " 2>" + (folder_ / "log").string();
-        EXPECT_EQ(std::system(command.c_str()), 0) << test::contentOf(folder_ / "log");
-        return {test::contentOf(folder_ / "dom"), test::contentOf(folder_ / "log")};
-    }
-
-    fs::path folder_;
-};
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
-/// The value of a data-... attribute of <html>; empty if it is not there.
-std::string published(const std::string& dom, const std::string& name) {
-    const std::string root = dom.substr(dom.find("<html"), dom.find('>', dom.find("<html")));
-    const std::size_t begin = root.find("data-" + name + "=\"");
-    if (begin == std::string::npos) return {};
-    const std::size_t value = begin + name.size() + 7;
-    return root.substr(value, root.find('"', value) - value);
-}
-
-void expectNoErrors(const Outcome& outcome) {
-    EXPECT_EQ(published(outcome.dom, "errors"), "");
-    std::istringstream lines(outcome.log);
-    for (std::string line; std::getline(lines, line);)
-        EXPECT_FALSE(contains(line, ":CONSOLE")) << line;
-}
 
 TEST_F(ReportBrowserTest, PageIsDrawnAndShowsTheWaypointOfItsAddress) {
     const ReportData data = sampleReport();
@@ -209,79 +126,6 @@ TEST_F(ReportBrowserTest, RecordedFlightsHaveFramesAndNeitherGoalNorCost) {
     EXPECT_FALSE(contains(outcome.dom, "<span>cost</span>"));
 }
 
-/// The report of a flight that is logged, or shown live.
-ReportData flightReport(const nlohmann::json& flight) {
-    ReportData data;
-    data.title = "A flight";
-    data.start = {0, 1, 1.5};
-    data.goal = {3, 1, 1.5};
-    data.result = {{"command", "explore"}};
-    data.flight = flight;
-    return data;
-}
-
-/// What the page shows of the flight at this time.
-constexpr const char* kPublishFlight = R"js(
-  setTimeout(() => {
-    const result = document.documentElement.dataset, text = (id) => document.getElementById(id).textContent;
-    const shown = () => [flight3d.cubes(), text('flight-clock'), result.moment].join('|');
-    const slider = document.getElementById('flight-time');
-    const moveTo = (time) => {
-      slider.value = time;
-      slider.dispatchEvent(new Event('input'));
-    };
-    result.atEnd = shown();
-    moveTo(1.6);
-    result.back = shown();
-    result.numbers = text('flight-numbers');
-    moveTo(3.2);
-    result.forth = shown();
-    moveTo(0.2);
-    document.getElementById('flight-play').click();
-    setTimeout(() => {
-      result.played = slider.value;
-      result.button = text('flight-play');
-      const canvas = document.getElementById('obstacles'), pen = canvas.getContext('2d');
-      const colors = new Set(new Uint32Array(pen.getImageData(0, 0, canvas.width, canvas.height).data.buffer));
-      result.grid = colors.size;
-    }, 4000);
-  }, 1500);
-)js";
-
-TEST_F(ReportBrowserTest, AFlightIsShownAgainAtAnyTime) {
-    const Outcome outcome =
-        open(flightReport(flightLogJson(test::sampleLog())), "", "", kPublishFlight);
-    expectNoErrors(outcome);
-    EXPECT_EQ(published(outcome.dom, "canvas"), "drawn");
-    // Six new cells a moment; at the third one, one goes and one is painted otherwise.
-    EXPECT_EQ(published(outcome.dom, "at-end"), "17|3.5 of 3.5&nbsp;s|2");
-    EXPECT_EQ(published(outcome.dom, "back"), "12|1.6 of 3.5&nbsp;s|1");
-    EXPECT_EQ(published(outcome.dom, "forth"), "17|3.2 of 3.5&nbsp;s|2");
-    EXPECT_TRUE(contains(published(outcome.dom, "numbers"), "Update2 of 3, at 1.5&nbsp;s"));
-    EXPECT_TRUE(contains(published(outcome.dom, "numbers"), "3, 40, 5"));
-    EXPECT_EQ(published(outcome.dom, "played"), "3.5");  // to its end
-    EXPECT_EQ(published(outcome.dom, "button"), "Play");
-    EXPECT_GT(std::atoi(published(outcome.dom, "grid").c_str()), 3);
-    EXPECT_TRUE(contains(outcome.dom, "class=\"good\">arrived</span>"));
-}
-
-TEST_F(ReportBrowserTest, AFlightIsFollowedWhileItIsFlown) {
-    const FlightLog log = test::sampleLog();
-    const std::string page =
-        reportPage(reportJson(flightReport({{"header", headerJson(log)}, {"live", true}})));
-    LiveServer server({}, page);
-    for (const LoggedMoment& moment : log.moments) {
-        server.publish("moment", momentJson(log, moment).dump());
-    }
-    server.publish("end", endJson(log).dump());
-    const Outcome outcome = openAddress(server.url());
-    expectNoErrors(outcome);
-    EXPECT_EQ(published(outcome.dom, "canvas"), "drawn");
-    EXPECT_EQ(published(outcome.dom, "moment"), "2");
-    EXPECT_TRUE(contains(outcome.dom, "<output id=\"flight-clock\">3.5 of 3.5&nbsp;s</output>"));
-    EXPECT_TRUE(contains(outcome.dom, "class=\"good\">arrived</span>"));
-}
-
 TEST_F(ReportBrowserTest, WithoutWebGLThePageSaysSoAndTheRestWorks) {
     const Outcome outcome = open(sampleReport(), "#waypoint=2", "--disable-3d-apis");
     EXPECT_EQ(published(outcome.dom, "errors"), "");
@@ -341,29 +185,6 @@ TEST_F(ReportBrowserTest, OnlySweepsHaveASliderOverAlpha) {
     const Outcome outcome = open(sampleReport());
     EXPECT_EQ(published(outcome.dom, "alpha"), "");
     EXPECT_TRUE(contains(outcome.dom, "id=\"alpha-bar\" hidden"));
-}
-
-constexpr const char* kPlayFrames = R"js(
-  setTimeout(() => {
-    const button = document.getElementById('play'), state = document.documentElement.dataset;
-    const said = () => `${state.frame} ${button.textContent} ${document.getElementById('frame').alt}`;
-    state.before = said();
-    document.getElementById('frame-speed').value = '4';
-    button.click();
-    state.begun = said();
-    setTimeout(() => { state.ended = said(); }, 2000);
-  }, 1500);
-)js";
-
-TEST_F(ReportBrowserTest, PicturesArePlayedAndEnd) {
-    ReportData data = sampleReport();
-    for (const char* caption : {"first", "second", "third"})
-        data.frames.push_back({caption, data.views.front().image});
-    const Outcome outcome = open(data, "", "", kPlayFrames);
-    expectNoErrors(outcome);
-    EXPECT_EQ(published(outcome.dom, "before"), "2 Play third");
-    EXPECT_EQ(published(outcome.dom, "begun"), "0 Pause first");
-    EXPECT_EQ(published(outcome.dom, "ended"), "2 Play third");
 }
 
 }  // namespace

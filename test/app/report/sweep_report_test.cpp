@@ -15,16 +15,15 @@ using test::makeRun;
 TEST(SweepTables, PutThePaperBesideOurs) {
     auto [config, runs] = test::SampleSweep();
     const auto cells = summarize(config, runs, {});
-    const std::string table = sweepTable(config, cells);
+    const std::string table = sweepTable(cells);
     EXPECT_NE(table.find("40.45"), std::string::npos) << table;
     EXPECT_EQ(table.find("paper", table.find("\nrrt_star")), std::string::npos) << table;
-    EXPECT_NE(table.find("(traces in 0.01 "), std::string::npos) << table;
-    // Without a published table: the unit that the smallest trace, 1.5e-5, can be read in.
+    EXPECT_NE(table.find("(traces in m^2)"), std::string::npos) << table;
+    // As many decimals as the smallest trace, 1.5e-5, can be read with.
     config.paper.clear();
-    const std::string small = sweepTable(
-        config, summarize(config, {makeRun({"pa_rrt_star", 0.15, 1}, 3., 10., 3e-5)}, {}));
-    EXPECT_NE(small.find("(traces in 0.0001 "), std::string::npos) << small;
-    EXPECT_NE(small.find(" 0.15 "), std::string::npos) << small;
+    const std::string small =
+        sweepTable(summarize(config, {makeRun({"pa_rrt_star", 0.15, 1}, 3., 10., 3e-5)}, {}));
+    EXPECT_NE(small.find(" 0.0000150 "), std::string::npos) << small;
 }
 
 TEST(SweepFigures, TheFrontHoldsWhatNothingBeats) {
