@@ -79,7 +79,7 @@ class Search {
     const UncertainPose* prior_;
     std::size_t level_ = 0;
     Loss loss_;
-    Matrix6 slope_ = Matrix6::Identity();  ///< M of measuredSlope()
+    Matrix6 slope_ = Matrix6::Identity();  ///< M of measuredSlope(), times that of sharedSlope()
     Iterate at_;
     int iterations_ = 0;
     bool isCompared_ = false;  ///< at_ is the last comparison
@@ -192,14 +192,19 @@ bool Search::descend() {
     return false;
 }
 
-/// Measures the slope of the image over the uncertainty of the pose.
+/// Measures the slope of the image over the uncertainty of the pose: of the model, and how much of
+/// it the image shares.
 bool Search::measureSlope() {
     const auto compare = comparison_.predictionAsImage(level_, at_.T_c_w);
     if (!compare) return false;
-    slope_ = measuredSlope(transportedPrior(), options_.trust, [&](const Pose& T_away_here) {
-        ++iterations_;
-        return scaled(compare(T_away_here * at_.T_c_w), weight());
-    });
+    if (!isCompared_) at_ = evaluate(at_.T_c_w, at_.exposure);
+    const Matrix6 shared = comparison_.sharedSlope(level_, at_.exposure);
+    const Matrix6 ofModel =
+        measuredSlope(transportedPrior(), options_.trust, [&](const Pose& T_away_here) {
+            ++iterations_;
+            return scaled(compare(T_away_here * at_.T_c_w), weight());
+        });
+    slope_ = ofModel * shared;
     return true;
 }
 

@@ -9,6 +9,10 @@
 
 namespace photonav {
 
+/// Whether a model that can be rendered has noise of its own, whose gradients are to be told from
+/// texture (shared_gradients.hpp).
+enum class ModelNoise { none, measured };
+
 struct AlignmentOptions {
     /// Noise and pixel rules, as the planner's; `scale` is the calibrated factor on Lambda and
     /// `stride` must be 1.
@@ -61,6 +65,10 @@ class Comparison {
     virtual Pose sinceModel(const Pose& /*T_c_w*/) const { return Pose::Identity(); }
     /// Robust standard deviation of the residuals of the last comparison.
     virtual double robustSigma() const = 0;
+    /// How much of the gradients of the last comparison the image has as well.
+    virtual Matrix6 sharedSlope(std::size_t /*level*/, const Exposure& /*exposure*/) const {
+        return Matrix6::Identity();
+    }
     /// A function that takes the view predicted at one pose as the observed image and compares it
     /// with the view predicted at another pose; empty if the model cannot be rendered from other
     /// poses.

@@ -23,7 +23,7 @@ class DenseAligner::RenderedModel : public Comparison {
         levels_.reserve(std::max(1, options.levels));  // or all images are copied at each growth
         for (int l = 0; l < std::max(1, options.levels); ++l) {
             levels_.push_back({c,
-                               ViewComparison(c, options.photometric, options.modelNoise),
+                               ViewComparison(c, options.photometric),
                                ViewComparison(c, options.photometric),
                                {},
                                {}});
@@ -68,6 +68,11 @@ class DenseAligner::RenderedModel : public Comparison {
     std::vector<ImageBlock> blocks(std::size_t level, const Pose&, const Exposure& exposure,
                                    const Loss& loss) override {
         return levels_[level].compare.blocks(exposure, loss);
+    }
+
+    Matrix6 sharedSlope(std::size_t level, const Exposure& exposure) const override {
+        if (options_.modelNoise == ModelNoise::none) return Matrix6::Identity();
+        return levels_[level].compare.sharedSlope(exposure);
     }
 
     AgainstPrediction predictionAsImage(std::size_t level, const Pose& T_image_w) override {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "alignment/gradient_noise.hpp"
 #include "alignment/product_sums.hpp"
 #include "photometry/simd.hpp"
 
@@ -14,7 +13,7 @@ namespace photonav {
 
 namespace {
 
-constexpr double kMaxNoise = 0.25;  // variance of a noise gradient [variance of the image noise]
+constexpr unsigned kTile = 8;  // edge of a GradientTile [pixels]
 
 using simd::Float;
 using simd::Int;
@@ -96,9 +95,8 @@ double robustSigmaOf(const std::vector<float>& residuals) {
     return 1.4826 * (static_cast<double>(bin) + inBin) * 2. / kBins;
 }
 
-ViewComparison::ViewComparison(const Camera& camera, const PhotometricOptions& photometric,
-                               ModelNoise noise)
-    : camera_(camera), photometric_(photometric), noise_(noise) {
+ViewComparison::ViewComparison(const Camera& camera, const PhotometricOptions& photometric)
+    : camera_(camera), photometric_(photometric) {
     if (photometric.stride != 1) {
         throw std::invalid_argument("alignment: uses every pixel, stride must be 1");
     }
@@ -142,18 +140,46 @@ void ViewComparison::load(const View& predicted, const ImageF& observed) {
     meanInverseDepth_ = surfaces > 0 ? sum / static_cast<double>(surfaces) : 0.;
 }
 
-/// A sixteenth of the pixels used in the last comparison.
-GradientNoise ViewComparison::pointsSeen() const {
-    GradientNoise noise;
-    for (unsigned v = 1; v + 1 < camera_.height; v += 4) {
-        for (unsigned u = 1; u + 1 < camera_.width; u += 4) {
+/// Of the pixels that counted in the last call.
+GradientTile ViewComparison::tileAt(unsigned left, unsigned top, double gain) const {
+    const unsigned right = std::min(left + kTile, camera_.width - 1);
+    const unsigned bottom = std::min(top + kTile, camera_.height - 1);
+    const double aspect = camera_.fy() / camera_.fx();
+    GradientTile tile;
+    double count = 0.;
+    for (unsigned v = top; v < bottom; ++v) {
+        for (unsigned u = left; u < right; ++u) {
             const std::size_t i = v * pitch_ + u;
             if (residual_[i] == kUnused) continue;
-            noise.add((u - camera_.cx()) / camera_.fx(), (v - camera_.cy()) / camera_.fy(),
-                      inverseDepth_[i]);
+            const auto gradientOf = [&](const std::vector<float>& I) {
+                return Eigen::Vector2d(I[i + 1] - I[i - 1],
+                                       aspect * (I[i + pitch_] - I[i - pitch_]));
+            };
+            const Eigen::Vector2d g = gradientOf(intensity_), o = gradientOf(observed_) / gain;
+            tile.model += g * g.transpose();
+            tile.shared += 0.5 * (g * o.transpose() + o * g.transpose());
+            tile.x += (u - camera_.cx()) / camera_.fx();
+            tile.y += (v - camera_.cy()) / camera_.fy();
+            tile.inverseDepth += inverseDepth_[i];
+            ++count;
         }
     }
-    return noise;
+    if (count == 0.) return tile;
+    tile.x /= count;
+    tile.y /= count;
+    tile.inverseDepth /= count;
+    return tile;
+}
+
+Matrix6 ViewComparison::sharedSlope(const Exposure& exposure) const {
+    std::vector<GradientTile> tiles;
+    for (unsigned top = 1; top + 1 < camera_.height; top += kTile) {
+        for (unsigned left = 1; left + 1 < camera_.width; left += kTile) {
+            const GradientTile tile = tileAt(left, top, exposure.gain);
+            if (tile.inverseDepth > 0.) tiles.push_back(tile);
+        }
+    }
+    return photonav::sharedSlope(tiles);
 }
 
 std::vector<ImageBlock> ViewComparison::blocks(const Exposure& exposure, const Loss& loss) const {
@@ -180,8 +206,8 @@ std::vector<ImageBlock> ViewComparison::blocks(const Exposure& exposure, const L
             sums.endRow();
             const NormalEquations e = sums.result(unit);
             if (e.count < 1.) continue;
-            blocks.push_back({withoutNoise_.transpose() * e.AtA * withoutNoise_,
-                              withoutNoise_.transpose() * e.Atr,
+            blocks.push_back({e.AtA,
+                              e.Atr,
                               {left / side, top / side},
                               normalAt((left + right) / 2, (top + bottom) / 2)});
         }
@@ -214,8 +240,6 @@ NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& 
     const float aspect = kernel.aspect;
 
     ProductSums sums(loss, pitch_ / kWidth);
-    Float notSharedX{}, notSharedY{};
-    const bool isNoisy = noise_ == ModelNoise::measured;
     for (unsigned v = 1; v + 1 < camera_.height; ++v) {
         sums.beginRow();
         for (unsigned u = 1; u + 1 < camera_.width; u += kWidth) {
@@ -224,12 +248,6 @@ NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& 
             const Float I = at(intensity_, i);
             const Float r = at(observed_, i) - (gain * I + offset);
             const Gradient g = gradientAt(intensity_, i, pitch_, aspect, used);
-            if (isNoisy) {
-                const Float du = at(observed_, i + 1) - at(observed_, i - 1);
-                const Float dv = at(observed_, i + pitch_) - at(observed_, i - pitch_);
-                notSharedX += g.x * (g.x - du / gain);
-                notSharedY += g.y * (g.y - aspect * dv / gain);
-            }
             simd::store(&residual_[i], used ? r : simd::splat(kUnused));
             sums.add(kernel.columns(u, v, g, at(inverseDepth_, i), I), r, used);
         }
@@ -238,14 +256,6 @@ NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& 
     const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
-    withoutNoise_.setIdentity();
-    if (isNoisy) {
-        // A map's grey values are means of many. Other differences between map and image, as
-        // between cells, must not be taken for noise.
-        const double most = kMaxNoise * photometric_.sigma * photometric_.sigma;
-        withoutNoise_ = pointsSeen().subtractFrom(
-            equations, {simd::sum(notSharedX), simd::sum(notSharedY)}, most, unit.head<6>());
-    }
     return equations;
 }
 

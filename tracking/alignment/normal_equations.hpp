@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "alignment/shared_gradients.hpp"
 #include "photometry/photometric.hpp"
 
 namespace photonav {
@@ -59,19 +60,13 @@ struct ImageBlock {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the surface, camera frame; 0: unknown
 };
 
-class GradientNoise;
-
-/// Whether the prediction has noise whose gradients are to be subtracted (GradientNoise).
-enum class ModelNoise { none, measured };
-
 /// Compares a predicted view with an observed image, pixel by pixel at the same place. The gradient
 /// is that of the prediction. Pixels are chosen by the prediction alone, by the rules of
 /// photometricInformation(), whose Lambda this is (times sigma^2, without weights).
 /// `photometric.stride` must be 1.
 class ViewComparison {
   public:
-    ViewComparison(const Camera& camera, const PhotometricOptions& photometric,
-                   ModelNoise noise = ModelNoise::none);
+    ViewComparison(const Camera& camera, const PhotometricOptions& photometric);
 
     /// @throws std::invalid_argument when the images and the camera differ in size
     NormalEquations operator()(const View& predicted, const ImageF& observed,
@@ -83,19 +78,21 @@ class ViewComparison {
     /// The equations of the last call by blocks of the image.
     std::vector<ImageBlock> blocks(const Exposure& exposure, const Loss& loss) const;
 
+    /// sharedSlope() of the prediction's gradients, as they were exposed, with those of the
+    /// observed image, last call.
+    Matrix6 sharedSlope(const Exposure& exposure) const;
+
   private:
     void load(const View& predicted, const ImageF& observed);
-    GradientNoise pointsSeen() const;
+    GradientTile tileAt(unsigned left, unsigned top, double gain) const;
     Eigen::Vector3d normalAt(unsigned u, unsigned v) const;
 
     Camera camera_;
     PhotometricOptions photometric_;
-    ModelNoise noise_;
     std::size_t pitch_;  ///< of the padded copies: a column before and whole vectors after
     std::vector<float> intensity_, inverseDepth_, observed_;
     std::vector<float> residual_;  ///< kUnused where a pixel does not count
     double meanInverseDepth_ = 0.;
-    Matrix8 withoutNoise_ = Matrix8::Identity();  ///< of GradientNoise, last comparison
 };
 
 /// 1.4826 times the median of |r| over the values below 2 (larger ones mark unused pixels).

@@ -351,7 +351,13 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
         if (isLikelier(a, best)) std::swap(a, best);
         found.push_back(a);
     }
-    if (!fits(best)) return undecided(best, prior, Verdict::lostResidual);
+    if (!fits(best)) {
+        // So little contrast, in a map with noise of its own, neither confirms nor contradicts.
+        const TrustOptions& trust = aligner_.options().trust;
+        const double most = trust.residualSigmas * aligner_.options().photometric.sigma;
+        return undecided(best, prior,
+                         best.residual.rms > most ? Verdict::lostResidual : Verdict::degenerate);
+    }
     // If the expected view has texture and the image has none, no pose is found: all poses without
     // texture in view are as likely, and the information of the expected view is not in the image.
     model_.render(small_.camera(), best.T_c_w, expected);

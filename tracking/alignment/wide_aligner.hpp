@@ -27,7 +27,8 @@ inline constexpr double kWidestSearchSpacing = 2. * kBasinSigma;
 /// The best pose is the result if it explains the image down to the noise and, in a map of cells,
 /// to the texture that is finer than they are, the image has enough texture, and no other pose
 /// explains it almost as well. Otherwise the result is the prior, and the verdict is `degenerate`
-/// along all axes (several poses match) or lost (no pose matches).
+/// along all axes (several poses match, or what is left unexplained is below
+/// TrustOptions::residualSigmas) or lost (no pose matches).
 class WideAligner {
   public:
     /// @param model must outlive the aligner

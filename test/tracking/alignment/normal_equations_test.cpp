@@ -62,41 +62,6 @@ TEST(NormalEquations, InformationIsThatOfThePlanner) {
     EXPECT_EQ(e.sumSquares, 0.);
 }
 
-/// A model made of images: what it shows, seen with noise.
-View asMapped(View view, double sigma, std::mt19937_64& random) {
-    view.intensity = test::noisy(view.intensity, sigma, random);
-    return view;
-}
-
-double traceOf(const View& model, const ImageF& observed, ModelNoise noise) {
-    return ViewComparison(tinyCamera(), {}, noise)(model, observed, {}, {})
-        .AtA.topLeftCorner<6, 6>()
-        .trace();
-}
-
-TEST(NormalEquations, NoiseOfAModelDoesNotInform) {
-    std::mt19937_64 random(1);
-    View wall = viewAt(kViewpoint);
-    wall.intensity = ImageF(tinyCamera().height, tinyCamera().width, 0.5F);
-    const ImageF observed = test::noisy(wall.intensity, 0.02, random);
-    const View model = asMapped(wall, 0.005, random);
-    const double exact = traceOf(model, observed, ModelNoise::none);
-    EXPECT_LT(traceOf(model, observed, ModelNoise::measured), 0.02 * exact);
-    // The same noise in both cannot be told from texture: maps and images must not share it.
-    EXPECT_GT(traceOf(model, model.intensity, ModelNoise::measured), 0.9 * exact);
-}
-
-TEST(NormalEquations, TextureOfANoisyModelInformsAsWithoutNoise) {
-    std::mt19937_64 random(1);
-    const View view = viewAt(kViewpoint);
-    const ImageF observed = test::noisy(view.intensity, 0.02, random);
-    const double clean = traceOf(view, observed, ModelNoise::none);
-    const View model = asMapped(view, 0.006, random);
-    EXPECT_GT(traceOf(model, observed, ModelNoise::none), 1.02 * clean);
-    EXPECT_LT(traceOf(model, observed, ModelNoise::measured), clean);
-    EXPECT_GT(traceOf(model, observed, ModelNoise::measured), 0.6 * clean);
-}
-
 TEST(NormalEquations, AgreeWithTheSumOverPixels) {
     const View view = viewAt(kViewpoint);
     std::mt19937_64 random(1);

@@ -204,6 +204,32 @@ TEST_F(WideAlignerTest, IsLostWhereNoPlaceExplainsTheImage) {
     EXPECT_TRUE(isLost(wide.align(seen(another, here), prior(here, 0.3)).verdict));
 }
 
+/// Contrast below the noise neither confirms a place nor contradicts it, however many pixels there
+/// are and whatever the noise is.
+TEST_F(WideAlignerTest, LittleContrastDoesNotContradict) {
+    for (const double sigma : {0.01, 0.04}) {
+        const auto floorOf = [&](unsigned seed) {
+            return MeshRenderer(
+                test::floorOf(valueNoise({.size = {20., 20.},
+                                          .amplitudes = {sigma, 0.7 * sigma, 0.3 * sigma},
+                                          .seed = seed})));
+        };
+        const MeshRenderer floor = floorOf(3), another = floorOf(4);
+        options.photometric.sigma = sigma;
+        for (const unsigned times : {1U, 2U}) {
+            camera = makeCamera(94 * times, 60 * times, 1.2);
+            WideAligner wide(floor, camera, options);
+            const Pose here = cameraAt({0., 0., 2.}, kDown);
+            View view;
+            another.render(camera, here, view);
+            const UncertainPose belief = prior(here, 0.3);
+            const Alignment a = wide.align(test::noisy(view.intensity, sigma, random), belief);
+            EXPECT_EQ(a.verdict, Verdict::degenerate) << describe(a);
+            EXPECT_EQ(a.covariance, belief.covariance);
+        }
+    }
+}
+
 /// As many views as there may be are compared at the usual distance; wider priors spread them.
 TEST(WideAligner, TheSearchIsCoarserWhereThePriorIsTooWide) {
     const Camera camera = makeCamera(188, 120, 1.2217);

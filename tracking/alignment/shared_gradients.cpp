@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "alignment/shared_gradients.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace photonav {
+namespace {
+
+constexpr double kByChance = 3.;      // standard deviations
+constexpr double kNoGradient = 1e-9;  // variance of a gradient that makes J^T J invertible
+
+/// Motion of a point in the image, in units of the focal length, with the camera's pose.
+struct TileMotion {
+    Vector6 du, dv;
+
+    explicit TileMotion(const GradientTile& t) {
+        const double x = t.x, y = t.y, w = t.inverseDepth;
+        du << -w, 0., x * w, x * y, -(x * x + 1.), y;
+        dv << 0., -w, y * w, y * y + 1., -x * y, -x;
+    }
+    Matrix6 squared(const Eigen::Matrix2d& gradients) const {
+        Eigen::Matrix<double, 6, 2> D;
+        D << du, dv;
+        return D * gradients * D.transpose();
+    }
+    double squared(const Eigen::Matrix2d& gradients, const Vector6& v) const {
+        const Eigen::Vector2d motion(du.dot(v), dv.dot(v));
+        return motion.dot(gradients * motion);
+    }
+};
+
+/// Variance of v^T (shared - kappa model) v over as many tiles, each an independent draw.
+double scatterAlong(const Vector6& v, const std::vector<GradientTile>& tiles, double kappa) {
+    double variance = 0.;
+    for (const GradientTile& tile : tiles) {
+        const double left = TileMotion(tile).squared(tile.shared - kappa * tile.model, v);
+        variance += left * left;
+    }
+    return variance;
+}
+
+/// What chance does not give; at most 1.
+double certainly(double kappa, double variance) {
+    const double chance = kByChance * kByChance * variance;
+    if (kappa <= 0. || kappa * kappa <= chance) return 0.;
+    return std::min(1., kappa - chance / kappa);
+}
+
+}  // namespace
+
+Matrix6 sharedSlope(const std::vector<GradientTile>& tiles) {
+    Matrix6 model = Matrix6::Zero(), shared = Matrix6::Zero();
+    for (const GradientTile& tile : tiles) {
+        const TileMotion motion(tile);
+        model += motion.squared(tile.model + kNoGradient * Eigen::Matrix2d::Identity());
+        shared += motion.squared(tile.shared);
+    }
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(shared, model);
+    const Matrix6& V = solver.eigenvectors();  // V^T model V = 1
+    if (tiles.empty() || !V.allFinite()) return Matrix6::Zero();
+    Vector6 kappa = solver.eigenvalues();
+    for (int i = 0; i < 6; ++i) {
+        kappa[i] = certainly(kappa[i], scatterAlong(V.col(i), tiles, kappa[i]));
+    }
+    return V * kappa.asDiagonal() * V.transpose() * model;
+}
+
+}  // namespace photonav
