@@ -35,6 +35,7 @@ Command exploreCommand(CLI::App& app, const Invocation& invocation);
 Command flyCommand(CLI::App& app, const Invocation& invocation);
 Command mapCommand(CLI::App& app, const Invocation& invocation);
 Command replayCommand(CLI::App& app, const Invocation& invocation);
+Command servoCommand(CLI::App& app, const Invocation& invocation);
 
 /// What happens to the results of a run.
 struct OutputOptions {

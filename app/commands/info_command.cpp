@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "commands/place_option.hpp"
 #include "commands/result_folder.hpp"
 #include "dataset/image_file.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
 #include "io/error.hpp"
-#include "io/number.hpp"
 #include "io/stopwatch.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
@@ -29,25 +29,6 @@ constexpr std::array<Direction, 6> kDirections{
      {"about_right", "rotation about the image's x axis"},
      {"about_down", "rotation about the image's y axis"},
      {"about_forward", "rotation about the optical axis"}}};
-
-/// "x,y,z" or "x,y,z,yaw".
-Place parsePlace(const std::string& text) {
-    const auto numbers = numbersIn(text, ',');
-    if (!numbers || (numbers->size() != 3 && numbers->size() != 4)) {
-        throw InputError("--at", text, "expected x,y,z or x,y,z,yaw");
-    }
-    Place place{Eigen::Vector3d(numbers->data()), std::nullopt};
-    if (numbers->size() == 4) place.yaw = (*numbers)[3];
-    return place;
-}
-
-Pose bodyAt(const Place& place) {
-    Pose T_w_b = Pose::Identity();
-    T_w_b.linear() =
-        Eigen::AngleAxisd(place.yaw.value_or(0.), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    T_w_b.translation() = place.position;
-    return T_w_b;
-}
 
 /// The information of a view from each place at one height, and the uncertainty after it.
 struct Grids {
@@ -125,16 +106,6 @@ std::vector<NamedFigure> heatMaps(const Grids& grids, const std::string& place) 
                       grids.sigma)}}};
 }
 
-/// The view that is asked for, by --at or the config.
-Place placeOf(const InfoOptions& options, const Config& config) {
-    Place place = options.at ? parsePlace(*options.at) : config.start;
-    if (!place.yaw) place.yaw = config.start.yaw;  // the only heading there is in space xyz
-    if (!config.bounds.contains(place.position)) {
-        throw InputError("--at", *options.at, "outside the bounds of the config");
-    }
-    return place;
-}
-
 double heightOf(const InfoOptions& options, const Config& config) {
     const double height = options.height.value_or(config.start.position.z());
     if (!(height >= config.bounds.min().z() && height <= config.bounds.max().z())) {
@@ -173,7 +144,7 @@ int runInfo(const InfoOptions& options) {
     const Stopwatch watch;
     const Config config = loadConfig(options.config, options.overrides);
     const double height = heightOf(options, config);
-    const Place place = placeOf(options, config);
+    const Place place = placeOf(options.at, config.start, config);
     const World world(config);
     PlanningProblem problem(config, world);
     FolderTransaction folder = beginResult(options, "info", {config.sceneFile, config.mapFile});

@@ -352,6 +352,7 @@ int run(int argc, char** argv) {
                               referenceCommand(app),
                               replayCommand(app, invocation),
                               checkCommand(app, invocation),
+                              servoCommand(app, invocation),
                               calibrateDepthCommand(app, invocation),
                               reportCommand(app),
                               exportCommand(app),
@@ -360,7 +361,7 @@ int run(int argc, char** argv) {
                               doctorCommand(app)};
     app.footer(  // after the commands, which would inherit it
 
-        "plan, check, fly, explore, sweep, benchmark, info, map and replay write "
+        "plan, check, fly, explore, servo, sweep, benchmark, info, map and replay write "
         "result.json,\n"
         "figures, report.html and config.yaml (complete, re-runnable) into their folder (--out);\n"
         "compare writes tables, figures and result.json, reference its table alone;\n"

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `photonav servo`: photometric visual servoing at a goal.
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+
+#include "commands/command_io.hpp"
+#include "servo/servo_study.hpp"
+
+namespace photonav {
+
+struct ServoOptions : CommandOptions {
+    std::optional<std::string> at;         ///< x,y,z[,yaw] of the goal; default: the config's
+    std::optional<std::string> distances;  ///< "a,b,c" [m]
+    std::optional<std::string> angles;     ///< "a,b,c" [degrees]
+    ServoStudyOptions study;
+};
+
+/// From how far a servo on the goal's grey values converges, how fast, and in which direction
+/// slowest. Writes result.json, config.yaml, basin.png, modes.png, goal.png, report.json and
+/// report.html.
+/// @return the exit code: 1 when the goal's view leaves a direction open
+/// @throws InputError for bad input, before anything is written
+int runServo(const ServoOptions& options, const std::atomic<bool>& interrupted);
+
+}  // namespace photonav

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The report of photometric servoing at a goal.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "problem/world.hpp"
+#include "report/report.hpp"
+#include "servo/servo_study.hpp"
+
+namespace photonav {
+
+struct ServoReport {
+    const Config& config;
+    const World& world;
+    const ServoGoal& goal;
+    const ServoStudyOptions& options;
+    const ServoStudy& study;
+};
+
+/// Everything of result.json but the time.
+nlohmann::json servoResult(const ServoReport& report);
+
+ReportTable servoSummary(const ServoReport& report);
+
+/// Writes all files of the result folder but result.json.
+void writeServoReport(const std::filesystem::path& folder, const ServoReport& report,
+                      const std::string& commandLine, const nlohmann::json& result);
+
+}  // namespace photonav

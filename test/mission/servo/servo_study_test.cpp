@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "servo/servo_study.hpp"
+
+#include <gtest/gtest.h>
+
+#include "geometry/constants.hpp"
+#include "render/mesh_renderer.hpp"
+#include "scene/scene.hpp"
+
+namespace photonav {
+namespace {
+
+MeshRenderer floorOf(Texture texture) {
+    Scene scene;
+    const auto id = addTexture(scene, std::move(texture));
+    addPlane(scene, {-10., -10., 0.}, {20., 0., 0.}, {0., 20., 0.}, id);
+    return MeshRenderer(std::move(scene));
+}
+
+/// 2 m above the middle of a floor.
+ServoGoal goalOver(const MeshRenderer& floor) {
+    ServoGoal goal{floor, makeCamera(94, 60, 1.2), cameraMount(1.2)};
+    goal.T_w_b.translation().z() = 2.;
+    return goal;
+}
+
+ServoStudy study(const ServoGoal& goal, ServoStudyOptions options) {
+    const std::atomic<bool> running{false};
+    return studyServo(goal, options, running, [](double) {});
+}
+
+TEST(ServoStudy, ConvergesNearTheGoalAsFastAsPredicted) {
+    const MeshRenderer floor = floorOf(valueNoise({.size = {20., 20.}, .seed = 3}));
+    ServoStudyOptions options{.distances = {0.05, 6.}, .angles = {0., 3.}, .trials = 5};
+    for (const bool hasTilt : {false, true}) {
+        options.hasTilt = hasTilt;
+        options.damping = 0.05;
+        const ServoStudy result = study(goalOver(floor), options);
+        ASSERT_EQ(result.modes.size(), hasTilt ? 6U : 4U);
+        for (const ServoMode& mode : result.modes) {
+            EXPECT_NEAR(mode.simulatedDecay, mode.predictedDecay, 0.1 * mode.predictedDecay)
+                << inWords(mode, result.depth);
+        }
+        EXPECT_NEAR(result.depth, 2.1, 0.2);
+        ASSERT_EQ(result.basin.size(), 4U);
+        EXPECT_EQ(result.basin[0].converged, 5);  // 5 cm
+        EXPECT_EQ(result.basin[1].converged, 0);  // 6 m: nothing of the goal's view is seen
+        EXPECT_EQ(result.basin[2].converged, 5);  // 5 cm and 3 degrees
+        // 5 of 5 by Wilson: z = 1.96
+        EXPECT_NEAR(result.basin[0].low, 0.5655, 1e-3);
+        EXPECT_EQ(result.basin[0].high, 1.);
+        EXPECT_GT(result.basin[0].seconds, 0.5);
+    }
+}
+
+TEST(ServoStudy, NamesTheDirectionThatIsOpen) {
+    const MeshRenderer floor = floorOf(stripes());  // bars along y
+    const ServoStudy blind =
+        study(goalOver(floor), {.distances = {0.05}, .angles = {0.}, .trials = 2});
+    EXPECT_EQ(blind.modes[0].rate, 0.);
+    EXPECT_EQ(inWords(blind.modes[0], blind.depth), "y");
+    EXPECT_GT(blind.modes[1].rate, 0.);
+    EXPECT_GT(blind.condition, 1e6);
+}
+
+TEST(ServoMode, IsSaidInWords) {
+    ServoMode mode;
+    mode.direction << 0.1, -0.8, 0., 0.2, 0., 0.;
+    EXPECT_EQ(inWords(mode, 1.), "y");
+    EXPECT_EQ(inWords(mode, 2.), "y and roll");
+    EXPECT_EQ(inWords(mode, 8.), "roll and y");
+}
+
+}  // namespace
+}  // namespace photonav
