@@ -84,7 +84,7 @@ std::string padded(const std::string& text, std::size_t width) {
     return std::string(width > characters ? width - characters : 0, ' ') + text;
 }
 
-/// Decimals of traces in the table: three digits of the smallest one, four at least.
+/// Decimals of traces in the table: two digits of the smallest one, four at least.
 int traceDecimals(const std::vector<SweepCell>& cells) {
     double smallest = kInfinity;
     for (const SweepCell& cell : cells) {
@@ -95,7 +95,7 @@ int traceDecimals(const std::vector<SweepCell>& cells) {
     }
     constexpr int kFewest = 4;
     if (smallest == kInfinity) return kFewest;
-    return std::max(kFewest, 2 - static_cast<int>(std::floor(std::log10(smallest))));
+    return std::max(kFewest, 1 - static_cast<int>(std::floor(std::log10(smallest))));
 }
 
 /// A column of the table.

@@ -31,7 +31,7 @@ void writeSweepReport(const std::filesystem::path& folder, const Config& config,
                       const SweepOutcome& outcome, const ReferenceCosts& reference,
                       const nlohmann::json& result);
 
-/// The table as text for a terminal; traces with at least three digits of the smallest mean [m^2].
+/// The table as text for a terminal; traces with at least two digits of the smallest mean [m^2].
 std::string sweepTable(const std::vector<SweepCell>& cells);
 
 }  // namespace photonav
