@@ -43,6 +43,9 @@ endif()
 
 function(photonav_compiler_options target)
     target_compile_features(${target} PUBLIC cxx_std_20)
+    # Eigen's functions, which allocate with the alignment of this instruction set, must not take the place
+    # of those in Debian's libraries, which free without: no symbol is exported.
+    target_compile_options(${target} PUBLIC -fvisibility=hidden -fvisibility-inlines-hidden)
     if(PHOTONAV_MARCH)
         target_compile_options(${target} PUBLIC -march=${PHOTONAV_MARCH})
     endif()
