@@ -188,7 +188,7 @@ TEST_F(WideAlignerTest, TextureTooFineForTheCellsOfAMapDoesNotContradict) {
     const auto find = [&](const ViewSource& world) {
         return WideAligner(cells, camera, options).align(seen(world, truth), belief);
     };
-    EXPECT_TRUE(isLost(find(floor).verdict)) << "nothing finer";
+    EXPECT_NE(find(floor).verdict, Verdict::converged) << "nothing finer";
     options.cellSize = kCell;
     const Alignment a = find(floor);
     EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
