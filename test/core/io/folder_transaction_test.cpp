@@ -74,7 +74,8 @@ TEST_F(FolderTransactionTest, LeavesNothingBehindWhenItIsNotCommitted) {
 
 TEST_F(FolderTransactionTest, RefusesFilesThatItDidNotWrite) {
     write(target_ / "notes.txt", "mine");
-    EXPECT_NE(complaint(target_).find("target/notes.txt: is not of an earlier result, or was changed since"),
+    EXPECT_NE(complaint(target_).find(
+                  "target/notes.txt: is not of an earlier result, or was changed since"),
               std::string::npos);
     EXPECT_EQ(contentOf(target_ / "notes.txt"), "mine");
     fs::remove(target_ / "notes.txt");
