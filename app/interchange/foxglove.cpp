@@ -96,11 +96,11 @@ json timeJson(double time) {
             {"nsec", static_cast<std::int64_t>(1e9 * (time - seconds))}};
 }
 
-json vectorJson(const Eigen::Vector3d& v) { return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}}; }
+json foxgloveVector(const Eigen::Vector3d& v) { return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}}; }
 
 json poseJson(const Pose& pose) {
     const Eigen::Quaterniond q(pose.linear());
-    return {{"position", vectorJson(pose.translation())},
+    return {{"position", foxgloveVector(pose.translation())},
             {"orientation", {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}}};
 }
 
@@ -122,7 +122,7 @@ json ellipsoid(const PathPoint& point, const Color& color) {
     const Eigen::Vector3d sigma = axes.eigenvalues().cwiseMax(0.).cwiseSqrt();
     const Eigen::Vector3d size = (2. * kSigmas * sigma).cwiseMax(kLeastAxis);
     return {{"pose", poseJson(pose)},
-            {"size", vectorJson(size)},
+            {"size", foxgloveVector(size)},
             {"color", colorJson(color, kOpacity)}};
 }
 
@@ -186,7 +186,7 @@ std::string pathMessage(double time, const DrawnPath& path) {
     json points = json::array(), spheres = json::array();
     const std::size_t step = 1 + path.points.size() / kEllipsoids;
     for (std::size_t i = 0; i < path.points.size(); ++i) {
-        points.push_back(vectorJson(path.points[i].position));
+        points.push_back(foxgloveVector(path.points[i].position));
         if (i % step == 0) spheres.push_back(ellipsoid(path.points[i], path.color));
     }
     const json line{{"type", kLineStrip},      {"pose", poseJson(Pose::Identity())},

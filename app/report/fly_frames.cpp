@@ -14,7 +14,7 @@
 namespace photonav {
 namespace {
 
-constexpr double kWidth = 400.;  // of an image [px]
+constexpr double kFrameWidth = 400.;  // of an image [px]
 
 const char* nameOf(ImageUse use) {
     switch (use) {
@@ -58,7 +58,7 @@ std::vector<ReportFrame> flightFrames(const std::string& planner, const FlightRe
         const PathPoint believed = makePathPoint(sample->belief, 0., 0., 0.);
         const std::vector<CaptionedImage> images =
             comparisonImages(exposure.view, predictedView(*sample, world), "observed");
-        frames.push_back({captionOf(*sample, believed), imagesFigure({images}, kWidth).png(),
+        frames.push_back({captionOf(*sample, believed), imagesFigure({images}, kFrameWidth).png(),
                           fmt::format("{}, flight {}", planner, flight.number), believed,
                           sample->T_c_w.inverse().translation(), plannerColor(planner)});
     }

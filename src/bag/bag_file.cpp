@@ -16,7 +16,7 @@ namespace {
 using Fields = std::map<std::string, ByteSpan>;
 
 constexpr std::string_view kMagic = "#ROSBAG V";
-constexpr std::string_view kVersion = "2.0\n";
+constexpr std::string_view kBagVersion = "2.0\n";
 constexpr std::uint32_t kLongestHeader = 1U << 16U;  // [bytes]; with a topic's name
 constexpr std::uint8_t kMessage = 2, kBagHeader = 3, kChunk = 5, kConnection = 7;
 
@@ -69,11 +69,11 @@ bool BagFile::isBag(const std::string& file) {
 BagFile::BagFile(const std::string& file) : file_(file), stream_(openToRead(file)) {
     reading(file, [&] {
         fileSize_ = std::filesystem::file_size(file);
-        std::string version(kVersion.size(), ' ');
+        std::string version(kBagVersion.size(), ' ');
         if (!isBag(file)) throw std::runtime_error("not a ROS bag");
         stream_.seekg(std::ptrdiff_t(kMagic.size()));
         stream_.read(version.data(), std::ptrdiff_t(version.size()));
-        if (version != kVersion) {
+        if (version != kBagVersion) {
             throw std::runtime_error("not a bag of format 2.0; `rosbag fix` of ROS converts it");
         }
         const Record record = nextRecord();
@@ -140,7 +140,7 @@ void BagFile::visitChunk(const Visit& visit, std::map<std::uint32_t, BagTopic>& 
 void BagFile::forEachMessage(const Visit& visit) {
     reading(file_, [&] {
         std::map<std::uint32_t, BagTopic> topics;
-        stream_.seekg(std::ptrdiff_t(kMagic.size() + kVersion.size()));
+        stream_.seekg(std::ptrdiff_t(kMagic.size() + kBagVersion.size()));
         while (static_cast<std::uint64_t>(stream_.tellg()) < fileSize_) {
             const auto position = static_cast<std::uint64_t>(stream_.tellg());
             const Record record = nextRecord();

@@ -66,6 +66,8 @@ long callSystem(long number, Arguments... arguments) {
 }  // namespace
 
 // In place of those of the C library, also for what the C++ library calls.
+// Exported, so that they take the place of the C library's also for other libraries.
+#pragma GCC visibility push(default)
 extern "C" {
 ssize_t write(int file, const void* data, std::size_t size) {
     if (!isFailing()) return syscall(SYS_write, file, data, size);
@@ -108,6 +110,7 @@ int fclose(std::FILE* stream) {
     return EOF;
 }
 }
+#pragma GCC visibility pop
 
 namespace photonav {
 namespace {
