@@ -47,10 +47,7 @@ class LevenbergServo {
     LevenbergServoOptions options_;
     Eigen::MatrixXd rows_;  ///< L: a pixel's change of intensity with dq, by columns
     Eigen::MatrixXd information_;
-    Eigen::MatrixXd H_;
-    /// Bounded in size: decompositions of MatrixXd would be exported in place of those that OMPL
-    /// has been compiled with, whose memory is aligned in another way.
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> damped_;
+    Eigen::MatrixXd H_, damped_;
 };
 
 }  // namespace photonav
