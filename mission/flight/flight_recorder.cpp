@@ -12,6 +12,7 @@
 #include "dataset/trajectory.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "photometry/opencv_image.hpp"
 
 namespace photonav {
 namespace {
@@ -24,13 +25,8 @@ std::string pngOf(const cv::Mat& pixels) {
     return {bytes.begin(), bytes.end()};
 }
 
-cv::Mat wrapped(const ImageF& image) {
-    return {static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_32FC1,
-            image.bitmap};
-}
-
 std::string depthPng(const ImageF& depth) {
-    cv::Mat pixels = wrapped(depth) * kDepthScale;
+    cv::Mat pixels = asMat(depth) * kDepthScale;
     pixels.setTo(0., pixels >= 65535.5);  // more than 16 bits hold
     pixels.convertTo(pixels, CV_16U);
     return pngOf(pixels);

@@ -8,14 +8,10 @@
 #include <optional>
 #include <vector>
 
+#include "photometry/opencv_image.hpp"
+
 namespace photonav {
 namespace {
-
-/// The same pixels for OpenCV.
-cv::Mat asMat(const ImageF& image) {
-    return {static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_32F,
-            image.bitmap};
-}
 
 /// Weights of a Gaussian kernel of one dimension whose squares sum to one: white noise keeps its
 /// variance.

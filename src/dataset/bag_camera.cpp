@@ -10,16 +10,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "io/error.hpp"
+#include "photometry/opencv_image.hpp"
 
 namespace photonav {
 namespace {
 
 constexpr double kLargestCoefficient = 1e3;
-
-cv::Mat matrixOf(const ImageF& image) {
-    return {static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_32FC1,
-            image.bitmap};
-}
 
 /// By OpenCV. The tables are made with the first image, whose size has been checked then.
 class OpenCvLens : public LensCorrection {
@@ -36,13 +32,13 @@ class OpenCvLens : public LensCorrection {
 
   private:
     ImageF remapped(const ImageF& image, int interpolation) const {
-        const cv::Mat from = matrixOf(image);
+        const cv::Mat from = asMat(image);
         std::call_once(isMade_, [&] {
             cv::initUndistortRectifyMap(K_, D_, cv::noArray(), pinhole_, from.size(), CV_32FC1, u_,
                                         v_);
         });
         ImageF result(image.getHeight(), image.getWidth());
-        cv::Mat to = matrixOf(result);
+        cv::Mat to = asMat(result);
         cv::remap(from, to, u_, v_, interpolation, cv::BORDER_REPLICATE);
         return result;
     }

@@ -10,7 +10,7 @@
 
 #include "io/error.hpp"
 #include "io/image_decoder.hpp"
-#include "photometry/view.hpp"
+#include "photometry/opencv_image.hpp"
 
 namespace photonav {
 namespace {
@@ -56,8 +56,7 @@ vpImage<std::uint16_t> readDepth16(const std::string& file, const Camera& camera
 
 std::string greyPng(const ImageF& image, unsigned maxSide) {
     if (image.getSize() == 0) throw std::invalid_argument("greyPng: the image is empty");
-    cv::Mat grey(static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_32F,
-                 image.bitmap);
+    cv::Mat grey = asMat(image);
     const double factor = static_cast<double>(maxSide) / std::max(grey.rows, grey.cols);
     if (factor < 1.) cv::resize(grey, grey, {}, factor, factor, cv::INTER_AREA);
     cv::Mat1b levels(grey.size());

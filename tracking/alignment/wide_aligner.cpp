@@ -8,6 +8,7 @@
 #include "alignment/hole_margin.hpp"
 #include "alignment/image_pyramid.hpp"
 #include "geometry/se3.hpp"
+#include "photometry/opencv_image.hpp"
 
 namespace photonav {
 namespace {
@@ -82,8 +83,7 @@ std::vector<Vector6> placesWithin(const Vector6& sigmas) {
 /// with variance 1/12 + 1/6 of the squared edge.
 /// @param cell edge [pixels]
 double finerThan(double cell, const ImageF& image) {
-    const cv::Mat sharp(static_cast<int>(image.getRows()), static_cast<int>(image.getCols()),
-                        CV_32F, image.bitmap);
+    const cv::Mat sharp = asMat(image);
     cv::Mat smooth;
     cv::GaussianBlur(sharp, smooth, {}, 0.5 * cell);
     return cv::norm(sharp, smooth, cv::NORM_L2SQR) / image.getSize();
