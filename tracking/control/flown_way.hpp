@@ -17,8 +17,6 @@ class FlownWay {
     /// the way anew
     void moved(const Pose& T_w_b, const Pose& T_w_certain);
 
-    /// Where the way begins. There is one after moved().
-    const Pose& begin() const { return poses_.front(); }
     /// From where the body is now to where the way begins, with the headings on the way.
     std::vector<PlannedView> back() const;
     double length() const;  ///< [m]

@@ -44,9 +44,7 @@ PhotometricServo Pilot::servoToGoal() const {
 void Pilot::setPlan(std::vector<PlannedView> plan) {
     route_ = Route(std::move(plan), T_b_c_, options_.route, command_);
     goalServo_ = servoToGoal();
-    searchSince_.reset();
-    searched_.reset();
-    wayBack_.reset();
+    endSearch();
     leaveImage();
     atGoalSince_.reset();
     hasMissedGoal_ = hasServoedOnImage_ = false;
@@ -142,7 +140,6 @@ void Pilot::beginSearch(const Tracker& tracker, double time) {
     } else if (isCertainViewNearer(tracker)) {
         route_.halt();
         wayBack_.emplace(flown_.back(), T_b_c_, options_.route);
-        searched_ = flown_.begin();
     }
 }
 
@@ -172,10 +169,11 @@ void Pilot::endSearch() {
 /// narrow the belief.
 bool Pilot::isCertainViewNearer(const Tracker& tracker) const {
     const UncertainPose belief = tracker.loss().widened(tracker.belief());
+    const double back = flown_.length();
     for (const PlannedView& view : route_.ahead()) {
         const double way = view.distance - route_.distance();
         if (way < kOtherView) continue;
-        if (way > flown_.length()) break;
+        if (way > back) break;
         if (search_.narrows(belief, view.T_w_b)) return false;
     }
     return true;

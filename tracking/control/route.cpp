@@ -9,6 +9,7 @@
 
 #include "control/view_search.hpp"
 #include "geometry/se3.hpp"
+#include "geometry/segment.hpp"
 
 namespace photonav {
 namespace {
@@ -139,11 +140,9 @@ Route Route::rejoined(const Pose& T_w_b) const {
     std::size_t after = 1;
     for (std::size_t i = 1; i <= next_; ++i) {
         const Eigen::Vector3d from_w = plan_[i - 1].T_w_b.translation();
-        const Eigen::Vector3d leg_w = plan_[i].T_w_b.translation() - from_w;
-        const double length = leg_w.norm();
-        const double share =
-            length > 0. ? std::clamp((p_w - from_w).dot(leg_w) / (length * length), 0., 1.) : 1.;
-        const Eigen::Vector3d on_w = from_w + share * leg_w;
+        const Eigen::Vector3d to_w = plan_[i].T_w_b.translation();
+        const double share = nearestOnSegment(p_w, from_w, to_w);
+        const Eigen::Vector3d on_w = from_w + share * (to_w - from_w);
         if ((on_w - p_w).norm() > (nearest.T_w_b.translation() - p_w).norm()) continue;
         nearest = plan_[i - 1];
         nearest.isWaypoint = false;
