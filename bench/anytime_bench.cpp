@@ -41,13 +41,20 @@ Curve measure(ob::Planner& planner, const std::vector<double>& times, const Cost
     return curve;
 }
 
-Curve measureOurs(PlanningProblem& problem, const std::string& name, unsigned seed,
-                  const std::vector<double>& times) {
+/// One without limits, and without cached views.
+std::shared_ptr<BeliefPlanner> freshPlanner(PlanningProblem& problem, const std::string& name,
+                                            unsigned seed) {
     problem.forgetViews();
-    const auto planner = problem.makePlanner(name);
+    auto planner = problem.makePlanner(name);
     planner->params().setParam("seed", std::to_string(seed));
     planner->params().setParam("max_vertices", "0");
     planner->params().setParam("max_iterations", "0");
+    return planner;
+}
+
+Curve measureOurs(PlanningProblem& problem, const std::string& name, unsigned seed,
+                  const std::vector<double>& times) {
+    const auto planner = freshPlanner(problem, name, seed);
     return measure(*planner, times, [&] { return planner->bestCost(); });
 }
 
@@ -60,11 +67,7 @@ KnownTime measureKnownTime(PlanningProblem& problem, unsigned seed,
                            const std::vector<double>& times) {
     KnownTime result;
     for (const double time : times) {
-        problem.forgetViews();
-        const auto planner = problem.makePlanner("belief_rrt_star");
-        planner->params().setParam("seed", std::to_string(seed));
-        planner->params().setParam("max_vertices", "0");
-        planner->params().setParam("max_iterations", "0");
+        const auto planner = freshPlanner(problem, "belief_rrt_star", seed);
         const auto start = std::chrono::steady_clock::now();
         planner->solve(time);
         const std::chrono::duration<double> used = std::chrono::steady_clock::now() - start;

@@ -30,6 +30,7 @@ struct Invocation {
 Command checkCommand(CLI::App& app, const Invocation& invocation);
 Command calibrateDepthCommand(CLI::App& app, const Invocation& invocation);
 /// Of all commands that `app` has when it runs.
+Command keysCommand(CLI::App& app);
 Command completionCommand(CLI::App& app);
 Command exploreCommand(CLI::App& app, const Invocation& invocation);
 Command flyCommand(CLI::App& app, const Invocation& invocation);

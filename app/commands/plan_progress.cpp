@@ -6,13 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planners/belief_rrt_star.hpp"
+
 namespace photonav {
-namespace {
-
-/// Vertices of the roadmap at the first search: a path may be known before, without any search.
-constexpr std::size_t kFirstSearch = 100;
-
-}  // namespace
 
 std::optional<double> RemainingGrowth::seconds() const {
     if (history_.empty()) return {};
@@ -21,7 +17,8 @@ std::optional<double> RemainingGrowth::seconds() const {
     if (count >= vertices_) return {};
     const auto half = std::ranges::find_if(
         history_, [&](const PlanProgress& p) { return 2 * p.vertices >= now.vertices; });
-    const bool isSearched = half->vertices > kFirstSearch && std::isfinite(half->cost);
+    const bool isSearched =
+        half->vertices > BeliefRRTstar::kFirstSearch && std::isfinite(half->cost);
     if (!isSearched || half->vertices >= now.vertices || half->seconds <= 0.) return {};
     const double power = std::log(now.seconds / half->seconds) /
                          std::log(count / static_cast<double>(half->vertices));

@@ -113,9 +113,9 @@ class GrowingCells {
             }
         }
         constexpr double kGrowth = 1.1;  // keeps the file a small multiple of the last map
-        if (static_cast<double>(cells_.size()) < kGrowth * static_cast<double>(told_)) return false;
-        told_ = cells_.size();
-        return told_ > 0;
+        if (static_cast<double>(cells_.size()) < kGrowth * static_cast<double>(sent_)) return false;
+        sent_ = cells_.size();
+        return sent_ > 0;
     }
 
     GreyPoints points(double size) const {
@@ -129,7 +129,7 @@ class GrowingCells {
 
   private:
     std::map<std::array<std::int16_t, 3>, std::uint8_t> cells_;
-    std::size_t told_ = 0;
+    std::size_t sent_ = 0;
 };
 
 void addFlown(const std::vector<FlownPoint>& flown, Topics& topics) {

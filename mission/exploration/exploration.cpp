@@ -4,14 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <random>
 #include <utility>
 
 #include "exploration/flyable_part.hpp"
 #include "exploration/mapper.hpp"
 #include "geometry/gaussian.hpp"
 #include "geometry/se3.hpp"
-#include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "render/interruptible_views.hpp"
 

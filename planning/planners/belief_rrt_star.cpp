@@ -12,7 +12,6 @@ namespace photonav {
 namespace ob = ompl::base;
 namespace {
 
-constexpr std::size_t kFirstSearch = 100;          // vertices
 constexpr double kSearchGrowth = 2.;               // of the roadmap between searches
 constexpr double kSearchGrowthWithoutPath = 1.25;  // while no search has reached the goal
 constexpr double kSearchMargin = 1.5;              // a search takes so much longer than expected

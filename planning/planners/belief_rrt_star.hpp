@@ -48,6 +48,10 @@ struct SearchOptions {
 /// termination condition stops the planner at once.
 class BeliefRRTstar : public BeliefPlanner {
   public:
+    /// Vertices of the roadmap when it is searched for the first time. A path over edges that are
+    /// known to be free may be there before.
+    static constexpr std::size_t kFirstSearch = 100;
+
     BeliefRRTstar(const ompl::base::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
                   const SearchOptions& search = {}, const GrowthOptions& growth = {});
 
