@@ -214,9 +214,8 @@ MeasuredInformation Search::measured() {
     if (!isCompared_) at_ = evaluate(at_.T_c_w, at_.exposure);
     MeasuredInformation image = respondingBy(
         slope_, measuredInformation(comparison_.blocks(level_, at_.T_c_w, at_.exposure, loss_),
-                                    at_.equations, options_.photometric, options_.exposure,
-                                    options_.modelErrors, comparison_.camera(level_),
-                                    comparison_.sinceModel(at_.T_c_w)));
+                                    options_.photometric, options_.exposure, options_.modelErrors,
+                                    comparison_.camera(level_), comparison_.sinceModel(at_.T_c_w)));
     image.equations.information *= options_.informationScale;
     image.equations.right *= options_.informationScale;
     image.repeating /= options_.informationScale;

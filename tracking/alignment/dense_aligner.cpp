@@ -2,7 +2,9 @@
 #include "alignment/dense_aligner.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "alignment/hole_margin.hpp"
@@ -62,12 +64,12 @@ class DenseAligner::RenderedModel : public Comparison {
         last_ = level;
         Level& at = levels_[level];
         render(at, T_c_w, predicted_);
-        return at.compare(predicted_, at.observed, exposure, loss);
+        return withUnknownBlur(level, at.compare(predicted_, at.observed, exposure, loss));
     }
 
     std::vector<ImageBlock> blocks(std::size_t level, const Pose&, const Exposure& exposure,
                                    const Loss& loss) override {
-        return levels_[level].compare.blocks(exposure, loss);
+        return withUnknownBlur(level, levels_[level].compare.blocks(exposure, loss));
     }
 
     Matrix6 sharedSlope(std::size_t level, const Exposure& exposure) const override {
@@ -82,8 +84,9 @@ class DenseAligner::RenderedModel : public Comparison {
             isRendered = true;
             const bool isHere = T_c_w.matrix() == T_image_w.matrix();
             if (!isHere) render(at, T_c_w, predicted_);
-            return at.comparePredictions(isHere ? asImage_ : predicted_, asImage_.intensity,
-                                         Exposure{}, Loss{});
+            return withUnknownBlur(
+                level, at.comparePredictions(isHere ? asImage_ : predicted_, asImage_.intensity,
+                                             Exposure{}, Loss{}));
         };
     }
 
@@ -98,6 +101,14 @@ class DenseAligner::RenderedModel : public Comparison {
     /// Variance by which images are blurrier than rendered views; negative: sharper [pixels^2].
     double widening() const {
         return options_.blur * options_.blur - kRenderedBlur * kRenderedBlur;
+    }
+
+    /// Of equations, or of blocks.
+    template <class Equations>
+    Equations withUnknownBlur(std::size_t level, Equations e) const {
+        const PhotometricOptions& p = options_.photometric;
+        const double ofLevel = std::ldexp(options_.modelErrors.blur, -2 * static_cast<int>(level));
+        return withoutBlur(std::move(e), ofLevel, p.sigma * p.sigma / p.scale);
     }
 
     void render(const Level& level, const Pose& T_c_w, View& view) const {

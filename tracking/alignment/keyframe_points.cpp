@@ -244,7 +244,7 @@ struct PointSet::Projection {
           bottom(static_cast<float>(keyframe.camera_.height) - 1.001F) {}
 
     struct Points {
-        ProductSums::Columns columns;
+        ProductSums<>::Columns columns;
         Float r, gx, gy, inverseDepth;
         Float du, dv;  ///< gradient of the image there [grey value per pixel]
         Int inView;
@@ -286,7 +286,7 @@ NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
     const float aspect = project.fy / project.fx;
     Float noiseX{}, noiseY{};
 
-    ProductSums sums(loss, kChunk);
+    ProductSums<> sums(loss, kChunk);
     residualSample_.clear();
     const std::size_t vectors = x_.size() / kWidth;
     for (std::size_t begin = 0; begin < vectors; begin += kChunk) {
@@ -324,7 +324,7 @@ std::vector<ImageBlock> PointSet::blocks(const ImageF& observed, const Pose& T_c
     for (std::size_t block = 0; block + 1 < blockBegin_.size(); ++block) {
         const std::size_t begin = blockBegin_[block], end = blockBegin_[block + 1];
         if (begin == end) continue;
-        ProductSums sums(loss, (end - begin) / kWidth + 1);
+        ProductSums<> sums(loss, (end - begin) / kWidth + 1);
         sums.beginRow();
         for (std::size_t k = begin; k < end; k += kWidth) {
             const auto p = project(k);

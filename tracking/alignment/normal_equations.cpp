@@ -56,6 +56,13 @@ Gradient gradientAt(const std::vector<float>& intensity, std::size_t i, std::siz
             used ? aspect * (at(intensity, i + pitch) - at(intensity, i - pitch)) : zero};
 }
 
+/// Half of the Laplacian.
+Float changeByBlur(const std::vector<float>& intensity, std::size_t i, std::size_t pitch) {
+    const Float around = at(intensity, i + 1) + at(intensity, i - 1) + at(intensity, i + pitch) +
+                         at(intensity, i - pitch);
+    return 0.5F * around - 2.F * at(intensity, i);
+}
+
 /// Columns of A for pixels (u, v), (u + 1, v) ..., but for columnUnits().
 struct Kernel {
     explicit Kernel(const Camera& c)
@@ -63,8 +70,8 @@ struct Kernel {
           aspect(static_cast<float>(c.fy() / c.fx())),
           perColumn(static_cast<float>(1. / c.fx())) {}
 
-    ProductSums::Columns columns(unsigned u, unsigned v, const Gradient& g, const Float& w,
-                                 const Float& I) const {
+    ProductSums<true>::Columns columns(unsigned u, unsigned v, const Gradient& g, const Float& w,
+                                       const Float& I) const {
         const auto y = static_cast<float>((v - camera.cy()) / camera.fy());
         const Float x = (simd::ramp() + static_cast<float>(u - camera.cx())) * perColumn;
         const Float s = x * g.x + y * g.y;
@@ -93,6 +100,28 @@ double robustSigmaOf(const std::vector<float>& residuals) {
     while (below + histogram[bin] < 0.5 * total) below += histogram[bin++];
     const double inBin = (0.5 * total - below) / histogram[bin];
     return 1.4826 * (static_cast<double>(bin) + inBin) * 2. / kBins;
+}
+
+NormalEquations withoutBlur(NormalEquations e, double sigma, double noise) {
+    const BlurSums& b = e.byBlur;
+    const double variance = b.variance(sigma, noise);
+    const double gained = variance * b.btr * b.btr;
+    e.AtA -= variance * b.Atb * b.Atb.transpose();
+    e.Atr -= variance * b.btr * b.Atb;
+    e.loss -= gained;
+    e.sumSquares -= gained;
+    return e;
+}
+
+std::vector<ImageBlock> withoutBlur(std::vector<ImageBlock> blocks, double sigma, double noise) {
+    BlurSums all;
+    for (const ImageBlock& block : blocks) {
+        all.btb += block.byBlur.btb;
+        all.btr += block.byBlur.btr;
+    }
+    const double blur = all.btr * all.variance(sigma, noise);
+    for (ImageBlock& block : blocks) block.Atr -= blur * block.byBlur.Atb;
+    return blocks;
 }
 
 ViewComparison::ViewComparison(const Camera& camera, const PhotometricOptions& photometric)
@@ -185,13 +214,14 @@ Matrix6 ViewComparison::sharedSlope(const Exposure& exposure) const {
 std::vector<ImageBlock> ViewComparison::blocks(const Exposure& exposure, const Loss& loss) const {
     const unsigned side = ImageBlock::side(camera_);
     const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
+    const auto gain = static_cast<float>(exposure.gain);
     const Kernel kernel(camera_);
     std::vector<ImageBlock> blocks;
     for (unsigned top = 1; top + 1 < camera_.height; top += side) {
         const unsigned bottom = std::min(top + side, camera_.height - 1);
         for (unsigned left = 1; left + 1 < camera_.width; left += side) {
             const unsigned right = std::min(left + side, camera_.width - 1);
-            ProductSums sums(loss, std::size_t(side) * side / kWidth);
+            ProductSums<true> sums(loss, std::size_t(side) * side / kWidth);
             sums.beginRow();
             for (unsigned v = top; v < bottom; ++v) {
                 for (unsigned u = left; u < right; u += kWidth) {
@@ -200,7 +230,7 @@ std::vector<ImageBlock> ViewComparison::blocks(const Exposure& exposure, const L
                     const Int used = r < kUnused;
                     const Gradient g = gradientAt(intensity_, i, pitch_, kernel.aspect, used);
                     sums.add(kernel.columns(u, v, g, at(inverseDepth_, i), at(intensity_, i)), r,
-                             used);
+                             used, gain * changeByBlur(intensity_, i, pitch_));
                 }
             }
             sums.endRow();
@@ -208,6 +238,7 @@ std::vector<ImageBlock> ViewComparison::blocks(const Exposure& exposure, const L
             if (e.count < 1.) continue;
             blocks.push_back({e.AtA,
                               e.Atr,
+                              e.byBlur,
                               {left / side, top / side},
                               normalAt((left + right) / 2, (top + bottom) / 2)});
         }
@@ -239,7 +270,7 @@ NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& 
     const Kernel kernel(camera_);
     const float aspect = kernel.aspect;
 
-    ProductSums sums(loss, pitch_ / kWidth);
+    ProductSums<true> sums(loss, pitch_ / kWidth);
     for (unsigned v = 1; v + 1 < camera_.height; ++v) {
         sums.beginRow();
         for (unsigned u = 1; u + 1 < camera_.width; u += kWidth) {
@@ -249,7 +280,8 @@ NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& 
             const Float r = at(observed_, i) - (gain * I + offset);
             const Gradient g = gradientAt(intensity_, i, pitch_, aspect, used);
             simd::store(&residual_[i], used ? r : simd::splat(kUnused));
-            sums.add(kernel.columns(u, v, g, at(inverseDepth_, i), I), r, used);
+            sums.add(kernel.columns(u, v, g, at(inverseDepth_, i), I), r, used,
+                     gain * changeByBlur(intensity_, i, pitch_));
         }
         sums.endRow();
     }

@@ -31,6 +31,20 @@ struct Exposure {
     double offset = 0.;
 };
 
+/// Sums with b, by which the exposed prediction changes per pixel^2 of blur, to first order: half
+/// of its Laplacian.
+struct BlurSums {
+    Vector8 Atb = Vector8::Zero();  ///< sum w A^T b
+    double btb = 0.;                ///< sum w b^2
+    double btr = 0.;                ///< sum w b r
+
+    /// By how much the blur is known for residuals, over the variance of a pixel's noise.
+    /// @param sigma standard deviation of the blur without the image [pixels^2]
+    double variance(double sigma, double noise) const {
+        return sigma > 0. && btb > 0. ? 1. / (btb + noise / (sigma * sigma)) : 0.;
+    }
+};
+
 /// Sums over the pixels that count, for residuals r = observed - (gain * predicted + offset) and
 /// unknowns (xi, d gain, d offset), where xi is the left perturbation of the camera pose:
 /// r = A (xi, dg, do), A = [-gain * J | predicted | 1], J as in photometricInformation().
@@ -45,7 +59,14 @@ struct NormalEquations {
     double sumPredictedSquares = 0.;
     double sumPredictedTimesR = 0.;
     double meanInverseDepth = 0.;  ///< over the surfaces in view [1/m]; 0: none
+    BlurSums byBlur;               ///< zero where it is not known
 };
+
+/// The equations of an image that is blurrier than the prediction by an unknown variance, which is
+/// eliminated. Where an edge is all that is in view, its width would tell the distance otherwise.
+/// @param sigma standard deviation of that variance, whose mean is zero [pixels^2]
+/// @param noise variance of a pixel [grey value^2]
+NormalEquations withoutBlur(NormalEquations e, double sigma, double noise);
 
 /// The part of NormalEquations that comes from one block of the image.
 struct ImageBlock {
@@ -56,9 +77,13 @@ struct ImageBlock {
 
     Matrix8 AtA = Matrix8::Zero();
     Vector8 Atr = Vector8::Zero();
+    BlurSums byBlur;
     Eigen::Array2i index = Eigen::Array2i::Zero();     ///< column and row of the block
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the surface, camera frame; 0: unknown
 };
+
+/// The blocks with the residuals that the likeliest blur leaves; parameters as above.
+std::vector<ImageBlock> withoutBlur(std::vector<ImageBlock> blocks, double sigma, double noise);
 
 /// Compares a predicted view with an observed image, pixel by pixel at the same place. The gradient
 /// is that of the prediction. Pixels are chosen by the prediction alone, by the rules of

@@ -29,6 +29,8 @@ inline Vector8 columnUnits(double gain, double focal) {
 
 /// Accumulates the upper triangle of sum w c^T c for c = (7 columns, 1, residual), single precision
 /// within a few rows and double across them, with the weights of a robust loss.
+/// @tparam withBlur whether c has one more column at its end: what the pixel gains by blur
+template <bool withBlur = false>
 class ProductSums {
   public:
     using Columns = std::array<simd::Float, 7>;
@@ -42,7 +44,9 @@ class ProductSums {
     void beginRow() { row_.clear(); }
 
     /// @param used lanes to sum; the columns of others must be finite
-    void add(const Columns& columns, const simd::Float& residual, const simd::Int& used) {
+    /// @param byBlur must be finite
+    void add(const Columns& columns, const simd::Float& residual, const simd::Int& used,
+             [[maybe_unused]] const simd::Float& byBlur = simd::splat(0.F)) {
         const simd::Float zero = simd::splat(0.F);
         const simd::Float one = used ? simd::splat(1.F) : zero;
         const simd::Float r = used ? residual : zero;
@@ -52,6 +56,7 @@ class ProductSums {
         std::copy(columns.begin(), columns.end(), pixels.column.begin());
         pixels.column[7] = one;
         pixels.column[8] = r;
+        if constexpr (withBlur) pixels.column[9] = byBlur;
         plain_[0] += one;
         plain_[1] += r;
         plain_[2] += r * r;
@@ -67,7 +72,7 @@ class ProductSums {
         addProducts<1, 2>();
         addProducts<2, 3>();
         addProducts<3, 5>();
-        addProducts<5, 9>();
+        addProducts<5, kColumns>();
         if (++rowsInLanes_ == kRowsInLanes) flush();
     }
 
@@ -81,6 +86,11 @@ class ProductSums {
                 e.AtA(j, i) = e.AtA(i, j);
             }
             e.Atr[i] = unit[i] * sums_[i][8];
+            if constexpr (withBlur) e.byBlur.Atb[i] = unit[i] * sums_[i][9];
+        }
+        if constexpr (withBlur) {
+            e.byBlur.btr = sums_[8][9];
+            e.byBlur.btb = sums_[9][9];
         }
         e.count = plainSums_[0];
         e.sum = plainSums_[1];
@@ -93,7 +103,7 @@ class ProductSums {
     }
 
   private:
-    static constexpr int kColumns = 9;
+    static constexpr int kColumns = withBlur ? 10 : 9;
     static constexpr int kRowsInLanes = 4;
     struct Pixels {
         simd::Float weight;
@@ -120,16 +130,16 @@ class ProductSums {
     void addProducts() {
         std::array<std::array<simd::Float, kColumns>, kEnd - kFirst> sums = {};
         for (const Pixels& p : row_) {
-#pragma GCC unroll 9
+#pragma GCC unroll 10
             for (int i = kFirst; i < kEnd; ++i) {
                 const simd::Float weighted = p.weight * p.column[i];
-#pragma GCC unroll 9
+#pragma GCC unroll 10
                 for (int j = i; j < kColumns; ++j) sums[i - kFirst][j] += weighted * p.column[j];
             }
         }
-#pragma GCC unroll 9
+#pragma GCC unroll 10
         for (int i = kFirst; i < kEnd; ++i) {
-#pragma GCC unroll 9
+#pragma GCC unroll 10
             for (int j = i; j < kColumns; ++j) lanes_[i][j] += sums[i - kFirst][j];
         }
     }

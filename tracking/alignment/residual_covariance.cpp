@@ -165,6 +165,13 @@ Matrix8 scatterByDisplacement(const std::vector<ImageBlock>& blocks, const Eigen
     return sum;
 }
 
+/// Images blurrier, or less blurred, than the model.
+Matrix8 scatterByBlur(const std::vector<ImageBlock>& blocks, const Eigen::Array2i& size,
+                      double sigma) {
+    return scatterOfField(blocks, size, sigma * sigma,
+                          [](const ImageBlock& block) -> Vector8 { return block.byBlur.Atb; });
+}
+
 /// All surfaces displaced along their normals by the same distance.
 Matrix8 scatterBySurface(const std::vector<ImageBlock>& blocks, double sigma) {
     Vector8 sum = Vector8::Zero();
@@ -192,17 +199,22 @@ Matrix6 combined(const Matrix6& a, const Matrix6& b, const Choose& choose) {
 }  // namespace
 
 MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
-                                        const NormalEquations& all,
                                         const PhotometricOptions& photometric,
                                         const std::optional<ExposurePrior>& prior,
                                         const ModelErrors& errors, const Camera& camera,
                                         const Pose& toModel) {
-    const Observed seen(all.AtA, photometric, prior);
+    Matrix8 H = Matrix8::Zero();
+    Vector8 gradient = Vector8::Zero();
+    for (const ImageBlock& block : blocks) {
+        H += block.AtA;
+        gradient += block.Atr;
+    }
+    const Observed seen(H, photometric, prior);
     MeasuredInformation result;
     result.repeating = kOpenSigma * kOpenSigma * seen.open * seen.open.transpose();
     if (seen.V.cols() == 0) return result;
     const Matrix8 inverse = seen.E * seen.V * seen.solve * seen.E.transpose();
-    const Vector8 x = inverse * all.Atr;
+    const Vector8 x = inverse * gradient;
 
     const auto covariance = [&](const Matrix8& scatter) -> MatrixXd {  // of y
         return seen.solve * (seen.E.transpose() * scatter * seen.E) * seen.solve.transpose();
@@ -211,11 +223,12 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
     const MatrixXd repeating =
         covariance(light.scatter() +
                    scatterByDisplacement(blocks, light.size(), camera, errors.displacement) +
+                   scatterByBlur(blocks, light.size(), errors.blur) +
                    scatterBySurface(blocks, errors.surface)) +
         seen.toY * ofScale(errors.depthScale, toModel) * seen.toY.transpose();
     const MatrixXd whole =
         repeating + covarianceOf(seen.solve * seen.E.transpose() * scoresOf(blocks, inverse, x)) +
-        covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * all.AtA);
+        covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * H);
     if (!whole.allFinite()) return result;
     result.repeating += seen.V * repeating * seen.V.transpose();
     PoseEquations& equations = result.equations;

@@ -16,6 +16,10 @@ struct ModelErrors {
     /// Of the image's content, smooth over the image: what calibration leaves of the distortion of
     /// a lens, and how rendered views differ from what a sensor averages [pixels].
     double displacement = 0.05;
+    /// Of the variance by which images are blurrier than rendered views; eliminated as the exposure
+    /// is (withoutBlur()), and smooth over the image where it is not the same everywhere
+    /// [pixels^2].
+    double blur = 0.;
     double surface = 0.;     ///< of the surfaces along their normals [m]
     double depthScale = 0.;  ///< relative, of a depth sensor's scale and registration
 };
@@ -37,12 +41,10 @@ struct MeasuredInformation {
 ///
 /// A gain that varies slowly over the image (vignetting, shading, another light) repeats from image
 /// to image. Its variance is what the gains of neighbouring blocks have in common.
-/// @param all the sum over the blocks
 /// @param prior of the exposure; none: the exposure is fixed
 /// @param camera of the comparison
 /// @param toModel motion since the model's own image, whose depth it has (keyframes); else identity
 MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
-                                        const NormalEquations& all,
                                         const PhotometricOptions& photometric,
                                         const std::optional<ExposurePrior>& prior,
                                         const ModelErrors& errors, const Camera& camera,

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "alignment/image_pyramid.hpp"
 #include "analytic_plane.hpp"
 #include "tracking/rooms.hpp"
 
@@ -42,6 +43,12 @@ NormalEquations byPixels(const View& view, const ImageF& observed, const Exposur
             const double r = observed[v][u] - (exposure.gain * I + exposure.offset);
             Vector8 A;
             A << -exposure.gain * J, I, 1.;
+            const ImageF& at = view.intensity;
+            const double b = 0.5 * exposure.gain *
+                             (at[v][u + 1] + at[v][u - 1] + at[v + 1][u] + at[v - 1][u] - 4. * I);
+            e.byBlur.Atb += weight(r) * A * b;
+            e.byBlur.btb += weight(r) * b * b;
+            e.byBlur.btr += weight(r) * b * r;
             e.AtA += weight(r) * A * A.transpose();
             e.Atr += weight(r) * A * r;
             e.count += 1.;
@@ -80,10 +87,43 @@ TEST(NormalEquations, AgreeWithTheSumOverPixels) {
         const NormalEquations plain = byPixels(view, observed, exposure, weight);
         EXPECT_LT(relative(fast.AtA, plain.AtA), 1e-5);
         EXPECT_LT(relative(fast.Atr, plain.Atr), 1e-4);
+        EXPECT_LT(relative(fast.byBlur.Atb, plain.byBlur.Atb), 1e-4);
+        EXPECT_NEAR(fast.byBlur.btb / plain.byBlur.btb, 1., 1e-4);
+        EXPECT_NEAR(fast.byBlur.btr / plain.byBlur.btr, 1., 1e-3);
         EXPECT_NEAR(fast.count, plain.count, 0.002 * plain.count);  // flat pixels count in one
         EXPECT_NEAR(fast.sumSquares / plain.sumSquares, 1., 2e-3);
         EXPECT_GT(plain.count, 2000.);
     }
+}
+
+/// Eliminated, the blur leaves pose and exposure where the equations with nine unknowns have them.
+TEST(NormalEquations, ABlurThatIsNotKnownIsEliminated) {
+    using Vector9 = Eigen::Matrix<double, 9, 1>;
+    const View view = viewAt(kViewpoint);
+    std::mt19937_64 random(2);
+    const ImageF observed = test::noisy(widened(view.intensity, 0.2), 0.05, random);
+    ViewComparison compare(tinyCamera(), {});
+    const NormalEquations e = compare(view, observed, {}, {});
+    constexpr double kSigma = 0.1, kNoise = 0.05 * 0.05;
+    Eigen::Matrix<double, 9, 9> H;
+    H << e.AtA, e.byBlur.Atb, e.byBlur.Atb.transpose(), e.byBlur.btb + kNoise / (kSigma * kSigma);
+    Vector9 right;
+    right << e.Atr, e.byBlur.btr;
+    const Vector9 all = H.ldlt().solve(right);
+    const NormalEquations eliminated = withoutBlur(e, kSigma, kNoise);
+    const Vector8 x = eliminated.AtA.ldlt().solve(eliminated.Atr);
+    EXPECT_LT((x - all.head<8>()).norm(), 1e-6 * x.norm());
+    EXPECT_GT(all[8], 0.1);  // the image is blurrier by 0.2
+    // What is left of the residuals, at the minimum of both.
+    EXPECT_NEAR(eliminated.loss - x.dot(eliminated.Atr), e.loss - all.dot(right), 1e-9 * e.loss);
+    // A blur that is known changes nothing.
+    EXPECT_EQ(withoutBlur(e, 0., kNoise).AtA, e.AtA);
+    // The blocks have the residuals of the likeliest blur without motion.
+    Vector8 ofBlocks = Vector8::Zero();
+    for (const ImageBlock& block : withoutBlur(compare.blocks({}, {}), kSigma, kNoise)) {
+        ofBlocks += block.Atr;
+    }
+    EXPECT_LT(relative(ofBlocks, eliminated.Atr), 1e-3);
 }
 
 /// The derivative of the loss is the weighted residual: the two are written apart.

@@ -7,6 +7,7 @@
 #include "alignment/dense_aligner.hpp"
 #include "alignment/keyframe_model.hpp"
 #include "alignment/keyframe_points.hpp"
+#include "alignment/wide_aligner.hpp"
 #include "estimation/calibration.hpp"
 #include "tracking/rooms.hpp"
 
@@ -118,6 +119,37 @@ TEST(ResidualCovariance, EdgesDoNotInformAlongThemselves) {
         const double along = y_c.dot(a.information.topLeftCorner<3, 3>() * y_c);
         EXPECT_LT(along, 1. / (0.5 * 0.5)) << turned;  // that of the prior
     }
+}
+
+/// An edge that comes into view beside white, all that the image shows: how wide it is must not
+/// tell how far away it is, since no model knows the blur of an image as exactly.
+TEST(ResidualCovariance, TheWidthOfAnEdgeIsNoDistance) {
+    const MeshRenderer floor(test::floorOf(stripes({.width = 10., .softEdge = 0.05})));
+    const Camera camera = makeCamera(188, 120, 1.2217);
+    Vector6 sigmas;
+    sigmas << 0.45, 0.45, 0.3, 0.005, 0.005, 0.01;
+    std::mt19937_64 random(1);
+    const auto nees = [&](double blurError) {
+        AlignmentOptions options = photographOptions();
+        options.modelErrors.blur = blurError;
+        WideAligner aligner(floor, camera, options);
+        double most = 0.;
+        for (int i = 0; i < 5; ++i) {
+            const double z = 1.9 + 0.06 * i;
+            const Pose truth = cameraAt({-0.65 * z - 0.004 * i, 0.2, z}, kDown, kDown);
+            const ImageF exact = test::photographed(floor, camera, truth).intensity;
+            const ImageF image = test::noisy(exact, 0.01, random);
+            Vector6 off = Vector6::Zero();
+            off << 0.2, -0.1, 0.1 * (i % 3 - 1), 0.001, -0.002, 0.;
+            const UncertainPose prior{expSE3(off) * truth, sigmas.cwiseAbs2().asDiagonal()};
+            const Alignment a = aligner.align(image, prior);
+            const Vector6 xi = test::errorOf(a, truth);
+            most = std::max(most, xi.dot(a.covariance.ldlt().solve(xi)) / 6.);
+        }
+        return most;
+    };
+    EXPECT_GT(nees(0.), 8.);
+    EXPECT_LT(nees(photographOptions().modelErrors.blur), 2.);
 }
 
 /// The blocks of an image add up to the whole.
