@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A flight to a goal in a scene that the robot does not know.
+// The flight of a simulated robot to a goal in a scene that it does not know.
 #pragma once
 
-#include <atomic>
-#include <functional>
-#include <string>
-#include <vector>
-
-#include "exploration/online_planner.hpp"
+#include "exploration/explorer.hpp"
 #include "flight/flight_setup.hpp"
 
 namespace photonav {
 
-/// A flight, against the truth. Its samples' distance is the length of the true path.
-struct ExplorationResult : FlightResult {
-    std::string planner;
-    std::uint32_t seed = 0;
-    std::string reason;  ///< of an end that is not arrived
-    int keyframes = 0;
-    int blindSteps = 0;       ///< into space that could not be looked at first
+/// A flight of a simulated robot, against the truth. Its samples' distance is the length of the
+/// true path.
+struct ExplorationResult : FlightResult, ExplorationRecord {
     double wallSeconds = 0.;  ///< that it took to simulate
-    std::vector<PlanUpdate> updates;
-    std::shared_ptr<TexturedOcTree> map;  ///< that the robot made; empty: not kept
 };
 
 /// The unknown scene and the conditions of flight.
@@ -32,22 +21,18 @@ struct ExplorationSetup {
 };
 
 /// @param problem of the config in its true World, which must outlive the setup
-/// @throws InputError for a start in collision, and for headings of explore.planners where the
-///         heading is not free
+/// @throws InputError as explorerOptions() does, and for a start in collision
 ExplorationSetup setUpExploration(const PlanningProblem& problem);
+
+/// The part of a setup that is the robot's own.
+ExplorerOptions explorerOptions(const ExplorationSetup& setup);
 
 /// Called after every update of the plan.
 using OnPlanUpdate = std::function<void(const ExplorationResult& soFar)>;
 
 /// A flight right after an update of its plan, for logs and figures.
-struct ExplorationMoment {
+struct ExplorationMoment : ExplorerMoment {
     const ExplorationResult& soFar;
-    const OnlinePlanner& planner;
-    const OwnMap& map;
-    const MapChange& change;     ///< of the map, since the last moment
-    const UncertainPose& T_c_w;  ///< believed
-    const View& image;           ///< that was tracked last
-    const View& predicted;       ///< view of the map before this update, from the believed pose
 };
 using OnExplorationMoment = std::function<void(const ExplorationMoment& moment)>;
 
@@ -58,9 +43,7 @@ struct OnExploration {
     OnExplorationMoment moment = {};  ///< after `update`
 };
 
-/// Flies from start to goal with the robot's own camera as only sensor: the map is made, and the
-/// plan repaired, as the scene comes into view. Deterministic for a seed: planning ends by work,
-/// not by time.
+/// Explores with a simulated robot. Deterministic for a seed.
 /// @param planner as explorePlanner() takes it
 ExplorationResult explore(const ExplorationSetup& setup, const std::string& planner,
                           std::uint32_t seed, const std::atomic<bool>& interrupted,

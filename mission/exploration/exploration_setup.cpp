@@ -19,26 +19,50 @@ DepthSensor depthSensorOf(ExploreSensor sensor) {
     return DepthSensor::none;
 }
 
-}  // namespace
-
-ExplorationSetup setUpExploration(const PlanningProblem& problem) {
-    const Config& config = problem.config();
+void checkHeadings(const Config& config) {
     for (const std::string& name : config.explore.planners) {
         if (explorePlanner(name).headings && config.space != StateKind::positionYaw) {
             throw InputError(config.file, "explore.planners",
                              fmt::format("{}: the robot's heading is not free", name));
         }
     }
+}
+
+ExplorerOptions explorerOf(const Config& config, const FlightOptions& flight) {
+    const SimulatedCameraOptions& camera = flight.robot.camera;
+    return {.config = config,
+            .tracker = flight.tracker,
+            .pilot = flight.pilot,
+            .timeStep = flight.timeStep,
+            .imageAge = 2. * camera.period + camera.latency,
+            .bodyRadius = flight.bodyRadius};
+}
+
+FlightOptions flightOf(const Config& config) {
+    return flightOptions(config, MapKind::surfaces, config.explore.resolution);
+}
+
+}  // namespace
+
+ExplorerOptions explorerOptions(const Config& config) {
+    checkHeadings(config);
+    return explorerOf(config, flightOf(config));
+}
+
+ExplorerOptions explorerOptions(const ExplorationSetup& setup) {
+    return explorerOf(setup.config, setup.flight);
+}
+
+ExplorationSetup setUpExploration(const PlanningProblem& problem) {
+    const Config& config = problem.config();
+    checkHeadings(config);
     if (!problem.isFlyable(config.start.position)) {
         throw InputError(
             config.file, "start",
             fmt::format("in collision: clearance {:.3f} m, robot.radius {} m",
                         problem.world().clearance(config.start.position), config.robotRadius));
     }
-    const FlightSetup flight = setUpFlight(problem);
-    ExplorationSetup setup{config, flight.world, flight.options};
-    setup.flight.tracker.map =
-        flightAlignment(config, MapKind::surfaces, config.explore.resolution);
+    ExplorationSetup setup{config, setUpFlight(problem).world, flightOf(config)};
     SimulatedCameraOptions& camera = setup.flight.robot.camera;
     camera.depth = depthSensorOf(config.explore.sensor);
     camera.depthNoise = {config.explore.depthSigma, config.explore.depthMissing};

@@ -65,8 +65,9 @@ std::optional<double> squaredCorrection(const UncertainPose& prior,
     return sum / degrees;
 }
 
-void Corrections::add(const UncertainPose& prior, const UncertainPose& posterior) {
-    const auto squared = squaredCorrection(prior, posterior);
+void Corrections::add(const TrackedFrame& frame) {
+    if (frame.rejected) return;
+    const auto squared = squaredCorrection(frame.predicted, frame.T_c_w);
     if (!squared) return;
     last_.push_back(*squared);
     if (last_.size() > kCorrections) last_.pop_front();
@@ -76,6 +77,14 @@ double Corrections::varianceFactor() const {
     if (last_.empty()) return 1.;
     const double sum = std::accumulate(last_.begin(), last_.end(), 0.);
     return std::max(1., sum / static_cast<double>(last_.size()));
+}
+
+BelievedArrival believedArrival(const UncertainPose& T_c_w, const Pose& T_b_c,
+                                const Corrections& corrections, const Eigen::Vector3d& goal_w,
+                                double tolerance) {
+    PositionBelief position = bodyPosition(T_c_w, T_b_c);
+    position.covariance *= corrections.varianceFactor();
+    return {position, probabilityWithin(position, goal_w, tolerance)};
 }
 
 }  // namespace photonav

@@ -6,7 +6,7 @@
 #include <deque>
 #include <optional>
 
-#include "geometry/uncertain_pose.hpp"
+#include "estimation/tracked_frame.hpp"
 
 namespace photonav {
 
@@ -36,9 +36,8 @@ std::optional<double> squaredCorrection(const UncertainPose& prior, const Uncert
 /// The corrections by the last images: a test whether the belief is as wide as its errors.
 class Corrections {
   public:
-    /// An image was accepted.
-    /// @param prior of the moment of its exposure, without the image
-    void add(const UncertainPose& prior, const UncertainPose& posterior);
+    /// An image was tracked; a rejected one corrects nothing.
+    void add(const TrackedFrame& frame);
 
     /// How much larger the variance of a belief should be: the mean squared correction of the last
     /// ten images, at least 1.
@@ -47,5 +46,16 @@ class Corrections {
   private:
     std::deque<double> last_;
 };
+
+/// What a robot whose estimate is at its goal believes.
+struct BelievedArrival {
+    PositionBelief position;  ///< as wide as the corrections by the last images ask for
+    double probability = 0.;  ///< to be within the tolerance of the goal
+};
+
+/// @param T_c_w belief; @param tolerance distance to the goal of a robot that is there [m]
+BelievedArrival believedArrival(const UncertainPose& T_c_w, const Pose& T_b_c,
+                                const Corrections& corrections, const Eigen::Vector3d& goal_w,
+                                double tolerance);
 
 }  // namespace photonav

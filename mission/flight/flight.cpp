@@ -44,8 +44,9 @@ class PlannedFlight {
                   const SimulatedRobot& robot)
         : options_(options),
           robot_(robot),
+          goal_w_(goal.T_w_b.translation()),
           timeLimit_(60. + options.timePerMetre * goal.distance),
-          evaluator_(world, robot, goal.T_w_b.translation()) {}
+          evaluator_(world, robot, goal_w_) {}
 
     void onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker,
                 const Pilot& pilot);
@@ -64,13 +65,16 @@ class PlannedFlight {
 
     const FlightOptions& options_;
     const SimulatedRobot& robot_;
+    Eigen::Vector3d goal_w_;
     double timeLimit_;
     FlightEvaluator evaluator_;
+    Corrections corrections_;
 };
 
 void PlannedFlight::onStep(const std::vector<TrackedFrame>& tracked, const Tracker& tracker,
                            const Pilot& pilot) {
     evaluator_.onStep(tracked, tracker, pilot.route().distance());
+    for (const TrackedFrame& frame : tracked) corrections_.add(frame);
     if (pilot.route().isAtGoal()) evaluator_.measureSpeed();
     FlightResult& result = evaluator_.result();
     if (pilot.hasServoedOnImage() && !std::exchange(result.photometric, true)) {
@@ -84,7 +88,10 @@ bool PlannedFlight::hasEnded(const Tracker& tracker, const Pilot& pilot) {
     if (pilot.hasGivenUp(tracker, time)) return endAs(FlightEnd::lost);
     if (time > timeLimit_) return endAs(FlightEnd::outOfTime);
     if (!pilot.hasArrived(tracker, time)) return false;
-    return endAs(evaluator_.endAtGoal(tracker, options_.arrivalTolerance));
+    const double tolerance = options_.arrivalTolerance;
+    const BelievedArrival arrival =
+        believedArrival(tracker.belief(), robot_.T_b_c(), corrections_, goal_w_, tolerance);
+    return endAs(evaluator_.endAtGoal(arrival, tolerance));
 }
 
 }  // namespace
@@ -115,19 +122,17 @@ void FlightEvaluator::onStep(const std::vector<TrackedFrame>& tracked, const Tra
         const auto sample =
             std::find_if(result_.samples.rbegin(), result_.samples.rend(),
                          [&](const FlightSample& s) { return s.time == frame.time; });
-        if (!frame.rejected) corrections_.add(sample->belief, frame.T_c_w);
         sample->belief = frame.T_c_w;
         sample->image = frame.rejected ? ImageUse::rejected : ImageUse::used;
         if (!frame.rejected) sample->exposure = frame.alignment.exposure;
     }
 }
 
-FlightEnd FlightEvaluator::endAtGoal(const Tracker& tracker, double tolerance, double confidence) {
-    PositionBelief believed = bodyPosition(tracker.belief(), world_.T_b_c);
-    believed.covariance *= corrections_.varianceFactor();
-    result_.believedGoal = believed;
-    result_.arrivalProbability = probabilityWithin(believed, goal_w_, tolerance);
-    if (result_.arrivalProbability < confidence) return FlightEnd::uncertain;
+FlightEnd FlightEvaluator::endAtGoal(const BelievedArrival& arrival, double tolerance,
+                                     double confidence) {
+    result_.believedGoal = arrival.position;
+    result_.arrivalProbability = arrival.probability;
+    if (arrival.probability < confidence) return FlightEnd::uncertain;
     return goalError() <= tolerance ? FlightEnd::arrived : FlightEnd::astray;
 }
 
@@ -155,12 +160,13 @@ FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
                          options.robot, options.seed);
     Tracker tracker(world.map, robot.camera(), start, trackerOptions(world, options));
     PlannedFlight flight(world, options, plan.back(), robot);
-    flyLoop(robot, tracker, pilot, options.timeStep, [&](const std::vector<TrackedFrame>& tracked) {
+    const auto onStep = [&](const Observation&, const std::vector<TrackedFrame>& tracked) {
         flight.onStep(tracked, tracker, pilot);
         if (onExposure && robot.exposed()) onExposure(*robot.exposed());
         const bool isAborted = isStopped && isStopped();
         return !isAborted && !flight.hasEnded(tracker, pilot);
-    });
+    };
+    flyLoop(robot, tracker, pilot, options.timeStep, onStep);
     return flight.finish(tracker);
 }
 

@@ -9,6 +9,7 @@
 
 #include "control/pilot.hpp"
 #include "flight/arrival.hpp"
+#include "flight/flight_end.hpp"
 #include "simulation/simulated_robot.hpp"
 
 namespace photonav {
@@ -37,18 +38,6 @@ struct FlightOptions {
     double timePerMetre = 6.;       ///< the flight is out of time after as much, and a minute [s]
     std::uint64_t seed = 1;
 };
-
-enum class FlightEnd {
-    arrived,    ///< reported at the goal, and is there
-    astray,     ///< reported at the goal, but is not there
-    uncertain,  ///< the best estimate is at the goal, but not certain enough to report it
-    collided,
-    lost,   ///< gave up searching
-    noWay,  ///< the map that the robot made shows none
-    outOfTime,
-    stopped,  ///< by the caller
-};
-std::string nameOf(FlightEnd end);
 
 /// What became of an image.
 enum class ImageUse {
@@ -110,12 +99,12 @@ class FlightEvaluator {
     void measureSpeed();
     /// True distance of the body to the goal [m].
     double goalError() const { return (robot_.T_w_b().translation() - goal_w_).norm(); }
-    /// Of a robot whose estimate is at the goal: an arrival is reported where the belief, as wide
-    /// as the corrections by the last images ask for, is within `tolerance` [m] of the goal with
-    /// the probability `confidence`.
-    FlightEnd endAtGoal(const Tracker& tracker, double tolerance,
+    /// Of a robot whose estimate is at the goal: it reports its arrival if it is within `tolerance`
+    /// [m] of the goal with at least the probability `confidence`.
+    FlightEnd endAtGoal(const BelievedArrival& arrival, double tolerance,
                         double confidence = kArrivalConfidence);
     FlightResult& result() { return result_; }
+    const FlightResult& result() const { return result_; }
     /// Enters what is known at the end.
     void finish(const Tracker& tracker);
 
@@ -124,7 +113,6 @@ class FlightEvaluator {
     const SimulatedRobot& robot_;
     Eigen::Vector3d goal_w_;
     Eigen::Vector3d before_w_;
-    Corrections corrections_;
     FlightResult result_;
 };
 

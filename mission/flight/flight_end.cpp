@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names of ends, apart from what flies: journals of flights are read without that.
-#include "flight/flight.hpp"
+#include "flight/flight_end.hpp"
 
 namespace photonav {
 

@@ -15,7 +15,7 @@ void flyLoop(Robot& robot, Tracker& tracker, Pilot& pilot, double timeStep,
         for (std::size_t i = 0; i < tracked.size(); ++i) {
             pilot.observe(tracker, tracked[i], observation.frames[i].view.intensity);
         }
-        if (!onStep(tracked)) return;
+        if (!onStep(observation, tracked)) return;
         command = pilot.command(tracker, observation.time, timeStep);
     }
 }

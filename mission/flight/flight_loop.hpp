@@ -10,8 +10,10 @@
 
 namespace photonav {
 
-/// Called after every step, with the images tracked in it. @return whether to fly on
-using OnFlightStep = std::function<bool(const std::vector<TrackedFrame>& tracked)>;
+/// Called after every step, with what was measured in it and the images of that as they were
+/// tracked. @return whether to fly on
+using OnFlightStep =
+    std::function<bool(const Observation& observation, const std::vector<TrackedFrame>& tracked)>;
 
 /// robot -> tracker -> pilot -> robot, until `onStep` ends the flight. The first step only looks.
 /// @param timeStep between commands [s]

@@ -25,11 +25,13 @@ SimulatedRobotOptions robotOptions(const Config& config) {
     return robot;
 }
 
-FlightOptions flightOptions(const Config& config, const TrackingMap& map) {
+}  // namespace
+
+FlightOptions flightOptions(const Config& config, MapKind map, double cellSize) {
     const FlyConfig& fly = config.fly;
     FlightOptions flight;
     flight.robot = robotOptions(config);
-    flight.tracker.map = flightAlignment(config, map.kind, map.resolution());
+    flight.tracker.map = flightAlignment(config, map, cellSize);
     double& blindTime = flight.tracker.loss.blindTime;
     blindTime = fly.latency + std::max(blindTime, 4. * flight.robot.camera.period);
     flight.pilot.route.limits.maxSpeed = fly.speed;
@@ -40,8 +42,6 @@ FlightOptions flightOptions(const Config& config, const TrackingMap& map) {
     flight.seed = config.seed + (fly.map.empty() ? 0 : kSeedInMaps);
     return flight;
 }
-
-}  // namespace
 
 AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellSize) {
     const FlyConfig& fly = config.fly;
@@ -79,7 +79,7 @@ FlightSetup setUpFlight(const PlanningProblem& problem) {
         .T_b_c = config.camera.T_b_c(),
         .noise = config.fly.camera == "real" ? realNoise() : assumedNoise(config.photometric)};
     setup.map = map.kind;
-    setup.options = flightOptions(config, map);
+    setup.options = flightOptions(config, map.kind, map.resolution());
     setup.options.initialCovariance = problem.initialCovariance();
     setup.options.pilot.isFree = [&world, radius = config.robotRadius](const Eigen::Vector3d& p_w) {
         return world.clearance(p_w) >= radius;

@@ -26,6 +26,11 @@ struct FlightSetup {
 /// @throws InputError for a map that cannot be read
 FlightSetup setUpFlight(const PlanningProblem& problem);
 
+/// Options of flights under the conditions of a config, without those that depend on a world: start
+/// and space for searches.
+/// @param map what images are compared with; @param cellSize of a map of cells [m]
+FlightOptions flightOptions(const Config& config, MapKind map, double cellSize);
+
 /// How images are aligned under the conditions of the section `fly`: covariances follow from their
 /// residuals.
 /// @param map what images are compared with; @param cellSize of a map of cells [m]

@@ -25,7 +25,7 @@ struct CameraFrame {
 
 /// What was measured between the observation before and `time`.
 struct Observation {
-    double time = 0.;  ///< [s]
+    double time = 0.;  ///< since take-off [s]
     /// Motion of the body since the observation before, covariance in its new frame (left); none
     /// where the robot has no odometry.
     std::optional<UncertainPose> T_next_now;

@@ -9,8 +9,9 @@
 namespace photonav {
 
 struct TrackedFrame {
-    double time = 0.;     ///< of the exposure [s]
-    UncertainPose T_c_w;  ///< after the image; only predicted when rejected
+    double time = 0.;         ///< of the exposure [s]
+    UncertainPose predicted;  ///< belief at the exposure, before the image and its vertical
+    UncertainPose T_c_w;  ///< after the image and its vertical; when rejected, without the image
     /// The alignment that the belief follows from; when rejected, the first that was tried.
     Alignment alignment;
     /// The image did not change the belief: no alignment explained it, or it shows what the map

@@ -74,10 +74,11 @@ TrackedFrame Tracker::track(const CameraFrame& image) {
     const View& view = image.view;
     now_ = std::max(now_, image.time);
     const Pose stayed = belief_.mean;
-    predict(image.time);
-    if (image.vertical) level(*image.vertical);
     TrackedFrame frame;
     frame.time = image.time;
+    predict(image.time);
+    frame.predicted = belief_;
+    if (image.vertical) level(*image.vertical);
     if (const auto match = find(view, stayed, frame)) {
         take(view, *match, stayed, frame);
     } else {

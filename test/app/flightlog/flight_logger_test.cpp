@@ -5,39 +5,24 @@
 
 #include <set>
 
+#include "mission/exploration/room_to_explore.hpp"
 #include "report/report.hpp"
-#include "scene/scene.hpp"
 
 namespace photonav {
 namespace {
 
 Config straightFlight() {
-    Config config;
-    config.bounds = {Eigen::Vector3d(0.5, 0.5, 0.8), Eigen::Vector3d(4.5, 2.5, 1.4)};
-    config.start.position = {1., 1.5, 1.1};
-    config.start.yaw = 0.;
-    config.goal.position = {3., 1.5, 1.1};
-    config.space = StateKind::positionYaw;
-    config.camera.mount = "front45";
-    config.camera.width = 94;
-    config.camera.height = 60;
-    config.planner = "rrt_star";
+    Config config = test::flightThroughRoom();
+    config.goal.position.x() = 3.;
     config.explore.vertices = 60;
     config.explore.resolution = 0.1;
     config.explore.timeLimit = 30.;
     return config;
 }
 
-Scene room() {
-    Scene scene;
-    const auto floor = addTexture(scene, valueNoise({.size = {5., 3.}, .seed = 1}));
-    addBox(scene, {0., 0., 0.}, {5., 3., 2.5}, floor, BoxInside::hollow);
-    return scene;
-}
-
 TEST(FlightLogger, HoldsTheMapAndAsManyPicturesAsItMay) {
     const Config config = straightFlight();
-    const World world(room(), config);
+    const World world(test::roomToExplore(), config);
     const PlanningProblem problem(config, world);
     const TrialItem item{"rrt_star", 1};
     FlightLogger whole(config, world, item), thin(config, world, item, 2);

@@ -7,51 +7,24 @@
 
 #include "flight/flight_statistics.hpp"
 #include "io/error.hpp"
+#include "mission/exploration/room_to_explore.hpp"
 
 namespace photonav {
 namespace {
 
-/// A room of 8 x 4 m; a box as high as the room stands between start and goal.
 class RoomToExplore : public ::testing::Test {
   protected:
-    RoomToExplore() {
-        config.bounds = {Eigen::Vector3d(0.4, 0.4, 0.8), Eigen::Vector3d(7.6, 3.6, 1.4)};
-        config.start.position = {1., 2., 1.1};
-        config.start.yaw = 0.;
-        config.goal.position = {7., 2., 1.1};
-        config.space = StateKind::positionYaw;
-        config.robotRadius = 0.25;
-        config.camera.mount = "front45";
-        config.camera.width = 94;
-        config.camera.height = 60;
-        config.photometric.scale = 1.;  // independent noise
-        config.planner = "rrt_star";
-        config.explore.range = 3.;
-        config.explore.vertices = 250;
-        config.explore.timeLimit = 120.;
-    }
-
-    static Scene room() {
-        Scene scene;
-        const auto floor = addTexture(scene, valueNoise({.size = {8., 4.}, .seed = 1}));
-        const auto walls = addTexture(scene, valueNoise({.size = {8., 3.}, .seed = 2}));
-        addBox(scene, {0., 0., 0.}, {8., 4., 3.}, walls, BoxInside::hollow);
-        addPlane(scene, {0., 0., 0.01}, {8., 0., 0.}, {0., 4., 0.}, floor);
-        addBox(scene, {4.5, 1.4, 0.}, {5., 2.6, 3.}, walls);
-        return scene;
-    }
-
     ExplorationResult flown(Scene scene, std::uint32_t seed = 1) {
         const World world(std::move(scene), config);
         const PlanningProblem problem(config, world);
         return explore(setUpExploration(problem), config.planner, seed, kNotInterrupted);
     }
 
-    Config config;
+    Config config = test::flightThroughRoom();
 };
 
 TEST_F(RoomToExplore, ArrivesAroundABoxFoundOnTheWay) {
-    const ExplorationResult flight = flown(room());
+    const ExplorationResult flight = flown(test::roomToExplore());
     ASSERT_EQ(nameOf(flight.end), "arrived") << flight.reason;
     EXPECT_LT(flight.goalError, 0.25);
     EXPECT_GT(flight.leastClearance, 0.125);
@@ -71,7 +44,7 @@ TEST_F(RoomToExplore, CamerasWithoutDepthMapItAsWell) {
     config.goal.position.x() = 3.5;
     for (const ExploreSensor sensor : {ExploreSensor::stereo, ExploreSensor::monocular}) {
         config.explore.sensor = sensor;
-        const ExplorationResult flight = flown(room());
+        const ExplorationResult flight = flown(test::roomToExplore());
         EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
         EXPECT_GT(flight.keyframes, 2);
         EXPECT_GT(flight.map->size(), 500U);
@@ -99,7 +72,7 @@ class InterruptingViews : public ViewSource {
 TEST_F(RoomToExplore, IsInterruptedInsideALargeImage) {
     config.camera.width = 2000;
     config.camera.height = 1100;
-    const World world(room(), config);
+    const World world(test::roomToExplore(), config);
     const PlanningProblem problem(config, world);
     ExplorationSetup setup = setUpExploration(problem);
     const auto views = std::make_shared<InterruptingViews>(setup.truth.truth);
@@ -111,7 +84,8 @@ TEST_F(RoomToExplore, IsInterruptedInsideALargeImage) {
 
 TEST_F(RoomToExplore, IsTheSameForTheSameSeed) {
     config.goal.position.x() = 3.;
-    const ExplorationResult a = flown(room()), b = flown(room()), other = flown(room(), 2);
+    const ExplorationResult a = flown(test::roomToExplore()), b = flown(test::roomToExplore()),
+                            other = flown(test::roomToExplore(), 2);
     ASSERT_EQ(a.samples.size(), b.samples.size());
     EXPECT_EQ(a.samples.back().T_c_w.matrix(), b.samples.back().T_c_w.matrix());
     EXPECT_EQ(a.samples.back().belief.covariance, b.samples.back().belief.covariance);
@@ -119,7 +93,7 @@ TEST_F(RoomToExplore, IsTheSameForTheSameSeed) {
 }
 
 TEST_F(RoomToExplore, SaysThatTheGoalIsInAnObstacle) {
-    Scene scene = room();
+    Scene scene = test::roomToExplore();
     const auto crate = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 3}));
     addBox(scene, {6.8, 1.8, 0.}, {7.2, 2.2, 1.2}, crate);
     const ExplorationResult flight = flown(std::move(scene));
@@ -131,7 +105,7 @@ TEST_F(RoomToExplore, SaysThatTheGoalIsInAnObstacle) {
 /// A depth sensor that measures nothing: the robot does not fly into what it cannot see.
 TEST_F(RoomToExplore, SaysThatItSeesNothingOfTheWay) {
     config.explore.depthMissing = 1.;
-    const ExplorationResult flight = flown(room());
+    const ExplorationResult flight = flown(test::roomToExplore());
     EXPECT_EQ(nameOf(flight.end), "no way");
     EXPECT_NE(flight.reason.find("sensor does not show"), std::string::npos) << flight.reason;
     EXPECT_LT(flight.flown, 0.5);
@@ -140,19 +114,16 @@ TEST_F(RoomToExplore, SaysThatItSeesNothingOfTheWay) {
 /// Without texture odometry is all there is. The arrival is claimed if it is more likely than not,
 /// with its probability.
 TEST_F(RoomToExplore, ArrivesByOdometryWhereNothingHasTexture) {
-    Scene scene;
-    const auto grey = addTexture(scene, uniformTexture(0.6F));
-    addBox(scene, {0., 0., 0.}, {8., 4., 3.}, grey, BoxInside::hollow);
     config.goal.position.x() = 5.;
     config.belief.motionNoise.diagonal() << 2e-3, 2e-3, 2e-3, 2e-5, 2e-5, 1e-3;
-    const ExplorationResult flight = flown(scene);
+    const ExplorationResult flight = flown(test::greyRoom());
     ASSERT_EQ(nameOf(flight.end), "arrived") << flight.reason;
     EXPECT_LT(flight.goalError, 0.3);
     EXPECT_GT(flight.arrivalProbability, 0.5);
     EXPECT_LT(flight.arrivalProbability, 0.995);
     EXPECT_LT(neesPerDof(flight), 3.);
     config.explore.goalConfidence = 0.995;
-    EXPECT_EQ(nameOf(flown(std::move(scene)).end), "uncertain arrival");
+    EXPECT_EQ(nameOf(flown(test::greyRoom()).end), "uncertain arrival");
 }
 
 /// One world until it becomes another.
@@ -172,9 +143,9 @@ class ChangingViews : public ViewSource {
 
 /// A box comes down on the way, in space that the map has free, when the robot is 1.4 m before it.
 TEST_F(RoomToExplore, FliesAroundABoxThatAppearsInFrontOfIt) {
-    Scene boxed = room();
+    Scene boxed = test::roomToExplore();
     addBox(boxed, {3.2, 1.3, 0.}, {3.6, 2.7, 3.}, addTexture(boxed, valueNoise({.seed = 5})));
-    const World before(room(), config), after(boxed, config);
+    const World before(test::roomToExplore(), config), after(boxed, config);
     const PlanningProblem problem(config, before);
     for (const std::uint32_t seed : {1U, 2U, 3U, 4U}) {
         bool hasChanged = false;
@@ -201,14 +172,14 @@ TEST_F(RoomToExplore, ArrivesThroughABlackoutWithFewDepths) {
     config.fly.blackout = {3., 4.};
     config.fly.drop = 0.2;
     config.explore.depthMissing = 0.5;
-    const ExplorationResult flight = flown(room());
+    const ExplorationResult flight = flown(test::roomToExplore());
     EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
     EXPECT_GT(flight.rejectedImages, 10);
     EXPECT_GT(flight.leastClearance, 0.125);
 }
 
 TEST_F(RoomToExplore, SaysThatTheGoalIsWalledOff) {
-    Scene scene = room();
+    Scene scene = test::roomToExplore();
     addBox(scene, {5.8, 0., 0.}, {6., 4., 3.}, addTexture(scene, valueNoise({.seed = 5})));
     const ExplorationResult flight = flown(std::move(scene));
     EXPECT_EQ(nameOf(flight.end), "no way");
@@ -220,7 +191,7 @@ TEST_F(RoomToExplore, SaysThatTheGoalIsWalledOff) {
 TEST_F(RoomToExplore, RefusesAStartInCollision) {
     config.start.position = {4.7, 2., 1.1};
     try {
-        flown(room());
+        flown(test::roomToExplore());
         FAIL();
     } catch (const InputError& error) {
         EXPECT_NE(std::string(error.what()).find("start: in collision"), std::string::npos);
@@ -229,7 +200,7 @@ TEST_F(RoomToExplore, RefusesAStartInCollision) {
 
 TEST_F(RoomToExplore, ManyFlightsAreTheSameOnAnyNumberOfThreads) {
     config.goal.position.x() = 2.;
-    const World world(room(), config);
+    const World world(test::roomToExplore(), config);
     const PlanningProblem problem(config, world);
     const ExplorationSetup setup = setUpExploration(problem);
     const std::vector<TrialItem> items{

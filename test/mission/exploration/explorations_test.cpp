@@ -5,6 +5,7 @@
 
 #include "flight/flight_statistics.hpp"
 #include "io/error.hpp"
+#include "mission/exploration/room_to_explore.hpp"
 
 namespace photonav {
 namespace {
@@ -111,31 +112,22 @@ TEST(ExplorationSummary, ThereIsOneForEachPlanner) {
     EXPECT_TRUE(summariesByPlanner({}, 1.).empty());
 }
 
-/// An empty room, flown through to its other end.
-class EmptyRoom : public testing::Test {
+/// A flight of half a metre.
+class ShortFlight : public testing::Test {
   protected:
-    EmptyRoom() {
-        config.bounds = {Eigen::Vector3d(0.4, 0.4, 0.8), Eigen::Vector3d(3.6, 3.6, 1.4)};
-        config.start.position = {1., 2., 1.1};
-        config.start.yaw = 0.;
-        config.goal.position = {1.5, 2., 1.1};
-        config.space = StateKind::positionYaw;
-        config.robotRadius = 0.25;
-        config.camera = {.mount = "front45", .width = 94, .height = 60};
+    ShortFlight() {
+        config.goal.position.x() = 1.5;
         config.explore.vertices = 60;
-        Scene scene;
-        const auto walls = addTexture(scene, valueNoise({.size = {4., 3.}, .seed = 2}));
-        addBox(scene, {0., 0., 0.}, {4., 4., 3.}, walls, BoxInside::hollow);
-        world.emplace(std::move(scene), config);
+        world.emplace(test::roomToExplore(), config);
         problem.emplace(config, *world);
     }
 
-    Config config;
+    Config config = test::flightThroughRoom();
     std::optional<World> world;
     std::optional<PlanningProblem> problem;
 };
 
-TEST_F(EmptyRoom, AnInterruptedSetKeepsItsFirstFlight) {
+TEST_F(ShortFlight, AnInterruptedSetKeepsItsFirstFlight) {
     const std::atomic<bool> interrupted{true};
     std::vector<ExplorationResult> flights;
     config.explore.trials = 3;
@@ -146,7 +138,7 @@ TEST_F(EmptyRoom, AnInterruptedSetKeepsItsFirstFlight) {
     EXPECT_EQ(itemOf(flights[0]), trialItems(config).front());
 }
 
-TEST_F(EmptyRoom, EveryEndAndEveryUpdateIsReported) {
+TEST_F(ShortFlight, EveryEndAndEveryUpdateIsReported) {
     std::size_t ended = 0, updated = 0, updates = 0;
     const auto onEnd = [&](const ExplorationResult& flight) {
         ++ended;
@@ -163,7 +155,7 @@ TEST_F(EmptyRoom, EveryEndAndEveryUpdateIsReported) {
     EXPECT_EQ(updated, updates);
 }
 
-TEST_F(EmptyRoom, TrialsAreListedByPlannerThenBySeed) {
+TEST_F(ShortFlight, TrialsAreListedByPlannerThenBySeed) {
     config.seed = 4294967294U;
     config.explore.trials = 2;
     config.explore.planners = {"rrt_star/once", "rrbt"};

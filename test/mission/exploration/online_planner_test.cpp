@@ -7,6 +7,7 @@
 
 #include "exploration/online_planner.hpp"
 #include "geometry/se3.hpp"
+#include "mission/exploration/room_to_explore.hpp"
 
 namespace photonav {
 namespace {
@@ -30,11 +31,7 @@ class OnlinePlannerTest : public ::testing::Test {
     OnlinePlannerTest() {
         config_.bounds = {Eigen::Vector3d(-0.5, -2., 0.8), Eigen::Vector3d(6., 2., 1.2)};
         config_.start.position = {0., 0., 1.};
-        config_.start.yaw = 0.;
         config_.goal.position = {5., 0.5, 1.};
-        config_.space = StateKind::positionYaw;
-        config_.robotRadius = 0.25;
-        config_.camera.mount = "front45";
         config_.camera.width = 40;
         config_.camera.height = 30;
         config_.explore.vertices = 150;
@@ -73,7 +70,7 @@ class OnlinePlannerTest : public ::testing::Test {
         return change;
     }
 
-    Config config_;
+    Config config_ = test::flightThroughRoom();
     std::unique_ptr<OwnMap> map_;
 };
 

@@ -86,12 +86,19 @@ TEST(Corrections, AreOneOnAverageWhereThePriorIsConsistent) {
     EXPECT_GT(meanSquaredCorrection(0.4, 500), 5.);
 }
 
+TrackedFrame tracked(const UncertainPose& prior, const UncertainPose& posterior) {
+    TrackedFrame frame;
+    frame.predicted = prior;
+    frame.T_c_w = posterior;
+    return frame;
+}
+
 TEST(Corrections, AreNotCountedWithoutInformation) {
     const UncertainPose belief{Pose::Identity(), 0.04 * Matrix6::Identity()};
     EXPECT_FALSE(squaredCorrection(belief, belief));
     EXPECT_FALSE(squaredCorrection({Pose::Identity(), Matrix6::Zero()}, belief));
     Corrections corrections;
-    corrections.add(belief, belief);
+    corrections.add(tracked(belief, belief));
     EXPECT_EQ(corrections.varianceFactor(), 1.);
 }
 
@@ -101,11 +108,15 @@ TEST(Corrections, WidenABeliefAsLongAsTheyAreTooLarge) {
     far[0] = 2.;
     const Matrix6 posterior = 1e-4 * Matrix6::Identity();
     Corrections corrections;
-    corrections.add(prior, {expSE3(far), posterior});
+    TrackedFrame rejected = tracked(prior, {expSE3(far), posterior});
+    rejected.rejected = true;
+    corrections.add(rejected);
+    EXPECT_EQ(corrections.varianceFactor(), 1.);
+    corrections.add(tracked(prior, {expSE3(far), posterior}));
     EXPECT_NEAR(corrections.varianceFactor(), 100. / 6., 0.1);
-    for (int i = 0; i < 9; ++i) corrections.add(prior, {Pose::Identity(), posterior});
+    for (int i = 0; i < 9; ++i) corrections.add(tracked(prior, {Pose::Identity(), posterior}));
     EXPECT_NEAR(corrections.varianceFactor(), 10. / 6., 0.1);
-    corrections.add(prior, {Pose::Identity(), posterior});
+    corrections.add(tracked(prior, {Pose::Identity(), posterior}));
     EXPECT_EQ(corrections.varianceFactor(), 1.);
 }
 

@@ -4,48 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "geometry/constants.hpp"
-#include "geometry/se3.hpp"
+#include "mission/obedient_robot.hpp"
 #include "tracking/rooms.hpp"
 
 namespace photonav {
 namespace {
 
 using test::kDown;
-
-/// Moves as commanded, with an image at every step: no part of the simulation.
-class ObedientRobot : public Robot {
-  public:
-    explicit ObedientRobot(std::shared_ptr<const ViewSource> world) : world_(std::move(world)) {}
-
-    Observation fly(const BodyVelocity& command, double seconds) override {
-        Vector6 motion = Vector6::Zero();
-        motion.head<3>() = seconds * command.linear;
-        motion[5] = seconds * command.yawRate;
-        const Pose T_now_next = expSE3(motion);
-        T_w_b = T_w_b * T_now_next;
-        lastCommand = command;
-        time_ += seconds;
-        Observation observation{time_, UncertainPose{T_now_next.inverse()}, {}};
-        observation.T_next_now->covariance = 1e-6 * Matrix6::Identity();
-        if (isBlind) return observation;
-        CameraFrame& frame = observation.frames.emplace_back();
-        frame.time = time_;
-        world_->render(camera_, (T_w_b * T_b_c_).inverse(), frame.view);
-        return observation;
-    }
-    const Camera& camera() const override { return camera_; }
-    const Pose& T_b_c() const override { return T_b_c_; }
-
-    Pose T_w_b = Pose::Identity();
-    BodyVelocity lastCommand;
-    bool isBlind = false;
-
-  private:
-    std::shared_ptr<const ViewSource> world_;
-    Camera camera_ = makeCamera(47, 30, 1.2);
-    Pose T_b_c_ = cameraMount(kDown);
-    double time_ = 0.;
-};
 
 std::vector<PlannedView> straightTo(double x) {
     std::vector<PlannedView> plan(2);
@@ -61,7 +26,6 @@ std::vector<PlannedView> straightTo(double x) {
 class FlightLoop : public ::testing::Test {
   protected:
     FlightLoop() {
-        robot.T_w_b.translation() << 0.05, 0.02, 2.;
         UncertainPose start{(straightTo(1.).front().T_w_b * robot.T_b_c()).inverse()};
         start.covariance = 1e-3 * Matrix6::Identity();
         TrackerOptions options;
@@ -75,8 +39,8 @@ class FlightLoop : public ::testing::Test {
     /// @return duration of the flight [s]
     double flyToGoal() {
         double time = 0.;
-        flyLoop(robot, *tracker, *pilot, 0.1, [&](const std::vector<TrackedFrame>& tracked) {
-            time = tracked.back().time;
+        flyLoop(robot, *tracker, *pilot, 0.1, [&](const Observation& observation, const auto&) {
+            time = observation.time;
             return !pilot->hasArrived(*tracker, time) && time < 60.;
         });
         return time;
@@ -94,7 +58,7 @@ class FlightLoop : public ::testing::Test {
 
     std::shared_ptr<const ViewSource> floor =
         std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
-    ObedientRobot robot{floor};
+    test::ObedientRobot robot{floor, makeCamera(47, 30, 1.2), cameraMount(kDown), {0.05, 0.02, 2.}};
     std::optional<Tracker> tracker;
     std::optional<Pilot> pilot;
     BodyVelocity command;
@@ -124,7 +88,7 @@ TEST_F(FlightLoop, ANewPlanOnTheWayDoesNotStopIt) {
     int plans = 0;
     double slowest = kInfinity;
     BodyVelocity before;
-    flyLoop(robot, *tracker, *pilot, kStep, [&](const std::vector<TrackedFrame>& tracked) {
+    flyLoop(robot, *tracker, *pilot, kStep, [&](const Observation& observation, const auto&) {
         const BodyVelocity& now = robot.lastCommand;
         EXPECT_LT((now.linear - before.linear).norm(), 2. * kStep + 1e-9);
         EXPECT_LT(robot.T_w_b.translation().x(), 3.8);
@@ -132,7 +96,7 @@ TEST_F(FlightLoop, ANewPlanOnTheWayDoesNotStopIt) {
             slowest = std::min(slowest, now.linear.norm());
         }
         before = now;
-        const double time = tracked.back().time;
+        const double time = observation.time;
         if (plans < 5 && robot.T_w_b.translation().x() > 1. + 0.2 * plans) {
             std::vector<PlannedView> plan = straightTo(3.7);
             plan.front().T_w_b = (robot.T_b_c() * tracker->belief().mean).inverse();
@@ -180,8 +144,9 @@ TEST_F(FlightLoop, FliesBackOnTheWayItCameAndOnAlongThePlan) {
 }
 
 TEST_F(FlightLoop, TimeMustPass) {
-    EXPECT_THROW(flyLoop(robot, *tracker, *pilot, 0., [](const auto&) { return false; }),
-                 std::invalid_argument);
+    EXPECT_THROW(
+        flyLoop(robot, *tracker, *pilot, 0., [](const auto&, const auto&) { return false; }),
+        std::invalid_argument);
 }
 
 }  // namespace
