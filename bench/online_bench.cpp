@@ -147,7 +147,7 @@ class Flight {
         MapChange change;
         times.fuse.push_back(milliseconds([&] { change = eye_.fuseInto(*map_, view, position_); }));
         times.world.push_back(milliseconds([&] { world_->mapChanged(change); }));
-        times.views.push_back(milliseconds([&] { problem_->mapChanged(change); }));
+        times.views.push_back(milliseconds([&] { problem_->followMap(); }));
         times.check.push_back(times.fuse.back() + times.world.back() + times.views.back());
         times.viewsMarked.push_back(double(field.marked()) - markedBefore);
         keepClear();

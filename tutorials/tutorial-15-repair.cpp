@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
     for (int i = 0; i < 10; ++i) change.join(look(*map, withBox, config, 2.5, 0.));
     const Stopwatch watch;
     world.mapChanged(change);    // clearance, and the views' snapshot of the map
-    problem.mapChanged(change);  // cached views, and what of the roadmap is in collision now
+    problem.followMap();         // cached views, and what of the roadmap is in collision now
     ompl::base::ScopedState<> here(problem.spaceInformation());
     problem.space().setState(here.get(), {2.5, 2., 1.1}, 0.);
     planner->moveRoot(here.get(), planner->model().root(here.get()));

@@ -91,7 +91,7 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
     const std::size_t viewsBefore = field->views() + exact.views();
     const double viewSecondsBefore = field->seconds() + exact.seconds();
     watch = {};
-    problem_.mapChanged(change);
+    problem_.followMap();
 
     path_.clear();
     const Pose T_w_b = T_c_w.mean.inverse() * config_.camera.T_b_c().inverse();

@@ -22,7 +22,7 @@ struct PlanUpdate {
 
 /// The problem of a config in the robot's own map, its planner and the path found last:
 ///
-///     update(change):  distances and views follow the map   (World, PlanningProblem::mapChanged)
+///     update(change):  distances and views follow the map   (World, PlanningProblem::followMap)
 ///                      what collides or looks otherwise now is repaired      (BeliefPlanner)
 ///                      root and belief move to where the robot is, the search goes on
 ///                      beliefs along the best path                           (path())

@@ -47,6 +47,7 @@ PlanningProblem::PlanningProblem(const Config& config, const World& world,
                                  std::optional<double> alpha, MakeInformationModel photometric)
     : config_(withAlpha(config, alpha.value_or(config.belief.alpha))),
       world_(world),
+      notFollowed_(world.collectChanges()),
       photometric_(std::move(photometric)),
       space_(config.space, config.bounds, config.rotationWeight, config.start.yaw.value_or(0.)),
       si_(makeSpaceInformation(
@@ -62,6 +63,7 @@ PlanningProblem::PlanningProblem(const Config& config, const World& world,
 PlanningProblem::PlanningProblem(const PlanningProblem& other, double alpha)
     : config_(withAlpha(other.config_, alpha)),
       world_(other.world_),
+      notFollowed_(world_.collectChanges()),
       interruption_(other.interruption_),
       photometric_(other.photometric_),
       space_(other.space_),
@@ -69,6 +71,7 @@ PlanningProblem::PlanningProblem(const PlanningProblem& other, double alpha)
       field_(other.field_),
       plannersField_(other.plannersField_),
       evaluator_(std::make_shared<BeliefModel>(space_, field_, optionsWith(config_.belief.kappa))) {
+    *notFollowed_ = *other.notFollowed_;
 }
 
 void PlanningProblem::checkPlaces() const {
@@ -179,7 +182,8 @@ std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(
     return planner;
 }
 
-void PlanningProblem::mapChanged(const MapChange& change) {
+void PlanningProblem::followMap() {
+    const MapChange change = std::exchange(*notFollowed_, {});
     const auto views = interruptibleViews();
     if (hasQuickViews() && field_->size() > kMostExactViews) field_->forget();
     field_->update(views, change);

@@ -79,6 +79,8 @@ class PlanningProblem {
                     MakeInformationModel photometric = photometricModel);
     /// The same problem with another trade-off, over the same views.
     PlanningProblem(const PlanningProblem& other, double alpha);
+    PlanningProblem(PlanningProblem&&) = default;
+    PlanningProblem(const PlanningProblem&) = delete;  // both would share the planners made here
 
     /// @throws InputError for a start or goal in collision
     void checkPlaces() const;
@@ -90,7 +92,7 @@ class PlanningProblem {
                       const std::atomic<bool>& interrupted = kNotInterrupted,
                       const OnPlanProgress& onProgress = {});
     /// Grows a planner of makePlanner() as far as its parameters allow: a new one, or once more one
-    /// after mapChanged().
+    /// after followMap().
     PlanOutcome solve(const std::shared_ptr<BeliefPlanner>& planner,
                       const std::atomic<bool>& interrupted = kNotInterrupted,
                       const OnPlanProgress& onProgress = {});
@@ -139,10 +141,10 @@ class PlanningProblem {
     [[nodiscard]] InterruptionScope interruptedBy(const std::atomic<bool>& interrupted) {
         return {*interruption_, interrupted};
     }
-    /// Updates the cached views and the planners made here, once the map of the world has changed
-    /// and World::mapChanged() was called. Planners keep what is still valid: solve() goes on from
-    /// there. Call it for every problem in the world, one by one.
-    void mapChanged(const MapChange& change);
+    /// Updates the cached views and the planners made here by all changes of World::mapChanged()
+    /// since the last call; until then they are those of the map before. Planners keep what is
+    /// still valid: solve() goes on from there. Call it for every problem in the world, one by one.
+    void followMap();
     const Config& config() const { return config_; }
     const World& world() const { return world_; }
     /// The model that paths are evaluated by.
@@ -174,6 +176,7 @@ class PlanningProblem {
 
     Config config_;  // its kappa may be automatic until it is needed
     const World& world_;
+    std::shared_ptr<MapChange> notFollowed_;  // changes of its map
     /// What ends the rendering of views; of all problems over the same views.
     std::shared_ptr<const std::atomic<bool>*> interruption_ =
         std::make_shared<const std::atomic<bool>*>(&kNotInterrupted);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <mutex>
 #include <stdexcept>
 #include <utility>
 
@@ -51,6 +52,11 @@ Eigen::AlignedBox3d extentOf(const TexturedOcTree& map) {
 
 }  // namespace
 
+struct World::Collectors {
+    std::mutex mutex;  // problems are made on several threads
+    std::vector<std::weak_ptr<MapChange>> changes;
+};
+
 World::World(const Config& config) {
     if (!config.mapMadeBy.empty() && !std::filesystem::exists(config.mapFile)) {
         throw InputError(
@@ -84,7 +90,8 @@ World::World(std::shared_ptr<const TexturedOcTree> map, const Config& config)
 
 World::World(std::shared_ptr<const TexturedOcTree> map,
              std::shared_ptr<const TexturedOcTree> obstacles, const Config& config)
-    : snapshots_(std::in_place, *map, config.unknownToCamera) {
+    : snapshots_(std::in_place, *map, config.unknownToCamera),
+      collectors_(std::make_shared<Collectors>()) {
     views_ = snapshots_->current();
     useMap(std::move(map), std::move(obstacles), config);
 }
@@ -112,6 +119,17 @@ void World::mapChanged(const MapChange& change) {
     if (change.empty()) return;
     distances_.update(*obstacles_, change);
     views_ = snapshots_->update(*map_, change);
+    const std::lock_guard lock(collectors_->mutex);
+    std::erase_if(collectors_->changes, [](const auto& collected) { return collected.expired(); });
+    for (const auto& collected : collectors_->changes) collected.lock()->join(change);
+}
+
+std::shared_ptr<MapChange> World::collectChanges() const {
+    auto collected = std::make_shared<MapChange>();
+    if (!collectors_) return collected;
+    const std::lock_guard lock(collectors_->mutex);
+    collectors_->changes.emplace_back(collected);
+    return collected;
 }
 
 Eigen::AlignedBox3d World::extent() const {

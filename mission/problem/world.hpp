@@ -30,11 +30,15 @@ class World {
           std::shared_ptr<const TexturedOcTree> obstacles, const Config& config);
 
     /// Updates clearance and views after a change of the program's own map, at a cost that grows
-    /// with the change. Nothing else may use the world meanwhile. Next, call
-    /// PlanningProblem::mapChanged() of every planning problem in it.
+    /// with the change. Nothing else may use the world meanwhile. Planning problems in it follow
+    /// when PlanningProblem::followMap() is called.
     /// @param change everything that changed since the last call
     /// @throws std::logic_error for a world made otherwise
     void mapChanged(const MapChange& change);
+
+    /// The map's changes, from now on until they are taken out, are joined in the value returned.
+    /// Nothing is ever added where the map cannot change.
+    std::shared_ptr<MapChange> collectChanges() const;
 
     const ViewSource& views() const { return *views_; }
     /// The same with shared ownership.
@@ -54,12 +58,16 @@ class World {
     ImageF pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const;
 
   private:
+    /// Those who collect changes.
+    struct Collectors;
+
     void useScene(Scene scene, const Config& config);
     void useMap(std::shared_ptr<const TexturedOcTree> map,
                 std::shared_ptr<const TexturedOcTree> obstacles, const Config& config);
 
     std::shared_ptr<const ViewSource> views_;
     std::optional<VoxelSnapshots> snapshots_;  // that views_ is of, where the map may change
+    std::shared_ptr<Collectors> collectors_;   // there, too
     bool hasTexture_ = true;
     DistanceMap distances_;
     std::shared_ptr<const TexturedOcTree> map_;

@@ -28,7 +28,7 @@ int main() {
     photonav::MeshRenderer(wall).render(camera, T_c_w, view);
     const photonav::MapChange change = fuse(*map, view, camera, T_c_w);
     world.mapChanged(change);
-    problem.mapChanged(change);
+    problem.followMap();
     const photonav::PlanOutcome after = problem.solve(planner);
 
     if (!before.isSolved() || !after.isSolved()) return 1;

@@ -141,7 +141,7 @@ TEST(PlanningProblem, FollowsAMapThatChanges) {
 
     const MapChange change = fuseWall(*map, config);
     world.mapChanged(change);
-    problem.mapChanged(change);
+    problem.followMap();
     const PlanOutcome after = problem.solve(planner);
     ASSERT_TRUE(after.isSolved());
     EXPECT_GT(after.path->length, before.path->length + 0.2);
@@ -156,6 +156,31 @@ TEST(PlanningProblem, FollowsAMapThatChanges) {
     }
     EXPECT_EQ(judge.evaluate("again", waypoints).cost, after.path->cost);
     EXPECT_EQ(world.extent().max(), fresh.extent().max());
+}
+
+/// Called too early, a problem has nothing to follow; what it has missed is not lost.
+TEST(PlanningProblem, FollowsAllChangesSinceItsLastCall) {
+    const Config config = emptySpace();
+    const auto map = std::make_shared<TexturedOcTree>(0.1);
+    World world(map, config);
+    PlanningProblem problem(config, world);
+    const auto planner = problem.makePlanner("belief_rrt_star");
+    const double before = problem.solve(planner).path->length;
+
+    const MapChange wall = fuseWall(*map, config);
+    problem.followMap();
+    world.mapChanged(wall);
+    PlanningProblem moved(std::move(problem));
+    const PlanningProblem other(moved, 0.7);  // over the same views, which are not up to date yet
+    map->updateNode(octomap::point3d(1.F, 0.4F, 1.F), true);
+    MapChange more{.resolution = map->getResolution()};
+    more.occupancy.emplace_back(2, 1, 2);
+    world.mapChanged(more);
+    moved.followMap();
+    const PlanOutcome after = moved.solve(planner);
+    ASSERT_TRUE(after.isSolved());
+    EXPECT_GT(after.path->length, before + 0.2);
+    EXPECT_GT(after.path->points.front().information.trace(), 0.);
 }
 
 TEST(PlanningProblem, EvaluatesPathsOfOtherPlanners) {
