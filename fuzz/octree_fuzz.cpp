@@ -3,12 +3,12 @@
 // read again with as many nodes.
 #include "fuzz_input.hpp"
 #include "map/octree_file.hpp"
-#include "report/report.hpp"
+#include "shapes/surroundings.hpp"
 
 void photonav::fuzz::run(std::string_view input) {
     check([&] {
         const auto map = loadTexturedOcTree(write("map.ot", input));
-        require(makeReportVoxels(*map, 1000).grey.size() <= 1000, "voxels are few");
+        require(drawnVoxels(*map, 1000).grey.size() <= 1000, "voxels are few");
         const std::string copy = (folder() / "copy.ot").string();
         saveTexturedOcTree(*map, copy);
         require(loadTexturedOcTree(copy)->size() == map->size(), "a written map is read again");

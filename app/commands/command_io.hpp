@@ -19,6 +19,16 @@ struct CommandOptions {
     std::string commandLine;             ///< as typed, for the report
 };
 
+/// What happens to the results of a run, among the options of a command.
+struct OutputOptions {
+    template <typename Options>
+    OutputOptions(Options& options) : out(options.out), quiet(options.quiet), json(options.json) {}
+
+    std::filesystem::path& out;
+    bool& quiet;
+    bool& json;
+};
+
 /// A single line on standard error that is overwritten on a terminal, and dropped elsewhere.
 class ProgressLine {
   public:

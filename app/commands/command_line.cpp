@@ -34,65 +34,75 @@ std::string complaintAbout(const ConfigKey& key, const std::string& text) {
 
 }  // namespace
 
-void addOutput(CLI::App& parser, OutputOptions output, const std::string& defaultFolder) {
+void addOutput(CLI::App& parser, const OutputOptions& output, const std::string& defaultFolder) {
     parser
         .add_option("--out", output.out, fmt::format("result folder (default: {})", defaultFolder))
+        ->type_name("DIR")
         ->check(notEmpty());
-    parser.add_flag("--quiet", output.quiet, "no progress, no summary");
-    parser.add_flag("--json", output.json, "result.json on standard output");
+    addQuiet(parser, output.quiet);
+    parser.add_flag("--json", output.json, "print result.json on standard output");
 }
 
-void printOutput(const OutputOptions& output, const nlohmann::json& result,
-                 const ReportTable& summary, const std::vector<std::string>& files) {
-    if (output.json) {
-        fmt::print("{}", jsonText(result));
-        return;
-    }
-    if (output.quiet) return;
-    std::size_t width = 0;
-    for (const auto& row : summary.rows) width = std::max(width, row.first.size() + 2);
-    for (const auto& [label, value] : summary.rows) fmt::print("{:<{}}{}\n", label, width, value);
-    for (const std::string& file : files) {
-        fmt::print("{}: {}\n", std::filesystem::path(file).stem().string(),
-                   (output.out / file).string());
-    }
+void addQuiet(CLI::App& parser, bool& quiet) {
+    parser.add_flag("--quiet", quiet, "print no progress and no summary");
 }
 
 void addOverrides(CLI::App& parser, std::vector<std::string>& overrides) {
     parser
-        .add_option("--set", overrides, "override a value of the config (photonav keys lists them)")
+        .add_option_function<std::vector<std::string>>(
+            "--set",
+            [&overrides](const std::vector<std::string>& typed) {
+                overrides.insert(overrides.end(), typed.begin(), typed.end());
+            },
+            "override a value of the config; can be repeated (photonav keys lists the keys)")
         ->type_name("KEY.PATH=VALUE")
         ->allow_extra_args(false);
 }
 
-void addValue(CLI::App& parser, CommandOptions& options, const std::string& name,
-              const std::string& key, const std::string& description) {
-    parser
+CLI::Option* addValue(CLI::App& parser, std::vector<std::string>& overrides,
+                      const std::string& name, const std::string& key,
+                      const std::string& description,
+                      std::function<std::string(const std::string&)> text) {
+    return parser
         .add_option_function<std::string>(
             name,
-            [&options, key](const std::string& value) {
-                options.overrides.insert(options.overrides.begin(), key + "=" + value);
+            [&overrides, key, text = std::move(text)](const std::string& value) {
+                overrides.insert(overrides.begin(), key + "=" + (text ? text(value) : value));
             },
-            description + " (overrides the config)")
+            description + " (default: the config's)")
         ->type_name("VALUE");
+}
+
+void addSeed(CLI::App& parser, std::vector<std::string>& overrides, const std::string& what) {
+    addValue(parser, overrides, "--seed", "seed", what)->check(CLI::Range(1U, 4294967295U));
 }
 
 void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig) {
     parser.add_option("config", options.config, "YAML file of the planning problem")
         ->required(needsConfig);
     addOverrides(parser, options.overrides);
-    addOutput(parser, {options.out, options.quiet, options.json}, "out/<command>-<config>");
+    addOutput(parser, options, "out/<command>-<config>");
+}
+
+void addJobs(CLI::App& parser, unsigned& jobs) {
+    parser.add_option("--jobs", jobs, "number of threads")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
 }
 
 void addManyRuns(CLI::App& parser, ManyRunsOptions& options, const RunWords& words) {
-    parser.add_option("--jobs", options.jobs, "threads")
-        ->check(CLI::Range(1, 4096))
-        ->capture_default_str();
-    parser.add_option("--shard", options.shard, "do only part k of n")->type_name("K/N");
-    parser.add_option("--merge", options.merge, "one result from the folders of all n shards")
+    addJobs(parser, options.jobs);
+    parser.add_option("--shard", options.shard, "do only part K of N of the work")
+        ->type_name("K/N");
+    parser.add_option("--merge", options.merge, "make one result of the folders of all N shards")
         ->type_name("DIR...");
     parser.add_flag("--resume", options.resume,
-                    fmt::format("continue the {}s of the result folder", words.run));
+                    fmt::format("go on with the {}s of the result folder", words.run));
+}
+
+void addRecord(CLI::App& parser, std::filesystem::path& folder) {
+    parser.add_option("--record", folder, "write the first flight as a TUM RGB-D recording")
+        ->type_name("DIR");
 }
 
 std::string optionOf(const ConfigKey& key) {
@@ -120,6 +130,23 @@ void addKeyOptions(CLI::App& parser, const KeyTable& keys, const std::set<std::s
                 ->check([&key](const std::string& text) { return complaintAbout(key, text); });
         }
     }
+}
+
+void addKeyOverrides(CLI::App& parser, const KeyTable& keys, const std::set<std::string>& without,
+                     std::vector<std::string>& overrides) {
+    addKeyOptions(parser, keys, without);
+    parser.parse_complete_callback([&parser, &keys, without, &overrides] {
+        std::vector<std::string> typed;
+        for (const ConfigKey& key : keys.keys()) {
+            const CLI::Option* option = parser.get_option_no_throw(optionOf(key));
+            const bool isTyped = option != nullptr && option->count() > 0;
+            if (!isTyped || without.contains(key.words.name)) continue;
+            std::string value = valueOf(key, option->results().back());
+            if (key.isFile) value = std::filesystem::absolute(value).lexically_normal().string();
+            typed.push_back(fmt::format("{}={}", key.path(), value));
+        }
+        overrides.insert(overrides.begin(), typed.begin(), typed.end());
+    });
 }
 
 std::string folderName(const std::string& path) {

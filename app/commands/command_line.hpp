@@ -11,14 +11,21 @@
 #include "commands/command_io.hpp"
 #include "commands/many_runs.hpp"
 #include "config/key_table.hpp"
-#include "report/report.hpp"
 
 namespace photonav {
+
+/// How a command answers to Ctrl-C and SIGTERM.
+enum class OnInterrupt {
+    finish,        ///< with the results so far; ends at once where there are none yet
+    finishAlways,  ///< it has files of its own, no result folder
+    endAtOnce      ///< there is nothing to keep
+};
 
 /// A subcommand and what to do when it was chosen.
 struct Command {
     CLI::App* parser;
     std::function<int()> run;  ///< returns the exit code; throws InputError
+    OnInterrupt onInterrupt = OnInterrupt::finish;
 };
 
 /// What every command needs besides its own options.
@@ -27,47 +34,64 @@ struct Invocation {
     const std::atomic<bool>& interrupted;
 };
 
-Command checkCommand(CLI::App& app, const Invocation& invocation);
-Command calibrateDepthCommand(CLI::App& app, const Invocation& invocation);
+/// A subcommand, its options as a value of `Options`.
+/// @param addOptions called with the parser and the options, which live as long as the command
+/// @param run called with the options and the flag of an interrupt, returns the exit code
+template <typename Options, typename AddOptions, typename Run>
+Command makeCommand(CLI::App& app, const Invocation& invocation, const char* name,
+                    const char* description, const AddOptions& addOptions, const Run& run) {
+    auto options = std::make_shared<Options>();
+    if constexpr (requires { options->commandLine; }) options->commandLine = invocation.commandLine;
+    CLI::App* parser = app.add_subcommand(name, description)->group("Commands");
+    addOptions(*parser, *options);
+    return {parser, [options, run, &interrupted = invocation.interrupted] {
+                return run(*options, interrupted);
+            }};
+}
+
+using Commands = std::vector<Command>;
+
+// The commands of each folder.
+Commands planCommands(CLI::App& app, const Invocation& invocation);
+Commands comparisonCommands(CLI::App& app, const Invocation& invocation);
+Commands flightCommands(CLI::App& app, const Invocation& invocation);
+Commands explorationCommands(CLI::App& app, const Invocation& invocation);
+Commands recordingCommands(CLI::App& app, const Invocation& invocation);
+Commands toolCommands(CLI::App& app, const Invocation& invocation);
+
 /// Of all commands that `app` has when it runs.
-Command keysCommand(CLI::App& app);
 Command completionCommand(CLI::App& app);
-Command exploreCommand(CLI::App& app, const Invocation& invocation);
-Command flyCommand(CLI::App& app, const Invocation& invocation);
-Command mapCommand(CLI::App& app, const Invocation& invocation);
-Command replayCommand(CLI::App& app, const Invocation& invocation);
-Command servoCommand(CLI::App& app, const Invocation& invocation);
 
-/// What happens to the results of a run.
-struct OutputOptions {
-    std::filesystem::path& out;
-    bool& quiet;
-    bool& json;
-};
-void addOutput(CLI::App& parser, OutputOptions output, const std::string& defaultFolder);
+void addOutput(CLI::App& parser, const OutputOptions& output, const std::string& defaultFolder);
 
-/// result.json as asked for, else the summary and where the `files` of the result folder are.
-void printOutput(const OutputOptions& output, const nlohmann::json& result,
-                 const ReportTable& summary, const std::vector<std::string>& files);
+void addQuiet(CLI::App& parser, bool& quiet);
 
+/// The format of --help.
+std::shared_ptr<CLI::FormatterBase> helpFormat();
+
+/// --set. Options that override a key as well come before it.
 void addOverrides(CLI::App& parser, std::vector<std::string>& overrides);
 
-/// An option that overrides a key of the config, before --set.
-void addValue(CLI::App& parser, CommandOptions& options, const std::string& name,
-              const std::string& key, const std::string& description);
+/// An option that overrides a key of the config, before --set; the config's value is its default.
+/// @param text of the key's value, from what was typed; throws InputError
+CLI::Option* addValue(CLI::App& parser, std::vector<std::string>& overrides,
+                      const std::string& name, const std::string& key,
+                      const std::string& description,
+                      std::function<std::string(const std::string&)> text = {});
+
+/// --seed, as addValue().
+void addSeed(CLI::App& parser, std::vector<std::string>& overrides, const std::string& what);
 
 /// config, --set and the output.
 void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig = true);
 
+void addJobs(CLI::App& parser, unsigned& jobs);
+
 /// --jobs, --shard, --merge and --resume. Shards are merged without a config.
 void addManyRuns(CLI::App& parser, ManyRunsOptions& options, const RunWords& words);
 
-/// --seed as text for an override: a number that a config may hold.
-template <typename Text>
-void addSeed(CLI::App& parser, Text& seed, const std::string& what) {
-    parser.add_option("--seed", seed, what + " (overrides the config)")
-        ->check(CLI::Range(1U, 4294967295U));
-}
+/// --record of the first flight.
+void addRecord(CLI::App& parser, std::filesystem::path& folder);
 
 /// "--body-radius" of the key body_radius.
 std::string optionOf(const ConfigKey& key);
@@ -79,6 +103,11 @@ std::string valueOf(const ConfigKey& key, const std::string& text);
 /// @param keys must outlive the parser
 /// @param without names of keys that are typed in another way
 void addKeyOptions(CLI::App& parser, const KeyTable& keys, const std::set<std::string>& without);
+
+/// The same, and what was typed goes over the config, as with addValue(). Files are meant from the
+/// working directory.
+void addKeyOverrides(CLI::App& parser, const KeyTable& keys, const std::set<std::string>& without,
+                     std::vector<std::string>& overrides);
 
 /// Last part of a path, without a closing slash.
 std::string folderName(const std::string& path);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "commands/path_inside.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
@@ -35,6 +37,37 @@ FolderTransaction beginResult(const CommandOptions& options, const std::string& 
 void commitResult(FolderTransaction& folder, const nlohmann::json& result) {
     writeFileAtomically(folder.path() / "result.json", jsonText(result));
     folder.commit();
+}
+
+void concludeResult(FolderTransaction& folder, const CommandOptions& options,
+                    const nlohmann::json& result, const std::function<void()>& printSummary) {
+    commitResult(folder, result);
+    if (options.json) {
+        fmt::print("{}", jsonText(result));
+    } else if (!options.quiet) {
+        printSummary();
+        printFile(folder.target() / "report.html");
+    }
+}
+
+void printOutput(const OutputOptions& output, const nlohmann::json& result,
+                 const ReportTable& summary, const std::vector<std::string>& files) {
+    if (output.json) {
+        fmt::print("{}", jsonText(result));
+    } else if (!output.quiet) {
+        printTable(summary);
+        for (const std::string& file : files) printFile(output.out / file);
+    }
+}
+
+void printTable(const ReportTable& table) {
+    std::size_t width = 0;
+    for (const auto& row : table.rows) width = std::max(width, row.first.size() + 2);
+    for (const auto& [label, value] : table.rows) fmt::print("{:<{}}{}\n", label, width, value);
+}
+
+void printFile(const fs::path& file) {
+    fmt::print("{}: {}\n", file.stem().string(), file.string());
 }
 
 }  // namespace photonav

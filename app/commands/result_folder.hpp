@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The folder that a command writes its results to.
+// The folder that a command writes its results to, and what it prints at the end.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "commands/command_io.hpp"
 #include "io/folder_transaction.hpp"
+#include "report/report.hpp"
 
 namespace photonav {
 
@@ -28,5 +30,19 @@ FolderTransaction beginResult(const CommandOptions& options, const std::string& 
 
 /// Writes result.json, the last file of a result, and commits the folder.
 void commitResult(FolderTransaction& folder, const nlohmann::json& result);
+
+/// The same, and then prints result.json as asked for, else a summary and where the report is.
+void concludeResult(FolderTransaction& folder, const CommandOptions& options,
+                    const nlohmann::json& result, const std::function<void()>& printSummary);
+
+/// Prints result.json as asked for, else the summary and where the `files` of the folder are.
+void printOutput(const OutputOptions& output, const nlohmann::json& result,
+                 const ReportTable& summary, const std::vector<std::string>& files);
+
+/// Prints the rows, values below each other.
+void printTable(const ReportTable& table);
+
+/// "report: out/plan-room/report.html"
+void printFile(const std::filesystem::path& file);
 
 }  // namespace photonav

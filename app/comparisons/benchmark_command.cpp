@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/benchmark_command.hpp"
+#include "comparisons/benchmark_command.hpp"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 
 #include "commands/result_folder.hpp"
+#include "comparisons/sweep_report.hpp"
+#include "figures/sweep_figures.hpp"
 #include "io/atomic_file.hpp"
 #include "io/stopwatch.hpp"
 #include "problem/planning_problem.hpp"
 #include "report/problem_report.hpp"
-#include "report/sweep_figures.hpp"
-#include "report/sweep_report.hpp"
-#include "result/json_values.hpp"
 #include "sweep/planner_benchmark.hpp"
 
 namespace photonav {
@@ -21,32 +20,22 @@ using nlohmann::json;
 namespace {
 
 Config loadBenchmarkConfig(const BenchmarkOptions& options) {
-    Config config = loadConfig(options.config, options.lists.after(options.overrides));
+    Config config = loadConfig(options.config, options.overrides);
     checkSeeds(config, config.sweep.runs);
     config.sweep.alphas = {config.belief.alpha};
     return config;
 }
 
-std::string statusOf(const BenchmarkOutcome& outcome, bool stopped) {
-    if (stopped) return "interrupted";
-    const bool anySolved = std::any_of(outcome.runs.begin(), outcome.runs.end(),
-                                       [](const SweepRun& run) { return run.isSolved(); });
-    return anySolved ? "done" : "no path";
-}
-
 json benchmarkResult(const Config& config, const BenchmarkOutcome& outcome, bool stopped,
                      double seconds) {
-    json result{{"schema", 1},
-                {"command", "benchmark"},
-                {"version", PHOTONAV_VERSION},
-                {"status", statusOf(outcome, stopped)},
-                {"planners", config.sweep.planners},
-                {"alpha", config.belief.alpha},
-                {"first_seed", config.seed},
-                {"runs_per_planner", config.sweep.runs},
-                {"time", {{"total_s", seconds}}},
-                {"runs", json::array()},
-                {"summary", json::array()}};
+    json result = resultJson("benchmark", {{"status", sweepStatus(outcome.runs, stopped)},
+                                           {"planners", config.sweep.planners},
+                                           {"alpha", config.belief.alpha},
+                                           {"first_seed", config.seed},
+                                           {"runs_per_planner", config.sweep.runs},
+                                           {"time", {{"total_s", seconds}}},
+                                           {"runs", json::array()},
+                                           {"summary", json::array()}});
     for (const SweepRun& run : outcome.runs) result["runs"].push_back(toJson(run));
     for (const SweepCell& cell : summarize(config.sweep, outcome.runs, {})) {
         result["summary"].push_back(toJson(cell));
@@ -102,7 +91,6 @@ void writeReport(const fs::path& folder, const BenchmarkOptions& options, const 
           {"Cost of the best path over time, a line per run of the planners that minimise it.",
            costOverTimeFigure("Best cost over time", config.sweep.planners, comparable(outcome))
                .png()}}});
-    writeFileAtomically(folder / "result.json", jsonText(result));
 }
 
 }  // namespace
@@ -136,15 +124,10 @@ int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& inter
     const double seconds = watch.seconds();
     const json result = benchmarkResult(config, outcome, stopped, seconds);
     writeReport(folder.path(), options, config, world, outcome, result);
-    folder.commit();
-    if (options.json) {
-        fmt::print("{}", jsonText(result));
-    } else if (!options.quiet) {
-        fmt::print("{}\nlog: {}\nreport: {}\n",
-                   sweepTable(summarize(config.sweep, outcome.runs, {})),
-                   (folder.target() / "benchmark.log").string(),
-                   (folder.target() / "report.html").string());
-    }
+    concludeResult(folder, options, result, [&] {
+        fmt::print("{}\nlog: {}\n", sweepTable(summarize(config.sweep, outcome.runs, {})),
+                   (folder.target() / "benchmark.log").string());
+    });
     if (stopped) return kInterrupted;
     return result["status"] == "done" ? kDone : kNoAnswer;
 }

@@ -6,12 +6,10 @@
 #include <optional>
 
 #include "commands/command_io.hpp"
-#include "commands/sweep_lists.hpp"
 
 namespace photonav {
 
 struct BenchmarkOptions : CommandOptions {
-    SweepLists lists;         ///< without alphas
     double interval = 0.01;   ///< between samples of the progress [s]
     double timeLimit = 600.;  ///< of a run [s]; runs end with their vertices before
 };

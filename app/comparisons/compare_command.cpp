@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/compare_command.hpp"
+#include "comparisons/compare_command.hpp"
 
 #include <fmt/format.h>
 
@@ -14,77 +14,24 @@
 #include "planners/planner_table.hpp"
 #include "render/interruptible_views.hpp"
 #include "report/problem_report.hpp"
-#include "sweep/sweep_plan.hpp"
+#include "result/json_values.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-constexpr unsigned kRrbtVertices = 400;
-
-using Values = std::vector<double>;
-
 std::string nameOf(const Config& config) { return fs::path(config.file).stem().string(); }
 
-std::string meanAndDeviation(const Values& values, int decimals) {
-    if (values.empty()) return "-";
-    const auto n = static_cast<double>(values.size());
-    double mean = 0.;
-    for (const double v : values) mean += v / n;
-    if (values.size() == 1) return fmt::format("{:.{}f}", mean, decimals);
-    double variance = 0.;
-    for (const double v : values) variance += (v - mean) * (v - mean) / (n - 1.);
-    return fmt::format("{:.{}f} ± {:.{}f}", mean, decimals, std::sqrt(variance), decimals);
-}
-
-/// Three digits, whatever the order of magnitude.
-std::string traceText(const Values& values) {
-    double largest = 0.;
-    for (const double v : values) largest = std::max(largest, std::abs(v));
-    const bool isNumber = largest > 0. && std::isfinite(largest);
-    const int decimals = isNumber ? 2 - static_cast<int>(std::floor(std::log10(largest))) : 2;
-    return meanAndDeviation(values, std::clamp(decimals, 0, 12));
-}
-
-std::string tableRow(const std::string& method, const std::vector<const CompareRun*>& runs) {
-    const auto ofPath = [&](double EvaluatedPath::*value) {
-        Values values;
-        for (const CompareRun* run : runs) {
-            if (run->outcome.path) values.push_back((*run->outcome.path).*value);
-        }
-        return values;
-    };
-    const auto ofRun = [&](const std::function<double(const PlanOutcome&)>& value) {
-        Values values;
-        for (const CompareRun* run : runs) values.push_back(value(run->outcome));
-        return values;
-    };
-    const Values costs = ofPath(&EvaluatedPath::cost);
-    const std::string label =
-        costs.size() == runs.size()
-            ? method
-            : fmt::format("{} ({} of {} found a path)", method, costs.size(), runs.size());
-    return fmt::format(
-        "| {} | {} | {} | {} | {} | {} | {} | {} |\n", label, meanAndDeviation(costs, 3),
-        meanAndDeviation(ofPath(&EvaluatedPath::length), 2),
-        traceText(ofPath(&EvaluatedPath::meanTrace)), traceText(ofPath(&EvaluatedPath::goalTrace)),
-        meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.vertices); }), 0),
-        meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.views); }), 0),
-        meanAndDeviation(ofRun([](const auto& o) { return o.planSeconds; }), 1));
-}
-
-json jsonOf(const CompareRun& run) {
-    const PlanOutcome& o = run.outcome;
-    json result{{"method", run.method}, {"seed", run.seed},         {"vertices", o.vertices},
-                {"views", o.views},     {"seconds", o.planSeconds}, {"status", run.status}};
-    if (!o.path) return result;
-    result.update({{"cost", o.path->cost},
-                   {"planner_cost", o.plannerCost},
-                   {"length", o.path->length},
-                   {"mean_trace", o.path->meanTrace},
-                   {"goal_trace", o.path->goalTrace}});
-    return result;
+/// Planners with the photometric model, or without views, have their own colours.
+Color colorOf(const CompareMethod& method) {
+    static const std::map<std::string, Color> kColors{{"feature_reprojection", {86, 180, 233}},
+                                                      {"feature_count", {204, 121, 167}},
+                                                      {"map_uncertainty", {110, 60, 160}},
+                                                      {"none", {90, 90, 90}}};
+    const auto own = kColors.find(method.information);
+    const bool isOwn = usesViews(method.planner) && own != kColors.end();
+    return isOwn ? own->second : plannerColor(method.planner);
 }
 
 /// The first path of every method from above.
@@ -97,7 +44,7 @@ Png picture(const Config& config, const World& world, const std::vector<CompareR
         if (run == runs.end()) continue;
         DrawnPath& path = paths.emplace_back(drawnPath(*run->outcome.path, config.camera.T_b_c()));
         path.name = method.label();
-        path.color = method.color;
+        path.color = colorOf(method);
     }
     TopView view = viewFromAbove(config, world, paths);
     view.title = fmt::format("{}, alpha {}", nameOf(config), config.belief.alpha);
@@ -153,65 +100,17 @@ json writeScenario(const Config& config, const World& world, const std::vector<C
                   {"alpha", config.belief.alpha},
                   {"kappa", config.belief.kappa},
                   {"runs", json::array()}};
-    for (const CompareRun& run : runs) scenario["runs"].push_back(jsonOf(run));
+    for (const CompareRun& run : runs) scenario["runs"].push_back(toJson(run));
     return scenario;
 }
 
 }  // namespace
 
-std::string CompareMethod::label() const {
-    if (!usesViews(planner)) return planner;
-    return planner + ", " + information;
-}
-
-const std::vector<CompareMethod>& compareMethods() {
-    static const std::vector<CompareMethod> methods{
-        {"belief_rrt_star", "photometric", plannerColor("belief_rrt_star")},
-        {"pa_rrt_star", "photometric", plannerColor("pa_rrt_star")},
-        {"rrbt", "photometric", plannerColor("rrbt"), kRrbtVertices},
-        {"belief_rrt_star", "feature_reprojection", {86, 180, 233}},
-        {"belief_rrt_star", "feature_count", {204, 121, 167}},
-        {"belief_rrt_star", "map_uncertainty", {110, 60, 160}},
-        {"belief_rrt_star", "none", {90, 90, 90}},
-        {"rrt_star", "none", plannerColor("rrt_star")}};
-    return methods;
-}
-
-CompareRun runMethod(const Config& config, const World& world, const CompareMethod& method,
-                     std::uint32_t seed, const std::atomic<bool>& interrupted) {
-    Config own = config;
-    own.seed = seed;
-    own.viewModel.name = method.information;
-    if (method.maxVertices > 0) own.vertices = std::min(own.vertices, method.maxVertices);
-    PlanningProblem problem(own, world);
-    PlanOutcome outcome = problem.solve(method.planner, interrupted);
-    const std::string status = problem.statusOf(outcome);
-    return {method.label(), seed, std::move(outcome), status};
-}
-
-std::string compareTable(const std::vector<CompareRun>& runs) {
-    std::string table =
-        "| planner, information | cost J | length [m] | mean trace [m²] | goal trace [m² + "
-        "rad²] | "
-        "vertices | views | seconds |\n|---|---|---|---|---|---|---|---|\n";
-    for (const CompareMethod& method : compareMethods()) {
-        std::vector<const CompareRun*> own;
-        for (const CompareRun& run : runs) {
-            if (run.method == method.label()) own.push_back(&run);
-        }
-        if (!own.empty()) table += tableRow(method.label(), own);
-    }
-    return table;
-}
-
 int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupted) {
     const std::vector<Config> configs = loadConfigs(options);
     FolderTransaction folder =
         beginResult(options.out, {options.configs.begin(), options.configs.end()});
-    json result{{"schema", 1},
-                {"command", "compare"},
-                {"version", PHOTONAV_VERSION},
-                {"scenarios", json::array()}};
+    json result = resultJson("compare", {{"scenarios", json::array()}});
     bool anyPath = false;
     for (const Config& given : configs) {
         const World world(given);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/reference_command.hpp"
+#include "comparisons/reference_command.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,9 +7,7 @@
 #include "commands/command_io.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
-#include "problem/planning_problem.hpp"
-#include "render/interruptible_views.hpp"
-#include "sweep/reference_table.hpp"
+#include "sweep/reference_search.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -25,10 +23,6 @@ void prepareFolder(const fs::path& folder) {
     fs::remove(probe, error);
 }
 
-Config loadReferenceConfig(const ReferenceOptions& options) {
-    return loadConfig(options.config, options.lists.after(options.overrides));
-}
-
 /// With the effort of references, but the kappa of the sweeps that are compared with them.
 Config withEffort(const Config& config, const ReferenceOptions& options, const World& world,
                   const std::atomic<bool>& interrupted) {
@@ -37,71 +31,6 @@ Config withEffort(const Config& config, const ReferenceOptions& options, const W
     effort.search.labels = options.labels;
     return effort;
 }
-
-std::vector<Pose> waypointsOf(const EvaluatedPath& path) {
-    std::vector<Pose> waypoints;
-    for (const BeliefPoint& point : path.points) {
-        if (point.isWaypoint) waypoints.push_back(point.T_w_b);
-    }
-    return waypoints;
-}
-
-/// All that is done for one alpha.
-class Search {
-  public:
-    Search(const ReferenceOptions& options, Config config, const World& world,
-           ReferenceTable& table, const std::atomic<bool>& interrupted)
-        : options_(options),
-          config_(std::move(config)),
-          problem_(config_, world),
-          table_(table),
-          interrupted_(interrupted) {
-        problem_.checkPlaces();
-    }
-
-    /// The path known so far may be of another problem, or not at its best yet.
-    void refresh() {
-        const ReferencePath* known = table_.at(config_.belief.alpha);
-        if (known == nullptr) return;
-        const ReferencePath path = *known;
-        table_.drop(path.alpha);
-        descend(path.waypoints, path);
-    }
-
-    void plan(const std::string& planner, std::uint32_t seed) {
-        PlanOutcome outcome;
-        try {
-            outcome = problem_.solve(problem_.makePlanner(planner, seed), interrupted_);
-        } catch (const RenderingStopped&) {
-            return;
-        }
-        if (!outcome.path) return;
-        descend(waypointsOf(*outcome.path), {.alpha = config_.belief.alpha,
-                                             .planner = planner,
-                                             .vertices = config_.vertices,
-                                             .labels = config_.search.labels,
-                                             .seed = seed});
-    }
-
-  private:
-    void descend(const std::vector<Pose>& waypoints, ReferencePath path) {
-        const DescentOptions descent{.moves = options_.moves, .seed = path.seed};
-        const auto descended = problem_.descend(waypoints, descent, interrupted_);
-        if (!descended) return;
-        path.cost = descended->cost;
-        path.length = descended->length;
-        path.meanTrace = descended->meanTrace;
-        path.goalTrace = descended->goalTrace;
-        path.waypoints = waypointsOf(*descended);
-        table_.offer(path);
-    }
-
-    const ReferenceOptions& options_;
-    Config config_;
-    PlanningProblem problem_;
-    ReferenceTable& table_;
-    const std::atomic<bool>& interrupted_;
-};
 
 std::string budgetOf(const ReferenceOptions& options, const Config& config) {
     return fmt::format(
@@ -124,7 +53,7 @@ void print(const ReferenceTable& table) {
 }  // namespace
 
 int runReference(const ReferenceOptions& options, const std::atomic<bool>& interrupted) {
-    const Config given = loadReferenceConfig(options);
+    const Config given = loadConfig(options.config, options.overrides);
     const World world(given);
     const fs::path source(options.config);
     const fs::path file = options.file.empty() ? source.parent_path() / "reference" /
@@ -140,7 +69,7 @@ int runReference(const ReferenceOptions& options, const std::atomic<bool>& inter
     for (const double alpha : config.sweep.alphas) {
         Config own = config;
         own.belief.alpha = alpha;
-        Search search(options, own, world, table, interrupted);
+        ReferenceSearch search(own, options.moves, world, table, interrupted);
         if (!options.fromScratch) {
             search.refresh();
             table.write();

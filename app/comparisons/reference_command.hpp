@@ -7,14 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "commands/sweep_lists.hpp"
-
 namespace photonav {
 
 struct ReferenceOptions {
     std::string config;                  ///< YAML file
     std::vector<std::string> overrides;  ///< key.path=value
-    SweepLists lists;                    ///< of alphas and planners; default: the config's
     unsigned runs = 10;                  ///< seeds per planner and alpha
     unsigned vertices = 20000;
     unsigned labels = 20;

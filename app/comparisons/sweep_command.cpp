@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/sweep_command.hpp"
+#include "comparisons/sweep_command.hpp"
 
 #include <fmt/format.h>
 
+#include "comparisons/sweep_report.hpp"
 #include "io/error.hpp"
 #include "io/reading.hpp"
 #include "io/stopwatch.hpp"
 #include "problem/planning_problem.hpp"
-#include "report/sweep_report.hpp"
-#include "result/json_values.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
 namespace {
 
 /// The config, with what was typed in place of its values.
-Config loadSweepConfig(const SweepOptions& options, const std::string& file) {
-    Config config = loadConfig(file, options.lists.after(options.overrides));
+Config loadSweepConfig(const ManyRunsOptions& options, const std::string& file) {
+    Config config = loadConfig(file, options.overrides);
     checkSeeds(config, config.sweep.runs);
     return config;
 }
@@ -24,26 +23,23 @@ Config loadSweepConfig(const SweepOptions& options, const std::string& file) {
 std::string nameOf(const std::string& file) { return fs::path(file).stem().string(); }
 
 /// The last step of every sweep: sort, report, print.
-int conclude(const SweepOptions& options, const Config& config, const World& world,
+int conclude(const ManyRunsOptions& options, const Config& config, const World& world,
              FolderTransaction& folder, SweepOutcome outcome, const ReferenceCosts& reference,
              const Stopwatch& watch) {
     outcome.commandLine = options.commandLine;
     outcome.seconds = watch.seconds();
     const nlohmann::json result = sweepResult(config, outcome, reference);
     writeSweepReport(folder.path(), config, world, outcome, reference, result);
-    folder.commit();
-    if (options.json) {
-        fmt::print("{}", jsonText(result));
-    } else if (!options.quiet) {
+    concludeResult(folder, options, result, [&] {
         fmt::print("{}\n", sweepTable(summarize(config.sweep, outcome.runs, reference)));
         std::map<std::string, int> failures;
         for (const SweepRun& run : outcome.runs) {
             if (!run.isSolved()) ++failures[run.item.planner + ": " + run.status];
         }
         for (const auto& [reason, runs] : failures) fmt::print("{} ({} runs)\n", reason, runs);
-        fmt::print("{} of {} runs, {}\nreport: {}\n", outcome.runs.size(), outcome.asked,
-                   durationText(outcome.seconds), (folder.target() / "report.html").string());
-    }
+        fmt::print("{} of {} runs, {}\n", outcome.runs.size(), outcome.asked,
+                   durationText(outcome.seconds));
+    });
     if (outcome.interrupted) return kInterrupted;
     return result["status"] == "done" ? kDone : kNoAnswer;
 }
@@ -58,12 +54,12 @@ ReferenceCosts referenceOf(const Config& config) {
     }
 }
 
-FolderTransaction beginSweep(const SweepOptions& options, const Config& config,
+FolderTransaction beginSweep(const ManyRunsOptions& options, const Config& config,
                              const fs::path& folder) {
     return beginRuns(options, folder, {config.sceneFile, config.mapFile, config.sweep.reference});
 }
 
-int sweepAll(const SweepOptions& options, const std::atomic<bool>& interrupted) {
+int sweepAll(const ManyRunsOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
     const Config config = loadSweepConfig(options, options.config);
     const ReferenceCosts reference = referenceOf(config);
@@ -101,7 +97,7 @@ int sweepAll(const SweepOptions& options, const std::atomic<bool>& interrupted) 
                     watch);
 }
 
-int mergeSweep(const SweepOptions& options) {
+int mergeSweep(const ManyRunsOptions& options) {
     const Stopwatch watch;
     const auto shards = readShards<SweepKind>(options.merge);
     JournalHeader header = shards.front().header();
@@ -125,7 +121,7 @@ int mergeSweep(const SweepOptions& options) {
 
 }  // namespace
 
-int runSweep(const SweepOptions& options, const std::atomic<bool>& interrupted) {
+int runSweep(const ManyRunsOptions& options, const std::atomic<bool>& interrupted) {
     return isMerge(options, SweepKind::kWords) ? mergeSweep(options)
                                                : sweepAll(options, interrupted);
 }

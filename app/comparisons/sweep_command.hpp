@@ -5,19 +5,14 @@
 #include <atomic>
 
 #include "commands/many_runs.hpp"
-#include "commands/sweep_lists.hpp"
 
 namespace photonav {
-
-struct SweepOptions : ManyRunsOptions {
-    SweepLists lists;  ///< typed, instead of the config's
-};
 
 /// Runs all combinations and writes runs.jsonl, runs.csv, summary.csv, sweep.png, pareto.png,
 /// paths.png, config.yaml, report.json, report.html and result.json.
 /// @param interrupted when set, the runs in progress are dropped and the rest is reported (130)
 /// @return the exit code; 1 when no run found a path
 /// @throws InputError for bad input, before anything is written
-int runSweep(const SweepOptions& options, const std::atomic<bool>& interrupted);
+int runSweep(const ManyRunsOptions& options, const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

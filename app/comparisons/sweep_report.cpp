@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/sweep_report.hpp"
+#include "comparisons/sweep_report.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "figures/sweep_figures.hpp"
 #include "geometry/constants.hpp"
 #include "io/atomic_file.hpp"
 #include "report/problem_report.hpp"
-#include "report/sweep_figures.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
@@ -23,29 +23,6 @@ std::string counted(std::size_t count, const std::string& noun, const std::strin
 }
 
 constexpr const char* kBlank = "-";  // in the table
-
-const std::vector<std::string> kRunKeys{"planner", "alpha",      "seed",       "cost",
-                                        "length",  "mean_trace", "goal_trace", "vertices",
-                                        "views",   "seconds",    "excess",     "status"};
-
-std::vector<std::string> summaryKeys(const ReferenceCosts& reference) {
-    std::vector<std::string> keys{"planner", "alpha", "runs", "solved"};
-    for (const SweepColumn& column : sweepColumns(reference)) {
-        keys.push_back(column.name + "_mean");
-        keys.push_back(column.name + "_std");
-    }
-    for (const char* key : {"paper_length", "paper_mean_trace", "paper_goal_trace"}) {
-        keys.emplace_back(key);
-    }
-    return keys;
-}
-
-std::string statusOf(const SweepOutcome& outcome) {
-    if (outcome.interrupted) return "interrupted";
-    const bool anySolved = std::any_of(outcome.runs.begin(), outcome.runs.end(),
-                                       [](const SweepRun& run) { return run.isSolved(); });
-    return anySolved ? "done" : "no path";
-}
 
 /// The cheapest path of the first planner for every alpha with its beliefs, coloured from dark
 /// (alpha 0) to bright (1). Runs keep headings alone: in se3 the beliefs are those of level flight.
@@ -82,20 +59,6 @@ std::string padded(const std::string& text, std::size_t width) {
     const auto characters = static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
     return std::string(width > characters ? width - characters : 0, ' ') + text;
-}
-
-/// Decimals of traces in the table: two digits of the smallest one, four at least.
-int traceDecimals(const std::vector<SweepCell>& cells) {
-    double smallest = kInfinity;
-    for (const SweepCell& cell : cells) {
-        for (const char* column : {"mean_trace", "goal_trace"}) {
-            const double mean = cell.columns.at(column).mean;
-            if (mean > 0.) smallest = std::min(smallest, mean);
-        }
-    }
-    constexpr int kFewest = 4;
-    if (smallest == kInfinity) return kFewest;
-    return std::max(kFewest, 1 - static_cast<int>(std::floor(std::log10(smallest))));
 }
 
 /// A column of the table.
@@ -147,35 +110,6 @@ std::vector<TextColumn> textColumns(const std::vector<SweepCell>& cells, int dec
 
 }  // namespace
 
-json sweepResult(const Config& config, const SweepOutcome& outcome,
-                 const ReferenceCosts& reference) {
-    json result{{"schema", 1},
-                {"command", "sweep"},
-                {"version", PHOTONAV_VERSION},
-                {"status", statusOf(outcome)},
-                {"config", outcome.name},
-                {"planners", config.sweep.planners},
-                {"alphas", config.sweep.alphas},
-                {"kappa", config.belief.kappa},
-                {"first_seed", config.seed},
-                {"runs_per_cell", config.sweep.runs},
-                {"shard", toString(outcome.shard)},
-                {"runs_done", outcome.runs.size()},
-                {"runs_asked", outcome.asked},
-                {"time", {{"total_s", outcome.seconds}}},
-                {"runs", json::array()},
-                {"summary", json::array()}};
-    for (const SweepRun& run : outcome.runs) {
-        json row = toJson(run);
-        row["excess"] = finiteOrNull(reference.excess(run));
-        result["runs"].push_back(row);
-    }
-    const auto cells = summarize(config.sweep, outcome.runs, reference);
-    result["trace_decimals"] = traceDecimals(cells);
-    for (const SweepCell& cell : cells) result["summary"].push_back(toJson(cell));
-    return result;
-}
-
 void writeSweepReport(const fs::path& folder, const Config& config, const World& world,
                       const SweepOutcome& outcome, const ReferenceCosts& reference,
                       const json& result) {
@@ -189,8 +123,7 @@ void writeSweepReport(const fs::path& folder, const Config& config, const World&
                     counted(config.sweep.runs, "seed"));
     report.paths = pathsByAlpha(config, world, outcome.runs);
 
-    writeFileAtomically(folder / "runs.csv", toCsv(result["runs"], kRunKeys));
-    writeFileAtomically(folder / "summary.csv", toCsv(result["summary"], summaryKeys(reference)));
+    writeSweepTables(folder, result, reference);
     writeFileAtomically(folder / "sweep.png", sweepFigure(outcome.name, cells).png());
     writeFileAtomically(folder / "pareto.png",
                         frontFigure(outcome.name, cells, outcome.runs).png());
@@ -199,7 +132,6 @@ void writeSweepReport(const fs::path& folder, const Config& config, const World&
                         {"The cheapest path of " + config.sweep.planners.front() +
                              " for every alpha, from above.",
                          topViewFigure(pathsView(config, world, report.paths)).png()}}});
-    writeFileAtomically(folder / "result.json", jsonText(result));
 }
 
 std::string sweepTable(const std::vector<SweepCell>& cells) {

@@ -6,27 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "sweep/sweep_summary.hpp"
+#include "sweep/sweep_result.hpp"
 
 namespace photonav {
 
-/// The outcome of a sweep, of one run or merged from shards.
-struct SweepOutcome {
-    std::string name;  ///< of the config
-    std::string commandLine;
-    Shard shard;
-    std::vector<SweepRun> runs;  ///< in the order of sweepItems()
-    std::size_t asked = 0;       ///< runs there should be
-    bool interrupted = false;
-    double seconds = 0.;  ///< since the command was started
-};
-
-/// result.json of `photonav sweep`.
-nlohmann::json sweepResult(const Config& config, const SweepOutcome& outcome,
-                           const ReferenceCosts& reference);
-
 /// Writes config.yaml, runs.csv, summary.csv, sweep.png, pareto.png, paths.png, report.json,
-/// report.html and at last result.json.
+/// report.html.
 void writeSweepReport(const std::filesystem::path& folder, const Config& config, const World& world,
                       const SweepOutcome& outcome, const ReferenceCosts& reference,
                       const nlohmann::json& result);

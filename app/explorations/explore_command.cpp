@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/explore_command.hpp"
+#include "explorations/explore_command.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "commands/flight_recording.hpp"
-#include "commands/flight_watch.hpp"
 #include "commands/result_folder.hpp"
 #include "exploration/trial_journal.hpp"
+#include "explorations/explore_report.hpp"
+#include "explorations/flight_watch.hpp"
+#include "figures/explore_film.hpp"
+#include "flights/flight_recording.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
-#include "report/explore_film.hpp"
-#include "report/explore_report.hpp"
-#include "report/fly_report.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 
@@ -60,7 +59,7 @@ FolderTransaction beginExploration(const ExploreOptions& options, const Config& 
     return beginRuns(options, folder, {config.sceneFile, config.mapFile});
 }
 
-void print(const ExploreOutcome& outcome, const fs::path& folder) {
+void print(const ExploreOutcome& outcome) {
     const std::vector<ExplorationResult>& flights = outcome.flights;
     if (flights.size() == 1) printFlight(flights.front(), outcome.summaries.front());
     if (flights.size() > 1) printSummary(outcome.summaries);
@@ -68,7 +67,6 @@ void print(const ExploreOutcome& outcome, const fs::path& folder) {
         fmt::print("{} of {} flights ended{}\n", outcome.ended, outcome.asked,
                    outcome.interrupted ? " and are kept; fly the others with --resume" : "");
     }
-    fmt::print("report: {}\n", (folder / "report.html").string());
 }
 
 /// @throws InputError where the first flight has no log
@@ -86,19 +84,13 @@ void film(const ExploreOptions& options, const ExplorationSetup& setup, const Wo
 int conclude(const ExploreOptions& options, const ExplorationSetup& setup, const World& world,
              FolderTransaction& folder, ExploreOutcome outcome, const Stopwatch& watch,
              const std::atomic<bool>& interrupted) {
-    outcome.commandLine = options.commandLine;
     outcome.summaries =
         summariesByPlanner(outcome.flights, setup.config.belief.characteristicLength);
     nlohmann::json result = exploreResult(setup, outcome);
     result["time"]["total_s"] = watch.seconds();
     writeExploreReport(folder.path(), setup, world, outcome, result);
     if (options.film) film(options, setup, world, folder.path(), outcome, interrupted);
-    commitResult(folder, result);
-    if (options.json) {
-        fmt::print("{}", jsonText(result));
-    } else if (!options.quiet) {
-        print(outcome, folder.target());
-    }
+    concludeResult(folder, options, result, [&] { print(outcome); });
     if (outcome.interrupted) return kInterrupted;
     return hasArrived(outcome.flights) ? kDone : kNoAnswer;
 }
@@ -224,13 +216,12 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     const std::size_t ended = flights.size();
     if (cut) flights.insert(flights.begin(), *cut);
     return conclude(options, setup, world, folder,
-                    {name,
-                     "",
-                     std::move(flights),
-                     {},
-                     ended,
-                     items.size(),
-                     ended < items.size(),
+                    {{.flights = std::move(flights),
+                      .ended = ended,
+                      .asked = items.size(),
+                      .interrupted = ended < items.size()},
+                     name,
+                     options.commandLine,
                      std::move(log)},
                     stopwatch, interrupted);
 }
@@ -271,13 +262,9 @@ int mergeExplorations(const ExploreOptions& options, const std::atomic<bool>& in
     std::optional<FlightLog> log = logOfShards(options, items.front());
     if (log) writeFlightLog(folder.path(), *log);
     return conclude(options, setup, world, folder,
-                    {header.name,
-                     "",
-                     std::move(flights),
-                     {},
-                     items.size(),
-                     items.size(),
-                     false,
+                    {{.flights = std::move(flights), .ended = items.size(), .asked = items.size()},
+                     header.name,
+                     options.commandLine,
                      std::move(log)},
                     watch, interrupted);
 }

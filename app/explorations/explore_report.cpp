@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/explore_report.hpp"
+#include "explorations/explore_report.hpp"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,11 @@
 
 #include "dataset/belief_trajectory.hpp"
 #include "exploration/plan_update_json.hpp"
+#include "figures/explore_figures.hpp"
+#include "figures/flight_log_figures.hpp"
 #include "flight/flight_statistics.hpp"
+#include "flight/fly_result.hpp"
 #include "map/octree_file.hpp"
-#include "report/explore_figures.hpp"
-#include "report/flight_log_figures.hpp"
-#include "report/fly_report.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 
@@ -19,70 +19,6 @@ namespace photonav {
 namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
-
-json jsonOf(const PlanUpdate& update) {
-    json result = untimedJson(update);
-    result["fuse_ms"] = 1e3 * update.fuseSeconds;
-    result["clearance_ms"] = 1e3 * update.clearanceSeconds;
-    result["views_ms"] = 1e3 * update.viewSeconds;
-    result["plan_ms"] = 1e3 * update.planSeconds;
-    return result;
-}
-
-/// The trace of the belief over the way flown.
-json traceOf(const ExplorationResult& flight, double characteristicLength) {
-    json trace = json::array();
-    for (const FlightSample& sample : flight.samples) {
-        trace.push_back({{"time", sample.time},
-                         {"distance", sample.distance},
-                         {"trace", weightedTrace(sample.belief.covariance, characteristicLength)}});
-    }
-    return trace;
-}
-
-json jsonOf(const ExplorationResult& flight, double characteristicLength) {
-    json updates = json::array();
-    for (const PlanUpdate& update : flight.updates) updates.push_back(jsonOf(update));
-    return {{"planner", flight.planner},
-            {"seed", flight.seed},
-            {"arrived", flight.hasArrived()},
-            {"end", nameOf(flight.end)},
-            {"reason", flight.reason},
-            {"collisions", flight.end == FlightEnd::collided ? 1 : 0},
-            {"duration_s", flight.duration},
-            {"length", flight.flown},
-            {"goal_error_m", flight.goalError},
-            {"arrival_probability", flight.arrivalProbability},
-            {"position_rmse_m", finiteOrNull(positionRmse(flight))},
-            {"nees_per_dof", finiteOrNull(neesPerDof(flight))},
-            {"least_clearance_m", finiteOrNull(flight.leastClearance)},
-            {"images", flight.images},
-            {"rejected_images", flight.rejectedImages},
-            {"keyframes", flight.keyframes},
-            {"blind_steps", flight.blindSteps},
-            {"times_lost", flight.timesLost},
-            {"lost_s", flight.lostTime},
-            {"wall_s", flight.wallSeconds},
-            {"path_trace", traceOf(flight, characteristicLength)},
-            {"updates", std::move(updates)}};
-}
-
-json jsonOf(const ExplorationSummary& s) {
-    return {{"planner", s.planner},
-            {"flights", s.flights},
-            {"arrived", s.arrived},
-            {"collisions", s.collisions},
-            {"position_rmse_m", finiteOrNull(s.positionRmse)},
-            {"nees_per_dof", finiteOrNull(s.nees)},
-            {"nees_median_flight_per_dof", finiteOrNull(s.neesMedian)},
-            {"goal_error_m", finiteOrNull(s.goalError)},
-            {"duration_s", finiteOrNull(s.duration)},
-            {"length", finiteOrNull(s.length)},
-            {"mean_trace", finiteOrNull(s.meanTrace)},
-            {"goal_trace", finiteOrNull(s.goalTrace)},
-            {"update_median_ms", finiteOrNull(1e3 * s.updateMedian)},
-            {"update_95_percent_ms", finiteOrNull(1e3 * s.update95)}};
-}
 
 ReportTable tableOf(const ExplorationSummary& s) {
     const auto text = [](const char* format, double value) {
@@ -167,29 +103,6 @@ std::vector<NamedFigure> figuresOf(const ExplorationSetup& setup, const World& w
 
 }  // namespace
 
-json exploreResult(const ExplorationSetup& setup, const ExploreOutcome& outcome) {
-    const std::vector<ExplorationResult>& flights = outcome.flights;
-    const double length = setup.config.belief.characteristicLength;
-    json result = jsonOf(flights.front(), length);
-    result.update(
-        {{"schema", 1},
-         {"command", "explore"},
-         {"version", PHOTONAV_VERSION},
-         {"status", outcome.interrupted            ? "interrupted"
-                    : flights.front().hasArrived() ? "done"
-                                                   : "not arrived: " + flights.front().reason},
-         {"seed", setup.config.seed},
-         {"flights_ended", outcome.ended},
-         {"flights_asked", outcome.asked},
-         {"trials", json::array()},
-         {"summary", json::array()}});
-    for (const ExplorationResult& flight : flights) {
-        result["trials"].push_back(jsonOf(flight, length));
-    }
-    for (const ExplorationSummary& s : outcome.summaries) result["summary"].push_back(jsonOf(s));
-    return result;
-}
-
 std::string livePage(const ExplorationSetup& setup, const World& world, const std::string& name,
                      const std::string& commandLine, const FlightLog& log) {
     ReportData report = problemReport(setup.config, world, commandLine, {{"command", "explore"}});
@@ -216,7 +129,7 @@ void writeExploreReport(const fs::path& folder, const ExplorationSetup& setup, c
     if (outcome.log) {
         report.flight = flightLogJson(*outcome.log);
     } else {
-        report.voxels = makeReportVoxels(*first.map);
+        report.voxels = drawnVoxels(*first.map);
         report.paths.push_back(drawnBeliefs(first, config.belief.characteristicLength));
         report.trees.push_back(drawnWay(first));
     }

@@ -2,26 +2,17 @@
 // Result and report of `photonav explore`.
 #pragma once
 
-#include "exploration/explorations.hpp"
+#include "exploration/explore_result.hpp"
 #include "flightlog/flight_log.hpp"
 #include "report/report.hpp"
 
 namespace photonav {
 
-/// The flights of an exploration, of one run or merged from shards.
-struct ExploreOutcome {
+struct ExploreOutcome : ExplorationOutcome {
     std::string name;  ///< of the config
     std::string commandLine;
-    std::vector<ExplorationResult> flights;  ///< in the order of trialItems(); the first with a map
-    std::vector<ExplorationSummary> summaries;  ///< one per planner
-    std::size_t ended = 0;                      ///< without a first one that was interrupted
-    std::size_t asked = 0;                      ///< flights there should be
-    bool interrupted = false;
     std::optional<FlightLog> log;  ///< of the first flight
 };
-
-/// The content of result.json: the first flight, all trials, and a summary per planner.
-nlohmann::json exploreResult(const ExplorationSetup& setup, const ExploreOutcome& outcome);
 
 /// Writes the map, the trajectories of the first flight, figures and the page.
 /// @param world the true one

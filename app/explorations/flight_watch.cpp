@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/flight_watch.hpp"
+#include "explorations/flight_watch.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/flight_recording.hpp"
+#include "flights/flight_recording.hpp"
 
 #include "commands/path_inside.hpp"
 #include "io/error.hpp"

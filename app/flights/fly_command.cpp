@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/fly_command.hpp"
+#include "flights/fly_command.hpp"
 
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
 
-#include "commands/flight_recording.hpp"
 #include "commands/result_folder.hpp"
 #include "flight/flight_setup.hpp"
+#include "flights/flight_recording.hpp"
+#include "flights/fly_frames.hpp"
+#include "flights/fly_report.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "planners/planner_table.hpp"
 #include "problem/planned_path.hpp"
 #include "replay/calibration_file.hpp"
-#include "report/fly_frames.hpp"
-#include "report/fly_report.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
@@ -107,7 +107,7 @@ void printFailure(const FlightSet& set) {
     }
 }
 
-void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::path& folder) {
+void printSummary(const std::vector<FlightSet>& sets) {
     if (sets.empty()) fmt::print("no path found\n");
     if (!sets.empty()) {
         fmt::print(
@@ -135,7 +135,6 @@ void printSummary(const std::vector<FlightSet>& sets, const std::filesystem::pat
                    s.neesHigh);
     }
     if (!sets.empty()) printFailure(sets.front());
-    fmt::print("report: {}\n", (folder / "report.html").string());
 }
 
 FolderTransaction folderFor(const FlyOptions& options, const Config& config) {
@@ -184,12 +183,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     result["time"]["total_s"] = watch.seconds();
     writeFlyReport(folder.path(), config, world, sets, std::move(frames), options.commandLine,
                    result);
-    commitResult(folder, result);
-
-    if (options.json)
-        fmt::print("{}", jsonText(result));
-    else if (!options.quiet)
-        printSummary(sets, folder.target());
+    concludeResult(folder, options, result, [&] { printSummary(sets); });
     if (stopped) return kInterrupted;
     return hasArrived(sets) ? kDone : kNoAnswer;
 }

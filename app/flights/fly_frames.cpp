@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/fly_frames.hpp"
+#include "flights/fly_frames.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "figures/comparison_images.hpp"
+#include "flights/fly_report.hpp"
 #include "recording/halved_view.hpp"
 #include "recording/view_difference.hpp"
-#include "report/comparison_images.hpp"
-#include "report/fly_report.hpp"
 
 namespace photonav {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/servo_command.hpp"
+#include "flights/servo_command.hpp"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #include "alignment/image_pyramid.hpp"
 #include "commands/place_option.hpp"
 #include "commands/result_folder.hpp"
+#include "flights/servo_report.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
 #include "io/stopwatch.hpp"
-#include "report/servo_report.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
@@ -57,23 +57,17 @@ int runServo(const ServoOptions& options, const std::atomic<bool>& interrupted) 
     });
     line.clear();
     const ServoReport report{config, world, goal, study, result};
-    nlohmann::json content = servoResult(report);
+    nlohmann::json content = servoResult(goal, study, result);
     content["time"]["total_s"] = watch.seconds();
     writeServoReport(folder.path(), report, options.commandLine, content);
-    commitResult(folder, content);
-    if (options.json) {
-        fmt::print("{}", jsonText(content));
-    } else if (!options.quiet) {
-        for (const auto& [label, value] : servoSummary(report).rows) {
-            fmt::print("{:<28}{}\n", label, value);
-        }
+    concludeResult(folder, options, content, [&] {
+        printTable(servoSummary(report));
         for (const BasinCell& cell : result.basin) {
             fmt::print("from {:5g} m, {:3g} deg: {:3} of {} converge ({:.0f} to {:.0f} %)\n",
                        cell.distance, cell.angle, cell.converged, cell.trials, 100. * cell.low,
                        100. * cell.high);
         }
-        fmt::print("report: {}\n", (folder.target() / "report.html").string());
-    }
+    });
     if (result.interrupted) return kInterrupted;
     return result.modes.front().rate > 0. ? kDone : kNoAnswer;
 }

@@ -7,7 +7,7 @@
 
 #include "problem/world.hpp"
 #include "report/report.hpp"
-#include "servo/servo_study.hpp"
+#include "servo/servo_result.hpp"
 
 namespace photonav {
 
@@ -18,9 +18,6 @@ struct ServoReport {
     const ServoStudyOptions& options;
     const ServoStudy& study;
 };
-
-/// Everything of result.json but the time.
-nlohmann::json servoResult(const ServoReport& report);
 
 ReportTable servoSummary(const ServoReport& report);
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "figures/paths.hpp"
 #include "interchange/foxglove.hpp"
+#include "shapes/paths.hpp"
 
 namespace photonav {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "figures/paths.hpp"
+#include "shapes/paths.hpp"
 
 namespace photonav {
 

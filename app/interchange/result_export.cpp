@@ -6,10 +6,10 @@
 #include <cctype>
 #include <map>
 
+#include "bag/mcap_writer.hpp"
 #include "dataset/trajectory.hpp"
 #include "flightlog/flight_log.hpp"
 #include "interchange/drawn_result.hpp"
-#include "interchange/mcap_writer.hpp"
 #include "io/error.hpp"
 #include "io/reading.hpp"
 #include "report/report.hpp"
@@ -170,12 +170,8 @@ Trajectory trajectoryIn(const fs::path& folder) {
 }  // namespace
 
 McapExport exportMcap(const fs::path& folder) {
-    const fs::path file = folder / "report.json";
-    if (!fs::exists(file)) {
-        throw InputError(folder.string(), "", "not a result folder of photonav: no report.json");
-    }
-    return reading(file.string(), [&] {
-        const json report = json::parse(readReportJson(file));
+    return reading((folder / "report.json").string(), [&] {
+        const json report = json::parse(readReportOf(folder));
         const std::vector<DrawnPath> paths = drawnPaths(report);
         const Trajectory trajectory = trajectoryIn(folder);
         const bool isRecorded = std::ranges::any_of(paths, [&](const DrawnPath& path) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/check_command.hpp"
+#include "plans/check_command.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 #include "io/number.hpp"
 #include "io/stopwatch.hpp"
 #include "map/octree_file.hpp"
+#include "plans/check_report.hpp"
 #include "render/interruptible_views.hpp"
-#include "report/check_report.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
@@ -94,7 +94,7 @@ std::vector<PlannedView> planOf(const CheckedTrajectory& checked) {
     return plan;
 }
 
-FlightSet flightsAlong(const CheckReport& report, const CheckCommandOptions& options,
+FlightSet flightsAlong(const CheckOutcome& report, const CheckCommandOptions& options,
                        ProgressLine& line, const std::atomic<bool>& interrupted) {
     FlightSet set{report.path, planOf(report.checked), {}};
     if (options.flights == 0 || interrupted) return set;
@@ -106,13 +106,6 @@ FlightSet flightsAlong(const CheckReport& report, const CheckCommandOptions& opt
                               line.show(fmt::format("{} of {} flights", ++flown, options.flights));
                           });
     return set;
-}
-
-void printSummary(const CheckReport& report, const fs::path& folder) {
-    for (const auto& [label, value] : summaryOf(report).rows) {
-        fmt::print("{:<42}{}\n", label, value);
-    }
-    fmt::print("report: {}\n", (folder / "report.html").string());
 }
 
 FolderTransaction folderFor(const CheckCommandOptions& options, const Config& config) {
@@ -132,11 +125,11 @@ int runCheck(const CheckCommandOptions& options, const std::atomic<bool>& interr
     const Config config = configOf(options);
     const GivenTrajectory trajectory =
         readGivenTrajectory(options.trajectory, config.camera.T_b_c(), heading);
-    CheckReport report{.config = config,
-                       .world = World(config),
-                       .trajectory = trajectory,
-                       .file = options.trajectory,
-                       .tilt = tiltOf(trajectory)};
+    CheckOutcome report{.config = config,
+                        .world = World(config),
+                        .trajectory = trajectory,
+                        .file = options.trajectory,
+                        .tilt = tiltOf(trajectory)};
     checkTilt(options, report.tilt);
     FolderTransaction folder = folderFor(options, config);
 
@@ -162,12 +155,7 @@ int runCheck(const CheckCommandOptions& options, const std::atomic<bool>& interr
     nlohmann::json result = checkResult(report);
     result["time"]["total_s"] = watch.seconds();
     writeCheckReport(folder.path(), report, options.commandLine, result);
-    commitResult(folder, result);
-
-    if (options.json)
-        fmt::print("{}", jsonText(result));
-    else if (!options.quiet)
-        printSummary(report, folder.target());
+    concludeResult(folder, options, result, [&] { printTable(summaryOf(report)); });
     if (report.interrupted) return kInterrupted;
     return report.checked.isLost() ? kNoAnswer : kDone;
 }

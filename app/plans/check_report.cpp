@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/check_report.hpp"
+#include "plans/check_report.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "dataset/image_file.hpp"
 #include "dataset/trajectory.hpp"
+#include "figures/check_figures.hpp"
+#include "figures/fly_figures.hpp"
 #include "figures/images.hpp"
 #include "figures/trace.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
-#include "report/check_figures.hpp"
-#include "report/fly_figures.hpp"
-#include "report/fly_report.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 
@@ -22,81 +21,6 @@ using nlohmann::json;
 namespace {
 
 constexpr std::size_t kMostViews = 60;  // pictures in the report
-
-json jsonOf(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
-
-std::string imageVerdict(const CheckedPlace& place) {
-    switch (place.verdict) {
-        case Verdict::converged:
-            return "determined";
-        case Verdict::degenerate:
-            return "degenerate";
-        default:
-            return "rejected";
-    }
-}
-
-json jsonOf(const BestHeading& best) {
-    return {{"yaw", best.yaw}, {"trace", best.trace}, {"own_trace", best.ownTrace}};
-}
-
-json jsonOf(const CheckedPlace& place) {
-    std::vector<double> covariance;
-    for (int i = 0; i < 6; ++i) {
-        for (int j = i; j < 6; ++j) covariance.push_back(place.covariance(i, j));
-    }
-    return {{"time_s", orNull(place.time)},
-            {"position", jsonOf(place.T_w_b.translation())},
-            {"yaw", yawOf(place.T_w_b)},
-            {"distance", place.length},
-            {"metric_length", place.distance},
-            {"trace", place.trace},
-            {"trace_before_view", place.traceBefore},
-            {"covariance", covariance},
-            {"position_sigma_m", place.positionSigma},
-            {"rotation_sigma_rad", place.rotationSigma},
-            {"weakest_direction", jsonOf(place.weakest_w)},
-            {"image", imageVerdict(place)},
-            {"open_directions", place.openDirections},
-            {"overlap", place.overlap},
-            {"lost", place.loss == LossCause::none ? json(nullptr) : json(nameOf(place.loss))},
-            {"best_heading", place.best ? jsonOf(*place.best) : json(nullptr)}};
-}
-
-json jsonOf(const std::vector<Stretch>& stretches) {
-    json list = json::array();
-    for (const Stretch& stretch : stretches) list.push_back({stretch.begin, stretch.end});
-    return list;
-}
-
-/// Stretches that end at lost places, with their cause.
-json lostJson(const CheckedTrajectory& checked) {
-    json list = json::array();
-    LossCause before = LossCause::none;
-    for (std::size_t i = 0; i < checked.places.size(); ++i) {
-        const CheckedPlace& place = checked.places[i];
-        if (place.loss != LossCause::none) {
-            if (place.loss != before) {
-                const double begin = i > 0 ? checked.places[i - 1].length : 0.;
-                list.push_back({{"begin", begin}, {"cause", nameOf(place.loss)}});
-            }
-            list.back()["end"] = place.length;
-        }
-        before = place.loss;
-    }
-    return list;
-}
-
-/// Way that ends at places whose image is of a kind [m].
-double lengthOf(const CheckedTrajectory& checked, bool isRejected) {
-    double sum = 0.;
-    for (std::size_t i = 1; i < checked.places.size(); ++i) {
-        const Verdict verdict = checked.places[i].verdict;
-        const bool counts = isRejected ? isLost(verdict) : verdict == Verdict::degenerate;
-        if (counts) sum += checked.places[i].length - checked.places[i - 1].length;
-    }
-    return sum;
-}
 
 /// "along x", "level, 30 degrees left of x", "vertical".
 std::string directionText(const Eigen::Vector3d& d) {
@@ -134,35 +58,7 @@ std::string flightsText(const FlightSet& set) {
         s.arrived, s.flights, withLoss, lengthText(s.positionRmse), lengthText(s.predictedSigma));
 }
 
-json flightsJson(const FlightSet& set) {
-    if (set.flights.empty()) return nullptr;
-    const FlightSummary s = summarise(set);
-    std::size_t withLoss = 0;
-    for (const FlightResult& flight : set.flights) withLoss += flight.timesLost > 0;
-    return {{"flights", s.flights},
-            {"arrived", s.arrived},
-            {"astray", s.astray},
-            {"uncertain_arrivals", s.uncertain},
-            {"collisions", s.collisions},
-            {"given_up", s.lost},
-            {"out_of_time", s.outOfTime},
-            {"lost_track", withLoss},
-            {"lost_s", s.lostTime},
-            {"position_rmse_m", finiteOrNull(s.positionRmse)},
-            {"predicted_sigma_m", finiteOrNull(s.predictedSigma)},
-            {"nees_per_dof", finiteOrNull(s.nees)}};
-}
-
-json turnedJson(const std::optional<CheckedTrajectory>& turned) {
-    if (!turned) return nullptr;
-    return {{"mean_trace", turned->meanTrace},
-            {"goal_trace", turned->places.back().trace},
-            {"metric_length", turned->places.back().distance},
-            {"lost_m", turned->lostLength()},
-            {"lost", lostJson(*turned)}};
-}
-
-std::vector<ReportView> viewsAlong(const CheckReport& report) {
+std::vector<ReportView> viewsAlong(const CheckOutcome& report) {
     std::vector<ReportView> views;
     const auto& places = report.checked.places;
     const std::size_t stride = 1 + places.size() / kMostViews;
@@ -179,7 +75,7 @@ std::vector<ReportView> viewsAlong(const CheckReport& report) {
     return views;
 }
 
-std::vector<NamedFigure> checkFigures(const CheckReport& report,
+std::vector<NamedFigure> checkFigures(const CheckOutcome& report,
                                       const std::vector<DrawnPath>& paths) {
     const CheckedTrajectory& checked = report.checked;
     Config around = report.config;  // the trajectory may leave the bounds
@@ -217,31 +113,7 @@ std::vector<NamedFigure> checkFigures(const CheckReport& report,
 
 }  // namespace
 
-EvaluatedPath pathOf(const CheckedTrajectory& checked, const std::string& name) {
-    EvaluatedPath path;
-    path.planner = name;
-    for (const CheckedPlace& place : checked.places) {
-        path.points.push_back({.T_w_b = place.T_w_b,
-                               .length = place.length,
-                               .distance = place.distance,
-                               .covariance = place.covariance,
-                               .traceBefore = place.traceBefore,
-                               .trace = place.trace});
-    }
-    path.length = checked.length;
-    path.meanTrace = checked.meanTrace;
-    path.goalTrace = checked.places.back().trace;
-    return path;
-}
-
-std::string verdictOf(const CheckedTrajectory& checked) {
-    const CheckedPlace* lost = checked.firstLost();
-    if (lost == nullptr) return "the camera stays localised all along the trajectory";
-    return fmt::format("the camera is lost after {:.2f} m of {:.2f} m: {}", lost->length,
-                       checked.length, nameOf(lost->loss));
-}
-
-ReportTable summaryOf(const CheckReport& report) {
+ReportTable summaryOf(const CheckOutcome& report) {
     const CheckedTrajectory& checked = report.checked;
     const CheckedPlace& worst = checked.worst();
     ReportTable table{"Check of the trajectory", {}};
@@ -251,8 +123,9 @@ ReportTable summaryOf(const CheckReport& report) {
     row("verdict", verdictOf(checked));
     row("length", fmt::format("{:.2f} m", checked.length));
     row("lost", fmt::format("{:.2f} m", checked.lostLength()));
-    row("images that leave directions open", fmt::format("{:.2f} m", lengthOf(checked, false)));
-    row("images rejected", fmt::format("{:.2f} m", lengthOf(checked, true)));
+    row("images that leave directions open",
+        fmt::format("{:.2f} m", lengthByVerdict(checked, false)));
+    row("images rejected", fmt::format("{:.2f} m", lengthByVerdict(checked, true)));
     row(fmt::format("least certain, after {:.2f} m", worst.length), uncertaintyText(worst));
     row("at the end", uncertaintyText(checked.places.back()));
     row(fmt::format("within {:g} m of the end", checked.arrivalTolerance),
@@ -268,49 +141,7 @@ ReportTable summaryOf(const CheckReport& report) {
     return table;
 }
 
-json checkResult(const CheckReport& report) {
-    const CheckedTrajectory& checked = report.checked;
-    const GivenTrajectory& given = report.trajectory;
-    json result{
-        {"schema", 1},
-        {"command", "check"},
-        {"version", PHOTONAV_VERSION},
-        {"status", report.interrupted ? "interrupted" : "done"},
-        {"verdict", verdictOf(checked)},
-        {"is_lost", checked.isLost()},
-        {"seed", report.config.seed},
-        {"trajectory",
-         {{"file", report.file},
-          {"format", given.format == TrajectoryFormat::cameraPoses ? "tum" : "table"},
-          {"poses", given.poses.size()},
-          {"has_heading", given.hasHeading},
-          {"tilt_deg", report.tilt / kDegree}}},
-        {"length", checked.length},
-        {"metric_length", checked.places.back().distance},
-        {"mean_trace", checked.meanTrace},
-        {"goal_trace", checked.places.back().trace},
-        {"characteristic_length", report.config.belief.characteristicLength},
-        {"lost", lostJson(checked)},
-        {"lost_m", checked.lostLength()},
-        {"open_directions_m", lengthOf(checked, false)},
-        {"rejected_images_m", lengthOf(checked, true)},
-        {"worst", jsonOf(checked.worst())},
-        {"arrival",
-         {{"tolerance_m", checked.arrivalTolerance}, {"probability", checked.arrivalProbability}}},
-        {"collisions", jsonOf(report.obstruction.collisions)},
-        {"out_of_bounds", jsonOf(report.obstruction.outside)},
-        {"least_clearance_m", finiteOrNull(report.obstruction.leastClearance)},
-        {"with_best_headings", turnedJson(report.turned)},
-        {"flights", flightsJson(report.flights)},
-        {"covariance_frame",
-         "camera, left perturbation T_c_w = exp(xi) mean, order (rho, phi), upper triangle by "
-         "rows"},
-        {"path", json::array()}};
-    for (const CheckedPlace& place : checked.places) result["path"].push_back(jsonOf(place));
-    return result;
-}
-
-void writeCheckReport(const fs::path& folder, const CheckReport& report,
+void writeCheckReport(const fs::path& folder, const CheckOutcome& report,
                       const std::string& commandLine, const json& result) {
     const Config& config = report.config;
     const Pose T_b_c = config.camera.T_b_c();
@@ -329,7 +160,6 @@ void writeCheckReport(const fs::path& folder, const CheckReport& report,
     }
     if (report.checked.isLost()) page.trees.push_back(lostStretches(report.checked));
     if (!report.flights.flights.empty()) page.trees.push_back(drawnFlights(report.flights));
-    page.fieldOfView = fieldOfView(config.camera.camera());
     if (report.world.hasTexture()) page.views = viewsAlong(report);
     page.tables.push_back(summaryOf(report));
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/info_command.hpp"
+#include "plans/info_command.hpp"
 
 #include <fmt/format.h>
 
@@ -41,10 +41,6 @@ struct Grids {
 json resultOf(const Place& place, const Matrix6& Lambda, const Grids& grids) {
     const Eigen::ArrayXXd& information = grids.information;
     const Eigen::AlignedBox2d& area = grids.area;
-    json lambda = json::array();
-    for (int i = 0; i < 6; ++i) {
-        for (int j = i; j < 6; ++j) lambda.push_back(Lambda(i, j));
-    }
     const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Lambda, Eigen::EigenvaluesOnly);
     json rows = json::array();
     for (int j = 0; j < information.cols(); ++j) {
@@ -52,22 +48,20 @@ json resultOf(const Place& place, const Matrix6& Lambda, const Grids& grids) {
         for (int i = 0; i < information.rows(); ++i) row.push_back(finiteOrNull(information(i, j)));
         rows.push_back(row);
     }
-    return {{"schema", 1},
-            {"command", "info"},
-            {"version", PHOTONAV_VERSION},
-            {"view",
-             {{"position", {place.position.x(), place.position.y(), place.position.z()}},
-              {"yaw", place.yaw.value_or(0.)},
-              {"information_frame", "camera, order (rho, phi), upper triangle by rows"},
-              {"information", lambda},
-              {"information_trace", Lambda.trace()},
-              {"min_eigenvalue", std::max(0., eigen.eigenvalues()[0])}}},
-            {"grid",
-             {{"quantity", "trace of the Fisher information of one view"},
-              {"height", grids.height},
-              {"min", {area.min().x(), area.min().y()}},
-              {"max", {area.max().x(), area.max().y()}},
-              {"rows_from_smallest_y", rows}}}};
+    return resultJson("info",
+                      {{"view",
+                        {{"position", vectorJson(place.position)},
+                         {"yaw", place.yaw.value_or(0.)},
+                         {"information_frame", "camera, order (rho, phi), upper triangle by rows"},
+                         {"information", triangleJson(Lambda)},
+                         {"information_trace", Lambda.trace()},
+                         {"min_eigenvalue", std::max(0., eigen.eigenvalues()[0])}}},
+                       {"grid",
+                        {{"quantity", "trace of the Fisher information of one view"},
+                         {"height", grids.height},
+                         {"min", {area.min().x(), area.min().y()}},
+                         {"max", {area.max().x(), area.max().y()}},
+                         {"rows_from_smallest_y", rows}}}});
 }
 
 /// The predicted view and its contribution images, all directions together and one by one.
@@ -120,10 +114,11 @@ Grids lookAround(const InfoOptions& options, const Config& config, double height
     line.show("looking around");
     const Eigen::AlignedBox2d area(config.bounds.min().head<2>(), config.bounds.max().head<2>());
     const Matrix6& prior = problem.initialCovariance();
+    const int cells = options.cells.value_or(100);
     return {area, height,
-            viewGrid(problem, area, height, yaw, options.cells,
+            viewGrid(problem, area, height, yaw, cells,
                      [](const Matrix6& gain) { return gain.trace(); }),
-            viewGrid(problem, area, height, yaw, options.cells, [&](const Matrix6& gain) {
+            viewGrid(problem, area, height, yaw, cells, [&](const Matrix6& gain) {
                 return std::sqrt(updateCovariance(prior, gain).topLeftCorner<3, 3>().trace());
             })};
 }
@@ -161,14 +156,10 @@ int runInfo(const InfoOptions& options) {
     ReportData report = reportOf(options, config, world, place, result);
     writeResultFolder(folder.path(), report, figures);
     result["time"]["total_s"] = watch.seconds();
-    commitResult(folder, result);
-    if (options.json) {
-        fmt::print("{}", jsonText(result));
-    } else if (!options.quiet) {
-        fmt::print("information trace {:.4g}, smallest eigenvalue {:.4g}\nreport: {}\n",
-                   Lambda.trace(), result["view"]["min_eigenvalue"].get<double>(),
-                   (folder.target() / "report.html").string());
-    }
+    concludeResult(folder, options, result, [&] {
+        fmt::print("information trace {:.4g}, smallest eigenvalue {:.4g}\n", Lambda.trace(),
+                   result["view"]["min_eigenvalue"].get<double>());
+    });
     return kDone;
 }
 

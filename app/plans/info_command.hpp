@@ -10,7 +10,7 @@ namespace photonav {
 
 struct InfoOptions : CommandOptions {
     std::optional<double> height;   ///< of the heat map [m]; default: the start's
-    int cells = 100;                ///< along the longer side of the area
+    std::optional<int> cells;       ///< along the longer side of the area; default: 100
     std::optional<std::string> at;  ///< x,y,z[,yaw] of the single view; default: the start,
                                     ///< and without yaw the start's heading
 };

@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/plan_command.hpp"
+#include "plans/plan_command.hpp"
 
 #include <fmt/format.h>
 
 #include <set>
 
-#include "commands/plan_progress.hpp"
 #include "commands/result_folder.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "mapping/map_config.hpp"
 #include "planners/planner_table.hpp"
+#include "plans/plan_progress.hpp"
+#include "plans/plan_report.hpp"
 #include "problem/advantage.hpp"
 #include "problem/tree_evolution.hpp"
-#include "report/plan_report.hpp"
-#include "result/json_values.hpp"
 
 namespace photonav {
 namespace {
 
 void printSummary(const PlanOutcome& outcome, const std::optional<EvaluatedPath>& baseline,
-                  double kappa, bool audit, const std::filesystem::path& folder, double seconds) {
+                  double kappa, bool audit, double seconds) {
     const auto row = [](const EvaluatedPath& path) {
         fmt::print("{:<16} {:>8.2f} m {:>12.3g} {:>12.3g} {:>10.4g}\n", path.planner, path.length,
                    path.meanTrace, path.goalTrace, path.cost);
@@ -47,7 +46,6 @@ void printSummary(const PlanOutcome& outcome, const std::optional<EvaluatedPath>
                    outcome.audit.maxCovarianceError);
     }
     fmt::print("{} vertices, {} views, {:.2f} s\n", outcome.vertices, outcome.views, seconds);
-    fmt::print("report: {}\n", (folder / "report.html").string());
 }
 
 /// Recorded images near the path; a recording that cannot be read is a warning, not an error.
@@ -123,13 +121,9 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     writePlanReport(folder.path(), config, world, problem, outcome, baseline, recorded, evolutions,
                     options.commandLine, result);
     result["time"]["total_s"] = watch.seconds();
-    commitResult(folder, result);
-
-    if (options.json)
-        fmt::print("{}", jsonText(result));
-    else if (!options.quiet)
-        printSummary(outcome, baseline, problem.kappa(), options.audit, folder.target(),
-                     watch.seconds());
+    concludeResult(folder, options, result, [&] {
+        printSummary(outcome, baseline, problem.kappa(), options.audit, watch.seconds());
+    });
     if (stopped) return kInterrupted;
     return outcome.isSolved() ? kDone : kNoAnswer;
 }

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/plan_report.hpp"
+#include "plans/plan_report.hpp"
 
 #include <fmt/format.h>
 
 #include "commands/command_io.hpp"
 #include "dataset/image_file.hpp"
 #include "dataset/trajectory.hpp"
+#include "figures/comparison_images.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
 #include "figures/perspective.hpp"
 #include "figures/trace.hpp"
+#include "figures/tree_evolution_figure.hpp"
 #include "geometry/se3.hpp"
 #include "problem/advantage.hpp"
-#include "report/comparison_images.hpp"
-#include "report/tree_evolution_figure.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -24,41 +24,6 @@ constexpr std::size_t kMaxViews = 60;  // pictures in the report
 constexpr int kHeatMapCells = 28;
 constexpr std::size_t kViewRows = 2;  // of the figure of views
 constexpr std::size_t kViewsPerRow = 3;
-
-const char* spaceName(StateKind kind) {
-    return kind == StateKind::position ? "xyz" : kind == StateKind::positionYaw ? "xyz_yaw" : "se3";
-}
-
-json jsonOf(const BeliefPoint& point) {
-    const Eigen::Vector3d p = point.T_w_b.translation();
-    std::vector<double> covariance;
-    for (int i = 0; i < 6; ++i) {
-        for (int j = i; j < 6; ++j) covariance.push_back(point.covariance(i, j));
-    }
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(point.information, Eigen::EigenvaluesOnly);
-    return {{"position", {p.x(), p.y(), p.z()}},
-            {"yaw", yawOf(point.T_w_b)},
-            {"waypoint", point.isWaypoint},
-            {"distance", point.length},
-            {"metric_length", point.distance},
-            {"trace", point.trace},
-            {"trace_before_view", point.traceBefore},
-            {"cost", point.cost},
-            {"covariance", covariance},
-            {"information_trace", point.information.trace()},
-            {"min_eigenvalue", std::max(0., eigen.eigenvalues()[0])}};
-}
-
-json jsonOf(const EvaluatedPath& path) {
-    return {{"planner", path.planner},
-            {"cost", path.cost},
-            {"length", path.length},
-            {"metric_length", path.points.back().distance},
-            {"mean_trace", path.meanTrace},
-            {"goal_trace", path.goalTrace},
-            {"length_share", path.lengthShare},
-            {"uncertainty_share", 1. - path.lengthShare}};
-}
 
 /// The predicted views at the waypoints, and the contributions of their pixels.
 std::vector<ReportView> waypointViews(const EvaluatedPath& path, const Config& config,
@@ -164,61 +129,6 @@ void writeTrajectory(const fs::path& file, const EvaluatedPath& path, const Pose
     writeTrajectory(file.string(), trajectory);
 }
 
-}  // namespace
-
-json planResult(const Config& config, double kappa, const PlanOutcome& outcome,
-                const std::optional<EvaluatedPath>& baseline, bool interrupted) {
-    const double tree = outcome.planSeconds - outcome.viewSeconds - outcome.beliefSeconds;
-    json result{{"schema", 1},
-                {"command", "plan"},
-                {"version", PHOTONAV_VERSION},
-                {"status", interrupted ? "interrupted" : outcome.status()},
-                {"seed", config.seed},
-                {"planner", config.planner},
-                {"information", config.viewModel.name},
-                {"space", spaceName(config.space)},
-                {"alpha", outcome.alpha},
-                {"kappa", kappa},
-                {"kappa_is_automatic", isAutomatic(config.belief.kappa)},
-                {"characteristic_length", config.belief.characteristicLength},
-                {"cost", nullptr},
-                {"planner_cost", nullptr},
-                {"length", nullptr},
-                {"metric_length", nullptr},
-                {"mean_trace", nullptr},
-                {"goal_trace", nullptr},
-                {"vertices", outcome.vertices},
-                {"iterations", outcome.iterations},
-                {"views", outcome.views},
-                {"cache_hits", outcome.cacheHits},
-                {"second_order_fallbacks", outcome.fallbacks},
-                {"time",
-                 {{"total_s", nullptr},
-                  {"views_s", outcome.viewSeconds},
-                  {"beliefs_s", outcome.beliefSeconds},
-                  {"tree_s", tree}}},
-                {"audit",
-                 {{"max_cost_error", outcome.audit.maxCostError},
-                  {"max_covariance_error", outcome.audit.maxCovarianceError},
-                  {"beliefs", outcome.audit.nodes}}},
-                {"covariance_frame",
-                 "camera, left perturbation T_c_w = exp(xi) mean, order (rho, phi), upper triangle "
-                 "by rows"},
-                {"path", json::array()}};
-    if (baseline) result["baseline"] = jsonOf(*baseline);
-    if (!outcome.path) return result;
-    result.update(jsonOf(*outcome.path));
-    result["planner_cost"] = outcome.plannerCost;
-    if (baseline && outcome.isSolved()) {
-        const std::string reason = noAdvantage(*outcome.path, *baseline, outcome.alpha);
-        if (!reason.empty()) result["verdict"] = reason;
-    }
-    for (const BeliefPoint& point : outcome.path->points) result["path"].push_back(jsonOf(point));
-    return result;
-}
-
-namespace {
-
 std::vector<NamedFigure> planFigures(const Config& config, const World& world,
                                      PlanningProblem& problem, const PlanOutcome& outcome,
                                      const std::optional<RecordedComparison>& recorded,
@@ -284,7 +194,6 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
     report.trees = {{"search tree", kTreeColor, outcome.tree}};
     if (outcome.path) report.paths.push_back(drawnPath(*outcome.path, T_b_c));
     if (baseline) report.paths.push_back(drawnPath(*baseline, T_b_c));
-    report.fieldOfView = fieldOfView(config.camera.camera());
     if (outcome.path && world.hasTexture()) {
         report.views = waypointViews(*outcome.path, config, world);
     }

@@ -5,18 +5,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "problem/planning_problem.hpp"
+#include "problem/plan_result.hpp"
 #include "problem/tree_evolution.hpp"
 #include "recording/recorded_frames.hpp"
 #include "report/problem_report.hpp"
 
 namespace photonav {
-
-/// result.json of `photonav plan`; time.total_s (until the report is drawn) is the caller's to
-/// fill.
-/// @param kappa of the cost [1/m]
-nlohmann::json planResult(const Config& config, double kappa, const PlanOutcome& outcome,
-                          const std::optional<EvaluatedPath>& baseline, bool interrupted);
 
 /// Writes config.yaml, top_view.png, report.json and report.html; with a path also path.tum,
 /// trace.png, information.png (unless the world has no texture), and recorded_frames.png where

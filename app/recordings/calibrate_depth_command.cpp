@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/calibrate_depth_command.hpp"
+#include "recordings/calibrate_depth_command.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,7 @@
 
 #include "commands/command_io.hpp"
 #include "commands/result_folder.hpp"
+#include "dataset/camera_file.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 #include "io/atomic_file.hpp"
@@ -25,16 +26,15 @@ json resultOf(const CalibrateDepthOptions& options, const DepthRegistration& fou
     const Eigen::Vector3d p = c.T_c_d.translation();
     const Vector6 sigma = c.covariance.diagonal().cwiseSqrt();
     const std::vector<double> sigmas(sigma.data(), sigma.data() + 6);
-    return {{"schema", 1},
-            {"command", "calibrate-depth"},
-            {"version", PHOTONAV_VERSION},
-            {"dataset", options.dataset},
-            {"pairs", found.pairs},
-            {"T_colour_depth", {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}},
-            {"sigma", sigmas},
-            {"sigma_is_of", "left perturbation (rho, phi), colour camera's frame [m, rad]"},
-            {"median_residual_before", c.residualBefore},
-            {"median_residual_after", c.residualAfter}};
+    return resultJson(
+        "calibrate-depth",
+        {{"dataset", options.dataset},
+         {"pairs", found.pairs},
+         {"T_colour_depth", {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}},
+         {"sigma", sigmas},
+         {"sigma_is_of", "left perturbation (rho, phi), colour camera's frame [m, rad]"},
+         {"median_residual_before", c.residualBefore},
+         {"median_residual_after", c.residualAfter}});
 }
 
 ReportTable summaryOf(const DepthRegistration& found) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/map_command.hpp"
+#include "recordings/map_command.hpp"
 
 #include <fmt/format.h>
 
@@ -9,15 +9,15 @@
 
 #include "commands/command_io.hpp"
 #include "commands/result_folder.hpp"
+#include "figures/comparison_images.hpp"
+#include "figures/convergence_figure.hpp"
 #include "io/stopwatch.hpp"
 #include "map/octree_file.hpp"
 #include "map/surface_cloud.hpp"
 #include "recording/view_difference.hpp"
+#include "recordings/map_report.hpp"
 #include "render/interruptible_views.hpp"
 #include "render/voxel_renderer.hpp"
-#include "report/comparison_images.hpp"
-#include "report/convergence_figure.hpp"
-#include "report/map_report.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {
@@ -121,7 +121,7 @@ MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& inte
     time["compare_s"] = watch.lap();
     run.interrupted = interrupted;
     MapReport report;
-    report.result = mapResult(options, recording, run);
+    report.result = mapResult(options, recording, run, run.compared, run.interrupted);
     report.result["voxels"] = voxelsJson(map);
     report.result["time"] = time;
     report.summary = mapSummary(report.result);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/map_info.hpp"
+#include "recordings/map_info.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,8 @@
 #include "io/error.hpp"
 #include "io/reading.hpp"
 #include "map/octree_file.hpp"
-#include "report/map_report.hpp"
+#include "recordings/map_report.hpp"
+#include "result/json_values.hpp"
 
 namespace photonav {
 namespace {
@@ -59,20 +60,18 @@ MapReport runMapInfo(const CommandOptions& options) {
     const auto map = loadTexturedOcTree(options.config);
     FolderTransaction folder = beginResult(options, "info");
     MapReport report;
-    report.result = {{"schema", 1},
-                     {"command", "info"},
-                     {"version", PHOTONAV_VERSION},
-                     {"map", fs::absolute(options.config).lexically_normal().string()},
-                     {"resolution", map->getResolution()},
-                     {"voxels", voxelsJson(*map)},
-                     {"textured", shareTextured(*map)}};
+    report.result =
+        resultJson("info", {{"map", fs::absolute(options.config).lexically_normal().string()},
+                            {"resolution", map->getResolution()},
+                            {"voxels", voxelsJson(*map)},
+                            {"textured", shareTextured(*map)}});
     report.summary = factsOf(report.result);
     ReportData page;
     page.title = fs::path(options.config).filename().string();
     page.subtitle = "What a map holds. Plan in it with map.file in a config.";
     page.commandLine = options.commandLine;
     page.result = report.result;
-    page.voxels = makeReportVoxels(*map);
+    page.voxels = drawnVoxels(*map);
     page.tables = {report.summary};
     std::vector<NamedFigure> figures;
     if (report.result["voxels"]["occupied"] > 0)

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "commands/command_io.hpp"
-#include "commands/map_command.hpp"
+#include "recordings/map_command.hpp"
 
 namespace photonav {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/map_report.hpp"
+#include "recordings/map_report.hpp"
 
 #include <fmt/format.h>
 
@@ -21,61 +21,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr Color kCameraColor{222, 79, 12};
-
-/// Of the values that are numbers.
-json meansOf(const json& compared) {
-    json means = json::object();
-    std::map<std::string, double> counts;
-    for (const auto& frame : compared) {
-        for (const auto& [key, value] : frame.items()) {
-            if (key != "timestamp" && value.is_number()) ++counts[key];
-        }
-    }
-    for (const auto& frame : compared) {
-        for (const auto& [key, count] : counts) {
-            if (frame[key].is_number()) {
-                means[key] = means.value(key, 0.) + frame[key].get<double>() / count;
-            }
-        }
-    }
-    return means;
-}
-
-json vectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-json datasetJson(const MapCommandOptions& options, const Recording& recording) {
-    const Sequence& sequence = recording.sequence;
-    json camera = cameraJson(sequence.camera);
-    camera["assumed"] = sequence.cameraAssumed;
-    camera["depth_registered_here"] = sequence.depthCamera.has_value();
-    const Eigen::Matrix3d R = worldUpRotation(recording.up);
-    return {{"folder", fs::absolute(options.dataset).lexically_normal().string()},
-            {"layout", recording.layout},
-            {"stereo", recording.stereo.empty() ? json(nullptr) : json(recording.stereo)},
-            {"note", recording.note},
-            {"camera", camera},
-            {"depth_scale", sequence.hasDepth() ? json(sequence.depthScale) : json(nullptr)},
-            {"up", options.up},
-            {"up_direction", vectorJson(recording.up)},
-            {"tilt_degrees", tiltDegrees(recording.up)},
-            {"map_from_recorded_rotation",
-             {vectorJson(R.row(0)), vectorJson(R.row(1)), vectorJson(R.row(2))}}};
-}
-
-json framesJson(const MapCommandOptions& options, const Recording& recording, const MapRun& run) {
-    json skipped = json::array();
-    for (const auto& list : {recording.sequence.skipped, run.black}) {
-        for (const auto& [file, reason] : list) {
-            skipped.push_back({{"file", file}, {"reason", reason}});
-        }
-    }
-    return {{"recorded", recording.sequence.recorded},
-            {"used", run.frames - run.black.size()},
-            {"black", run.black.size()},
-            {"every", options.every},
-            {"range", options.frames},
-            {"skipped", skipped}};
-}
 
 using TableRows = std::vector<std::pair<std::string, std::string>>;
 
@@ -122,43 +67,6 @@ DrawnPath cameraPath(const Trajectory& trajectory) {
 }
 
 }  // namespace
-
-nlohmann::json mapResult(const MapCommandOptions& options, const Recording& recording,
-                         const MapRun& run) {
-    return {{"schema", 1},
-            {"command", "map"},
-            {"version", PHOTONAV_VERSION},
-            {"interrupted", run.interrupted},
-            {"dataset", datasetJson(options, recording)},
-            {"frames", framesJson(options, recording, run)},
-            {"depth", options.depth},
-            {"monocular", run.monocular},
-            {"resolution", options.resolution},
-            {"min_range", options.fusion.minRange},
-            {"max_range", options.fusion.maxRange},
-            {"comparison", {{"mean", meansOf(run.compared)}, {"frames", run.compared}}}};
-}
-
-json voxelsJson(const TexturedOcTree& map) {
-    std::size_t free = 0;
-    std::size_t occupied = 0;
-    Eigen::AlignedBox3d box;
-    for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
-        const std::size_t cells = std::size_t(1) << (3 * (map.getTreeDepth() - leaf.getDepth()));
-        if (!map.isNodeOccupied(*leaf)) {
-            free += cells;
-            continue;
-        }
-        occupied += cells;
-        const Eigen::Vector3d center(leaf.getX(), leaf.getY(), leaf.getZ());
-        const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * leaf.getSize());
-        box.extend(center - half);
-        box.extend(center + half);
-    }
-    json result = {{"occupied", occupied}, {"free", free}};
-    if (!box.isEmpty()) result["bounds"] = {vectorJson(box.min()), vectorJson(box.max())};
-    return result;
-}
 
 NamedFigure overview(const TexturedOcTree& map, const std::string& title) {
     Eigen::AlignedBox3d box;
@@ -209,7 +117,7 @@ void writeMapReport(const std::filesystem::path& folder, const MapCommandOptions
     report.commandLine = options.commandLine;
     report.result = result;
     report.config = toYaml(options, recording);
-    report.voxels = makeReportVoxels(map);
+    report.voxels = drawnVoxels(map);
     if (!run.trajectory.empty()) {
         report.paths = {cameraPath(run.trajectory)};
         report.start = run.trajectory.front().T_w_c.translation();

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "commands/map_command.hpp"
-#include "mapping/recording_map.hpp"
+#include "mapping/map_result.hpp"
+#include "recordings/map_command.hpp"
 #include "report/problem_report.hpp"
 
 namespace photonav {
@@ -19,15 +19,8 @@ struct MapRun : FusedRecording {
     bool interrupted = false;
 };
 
-/// How many cells are free and occupied, and the box of the occupied ones.
-nlohmann::json voxelsJson(const TexturedOcTree& map);
-
 /// The map in perspective, from above one of its corners.
 NamedFigure overview(const TexturedOcTree& map, const std::string& title);
-
-/// result.json but for the cells and the time it took.
-nlohmann::json mapResult(const MapCommandOptions& options, const Recording& recording,
-                         const MapRun& run);
 
 /// The main numbers of result.json, with labels.
 ReportTable mapSummary(const nlohmann::json& result);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/replay_report.hpp"
+#include "recordings/replay_report.hpp"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "figures/replay_figures.hpp"
 #include "figures/top_view.hpp"
 #include "replay/replay_tables.hpp"
 #include "report/problem_report.hpp"
-#include "report/replay_figures.hpp"
 
 namespace photonav {
 namespace {
@@ -228,9 +228,8 @@ void writeReplayReport(const std::filesystem::path& folder, const ReplayCommandO
     report.config = config;
     report.tables = {replaySummary(result)};
     report.fieldOfView = fieldOfView(replay.recording().sequence.camera);
-    if (const TexturedOcTree* map = replay.map().octree.get())
-        report.voxels = makeReportVoxels(*map);
-    if (const Scene* scene = replay.map().scene.get()) report.mesh = makeReportMesh(*scene);
+    if (const TexturedOcTree* map = replay.map().octree.get()) report.voxels = drawnVoxels(*map);
+    if (const Scene* scene = replay.map().scene.get()) report.mesh = drawnMesh(*scene);
     std::array paths{estimatedPath(run), truePath(run)};
     for (DrawnPath& path : paths) {
         if (!path.points.empty()) report.paths.push_back(std::move(path));

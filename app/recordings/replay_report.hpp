@@ -2,7 +2,7 @@
 // The page of a replay.
 #pragma once
 
-#include "commands/replay_command.hpp"
+#include "recordings/replay_command.hpp"
 #include "replay/replay.hpp"
 #include "replay/replay_result.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/scan_command.hpp"
+#include "recordings/scan_command.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -10,7 +10,8 @@
 #include "map/octree_file.hpp"
 #include "mapping/map_config.hpp"
 #include "mapping/scan_map.hpp"
-#include "report/map_report.hpp"
+#include "recordings/map_report.hpp"
+#include "result/json_values.hpp"
 
 namespace photonav {
 namespace {
@@ -51,7 +52,7 @@ void writeScanReport(const fs::path& folder, const ScanCommandOptions& options, 
     report.commandLine = options.commandLine;
     report.result = result;
     report.config = toYaml(options);
-    report.voxels = makeReportVoxels(map);
+    report.voxels = drawnVoxels(map);
     report.tables = {summary};
     std::vector<NamedFigure> figures;
     if (!result["stations"].empty()) figures.push_back(overview(map, report.title));
@@ -77,16 +78,13 @@ MapReport runScanMap(const ScanCommandOptions& options, const std::atomic<bool>&
     const json stations = stationsJson(fuseScans(map, scans, options, isStopped, options.progress));
     MapReport report;
     report.exitCode = interrupted ? kInterrupted : kDone;
-    report.result = {{"schema", 1},
-                     {"command", "map"},
-                     {"version", PHOTONAV_VERSION},
-                     {"interrupted", report.exitCode == kInterrupted},
-                     {"scans", options.scans},
-                     {"stations", stations},
-                     {"resolution", options.resolution},
-                     {"max_range", options.maxRange},
-                     {"voxels", voxelsJson(map)},
-                     {"time", {{"fuse_s", watch.seconds()}}}};
+    report.result = resultJson("map", {{"interrupted", report.exitCode == kInterrupted},
+                                       {"scans", options.scans},
+                                       {"stations", stations},
+                                       {"resolution", options.resolution},
+                                       {"max_range", options.maxRange},
+                                       {"voxels", voxelsJson(map)},
+                                       {"time", {{"fuse_s", watch.seconds()}}}});
     report.summary = summaryOf(report.result);
     saveTexturedOcTree(map, (folder.path() / "map.ot").string());
     saveColorOcTree(map, (folder.path() / "map_color.ot").string());

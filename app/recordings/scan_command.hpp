@@ -2,7 +2,7 @@
 // `photonav map` of laser scans: coloured point clouds become a textured OctoMap.
 #pragma once
 
-#include "commands/map_command.hpp"
+#include "recordings/map_command.hpp"
 
 namespace photonav {
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/report.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string_view>
 
-#include "dataset/image_file.hpp"
 #include "io/atomic_file.hpp"
 #include "io/durable_file.hpp"
 
@@ -31,17 +32,9 @@ std::string escapedForScript(std::string_view text) {
 
 }  // namespace
 
-ReportMesh makeReportMesh(const Scene& scene) {
-    ReportMesh mesh;
-    for (const Texture& texture : scene.textures) mesh.images.push_back(greyPng(texture.image));
-    for (const Triangle& triangle : scene.triangles) {
-        for (const Eigen::Vector3f& corner : triangle.corners)
-            mesh.positions.insert(mesh.positions.end(), corner.data(), corner.data() + 3);
-        for (const Eigen::Vector2f& uv : triangle.uv)
-            mesh.uv.insert(mesh.uv.end(), uv.data(), uv.data() + 2);
-        mesh.textures.push_back(triangle.texture);
-    }
-    return mesh;
+std::string lengthText(double metres) {
+    return std::abs(metres) < 0.1 ? fmt::format("{:.3g} mm", 1e3 * metres)
+                                  : fmt::format("{:.3f} m", metres);
 }
 
 Eigen::Vector2d fieldOfView(const Camera& camera) {

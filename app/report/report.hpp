@@ -12,28 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "figures/paths.hpp"
-#include "map/textured_octree.hpp"
 #include "plot/picture.hpp"
 #include "problem/planning_problem.hpp"
-#include "scene/scene.hpp"
+#include "shapes/paths.hpp"
+#include "shapes/surroundings.hpp"
 
 namespace photonav {
-
-/// Textured triangles of the 3-D view, in w [m].
-struct ReportMesh {
-    std::vector<float> positions;         ///< 9 per triangle
-    std::vector<float> uv;                ///< 6 per triangle; v downward, textures repeat
-    std::vector<std::uint32_t> textures;  ///< 1 per triangle, index into `images`
-    std::vector<Png> images;
-};
-
-/// Grey cubes of the 3-D view, in w [m].
-struct ReportVoxels {
-    std::vector<float> centers;      ///< 3 per voxel
-    std::vector<std::uint8_t> grey;  ///< 1 per voxel
-    double size = 0.0;               ///< edge length [m]
-};
 
 /// The predicted view at a point of the first path.
 struct ReportView {
@@ -70,8 +54,8 @@ struct ReportData {
     std::string version = PHOTONAV_VERSION;
     nlohmann::json result = nlohmann::json::object();  ///< result.json of the run
     std::string config;                                ///< YAML, complete
-    ReportMesh mesh;
-    ReportVoxels voxels;
+    DrawnMesh mesh;
+    DrawnVoxels voxels;
     std::vector<DrawnTree> trees;
     std::vector<DrawnPath> paths;  ///< the answer first, then what it is compared with
     Eigen::Vector3d start = Eigen::Vector3d::Zero();
@@ -86,16 +70,11 @@ struct ReportData {
     nlohmann::json flight;  ///< flightLogJson() of a flight to be watched; null: none
 };
 
+/// "0.537 m", "3.75 mm".
+std::string lengthText(double metres);
+
 /// Full angles of a camera, horizontal and vertical [rad].
 Eigen::Vector2d fieldOfView(const Camera& camera);
-
-/// The scene as the page draws it: textures as PNG of at most 2048 pixels a side.
-ReportMesh makeReportMesh(const Scene& scene);
-
-/// The occupied cells of a map with the mean grey value of their faces (0.5 where never observed).
-/// Beyond `limit`, eight neighbours become one voxel of twice the size and their mean grey value,
-/// until they are few enough.
-ReportVoxels makeReportVoxels(const TexturedOcTree& map, std::size_t limit = 400000);
 
 /// The JSON that the page draws, the content of report.json: large arrays as base64 of
 /// little-endian float32, uint32 or uint8, pictures as base64 of PNG.
@@ -104,6 +83,10 @@ std::string reportJson(const ReportData& data);
 /// The content of report.json.
 /// @throws InputError naming file and reason if it is missing, cut or not ours
 std::string readReportJson(const std::filesystem::path& file);
+
+/// The content of the report.json of a result folder.
+/// @throws InputError also for a folder without one
+std::string readReportOf(const std::filesystem::path& folder);
 
 /// The page, HTML.
 /// @param content of reportJson() or readReportJson()

@@ -129,4 +129,10 @@ std::string readReportJson(const std::filesystem::path& file) {
     });
 }
 
+std::string readReportOf(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "report.json";
+    if (std::filesystem::exists(file)) return readReportJson(file);
+    throw InputError(folder.string(), "", "not a result folder of photonav: no report.json");
+}
+
 }  // namespace photonav

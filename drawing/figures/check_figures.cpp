@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/check_figures.hpp"
+#include "figures/check_figures.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -2,8 +2,9 @@
 // Figures of a checked trajectory.
 #pragma once
 
+#include "check/localisation_check.hpp"
 #include "plot/figure.hpp"
-#include "report/check_report.hpp"
+#include "shapes/paths.hpp"
 
 namespace photonav {
 

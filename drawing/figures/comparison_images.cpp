@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/comparison_images.hpp"
+#include "figures/comparison_images.hpp"
 
 #include <fmt/format.h>
 

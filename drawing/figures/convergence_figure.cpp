@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/convergence_figure.hpp"
+#include "figures/convergence_figure.hpp"
 
 #include <fmt/format.h>
 

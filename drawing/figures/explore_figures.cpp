@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/explore_figures.hpp"
+#include "figures/explore_figures.hpp"
 
 #include <fmt/format.h>
 

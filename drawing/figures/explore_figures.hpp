@@ -3,8 +3,8 @@
 #pragma once
 
 #include "exploration/explorations.hpp"
-#include "figures/paths.hpp"
 #include "plot/figure.hpp"
+#include "shapes/paths.hpp"
 
 namespace photonav {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/explore_film.hpp"
+#include "figures/explore_film.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -9,8 +9,8 @@
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "figures/flight_log_figures.hpp"
 #include "io/error.hpp"
-#include "report/flight_log_figures.hpp"
 
 namespace photonav {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/flight_log_figures.hpp"
+#include "figures/flight_log_figures.hpp"
 
 #include <fmt/format.h>
 

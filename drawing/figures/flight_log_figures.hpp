@@ -2,9 +2,9 @@
 // Figures of a flight from its log.
 #pragma once
 
+#include "figures/flight_log_pictures.hpp"
 #include "figures/top_view.hpp"
 #include "flightlog/flight_log.hpp"
-#include "report/flight_log_pictures.hpp"
 
 namespace photonav {
 

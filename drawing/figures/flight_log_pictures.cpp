@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/flight_log_pictures.hpp"
+#include "figures/flight_log_pictures.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/fly_figures.hpp"
+#include "figures/fly_figures.hpp"
 
 #include <algorithm>
 #include <cmath>

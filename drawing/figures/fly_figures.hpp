@@ -2,9 +2,9 @@
 // Results of flights.
 #pragma once
 
-#include "figures/paths.hpp"
 #include "flight/flight_set.hpp"
 #include "plot/figure.hpp"
+#include "shapes/paths.hpp"
 
 namespace photonav {
 

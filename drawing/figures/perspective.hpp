@@ -2,9 +2,9 @@
 // A world in perspective, from above one of its corners, with paths in it.
 #pragma once
 
-#include "figures/paths.hpp"
 #include "photometry/view.hpp"
 #include "plot/figure.hpp"
+#include "shapes/paths.hpp"
 
 namespace photonav {
 

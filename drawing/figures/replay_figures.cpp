@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/replay_figures.hpp"
+#include "figures/replay_figures.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "figures/images.hpp"
-#include "figures/paths.hpp"
 #include "geometry/constants.hpp"
+#include "shapes/paths.hpp"
 
 namespace photonav {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/sweep_figures.hpp"
+#include "figures/sweep_figures.hpp"
 
 #include <fmt/format.h>
 

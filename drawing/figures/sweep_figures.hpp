@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "figures/paths.hpp"
 #include "plot/figure.hpp"
+#include "shapes/paths.hpp"
 #include "sweep/planner_benchmark.hpp"
 #include "sweep/sweep_summary.hpp"
 

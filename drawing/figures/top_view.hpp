@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "figures/paths.hpp"
 #include "plot/figure.hpp"
+#include "shapes/paths.hpp"
 
 namespace photonav {
 

@@ -2,8 +2,8 @@
 // Uncertainty along paths.
 #pragma once
 
-#include "figures/paths.hpp"
 #include "plot/figure.hpp"
+#include "shapes/paths.hpp"
 
 namespace photonav {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/tree_evolution_figure.hpp"
+#include "figures/tree_evolution_figure.hpp"
 
 #include <fmt/format.h>
 

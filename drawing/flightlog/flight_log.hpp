@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "exploration/explorations.hpp"
-#include "figures/paths.hpp"
+#include "shapes/paths.hpp"
 
 namespace photonav {
 

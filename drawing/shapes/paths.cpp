@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "figures/paths.hpp"
+#include "shapes/paths.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -40,7 +40,7 @@ struct CameraConfig {
 /// The planner's model of a view's information. Paths are evaluated by the photometric information,
 /// whatever the planner's model is.
 struct ViewModelConfig {
-    std::string name = "photometric";  ///< one of viewModelNames()
+    std::string name = "photometric";  ///< a name of makeViewModel()
     FeatureOptions features;
     double mapPriorSigma = 1.;  ///< MapUncertaintyOptions::priorSigma
     double kappa = 2.5;         ///< metres of detour that 1 m of flight at a penalty of 1 is worth
@@ -93,10 +93,6 @@ struct Config {
 
     std::uint32_t seed = 1;
 };
-
-/// Names that `planner.information` accepts: information about the pose (photometric,
-/// feature_reprojection, none), or a penalty in its place (feature_count, map_uncertainty).
-const std::vector<std::string>& viewModelNames();
 
 /// Reads a config and applies overrides "key.path=value" on top. Paths in the file are relative to
 /// the file, paths in overrides to the working directory.

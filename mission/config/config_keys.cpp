@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "belief/view_model_table.hpp"
 #include "geometry/constants.hpp"
 #include "io/number.hpp"
 #include "planners/planner_table.hpp"
@@ -282,12 +283,6 @@ std::optional<double> mountDegrees(const std::string& mount) {
     if (mount == "forward") return 0.;
     const std::optional<double> degrees = numberIn(mount);
     return degrees && std::abs(*degrees) <= 90. ? degrees : std::nullopt;
-}
-
-const std::vector<std::string>& viewModelNames() {
-    static const std::vector<std::string> names{"photometric", "feature_reprojection", "none",
-                                                "feature_count", "map_uncertainty"};
-    return names;
 }
 
 KeyTable keysOf(Config& config) {

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "dataset/camera_file.hpp"
 #include "dataset/image_file.hpp"
 #include "dataset/trajectory.hpp"
 #include "io/atomic_file.hpp"
@@ -46,12 +47,13 @@ FlightRecorder::FlightRecorder(const std::filesystem::path& folder, const Camera
       pairs_("# timestamp colour timestamp depth\n"),
       poses_("# timestamp tx ty tz qx qy qz qw (true, camera to world)\n") {
     for (const char* name : {"rgb", "depth"}) makeFolder(folder_ / name);
-    writeFileAtomically(
-        folder_ / "camera.yaml",
-        fmt::format("width: {}\nheight: {}\nfx: {}\nfy: {}\ncx: {}\ncy: {}\ndepth_scale: {}\n"
-                    "information_scale: {}\nblur: {:.4g}\ndepth_error: 0\n",
-                    camera.width, camera.height, camera.fx(), camera.fy(), camera.cx(), camera.cy(),
-                    kDepthScale, informationScale, blur));
+    Sequence sequence;
+    sequence.camera = camera;
+    sequence.depthScale = kDepthScale;
+    sequence.informationScale = informationScale;
+    sequence.blur = blur;
+    sequence.depthError = 0.;
+    writeFileAtomically(folder_ / "camera.yaml", cameraYaml(sequence));
 }
 
 void FlightRecorder::add(const Exposed& exposed) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "belief/view_model_table.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "planners/planner_table.hpp"
@@ -201,24 +202,22 @@ std::shared_ptr<const ViewSource> PlanningProblem::interruptibleViews() const {
 std::shared_ptr<InformationField> PlanningProblem::makeField(const std::string& viewModel) const {
     const Camera camera = config_.camera.camera();
     const Pose T_b_c = config_.camera.T_b_c();
-    if (viewModel == "none" || !world_.hasTexture()) {
-        return std::make_shared<InformationField>(InformationFormula{}, T_b_c, config_.field);
-    }
     const auto field = [&](const auto& model) {
-        return std::make_shared<InformationField>(interruptibleViews(), camera, model, T_b_c,
-                                                  hasQuickViews() ? kExactPoses : config_.field);
+        if constexpr (std::is_same_v<std::decay_t<decltype(model)>, std::monostate>) {
+            return std::make_shared<InformationField>(InformationFormula{}, T_b_c, config_.field);
+        } else {
+            return std::make_shared<InformationField>(
+                interruptibleViews(), camera, model, T_b_c,
+                hasQuickViews() ? kExactPoses : config_.field);
+        }
     };
-    const FeatureOptions& features = config_.viewModel.features;
-    if (viewModel == "feature_reprojection") {
-        return field(featureReprojectionModel(camera, features));
-    }
-    if (viewModel == "feature_count") return field(featureCountModel(features));
-    if (viewModel == "map_uncertainty") {
-        return field(mapUncertaintyModel(
-            camera, config_.photometric,
-            {.priorSigma = config_.viewModel.mapPriorSigma, .baseline = config_.belief.ds}));
-    }
-    return field(photometric_(camera, config_.photometric));
+    if (!world_.hasTexture()) return field(std::monostate());
+    return std::visit(field, makeViewModel(viewModel, camera,
+                                           {.photometric = config_.photometric,
+                                            .features = config_.viewModel.features,
+                                            .map = {.priorSigma = config_.viewModel.mapPriorSigma,
+                                                    .baseline = config_.belief.ds},
+                                            .makePhotometric = photometric_}));
 }
 
 bool PlanningProblem::hasQuickViews() const {

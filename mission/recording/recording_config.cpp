@@ -16,17 +16,19 @@ void addKeys(KeyTable& keys, RecordingOptions& options) {
     keys.number({"depth_scale", "1/m", "depth image value of one metre; none: the dataset's"},
                 options.depthScale, {1e-6, 1e12});
     keys.text({"frames", "", "\"a:b\": only the frames from a on and before b"}, options.frames);
-    keys.choice(
-        {"stereo", "",
-         "bm: block matching (none: this), sgbm: semi-global matching; of EuRoC recordings"},
-        options.stereo, {"bm", "sgbm"});
-    keys.text({"topics", "",
-               "of a bag, where a type has more than one: \"image=/a,depth=/b,camera=/c,pose=/d\""},
-              options.topics);
-    keys.text({"mount", "m",
-               "\"x,y,z,qx,qy,qz,qw\": pose of the camera on what the poses of a bag are of; none: "
-               "they are the camera's"},
-              options.mount);
+    keys.choice({"stereo", "",
+                 "stereo matching of EuRoC recordings: bm, block matching, or sgbm, semi-global "
+                 "matching; none: bm"},
+                options.stereo, {"bm", "sgbm"});
+    keys.text(
+        {"topics", "",
+         "topics of a bag that has several of a type: \"image=/a,depth=/b,camera=/c,pose=/d\""},
+        options.topics);
+    keys.text(
+        {"mount", "m",
+         "\"x,y,z,qx,qy,qz,qw\": pose of the camera in the frame whose poses a bag holds; none: "
+         "the poses are the camera's"},
+        options.mount);
 }
 
 }  // namespace photonav

@@ -62,19 +62,22 @@ Calibration readOfKind(const std::string& file, std::optional<MapKind> map) {
 }  // namespace
 
 std::string toYaml(const Calibration& c, std::optional<MapKind> map) {
-    std::string text = fmt::format(
-        "# Single alignments: NEES per degree of freedom {:.3g} before, {:.3g} with\n"
-        "# photonav replay ... --scale {:.3g} --least-sigma {:.3g} --least-sigma-rotation {:.3g}\n"
-        "mode: {}\nscale: {:.3g}\nleast_sigma: {:.3g}  # m\nleast_sigma_rotation: {:.3g}  # rad\n",
-        c.neesBefore, c.neesAfter, c.scale, c.leastSigma, c.leastSigmaRotation, modeOf(map),
-        c.scale, c.leastSigma, c.leastSigmaRotation);
+    const auto digits = [](double value) { return fmt::format("{:.3g}", value); };
+    YAML::Emitter yaml;
+    yaml << YAML::Comment(fmt::format(
+        "Single alignments: NEES per degree of freedom {:.3g} before, {:.3g} with\n"
+        "photonav replay ... --scale {:.3g} --least-sigma {:.3g} --least-sigma-rotation {:.3g}",
+        c.neesBefore, c.neesAfter, c.scale, c.leastSigma, c.leastSigmaRotation));
+    yaml << YAML::BeginMap << "mode" << modeOf(map) << "scale" << digits(c.scale) << "least_sigma"
+         << digits(c.leastSigma) << YAML::Comment("m") << "least_sigma_rotation"
+         << digits(c.leastSigmaRotation) << YAML::Comment("rad");
     if (c.correlationTime > 1.) {
-        text += fmt::format(
-            "# Images whose errors are correlated: photonav fly, which averages images, divides\n"
-            "# the scale by this number.\ncorrelation_time: {:.3g}\n",
-            c.correlationTime);
+        yaml << "correlation_time" << digits(c.correlationTime)
+             << YAML::Comment(
+                    "images whose errors are correlated: photonav fly divides the scale by it");
     }
-    return text;
+    yaml << YAML::EndMap;
+    return std::string(yaml.c_str()) + "\n";
 }
 
 Calibration readCalibration(const std::string& file) {

@@ -105,28 +105,4 @@ DepthRegistration registerDepth(
     return result;
 }
 
-std::string cameraYaml(const Sequence& sequence) {
-    const auto intrinsics = [](const Camera& c, const char* separator) {
-        return fmt::format("width: {1}{0}height: {2}{0}fx: {3}{0}fy: {4}{0}cx: {5}{0}cy: {6}",
-                           separator, c.width, c.height, c.fx(), c.fy(), c.cx(), c.cy());
-    };
-    std::string text = intrinsics(sequence.camera, "\n");
-    text += fmt::format("\ndepth_scale: {}\n", sequence.depthScale);
-    if (const auto& scale = sequence.informationScale) {
-        text += fmt::format("information_scale: {}\n", *scale);
-    }
-    if (sequence.blur) text += fmt::format("blur: {}\n", *sequence.blur);
-    if (sequence.depthError) text += fmt::format("depth_error: {}\n", *sequence.depthError);
-    if (!sequence.depthCamera) return text;
-    const DepthCamera& depth = *sequence.depthCamera;
-    const Eigen::Vector3d p = depth.T_c_d.translation();
-    const Eigen::Quaterniond q(depth.T_c_d.linear());
-    text += fmt::format(
-        "depth_camera: {{{},\n  T_colour_depth: [{:.6f}, {:.6f}, {:.6f}, {:.7f}, {:.7f}, {:.7f}, "
-        "{:.7f}], poses: {}}}\n",
-        intrinsics(depth.camera, ", "), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(),
-        depth.hasPoses ? "depth" : "colour");
-    return text;
-}
-
 }  // namespace photonav

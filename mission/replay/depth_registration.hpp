@@ -27,7 +27,4 @@ DepthRegistration registerDepth(
     const RecordingOptions& options, const std::function<bool()>& isStopped = {},
     const std::function<void(std::size_t done, std::size_t all)>& progress = {});
 
-/// A camera.yaml with everything that the sequence knows of its cameras.
-std::string cameraYaml(const Sequence& sequence);
-
 }  // namespace photonav

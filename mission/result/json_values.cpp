@@ -26,4 +26,21 @@ nlohmann::json cameraJson(const Camera& camera) {
             {"fy", camera.fy()},     {"cx", camera.cx()},       {"cy", camera.cy()}};
 }
 
+nlohmann::json resultJson(const std::string& command, nlohmann::json content) {
+    content["schema"] = 1;
+    content["command"] = command;
+    content["version"] = PHOTONAV_VERSION;
+    return content;
+}
+
+nlohmann::json vectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+nlohmann::json triangleJson(const Matrix6& matrix) {
+    nlohmann::json triangle = nlohmann::json::array();
+    for (int i = 0; i < 6; ++i) {
+        for (int j = i; j < 6; ++j) triangle.push_back(matrix(i, j));
+    }
+    return triangle;
+}
+
 }  // namespace photonav

@@ -17,6 +17,18 @@ namespace photonav {
 nlohmann::json finiteOrNull(double value);
 nlohmann::json orNull(const std::optional<double>& value);
 
+/// A result.json: an object, with schema, command and version added.
+nlohmann::json resultJson(const std::string& command, nlohmann::json content);
+
+nlohmann::json vectorJson(const Eigen::Vector3d& v);
+
+/// The upper triangle of a symmetric matrix, by rows.
+nlohmann::json triangleJson(const Matrix6& matrix);
+
+/// What covariances of poses in result files are.
+inline constexpr const char* kCovarianceFrame =
+    "camera, left perturbation T_c_w = exp(xi) mean, order (rho, phi), upper triangle by rows";
+
 /// A whole number that the type can hold. @throws std::exception for other values
 template <typename Number>
 Number wholeNumber(const nlohmann::json& value) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "interchange/mcap_writer.hpp"
+#include "bag/mcap_writer.hpp"
 
 #include <zlib.h>
 
@@ -38,24 +38,24 @@ std::uint32_t checksum(std::string_view bytes) {
 }
 
 /// Fields one after the other, texts and tables after their length.
-class Fields {
+class McapFields {
   public:
     template <std::unsigned_integral Number>
-    Fields& number(Number value) {
+    McapFields& number(Number value) {
         bytes_.append(reinterpret_cast<const char*>(&value), sizeof(value));
         return *this;
     }
-    Fields& text(std::string_view text) {
+    McapFields& text(std::string_view text) {
         number(static_cast<std::uint32_t>(text.size()));
         return raw(text);
     }
-    Fields& raw(std::string_view bytes) {
+    McapFields& raw(std::string_view bytes) {
         bytes_.append(bytes);
         return *this;
     }
     /// The record, with opcode and length.
     std::string as(Op op) const {
-        Fields record;
+        McapFields record;
         record.number(static_cast<std::uint8_t>(op)).number(std::uint64_t(bytes_.size()));
         return record.raw(bytes_).bytes_;
     }
@@ -67,7 +67,7 @@ class Fields {
 
 template <typename Key>
 std::string tableOf(const std::map<Key, std::uint64_t>& table) {
-    Fields fields;
+    McapFields fields;
     for (const auto& [key, value] : table) fields.number(key).number(value);
     return fields.bytes();
 }
@@ -97,7 +97,7 @@ void McapWriter::add(ChannelId channel, double time, std::string json) {
 std::string McapWriter::schemaRecords() const {
     std::string records;
     for (std::size_t i = 0; i < schemas_.size(); ++i) {
-        records += Fields()
+        records += McapFields()
                        .number(static_cast<std::uint16_t>(i + 1))
                        .text(schemas_[i].name)
                        .text("jsonschema")
@@ -110,7 +110,7 @@ std::string McapWriter::schemaRecords() const {
 std::string McapWriter::channelRecords() const {
     std::string records;
     for (std::size_t i = 0; i < channels_.size(); ++i) {
-        records += Fields()
+        records += McapFields()
                        .number(static_cast<std::uint16_t>(i))
                        .number(channels_[i].schema)
                        .text(channels_[i].topic)
@@ -128,8 +128,8 @@ McapWriter::Chunk McapWriter::appendChunk(std::string& file,
     Chunk chunk{messages.front()->time, messages.back()->time, file.size(), 0, 0, 0, {}};
     for (const Message* message : messages) {
         lists[message->channel] +=
-            Fields().number(message->time).number(std::uint64_t(records.size())).bytes();
-        records += Fields()
+            McapFields().number(message->time).number(std::uint64_t(records.size())).bytes();
+        records += McapFields()
                        .number(message->channel)
                        .number(std::uint32_t{0})
                        .number(message->time)
@@ -138,7 +138,7 @@ McapWriter::Chunk McapWriter::appendChunk(std::string& file,
                        .as(Op::message);
     }
     chunk.size = records.size();
-    file += Fields()
+    file += McapFields()
                 .number(chunk.first)
                 .number(chunk.last)
                 .number(chunk.size)
@@ -150,7 +150,7 @@ McapWriter::Chunk McapWriter::appendChunk(std::string& file,
     chunk.length = file.size() - chunk.start;
     for (const auto& [channel, list] : lists) {
         chunk.indices[channel] = file.size();
-        file += Fields().number(channel).text(list).as(Op::messageIndex);
+        file += McapFields().number(channel).text(list).as(Op::messageIndex);
     }
     chunk.indexLength = file.size() - chunk.start - chunk.length;
     return chunk;
@@ -159,7 +159,7 @@ McapWriter::Chunk McapWriter::appendChunk(std::string& file,
 std::string McapWriter::chunkIndices(const std::vector<Chunk>& chunks) const {
     std::string records;
     for (const Chunk& chunk : chunks) {
-        records += Fields()
+        records += McapFields()
                        .number(chunk.first)
                        .number(chunk.last)
                        .number(chunk.start)
@@ -177,7 +177,7 @@ std::string McapWriter::chunkIndices(const std::vector<Chunk>& chunks) const {
 std::string McapWriter::statistics(const std::vector<Chunk>& chunks) const {
     std::map<ChannelId, std::uint64_t> counts;
     for (const Message& message : messages_) ++counts[message.channel];
-    return Fields()
+    return McapFields()
         .number(std::uint64_t(messages_.size()))
         .number(static_cast<std::uint16_t>(schemas_.size()))
         .number(static_cast<std::uint32_t>(channels_.size()))
@@ -195,7 +195,7 @@ void McapWriter::appendSummary(std::string& file, const std::vector<Chunk>& chun
     std::string offsets;
     const auto append = [&](Op op, const std::string& records) {
         if (records.empty()) return;
-        offsets += Fields()
+        offsets += McapFields()
                        .number(static_cast<std::uint8_t>(op))
                        .number(std::uint64_t(file.size()))
                        .number(std::uint64_t(records.size()))
@@ -210,9 +210,9 @@ void McapWriter::appendSummary(std::string& file, const std::vector<Chunk>& chun
     file += offsets;
     // The checksum covers the summary and the footer but for itself.
     const std::string footer =
-        Fields().number(start).number(offsetsStart).number(std::uint32_t{0}).as(Op::footer);
+        McapFields().number(start).number(offsetsStart).number(std::uint32_t{0}).as(Op::footer);
     file += footer.substr(0, footer.size() - sizeof(std::uint32_t));
-    file += Fields().number(checksum(std::string_view(file).substr(start))).bytes();
+    file += McapFields().number(checksum(std::string_view(file).substr(start))).bytes();
 }
 
 std::string McapWriter::content() const {
@@ -221,7 +221,7 @@ std::string McapWriter::content() const {
     for (const Message& message : messages_) ordered.push_back(&message);
     std::ranges::stable_sort(ordered, {}, &Message::time);
     std::string file(kMcapMagic);
-    file += Fields().text("").text("photonav").as(Op::header);
+    file += McapFields().text("").text("photonav").as(Op::header);
     file += schemaRecords() + channelRecords();
     std::vector<Chunk> chunks;
     std::vector<const Message*> inChunk;
@@ -234,7 +234,7 @@ std::string McapWriter::content() const {
         inChunk.clear();
         size = 0;
     }
-    file += Fields().number(checksum(file)).as(Op::dataEnd);
+    file += McapFields().number(checksum(file)).as(Op::dataEnd);
     appendSummary(file, chunks);
     return file.append(kMcapMagic);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/camera_file.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "io/yaml_reader.hpp"
@@ -54,6 +56,23 @@ DepthCamera readDepthCamera(YamlMap yaml, const Camera& colour) {
     return depth;
 }
 
+void writeIntrinsics(YAML::Emitter& yaml, const Camera& camera) {
+    yaml << "width" << camera.width << "height" << camera.height << "fx" << numberText(camera.fx())
+         << "fy" << numberText(camera.fy()) << "cx" << numberText(camera.cx()) << "cy"
+         << numberText(camera.cy());
+}
+
+void writeDepthCamera(YAML::Emitter& yaml, const DepthCamera& depth) {
+    yaml << "depth_camera" << YAML::BeginMap;
+    writeIntrinsics(yaml, depth.camera);
+    const Eigen::Vector3d p = depth.T_c_d.translation();
+    const Eigen::Quaterniond q(depth.T_c_d.linear());
+    yaml << "T_colour_depth" << YAML::Flow << YAML::BeginSeq;
+    for (const double value : p) yaml << fmt::format("{:.6f}", value);
+    for (const double value : q.coeffs()) yaml << fmt::format("{:.7f}", value);
+    yaml << YAML::EndSeq << "poses" << (depth.hasPoses ? "depth" : "colour") << YAML::EndMap;
+}
+
 }  // namespace
 
 void readCameraFile(const std::string& file, Sequence& sequence) {
@@ -76,6 +95,22 @@ void readCameraFile(const std::string& file, Sequence& sequence) {
         sequence.depthCamera = readDepthCamera(yaml.map("depth_camera"), sequence.camera);
     }
     yaml.finish();
+}
+
+std::string cameraYaml(const Sequence& sequence) {
+    YAML::Emitter yaml;
+    yaml << YAML::BeginMap;
+    writeIntrinsics(yaml, sequence.camera);
+    yaml << "depth_scale" << numberText(sequence.depthScale);
+    const auto write = [&](const char* key, const std::optional<double>& value) {
+        if (value) yaml << key << numberText(*value);
+    };
+    write("information_scale", sequence.informationScale);
+    write("blur", sequence.blur);
+    write("depth_error", sequence.depthError);
+    if (sequence.depthCamera) writeDepthCamera(yaml, *sequence.depthCamera);
+    yaml << YAML::EndMap;
+    return std::string(yaml.c_str()) + "\n";
 }
 
 }  // namespace photonav

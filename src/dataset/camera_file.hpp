@@ -17,4 +17,7 @@ namespace photonav {
 /// @throws InputError naming file, key and reason
 void readCameraFile(const std::string& file, Sequence& sequence);
 
+/// A camera.yaml with everything that the sequence knows of its cameras.
+std::string cameraYaml(const Sequence& sequence);
+
 }  // namespace photonav

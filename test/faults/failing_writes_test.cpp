@@ -13,11 +13,11 @@
 #include <cstring>
 #include <functional>
 
-#include "app/flightlog/sample_log.hpp"
-#include "commands/flight_watch.hpp"
 #include "commands/result_folder.hpp"
 #include "dataset/sequence_tum.hpp"
+#include "drawing/flightlog/sample_log.hpp"
 #include "exploration/trial_journal.hpp"
+#include "explorations/flight_watch.hpp"
 #include "flight/flight_recorder.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"

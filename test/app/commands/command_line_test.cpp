@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "app/executable.hpp"
@@ -348,7 +349,7 @@ TEST(Completion, OffersCommandsOptionsAndKeys) {
     const Execution bash = photonav("completion bash");
     EXPECT_EQ(bash.exitCode, 0);
     const std::string script = folder.write("photonav.bash", bash.output);
-    EXPECT_EQ(completed("photonav re", script), "reference replay report\n");
+    EXPECT_EQ(completed("photonav re", script), "replay reference report\n");
     EXPECT_EQ(completed("photonav plan --al", script), "--alpha\n");
     EXPECT_EQ(completed("photonav plan a.yaml --set planner.al", script), "planner.alpha=\n");
     EXPECT_EQ(completed("photonav plan " + folder.file("photonav.b"), script), script + "\n");
@@ -362,6 +363,28 @@ TEST(Doctor, FindsNothingWrongHere) {
     const Execution run = photonav("doctor");
     EXPECT_EQ(run.exitCode, 0) << run.output;
     EXPECT_NE(run.output.find("ok        sample plan"), std::string::npos) << run.output;
+}
+
+TEST_F(CommandLine, HelpFitsIntoEightyColumns) {
+    std::istringstream all(photonav("--help").output);
+    std::vector<std::string> commands{""};
+    for (std::string line; std::getline(all, line) && line != "Commands:";) {
+    }
+    for (std::string line; std::getline(all, line) && !line.empty();) {
+        if (line.starts_with("  ") && line[2] != ' ') {
+            commands.push_back(line.substr(2, line.find(' ', 2) - 2));
+        }
+    }
+    EXPECT_GT(commands.size(), 10U);
+    for (const std::string& command : commands) {
+        const Execution help = photonav(command + " --help");
+        EXPECT_EQ(help.exitCode, 0) << command;
+        std::istringstream lines(help.output);
+        for (std::string line; std::getline(lines, line);) {
+            EXPECT_LE(line.size(), 80U) << command << ": " << line;
+            EXPECT_FALSE(line.ends_with(' ')) << command << ": " << line;
+        }
+    }
 }
 
 }  // namespace

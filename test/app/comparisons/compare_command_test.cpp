@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "app/executable.hpp"
-#include "commands/compare_command.hpp"
+#include "comparisons/compare_command.hpp"
 
 namespace photonav {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table of a sweep in words, and what its figures show.
-#include "report/sweep_report.hpp"
+#include "comparisons/sweep_report.hpp"
 
 #include <gtest/gtest.h>
 
-#include "report/sweep_figures.hpp"
+#include "figures/sweep_figures.hpp"
 #include "sweep_run.hpp"
 
 namespace photonav {

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/executable.hpp"
+#include "bag/mcap_writer.hpp"
 #include "dataset/trajectory.hpp"
 #include "flight_dataset.hpp"
-#include "interchange/mcap_writer.hpp"
 
 namespace photonav {
 namespace {

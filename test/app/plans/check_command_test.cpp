@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/check_command.hpp"
+#include "plans/check_command.hpp"
 
 #include <gtest/gtest.h>
 

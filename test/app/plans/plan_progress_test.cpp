@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/plan_progress.hpp"
+#include "plans/plan_progress.hpp"
 
 #include <gtest/gtest.h>
 

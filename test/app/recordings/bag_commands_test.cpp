@@ -3,11 +3,11 @@
 #include "app/executable.hpp"
 #include "bag_of_recording.hpp"
 #include "commands/command_io.hpp"
-#include "commands/map_command.hpp"
-#include "commands/replay_command.hpp"
 #include "dataset/trajectory.hpp"
 #include "flight_dataset.hpp"
 #include "mapping/map_config.hpp"
+#include "recordings/map_command.hpp"
+#include "recordings/replay_command.hpp"
 
 namespace photonav {
 namespace {

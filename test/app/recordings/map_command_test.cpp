@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/map_command.hpp"
+#include "recordings/map_command.hpp"
 
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>

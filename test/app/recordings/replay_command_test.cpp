@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/replay_command.hpp"
+#include "recordings/replay_command.hpp"
 
 #include "app/executable.hpp"
 #include "dataset/colmap_model.hpp"
 #include "dataset/trajectory.hpp"
 #include "flight_dataset.hpp"
+#include "recordings/replay_report.hpp"
 #include "replay/calibration_file.hpp"
-#include "report/replay_report.hpp"
 
 namespace photonav {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/scan_command.hpp"
+#include "recordings/scan_command.hpp"
 
 #include "map/octree_file.hpp"
 #include "mapping/map_config.hpp"

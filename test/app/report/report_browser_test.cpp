@@ -2,8 +2,8 @@
 // What a report page shows, and what clicks and keys do.
 #include "app/report/browser.hpp"
 #include "app/report/sample_report.hpp"
+#include "comparisons/sweep_report.hpp"
 #include "io/base64.hpp"
-#include "report/sweep_report.hpp"
 #include "sweep_run.hpp"
 
 namespace photonav {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a report page plays: a logged flight, one that is shown while it is flown, and pictures.
-#include "app/flightlog/sample_log.hpp"
 #include "app/report/browser.hpp"
 #include "app/report/sample_report.hpp"
+#include "drawing/flightlog/sample_log.hpp"
 #include "live/live_server.hpp"
 
 namespace photonav {

@@ -110,7 +110,7 @@ TEST_F(ReportTest, UnwritableFolderIsRefusedAndNothingIsLeft) {
         << "temporary file left behind";
 }
 
-TEST(ReportVoxels, CoarsenedWhenTooMany) {
+TEST(DrawnVoxels, CoarsenedWhenTooMany) {
     TexturedOcTree map(0.05);
     for (int i = 0; i < 16; ++i) {
         for (int j = 0; j < 16; ++j) {
@@ -119,8 +119,8 @@ TEST(ReportVoxels, CoarsenedWhenTooMany) {
                 i < 8 ? 0.2F : 0.8F, 1.F};
         }
     }
-    EXPECT_EQ(makeReportVoxels(map).grey.size(), 256U);
-    const ReportVoxels coarse = makeReportVoxels(map, 70);
+    EXPECT_EQ(drawnVoxels(map).grey.size(), 256U);
+    const DrawnVoxels coarse = drawnVoxels(map, 70);
     EXPECT_EQ(coarse.grey.size(), 64U);
     EXPECT_DOUBLE_EQ(coarse.size, 0.1);
     EXPECT_EQ(std::count(coarse.grey.begin(), coarse.grey.end(), greyLevel(0.2F)), 32);
@@ -128,17 +128,17 @@ TEST(ReportVoxels, CoarsenedWhenTooMany) {
 }
 
 /// One leaf of 65536 cells a side, which a file of 60 bytes can hold, and a cell beside others.
-TEST(ReportVoxels, ALeafIsExpandedAtTheSizeThatIsDrawn) {
+TEST(DrawnVoxels, ALeafIsExpandedAtTheSizeThatIsDrawn) {
     TexturedOcTree map(0.1);
     map.obtainRoot().setLogOdds(1.F);
-    const ReportVoxels drawn = makeReportVoxels(map);
+    const DrawnVoxels drawn = drawnVoxels(map);
     EXPECT_EQ(drawn.grey.size(), 262144U);
     EXPECT_DOUBLE_EQ(drawn.size, 102.4);
     EXPECT_FLOAT_EQ(drawn.centers[0], -3276.8F + 51.2F);
-    EXPECT_EQ(makeReportVoxels(map, 1).size, 6553.6);
+    EXPECT_EQ(drawnVoxels(map, 1).size, 6553.6);
 }
 
-TEST(ReportVoxels, OccupiedCellsOfAMap) {
+TEST(DrawnVoxels, OccupiedCellsOfAMap) {
     TexturedOcTree map(0.1);
     for (int i = 0; i < 8; ++i) {  // all children of one node, alike: they may be pruned
         const octomap::point3d at(0.05F + 0.1F * (i & 1), 0.05F + 0.1F * (i >> 1 & 1),
@@ -148,7 +148,7 @@ TEST(ReportVoxels, OccupiedCellsOfAMap) {
     map.updateNode(octomap::point3d(1.05F, 0.05F, 0.05F), false);
     map.updateNode(octomap::point3d(2.05F, 0.05F, 0.05F), true);
     map.prune();
-    const ReportVoxels voxels = makeReportVoxels(map);
+    const DrawnVoxels voxels = drawnVoxels(map);
     EXPECT_DOUBLE_EQ(voxels.size, 0.1);
     ASSERT_EQ(voxels.grey.size(), 9U);
     EXPECT_EQ(std::count(voxels.grey.begin(), voxels.grey.end(), 102), 8);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dataset/image_file.hpp"
-#include "drawing/sample_run.hpp"
+#include "drawing/figures/sample_run.hpp"
 #include "figures/images.hpp"
 #include "report/report.hpp"
 
@@ -29,7 +29,7 @@ inline ReportData sampleReport() {
         "belief_rrt_star searched 2500 vertices from (0, 0, 2) m to (2, 9, 2) m, alpha 0.25.";
     data.commandLine = "photonav plan config/two_textures.yaml --seed 7";
     data.version = "0.1.0";
-    data.mesh = makeReportMesh(sampleScene(floor));
+    data.mesh = drawnMesh(sampleScene(floor));
     data.trees = {sampleTree(2500)};
     data.paths = samplePaths();
     data.start = {0, 0, 2};

@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "drawing/decoded.hpp"
-#include "drawing/sample_run.hpp"
+#include "drawing/figures/sample_run.hpp"
+#include "drawing/plot/decoded.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
 #include "figures/top_view.hpp"

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "figures/paths.hpp"
+#include "shapes/paths.hpp"
 
 namespace photonav {
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/flightlog/sample_log.hpp"
+#include "drawing/flightlog/sample_log.hpp"
 
 namespace photonav {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "mission/exploration/room_to_explore.hpp"
-#include "report/report.hpp"
+#include "shapes/surroundings.hpp"
 
 namespace photonav {
 namespace {
@@ -59,7 +59,7 @@ TEST(FlightLogger, HoldsTheMapAndAsManyPicturesAsItMay) {
             }
         }
     }
-    EXPECT_EQ(cells.size(), makeReportVoxels(*flight.map).grey.size());
+    EXPECT_EQ(cells.size(), drawnVoxels(*flight.map).grey.size());
     EXPECT_EQ(whole.log().cell, 0.1);
     // The points flown are all there, and end where the flight ended.
     EXPECT_NEAR(whole.log().rest.back().time, flight.samples.back().time, 1e-4);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "drawing/decoded.hpp"
+#include "drawing/plot/decoded.hpp"
 #include "io/error.hpp"
 #include "plot/figure.hpp"
 #include "temporary_folder.hpp"

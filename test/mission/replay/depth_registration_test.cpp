@@ -5,6 +5,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "dataset/camera_file.hpp"
 #include "dataset/sequence_tum.hpp"
 #include "geometry/se3.hpp"
 #include "temporary_folder.hpp"

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <ompl/geometric/PathGeometric.h>
 
+#include <map>
+
+#include "belief/view_model_table.hpp"
 #include "planning/fixture.hpp"
 
 namespace photonav::test {
@@ -196,6 +199,33 @@ TEST(ViewModels, FillFieldsOverAMap) {
     InformationField penalties(floor, camera, featureCountModel({.referenceCount = 1.}), mount, {});
     EXPECT_TRUE(penalties.hasPenalties());
     EXPECT_DOUBLE_EQ(penalties.at(above).penalty.base, 0.5);
+}
+
+TEST(ViewModelTable, EveryNameMakesAModelOfItsKind) {
+    const Camera camera = makeCamera(95, 63, 1.2);
+    std::map<std::string, std::string> kinds;
+    for (const std::string& name : viewModelNames()) {
+        const ViewModel model = makeViewModel(name, camera, {});
+        kinds[name] = std::holds_alternative<InformationModel>(model) ? "information"
+                      : std::holds_alternative<PenaltyModel>(model)   ? "penalty"
+                                                                      : "none";
+    }
+    const std::map<std::string, std::string> wanted{{"photometric", "information"},
+                                                    {"feature_reprojection", "information"},
+                                                    {"none", "none"},
+                                                    {"feature_count", "penalty"},
+                                                    {"map_uncertainty", "penalty"}};
+    EXPECT_EQ(kinds, wanted);
+    EXPECT_THROW(makeViewModel("photometry", camera, {}), std::invalid_argument);
+}
+
+TEST(ViewModelTable, ThePhotometricModelCanBeReplaced) {
+    const Camera camera = makeCamera(95, 63, 1.2);
+    const auto constant = [](const Camera&, const PhotometricOptions&) -> InformationModel {
+        return [](const View&) -> Matrix6 { return 2. * Matrix6::Identity(); };
+    };
+    const ViewModel model = makeViewModel("photometric", camera, {.makePhotometric = constant});
+    EXPECT_EQ(std::get<InformationModel>(model)(View()).trace(), 12.);
 }
 
 }  // namespace

@@ -126,7 +126,8 @@ _photonav "$@"
 
 Command completionCommand(CLI::App& app) {
     auto shell = std::make_shared<std::string>();
-    CLI::App* parser = app.add_subcommand("completion", "Print the completion script of a shell.");
+    CLI::App* parser = app.add_subcommand("completion", "Print the completion script of a shell.")
+                           ->group("Commands");
     parser->add_option("shell", *shell, "bash or zsh")
         ->required()
         ->check(CLI::IsMember({"bash", "zsh"}));

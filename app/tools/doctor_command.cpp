@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/doctor_command.hpp"
+#include "tools/doctor_command.hpp"
 
 #include <fmt/format.h>
 #include <ompl/config.h>

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "shapes/surroundings.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <optional>
 
-#include "report/report.hpp"
+#include "dataset/image_file.hpp"
 
 namespace photonav {
 namespace {
@@ -45,11 +47,24 @@ std::optional<Voxels> voxelsOf(const TexturedOcTree& map, unsigned level, std::s
 
 }  // namespace
 
-ReportVoxels makeReportVoxels(const TexturedOcTree& map, std::size_t limit) {
+DrawnMesh drawnMesh(const Scene& scene) {
+    DrawnMesh mesh;
+    for (const Texture& texture : scene.textures) mesh.images.push_back(greyPng(texture.image));
+    for (const Triangle& triangle : scene.triangles) {
+        for (const Eigen::Vector3f& corner : triangle.corners)
+            mesh.positions.insert(mesh.positions.end(), corner.data(), corner.data() + 3);
+        for (const Eigen::Vector2f& uv : triangle.uv)
+            mesh.uv.insert(mesh.uv.end(), uv.data(), uv.data() + 2);
+        mesh.textures.push_back(triangle.texture);
+    }
+    return mesh;
+}
+
+DrawnVoxels drawnVoxels(const TexturedOcTree& map, std::size_t limit) {
     unsigned level = 0;
     std::optional<Voxels> voxels;
     while (!(voxels = voxelsOf(map, level, std::max<std::size_t>(limit, 1)))) ++level;
-    ReportVoxels drawn;
+    DrawnVoxels drawn;
     drawn.size = std::ldexp(map.getResolution(), static_cast<int>(level));
     for (const auto& [index, sum] : *voxels) {
         for (const int i : index) {

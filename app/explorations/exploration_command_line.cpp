@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/command_line.hpp"
+#include "config/config_keys.hpp"
+#include "exploration/trial_journal.hpp"
+#include "explorations/explore_command.hpp"
+
+namespace photonav {
+namespace {
+
+struct ExploreArguments : ExploreOptions {
+    ExploreConfig typed;  ///< the defaults
+    KeyTable keys;        ///< of `typed`
+};
+
+void addExploreOptions(CLI::App& parser, ExploreArguments& options) {
+    addCommon(parser, options, false);
+    addValue(parser, options.overrides, "--planners,--planner", "explore.planners",
+             "names of planners: a,b,c", [](const std::string& typed) { return "[" + typed + "]"; })
+        ->type_name("NAMES");
+    addManyRuns(parser, options, TrialKind::kWords);
+    addRecord(parser, options.record);
+    parser
+        .add_option("--serve", options.serve,
+                    "show the first flight to browsers while it is flown; 0: at a free port")
+        ->type_name("[ADDRESS:]PORT");
+    parser.add_flag("--film", options.film, "write a film of the first flight (film.webm)");
+    addSeed(parser, options.overrides, "seed of the random numbers of the first trial");
+    addKeys(options.keys, options.typed);
+    addKeyOverrides(parser, options.keys, {"planners"}, options.overrides);
+}
+
+}  // namespace
+
+Commands explorationCommands(CLI::App& app, const Invocation& invocation) {
+    return {makeCommand<ExploreArguments>(
+        app, invocation, "explore",
+        "Fly to the goal in an unknown scene: map it with the robot's camera, and repair the plan "
+        "on the way. Exit code 0: a flight of the first planner arrived.",
+        addExploreOptions, runExplore)};
+}
+
+}  // namespace photonav

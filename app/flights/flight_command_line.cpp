@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include "commands/command_line.hpp"
+#include "config/config_keys.hpp"
+#include "flight/flight_setup.hpp"
+#include "flights/fly_command.hpp"
+#include "flights/servo_command.hpp"
+#include "replay/calibration_file.hpp"
+
+namespace photonav {
+namespace {
+
+struct FlyArguments : FlyOptions {
+    FlyConfig typed;  ///< the defaults
+    KeyTable keys;    ///< of `typed`
+};
+
+void addFlyOptions(CLI::App& parser, FlyArguments& options) {
+    addCommon(parser, options);
+    parser.get_option("config")->description(
+        "YAML file of the planning problem, or result folder of photonav plan");
+    addJobs(parser, options.jobs);
+    addSeed(parser, options.overrides, "seed of all random numbers");
+    addKeys(options.keys, options.typed);
+    addKeyOverrides(parser, options.keys, {"plan"}, options.overrides);  // plan: the argument
+    parser
+        .add_option("--calibration", options.calibration,
+                    "scale and least sigmas from the calibration.yaml of photonav replay "
+                    "--calibrate; the scale is divided by the number of images with "
+                    "correlated errors; --scale, --least-sigma and --least-sigma-rotation "
+                    "override it")
+        ->type_name("FILE");
+    addRecord(parser, options.record);
+}
+
+/// What was typed, and --set, go over the calibration.
+int flyCalibrated(FlyArguments& options, const std::atomic<bool>& interrupted) {
+    if (!options.calibration.empty()) {
+        FlyConfig fly;
+        applyCalibration(readCalibration(options.calibration), fly);
+        const auto calibrated = {
+            fmt::format("fly.scale={}", *fly.scale),
+            fmt::format("fly.least_sigma={}", *fly.leastSigma),
+            fmt::format("fly.least_sigma_rotation={}", *fly.leastSigmaRotation)};
+        options.overrides.insert(options.overrides.begin(), calibrated);
+    }
+    return runFly(options, interrupted);
+}
+
+void addServoOptions(CLI::App& parser, ServoOptions& options) {
+    addCommon(parser, options);
+    addSeed(parser, options.overrides, "seed of the starts and of the image noise");
+    ServoStudyOptions& study = options.study;
+    parser.add_option("--at", options.at,
+                      "x,y,z[,yaw] of the robot at the goal (default: the config's goal)");
+    parser.add_option("--distances", options.distances,
+                      "distances of the starts from the goal: a,b,c [m] (default: "
+                      "0.1,0.2,0.4,0.8)");
+    parser.add_option("--angles", options.angles,
+                      "rotations of the starts: a,b,c [degrees] (default: 0,10,20)");
+    parser.add_option("--trials", study.trials, "number of starts for each distance and angle")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    parser.add_flag("--tilt", study.hasTilt,
+                    "control six degrees of freedom; without it x, y, z and yaw, as the robot");
+    const auto addNumber = [&](const char* name, double& number, const char* description,
+                               double least, double most) {
+        parser.add_option(name, number, description)
+            ->check(CLI::Range(least, most))
+            ->capture_default_str();
+    };
+    addNumber("--gain", study.gain, "gain: rate of the error's exponential decrease [1/s]", 1e-3,
+              1e3);
+    addNumber("--damping", study.damping, "mu of Levenberg-Marquardt; 0: Gauss-Newton", 0., 1e6);
+    addNumber("--rate", study.rate, "images per second", 0.1, 1e4);
+    addNumber("--duration", study.duration, "time limit of a start [s]", 0.1, 1e5);
+}
+
+}  // namespace
+
+Commands flightCommands(CLI::App& app, const Invocation& invocation) {
+    return {makeCommand<FlyArguments>(
+                app, invocation, "fly",
+                "Fly a plan, and the plan of RRT*, in closed loop, many times. Exit code 0: a "
+                "flight of the config's planner arrived.",
+                addFlyOptions, flyCalibrated),
+            makeCommand<ServoOptions>(
+                app, invocation, "servo",
+                "Study photometric servoing at a goal: from where and how fast it converges.",
+                addServoOptions, runServo)};
+}
+
+}  // namespace photonav

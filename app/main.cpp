@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// photonav: signals, errors and exit codes. The commands are in *_command_line.cpp of each folder.
+#include <fmt/format.h>
+#include <ompl/util/Console.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <new>
+#include <string_view>
+
+#include "commands/command_line.hpp"
+#include "io/error.hpp"
+#include "io/folder_transaction.hpp"
+#include "io/stopwatch.hpp"
+#include "io/yaml_reader.hpp"
+#include "render/interruptible_views.hpp"
+
+namespace {
+
+using namespace photonav;
+
+std::atomic<bool> interrupted{false};
+std::atomic<double> interruptedAt{0.};
+volatile std::sig_atomic_t interruptedBy = 0;
+std::atomic<bool> hasOwnFiles{false};  // of a command that writes no result folder
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
+const Stopwatch running;
+
+constexpr double kSameInterrupt = 0.2;  // [s]
+
+/// The exit code that a shell gives a program that a signal ended.
+int exitCodeOf(int signal) { return 128 + signal; }
+static_assert(kInterrupted == 128 + SIGINT);
+
+/// Writes without a lock or a buffer, as a signal handler must.
+void say(std::string_view text) {
+    static_cast<void>(!write(STDERR_FILENO, text.data(), text.size()));
+}
+
+/// The first Ctrl-C, or SIGTERM as Slurm and systemd send it, lets the command finish its files, or
+/// ends it at once where there are none yet; the second one always does. timeout(1) sends its
+/// signal twice, to the process and to its group: that is one. A command that has not ended a
+/// second later says so.
+void onInterrupt(int signal) {
+    const double now = running.seconds();
+    double first = 0.;
+    if (!interruptedAt.compare_exchange_strong(first, now)) {
+        if (now - first > kSameInterrupt) std::_Exit(exitCodeOf(signal));
+        return;
+    }
+    interruptedBy = signal;
+    interrupted = true;
+    if (!hasOwnFiles && !FolderTransaction::isAnyOpen()) {
+        say("photonav: interrupted before there was any result\n");
+        std::_Exit(exitCodeOf(signal));
+    }
+    alarm(1);
+}
+
+void onAlarm(int /*signal*/) {
+    say("photonav: interrupted; finishing what is begun and writing the results so far (once more "
+        "to stop at once, which keeps an earlier result as it was)\n");
+}
+
+std::string withNearest(const std::string& complaint, const std::string& word,
+                        const std::vector<std::string>& names) {
+    const std::string near = nearestWord(word, names);
+    return near.empty() ? complaint : fmt::format("{}, did you mean '{}'?", complaint, near);
+}
+
+std::vector<std::string> optionsOf(const CLI::App& parser) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : parser.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    return names;
+}
+
+/// What was typed in place of a command or an option, when that is what is wrong.
+std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
+    const auto code = static_cast<CLI::ExitCodes>(error.get_exit_code());
+    const std::vector<std::string> unknown = app.remaining(true);
+    const bool isUnknown =
+        code == CLI::ExitCodes::ExtrasError || code == CLI::ExitCodes::RequiredError;
+    if (!isUnknown || unknown.empty()) return error.what();
+    const std::string& word = unknown.front();
+    const std::vector<CLI::App*> chosen = app.get_subcommands();
+    if (word.starts_with('-')) {
+        const CLI::App& parser = chosen.empty() ? app : *chosen.front();
+        return withNearest(word + ": no such option", word, optionsOf(parser));
+    }
+    if (!chosen.empty()) return error.what();
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    return withNearest(word + ": no such command", word, names);
+}
+
+int run(int argc, char** argv) {
+    CLI::App app{
+        "photonav plans paths on which a camera sees enough texture to be localised.\n"
+        "Start with: photonav plan config/two_textures.yaml\n",
+        "photonav"};
+    app.formatter(helpFormat());
+    app.set_help_flag("-h,--help", "print this help");
+    app.set_version_flag("--version", PHOTONAV_VERSION, "print the version");
+    app.require_subcommand(1);
+    Invocation invocation{"photonav", interrupted};
+    for (int i = 1; i < argc; ++i) invocation.commandLine += std::string(" ") + argv[i];
+
+    Commands commands;
+    for (const auto add : {planCommands, flightCommands, explorationCommands, recordingCommands,
+                           comparisonCommands, toolCommands}) {
+        for (Command& command : add(app, invocation)) commands.push_back(std::move(command));
+    }
+    app.footer(  // after the commands, which would inherit it
+        "Most commands write a result folder (--out): result.json, figures, report.html\n"
+        "and config.yaml, which is complete, so that the run can be repeated.\n"
+        "photonav COMMAND --help lists the options of a command, photonav keys lists the\n"
+        "keys of a config.\n"
+        "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by\n"
+        "Ctrl-C, 143 stopped by SIGTERM, both with the results so far.");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);
+        fmt::print(stderr, "photonav: {} (see photonav --help)\n", complaint(app, error));
+        return kBadInput;
+    }
+    for (const Command& command : commands) {
+        if (!command.parser->parsed()) continue;
+        hasOwnFiles = command.onInterrupt == OnInterrupt::finishAlways;
+        if (command.onInterrupt == OnInterrupt::endAtOnce) {
+            std::signal(SIGINT, SIG_DFL);
+            std::signal(SIGTERM, SIG_DFL);
+        }
+        const int code = command.run();
+        if (code != kInterrupted) return code;
+        fmt::print(stderr, "photonav: interrupted; what was done until then is kept\n");
+        return exitCodeOf(interruptedBy);
+    }
+    return kBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::signal(SIGINT, onInterrupt);
+    std::signal(SIGTERM, onInterrupt);
+    std::signal(SIGALRM, onAlarm);
+    ompl::msg::noOutputHandler();
+    const std::string command = argc > 1 ? argv[1] : "";
+    const auto fail = [](int code, std::string_view reason) {
+        fmt::print(stderr, "photonav: {}\n", oneLine(reason));
+        return code;
+    };
+    try {
+        const int code = run(argc, argv);
+        if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+        return fail(kNoAnswer, "standard output cannot be written");
+    } catch (const InputError& error) {
+        return fail(kBadInput, error.what());
+    } catch (const std::filesystem::filesystem_error& error) {
+        return fail(kBadInput, error.path1().string() + ": " + error.code().message());
+    } catch (const RenderingStopped&) {
+        return fail(exitCodeOf(interruptedBy), "interrupted before there was any result");
+    } catch (const std::bad_alloc&) {
+        return fail(kNoAnswer, command + ": needs more memory than there is");
+    } catch (const std::exception& error) {
+        return fail(kNoAnswer, command + ": " + error.what());
+    }
+}

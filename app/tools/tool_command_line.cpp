@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "commands/command_line.hpp"
+#include "commands/result_folder.hpp"
+#include "config/config_keys.hpp"
+#include "interchange/result_export.hpp"
+#include "io/atomic_file.hpp"
+#include "mapping/map_config.hpp"
+#include "recordings/replay_command.hpp"
+#include "tools/doctor_command.hpp"
+
+namespace photonav {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The words of Markdown links alone: a terminal cannot follow links to pages of the docs.
+std::string withoutLinks(const std::string& markdown) {
+    std::string text;
+    std::size_t end = 0;
+    for (std::size_t middle = 0; (middle = markdown.find("](", end)) != std::string::npos;) {
+        const std::size_t begin = markdown.rfind('[', middle), close = markdown.find(')', middle);
+        if (begin == std::string::npos || begin < end || close == std::string::npos) break;
+        text += markdown.substr(end, begin - end) + markdown.substr(begin + 1, middle - begin - 1);
+        end = close + 1;
+    }
+    return text + markdown.substr(end);
+}
+
+struct KeysOptions {
+    std::vector<std::string> names;
+    std::string of = "plan";
+};
+
+void addKeysOptions(CLI::App& parser, KeysOptions& options) {
+    parser.add_option("names", options.names, "sections or keys (default: all)");
+    parser
+        .add_option("--of", options.of,
+                    "command: plan (also of sweep, fly, ...), map, scans (map of point clouds) or "
+                    "replay")
+        ->check(CLI::IsMember({"plan", "map", "scans", "replay"}))
+        ->capture_default_str();
+}
+
+int printKeys(const KeysOptions& options, const std::atomic<bool>& /*interrupted*/) {
+    Config config;
+    MapOptions map;
+    ScanMapOptions scans;
+    ReplayCommandOptions replay;
+    const KeyTable keys = options.of == "map"      ? keysOf(map)
+                          : options.of == "scans"  ? keysOf(scans)
+                          : options.of == "replay" ? keysOf(replay)
+                                                   : keysOf(config);
+    const std::string table = keys.toMarkdown(options.names);
+    const bool isTerminal = isatty(STDOUT_FILENO) == 1;
+    fmt::print("{}", isTerminal ? withoutLinks(table) : table);
+    return kDone;
+}
+
+struct ReportOptions {
+    fs::path folder;
+};
+
+void addReportOptions(CLI::App& parser, ReportOptions& options) {
+    parser.add_option("folder", options.folder, "result folder")->required();
+}
+
+int rebuildReport(const ReportOptions& options, const std::atomic<bool>& /*interrupted*/) {
+    const fs::path file = options.folder / "report.html";
+    writeReport(file, readReportOf(options.folder));
+    Manifest::renew(options.folder, "report.html");
+    fmt::print("report: {}\n", file.string());
+    return kDone;
+}
+
+struct ExportOptions {
+    fs::path folder, out;
+    bool quiet = false;
+};
+
+void addExportOptions(CLI::App& parser, ExportOptions& options) {
+    parser.add_option("folder", options.folder, "result folder")->required();
+    parser.add_option("--out", options.out, "the file (default: <folder>.mcap)")->type_name("FILE");
+    parser.add_flag("--quiet", options.quiet, "print nothing");
+}
+
+int exportResult(const ExportOptions& options, const std::atomic<bool>& /*interrupted*/) {
+    fs::path folder = options.folder.lexically_normal();
+    if (!folder.has_filename()) folder = folder.parent_path();  // without a closing slash
+    const McapExport result = exportMcap(folder);
+    const std::string file = options.out.empty() ? folder.string() + ".mcap" : options.out.string();
+    writeFileAtomically(file, result.content);
+    if (!options.quiet) {
+        fmt::print("{}: {} messages over {:.1f} s, {:.1f} MB\n", file, result.messages,
+                   result.duration, 1e-6 * static_cast<double>(result.content.size()));
+    }
+    return kDone;
+}
+
+struct DoctorOptions {};
+
+}  // namespace
+
+Commands toolCommands(CLI::App& app, const Invocation& invocation) {
+    Commands commands{
+        makeCommand<ReportOptions>(app, invocation, "report",
+                                   "Make report.html of a result folder again.", addReportOptions,
+                                   rebuildReport),
+        makeCommand<ExportOptions>(app, invocation, "export",
+                                   "Write a result as an MCAP file for Foxglove.", addExportOptions,
+                                   exportResult),
+        makeCommand<KeysOptions>(app, invocation, "keys",
+                                 "List the keys of a config: values, units, meaning.",
+                                 addKeysOptions, printKeys),
+        completionCommand(app),
+        makeCommand<DoctorOptions>(
+            app, invocation, "doctor",
+            "Check this installation: versions, processor, programs, a sample plan.",
+            [](CLI::App&, DoctorOptions&) {},
+            [](const DoctorOptions&, const std::atomic<bool>&) { return runDoctor(); })};
+    for (Command& command : commands) command.onInterrupt = OnInterrupt::finishAlways;
+    return commands;
+}
+
+}  // namespace photonav

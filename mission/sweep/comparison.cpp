@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "planners/planner_table.hpp"
+
+namespace photonav {
+using nlohmann::json;
+namespace {
+
+constexpr unsigned kRrbtVertices = 400;
+
+using Values = std::vector<double>;
+
+std::string meanAndDeviation(const Values& values, int decimals) {
+    if (values.empty()) return "-";
+    const auto n = static_cast<double>(values.size());
+    double mean = 0.;
+    for (const double v : values) mean += v / n;
+    if (values.size() == 1) return fmt::format("{:.{}f}", mean, decimals);
+    double variance = 0.;
+    for (const double v : values) variance += (v - mean) * (v - mean) / (n - 1.);
+    return fmt::format("{:.{}f} ± {:.{}f}", mean, decimals, std::sqrt(variance), decimals);
+}
+
+/// Three digits, whatever the order of magnitude.
+std::string traceText(const Values& values) {
+    double largest = 0.;
+    for (const double v : values) largest = std::max(largest, std::abs(v));
+    const bool isNumber = largest > 0. && std::isfinite(largest);
+    const int decimals = isNumber ? 2 - static_cast<int>(std::floor(std::log10(largest))) : 2;
+    return meanAndDeviation(values, std::clamp(decimals, 0, 12));
+}
+
+std::string tableRow(const std::string& method, const std::vector<const CompareRun*>& runs) {
+    const auto ofPath = [&](double EvaluatedPath::*value) {
+        Values values;
+        for (const CompareRun* run : runs) {
+            if (run->outcome.path) values.push_back((*run->outcome.path).*value);
+        }
+        return values;
+    };
+    const auto ofRun = [&](const std::function<double(const PlanOutcome&)>& value) {
+        Values values;
+        for (const CompareRun* run : runs) values.push_back(value(run->outcome));
+        return values;
+    };
+    const Values costs = ofPath(&EvaluatedPath::cost);
+    const std::string label =
+        costs.size() == runs.size()
+            ? method
+            : fmt::format("{} ({} of {} found a path)", method, costs.size(), runs.size());
+    return fmt::format(
+        "| {} | {} | {} | {} | {} | {} | {} | {} |\n", label, meanAndDeviation(costs, 3),
+        meanAndDeviation(ofPath(&EvaluatedPath::length), 2),
+        traceText(ofPath(&EvaluatedPath::meanTrace)), traceText(ofPath(&EvaluatedPath::goalTrace)),
+        meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.vertices); }), 0),
+        meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.views); }), 0),
+        meanAndDeviation(ofRun([](const auto& o) { return o.planSeconds; }), 1));
+}
+
+}  // namespace
+
+std::string CompareMethod::label() const {
+    if (!usesViews(planner)) return planner;
+    return planner + ", " + information;
+}
+
+const std::vector<CompareMethod>& compareMethods() {
+    static const std::vector<CompareMethod> methods{{"belief_rrt_star", "photometric"},
+                                                    {"pa_rrt_star", "photometric"},
+                                                    {"rrbt", "photometric", kRrbtVertices},
+                                                    {"belief_rrt_star", "feature_reprojection"},
+                                                    {"belief_rrt_star", "feature_count"},
+                                                    {"belief_rrt_star", "map_uncertainty"},
+                                                    {"belief_rrt_star", "none"},
+                                                    {"rrt_star", "none"}};
+    return methods;
+}
+
+CompareRun runMethod(const Config& config, const World& world, const CompareMethod& method,
+                     std::uint32_t seed, const std::atomic<bool>& interrupted) {
+    Config own = config;
+    own.seed = seed;
+    own.viewModel.name = method.information;
+    if (method.maxVertices > 0) own.vertices = std::min(own.vertices, method.maxVertices);
+    PlanningProblem problem(own, world);
+    PlanOutcome outcome = problem.solve(method.planner, interrupted);
+    const std::string status = problem.statusOf(outcome);
+    return {method.label(), seed, std::move(outcome), status};
+}
+
+std::string compareTable(const std::vector<CompareRun>& runs) {
+    std::string table =
+        "| planner, information | cost J | length [m] | mean trace [m²] | goal trace [m² + "
+        "rad²] | "
+        "vertices | views | seconds |\n|---|---|---|---|---|---|---|---|\n";
+    for (const CompareMethod& method : compareMethods()) {
+        std::vector<const CompareRun*> own;
+        for (const CompareRun& run : runs) {
+            if (run.method == method.label()) own.push_back(&run);
+        }
+        if (!own.empty()) table += tableRow(method.label(), own);
+    }
+    return table;
+}
+
+json toJson(const CompareRun& run) {
+    const PlanOutcome& o = run.outcome;
+    json result{{"method", run.method}, {"seed", run.seed},         {"vertices", o.vertices},
+                {"views", o.views},     {"seconds", o.planSeconds}, {"status", run.status}};
+    if (!o.path) return result;
+    result.update({{"cost", o.path->cost},
+                   {"planner_cost", o.plannerCost},
+                   {"length", o.path->length},
+                   {"mean_trace", o.path->meanTrace},
+                   {"goal_trace", o.path->goalTrace}});
+    return result;
+}
+
+}  // namespace photonav
