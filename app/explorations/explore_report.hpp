@@ -8,7 +8,7 @@
 
 namespace photonav {
 
-struct ExploreOutcome : ExplorationOutcome {
+struct ExploreOutcome : ExplorationSet {
     std::string name;  ///< of the config
     std::string commandLine;
     std::optional<FlightLog> log;  ///< of the first flight

@@ -75,7 +75,7 @@ json jsonOf(const ExplorationSummary& s) {
 
 }  // namespace
 
-json exploreResult(const ExplorationSetup& setup, const ExplorationOutcome& outcome) {
+json exploreResult(const ExplorationSetup& setup, const ExplorationSet& outcome) {
     const std::vector<ExplorationResult>& flights = outcome.flights;
     const double length = setup.config.belief.characteristicLength;
     json result = resultJson("explore", jsonOf(flights.front(), length));

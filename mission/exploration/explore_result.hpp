@@ -10,7 +10,7 @@
 namespace photonav {
 
 /// The flights of an exploration, of one run or merged from shards.
-struct ExplorationOutcome {
+struct ExplorationSet {
     std::vector<ExplorationResult> flights;  ///< in the order of trialItems(); the first with a map
     std::vector<ExplorationSummary> summaries = {};  ///< one per planner
     std::size_t ended = 0;                           ///< without a first one that was interrupted
@@ -19,6 +19,6 @@ struct ExplorationOutcome {
 };
 
 /// The content of result.json: the first flight, all trials, and a summary per planner.
-nlohmann::json exploreResult(const ExplorationSetup& setup, const ExplorationOutcome& outcome);
+nlohmann::json exploreResult(const ExplorationSetup& setup, const ExplorationSet& outcome);
 
 }  // namespace photonav

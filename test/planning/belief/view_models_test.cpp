@@ -224,7 +224,9 @@ TEST(ViewModelTable, ThePhotometricModelCanBeReplaced) {
     const auto constant = [](const Camera&, const PhotometricOptions&) -> InformationModel {
         return [](const View&) -> Matrix6 { return 2. * Matrix6::Identity(); };
     };
-    const ViewModel model = makeViewModel("photometric", camera, {.makePhotometric = constant});
+    ViewModelOptions options;
+    options.makePhotometric = constant;
+    const ViewModel model = makeViewModel("photometric", camera, options);
     EXPECT_EQ(std::get<InformationModel>(model)(View()).trace(), 12.);
 }
 
