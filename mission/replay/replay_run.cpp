@@ -89,7 +89,7 @@ ReplayStrip stripOf(const Recording& recording, const ReplayTracker& tracker, co
 }
 
 struct Counts {
-    std::size_t tracked = 0, lost = 0;
+    std::size_t lost = 0;
     std::size_t notFound = 0;  ///< though there was something to be seen
 };
 
@@ -116,7 +116,7 @@ void addFrame(const Recording& recording, const ReplayTracker& tracker,
     run.frames.push_back(frame);
     if (!view) return;
     const bool isFirstLoss = frame.tracked.rejected && counts.lost == 0;
-    ++(frame.tracked.rejected ? counts.lost : counts.tracked);
+    counts.lost += frame.tracked.rejected;
     counts.notFound += frame.tracked.rejected && !frame.isBlack;
     stopWhenAsked();
     const bool isSample = isFirstLoss || isOneOf(kSamples, i, entries.size());
@@ -144,7 +144,7 @@ ReplayRun replay(const Recording& recording, const ReplayTracker& tracker,
         }
         checkReadable(run.frames, recording);
         if (progress) progress(run.frames.size());
-        if (counts.tracked == 0 && counts.notFound > 0 && counts.notFound == tracker.patience) {
+        if (tracker.hasGivenUp && tracker.hasGivenUp()) {
             run.stopped = fmt::format("none of {} images that show something could be found",
                                       counts.notFound);
             break;

@@ -10,8 +10,6 @@
 namespace photonav {
 namespace {
 
-constexpr std::size_t kPatience = 10;
-
 bool isBetweenPixels(const ImageF& image, const Eigen::Vector2d& pixel) {
     return pixel.x() >= 0. && pixel.y() >= 0. && pixel.x() < image.getWidth() - 1. &&
            pixel.y() < image.getHeight() - 1.;
@@ -85,7 +83,7 @@ ReplayTracker mapTracker(const std::shared_ptr<const ViewSource>& map, const Cam
         ++tracker.halvings;
     }
     const auto localizer = std::make_shared<Tracker>(map, tracker.camera, start, options);
-    tracker.patience = kPatience;
+    tracker.hasGivenUp = [=] { return localizer->loss().isStartWrong(); };
     tracker.track = [=](const View& view, double timestamp) {
         return localizer->track(view, timestamp);
     };

@@ -28,8 +28,8 @@ struct ReplayTracker {
     TrustOptions trust;     ///< of its alignments, to put them in words
     Camera camera;          ///< of the views to be given to it
     int halvings = 0;       ///< of the recorded views
-    /// Images lost from the first one on before giving up, not counting black ones; 0: all.
-    std::size_t patience = 0;
+    /// Whether to give up, because nothing agrees with the start; empty: never.
+    std::function<bool()> hasGivenUp;
 };
 
 /// Odometry from `start`.

@@ -17,7 +17,6 @@ struct KeyframeChainOptions {
     double maxShift = 0.12;      ///< distance from the keyframe [mean depths]
     double maxTurn = 0.2;        ///< angle from the keyframe [rad]
     std::size_t keyframes = 12;  ///< remembered: a lost camera may come back to any of them
-    int patience = 20;           ///< images lost one after the other before a new beginning
 };
 
 /// Keyframes, each with the belief of its pose. The belief of an image is that of its keyframe

@@ -30,13 +30,15 @@ void LossOfTracking::onTracked(double time) {
     lastImage_ = time;
     rejectedInRow_ = 0;
     searched_ = 0;
+    wasTracked_ = true;
     if (since_) lost_ += time - *since_;
     since_.reset();
 }
 
-void LossOfTracking::onRejected(double time, bool isMotionMeasured) {
+void LossOfTracking::onRejected(double time, bool isMotionMeasured, bool isBlack) {
     lastImage_ = time;
     ++rejectedInRow_;
+    inVain_ += !isBlack;
     if (since_) ++searched_;
     if (!isMotionMeasured || rejectedInRow_ >= options_.rejectedImages) begin(time);
 }

@@ -26,6 +26,11 @@ struct LossOptions {
     /// Without odometry, standard deviations at which a lost belief stops growing [m], [rad].
     double maxTranslation = 1.;
     double maxRotation = 0.5;
+    /// Rejected images in a row before keyframes begin anew where the camera is believed to be.
+    int freshStartAfter = 20;
+    /// Images that show something, but are rejected before any was tracked: after as many the start
+    /// counts as wrong.
+    int wrongStartAfter = 10;
 };
 
 /// Whether an alignment leaves no direction wide that the loss has widened. An image of a surface
@@ -45,8 +50,8 @@ class LossOfTracking {
     void onTracked(double time);
     /// An image was rejected. One that does not inform but agrees, as over a surface without
     /// texture, is not: plans lead there by design.
-    /// @param isMotionMeasured by odometry
-    void onRejected(double time, bool isMotionMeasured);
+    /// @param isMotionMeasured by odometry; @param isBlack the image shows nothing
+    void onRejected(double time, bool isMotionMeasured, bool isBlack = false);
     /// An image arrived of what a growing map does not show yet: no reason to doubt the pose.
     void onUnmapped(double time) { lastImage_ = time; }
     /// No further image has arrived until now.
@@ -56,6 +61,11 @@ class LossOfTracking {
     std::optional<double> since() const { return since_; }  ///< [s]
     int timesLost() const { return timesLost_; }
     double lostTime(double now) const;  ///< sum until now [s]
+
+    /// Whether waiting for earlier keyframes to be seen again has been in vain for long.
+    bool wantsFreshStart() const { return rejectedInRow_ >= options_.freshStartAfter; }
+    /// Whether nothing agrees with the pose at which tracking began.
+    bool isStartWrong() const { return !wasTracked_ && inVain_ >= options_.wrongStartAfter; }
 
     /// The belief as uncertain as it is searched with; wider from image to image.
     UncertainPose widened(const UncertainPose& T_c_w) const;
@@ -70,6 +80,8 @@ class LossOfTracking {
     double lastImage_ = 0.;
     int rejectedInRow_ = 0;
     int searched_ = 0;
+    int inVain_ = 0;  // rejected images that show something
+    bool wasTracked_ = false;
     std::optional<double> since_;
     double lost_ = 0.;
     int timesLost_ = 0;

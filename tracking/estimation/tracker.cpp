@@ -147,7 +147,7 @@ std::optional<Tracker::Match> Tracker::find(const View& view, const Pose& stayed
         loss_.onUnmapped(now_);
         return {};
     }
-    loss_.onRejected(now_, hasOdometry_);
+    loss_.onRejected(now_, hasOdometry_, isBlack(view.intensity));
     return map_ && hasOdometry_ && loss_.isLost() ? findInNeighbourhood(view.intensity)
                                                   : std::nullopt;
 }
@@ -240,7 +240,6 @@ void Tracker::take(const View& view, const Match& match, const Pose& before, Tra
     trackedTime_ = frame.time;
     trackedCovariance_ = belief_.covariance;
     sinceTracked_.setZero();
-    rejectedInRow_ = 0;
     if (match.alignment.verdict == Verdict::converged) T_certain_w_ = belief_.mean;
     loss_.onTracked(now_);
     if (!keyframes_ || view.depth.getSize() == 0) return;
@@ -268,12 +267,11 @@ void Tracker::miss(const View& view, const Pose& stayed, TrackedFrame& frame) {
     if (!keyframes_) return;
     keyframes_->forgetLastTracked();
     const bool isFirst = keyframes_->isEmpty() && !map_;
-    if (!isFirst && ++rejectedInRow_ < keyframes_->options().patience) return;
+    if (!isFirst && !loss_.wantsFreshStart()) return;
     if (view.depth.getSize() == 0 || !keyframes_->begin(view, belief_, frame.time)) return;
     trackedTime_ = frame.time;
     trackedCovariance_ = belief_.covariance;
     sinceTracked_.setZero();
-    rejectedInRow_ = 0;
     loss_.onTracked(now_);
     if (!isFirst) return;
     frame.rejected = false;

@@ -122,7 +122,6 @@ class Tracker {
     std::optional<double> imageTime_;         ///< of the last image [s]
     double now_ = 0.;                         ///< [s]
     bool hasOdometry_ = false;
-    int rejectedInRow_ = 0;  ///< images
 };
 
 }  // namespace photonav

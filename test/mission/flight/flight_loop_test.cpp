@@ -69,6 +69,66 @@ TEST_F(FlightLoop, FliesAnyRobot) {
     EXPECT_LT((robot.T_w_b.translation() - Eigen::Vector3d(1., 0., 2.)).norm(), 0.05);
 }
 
+/// Notes what the loop asks of it, and shows a black image before each good one.
+class StrictRobot : public Robot {
+  public:
+    explicit StrictRobot(Robot& robot) : robot_(robot) {}
+    Observation fly(const BodyVelocity& command, double seconds) override {
+        commands.push_back(command);
+        steps.push_back(seconds);
+        Observation observation = robot_.fly(command, seconds);
+        CameraFrame black = observation.frames.front();
+        black.view.intensity = 0.F;
+        black.time -= 0.5 * seconds;
+        if (seconds > 0.) observation.frames.insert(observation.frames.begin(), black);
+        return observation;
+    }
+    const Camera& camera() const override { return robot_.camera(); }
+    const Pose& T_b_c() const override { return robot_.T_b_c(); }
+
+    std::vector<BodyVelocity> commands;
+    std::vector<double> steps;
+
+  private:
+    Robot& robot_;
+};
+
+TEST_F(FlightLoop, LooksFirstAndFliesWhatThePilotCommands) {
+    StrictRobot strict(robot);
+    std::size_t calls = 0;
+    flyLoop(strict, *tracker, *pilot, 0.1,
+            [&](const Observation& observation, const std::vector<TrackedFrame>& tracked) {
+                EXPECT_EQ(++calls, strict.steps.size());
+                EXPECT_EQ(tracked.size(), observation.frames.size());
+                EXPECT_EQ(tracked.back().time, observation.time);
+                return !pilot->hasServoedOnImage() && observation.time < 30.;
+            });
+    EXPECT_TRUE(pilot->hasServoedOnImage()) << "on the good images";
+    EXPECT_EQ(strict.steps.front(), 0.);
+    EXPECT_EQ(strict.commands.front().linear.norm(), 0.);
+    EXPECT_EQ(strict.steps[1], 0.1);
+    // From standstill, as the limit of acceleration allows in one step.
+    EXPECT_GT(strict.commands[1].linear.norm(), 0.);
+    EXPECT_LE(strict.commands[1].linear.norm(), RouteOptions().limits.maxAcceleration * 0.1 + 1e-9);
+}
+
+/// Without the goal's image the robot has arrived after it was there for 1.5 s, by its own clock.
+TEST_F(FlightLoop, TimeIsThatOfTheRobot) {
+    PilotOptions options;
+    options.photometricGoal = false;
+    options.route.responseTime = 0.;
+    pilot.emplace(straightTo(1.), floor, robot.camera(), robot.T_b_c(), options);
+    std::optional<double> atGoalSince;
+    double time = 0.;
+    flyLoop(robot, *tracker, *pilot, 0.1, [&](const Observation& observation, const auto&) {
+        time = observation.time;
+        if (!atGoalSince && pilot->route().isAtGoal()) atGoalSince = time;
+        return !pilot->hasArrived(*tracker, time) && time < 60.;
+    });
+    ASSERT_TRUE(atGoalSince);
+    EXPECT_NEAR(time - *atGoalSince, 1.6, 0.15);
+}
+
 TEST_F(FlightLoop, GoesOnWithAnotherPlanAndMap) {
     flyToGoal();
     pilot->setPlan(straightTo(-0.5));

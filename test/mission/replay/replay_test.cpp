@@ -62,7 +62,7 @@ ReplayTracker stoppedTracker(const Camera& camera) {
     return tracker;
 }
 
-TEST(Replaying, KeepsTheFramesBeforeAViewThatWasStopped) {
+Recording fiveGreyImages() {
     Recording recording;
     recording.sequence.camera = makeCamera(1500, 20, 1.2);
     for (int i = 0; i < 5; ++i) {
@@ -73,6 +73,31 @@ TEST(Replaying, KeepsTheFramesBeforeAViewThatWasStopped) {
     recording.view = [](std::size_t) {
         return View{ImageF(20, 1500, 0.5F), ImageF(20, 1500, 1.F)};
     };
+    return recording;
+}
+
+TEST(Replaying, EndsWhenTheTrackerHasGivenUp) {
+    const Recording recording = fiveGreyImages();
+    ReplayTracker tracker;
+    tracker.camera = recording.sequence.camera;
+    int count = 0;
+    tracker.track = [&](const View&, double) {
+        TrackedFrame frame;
+        frame.rejected = true;
+        ++count;
+        return frame;
+    };
+    tracker.predict = [](const TrackedView& frame, const auto&) { return frame.view; };
+    EXPECT_EQ(replay(recording, tracker, {}, {}).frames.size(), 5U) << "it never does";
+    count = 0;
+    tracker.hasGivenUp = [&] { return count == 3; };
+    const ReplayRun run = replay(recording, tracker, {}, {});
+    EXPECT_EQ(run.frames.size(), 3U);
+    EXPECT_EQ(run.stopped, "none of 3 images that show something could be found");
+}
+
+TEST(Replaying, KeepsTheFramesBeforeAViewThatWasStopped) {
+    const Recording recording = fiveGreyImages();
     const ReplayRun run = replay(recording, stoppedTracker(recording.sequence.camera), {}, {});
     EXPECT_TRUE(run.interrupted);
     EXPECT_EQ(run.frames.size(), 2U);

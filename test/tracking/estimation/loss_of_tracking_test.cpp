@@ -43,6 +43,34 @@ TEST(LossOfTracking, BeginsWithTheFirstRejectedImageWithoutOdometry) {
     EXPECT_TRUE(loss.isLost());
 }
 
+TEST(LossOfTracking, EndsInAFreshStartAfterManyRejectedImagesInARow) {
+    LossOfTracking loss({.freshStartAfter = 3});
+    loss.onRejected(1., true);
+    loss.onRejected(2., true);
+    loss.onTracked(3.);
+    loss.onRejected(4., true);
+    loss.onRejected(5., true);
+    EXPECT_FALSE(loss.wantsFreshStart());
+    loss.onRejected(6., true);
+    EXPECT_TRUE(loss.wantsFreshStart());
+    loss.onTracked(7.);
+    EXPECT_FALSE(loss.wantsFreshStart());
+}
+
+TEST(LossOfTracking, AStartIsWrongWhereNothingWasEverTracked) {
+    LossOfTracking never({.wrongStartAfter = 2}), once = never;
+    once.onTracked(0.);
+    for (LossOfTracking* loss : {&never, &once}) {
+        loss->onRejected(1., false);
+        loss->onRejected(2., false, true);
+        loss->onUnmapped(3.);
+        EXPECT_FALSE(loss->isStartWrong()) << "one has shown something";
+        loss->onRejected(4., false);
+    }
+    EXPECT_TRUE(never.isStartWrong());
+    EXPECT_FALSE(once.isStartWrong());
+}
+
 TEST(LossOfTracking, BeginsWhereNoImageArrivesForLong) {
     LossOfTracking loss({.blindTime = 1.5});
     loss.onTracked(1.);

@@ -138,9 +138,9 @@ TEST(KeyframeTracker, NamesTheKeyframeThatItAlignedTo) {
 }
 
 TEST(KeyframeTracker, LostForLongItBeginsAnewAsUncertainAsItIs) {
-    KeyframeChainOptions options;
-    options.patience = 5;
-    Tracker odometry = odometryFrom(start(), options);
+    TrackerOptions options{.keyframes = KeyframeChainOptions{}};
+    options.loss.freshStartAfter = 20;
+    Tracker odometry(nullptr, flightCamera(), start(), options);
     int i = 0;
     for (; i < 3; ++i) odometry.track(viewFrom(flight(i)), kInterval * i);
     for (; i < 20; ++i) EXPECT_TRUE(odometry.track(black(), kInterval * i).rejected) << i;
@@ -149,7 +149,7 @@ TEST(KeyframeTracker, LostForLongItBeginsAnewAsUncertainAsItIs) {
     TrackedFrame frame;
     for (int k = 0; k < 10; ++k, ++i) {
         frame = odometry.track(viewFrom(elsewhere(k)), kInterval * i);
-        EXPECT_EQ(frame.rejected, k == 0) << k;
+        EXPECT_EQ(frame.rejected, k < 3) << k << ": 17 were black";
     }
     EXPECT_GT(frame.T_c_w.covariance.trace(), lost);
     const Pose motion = odometry.beliefAtLastImage().mean.inverse();
@@ -201,6 +201,7 @@ TEST(MapTracker, LostInTheDarkItWaitsWhereItWasAndTakesUpAgain) {
     for (int i = 5; i < 9; ++i) {
         EXPECT_TRUE(localizer.track(black(), kInterval * i).rejected);
         EXPECT_TRUE(localizer.beliefAtLastImage().mean.isApprox(certain));
+        EXPECT_TRUE(localizer.predicted(kInterval * i + 0.1).mean.isApprox(certain));
     }
     EXPECT_GT(localizer.beliefAtLastImage().covariance.trace(), 1e-2);
     const TrackedFrame frame = localizer.track(viewFrom(flight(8)), 0.9);
@@ -223,6 +224,29 @@ TEST(MapTracker, AnotherRoomIsNotThisOne) {
         const TrackedFrame frame = localizer.track(viewFrom(flight(i)), kInterval * i);
         EXPECT_TRUE(frame.rejected) << i;
     }
+    localizer.track(viewFrom(flight(8)), kInterval * 8);
+    localizer.track(black(), kInterval * 9);
+    EXPECT_FALSE(localizer.loss().isStartWrong());
+    localizer.track(viewFrom(flight(9)), kInterval * 10);
+    EXPECT_TRUE(localizer.loss().isStartWrong()) << "10 images that show something";
+}
+
+/// At the velocity so far it would be a metre on.
+void expectFoundWhereItStopped(Tracker tracker) {
+    int i = 0;
+    for (; i < 8; ++i) EXPECT_FALSE(tracker.track(viewFrom(flight(i)), kInterval * i).rejected);
+    const TrackedFrame frame = tracker.track(viewFrom(flight(i)), kInterval * i + 2.5);
+    EXPECT_FALSE(frame.rejected) << describe(frame.alignment);
+    EXPECT_GT(distance(frame.predicted.mean, flight(i)), 0.8);
+    EXPECT_LT(distance(frame.T_c_w.mean, flight(i)), 0.03);
+}
+
+TEST(MapTracker, FindsACameraThatHasStopped) {
+    expectFoundWhereItStopped(trackerIn(roomMap(), roughStart(0)));
+}
+
+TEST(KeyframeTracker, FindsACameraThatHasStopped) {
+    expectFoundWhereItStopped(odometryFrom(start()));
 }
 
 /// Where the camera is expected after images that were lost: they took time, too.

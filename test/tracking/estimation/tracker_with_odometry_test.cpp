@@ -22,11 +22,12 @@ class HoverOver {
               std::shared_ptr<MapErrors> errors = {})
         : map_(std::move(map)), tracker(map_, hoverCamera(), start, options(std::move(errors))) {}
 
-    TrackedFrame see(const ImageF& image) {
+    /// @param T_next_now measured since the image before
+    TrackedFrame see(const ImageF& image, const Pose& T_next_now = Pose::Identity()) {
         time_ += 0.25;
         Observation observation;
-        observation.time = time_;
-        observation.T_next_now = UncertainPose{Pose::Identity(), 1e-6 * Matrix6::Identity()};
+        observation.time = time_ + latency;
+        observation.T_next_now = UncertainPose{T_next_now, 1e-6 * Matrix6::Identity()};
         observation.frames.push_back({time_, {image, {}}});
         return tracker.update(observation).front();
     }
@@ -49,6 +50,7 @@ class HoverOver {
 
   public:
     Tracker tracker;
+    double latency = 0.;  ///< of images [s]
 };
 
 UncertainPose narrow(const Pose& T_c_w) { return {T_c_w, 1e-6 * Matrix6::Identity()}; }
@@ -69,7 +71,10 @@ TEST(TrackerWithOdometry, TheVerticalCorrectsRollAndPitchAlone) {
     observation.time = 0.25;
     observation.T_next_now = UncertainPose{};
     observation.frames.push_back({0.25, {view.intensity, {}}, MeasuredVertical{up_c, 1e-3}});
-    const UncertainPose belief = tracker.update(observation).front().T_c_w;
+    const TrackedFrame frame = tracker.update(observation).front();
+    EXPECT_TRUE(frame.predicted.mean.isApprox(start.mean));
+    EXPECT_TRUE(frame.predicted.covariance.isApprox(start.covariance, 1e-6));
+    const UncertainPose& belief = frame.T_c_w;
     const Vector6 left = deviation(belief.mean, truth);
     EXPECT_NEAR(left.tail<3>().dot(level_c), 0., 1e-3);
     EXPECT_NEAR(left.tail<3>().dot(up_c), 0.05, 2e-3);
@@ -86,6 +91,34 @@ TEST(TrackerWithOdometry, AnImageThatDoesNotInformIsNoLoss) {
     HoverOver hover(white, narrow(here));
     for (int i = 0; i < 6; ++i) EXPECT_FALSE(hover.see(*white, here).rejected);
     EXPECT_FALSE(hover.tracker.loss().isLost());
+}
+
+/// Flown on over white, it is the view before that the pose was known by.
+TEST(TrackerWithOdometry, TheLastCertainViewDeterminesAllDirections) {
+    const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
+    const auto floor =
+        std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
+    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    const Pose T_next_now(Eigen::Translation3d(0.1, 0., 0.));
+    for (const auto& [map, isInformative] : {std::pair(white, false), std::pair(floor, true)}) {
+        HoverOver hover(map, narrow(here));
+        View view;
+        map->render(hoverCamera(), T_next_now * here, view);
+        EXPECT_FALSE(hover.see(view.intensity, T_next_now).rejected);
+        const double moved = deviation(hover.tracker.lastCertainView(), here).norm();
+        EXPECT_NEAR(moved, isInformative ? 0.1 : 0., 0.01);
+    }
+}
+
+/// Not when it was exposed: until then odometry was all there was.
+TEST(TrackerWithOdometry, ALossBeginsWhenTheImageHasArrived) {
+    const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
+    HoverOver hover(white, narrow(cameraAt({0., 0., 2.}, test::kDown)));
+    hover.latency = 0.1;
+    const ImageF black(hoverCamera().height, hoverCamera().width, 0.F);
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(black).rejected);
+    ASSERT_TRUE(hover.tracker.loss().isLost());
+    EXPECT_DOUBLE_EQ(*hover.tracker.loss().since(), 0.85);
 }
 
 /// What a map made on the flight does not show yet is no reason to doubt the pose; nothing where a
