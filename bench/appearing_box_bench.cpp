@@ -13,37 +13,19 @@
 
 #include "exploration/exploration.hpp"
 #include "flight/flight_statistics.hpp"
+#include "mission/exploration/room_to_explore.hpp"
 #include "thread_time.hpp"
 
 using namespace photonav;
 
 namespace {
 
-/// A room of 8 x 4 m; a box as high as the room stands between start and goal.
+/// The room of the tests, under the conditions of `photonav explore`.
 Config roomConfig() {
-    Config config;
-    config.bounds = {Eigen::Vector3d(0.4, 0.4, 0.8), Eigen::Vector3d(7.6, 3.6, 1.4)};
-    config.start.position = {1., 2., 1.1};
-    config.start.yaw = 0.;
-    config.goal.position = {7., 2., 1.1};
-    config.space = StateKind::positionYaw;
-    config.robotRadius = 0.25;
-    config.camera.mount = "front45";
-    config.camera.width = 94;
-    config.camera.height = 60;
-    config.explore.vertices = 250;
-    config.explore.timeLimit = 120.;
+    Config config = test::flightThroughRoom();
+    config.photometric.scale = Config().photometric.scale;
+    config.explore.range = Config().explore.range;
     return config;
-}
-
-Scene roomScene() {
-    Scene scene;
-    const auto floor = addTexture(scene, valueNoise({.size = {8., 4.}, .seed = 1}));
-    const auto walls = addTexture(scene, valueNoise({.size = {8., 3.}, .seed = 2}));
-    addBox(scene, {0., 0., 0.}, {8., 4., 3.}, walls, BoxInside::hollow);
-    addPlane(scene, {0., 0., 0.01}, {8., 0., 0.}, {0., 4., 0.}, floor);
-    addBox(scene, {4.5, 1.4, 0.}, {5., 2.6, 3.}, walls);
-    return scene;
 }
 
 /// A world that gets a box when told to.
@@ -145,7 +127,7 @@ int main(int argc, char** argv) {
     const double away = std::stod(argument(argc, argv, 3, "1.4"));
     const bool isRoom = name == "room";
     const Config config = isRoom ? roomConfig() : loadConfig(name);
-    const Scene scene = isRoom ? roomScene() : loadScene(config.sceneFile);
+    const Scene scene = isRoom ? test::roomToExplore() : loadScene(config.sceneFile);
     fmt::print(
         "planner          seed after                end clearance  flown  seconds  box lost "
         "rejected in view  error   NEES CPU [s]\n");

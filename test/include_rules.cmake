@@ -23,7 +23,7 @@ set(folders_tracking_control geometry photometry alignment estimation)
 set(folders_mission_result geometry)
 set(folders_mission_config io geometry photometry map render belief planners)
 set(folders_mission_problem io geometry photometry scene map render belief planners alignment result config)
-set(folders_mission_servo geometry render evaluation control result)
+set(folders_mission_servo geometry render evaluation control result simulation)
 set(folders_mission_runs io scene result config)
 set(folders_mission_sweep io geometry render space planners result problem runs)
 set(folders_mission_recording io geometry photometry bag dataset evaluation alignment depth result config

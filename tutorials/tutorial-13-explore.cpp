@@ -7,9 +7,8 @@
 #include "exercises.hpp"
 #include "exploration/exploration.hpp"
 #include "figures/images.hpp"
+#include "long_room.hpp"
 #include "plot/figure.hpp"
-#include "scene/scene.hpp"
-#include "scene/texture.hpp"
 
 using namespace photonav;
 
@@ -17,27 +16,13 @@ namespace {
 
 /// 8 m long, with a box as high as the room between start and goal.
 Scene room() {
-    Scene scene;
-    const auto floor = addTexture(scene, valueNoise({.size = {8., 4.}, .seed = 1}));
-    const auto walls = addTexture(scene, valueNoise({.size = {8., 3.}, .seed = 2}));
-    addBox(scene, {0., 0., 0.}, {8., 4., 3.}, walls, BoxInside::hollow);
-    addPlane(scene, {0., 0., 0.01}, {8., 0., 0.}, {0., 4., 0.}, floor);
-    addBox(scene, {4.5, 1.4, 0.}, {5., 2.6, 3.}, walls);
-    return scene;
+    return longRoom(
+        3., Eigen::AlignedBox3d(Eigen::Vector3d(4.5, 1.4, 0.), Eigen::Vector3d(5., 2.6, 3.)));
 }
 
-/// Camera 45 degrees down, any heading.
+/// Camera 45 degrees down.
 Config flightThrough() {
-    Config config;
-    config.bounds = {Eigen::Vector3d(0.4, 0.4, 0.8), Eigen::Vector3d(7.6, 3.6, 1.4)};
-    config.start.position = {1., 2., 1.1};
-    config.start.yaw = 0.;
-    config.goal.position = {7., 2., 1.1};
-    config.space = StateKind::positionYaw;
-    config.camera.mount = "front45";
-    config.camera.width = 94;
-    config.camera.height = 60;
-    config.photometric.scale = 1.;  // a grey camera: the noise of its pixels is independent
+    Config config = flightThroughLongRoom("front45");
     config.belief.kappa = 2.5;
     config.explore.range = 3.;
     return config;

@@ -5,36 +5,23 @@
 
 #include "exercises.hpp"
 #include "io/stopwatch.hpp"
+#include "long_room.hpp"
 #include "map/map_fusion.hpp"
 #include "problem/planning_problem.hpp"
 #include "render/mesh_renderer.hpp"
-#include "scene/scene.hpp"
 
 using namespace photonav;
 
 namespace {
 
 Scene room(bool hasBox) {
-    Scene scene;
-    const auto floor = addTexture(scene, valueNoise({.size = {8., 4.}, .seed = 1}));
-    const auto walls = addTexture(scene, valueNoise({.size = {8., 3.}, .seed = 2}));
-    addBox(scene, {0., 0., 0.}, {8., 4., 2.5}, walls, BoxInside::hollow);
-    addPlane(scene, {0., 0., 0.01}, {8., 0., 0.}, {0., 4., 0.}, floor);
-    if (hasBox) addBox(scene, {4.02, 1.22, 0.}, {4.62, 2.42, 1.8}, walls);
-    return scene;
+    const Eigen::AlignedBox3d box(Eigen::Vector3d(4.02, 1.22, 0.),
+                                  Eigen::Vector3d(4.62, 2.42, 1.8));
+    return longRoom(2.5, hasBox ? std::optional(box) : std::nullopt);
 }
 
 Config flightThrough() {
-    Config config;
-    config.bounds = {Eigen::Vector3d(0.4, 0.4, 0.8), Eigen::Vector3d(7.6, 3.6, 1.4)};
-    config.start.position = {1., 2., 1.1};
-    config.start.yaw = 0.;
-    config.goal.position = {7., 2., 1.1};
-    config.space = StateKind::positionYaw;
-    config.camera.mount = "20";  // degrees below the horizon
-    config.camera.width = 94;
-    config.camera.height = 60;
-    config.photometric.scale = 1.;  // a grey camera: the noise of its pixels is independent
+    Config config = flightThroughLongRoom("20");  // degrees below the horizon
     config.belief.kappa = 1000.;
     config.vertices = 500;
     config.field.positionPitch = 0.25;
@@ -110,8 +97,8 @@ int main(int argc, char** argv) {
     MapChange change;  // a box has appeared: many images saw none, so that it takes several
     for (int i = 0; i < 10; ++i) change.join(look(*map, withBox, config, 2.5, 0.));
     const Stopwatch watch;
-    world.mapChanged(change);    // clearance, and the views' snapshot of the map
-    problem.followMap();         // cached views, and what of the roadmap is in collision now
+    world.mapChanged(change);  // clearance, and the views' snapshot of the map
+    problem.followMap();       // cached views, and what of the roadmap is in collision now
     ompl::base::ScopedState<> here(problem.spaceInformation());
     problem.space().setState(here.get(), {2.5, 2., 1.1}, 0.);
     planner->moveRoot(here.get(), planner->model().root(here.get()));

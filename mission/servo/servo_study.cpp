@@ -12,6 +12,7 @@
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 #include "render/area_sensor.hpp"
+#include "simulation/camera_noise.hpp"
 
 namespace photonav {
 namespace {
@@ -57,6 +58,7 @@ struct Simulation {
     Eigen::MatrixXd body;  ///< bodyFreedom()
     Pose T_goal;           ///< T_c_w
     AreaSensor sensor;
+    ImageNoise noise;
     LevenbergServo servo;
     double depth;
 
@@ -66,6 +68,7 @@ struct Simulation {
           body(bodyFreedom(o.hasTilt)),
           T_goal((at.T_w_b * at.T_b_c).inverse()),
           sensor(at.views),
+          noise(assumedNoise({.sigma = at.photometric.sigma})),
           // The body moves by exp(V dt) on the right of T_w_b: T_c_w by -Ad(T_c_b) V on its left.
           servo(photographed(sensor, at.camera, T_goal), at.camera,
                 -adjoint(Pose(at.T_b_c.inverse())) * body, {at.photometric, o.gain, o.damping}),
@@ -83,12 +86,7 @@ struct Simulation {
     /// One image and the motion it commands. @param random null: without noise
     void step(Pose& T_c_w, View& view, Random* random) const {
         photograph(sensor, goal.camera, T_c_w, view);
-        if (random) {
-            std::normal_distribution<float> noise(0.F, float(goal.photometric.sigma));
-            for (unsigned i = 0; i < view.intensity.getSize(); ++i) {
-                view.intensity.bitmap[i] += noise(*random);
-            }
-        }
+        if (random) noise(view.intensity, *random);
         const Eigen::VectorXd q = servo.velocity(view.intensity) / options.rate;
         T_c_w = expSE3(Vector6(servo.freedom() * q)) * T_c_w;
     }

@@ -9,6 +9,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "dataset/intrinsics_bounds.hpp"
 #include "io/error.hpp"
 #include "photometry/opencv_image.hpp"
 
@@ -54,8 +55,8 @@ void requireBagCamera(double fx, double fy, double cx, double cy, const CameraIn
                       const std::string& source) {
     const double width = info.width, height = info.height;
     const bool isCamera = width >= 16. && height >= 16. && width <= 1e5 && height <= 1e5 &&
-                          fx >= 0.005 * width && fy >= 0.005 * height && fx <= 1e9 && fy <= 1e9 &&
-                          std::abs(cx) <= 10. * width && std::abs(cy) <= 10. * height;
+                          IntrinsicsBounds(width).contain(fx, cx) &&
+                          IntrinsicsBounds(height).contain(fy, cy);
     if (!isCamera) throw InputError(source, "", "is not calibrated: no intrinsics of a camera");
 }
 

@@ -5,13 +5,12 @@
 
 #include <cmath>
 
+#include "dataset/intrinsics_bounds.hpp"
 #include "io/yaml_reader.hpp"
 
 namespace photonav {
 namespace {
 
-/// Fields of view up to 179 degrees, principal points up to ten images outside: beyond, a number
-/// has gone wrong.
 vpCameraParameters readIntrinsics(YamlMap& yaml, const Camera& camera) {
     const auto required = [&](const std::string& key, double least, double most) {
         if (!yaml.has(key)) yaml.fail(key, "missing");
@@ -19,10 +18,11 @@ vpCameraParameters readIntrinsics(YamlMap& yaml, const Camera& camera) {
         yaml.readNumber(key, value, least, most);
         return value;
     };
-    const double width = camera.width;
-    const double height = camera.height;
-    return {required("fx", 0.005 * width, 1e9), required("fy", 0.005 * height, 1e9),
-            required("cx", -10. * width, 10. * width), required("cy", -10. * height, 10. * height)};
+    const IntrinsicsBounds u(camera.width), v(camera.height);
+    constexpr double kMost = IntrinsicsBounds::kMostFocalLength;
+    return {required("fx", u.leastFocalLength, kMost), required("fy", v.leastFocalLength, kMost),
+            required("cx", -u.farthestPrincipalPoint, u.farthestPrincipalPoint),
+            required("cy", -v.farthestPrincipalPoint, v.farthestPrincipalPoint)};
 }
 
 void readSize(YamlMap& yaml, Camera& camera) {

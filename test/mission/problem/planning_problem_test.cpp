@@ -171,11 +171,16 @@ TEST(PlanningProblem, FollowsAllChangesSinceItsLastCall) {
     problem.followMap();
     world.mapChanged(wall);
     PlanningProblem moved(std::move(problem));
-    const PlanningProblem other(moved, 0.7);  // over the same views, which are not up to date yet
+    PlanningProblem other(moved, 0.7);  // over the same views, which are not up to date yet
+    Pose T_w_b = Pose::Identity();
+    T_w_b.translation() = config.start.position;
+    EXPECT_EQ(other.informationAt(T_w_b).trace(), 0.);
     map->updateNode(octomap::point3d(1.F, 0.4F, 1.F), true);
     MapChange more{.resolution = map->getResolution()};
     more.occupancy.emplace_back(2, 1, 2);
     world.mapChanged(more);
+    other.followMap();
+    EXPECT_GT(other.informationAt(T_w_b).trace(), 0.);
     moved.followMap();
     const PlanOutcome after = moved.solve(planner);
     ASSERT_TRUE(after.isSolved());

@@ -231,6 +231,17 @@ TEST(MapTracker, AnotherRoomIsNotThisOne) {
     EXPECT_TRUE(localizer.loss().isStartWrong()) << "10 images that show something";
 }
 
+/// It agrees with the map wherever the camera is: the motion must not be carried on by it.
+TEST(MapTracker, WithoutOdometryAnImageThatDoesNotInformIsRejected) {
+    const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
+    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    Tracker localizer = trackerIn(white, {here, 1e-4 * Matrix6::Identity()});
+    View view;
+    white->render(flightCamera(), here, view);
+    EXPECT_TRUE(localizer.track(view, 0.).rejected);
+    EXPECT_TRUE(localizer.loss().isLost());
+}
+
 /// At the velocity so far it would be a metre on.
 void expectFoundWhereItStopped(Tracker tracker) {
     int i = 0;
