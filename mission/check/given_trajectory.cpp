@@ -24,16 +24,6 @@ constexpr double kLeastSlope = 1e-3;  // a steeper motion has no direction from 
 enum Column { kTime, kX, kY, kZ, kYaw, kColumnCount };
 using Columns = std::array<std::optional<std::size_t>, kColumnCount>;
 
-/// The first line that is not blank, nor a comment.
-std::string firstLine(const std::string& file) {
-    std::ifstream in = openToRead(file);
-    for (std::string line; std::getline(in, line);) {
-        const std::size_t begin = line.find_first_not_of(" \t\r");
-        if (begin != std::string::npos && line[begin] != '#') return line.substr(begin);
-    }
-    throw InputError(file, "", "no poses");
-}
-
 /// A comma at the end of a line ends its last field.
 std::size_t fieldsOf(const std::string& line, bool hasCommas) {
     if (hasCommas) {
@@ -43,6 +33,31 @@ std::size_t fieldsOf(const std::string& line, bool hasCommas) {
     }
     std::istringstream fields(line);
     return static_cast<std::size_t>(std::distance(std::istream_iterator<std::string>(fields), {}));
+}
+
+/// The first line that is not blank, nor a comment: it decides what the file is.
+struct FirstLine {
+    std::string text;
+    bool hasCommas;
+    std::size_t fields;
+
+    /// Whether it is one of a table of as many columns, with blanks between them.
+    bool isOf(std::size_t columns) const { return !hasCommas && fields == columns; }
+    bool beginsWithNumber() const {
+        return numberIn(text.substr(0, text.find_first_of(" \t"))).has_value();
+    }
+};
+
+FirstLine firstLineOf(const std::string& file) {
+    std::ifstream in = openToRead(file);
+    for (std::string line; std::getline(in, line);) {
+        const std::size_t begin = line.find_first_not_of(" \t\r");
+        if (begin == std::string::npos || line[begin] == '#') continue;
+        line.erase(0, begin);
+        const bool hasCommas = line.find(',') != std::string::npos;
+        return {line, hasCommas, fieldsOf(line, hasCommas)};
+    }
+    throw InputError(file, "", "no poses");
 }
 
 std::optional<Column> columnNamed(const std::string& name) {
@@ -105,12 +120,11 @@ Row rowOf(const TextRow& row, const Columns& columns) {
     return read;
 }
 
-std::vector<Row> readRows(const std::string& file, const std::string& first) {
-    const bool hasCommas = first.find(',') != std::string::npos;
-    const std::size_t fields = fieldsOf(first, hasCommas);
-    const std::vector<TextRow> table = hasCommas ? readCsv(file, fields) : readTable(file, fields);
-    const auto named = columnsNamedBy(table.front(), fields);
-    const Columns columns = named ? *named : columnsOf(table.front(), fields);
+std::vector<Row> readRows(const std::string& file, const FirstLine& first) {
+    const std::vector<TextRow> table =
+        first.hasCommas ? readCsv(file, first.fields) : readTable(file, first.fields);
+    const auto named = columnsNamedBy(table.front(), first.fields);
+    const Columns columns = named ? *named : columnsOf(table.front(), first.fields);
     std::vector<Row> rows;
     for (std::size_t i = named ? 1 : 0; i < table.size(); ++i) {
         rows.push_back(rowOf(table[i], columns));
@@ -159,7 +173,7 @@ GivenTrajectory readPoses(const std::string& file, const Pose& T_b_c, bool isKit
     return trajectory;
 }
 
-GivenTrajectory readPlaces(const std::string& file, const std::string& first,
+GivenTrajectory readPlaces(const std::string& file, const FirstLine& first,
                            const GivenHeading& heading) {
     const std::vector<Row> rows = readRows(file, first);
     GivenTrajectory trajectory;
@@ -191,12 +205,9 @@ void check(const GivenTrajectory& trajectory, const std::string& file) {
 GivenTrajectory readGivenTrajectory(const std::string& file, const Pose& T_b_c,
                                     const GivenHeading& heading) {
     return reading(file, [&] {
-        const std::string first = firstLine(file);
-        const bool hasCommas = first.find(',') != std::string::npos;
-        const std::size_t fields = hasCommas ? 0 : fieldsOf(first, false);
-        const bool isKitti =
-            fields == kKittiColumns && numberIn(first.substr(0, first.find_first_of(" \t")));
-        GivenTrajectory trajectory = isKitti || fields == kTumColumns
+        const FirstLine first = firstLineOf(file);
+        const bool isKitti = first.isOf(kKittiColumns) && first.beginsWithNumber();
+        GivenTrajectory trajectory = isKitti || first.isOf(kTumColumns)
                                          ? readPoses(file, T_b_c, isKitti)
                                          : readPlaces(file, first, heading);
         check(trajectory, file);
