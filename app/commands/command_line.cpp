@@ -85,9 +85,7 @@ void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig) {
 }
 
 void addJobs(CLI::App& parser, unsigned& jobs) {
-    parser.add_option("--jobs", jobs, "number of threads")
-        ->check(CLI::Range(1, 4096))
-        ->capture_default_str();
+    addNumber(parser, "--jobs", jobs, "number of threads", 1U, 4096U);
 }
 
 void addManyRuns(CLI::App& parser, ManyRunsOptions& options, const RunWords& words) {

@@ -69,6 +69,15 @@ void addQuiet(CLI::App& parser, bool& quiet);
 /// The format of --help.
 std::shared_ptr<CLI::FormatterBase> helpFormat();
 
+/// A number from `least` to `most`; its value is the default.
+template <typename Number>
+void addNumber(CLI::App& parser, const std::string& name, Number& number,
+               const std::string& description, Number least, Number most) {
+    parser.add_option(name, number, description)
+        ->check(CLI::Range(least, most))
+        ->capture_default_str();
+}
+
 /// --set. Options that override a key as well come before it.
 void addOverrides(CLI::App& parser, std::vector<std::string>& overrides);
 
@@ -104,8 +113,15 @@ std::string valueOf(const ConfigKey& key, const std::string& text);
 /// @param without names of keys that are typed in another way
 void addKeyOptions(CLI::App& parser, const KeyTable& keys, const std::set<std::string>& without);
 
-/// The same, and what was typed goes over the config, as with addValue(). Files are meant from the
-/// working directory.
+/// Options of a command with keys of the config, of type `Section`, among them.
+template <typename Options, typename Section>
+struct WithKeys : Options {
+    Section typed;  ///< the defaults
+    KeyTable keys;  ///< of `typed`
+};
+
+/// As addKeyOptions(), and what was typed goes over the config, as with addValue(). Files are meant
+/// from the working directory.
 void addKeyOverrides(CLI::App& parser, const KeyTable& keys, const std::set<std::string>& without,
                      std::vector<std::string>& overrides);
 

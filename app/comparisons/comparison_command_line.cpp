@@ -44,10 +44,8 @@ void addSweepOptions(CLI::App& parser, ManyRunsOptions& options) {
 void addCompareOptions(CLI::App& parser, CompareOptions& options) {
     parser.add_option("configs", options.configs, "YAML files of planning problems")->required();
     addOverrides(parser, options.overrides);
-    parser
-        .add_option("--runs", options.runs, "number of seeds per method, from the config's seed on")
-        ->check(CLI::Range(1, 10000))
-        ->capture_default_str();
+    addNumber(parser, "--runs", options.runs,
+              "number of seeds per method, from the config's seed on", 1U, 10000U);
     parser.add_option("--out", options.out, "result folder")
         ->type_name("DIR")
         ->capture_default_str();
@@ -59,30 +57,22 @@ void addBenchmarkOptions(CLI::App& parser, BenchmarkOptions& options) {
     addPlanners(parser, options.overrides);
     addValue(parser, options.overrides, "--runs", "sweep.runs", "number of seeds per planner");
     addSeed(parser, options.overrides, "the first seed");
-    parser.add_option("--interval", options.interval, "time between samples of the progress [s]")
-        ->check(CLI::Range(1e-3, 1e3))
-        ->capture_default_str();
-    parser.add_option("--time-limit", options.timeLimit, "time limit of a run [s]")
-        ->check(CLI::Range(1e-3, 1e6))
-        ->capture_default_str();
+    addNumber(parser, "--interval", options.interval, "time between samples of the progress [s]",
+              1e-3, 1e3);
+    addNumber(parser, "--time-limit", options.timeLimit, "time limit of a run [s]", 1e-3, 1e6);
 }
 
 void addReferenceOptions(CLI::App& parser, ReferenceOptions& options) {
-    const auto addNumber = [&](const char* name, unsigned& number, const char* description,
-                               unsigned least, unsigned most) {
-        parser.add_option(name, number, description)
-            ->check(CLI::Range(least, most))
-            ->capture_default_str();
-    };
     parser.add_option("config", options.config, "YAML file of the planning problem")->required();
     addOverrides(parser, options.overrides);
     addAlphas(parser, options.overrides);
     addPlanners(parser, options.overrides);
-    addNumber("--runs", options.runs, "number of seeds per planner and alpha", 0, 1000000);
-    addNumber("--vertices", options.vertices, "vertices of each run", 2, 100000000);
-    addNumber("--labels", options.labels, "labels per vertex", 1, 1000000);
-    addNumber("--moves", options.moves, "changes that the descent tries from each path", 0,
-              1000000000);
+    addNumber(parser, "--runs", options.runs, "number of seeds per planner and alpha", 0U,
+              1000000U);
+    addNumber(parser, "--vertices", options.vertices, "vertices of each run", 2U, 100000000U);
+    addNumber(parser, "--labels", options.labels, "labels per vertex", 1U, 1000000U);
+    addNumber(parser, "--moves", options.moves, "changes that the descent tries from each path", 0U,
+              1000000000U);
     parser
         .add_option("--file", options.file,
                     "file of the table (default: reference/<config>.csv beside the config)")

@@ -7,10 +7,7 @@
 namespace photonav {
 namespace {
 
-struct ExploreArguments : ExploreOptions {
-    ExploreConfig typed;  ///< the defaults
-    KeyTable keys;        ///< of `typed`
-};
+using ExploreArguments = WithKeys<ExploreOptions, ExploreConfig>;
 
 void addExploreOptions(CLI::App& parser, ExploreArguments& options) {
     addCommon(parser, options, false);

@@ -11,10 +11,7 @@
 namespace photonav {
 namespace {
 
-struct FlyArguments : FlyOptions {
-    FlyConfig typed;  ///< the defaults
-    KeyTable keys;    ///< of `typed`
-};
+using FlyArguments = WithKeys<FlyOptions, FlyConfig>;
 
 void addFlyOptions(CLI::App& parser, FlyArguments& options) {
     addCommon(parser, options);
@@ -59,22 +56,16 @@ void addServoOptions(CLI::App& parser, ServoOptions& options) {
                       "0.1,0.2,0.4,0.8)");
     parser.add_option("--angles", options.angles,
                       "rotations of the starts: a,b,c [degrees] (default: 0,10,20)");
-    parser.add_option("--trials", study.trials, "number of starts for each distance and angle")
-        ->check(CLI::Range(1, 100000))
-        ->capture_default_str();
+    addNumber(parser, "--trials", study.trials, "number of starts for each distance and angle", 1,
+              100000);
     parser.add_flag("--tilt", study.hasTilt,
                     "control six degrees of freedom; without it x, y, z and yaw, as the robot");
-    const auto addNumber = [&](const char* name, double& number, const char* description,
-                               double least, double most) {
-        parser.add_option(name, number, description)
-            ->check(CLI::Range(least, most))
-            ->capture_default_str();
-    };
-    addNumber("--gain", study.gain, "gain: rate of the error's exponential decrease [1/s]", 1e-3,
-              1e3);
-    addNumber("--damping", study.damping, "mu of Levenberg-Marquardt; 0: Gauss-Newton", 0., 1e6);
-    addNumber("--rate", study.rate, "images per second", 0.1, 1e4);
-    addNumber("--duration", study.duration, "time limit of a start [s]", 0.1, 1e5);
+    addNumber(parser, "--gain", study.gain, "gain: rate of the error's exponential decrease [1/s]",
+              1e-3, 1e3);
+    addNumber(parser, "--damping", study.damping, "mu of Levenberg-Marquardt; 0: Gauss-Newton", 0.,
+              1e6);
+    addNumber(parser, "--rate", study.rate, "images per second", 0.1, 1e4);
+    addNumber(parser, "--duration", study.duration, "time limit of a start [s]", 0.1, 1e5);
 }
 
 }  // namespace

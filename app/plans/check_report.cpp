@@ -59,20 +59,10 @@ std::string flightsText(const FlightSet& set) {
 }
 
 std::vector<ReportView> viewsAlong(const CheckOutcome& report) {
-    std::vector<ReportView> views;
-    const auto& places = report.checked.places;
-    const std::size_t stride = 1 + places.size() / kMostViews;
-    const Camera camera = report.config.camera.camera();
-    View view;
-    for (std::size_t i = 0; i < places.size(); i += stride) {
-        const Pose T_c_w = (places[i].T_w_b * report.config.camera.T_b_c()).inverse();
-        report.world.views().render(camera, T_c_w, view);
-        views.push_back(
-            {i, greyPng(view.intensity),
-             pngOf(contributionPicture(
-                 view.intensity, contributionImage(view, camera, report.config.photometric)))});
-    }
-    return views;
+    std::vector<std::size_t> drawn;
+    const std::size_t places = report.checked.places.size();
+    for (std::size_t i = 0; i < places; i += 1 + places / kMostViews) drawn.push_back(i);
+    return reportViews(report.config, report.world, report.path, drawn);
 }
 
 std::vector<NamedFigure> checkFigures(const CheckOutcome& report,

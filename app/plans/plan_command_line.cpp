@@ -56,20 +56,14 @@ void addCheckOptions(CLI::App& parser, CheckCommandOptions& options) {
                     "heading of a table without headings: forward (along the motion), or an "
                     "angle [rad]")
         ->capture_default_str();
-    parser
-        .add_option("--headings", options.check.headings,
-                    "number of headings to compare at every place; 0: none")
-        ->check(CLI::Range(0, 720))
-        ->capture_default_str();
+    addNumber(parser, "--headings", options.check.headings,
+              "number of headings to compare at every place; 0: none", 0, 720);
     parser
         .add_option("--max-sigma", options.check.maxSigma,
                     "standard deviation of the position above which the camera counts as lost [m]")
         ->check(CLI::Range(1e-6, 1e5));
-    parser
-        .add_option("--flights", options.flights,
-                    "number of simulated flights along the trajectory")
-        ->check(CLI::Range(0, 1000000))
-        ->capture_default_str();
+    addNumber(parser, "--flights", options.flights,
+              "number of simulated flights along the trajectory", 0U, 1000000U);
     addJobs(parser, options.jobs);
     addSeed(parser, options.overrides, "seed of the flights");
     addOverrides(parser, options.overrides);

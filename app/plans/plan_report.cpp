@@ -32,20 +32,10 @@ std::vector<ReportView> waypointViews(const EvaluatedPath& path, const Config& c
     for (std::size_t i = 0; i < path.points.size(); ++i) {
         if (path.points[i].isWaypoint) waypoints.push_back(i);
     }
+    std::vector<std::size_t> drawn;
     const std::size_t stride = 1 + waypoints.size() / kMaxViews;
-    const Camera camera = config.camera.camera();
-    std::vector<ReportView> views;
-    View view;
-    for (std::size_t k = 0; k < waypoints.size(); k += stride) {
-        const std::size_t i = waypoints[k];
-        const Pose T_c_w = (path.points[i].T_w_b * config.camera.T_b_c()).inverse();
-        world.views().render(camera, T_c_w, view);
-        views.push_back(
-            {i, greyPng(view.intensity),
-             pngOf(contributionPicture(view.intensity,
-                                       contributionImage(view, camera, config.photometric)))});
-    }
-    return views;
+    for (std::size_t k = 0; k < waypoints.size(); k += stride) drawn.push_back(waypoints[k]);
+    return reportViews(config, world, path, drawn);
 }
 
 /// The most informative predicted view of each of several equal parts of the path.

@@ -14,4 +14,10 @@ void describeWorld(const World& world, ReportData& report);
 ReportData problemReport(const Config& config, const World& world, const std::string& commandLine,
                          const nlohmann::json& result);
 
+/// Views from points of the first path, with the contributions of their pixels.
+/// @param points indices
+std::vector<ReportView> reportViews(const Config& config, const World& world,
+                                    const EvaluatedPath& path,
+                                    const std::vector<std::size_t>& points);
+
 }  // namespace photonav

@@ -89,7 +89,7 @@ void addExportOptions(CLI::App& parser, ExportOptions& options) {
 int exportResult(const ExportOptions& options, const std::atomic<bool>& /*interrupted*/) {
     fs::path folder = options.folder.lexically_normal();
     if (!folder.has_filename()) folder = folder.parent_path();  // without a closing slash
-    const McapExport result = exportMcap(folder);
+    const McapExport result = exportMcap(folder, readReportOf(folder));
     const std::string file = options.out.empty() ? folder.string() + ".mcap" : options.out.string();
     writeFileAtomically(file, result.content);
     if (!options.quiet) {

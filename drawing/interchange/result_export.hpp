@@ -16,7 +16,8 @@ struct McapExport {
 /// Map and scene, paths with their beliefs, and poses in time; of an exploration its plans, cells
 /// and images as well. Times are those of the flight or of the recording; a plan is flown at a
 /// metre a second.
-/// @throws InputError for a folder that is no result, or is damaged
-McapExport exportMcap(const std::filesystem::path& folder);
+/// @param report content of the folder's report.json
+/// @throws InputError for a folder that is damaged
+McapExport exportMcap(const std::filesystem::path& folder, const std::string& report);
 
 }  // namespace photonav

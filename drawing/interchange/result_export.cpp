@@ -12,7 +12,6 @@
 #include "interchange/drawn_result.hpp"
 #include "io/error.hpp"
 #include "io/reading.hpp"
-#include "report/report.hpp"
 
 namespace photonav {
 namespace {
@@ -169,9 +168,9 @@ Trajectory trajectoryIn(const fs::path& folder) {
 
 }  // namespace
 
-McapExport exportMcap(const fs::path& folder) {
+McapExport exportMcap(const fs::path& folder, const std::string& content) {
     return reading((folder / "report.json").string(), [&] {
-        const json report = json::parse(readReportOf(folder));
+        const json report = json::parse(content);
         const std::vector<DrawnPath> paths = drawnPaths(report);
         const Trajectory trajectory = trajectoryIn(folder);
         const bool isRecorded = std::ranges::any_of(paths, [&](const DrawnPath& path) {
