@@ -172,7 +172,7 @@ TEST_F(RoomToExplore, ArrivesThroughABlackoutWithFewDepths) {
     config.fly.blackout = {3., 4.};
     config.fly.drop = 0.2;
     config.explore.depthMissing = 0.5;
-    const ExplorationResult flight = flown(test::roomToExplore());
+    const ExplorationResult flight = flown(test::roomToExplore(), 2);
     EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
     EXPECT_GT(flight.rejectedImages, 10);
     EXPECT_GT(flight.leastClearance, 0.125);
