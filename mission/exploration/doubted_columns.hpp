@@ -23,7 +23,7 @@ class DoubtedColumns {
 
     /// @param places on new obstacles; of a column one is enough
     void doubtAround(const std::vector<Eigen::Vector3d>& places);
-    /// Columns are no longer doubted of which a depth image shows free space or a surface.
+    /// A column is no longer doubted once a depth image shows free space or a surface in it.
     void look(const ImageF& depth, const Camera& camera, const Pose& T_c_w);
 
     bool contains(const Eigen::Vector3d& p_w) const {

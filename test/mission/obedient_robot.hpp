@@ -10,9 +10,8 @@ namespace photonav::test {
 
 class ObedientRobot : public Robot {
   public:
-    /// @param position_w where it begins; @param imagePeriod an image at the first step that ends
-    /// so
-    ///        much later than the one before, or more [s]
+    /// @param position_w where it begins
+    /// @param imagePeriod an image comes with the first step after this time [s]
     ObedientRobot(std::shared_ptr<const ViewSource> world, const Camera& camera, const Pose& T_b_c,
                   const Eigen::Vector3d& position_w, double imagePeriod = 0.)
         : world_(std::move(world)), camera_(camera), T_b_c_(T_b_c), imagePeriod_(imagePeriod) {

@@ -156,7 +156,7 @@ struct MeasuredInformation;
 
 /// Completes an alignment from the equations of its last iterate: statistics, information,
 /// covariance and verdict.
-/// @param image what the image tells about the pose
+/// @param image the information of the image about the pose
 /// @param sigma noise of the image [grey value]
 /// @param prior transported covariance at alignment.T_c_w, if there is one
 void conclude(Alignment& alignment, const NormalEquations& equations, std::size_t pixels,

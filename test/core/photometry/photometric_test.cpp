@@ -291,7 +291,7 @@ TEST(Information, StrideKeepsTheCovariance) {
 }
 
 /// Columns that alternate are blank to central differences, rows that do as well.
-TEST(Information, ASquareSeesWhatAlternatesFromPixelToPixel) {
+TEST(Information, ASquareObservesWhatAlternatesFromPixelToPixel) {
     const Camera camera = makeCamera(40, 30, 1.2);
     for (const bool inRows : {false, true}) {
         View view = randomView(camera, 3);

@@ -65,7 +65,7 @@ TEST(LocalisationCheck, HowDenselyATrajectoryIsSampledDoesNotMatter) {
     EXPECT_NEAR(fine.meanTrace, coarse.meanTrace, 1e-6 * coarse.meanTrace);
 }
 
-TEST(LocalisationCheck, UniformFloorLeavesAllDirectionsOpenButLosesNobody) {
+TEST(LocalisationCheck, AUniformFloorLeavesAllDirectionsOpenButIsNoLoss) {
     const Config config = twoTextures();
     const World world(config);
     const auto checked = checkLocalisation(through({{0., 0., 2., 0.}, {0., 4., 2., 0.}}), config,
@@ -117,7 +117,7 @@ TEST(LocalisationCheck, ABeliefWiderThanTheSearchIsLostForGood) {
     EXPECT_LT(checked.arrivalProbability, 0.1);
 }
 
-TEST(LocalisationCheck, ALimitOfOnesOwnIsALossWhereItIsExceeded) {
+TEST(LocalisationCheck, AGivenLimitIsALossWhereItIsExceeded) {
     const Config config = twoTextures();
     const World world(config);
     CheckOptions options = kWithoutHeadings;

@@ -88,7 +88,7 @@ TEST_F(EmptyFloor, AWallOfTheMapIsNotNew) {
     EXPECT_TRUE(unknown.newWalls().empty());
 }
 
-TEST_F(EmptyFloor, DepthsThatAreTooCoarseTellNothingNew) {
+TEST_F(EmptyFloor, DepthsThatAreTooCoarseShowNothingNew) {
     const View box = boxOf(3.);
     const ObstaclesInView seen(box.depth, camera, at(0.), map, {1.6, 0.8, 0.7, 1.7});
     EXPECT_TRUE(seen.newWalls().empty());
