@@ -41,6 +41,7 @@ constexpr std::array kViewModels{
 const std::vector<std::string>& viewModelNames() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> all;
+        all.reserve(kViewModels.size());
         for (const ViewModelEntry& entry : kViewModels) all.emplace_back(entry.name);
         return all;
     }();
