@@ -21,8 +21,8 @@ static_assert(std::endian::native == std::endian::little, "points are stored as 
 
 constexpr const char* kFrame = "world";
 constexpr std::size_t kEllipsoids = 50;
-constexpr double kSigmas = 3.;       // of the ellipsoids' half axes, as in reports
-constexpr double kLeastAxis = 1e-4;  // [m]: nothing is drawn without extent
+constexpr double kEllipsoidSigmas = 3.;  // of the ellipsoids' half axes, as in reports
+constexpr double kLeastAxis = 1e-4;      // [m]: nothing is drawn without extent
 
 json objectSchema(const json& properties) {
     return {{"type", "object"}, {"properties", properties}};
@@ -120,7 +120,7 @@ json ellipsoid(const PathPoint& point, const Color& color) {
     pose.linear() = axes.eigenvectors();
     if (pose.linear().determinant() < 0.) pose.linear().col(0) *= -1.;
     const Eigen::Vector3d sigma = axes.eigenvalues().cwiseMax(0.).cwiseSqrt();
-    const Eigen::Vector3d size = (2. * kSigmas * sigma).cwiseMax(kLeastAxis);
+    const Eigen::Vector3d size = (2. * kEllipsoidSigmas * sigma).cwiseMax(kLeastAxis);
     return {{"pose", poseJson(pose)},
             {"size", foxgloveVector(size)},
             {"color", colorJson(color, kOpacity)}};
