@@ -11,12 +11,12 @@
 #include <new>
 #include <string_view>
 
-#include "commands/command_line.hpp"
 #include "io/error.hpp"
 #include "io/folder_transaction.hpp"
 #include "io/stopwatch.hpp"
 #include "io/yaml_reader.hpp"
 #include "render/interruptible_views.hpp"
+#include "shared/command_line.hpp"
 
 namespace {
 

@@ -47,18 +47,18 @@ set(folders_drawing_figures io geometry photometry evaluation depth problem serv
 set(folders_drawing_interchange io bag dataset result shapes flightlog)
 set(folders_app_live io)
 set(folders_app_report io dataset problem plot shapes figures)
-set(folders_app_commands io result config runs report)
+set(folders_app_shared io result config runs report)
 set(folders_app_flights io geometry dataset planners alignment result config problem servo recording replay
-    flight flightlog figures report commands)
+    flight flightlog figures report shared)
 set(folders_app_explorations io map dataset result config flight exploration flightlog figures live report
-    commands flights)
+    shared flights)
 set(folders_app_recordings io geometry map render dataset result config recording mapping replay figures
-    report commands)
+    report shared)
 set(folders_app_plans io geometry map render dataset planners result problem recording mapping flight check
-    figures report commands recordings)
-set(folders_app_comparisons io geometry render planners result config problem sweep figures report commands)
-set(folders_app_tools io config problem mapping interchange commands recordings)
-set(folders_app_ io render commands)
+    figures report shared recordings)
+set(folders_app_comparisons io geometry render planners result config problem sweep figures report shared)
+set(folders_app_tools io config problem mapping interchange shared recordings)
+set(folders_app_ io render shared)
 
 foreach(part src planning tracking mission drawing app)
     file(GLOB_RECURSE found RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/${part}/*.?pp)
@@ -121,7 +121,7 @@ endfunction()
 
 only_in("embree" src/render/mesh_renderer.cpp)
 only_in("assimp" src/scene/mesh_io.cpp)
-only_in("CLI/" app/commands/command_line.hpp)
+only_in("CLI/" app/shared/command_line.hpp)
 only_in("yaml-cpp" src/io/yaml_reader.)
 only_in("ompl/" planning/ mission/ app/)
 only_in("nlohmann" src/scene/mesh_check.cpp mission/ drawing/flightlog/ drawing/interchange/ app/)

@@ -5,13 +5,13 @@
 
 #include <filesystem>
 
-#include "commands/result_folder.hpp"
 #include "comparisons/sweep_report.hpp"
 #include "figures/sweep_figures.hpp"
 #include "io/atomic_file.hpp"
 #include "io/stopwatch.hpp"
 #include "problem/planning_problem.hpp"
 #include "report/problem_report.hpp"
+#include "shared/result_folder.hpp"
 #include "sweep/planner_benchmark.hpp"
 
 namespace photonav {

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <optional>
 
-#include "commands/command_io.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 

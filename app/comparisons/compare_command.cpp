@@ -7,7 +7,6 @@
 #include <functional>
 #include <map>
 
-#include "commands/result_folder.hpp"
 #include "figures/top_view.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
@@ -15,6 +14,7 @@
 #include "render/interruptible_views.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <vector>
 
-#include "commands/command_io.hpp"
+#include "shared/command_io.hpp"
 #include "sweep/comparison.hpp"
 
 namespace photonav {

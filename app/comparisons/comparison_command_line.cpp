@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "commands/command_line.hpp"
 #include "comparisons/benchmark_command.hpp"
 #include "comparisons/compare_command.hpp"
 #include "comparisons/reference_command.hpp"
 #include "comparisons/sweep_command.hpp"
 #include "config/sweep_config.hpp"
+#include "shared/command_line.hpp"
 #include "sweep/sweep_journal.hpp"
 
 namespace photonav {

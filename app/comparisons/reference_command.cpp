@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "commands/command_io.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "shared/command_io.hpp"
 #include "sweep/reference_search.hpp"
 
 namespace photonav {

@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "commands/many_runs.hpp"
+#include "shared/many_runs.hpp"
 
 namespace photonav {
 

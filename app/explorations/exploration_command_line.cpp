@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/command_line.hpp"
 #include "config/config_keys.hpp"
 #include "exploration/trial_journal.hpp"
 #include "explorations/explore_command.hpp"
+#include "shared/command_line.hpp"
 
 namespace photonav {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "commands/result_folder.hpp"
 #include "exploration/trial_journal.hpp"
 #include "explorations/explore_report.hpp"
 #include "explorations/flight_watch.hpp"
@@ -15,6 +14,7 @@
 #include "io/stopwatch.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <filesystem>
 
-#include "commands/many_runs.hpp"
+#include "shared/many_runs.hpp"
 
 namespace photonav {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include "commands/command_line.hpp"
 #include "config/config_keys.hpp"
 #include "flight/flight_setup.hpp"
 #include "flights/fly_command.hpp"
 #include "flights/servo_command.hpp"
 #include "replay/calibration_file.hpp"
+#include "shared/command_line.hpp"
 
 namespace photonav {
 namespace {

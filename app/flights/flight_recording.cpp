@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flights/flight_recording.hpp"
 
-#include "commands/path_inside.hpp"
 #include "io/error.hpp"
+#include "shared/path_inside.hpp"
 
 namespace photonav {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "commands/result_folder.hpp"
 #include "flight/flight_setup.hpp"
 #include "flights/flight_recording.hpp"
 #include "flights/fly_frames.hpp"
@@ -16,6 +15,7 @@
 #include "problem/planned_path.hpp"
 #include "replay/calibration_file.hpp"
 #include "result/json_values.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 namespace {

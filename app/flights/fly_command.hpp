@@ -5,7 +5,7 @@
 #include <atomic>
 #include <string>
 
-#include "commands/command_io.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 

@@ -6,13 +6,13 @@
 #include <algorithm>
 
 #include "alignment/image_pyramid.hpp"
-#include "commands/place_option.hpp"
-#include "commands/result_folder.hpp"
 #include "flights/servo_report.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
 #include "io/stopwatch.hpp"
 #include "result/json_values.hpp"
+#include "shared/place_option.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "commands/command_io.hpp"
 #include "servo/servo_study.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "check/obstruction.hpp"
-#include "commands/result_folder.hpp"
 #include "flight/flight_setup.hpp"
 #include "geometry/constants.hpp"
 #include "io/error.hpp"
@@ -14,6 +13,7 @@
 #include "plans/check_report.hpp"
 #include "render/interruptible_views.hpp"
 #include "result/json_values.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "check/localisation_check.hpp"
-#include "commands/command_io.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "commands/place_option.hpp"
-#include "commands/result_folder.hpp"
 #include "dataset/image_file.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
@@ -12,6 +10,8 @@
 #include "io/stopwatch.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
+#include "shared/place_option.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;

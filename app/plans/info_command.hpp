@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "commands/command_io.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 

@@ -5,7 +5,6 @@
 
 #include <set>
 
-#include "commands/result_folder.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "mapping/map_config.hpp"
@@ -14,6 +13,7 @@
 #include "plans/plan_report.hpp"
 #include "problem/advantage.hpp"
 #include "problem/tree_evolution.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "commands/command_io.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 

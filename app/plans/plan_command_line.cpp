@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/command_line.hpp"
 #include "io/error.hpp"
 #include "map/octree_file.hpp"
 #include "plans/check_command.hpp"
 #include "plans/info_command.hpp"
 #include "plans/plan_command.hpp"
 #include "recordings/map_info.hpp"
+#include "shared/command_line.hpp"
 
 namespace photonav {
 namespace {

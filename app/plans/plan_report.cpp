@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "commands/command_io.hpp"
 #include "dataset/image_file.hpp"
 #include "dataset/trajectory.hpp"
 #include "figures/comparison_images.hpp"
@@ -14,6 +13,7 @@
 #include "figures/tree_evolution_figure.hpp"
 #include "geometry/se3.hpp"
 #include "problem/advantage.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;

@@ -6,14 +6,14 @@
 #include <array>
 #include <vector>
 
-#include "commands/command_io.hpp"
-#include "commands/result_folder.hpp"
 #include "dataset/camera_file.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 #include "io/atomic_file.hpp"
 #include "replay/depth_registration.hpp"
 #include "result/json_values.hpp"
+#include "shared/command_io.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 namespace {

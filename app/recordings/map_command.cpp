@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "commands/command_io.hpp"
-#include "commands/result_folder.hpp"
 #include "figures/comparison_images.hpp"
 #include "figures/convergence_figure.hpp"
 #include "io/stopwatch.hpp"
@@ -19,6 +17,8 @@
 #include "render/interruptible_views.hpp"
 #include "render/voxel_renderer.hpp"
 #include "result/json_values.hpp"
+#include "shared/command_io.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 namespace {

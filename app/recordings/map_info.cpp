@@ -6,12 +6,12 @@
 #include <array>
 #include <cmath>
 
-#include "commands/result_folder.hpp"
 #include "io/error.hpp"
 #include "io/reading.hpp"
 #include "map/octree_file.hpp"
 #include "recordings/map_report.hpp"
 #include "result/json_values.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 namespace {

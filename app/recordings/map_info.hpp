@@ -2,8 +2,8 @@
 // `photonav info MAP`: what a map file holds.
 #pragma once
 
-#include "commands/command_io.hpp"
 #include "recordings/map_command.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 

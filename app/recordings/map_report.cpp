@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "commands/command_io.hpp"
 #include "figures/perspective.hpp"
 #include "mapping/map_config.hpp"
 #include "render/voxel_renderer.hpp"
 #include "result/json_values.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 namespace {

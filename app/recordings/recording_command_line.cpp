@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include "commands/command_line.hpp"
 #include "io/error.hpp"
 #include "mapping/map_config.hpp"
 #include "mapping/scan_map.hpp"
@@ -9,6 +8,7 @@
 #include "recordings/map_command.hpp"
 #include "recordings/replay_command.hpp"
 #include "recordings/scan_command.hpp"
+#include "shared/command_line.hpp"
 
 namespace photonav {
 namespace {

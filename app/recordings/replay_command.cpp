@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "recordings/replay_command.hpp"
 
-#include "commands/command_io.hpp"
-#include "commands/result_folder.hpp"
 #include "io/atomic_file.hpp"
 #include "io/stopwatch.hpp"
 #include "recordings/replay_report.hpp"
@@ -13,6 +11,8 @@
 #include "replay/replay_files.hpp"
 #include "replay/replay_tables.hpp"
 #include "result/json_values.hpp"
+#include "shared/command_io.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 namespace {

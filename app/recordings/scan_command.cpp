@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "commands/command_io.hpp"
-#include "commands/result_folder.hpp"
 #include "io/stopwatch.hpp"
 #include "map/octree_file.hpp"
 #include "mapping/map_config.hpp"
 #include "mapping/scan_map.hpp"
 #include "recordings/map_report.hpp"
 #include "result/json_values.hpp"
+#include "shared/command_io.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 namespace {

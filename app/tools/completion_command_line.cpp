@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "commands/command_line.hpp"
 #include "config/config_keys.hpp"
+#include "shared/command_line.hpp"
 
 namespace photonav {
 namespace {

@@ -14,9 +14,9 @@
 #include <sstream>
 #include <thread>
 
-#include "commands/command_io.hpp"
 #include "io/stopwatch.hpp"
 #include "problem/planning_problem.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 namespace {

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "commands/command_line.hpp"
-#include "commands/result_folder.hpp"
 #include "config/config_keys.hpp"
 #include "interchange/result_export.hpp"
 #include "io/atomic_file.hpp"
 #include "mapping/map_config.hpp"
 #include "recordings/replay_command.hpp"
+#include "shared/command_line.hpp"
+#include "shared/result_folder.hpp"
 #include "tools/doctor_command.hpp"
 
 namespace photonav {

@@ -13,7 +13,6 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "check/given_trajectory.hpp"
-#include "commands/result_folder.hpp"
 #include "config/config.hpp"
 #include "dataset/sequence_tum.hpp"
 #include "euroc_dataset.hpp"
@@ -23,6 +22,7 @@
 #include "map/point_cloud.hpp"
 #include "replay/calibration_file.hpp"
 #include "scene/scene.hpp"
+#include "shared/result_folder.hpp"
 #include "sweep/reference_table.hpp"
 #include "tum_dataset.hpp"
 

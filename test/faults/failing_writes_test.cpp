@@ -13,7 +13,6 @@
 #include <cstring>
 #include <functional>
 
-#include "commands/result_folder.hpp"
 #include "dataset/sequence_tum.hpp"
 #include "drawing/flightlog/sample_log.hpp"
 #include "exploration/trial_journal.hpp"
@@ -23,6 +22,7 @@
 #include "io/error.hpp"
 #include "map/octree_file.hpp"
 #include "map/surface_cloud.hpp"
+#include "shared/result_folder.hpp"
 #include "sweep/reference_table.hpp"
 #include "sweep/sweep_journal.hpp"
 #include "temporary_folder.hpp"

@@ -2,12 +2,12 @@
 // Recordings in bags, mapped and replayed.
 #include "app/executable.hpp"
 #include "bag_of_recording.hpp"
-#include "commands/command_io.hpp"
 #include "dataset/trajectory.hpp"
 #include "flight_dataset.hpp"
 #include "mapping/map_config.hpp"
 #include "recordings/map_command.hpp"
 #include "recordings/replay_command.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 namespace {

@@ -8,9 +8,9 @@
 #include <set>
 #include <string>
 
-#include "commands/command_io.hpp"
-#include "commands/many_runs.hpp"
 #include "config/key_table.hpp"
+#include "shared/command_io.hpp"
+#include "shared/many_runs.hpp"
 
 namespace photonav {
 

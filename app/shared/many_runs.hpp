@@ -8,10 +8,10 @@
 #include <map>
 #include <optional>
 
-#include "commands/command_io.hpp"
-#include "commands/result_folder.hpp"
 #include "io/error.hpp"
 #include "runs/journal.hpp"
+#include "shared/command_io.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 

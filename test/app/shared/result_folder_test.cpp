@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Results replace folders that results made, and nothing else.
-#include "commands/result_folder.hpp"
+#include "shared/result_folder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/command_io.hpp"
+#include "shared/command_io.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/many_runs.hpp"
+#include "shared/many_runs.hpp"
 
 #include <unistd.h>
 

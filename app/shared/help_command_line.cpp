@@ -2,7 +2,7 @@
 // The text of --help: at most 80 columns wide.
 #include <sstream>
 
-#include "commands/command_line.hpp"
+#include "shared/command_line.hpp"
 
 namespace photonav {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "commands/command_io.hpp"
 #include "io/folder_transaction.hpp"
 #include "report/report.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/command_line.hpp"
+#include "shared/command_line.hpp"
 
 #include <fmt/format.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/result_folder.hpp"
+#include "shared/result_folder.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "commands/path_inside.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "result/json_values.hpp"
+#include "shared/path_inside.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands/place_option.hpp"
+#include "shared/place_option.hpp"
 
 #include "io/error.hpp"
 #include "io/number.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Commands of many runs: how long they still take, and where their results are.
-#include "commands/many_runs.hpp"
+#include "shared/many_runs.hpp"
 
 #include <gtest/gtest.h>
 
