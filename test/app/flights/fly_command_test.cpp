@@ -170,11 +170,12 @@ TEST_F(FlyCommand, TheConfigOfAFlownPlanFliesThatPlan) {
 }
 
 TEST_F(FlyCommand, WhatWasNeverFlownHasNoErrors) {
-    // Interrupted as soon as the folder is there: long before a flight has ended.
+    // Interrupted among the first of many flights: those of the second planner never begin. (While
+    // it still plans, there would be no result.)
     const Execution run = execute(
         fmt::format("{{ {} fly {} {} --flights 1000 --quiet --out {} & until [ -d {}.unfinished ]; "
                     "do sleep 0.02; done;"
-                    " kill -INT $!; wait $!; }}",
+                    " sleep 1; kill -INT $!; wait $!; }}",
                     PHOTONAV_BINARY, config("two_textures"), kQuickFlight, at("out"), at("out")));
     EXPECT_EQ(run.exitCode, 130) << run.output;
     const json r = result("out");
