@@ -25,16 +25,10 @@ void addAlphas(CLI::App& parser, std::vector<std::string>& overrides) {
         ->type_name("ALPHAS");
 }
 
-void addPlanners(CLI::App& parser, std::vector<std::string>& overrides) {
-    addValue(parser, overrides, "--planners", "sweep.planners", "names of planners: a,b,c",
-             [](const std::string& typed) { return "[" + typed + "]"; })
-        ->type_name("NAMES");
-}
-
 void addSweepOptions(CLI::App& parser, ManyRunsOptions& options) {
     addCommon(parser, options, false);
     addAlphas(parser, options.overrides);
-    addPlanners(parser, options.overrides);
+    addPlanners(parser, options.overrides, "sweep.planners");
     addValue(parser, options.overrides, "--runs", "sweep.runs",
              "number of seeds per planner and alpha");
     addSeed(parser, options.overrides, "the first seed");
@@ -54,7 +48,7 @@ void addCompareOptions(CLI::App& parser, CompareOptions& options) {
 
 void addBenchmarkOptions(CLI::App& parser, BenchmarkOptions& options) {
     addCommon(parser, options);
-    addPlanners(parser, options.overrides);
+    addPlanners(parser, options.overrides, "sweep.planners");
     addValue(parser, options.overrides, "--runs", "sweep.runs", "number of seeds per planner");
     addSeed(parser, options.overrides, "the first seed");
     addNumber(parser, "--interval", options.interval, "time between samples of the progress [s]",
@@ -66,7 +60,7 @@ void addReferenceOptions(CLI::App& parser, ReferenceOptions& options) {
     parser.add_option("config", options.config, "YAML file of the planning problem")->required();
     addOverrides(parser, options.overrides);
     addAlphas(parser, options.overrides);
-    addPlanners(parser, options.overrides);
+    addPlanners(parser, options.overrides, "sweep.planners");
     addNumber(parser, "--runs", options.runs, "number of seeds per planner and alpha", 0U,
               1000000U);
     addNumber(parser, "--vertices", options.vertices, "vertices of each run", 2U, 100000000U);

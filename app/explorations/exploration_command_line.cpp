@@ -11,9 +11,7 @@ using ExploreArguments = WithKeys<ExploreOptions, ExploreConfig>;
 
 void addExploreOptions(CLI::App& parser, ExploreArguments& options) {
     addCommon(parser, options, false);
-    addValue(parser, options.overrides, "--planners,--planner", "explore.planners",
-             "names of planners: a,b,c", [](const std::string& typed) { return "[" + typed + "]"; })
-        ->type_name("NAMES");
+    addPlanners(parser, options.overrides, "explore.planners", "--planners,--planner");
     addManyRuns(parser, options, TrialKind::kWords);
     addRecord(parser, options.record);
     parser

@@ -77,6 +77,13 @@ void addSeed(CLI::App& parser, std::vector<std::string>& overrides, const std::s
     addValue(parser, overrides, "--seed", "seed", what)->check(CLI::Range(1U, 4294967295U));
 }
 
+void addPlanners(CLI::App& parser, std::vector<std::string>& overrides, const std::string& key,
+                 const std::string& name) {
+    addValue(parser, overrides, name, key, "names of planners: a,b,c",
+             [](const std::string& typed) { return "[" + typed + "]"; })
+        ->type_name("NAMES");
+}
+
 void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig) {
     parser.add_option("config", options.config, "YAML file of the planning problem")
         ->required(needsConfig);

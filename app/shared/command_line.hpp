@@ -91,6 +91,10 @@ CLI::Option* addValue(CLI::App& parser, std::vector<std::string>& overrides,
 /// --seed, as addValue().
 void addSeed(CLI::App& parser, std::vector<std::string>& overrides, const std::string& what);
 
+/// A list of planners, as addValue().
+void addPlanners(CLI::App& parser, std::vector<std::string>& overrides, const std::string& key,
+                 const std::string& name = "--planners");
+
 /// config, --set and the output.
 void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig = true);
 

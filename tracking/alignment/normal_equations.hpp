@@ -38,8 +38,10 @@ struct BlurSums {
     double btb = 0.;                ///< sum w b^2
     double btr = 0.;                ///< sum w b r
 
-    /// By how much the blur is known for residuals, over the variance of a pixel's noise.
+    /// Variance of the blur after the image, divided by `noise`; times btr it is the likeliest
+    /// blur.
     /// @param sigma standard deviation of the blur without the image [pixels^2]
+    /// @param noise variance of a pixel [grey value^2]
     double variance(double sigma, double noise) const {
         return sigma > 0. && btb > 0. ? 1. / (btb + noise / (sigma * sigma)) : 0.;
     }

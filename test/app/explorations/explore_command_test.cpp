@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "app/executable.hpp"
+#include "app/explorations/quick_exploration.hpp"
 #include "dataset/sequence_tum.hpp"
 #include "dataset/trajectory.hpp"
 #include "io/folder_transaction.hpp"
@@ -21,11 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-// A small image, coarse views, few vertices and a short way.
-const std::string kQuickExploration =
-    " --set camera.width=94 --set camera.height=60 --set planner.view_pitch=0.5"
-    " --vertices 100 --shortcut 20 --resolution 0.1 --set goal=[1,2,2] ";
 
 class ExploreCommand : public testing::Test {
   protected:

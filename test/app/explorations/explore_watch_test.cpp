@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/executable.hpp"
+#include "app/explorations/quick_exploration.hpp"
 #include "flightlog/flight_log.hpp"
 #include "live/live_server.hpp"
 #include "temporary_folder.hpp"
@@ -20,10 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// A small image, coarse views, few vertices and a short way.
-const std::string kShortFlight =
-    " --set camera.width=94 --set camera.height=60 --set planner.view_pitch=0.5"
-    " --vertices 100 --shortcut 20 --resolution 0.1 --set goal=[1,2,2] --planner rrt_star ";
+const std::string kShortFlight = kQuickExploration + "--planner rrt_star ";
 
 class ExploreWatch : public testing::Test {
   protected:
