@@ -21,7 +21,8 @@ PredictedImage ImagePredictor::at(const Pose& T_c_w) {
     image.alignment.T_c_w = T_c_w;
     image.alignment.verdict = Verdict::converged;
     conclude(image.alignment, equations, view_.intensity.getSize(), measured,
-             alignment_.photometric.sigma, alignment_.exposure.has_value(), {}, alignment_.trust);
+             alignment_.photometric.sigma, 0., alignment_.exposure.has_value(), {},
+             alignment_.trust);
     return image;
 }
 

@@ -72,7 +72,7 @@ std::string describe(const Alignment& a, const TrustOptions& options) {
             return fmt::format("lost: overlap {:.2f} below {:.2f}", a.overlap, options.minOverlap);
         case Verdict::lostResidual:
             return fmt::format("lost: {:.0f} % of the image unexplained, residual {:.3f}",
-                               100. * a.residual.unexplained, a.residual.rms);
+                               100. * a.residual.unexplainedCoarse(), a.residual.rms);
         case Verdict::lostImplausible:
             return "lost: the best pose is not one that the prior allows";
         case Verdict::lostExposure:
@@ -135,10 +135,12 @@ Vector6 posteriorStep(const Spectrum& s, const PoseEquations& equations, const V
 }
 
 void conclude(Alignment& a, const NormalEquations& equations, std::size_t pixels,
-              const MeasuredInformation& image, double sigma, bool isExposureEstimated,
-              const std::optional<Matrix6>& prior, const TrustOptions& options) {
+              const MeasuredInformation& image, double sigma, double finer,
+              bool isExposureEstimated, const std::optional<Matrix6>& prior,
+              const TrustOptions& options) {
     a.overlap = equations.count / static_cast<double>(pixels);
     a.residual = statisticsOf(equations, a.exposure);
+    a.residual.finer = finer;
     a.meanDepth = equations.meanInverseDepth > 0. ? 1. / equations.meanInverseDepth : 1.;
     a.information = image.equations.information;
     const Spectrum s = spectrum(a.information, a.meanDepth);
@@ -154,7 +156,7 @@ void conclude(Alignment& a, const NormalEquations& equations, std::size_t pixels
     const double noise = options.residualSigmas * sigma;
     if (a.overlap < options.minOverlap) {
         a.verdict = Verdict::lostOverlap;
-    } else if (a.residual.rms > noise && a.residual.unexplained > options.maxUnexplained) {
+    } else if (a.residual.rms > noise && a.residual.unexplainedCoarse() > options.maxUnexplained) {
         a.verdict = Verdict::lostResidual;
     } else if (isExposureEstimated && isAtLimit(a.exposure.gain, options.maxGain)) {
         a.verdict = Verdict::lostExposure;

@@ -53,7 +53,8 @@ struct TrustOptions {
     double minOverlap = 0.2;  ///< least share of the image's pixels that must count
     /// A residual above `residualSigmas` times the image noise must leave less than this share of
     /// the images' variance unexplained: var(r) / (var(observed) + var(predicted)), 0 for equal
-    /// images, 1 for images that have nothing to do with each other.
+    /// images, 1 for images that have nothing to do with each other. What is finer than the model's
+    /// cells is left out.
     double maxUnexplained = 0.4;
     double residualSigmas = 3.;
     /// A direction is open when the image alone leaves it with a larger standard deviation [rad;
@@ -77,6 +78,16 @@ struct ResidualStatistics {
     double robustSigma = 0.;  ///< 1.4826 times the median of the absolute value
     double unexplained = 0.;  ///< share of the variance, see TrustOptions
     double explained = 0.;    ///< variance of the observed image less the mean square residual
+    /// Mean square of what the image shows finer than the model's cells, noise included: no pose
+    /// explains it. 0 for a mesh, and where the residuals are noise.
+    double finer = 0.;
+
+    /// `unexplained` of what is not finer.
+    double unexplainedCoarse() const {
+        const double square = rms * rms;
+        return square > finer ? unexplained * (square - finer) / (square - unexplained * finer)
+                              : 0.;
+    }
 };
 
 /// Names of the axes of a twist of the camera: translations, then rotations about x, y, z.
@@ -158,10 +169,12 @@ struct MeasuredInformation;
 /// covariance and verdict.
 /// @param image the information of the image about the pose
 /// @param sigma noise of the image [grey value]
+/// @param finer see ResidualStatistics
 /// @param prior transported covariance at alignment.T_c_w, if there is one
 void conclude(Alignment& alignment, const NormalEquations& equations, std::size_t pixels,
-              const MeasuredInformation& image, double sigma, bool isExposureEstimated,
-              const std::optional<Matrix6>& prior, const TrustOptions& options);
+              const MeasuredInformation& image, double sigma, double finer,
+              bool isExposureEstimated, const std::optional<Matrix6>& prior,
+              const TrustOptions& options);
 
 /// The covariance, raised along the axes where it is below the least standard deviations
 /// (eigenvalues relative to their squares, clipped at 1). 0: no least one.

@@ -67,6 +67,7 @@ class Search {
     Vector6 step(const PoseEquations& equations, double damping) const;
     bool isSmall(const Vector6& xi, const Matrix6& information) const;
     std::optional<Matrix6> transportedPrior() const;
+    double finerThanModel(const NormalEquations& e) const;
     /// Factor that turns sums of squares into -2 log likelihoods.
     double weight() const {
         const PhotometricOptions& p = options_.photometric;
@@ -224,6 +225,13 @@ MeasuredInformation Search::measured() {
     return image;
 }
 
+/// It matters only where the residuals exceed the noise.
+double Search::finerThanModel(const NormalEquations& e) const {
+    const double noise = options_.trust.residualSigmas * options_.photometric.sigma;
+    const bool isNoise = e.sumSquares <= e.count * noise * noise;
+    return isNoise ? 0. : comparison_.finerThanModel(1. / e.meanInverseDepth);
+}
+
 Alignment Search::run(const Pose& T_start) {
     at_.T_c_w = T_start;
     bool converged = false;
@@ -249,8 +257,9 @@ Alignment Search::run(const Pose& T_start) {
     if (prior_ && at_.priorTerm > options_.trust.maxPriorDistance) {
         result.verdict = Verdict::lostImplausible;
     }
-    conclude(result, confined(at_.equations, slope_), comparison_.pixels(), image,
-             options_.photometric.sigma, options_.exposure.has_value(), transportedPrior(),
+    const NormalEquations last = confined(at_.equations, slope_);
+    conclude(result, last, comparison_.pixels(), image, options_.photometric.sigma,
+             finerThanModel(last), options_.exposure.has_value(), transportedPrior(),
              options_.trust);
     result.residual.robustSigma = comparison_.robustSigma();
     return result;

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <numbers>
 
-namespace photonav {
+#include <opencv2/imgproc.hpp>
 
+#include "photometry/opencv_image.hpp"
+
+namespace photonav {
 namespace {
 
 constexpr int kTaps = 8;
@@ -54,6 +57,13 @@ ImageF widened(const ImageF& image, double variance) {
         out[width - 1] = (1.F - side) * column[width - 1] + side * column[width - 2];
     }
     return result;
+}
+
+double finerThan(double cell, const ImageF& image) {
+    const cv::Mat sharp = asMat(image);
+    cv::Mat smooth;
+    cv::GaussianBlur(sharp, smooth, {}, 0.5 * cell);
+    return cv::norm(sharp, smooth, cv::NORM_L2SQR) / image.getSize();
 }
 
 ImageF halvedAsRendered(const ImageF& image) {

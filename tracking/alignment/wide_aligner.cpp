@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "alignment/hole_margin.hpp"
 #include "alignment/image_pyramid.hpp"
 #include "geometry/se3.hpp"
-#include "photometry/opencv_image.hpp"
 
 namespace photonav {
 namespace {
@@ -76,17 +74,6 @@ std::vector<Vector6> placesWithin(const Vector6& sigmas) {
         }
     }
     return places;
-}
-
-/// Mean square of what an image shows finer than cells of this size, noise included. The texture of
-/// cells, means over their area interpolated between their centres, is that of the surface smoothed
-/// with variance 1/12 + 1/6 of the squared edge.
-/// @param cell edge [pixels]
-double finerThan(double cell, const ImageF& image) {
-    const cv::Mat sharp = asMat(image);
-    cv::Mat smooth;
-    cv::GaussianBlur(sharp, smooth, {}, 0.5 * cell);
-    return cv::norm(sharp, smooth, cv::NORM_L2SQR) / image.getSize();
 }
 
 /// Share of the pixels that have an image's contrast: the participation ratio of its squares.

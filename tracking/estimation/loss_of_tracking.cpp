@@ -68,7 +68,8 @@ UncertainPose LossOfTracking::widened(const UncertainPose& T_c_w) const {
 bool LossOfTracking::isExplained(const Alignment& alignment, const TrustOptions& trust,
                                  double sigma) const {
     return alignment.residual.rms <= trust.residualSigmas * sigma ||
-           alignment.residual.unexplained <= options_.maxUnexplainedShare * trust.maxUnexplained;
+           alignment.residual.unexplainedCoarse() <=
+               options_.maxUnexplainedShare * trust.maxUnexplained;
 }
 
 }  // namespace photonav

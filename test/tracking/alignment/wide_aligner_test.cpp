@@ -163,27 +163,37 @@ TEST_F(WideAlignerTest, StripesAreAmbiguous) {
     expectUndecided(wide.align(seen(floor, cameraAt({0.15, 0., 2.}, kDown)), belief), belief);
 }
 
-/// Cells of 5 cm show nothing of the texture that is finer; the rest of it is enough to find the
-/// place, and does not make another floor the right one.
-TEST_F(WideAlignerTest, TextureTooFineForTheCellsOfAMapDoesNotContradict) {
-    camera = makeCamera(188, 120, 1.2);
-    const auto floorOf = [](unsigned seed) {
+constexpr double kCell = 0.05;
+
+/// Cells of 5 cm show nothing of texture that is finer.
+class FineTexture : public WideAlignerTest {
+  protected:
+    FineTexture() { camera = makeCamera(188, 120, 1.2); }
+
+    static MeshRenderer floorOf(double coarse, double fine, unsigned seed) {
         return MeshRenderer(test::floorOf(valueNoise({.size = {20., 20.},
                                                       .cells = {0.4, 0.2, 0.03},
-                                                      .amplitudes = {0.1, 0.08, 0.15},
+                                                      .amplitudes = {coarse, 0.8 * coarse, fine},
                                                       .seed = seed})));
-    };
-    const MeshRenderer floor = floorOf(3), another = floorOf(4);
-    constexpr double kCell = 0.05;
-    TexturedOcTree map(kCell);
-    for (int i = 0; i < 25; ++i) {
-        const Pose T_c_w = cameraAt({0.4 * (i % 5 - 2), 0.4 * (i / 5 - 2), 1.5}, kDown);
-        View view;
-        floor.render(camera, T_c_w, view);
-        fuse(map, view, camera, T_c_w);
     }
-    const VoxelRenderer cells(map, UnknownPolicy::free);
-    const Pose truth = cameraAt({0.25, -0.2, 1.55}, kDown);
+    VoxelRenderer mapOf(const MeshRenderer& floor) const {
+        TexturedOcTree map(kCell);
+        for (int i = 0; i < 25; ++i) {
+            const Pose T_c_w = cameraAt({0.4 * (i % 5 - 2), 0.4 * (i / 5 - 2), 1.5}, kDown);
+            View view;
+            floor.render(camera, T_c_w, view);
+            fuse(map, view, camera, T_c_w);
+        }
+        return VoxelRenderer(map, UnknownPolicy::free);
+    }
+
+    Pose truth = cameraAt({0.25, -0.2, 1.55}, kDown);
+};
+
+/// The rest of it is enough to find the place, and does not make another floor the right one.
+TEST_F(FineTexture, DoesNotContradictTheMapInASearch) {
+    const MeshRenderer floor = floorOf(0.1, 0.15, 3), another = floorOf(0.1, 0.15, 4);
+    const VoxelRenderer cells = mapOf(floor);
     const UncertainPose belief = prior(cameraAt({0., 0., 1.5}, kDown), 0.2);
     const auto find = [&](const ViewSource& world) {
         return WideAligner(cells, camera, options).align(seen(world, truth), belief);
@@ -194,6 +204,21 @@ TEST_F(WideAlignerTest, TextureTooFineForTheCellsOfAMapDoesNotContradict) {
     EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
     EXPECT_LT(test::errorOf(a, truth).head<3>().norm(), 0.02);
     EXPECT_NE(find(another).verdict, Verdict::converged) << describe(find(another));
+}
+
+TEST_F(FineTexture, DoesNotContradictTheMapNearThePose) {
+    const MeshRenderer floor = floorOf(0.03, 0.3, 3), another = floorOf(0.03, 0.3, 4);
+    const VoxelRenderer cells = mapOf(floor);
+    const UncertainPose belief = prior(cameraAt({0.27, -0.19, 1.54}, kDown), 0.02);
+    const auto align = [&](const ViewSource& world) {
+        return DenseAligner(cells, camera, options).align(seen(world, truth), belief);
+    };
+    EXPECT_EQ(align(floor).verdict, Verdict::lostResidual) << "nothing finer";
+    options.cellSize = kCell;
+    const Alignment a = align(floor);
+    EXPECT_FALSE(isLost(a.verdict)) << describe(a);
+    EXPECT_LT(test::errorOf(a, truth).head<3>().norm(), 0.02);
+    EXPECT_TRUE(isLost(align(another).verdict)) << describe(align(another));
 }
 
 TEST_F(WideAlignerTest, IsLostWhereNoPlaceExplainsTheImage) {
