@@ -14,23 +14,37 @@ std::uint64_t fourBits(int from, int to) { return (1ULL << to) - (1ULL << from);
 
 std::uint64_t bitsBelow(int count) { return count < 64 ? (1ULL << count) - 1 : ~0ULL; }
 
-/// Counts marked bricks in boxes of bricks: a summed-area table of a part of the grid.
+/// One mask of cells per brick, as in VoxelGrid::ends, for a box of bricks.
+struct BrickMasks {
+    CellBox bricks;
+    const std::uint64_t* masks;
+
+    const std::uint64_t* at(const Array3i& brick) const {
+        const Array3i i = brick - bricks.low, n = bricks.high - bricks.low;
+        return masks + (std::size_t(i.z()) * n.y() + i.y()) * n.x() + i.x();
+    }
+};
+
+BrickMasks endsOf(const VoxelGrid& grid) {
+    return {{Array3i::Zero(), grid.bricks}, grid.ends.data()};
+}
+
+/// Counts the bricks with cells in their masks in boxes of bricks: a summed-area table.
 class BrickCounts {
   public:
-    /// @param marked whether a brick counts, by its index
-    template <class Marked>
-    BrickCounts(const VoxelGrid& grid, const CellBox& bricks, const Marked& marked)
+    /// @param bricks a part of those that have masks
+    BrickCounts(const BrickMasks& masks, const CellBox& bricks)
         : bricks_(bricks), size_(bricks.high - bricks.low + 1) {
         sums_.assign(std::size_t(size_.x()) * size_.y() * size_.z(), 0);
         for (int z = 1; z < size_.z(); ++z) {
             for (int y = 1; y < size_.y(); ++y) {
-                const std::size_t brick = grid.brickIndex(bricks.low + Array3i(0, y - 1, z - 1));
+                const std::uint64_t* mask = masks.at(bricks.low + Array3i(0, y - 1, z - 1));
                 const std::size_t row = at({0, y, z});
                 const std::size_t rowBehind = row - size_.x(), below = at({0, y, z - 1}),
                                   belowBehind = below - size_.x();
                 std::int32_t inRow = 0;
                 for (int x = 1; x < size_.x(); ++x) {
-                    inRow += marked(brick + x - 1) ? 1 : 0;
+                    inRow += mask[x - 1] != 0 ? 1 : 0;
                     sums_[row + x] =
                         inRow + sums_[rowBehind + x] + sums_[below + x] - sums_[belowBehind + x];
                 }
@@ -59,6 +73,44 @@ class BrickCounts {
     std::vector<std::int32_t> sums_;
 };
 
+constexpr int kMostToScan = 8;  // bricks of a row: looking at them takes no longer than counting
+
+/// Whether a box holds cells of the masks.
+bool anyInside(const CellBox& cells, const BrickMasks& masks, const BrickCounts& counts) {
+    const CellBox bricks = bricksOf(cells).clippedTo(masks.bricks);
+    if (counts(bricks) == 0) return false;
+    for (int z = bricks.low.z(); z < bricks.high.z(); ++z) {
+        CellBox part = bricks;
+        part.low.z() = z;
+        part.high.z() = z + 1;
+        if (counts(part) == 0) continue;
+        for (int y = bricks.low.y(); y < bricks.high.y(); ++y) {
+            part.low.y() = y;
+            part.high.y() = y + 1;
+            if (bricks.high.x() - bricks.low.x() > kMostToScan && counts(part) == 0) continue;
+            const std::uint64_t* mask = masks.at(part.low);
+            for (int x = bricks.low.x(); x < bricks.high.x(); ++x, ++mask) {
+                if (*mask != 0 && (*mask & cellsInside(cells, {x, y, z})) != 0) return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// The cells beside a box on one side.
+CellBox beside(const CellBox& box, int side, int thickness) {
+    const int axis = side / 2;
+    CellBox cells = box;
+    if (side % 2 == 0) {
+        cells.high[axis] = box.low[axis];
+        cells.low[axis] = box.low[axis] - thickness;
+    } else {
+        cells.low[axis] = box.high[axis];
+        cells.high[axis] = box.high[axis] + thickness;
+    }
+    return cells;
+}
+
 EmptyBox encoded(const CellBox& box, const Array3i& brick, std::uint64_t ends) {
     EmptyBox stored;
     if (!box.empty()) {
@@ -72,19 +124,35 @@ EmptyBox encoded(const CellBox& box, const Array3i& brick, std::uint64_t ends) {
     return stored;
 }
 
-/// The thickest layer of a brick, at one of its sides, without cells that end rays.
-CellBox emptyLayer(std::uint64_t ends, const Array3i& brick) {
-    const CellBox cells = cellsOf(brick);
-    if (ends == 0) return cells;
-    if (ends == ~0ULL) return {};
+/// Layers of a brick at one of its sides, the thickest first.
+struct Layer {
+    CellBox box;  ///< of the brick at the origin
+    std::uint64_t cells;
+};
+
+std::array<Layer, 18> makeLayers() {
+    std::array<Layer, 18> layers;
+    auto layer = layers.begin();
     for (int thickness = 3; thickness > 0; --thickness) {
         for (int axis = 2; axis >= 0; --axis) {
-            CellBox low = cells, high = cells;
-            low.high[axis] = cells.low[axis] + thickness;
-            high.low[axis] = cells.high[axis] - thickness;
-            if ((ends & cellsInside(high, brick)) == 0) return high;
-            if ((ends & cellsInside(low, brick)) == 0) return low;
+            CellBox low = cellsOf({0, 0, 0}), high = low;
+            low.high[axis] = thickness;
+            high.low[axis] = 4 - thickness;
+            *layer++ = {high, cellsInside(high, {0, 0, 0})};
+            *layer++ = {low, cellsInside(low, {0, 0, 0})};
         }
+    }
+    return layers;
+}
+
+/// The thickest layer of a brick, at one of its sides, without cells that end rays.
+CellBox emptyLayer(std::uint64_t ends, const Array3i& brick) {
+    static const std::array<Layer, 18> kLayers = makeLayers();
+    if (ends == 0) return cellsOf(brick);
+    if (ends == ~0ULL) return {};
+    for (const Layer& layer : kLayers) {
+        if ((ends & layer.cells) == 0)
+            return {layer.box.low + 4 * brick, layer.box.high + 4 * brick};
     }
     return {};
 }
@@ -95,10 +163,8 @@ class BoxFinder {
     BoxFinder(VoxelGrid& grid, const CellBox& around)
         : grid_(grid),
           cells_{Array3i::Zero(), grid.size},
-          full_(grid,
-                around.grown(EmptyBox::kFurthest / 4)
-                    .clippedTo({Array3i::Zero(), Array3i(grid.bricks)}),
-                [&](std::size_t brick) { return grid.ends[brick] != 0; }) {}
+          full_(endsOf(grid), around.grown(EmptyBox::kFurthest / 4)
+                                  .clippedTo({Array3i::Zero(), Array3i(grid.bricks)})) {}
 
     /// Finds the box of a brick. Neighbours have valid boxes, or of size 0.
     void find(const Array3i& brick) {
@@ -151,19 +217,23 @@ class BoxFinder {
             cells_);
     }
 
-    /// Grows a box to all sides in turn, at first by whole bricks, more and more at a time.
+    /// Grows a box to all sides in turn, at first by whole bricks, more and more at a time. Where a
+    /// step was too far, it is so for good, because the box only grows.
     CellBox grow(CellBox box, const Array3i& brick) const {
         const CellBox limit = limits(brick);
-        std::array<bool, 6> grows;
-        grows.fill(true);
-        for (int step = 4; step <= 128; step *= 2) {
-            for (int side = 0; side < 6; ++side) {
-                grows[side] = grows[side] && extend(box, side, step, limit);
-            }
+        std::array<int, 6> tooFar;
+        tooFar.fill(2 * kLongestStep);
+        const auto tryStep = [&](int side, int step) {
+            if (step < tooFar[side] && extend(box, side, step, limit)) return true;
+            tooFar[side] = std::min(tooFar[side], step);
+            return false;
+        };
+        for (int step = 4; step <= kLongestStep; step *= 2) {
+            for (int side = 0; side < 6; ++side) tryStep(side, step);
         }
-        for (int step = 128; step > 0; step /= 2) {
+        for (int step = kLongestStep; step > 0; step /= 2) {
             for (int side = 0; side < 6; ++side) {
-                while (extend(box, side, step, limit)) {
+                while (tryStep(side, step)) {
                 }
             }
         }
@@ -172,36 +242,13 @@ class BoxFinder {
 
     /// Extends a box to one side by `step` cells, if they are empty and within the limit.
     bool extend(CellBox& box, int side, int step, const CellBox& limit) const {
-        const int axis = side / 2;
-        CellBox more = box;
-        if (side % 2 == 0) {
-            more.high[axis] = box.low[axis];
-            more.low[axis] = std::max(limit.low[axis], box.low[axis] - step);
-        } else {
-            more.low[axis] = box.high[axis];
-            more.high[axis] = std::min(limit.high[axis], box.high[axis] + step);
-        }
-        if (more.empty() || !isEmpty(more)) return false;
+        const CellBox more = beside(box, side, step).clippedTo(limit);
+        if (more.empty() || anyInside(more, endsOf(grid_), full_)) return false;
         box.extend(more);
         return true;
     }
 
-    bool isEmpty(const CellBox& cells) const {
-        const CellBox bricks = bricksOf(cells);
-        if (full_(bricks) == 0) return true;
-        for (int z = bricks.low.z(); z < bricks.high.z(); ++z) {
-            for (int y = bricks.low.y(); y < bricks.high.y(); ++y) {
-                const CellBox row{{bricks.low.x(), y, z}, {bricks.high.x(), y + 1, z + 1}};
-                if (full_(row) == 0) continue;
-                for (int x = bricks.low.x(); x < bricks.high.x(); ++x) {
-                    const std::uint64_t ends = grid_.ends[grid_.brickIndex({x, y, z})];
-                    if (ends != 0 && (ends & cellsInside(cells, {x, y, z})) != 0) return false;
-                }
-            }
-        }
-        return true;
-    }
-
+    static constexpr int kLongestStep = 128;
     VoxelGrid& grid_;
     CellBox cells_;
     BrickCounts full_;
@@ -220,55 +267,105 @@ void visitBricks(const CellBox& bricks, const Visit& visit) {
 /// Which empty boxes a change of the grid affects.
 class Affected {
   public:
-    Affected(const VoxelGrid& grid, const std::vector<ChangedBrick>& changed)
-        : grid_(grid), changed_(changed) {
+    Affected(const VoxelGrid& grid, const std::vector<ChangedBrick>& changed) : grid_(grid) {
         for (const ChangedBrick& change : changed) {
             around_.extend({change.brick, change.brick + 1});
         }
-        std::vector<std::uint8_t> kinds(grid.ends.size(), 0);
+        const auto bricks = static_cast<std::size_t>((around_.high - around_.low).prod());
+        filledMasks_.assign(bricks, 0);
+        std::vector<std::uint64_t> emptied(bricks, 0);
         for (const ChangedBrick& change : changed) {
-            const std::size_t index = grid.brickIndex(change.brick);
-            if ((grid.ends[index] & ~change.before) != 0) kinds[index] = kFilled;
-            if (grid.ends[index] == 0) kinds[index] = kEmptied;
+            const std::uint64_t ends = grid.ends[grid.brickIndex(change.brick)];
+            const std::ptrdiff_t at = filled().at(change.brick) - filledMasks_.data();
+            filledMasks_[at] = ends & ~change.before;
+            emptied[at] = ends == 0 ? 1 : 0;
         }
-        filled_.emplace(grid, around_, [&](std::size_t i) { return kinds[i] == kFilled; });
-        emptied_.emplace(grid, around_, [&](std::size_t i) { return kinds[i] == kEmptied; });
+        filledCounts_.emplace(filled(), around_);
+        emptiedCounts_.emplace(BrickMasks{around_, emptied.data()}, around_);
     }
 
     /// The changed bricks are in this box of bricks.
     const CellBox& around() const { return around_; }
 
-    /// Neighbouring bricks mostly share a box: the last answer is kept.
+    /// Many bricks share a box: answers are kept.
     bool operator()(const CellBox& box) {
-        if ((box.low != last_.low).any() || (box.high != last_.high).any()) {
-            last_ = box;
-            isAffected_ = !box.empty() && ((*emptied_)(bricksOf(box.grown(1))) > 0 || isCut(box));
+        if (bricksOf(box.grown(1)).clippedTo(around_).empty()) return false;
+        const Array3i mixed = box.low * Array3i(1, 9, 81) + box.high * Array3i(27, 243, 729);
+        Answer& answer = answers_[static_cast<unsigned>(mixed.sum()) % kAnswers];
+        if ((box.low != answer.box.low).any() || (box.high != answer.box.high).any()) {
+            answer = {box, isCut(box) || mayGrow(box)};
         }
-        return isAffected_;
+        return answer.isAffected;
     }
 
   private:
-    /// Whether cells of a box end rays now. With many changes only whether their bricks do.
-    bool isCut(const CellBox& box) const {
-        const auto quarter = [](int i) { return i >> 2; };
-        constexpr std::size_t kMostToTest = 300;
-        const CellBox outer = bricksOf(box),
-                      inner{(box.low + 3).unaryExpr(quarter), box.high.unaryExpr(quarter)};
-        if ((*filled_)(outer) == 0) return false;
-        if (changed_.size() > kMostToTest || (*filled_)(inner) > 0) return true;
-        return std::any_of(changed_.begin(), changed_.end(), [&](const ChangedBrick& change) {
-            const std::uint64_t added = grid_.ends[grid_.brickIndex(change.brick)] & ~change.before;
-            return (added & cellsInside(box, change.brick)) != 0;
-        });
+    static constexpr unsigned kAnswers = 256;
+    struct Answer {
+        CellBox box;
+        bool isAffected = false;
+    };
+
+    BrickMasks filled() const { return {around_, filledMasks_.data()}; }
+
+    /// Whether cells of a box end rays now.
+    bool isCut(const CellBox& box) const { return anyInside(box, filled(), *filledCounts_); }
+
+    /// Whether a box beside a brick that has become empty can be larger.
+    bool mayGrow(const CellBox& box) const {
+        if ((*emptiedCounts_)(bricksOf(box.grown(1))) == 0) return false;
+        for (int side = 0; side < 6; ++side) {
+            const CellBox cells = beside(box, side, 1).clippedTo({Array3i::Zero(), grid_.size});
+            if (!cells.empty() && isFree(cells)) return true;
+        }
+        return false;
     }
 
-    static constexpr std::uint8_t kFilled = 1, kEmptied = 2;
+    /// Mostly the first bricks tell: a box of bricks is not worth counting.
+    bool isFree(const CellBox& cells) const {
+        const CellBox bricks = bricksOf(cells);
+        for (int z = bricks.low.z(); z < bricks.high.z(); ++z) {
+            for (int y = bricks.low.y(); y < bricks.high.y(); ++y) {
+                const std::uint64_t* ends = &grid_.ends[grid_.brickIndex({bricks.low.x(), y, z})];
+                for (int x = bricks.low.x(); x < bricks.high.x(); ++x, ++ends) {
+                    if (*ends != 0 && (*ends & cellsInside(cells, {x, y, z})) != 0) return false;
+                }
+            }
+        }
+        return true;
+    }
+
     const VoxelGrid& grid_;
-    const std::vector<ChangedBrick>& changed_;
-    CellBox around_, last_;
-    std::optional<BrickCounts> filled_, emptied_;
-    bool isAffected_ = false;
+    CellBox around_;
+    std::vector<std::uint64_t> filledMasks_;  // cells that have begun to end rays
+    std::optional<BrickCounts> filledCounts_, emptiedCounts_;
+    std::array<Answer, kAnswers> answers_;
 };
+
+bool isNone(const EmptyBox& box) { return box.after[0] == 0; }
+
+/// Whether a brick and the next one along x store the same box.
+bool isShared(const EmptyBox& here, const EmptyBox& next) {
+    return next.before[0] == here.before[0] + 4 && next.after[0] + 4 == here.after[0] &&
+           next.before[1] == here.before[1] && next.after[1] == here.after[1] &&
+           next.before[2] == here.before[2] && next.after[2] == here.after[2];
+}
+
+/// Calls visit(brick, isRepeated) for every brick of some bricks that has a box, x fastest.
+/// isRepeated: it is the box of the brick visited before. `visit` may change the brick's box.
+template <class Visit>
+void visitBoxes(const VoxelGrid& grid, const CellBox& bricks, const Visit& visit) {
+    for (int z = bricks.low.z(); z < bricks.high.z(); ++z) {
+        for (int y = bricks.low.y(); y < bricks.high.y(); ++y) {
+            const EmptyBox* stored = &grid.boxes[grid.brickIndex({bricks.low.x(), y, z})];
+            EmptyBox last;
+            for (int x = bricks.low.x(); x < bricks.high.x(); ++x, ++stored) {
+                const EmptyBox box = *stored;
+                if (!isNone(box)) visit(Array3i(x, y, z), isShared(last, box));
+                last = box;
+            }
+        }
+    }
+}
 
 }  // namespace
 
@@ -294,6 +391,7 @@ CellBox updateBoxes(VoxelGrid& grid, const std::vector<ChangedBrick>& changed) {
     Affected isAffected(grid, changed);
     std::vector<Array3i> toFind;
     CellBox rewritten;
+    bool isLastAffected = false;
     const auto forget = [&](const Array3i& brick) {
         toFind.push_back(brick);
         rewritten.extend({brick, brick + 1});
@@ -303,8 +401,9 @@ CellBox updateBoxes(VoxelGrid& grid, const std::vector<ChangedBrick>& changed) {
     const CellBox near = isAffected.around()
                              .grown(EmptyBox::kFurthest / 4)
                              .clippedTo({Array3i::Zero(), Array3i(grid.bricks)});
-    visitBricks(near, [&](const Array3i& brick) {
-        if (isAffected(emptyBoxOf(grid, brick))) forget(brick);
+    visitBoxes(grid, near, [&](const Array3i& brick, bool isRepeated) {
+        if (!isRepeated) isLastAffected = isAffected(emptyBoxOf(grid, brick));
+        if (isLastAffected) forget(brick);
     });
     BoxFinder finder(grid, rewritten);
     for (const Array3i& brick : toFind) finder.find(brick);
