@@ -12,17 +12,19 @@ void readLeaf(const TexturedOcTree& map, const TexturedOcTreeNode& leaf, const A
               int edge, BrickContent& content) {
     const bool occupied = map.isNodeOccupied(leaf);
     const std::optional<ShownGreys> greys = occupied ? leaf.shownGreys() : std::nullopt;
-    for (int i = 0; i < edge * edge * edge; ++i) {
-        const Array3i cell = lowest + Array3i(i % edge, i / edge % edge, i / edge / edge);
-        const unsigned bit = surfaceBit(cell.x(), cell.y(), cell.z());
+    const ShownWeights weights = greys ? leaf.shownWeights() : ShownWeights{};
+    visitCells(lowest, edge, [&](int x, int y, int z) {
+        const unsigned bit = surfaceBit(x, y, z);
         content.present |= 1ULL << bit;
         if (occupied) content.surface.occupied |= 1ULL << bit;
-        if (!greys) continue;
+        if (!greys) return;
         content.surface.known |= 1ULL << bit;
-        content.surface.grey[bit] = *greys;
-        content.surface.weight[bit] = leaf.shownWeights();
+        for (unsigned f = 0; f < 6; ++f) {
+            content.surface.grey[f][bit] = (*greys)[f];
+            content.surface.weight[f][bit] = weights[f];
+        }
         content.surface.inside[bit] = leaf.surfaces.shown();
-    }
+    });
 }
 
 }  // namespace

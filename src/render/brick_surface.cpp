@@ -2,6 +2,7 @@
 #include "render/brick_surface.hpp"
 
 #include <bit>
+#include <cstring>
 
 namespace photonav {
 namespace {
@@ -25,38 +26,65 @@ std::uint64_t fromNeighbour(std::uint64_t here, std::uint64_t beyond, int axis, 
 /// One layer of a brick's mask as bit 4 * q + p.
 std::uint16_t layerOf(std::uint64_t mask, int axis, int layer) {
     mask = mask >> kLayerShift[axis] * layer & kFirstLayer[axis];
-    if (axis == 2 || mask == 0) return static_cast<std::uint16_t>(mask);
-    std::uint64_t bits = 0;
-    for (int cell = 0; cell < 16; ++cell) {
-        const int bit = axis == 0 ? 4 * cell : (cell & 3) | cell >> 2 << 4;
-        bits |= (mask >> bit & 1U) << cell;
+    if (axis == 0) {  // every fourth bit: to the lowest four of every sixteen
+        mask = (mask | mask >> 3U) & 0x0303030303030303U;
+        mask = (mask | mask >> 6U) & 0x000F000F000F000FU;
     }
-    return static_cast<std::uint16_t>(bits);
+    if (axis != 2) mask |= mask >> 12U | mask >> 24U | mask >> 36U;
+    return static_cast<std::uint16_t>(mask);
 }
 
 constexpr int kWindow = 8;  // cells along each side of a window
 
-/// Grey values at p, q = -2 ... 5 of a layer, and which of them are known: bit 8 * (q + 2) + p + 2.
+/// Grey values at p, q = -2 ... 5 of a layer: place 8 * (q + 2) + p + 2.
 struct Window {
-    std::array<std::uint16_t, kWindow * kWindow> grey;
+    using Row [[gnu::vector_size(4 * kWindow)]] = std::int32_t;
+    static constexpr int kMargin = kWindow + 1;  ///< to read all around a row
+
+    std::array<std::int32_t, kWindow * kWindow + 2 * kMargin> grey{};  ///< 0 where unknown
+    std::array<std::int32_t, kWindow * kWindow + 2 * kMargin> known{};
     std::array<std::uint32_t, kWindow * kWindow> weight;
-    std::uint64_t known = 0;
 
     /// Merges by weight: a surface near the border of two layers is observed in both, and has to
     /// look alike from both. Equal values stay as they are.
     void add(int place, std::uint16_t value, std::uint32_t addedWeight) {
-        const std::uint64_t bit = 1ULL << place;
-        if ((known & bit) == 0) {
-            known |= bit;
-            grey[place] = value;
+        std::int32_t& merged = grey[place + kMargin];
+        if (known[place + kMargin] == 0) {
+            known[place + kMargin] = 1;
+            merged = value;
             weight[place] = addedWeight;
             return;
         }
         const std::uint32_t total = weight[place] + addedWeight;
-        const std::uint64_t sum = std::uint64_t{grey[place]} * weight[place] +
-                                  std::uint64_t{value} * addedWeight + total / 2;
-        grey[place] = static_cast<std::uint16_t>(sum / total);
+        const std::uint64_t sum =
+            std::uint64_t(merged) * weight[place] + std::uint64_t{value} * addedWeight + total / 2;
+        merged = static_cast<std::int32_t>(sum / total);
         weight[place] = total;
+    }
+
+    /// A row of places. Where no face is exposed, grey values are extrapolated: the mean of the
+    /// four neighbours along the edges, or else of those across the corners. All patches compute
+    /// the same value, so that they agree where they meet.
+    Row filledRow(int row) const {
+        const auto at = [row](const auto& values, int offset) {
+            Row part;
+            std::memcpy(&part, &values[kMargin + kWindow * row + offset], sizeof(part));
+            return part;
+        };
+        const auto alongEdges = [&](const auto& values) {
+            return at(values, 1) + at(values, -1) + at(values, kWindow) + at(values, -kWindow);
+        };
+        const auto acrossCorners = [&](const auto& values) {
+            return at(values, kWindow + 1) + at(values, kWindow - 1) + at(values, -kWindow + 1) +
+                   at(values, -kWindow - 1);
+        };
+        const Row beside = alongEdges(known);
+        const Row sum = beside > 0 ? alongEdges(grey) : acrossCorners(grey);
+        const Row count = beside > 0 ? beside : acrossCorners(known);
+        using Floats [[gnu::vector_size(4 * kWindow)]] = float;  // exact below 2^24
+        const auto mean = __builtin_convertvector(sum + count / 2, Floats) /
+                          __builtin_convertvector(count > 0 ? count : 1 - count, Floats);
+        return at(known, 0) > 0 ? at(grey, 0) : __builtin_convertvector(mean, Row);
     }
 };
 
@@ -107,29 +135,10 @@ void addExposedGreys(const SurfaceNeighbours& neighbours, int face, int layer, W
         std::uint64_t todo = surface.exposed[face] >> shift & brick.cells;
         for (; todo != 0; todo &= todo - 1) {
             const int bit = std::countr_zero(todo), cell = bit + shift;
-            window.add(brick.place[bit], surface.grey[cell][face],
-                       1U << surface.weight[cell][face]);
+            window.add(brick.place[bit], surface.grey[face][cell],
+                       1U << surface.weight[face][cell]);
         }
     }
-}
-
-/// The grey value where no face is exposed, extrapolated: the mean of the four neighbours along the
-/// edges, or else of those across the corners. All patches compute the same value, so that they
-/// agree where they meet.
-std::uint16_t extrapolated(const Window& window, int place) {
-    constexpr std::array<int, 8> kAround{1,           -1,          kWindow,      -kWindow,
-                                         kWindow + 1, kWindow - 1, -kWindow + 1, -kWindow - 1};
-    for (int begin = 0; begin < 8; begin += 4) {
-        int sum = 0, count = 0;
-        for (int i = begin; i < begin + 4; ++i) {
-            const int at = place + kAround[i];
-            if ((window.known >> at & 1U) == 0) continue;
-            sum += window.grey[at];
-            ++count;
-        }
-        if (count > 0) return static_cast<std::uint16_t>((sum + count / 2) / count);
-    }
-    return 0;
 }
 
 /// The faces that the surfaces inside a brick's cells point to.
@@ -173,11 +182,9 @@ FacePatch makePatch(const SurfaceNeighbours& neighbours, int face, int layer, st
     FacePatch patch;
     patch.valid = valid;
     for (int q = 0; q < FacePatch::kSide; ++q) {
+        const Window::Row row = window.filledRow(q + 1);
         for (int p = 0; p < FacePatch::kSide; ++p) {
-            const int place = kWindow * (q + 1) + p + 1;
-            const bool known = (window.known >> place & 1U) != 0;
-            patch.grey[FacePatch::kSide * q + p] =
-                known ? window.grey[place] : extrapolated(window, place);
+            patch.grey[FacePatch::kSide * q + p] = static_cast<std::uint16_t>(row[p + 1]);
         }
     }
     return patch;

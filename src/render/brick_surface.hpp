@@ -15,8 +15,8 @@ struct BrickSurface {
     std::uint64_t occupied = 0;
     std::uint64_t known = 0;                 ///< occupied, and some face of the cell was observed
     std::array<std::uint64_t, 6> exposed{};  ///< known, and views may show this face
-    std::array<ShownGreys, 64> grey{};       ///< of the faces of known cells; 0 elsewhere
-    std::array<ShownWeights, 64> weight{};   ///< of these greys
+    std::array<std::array<std::uint16_t, 64>, 6> grey{};   ///< ShownGreys of known cells, by face
+    std::array<std::array<std::uint8_t, 64>, 6> weight{};  ///< ShownWeights of these greys
     std::array<ShownSurfaces, 64> inside{};  ///< of known cells: where the surface lies in them
 
     bool hasSameCells(const BrickSurface& other) const {
