@@ -35,6 +35,16 @@ inline const TexturedOcTreeNode* findBrick(const TexturedOcTree& map, const Eige
     return node;
 }
 
+/// Calls visit(x, y, z) for the cells of a cube, x fastest.
+template <class Visit>
+void visitCells(const Eigen::Array3i& lowest, int edge, const Visit& visit) {
+    for (int z = lowest.z(); z < lowest.z() + edge; ++z) {
+        for (int y = lowest.y(); y < lowest.y() + edge; ++y) {
+            for (int x = lowest.x(); x < lowest.x() + edge; ++x) visit(x, y, z);
+        }
+    }
+}
+
 /// Calls visit(leaf, lowest, edge) for every leaf at and below the node of a brick.
 /// @param lowest the node's first cell, counted from the brick's
 /// @param edge of the node in cells

@@ -275,13 +275,11 @@ void DistanceMap::update(const TexturedOcTree& map, const MapChange& change) {
         if ((corner + MapChange::kBrickEdge <= 0).any()) continue;
         std::array<bool, 64> isObstacle;
         isObstacle.fill(unknownIsObstacle_);
-        const auto at = [](const Eigen::Array3i& c) { return 16 * c.z() + 4 * c.y() + c.x(); };
         const TexturedOcTreeNode* node = findBrick(map, brick);
         const auto read = [&](const auto& leaf, const Eigen::Array3i& lowest, int edge) {
-            for (int i = 0; i < edge * edge * edge; ++i) {
-                const Eigen::Array3i cell(i % edge, i / edge % edge, i / edge / edge);
-                isObstacle[at(lowest + cell)] = map.isNodeOccupied(leaf);
-            }
+            const bool isOccupied = map.isNodeOccupied(leaf);
+            visitCells(lowest, edge,
+                       [&](int x, int y, int z) { isObstacle[16 * z + 4 * y + x] = isOccupied; });
         };
         if (node != nullptr) visitLeaves(map, *node, read);
         for (int i = 0; i < 64; ++i) {
