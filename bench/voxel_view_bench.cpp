@@ -56,7 +56,7 @@ TexturedOcTree makeRoom(const Eigen::Array3i& cells, double resolution) {
                     inside |= bit;
                     if (solid(c)) hit |= bit;
                 }
-                const auto observe = [&](TexturedOcTreeNode& node, unsigned bit) {
+                const auto observe = [&](TexturedOcTreeNode& node, const auto&, unsigned bit) {
                     const int cx = x + ((bit & 1U) | (bit >> 2U & 2U));
                     const int cy = y + ((bit >> 1U & 1U) | (bit >> 3U & 2U));
                     const int cz = z + ((bit >> 2U & 1U) | (bit >> 4U & 2U));
@@ -66,7 +66,8 @@ TexturedOcTree makeRoom(const Eigen::Array3i& cells, double resolution) {
                     }
                 };
                 const octomap::OcTreeKey key(32768 + x, 32768 + y, 32768 + z);
-                for (int i = 0; i < 6; ++i) map.updateBrick(key, inside, hit, observe);
+                BrickObservation brick{key, inside & ~hit, hit};
+                for (int i = 0; i < 6; ++i) map.updateBricks({&brick, 1}, observe);
             }
         }
     }

@@ -34,13 +34,13 @@ void CellScan::castRays(const Vector3d& eye) {
     using Doubles [[gnu::vector_size(kLanes * 8)]] = double;
     using Places [[gnu::vector_size(kLanes * 8)]] = std::int64_t;
     const Array3i from = eye.array().floor().cast<int>();
-    for (std::size_t first = 0; first < rayEnds_.size(); first += kLanes) {
+    for (std::size_t first = 0; first < memory_.rayEnds.size(); first += kLanes) {
         std::array<Doubles, 3> next{}, delta{};  // in parts of the ray, per axis
         std::array<Places, 3> step{};
         Places left{};  // steps to the cell that holds the end
-        const std::size_t rays = std::min<std::size_t>(kLanes, rayEnds_.size() - first);
+        const std::size_t rays = std::min<std::size_t>(kLanes, memory_.rayEnds.size() - first);
         for (std::size_t i = 0; i < rays; ++i) {
-            const Vector3d& end = rayEnds_[first + i];
+            const Vector3d& end = memory_.rayEnds[first + i];
             const Vector3d d = end - eye;
             for (int a = 0; a < 3; ++a) {
                 const double gap = d[a] < 0. ? eye[a] - from[a] : from[a] + 1. - eye[a];
@@ -53,7 +53,7 @@ void CellScan::castRays(const Vector3d& eye) {
         const Places start = Places{} + place(from);  // finished rays stay here
         Places at = start;
         for (auto n = std::max({left[0], left[1], left[2], left[3]}); n > 0; --n) {
-            for (std::size_t i = 0; i < kLanes; ++i) crossed_[at[i]] = 1;
+            for (std::size_t i = 0; i < kLanes; ++i) memory_.crossed[at[i]] = 1;
             auto& [x, y, z] = next;
             const Places xFirst = (x <= y) & (x <= z), yFirst = ~xFirst & (y <= z);
             const Places zFirst = ~(xFirst | yFirst);
@@ -110,7 +110,7 @@ std::uint64_t CellScan::crossedInBrick(const Array3i& corner) const {
     for (unsigned z = 0; z < 4; ++z) {
         for (unsigned y = 0; y < 4; ++y) {
             std::uint32_t row = 0;  // four cells along x
-            std::memcpy(&row, &crossed_[place(corner) + y * stride_[1] + z * stride_[2]], 4);
+            std::memcpy(&row, &memory_.crossed[place(corner) + y * stride_[1] + z * stride_[2]], 4);
             const std::uint64_t spread =
                 (row & 1U) | (row >> 7U & 2U) | (row >> 8U & 0x100U) | (row >> 15U & 0x200U);
             bits |= spread << brickBit(0, y, z);
@@ -119,23 +119,43 @@ std::uint64_t CellScan::crossedInBrick(const Array3i& corner) const {
     return bits;
 }
 
+/// Sorted by z, then y, then x.
+std::vector<BrickObservation> CellScan::observedBricks() const {
+    std::vector<BrickObservation> observed;
+    std::size_t brick = 0;
+    for (int z = 0; z < bricks_.z(); ++z) {
+        for (int y = 0; y < bricks_.y(); ++y) {
+            for (int x = 0; x < bricks_.x(); ++x, ++brick) {
+                const Array3i corner = first_ + 4 * Array3i(x, y, z);
+                const std::uint64_t missed = crossedInBrick(corner), hit = hitInBrick(brick);
+                if ((missed | hit) == 0) continue;
+                const auto at = (corner + kKeyOfZero).cast<octomap::key_type>().eval();
+                observed.push_back({{at.x(), at.y(), at.z()}, missed & ~hit, hit});
+            }
+        }
+    }
+    return observed;
+}
+
 MapChange CellScan::apply(TexturedOcTree& map, const std::optional<Vector3d>& eye,
                           const FusionOptions& options, const SurfaceCheck& remains) const {
-    MapChange change;
-    change.resolution = map.getResolution();
-    std::size_t brick = 0;
-    Array3i corner;
-    const auto cellAt = [&](unsigned bit) -> Array3i {
+    std::vector<BrickObservation> bricks = observedBricks();
+    const auto cellAt = [](const BrickObservation& brick, unsigned bit) -> Array3i {
         const int b = static_cast<int>(bit);
-        return corner + Array3i((b & 1) | (b >> 2 & 2), (b >> 1 & 1) | (b >> 3 & 2),
-                                (b >> 2 & 1) | (b >> 4 & 2));
+        return Array3i(brick.corner[0], brick.corner[1], brick.corner[2]) - kKeyOfZero +
+               Array3i((b & 1) | (b >> 2 & 2), (b >> 1 & 1) | (b >> 3 & 2),
+                       (b >> 2 & 1) | (b >> 4 & 2));
     };
-    const auto texture = [&](TexturedOcTreeNode& node, unsigned bit) {
-        const CellPixels& seen = pixels_[bricksHit_[brickPixels_[brick]].cells[bit]];
-        observeFaces(node, cellAt(bit), seen, eye, static_cast<float>(options.maxFaceWeight));
+    const auto texture = [&](TexturedOcTreeNode& node, const BrickObservation& brick,
+                             unsigned bit) {
+        const Array3i cell = cellAt(brick, bit);
+        const CellPixels& seen =
+            memory_.pixels[memory_.bricksHit[memory_.brickPixels[brickOf(cell)]].cells[bit]];
+        observeFaces(node, cell, seen, eye, static_cast<float>(options.maxFaceWeight));
     };
-    const auto keep = [&](const TexturedOcTreeNode& node, unsigned bit) {
-        const Vector3d centre = cellAt(bit).cast<double>() + 0.5;
+    const auto keep = [&](const TexturedOcTreeNode& node, const BrickObservation& brick,
+                          unsigned bit) {
+        const Vector3d centre = cellAt(brick, bit).cast<double>() + 0.5;
         for (unsigned f = 0; remains && f < 6; ++f) {
             const FaceSurface& surface = node.surfaces[f];
             if (!surface.observed()) continue;
@@ -143,27 +163,19 @@ MapChange CellScan::apply(TexturedOcTree& map, const std::optional<Vector3d>& ey
         }
         return false;
     };
-    for (int z = 0; z < bricks_.z(); ++z) {
-        for (int y = 0; y < bricks_.y(); ++y) {
-            for (int x = 0; x < bricks_.x(); ++x, ++brick) {
-                corner = first_ + 4 * Array3i(x, y, z);
-                const std::uint64_t crossed = crossedInBrick(corner);
-                const std::uint64_t hit = hitInBrick(brick);
-                if ((crossed | hit) == 0) continue;
-                const auto at = (corner + kKeyOfZero).cast<octomap::key_type>().eval();
-                const octomap::OcTreeKey key(at.x(), at.y(), at.z());
-                const BrickChange changed = map.updateBrick(key, crossed, hit, texture, keep);
-                if (changed.occupancy) change.occupancy.push_back(corner / 4);
-                if (!changed.texture) continue;
-                change.anyTexture.push_back(corner / 4);
-                const float drift =
-                    std::max(share(changed.greyChange, options.greyTolerance),
-                             share(changed.surfaceMotion, options.surfaceTolerance));
-                if (map.accumulateDrift(key, drift)) {
-                    change.texture.push_back(corner / 4);
-                }
-            }
-        }
+    map.updateBricks(bricks, texture, keep);
+
+    MapChange change;
+    change.resolution = map.getResolution();
+    for (const BrickObservation& brick : bricks) {
+        const Array3i index = cellAt(brick, 0) / 4;
+        const BrickChange& changed = brick.change;
+        if (changed.occupancy) change.occupancy.push_back(index);
+        if (!changed.texture) continue;
+        change.anyTexture.push_back(index);
+        const float drift = std::max(share(changed.greyChange, options.greyTolerance),
+                                     share(changed.surfaceMotion, options.surfaceTolerance));
+        if (map.accumulateDrift(brick.corner, drift)) change.texture.push_back(index);
     }
     return change;
 }

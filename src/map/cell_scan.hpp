@@ -64,9 +64,18 @@ class CellScan {
           bricks_((cells.max().array().floor().cast<int>() - first_) / 4 + 2),
           stride_{1, std::ptrdiff_t{4} * bricks_.x(),
                   std::ptrdiff_t{16} * bricks_.x() * bricks_.y()},
-          crossed_(64 * bricks_.cast<std::size_t>().prod(), 0),
-          brickPixels_(bricks_.cast<std::size_t>().prod(), kNoPixels) {
-        pixels_.reserve(kUsualCells);
+          memory_(std::exchange(spareMemory(), {})) {
+        const std::size_t bricks = bricks_.cast<std::size_t>().prod();
+        memory_.crossed.assign(64 * bricks, 0);
+        memory_.brickPixels.assign(bricks, kNoPixels);
+        memory_.bricksHit.clear();
+        memory_.pixels.clear();
+        memory_.rayEnds.clear();
+    }
+    CellScan(const CellScan&) = delete;
+    CellScan& operator=(const CellScan&) = delete;
+    ~CellScan() {
+        if (memory_.crossed.size() < kMostKept) spareMemory() = std::move(memory_);
     }
 
     static double cellsNeeded(const Eigen::AlignedBox3d& cells) {
@@ -75,25 +84,27 @@ class CellScan {
 
     /// The pixels of an end cell, valid until the next call.
     CellPixels& obtain(const Eigen::Array3i& cell) {
-        std::int32_t& brick = brickPixels_[brickOf(cell)];
+        std::int32_t& brick = memory_.brickPixels[brickOf(cell)];
         if (brick == kNoPixels) {
-            brick = static_cast<std::int32_t>(bricksHit_.size());
-            bricksHit_.emplace_back();
+            brick = static_cast<std::int32_t>(memory_.bricksHit.size());
+            memory_.bricksHit.emplace_back();
         }
-        BrickPixels& seen = bricksHit_[brick];
+        BrickPixels& seen = memory_.bricksHit[brick];
         const unsigned bit = bitOf(cell);
         if ((seen.hit >> bit & 1U) == 0) {
             seen.hit |= 1ULL << bit;
-            seen.cells[bit] = static_cast<std::int32_t>(pixels_.size());
-            pixels_.emplace_back();
+            seen.cells[bit] = static_cast<std::int32_t>(memory_.pixels.size());
+            memory_.pixels.emplace_back();
         }
-        return pixels_[seen.cells[bit]];
+        return memory_.pixels[seen.cells[bit]];
     }
 
     /// @returns whether the cell was crossed for the first time
-    bool cross(const Eigen::Array3i& cell) { return std::exchange(crossed_[place(cell)], 1) == 0; }
+    bool cross(const Eigen::Array3i& cell) {
+        return std::exchange(memory_.crossed[place(cell)], 1) == 0;
+    }
 
-    void addRay(const Eigen::Vector3d& end) { rayEnds_.push_back(end); }
+    void addRay(const Eigen::Vector3d& end) { memory_.rayEnds.push_back(end); }
 
     /// Crosses the cells from the eye up to, not including, those that hold the ends of the rays.
     void castRays(const Eigen::Vector3d& eye);
@@ -108,16 +119,31 @@ class CellScan {
 
   private:
     static constexpr std::int32_t kNoPixels = -1;
-    static constexpr std::size_t kUsualCells = 8192;  // that one view hits
+    static constexpr std::size_t kMostKept = 1 << 23;  // cells in the box of a scan
 
     struct BrickPixels {
         std::uint64_t hit = 0;
-        std::array<std::int32_t, 64> cells;  // index into pixels_ of those that were hit
+        std::array<std::int32_t, 64> cells;  // index into Memory::pixels of those that were hit
     };
 
+    /// Of the scan before on the same thread. Pages of new memory, which the system has to clear,
+    /// would take longer than casting the rays.
+    struct Memory {
+        // Per cell; bytes, because setting single bits is slower.
+        std::vector<std::uint8_t> crossed;
+        std::vector<std::int32_t> brickPixels;  // per brick: index into bricksHit
+        std::vector<BrickPixels> bricksHit;
+        std::vector<CellPixels> pixels;
+        std::vector<Eigen::Vector3d> rayEnds;
+    };
+    static Memory& spareMemory() {
+        thread_local Memory memory;
+        return memory;
+    }
+
     std::uint64_t hitInBrick(std::size_t brick) const {
-        const std::int32_t index = brickPixels_[brick];
-        return index != kNoPixels ? bricksHit_[index].hit : 0;
+        const std::int32_t index = memory_.brickPixels[brick];
+        return index != kNoPixels ? memory_.bricksHit[index].hit : 0;
     }
     bool isHit(const Eigen::Array3i& cell) const {
         return (hitInBrick(brickOf(cell)) >> bitOf(cell) & 1U) != 0;
@@ -134,6 +160,7 @@ class CellScan {
         return c.x() + c.y() * stride_[1] + c.z() * stride_[2];
     }
     std::uint64_t crossedInBrick(const Eigen::Array3i& corner) const;
+    std::vector<BrickObservation> observedBricks() const;
     void observeFaces(TexturedOcTreeNode& node, const Eigen::Array3i& cell, const CellPixels& seen,
                       const std::optional<Eigen::Vector3d>& eye, float maxWeight) const;
     void observeSurface(FaceSurface& surface, const CellPixels::Sums& sums, double range) const;
@@ -141,11 +168,7 @@ class CellScan {
     double resolution_;
     Eigen::Array3i first_, bricks_;
     std::array<std::ptrdiff_t, 3> stride_;
-    std::vector<std::uint8_t> crossed_;  // per cell; bytes, because setting single bits is slower
-    std::vector<std::int32_t> brickPixels_;  // per brick: index into bricksHit_
-    std::vector<BrickPixels> bricksHit_;
-    std::vector<CellPixels> pixels_;
-    std::vector<Eigen::Vector3d> rayEnds_;
+    Memory memory_;
 };
 
 }  // namespace photonav

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <vector>
 
 namespace photonav {
 namespace {
@@ -172,41 +173,93 @@ TexturedOcTreeNode& TexturedOcTree::obtainRoot() {
     return *root;
 }
 
-struct TexturedOcTree::BrickUpdate {
-    octomap::OcTreeKey corner;
-    std::uint64_t missed, hit;
-    const std::function<void(TexturedOcTreeNode&, unsigned)>& texture;
-    const std::function<bool(const TexturedOcTreeNode&, unsigned)>& keep;
-    BrickChange& change;
-
-    /// Whether a child of a node `level` levels above the cells contains cells of this update.
-    bool containsCells(unsigned level, unsigned child, unsigned firstBit) const {
-        if (level > 2)
-            return child == octomap::computeChildIdx(corner, static_cast<int>(level) - 1);
-        const std::uint64_t cells =
-            level == 2 ? 0xFFULL << (8 * child) : 1ULL << (firstBit + child);
-        return ((missed | hit) & cells) != 0;
-    }
+struct TexturedOcTree::Update {
+    const TextureCell& texture;
+    const KeepCell& keep;
 };
 
-BrickChange TexturedOcTree::updateBrick(
-    const octomap::OcTreeKey& corner, std::uint64_t missed, std::uint64_t hit,
-    const std::function<void(TexturedOcTreeNode&, unsigned bit)>& texture,
-    const std::function<bool(const TexturedOcTreeNode&, unsigned bit)>& keep) {
-    BrickChange change;
-    if ((missed | hit) == 0) return change;
+/// A brick and the way to it from the root.
+struct TexturedOcTree::PlacedBrick {
+    std::uint64_t way;  // three bits for a child, those of the brick's cells lowest
+    BrickObservation* brick;
+
+    explicit PlacedBrick(BrickObservation& observation)
+        : way(spread(observation.corner[0]) | spread(observation.corner[1]) << 1U |
+              spread(observation.corner[2]) << 2U),
+          brick(&observation) {}
+
+    /// Moves bit i to bit 3 i.
+    static std::uint64_t spread(octomap::key_type key) {
+        std::uint64_t bits = key;
+        bits = (bits | bits << 16U) & 0xFF0000FFU;
+        bits = (bits | bits << 8U) & 0xF00F00F00FU;
+        bits = (bits | bits << 4U) & 0xC30C30C30C3U;
+        return (bits | bits << 2U) & 0x249249249249U;
+    }
+    unsigned childOf(unsigned level) const { return way >> 3 * (level - 1) & 7U; }
+};
+
+void TexturedOcTree::updateBricks(std::span<BrickObservation> bricks, const TextureCell& texture,
+                                  const KeepCell& keep) {
+    std::vector<PlacedBrick> placed;
+    placed.reserve(bricks.size());
+    for (BrickObservation& brick : bricks) {
+        if ((brick.missed | brick.hit) != 0) placed.emplace_back(brick);
+    }
+    if (placed.empty()) return;
+    std::sort(placed.begin(), placed.end(),
+              [](const auto& a, const auto& b) { return a.way < b.way; });
     const bool empty = root == nullptr;
-    updateRecursively(obtainRoot(), empty, tree_depth,
-                      {corner, missed & ~hit, hit, texture, keep, change}, 0);
-    return change;
+    updateNodes(obtainRoot(), empty, tree_depth, placed, {texture, keep});
 }
 
-void TexturedOcTree::updateCell(TexturedOcTreeNode& node, bool justMade, const BrickUpdate& update,
-                                unsigned bit) {
-    const bool hit = (update.hit >> bit & 1U) != 0;
+/// Updates a node `level` levels above the cells.
+void TexturedOcTree::updateNodes(TexturedOcTreeNode& node, bool justMade, unsigned level,
+                                 std::span<const PlacedBrick> bricks, const Update& update) {
+    if (level == 2) return updateBrick(node, justMade, level, 0, *bricks.front().brick, update);
+    const bool pruned = !justMade && !nodeHasChildren(&node);
+    const auto isHit = [](const PlacedBrick& placed) { return placed.brick->hit != 0; };
+    if (pruned && node.getLogOdds() <= clamping_thres_min && std::ranges::none_of(bricks, isHit)) {
+        return;
+    }
+    if (pruned) expandNode(&node);
+    while (!bricks.empty()) {
+        const unsigned i = bricks.front().childOf(level);
+        std::size_t count = 1;
+        while (count < bricks.size() && bricks[count].childOf(level) == i) ++count;
+        const bool make = !nodeChildExists(&node, i);
+        TexturedOcTreeNode* child = make ? createNodeChild(&node, i) : getNodeChild(&node, i);
+        updateNodes(*child, make, level - 1, bricks.first(count), update);
+        bricks = bricks.subspan(count);
+    }
+    if (!pruneNode(&node)) node.updateOccupancyChildren();
+}
+
+/// The same within a brick. @param firstBit of the node's cells
+void TexturedOcTree::updateBrick(TexturedOcTreeNode& node, bool justMade, unsigned level,
+                                 unsigned firstBit, BrickObservation& brick, const Update& update) {
+    if (level == 0) return updateCell(node, justMade, firstBit, brick, update);
+    const std::uint64_t cells = level == 2 ? ~0ULL : 0xFFULL << firstBit;
+    const bool pruned = !justMade && !nodeHasChildren(&node);
+    if (pruned && node.getLogOdds() <= clamping_thres_min && (brick.hit & cells) == 0) return;
+    if (pruned) expandNode(&node);
+    for (unsigned i = 0; i < 8; ++i) {
+        const unsigned first = level == 2 ? 8 * i : firstBit + i;
+        const std::uint64_t ofChild = (level == 2 ? 0xFFULL : 1ULL) << first;
+        if (((brick.missed | brick.hit) & ofChild) == 0) continue;
+        const bool make = !nodeChildExists(&node, i);
+        TexturedOcTreeNode* child = make ? createNodeChild(&node, i) : getNodeChild(&node, i);
+        updateBrick(*child, make, level - 1, first, brick, update);
+    }
+    if (!pruneNode(&node)) node.updateOccupancyChildren();
+}
+
+void TexturedOcTree::updateCell(TexturedOcTreeNode& node, bool justMade, unsigned bit,
+                                BrickObservation& brick, const Update& update) {
+    const bool hit = (brick.hit >> bit & 1U) != 0;
     const bool wasOccupied = !justMade && isNodeOccupied(node);
     const bool hasSurface = wasOccupied && !node.surfaces.empty();
-    if (!hit && hasSurface && update.keep && update.keep(node, bit)) return;
+    if (!hit && hasSurface && update.keep && update.keep(node, brick, bit)) return;
     std::optional<ShownGreys> greys;
     ShownWeights weights{};
     ShownSurfaces surfaces;
@@ -217,9 +270,9 @@ void TexturedOcTree::updateCell(TexturedOcTreeNode& node, bool justMade, const B
     }
     updateNodeLogOdds(&node, hit ? prob_hit_log : prob_miss_log);
     const bool isOccupied = isNodeOccupied(node);
-    if (hit) update.texture(node, bit);
+    if (hit) update.texture(node, brick, bit);
     if (!isOccupied) node.surfaces.clear();
-    BrickChange& change = update.change;
+    BrickChange& change = brick.change;
     if (justMade || isOccupied != wasOccupied) {
         change.occupancy = true;
     } else if (hit && wasOccupied) {
@@ -245,21 +298,6 @@ bool TexturedOcTree::accumulateDrift(const octomap::OcTreeKey& corner, float cha
     if (!(drift > 1.F)) return false;
     drift = 0.F;
     return true;
-}
-
-void TexturedOcTree::updateRecursively(TexturedOcTreeNode& node, bool justMade, unsigned level,
-                                       const BrickUpdate& update, unsigned firstBit) {
-    if (level == 0) return updateCell(node, justMade, update, firstBit);
-    const bool pruned = !justMade && !nodeHasChildren(&node);
-    if (pruned && update.hit == 0 && node.getLogOdds() <= clamping_thres_min) return;
-    if (pruned) expandNode(&node);
-    for (unsigned i = 0; i < 8; ++i) {
-        if (!update.containsCells(level, i, firstBit)) continue;
-        const bool make = !nodeChildExists(&node, i);
-        TexturedOcTreeNode* child = make ? createNodeChild(&node, i) : getNodeChild(&node, i);
-        updateRecursively(*child, make, level - 1, update, level == 2 ? 8 * i : firstBit + i);
-    }
-    if (!pruneNode(&node)) node.updateOccupancyChildren();
 }
 
 }  // namespace photonav

@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 
@@ -86,6 +87,15 @@ struct BrickChange {
     float surfaceMotion = 0.F;  ///< largest surfaceMotion() of such a cell
 };
 
+/// One observation of the 64 cells of a brick. Bit 8 * i + j of the masks is child j of child i in
+/// OctoMap's order (see brickBit).
+struct BrickObservation {
+    octomap::OcTreeKey corner;  ///< the first cell: multiples of four
+    std::uint64_t missed = 0;   ///< cells that were crossed, and none that were hit
+    std::uint64_t hit = 0;
+    BrickChange change{};  ///< what updateBricks() changed
+};
+
 /// An OctoMap of textured nodes, registered with OctoMap's factory as "TexturedOcTree" (so that
 /// octomap::AbstractOcTree::read() reads its files). A cell is unknown (no node), free or occupied.
 class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
@@ -97,20 +107,22 @@ class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
     std::string getTreeType() const override { return "TexturedOcTree"; }
     void expandNode(TexturedOcTreeNode* node) override;
 
+    using TextureCell =
+        std::function<void(TexturedOcTreeNode&, const BrickObservation&, unsigned bit)>;
+    using KeepCell =
+        std::function<bool(const TexturedOcTreeNode&, const BrickObservation&, unsigned bit)>;
+
     /// The root node, created if the tree is empty.
     TexturedOcTreeNode& obtainRoot();
 
-    /// One observation of up to 64 cells: the brick of 4 x 4 x 4 cells that begins at `corner`
-    /// (a multiple of four). Bit 8 * i + j of the masks is child j of child i in OctoMap's order.
-    /// The same effect as updateNode() on each cell, for a fraction of the time.
-    /// A cell that becomes free loses its surfaces.
+    /// One observation of many cells: the same effect as updateNode() on each, for a fraction of
+    /// the time. A cell that becomes free loses its surfaces.
+    /// @param bricks each at most once; their changes are added
     /// @param texture called for every hit cell after its occupancy was raised
     /// @param keep asked for every missed cell that is occupied and has surfaces, whether it stays
     ///        as it is: rays may pass through a cell before its surface; may be missing
-    BrickChange updateBrick(
-        const octomap::OcTreeKey& corner, std::uint64_t missed, std::uint64_t hit,
-        const std::function<void(TexturedOcTreeNode&, unsigned bit)>& texture,
-        const std::function<bool(const TexturedOcTreeNode&, unsigned bit)>& keep = {});
+    void updateBricks(std::span<BrickObservation> bricks, const TextureCell& texture,
+                      const KeepCell& keep = {});
 
     /// Whether a cell has surfaces inside.
     bool hasSurfaces() const;
@@ -122,11 +134,14 @@ class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
     bool accumulateDrift(const octomap::OcTreeKey& corner, float change);
 
   private:
-    struct BrickUpdate;
-    void updateCell(TexturedOcTreeNode& node, bool justMade, const BrickUpdate& update,
-                    unsigned bit);
-    void updateRecursively(TexturedOcTreeNode& node, bool justMade, unsigned level,
-                           const BrickUpdate& update, unsigned firstBit);
+    struct Update;
+    struct PlacedBrick;
+    void updateNodes(TexturedOcTreeNode& node, bool justMade, unsigned level,
+                     std::span<const PlacedBrick> bricks, const Update& update);
+    void updateBrick(TexturedOcTreeNode& node, bool justMade, unsigned level, unsigned firstBit,
+                     BrickObservation& brick, const Update& update);
+    void updateCell(TexturedOcTreeNode& node, bool justMade, unsigned bit, BrickObservation& brick,
+                    const Update& update);
 
     std::unordered_map<octomap::OcTreeKey, float, octomap::OcTreeKey::KeyHash> drift_;
 };

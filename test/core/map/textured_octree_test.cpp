@@ -45,22 +45,30 @@ TEST(TexturedOcTree, PruningKeepsFaces) {
     EXPECT_EQ(map.search(0.15, 0.15, 0.05)->faces[kTop].mean, 0.25F);
 }
 
-TEST(TexturedOcTree, BrickUpdateEqualsSingleUpdates) {
+TEST(TexturedOcTree, BrickUpdatesEqualSingleUpdates) {
     TexturedOcTree bricks(0.1), singles(0.1);
     std::mt19937_64 random(3);
-    const auto ignore = [](TexturedOcTreeNode&, unsigned) {};
+    const auto ignore = [](TexturedOcTreeNode&, const BrickObservation&, unsigned) {};
     for (int i = 0; i < 200; ++i) {
-        const octomap::OcTreeKey corner(32764 + 4 * (random() % 3), 32764 + 4 * (random() % 3),
-                                        32768);
-        const std::uint64_t hit = i % 3 == 0 ? random() & random() : 0;
-        const std::uint64_t missed = i % 2 == 0 ? ~0ULL : random();
-        bricks.updateBrick(corner, missed, hit, ignore);
-        for (unsigned cell = 0; cell < 64; ++cell) {
-            const unsigned x = cell & 3U, y = cell >> 2U & 3U, z = cell >> 4U;
-            const unsigned bit = brickBit(x, y, z);
-            if (((hit | missed) >> bit & 1U) == 0) continue;
-            singles.updateNode(octomap::OcTreeKey(corner[0] + x, corner[1] + y, corner[2] + z),
-                               (hit >> bit & 1U) != 0);
+        std::vector<BrickObservation> observed;
+        for (int x = 2; x >= 0; --x) {
+            for (int y = 0; y < 3; ++y) {
+                if (random() % 2 == 0) continue;
+                const octomap::OcTreeKey corner(32764 + 4 * x, 32764 + 4 * y, 32768);
+                const std::uint64_t hit = i % 3 == 0 ? random() & random() : 0;
+                const std::uint64_t missed = i % 2 == 0 ? ~0ULL : random();
+                observed.push_back({corner, missed & ~hit, hit});
+            }
+        }
+        bricks.updateBricks(observed, ignore);
+        for (const auto& [corner, missed, hit, change] : observed) {
+            for (unsigned cell = 0; cell < 64; ++cell) {
+                const unsigned x = cell & 3U, y = cell >> 2U & 3U, z = cell >> 4U;
+                const unsigned bit = brickBit(x, y, z);
+                if (((hit | missed) >> bit & 1U) == 0) continue;
+                singles.updateNode(octomap::OcTreeKey(corner[0] + x, corner[1] + y, corner[2] + z),
+                                   (hit >> bit & 1U) != 0);
+            }
         }
     }
     EXPECT_TRUE(bricks == singles);
