@@ -53,6 +53,7 @@ void visitLeaves(const TexturedOcTree& map, const TexturedOcTreeNode& node, cons
                  const Eigen::Array3i& lowest = Eigen::Array3i::Zero(),
                  int edge = MapChange::kBrickEdge) {
     bool isLeaf = true;
+    if (edge > 1) map.prefetchChildren(node);
     for (int i = 0; edge > 1 && i < 8; ++i) {
         if (!map.nodeChildExists(&node, i)) continue;
         isLeaf = false;

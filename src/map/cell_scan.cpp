@@ -72,14 +72,14 @@ void CellScan::observeFaces(TexturedOcTreeNode& node, const Array3i& cell, const
     const auto grey = static_cast<float>(seen.greySum / seen.count);
     Vector3d d = Vector3d::Ones();
     if (eye) d = (cell.cast<double>() + 0.5).matrix() - *eye;
-    const double pixelsPerLength = seen.count / d.norm();
+    const double range = d.norm();
+    const double pixelsPerLength = seen.count / range;
     const float surfaceWeight = seen.surfaceWeight();
     for (int face = 0; face < 6; ++face) {
         const int a = face / 2;
         const int side = face % 2 == 0 ? -1 : 1;
         const CellPixels::Sums& sums = seen.faces[face];
         if (eye && sums[0] > kLeastShare * surfaceWeight) {
-            const double range = d.norm();
             const auto weight = static_cast<float>(std::abs(d[a]) * sums[0] / range) + 1e-6F;
             node.faces[face].observe(seen.firstGrey + sums[1] / sums[0], weight, maxWeight);
             observeSurface(node.surfaces.obtain(face), sums, range * resolution_);

@@ -282,10 +282,7 @@ void DistanceMap::update(const TexturedOcTree& map, const MapChange& change) {
                        [&](int x, int y, int z) { isObstacle[16 * z + 4 * y + x] = isOccupied; });
         };
         if (node != nullptr) visitLeaves(map, *node, read);
-        for (int i = 0; i < 64; ++i) {
-            const Eigen::Array3i cell = corner + Eigen::Array3i(i & 3, i >> 2 & 3, i >> 4);
-            transform_.set(cell, cell + 1, isObstacle[i]);
-        }
+        transform_.setBlock(corner, isObstacle);
     }
     compute();
 }

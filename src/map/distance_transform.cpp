@@ -69,20 +69,33 @@ double DistanceTransform::bytes(const Eigen::Array3d& inner, double reach) {
 
 void DistanceTransform::set(const Array3i& first, const Array3i& last, bool isObstacle) {
     const Array3i from = first.max(0), to = last.min(outer());
-    const auto isSet = [](std::uint8_t distance) { return distance == 0; };
     for (int z = from.z(); z < to.z(); ++z) {
         for (int y = from.y(); y < to.y(); ++y) {
             std::uint8_t* row = column(0, y, z);
-            for (int x = from.x(); x < to.x(); ++x) {
-                if (isSet(row[x]) == isObstacle) continue;
-                row[x] = isObstacle ? std::uint8_t{0} : static_cast<std::uint8_t>(reach_);
-                Range& changed = changedCells_[std::size_t(x / kBlock) * outer().z() + z];
-                const bool isFirst = changed.low > changed.high;
-                changed.low = isFirst ? y : std::min(changed.low, y);
-                changed.high = isFirst ? y : std::max(changed.high, y);
-            }
+            for (int x = from.x(); x < to.x(); ++x) setCell(row, x, y, z, isObstacle);
         }
     }
+}
+
+void DistanceTransform::setBlock(const Array3i& first, const std::array<bool, 64>& isObstacle) {
+    const Array3i from = first.max(0), to = (first + 4).min(outer());
+    for (int z = from.z(); z < to.z(); ++z) {
+        for (int y = from.y(); y < to.y(); ++y) {
+            std::uint8_t* row = column(0, y, z);
+            const bool* cells = &isObstacle[16 * (z - first.z()) + 4 * (y - first.y())];
+            for (int x = from.x(); x < to.x(); ++x) setCell(row, x, y, z, cells[x - first.x()]);
+        }
+    }
+}
+
+/// @param row of the cell
+void DistanceTransform::setCell(std::uint8_t* row, int x, int y, int z, bool isObstacle) {
+    if ((row[x] == 0) == isObstacle) return;
+    row[x] = isObstacle ? std::uint8_t{0} : static_cast<std::uint8_t>(reach_);
+    Range& changed = changedCells_[std::size_t(x / kBlock) * outer().z() + z];
+    const bool isFirst = changed.low > changed.high;
+    changed.low = isFirst ? y : std::min(changed.low, y);
+    changed.high = isFirst ? y : std::max(changed.high, y);
 }
 
 void DistanceTransform::update(const Visit& visit) {

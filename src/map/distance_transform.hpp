@@ -2,6 +2,7 @@
 // Squared distances to obstacles on a grid of cells that may change.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -34,6 +35,9 @@ class DistanceTransform {
     /// Makes the outer cells of a box, as far as they exist, obstacles or free.
     void set(const Eigen::Array3i& first, const Eigen::Array3i& last, bool isObstacle);
 
+    /// The same for each of 4 x 4 x 4 cells, x fastest.
+    void setBlock(const Eigen::Array3i& first, const std::array<bool, 64>& isObstacle);
+
     /// Squared distances of inner cells (x ... x + n - 1, y, z).
     using Visit =
         std::function<void(int x, int y, int z, int n, const std::uint16_t* squaredDistances)>;
@@ -54,6 +58,7 @@ class DistanceTransform {
     std::uint16_t* plane(int x, int y, int z) {
         return plane_.data() + (std::ptrdiff_t(y) * inner_.z() + z) * pitch_ + x;
     }
+    void setCell(std::uint8_t* row, int x, int y, int z, bool isObstacle);
     void updateColumns(int block, int z, const Range& changed);
     void updatePlane(int block, int y);
     void updateRows(int y, int z, const Visit& visit);

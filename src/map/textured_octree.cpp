@@ -32,8 +32,14 @@ void writeRaw(std::ostream& stream, const T& value) {
     stream.write(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
-std::uint16_t quantised(float grey) {
-    return static_cast<std::uint16_t>(std::lrint(std::clamp(grey, 0.F, 1.F) * 65535.F));
+/// Eight at a time, in one vector.
+std::array<std::uint16_t, 8> quantised(const std::array<float, 8>& grey) {
+    std::array<std::uint16_t, 8> units;
+    for (unsigned i = 0; i < 8; ++i) {
+        const float inRange = std::min(std::max(grey[i], 0.F), 1.F);
+        units[i] = static_cast<std::uint16_t>(static_cast<int>(std::nearbyint(inRange * 65535.F)));
+    }
+    return units;
 }
 
 /// The largest difference between two sets of shown greys.
@@ -81,11 +87,12 @@ std::optional<float> TexturedOcTreeNode::meanGrey() const {
 std::optional<ShownGreys> TexturedOcTreeNode::shownGreys() const {
     const std::optional<float> mean = meanGrey();
     if (!mean) return std::nullopt;
-    ShownGreys greys;
-    for (unsigned f = 0; f < 6; ++f) {
-        greys[f] = quantised(faces[f].observed() ? faces[f].mean : *mean);
-    }
-    return greys;
+    std::array<float, 8> greys{};
+    for (unsigned f = 0; f < 6; ++f) greys[f] = faces[f].observed() ? faces[f].mean : *mean;
+    const auto units = quantised(greys);
+    ShownGreys shown;
+    std::copy_n(units.begin(), shown.size(), shown.begin());
+    return shown;
 }
 
 ShownWeights TexturedOcTreeNode::shownWeights() const {
@@ -243,6 +250,7 @@ void TexturedOcTree::updateBrick(TexturedOcTreeNode& node, bool justMade, unsign
     const bool pruned = !justMade && !nodeHasChildren(&node);
     if (pruned && node.getLogOdds() <= clamping_thres_min && (brick.hit & cells) == 0) return;
     if (pruned) expandNode(&node);
+    prefetchChildren(node);
     for (unsigned i = 0; i < 8; ++i) {
         const unsigned first = level == 2 ? 8 * i : firstBit + i;
         const std::uint64_t ofChild = (level == 2 ? 0xFFULL : 1ULL) << first;

@@ -112,6 +112,17 @@ class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
     using KeepCell =
         std::function<bool(const TexturedOcTreeNode&, const BrickObservation&, unsigned bit)>;
 
+    /// Starts to load the children of a node: nodes lie anywhere in memory, and waiting for one
+    /// after the other takes longer than all that is done with them.
+    void prefetchChildren(const TexturedOcTreeNode& node) const {
+        for (unsigned i = 0; i < 8; ++i) {
+            if (!nodeChildExists(&node, i)) continue;
+            const TexturedOcTreeNode* child = getNodeChild(&node, i);
+            __builtin_prefetch(child);
+            __builtin_prefetch(&child->surfaces);
+        }
+    }
+
     /// The root node, created if the tree is empty.
     TexturedOcTreeNode& obtainRoot();
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/brick_reader.hpp"
 
+#include <bit>
+
 #include "map/brick_leaves.hpp"
 
 namespace photonav {
@@ -10,21 +12,23 @@ using Eigen::Array3i;
 
 void readLeaf(const TexturedOcTree& map, const TexturedOcTreeNode& leaf, const Array3i& lowest,
               int edge, BrickContent& content) {
-    const bool occupied = map.isNodeOccupied(leaf);
-    const std::optional<ShownGreys> greys = occupied ? leaf.shownGreys() : std::nullopt;
-    const ShownWeights weights = greys ? leaf.shownWeights() : ShownWeights{};
-    visitCells(lowest, edge, [&](int x, int y, int z) {
-        const unsigned bit = surfaceBit(x, y, z);
-        content.present |= 1ULL << bit;
-        if (occupied) content.surface.occupied |= 1ULL << bit;
-        if (!greys) return;
-        content.surface.known |= 1ULL << bit;
+    std::uint64_t cells = 0;
+    visitCells(lowest, edge, [&](int x, int y, int z) { cells |= 1ULL << surfaceBit(x, y, z); });
+    content.present |= cells;
+    if (!map.isNodeOccupied(leaf)) return;
+    content.surface.occupied |= cells;
+    const std::optional<ShownGreys> greys = leaf.shownGreys();
+    if (!greys) return;
+    content.surface.known |= cells;
+    const ShownWeights weights = leaf.shownWeights();
+    for (; cells != 0; cells &= cells - 1) {
+        const int cell = std::countr_zero(cells);
         for (unsigned f = 0; f < 6; ++f) {
-            content.surface.grey[f][bit] = (*greys)[f];
-            content.surface.weight[f][bit] = weights[f];
+            content.surface.grey[f][cell] = (*greys)[f];
+            content.surface.weight[f][cell] = weights[f];
         }
-        content.surface.inside[bit] = leaf.surfaces.shown();
-    });
+        content.surface.inside[cell] = leaf.surfaces.shown();
+    }
 }
 
 }  // namespace

@@ -125,18 +125,32 @@ struct WindowOverlap {
 constexpr std::array<WindowOverlap, 3> kOverlap{WindowOverlap(0), WindowOverlap(1),
                                                 WindowOverlap(2)};
 
-/// Adds the exposed faces in and around one layer, -1 to 4, of the middle brick.
+/// One layer of all bricks around, -1 to 4 counted from the middle brick.
+struct AroundLayer {
+    const BrickSurface* const* middle;
+    int shift;
+
+    AroundLayer(const SurfaceNeighbours& neighbours, int axis, int layer)
+        : middle(&neighbours[kMiddle + (layer >> 2) * kStride[axis]]),
+          shift((layer & 3) * kLayerShift[axis]) {}
+    static constexpr std::array<int, 3> kStride{1, 3, 9};
+};
+
+/// Adds the exposed faces in and around one layer, and then those one step outward and inward.
 void addExposedGreys(const SurfaceNeighbours& neighbours, int face, int layer, Window& window) {
-    constexpr std::array<int, 3> kStride{1, 3, 9};
-    const int axis = face / 2, shift = (layer & 3) * kLayerShift[axis];
-    const BrickSurface* const* middle = &neighbours[kMiddle + (layer >> 2) * kStride[axis]];
+    const int axis = face / 2, outward = face % 2 == 1 ? 1 : -1;
+    const std::array layers{AroundLayer(neighbours, axis, layer),
+                            AroundLayer(neighbours, axis, layer + outward),
+                            AroundLayer(neighbours, axis, layer - outward)};
     for (const WindowOverlap::Brick& brick : kOverlap[axis].bricks) {
-        const BrickSurface& surface = *middle[brick.offset];
-        std::uint64_t todo = surface.exposed[face] >> shift & brick.cells;
-        for (; todo != 0; todo &= todo - 1) {
-            const int bit = std::countr_zero(todo), cell = bit + shift;
-            window.add(brick.place[bit], surface.grey[face][cell],
-                       1U << surface.weight[face][cell]);
+        for (const auto& [middle, shift] : layers) {
+            const BrickSurface& surface = *middle[brick.offset];
+            std::uint64_t todo = surface.exposed[face] >> shift & brick.cells;
+            for (; todo != 0; todo &= todo - 1) {
+                const int bit = std::countr_zero(todo), cell = bit + shift;
+                window.add(brick.place[bit], surface.grey[face][cell],
+                           1U << surface.weight[face][cell]);
+            }
         }
     }
 }
@@ -174,11 +188,8 @@ std::uint16_t exposedInLayer(const BrickSurface& surface, int face, int layer) {
 FacePatch makePatch(const SurfaceNeighbours& neighbours, int face, int layer, std::uint16_t valid) {
     // A surface is continued over steps of one cell, outward or inward: mapped floors are never
     // flat to the cell, and an edge at such a step would come from the grid, not from the texture.
-    const int outward = face % 2 == 1 ? 1 : -1;
     Window window;
     addExposedGreys(neighbours, face, layer, window);
-    addExposedGreys(neighbours, face, layer + outward, window);
-    addExposedGreys(neighbours, face, layer - outward, window);
     FacePatch patch;
     patch.valid = valid;
     for (int q = 0; q < FacePatch::kSide; ++q) {

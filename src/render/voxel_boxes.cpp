@@ -370,7 +370,9 @@ void visitBoxes(const VoxelGrid& grid, const CellBox& bricks, const Visit& visit
 }  // namespace
 
 std::uint64_t cellsInside(const CellBox& box, const Array3i& brick) {
-    const CellBox part = box.clippedTo(cellsOf(brick));
+    const CellBox cells = cellsOf(brick);
+    if (box.contains(cells)) return ~0ULL;
+    const CellBox part = box.clippedTo(cells);
     if (part.empty()) return 0;
     const Array3i low = part.low - 4 * brick, high = part.high - 4 * brick;
     const std::uint64_t x = fourBits(low.x(), high.x()) * 0x1111111111111111ULL;
