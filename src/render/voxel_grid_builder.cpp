@@ -44,8 +44,20 @@ bool isSeveral(std::uint32_t plane) {
 
 std::uint32_t severalOf(std::uint32_t plane) { return plane & 0x1FFFFFFFU; }
 
-bool isInGrid(const VoxelGrid& grid, const Array3i& brick) {
-    return (brick >= 0).all() && (brick < grid.bricks).all();
+bool isInside(const CellBox& bricks, const Array3i& brick) {
+    return bricks.contains({brick, brick + 1});
+}
+
+/// Lists the bricks that were not there before the grid grew: no box reaches into them.
+void addNewBricks(const CellBox& old, const CellBox& all, std::vector<ChangedBrick>& changed) {
+    if (old.contains(all)) return;
+    for (int z = all.low.z(); z < all.high.z(); ++z) {
+        for (int y = all.low.y(); y < all.high.y(); ++y) {
+            for (int x = all.low.x(); x < all.high.x(); ++x) {
+                if (!isInside(old, {x, y, z})) changed.push_back({{x, y, z}, ~0ULL});
+            }
+        }
+    }
 }
 
 }  // namespace
@@ -103,41 +115,42 @@ GridUpdate VoxelGridBuilder::update(const TexturedOcTree& map, const MapChange& 
     if (change.resolution != grid.resolution || map.getResolution() != grid.resolution) {
         throw std::invalid_argument("voxel view: the change is of a map of another resolution");
     }
+    const CellBox before{grid.first / 4, grid.first / 4 + grid.bricks};
     Bricks toRead;
-    update.laidOutAnew = grow(extendedBox(map, change, grid), grid, toRead);
-    for (const Array3i& brick : change.bricks()) toRead.emplace_back(brick - grid.first / 4);
+    grow(extendedBox(map, change, grid), grid, toRead);
+    const Array3i firstBrick = grid.first / 4;
+    for (const Array3i& brick : change.bricks()) toRead.emplace_back(brick - firstBrick);
 
+    const CellBox old{before.low - firstBrick, before.high - firstBrick};
+    const CellBox all{Array3i::Zero(), grid.bricks};
     std::vector<ChangedBrick> changedEnds;
     Bricks changed;
     for (const Array3i& brick : toRead) {
-        if (!isInGrid(grid, brick)) continue;
+        if (!isInside(all, brick)) continue;
         const std::size_t index = grid.brickIndex(brick);
-        const BrickContent content = readBrick(map, Array3i(brick + grid.first / 4));
+        const BrickContent content = readBrick(map, Array3i(brick + firstBrick));
         const std::uint64_t ends = endsOf(grid, brick, content, unknownEndsRays_);
-        const std::uint64_t before = std::exchange(grid.ends[index], ends);
-        if (before != ends) changedEnds.push_back({brick, before});
+        const std::uint64_t endsBefore = std::exchange(grid.ends[index], ends);
+        if (endsBefore != ends && isInside(old, brick)) changedEnds.push_back({brick, endsBefore});
         if (setSurface(index, content.surface, grid)) changed.push_back(brick);
     }
-    if (update.laidOutAnew) {
-        findBoxes(grid);
-    } else {
-        update.boxes = updateBoxes(grid, changedEnds);
-    }
+    addNewBricks(old, all, changedEnds);
+    update.boxes = updateBoxes(grid, changedEnds);
+    update.boxes.low += firstBrick;
+    update.boxes.high += firstBrick;
     refreshPatches(changed, grid, update.bricks);
+    for (Array3i& brick : update.bricks) brick += firstBrick;
     return update;
 }
 
 /// Extends the grid to the map's new bounding box. New cells are unknown: obstacles, if unknown
-/// cells end rays. @returns whether the grid was laid out anew
-bool VoxelGridBuilder::grow(const CellBox& box, VoxelGrid& grid, Bricks& toRead) const {
+/// cells end rays.
+void VoxelGridBuilder::grow(const CellBox& box, VoxelGrid& grid, Bricks& toRead) const {
     const CellBox before{grid.box.low + grid.first, grid.box.high + grid.first};
-    if ((box.low == before.low).all() && (box.high == before.high).all()) return false;
-    const bool laidOutAnew = layOut(box, grid);
-    if (!unknownEndsRays_) return laidOutAnew;
-    if (before.empty()) {
-        addBricks(grid.box, toRead);
-        return laidOutAnew;
-    }
+    if ((box.low == before.low).all() && (box.high == before.high).all()) return;
+    layOut(box, grid);
+    if (!unknownEndsRays_) return;
+    if (before.empty()) return addBricks(grid.box, toRead);
     CellBox done{before.low - grid.first, before.high - grid.first};
     const auto add = [&](int axis, int from, int to) {
         if (from >= to) return;
@@ -151,7 +164,6 @@ bool VoxelGridBuilder::grow(const CellBox& box, VoxelGrid& grid, Bricks& toRead)
         add(axis, grid.box.low[axis], done.low[axis]);
         add(axis, done.high[axis], grid.box.high[axis]);
     }
-    return laidOutAnew;
 }
 
 bool VoxelGridBuilder::setSurface(std::size_t brick, const BrickSurface& surface, VoxelGrid& grid) {
@@ -188,6 +200,7 @@ void VoxelGridBuilder::setPlanes(std::int32_t textures, VoxelGrid& grid) {
 
 SurfaceNeighbours VoxelGridBuilder::neighboursOf(const Array3i& brick,
                                                  const VoxelGrid& grid) const {
+    const CellBox all{Array3i::Zero(), grid.bricks};
     SurfaceNeighbours neighbours;
     std::size_t i = 0;
     for (int z = -1; z <= 1; ++z) {
@@ -195,7 +208,7 @@ SurfaceNeighbours VoxelGridBuilder::neighboursOf(const Array3i& brick,
             for (int x = -1; x <= 1; ++x) {
                 const Array3i at = brick + Array3i(x, y, z);
                 neighbours[i++] =
-                    &surfaces_[isInGrid(grid, at) ? grid.brickTextures[grid.brickIndex(at)] : 0];
+                    &surfaces_[isInside(all, at) ? grid.brickTextures[grid.brickIndex(at)] : 0];
             }
         }
     }
@@ -250,8 +263,10 @@ void VoxelGridBuilder::makePatches(const SurfaceNeighbours& neighbours, std::int
 }
 
 void copyUpdate(const VoxelGrid& grid, const GridUpdate& update, VoxelGrid& copy) {
+    moveTo({grid.first, grid.first + grid.size}, copy);
     copy.box = grid.box;
-    const CellBox& boxes = update.boxes;
+    const Array3i firstBrick = grid.first / 4;
+    const CellBox boxes{update.boxes.low - firstBrick, update.boxes.high - firstBrick};
     for (int z = boxes.low.z(); z < boxes.high.z(); ++z) {
         for (int y = boxes.low.y(); y < boxes.high.y(); ++y) {
             const std::size_t row = grid.brickIndex({boxes.low.x(), y, z});
@@ -265,12 +280,12 @@ void copyUpdate(const VoxelGrid& grid, const GridUpdate& update, VoxelGrid& copy
     copy.planes.resize(grid.planes.size(), 0);
     copy.several.resize(grid.several.size());
     for (const Array3i& at : update.bricks) {
-        const std::size_t brick = grid.brickIndex(at);
+        const std::size_t brick = grid.brickIndex(at - firstBrick);
         const std::int32_t textures = copy.brickTextures[brick] = grid.brickTextures[brick];
         const std::size_t entry = std::size_t(textures) * VoxelGrid::kPatchesPerBrick;
         for (std::size_t i = entry; i < entry + VoxelGrid::kPatchesPerBrick; ++i) {
-            copy.patchOf[i] = grid.patchOf[i];
-            copy.patches[grid.patchOf[i]] = grid.patches[grid.patchOf[i]];
+            const std::int32_t patch = copy.patchOf[i] = grid.patchOf[i];
+            if (patch != 0) copy.patches[patch] = grid.patches[patch];
         }
         const std::size_t cells = std::size_t(textures) * VoxelGrid::kCellsPerBrick;
         for (std::size_t i = cells; i < cells + VoxelGrid::kCellsPerBrick; ++i) {

@@ -12,15 +12,15 @@
 
 namespace photonav {
 
-/// The parts of a grid that an update has rewritten, for updating copies of the grid.
+/// The parts of a grid that an update has rewritten, for updating copies of the grid. Bricks are
+/// named by their index in the world, because a grid that grows may move.
 struct GridUpdate {
-    bool laidOutAnew = false;            ///< the whole grid: copies must be made anew
     CellBox boxes;                       ///< bricks: which cells end rays, and empty boxes
     std::vector<Eigen::Array3i> bricks;  ///< textures
 };
 
 /// Applies an update to `copy`, which was equal to `grid` before the update. Several updates are
-/// applied in their order; none of them may have laid the grid out anew.
+/// applied in their order.
 void copyUpdate(const VoxelGrid& grid, const GridUpdate& update, VoxelGrid& copy);
 
 /// Fills a grid from a map and updates it after changes of the map. Keeps the contents of every
@@ -40,7 +40,7 @@ class VoxelGridBuilder {
 
     void readAll(const TexturedOcTree& map, const TexturedOcTreeNode& node,
                  const Eigen::Array3i& lowest, int edge, VoxelGrid& grid, Bricks& changed);
-    bool grow(const CellBox& box, VoxelGrid& grid, Bricks& toRead) const;
+    void grow(const CellBox& box, VoxelGrid& grid, Bricks& toRead) const;
     void refreshPatches(const Bricks& changed, VoxelGrid& grid, Bricks& rewritten);
     bool setSurface(std::size_t brick, const BrickSurface& surface, VoxelGrid& grid);
     void setPlanes(std::int32_t textures, VoxelGrid& grid);

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <utility>
+#include <vector>
 
 namespace photonav {
 namespace {
@@ -56,10 +56,11 @@ CellBox roomFor(const CellBox& box, const CellBox& held) {
     return cellsIn(more) > kMaxGridCells ? room : more;
 }
 
-/// Copies the rows of a dense array into one of another layout.
+/// The rows of a dense array in a larger one; the rest is zero.
 template <class T>
-void copyRows(const std::vector<T>& from, const Array3i& fromSize, std::vector<T>& to,
-              const Array3i& toSize, const Array3i& offset) {
+std::vector<T> movedRows(const std::vector<T>& from, const Array3i& fromSize, const Array3i& toSize,
+                         const Array3i& offset) {
+    std::vector<T> to(toSize.cast<std::size_t>().prod(), T{});
     for (int z = 0; z < fromSize.z(); ++z) {
         for (int y = 0; y < fromSize.y(); ++y) {
             const auto in = (std::size_t(z) * fromSize.y() + y) * fromSize.x();
@@ -68,6 +69,7 @@ void copyRows(const std::vector<T>& from, const Array3i& fromSize, std::vector<T
             std::copy_n(from.data() + in, fromSize.x(), to.data() + out + offset.x());
         }
     }
+    return to;
 }
 
 }  // namespace
@@ -83,25 +85,20 @@ bool layOut(const CellBox& box, VoxelGrid& grid) {
     const CellBox held{grid.first, grid.first + grid.size};
     const CellBox needed = box.grown(1);
     const bool fits = (needed.low >= held.low).all() && (needed.high <= held.high).all();
-    if (!fits) {
-        const CellBox room = roomFor(needed, held);
-        const VoxelGrid old = std::exchange(grid, {});
-        grid.resolution = old.resolution;
-        grid.first = room.low;
-        grid.size = room.high - room.low;
-        grid.bricks = grid.size / 4;
-        grid.ends.assign(std::size_t(cellsIn(room)) / 64, 0);
-        grid.brickTextures.assign(std::size_t(cellsIn(room)) / 64, 0);
-        grid.patchOf = old.patchOf;
-        grid.patches = old.patches;
-        grid.planes = old.planes;
-        grid.several = old.several;
-        const Array3i offset = (old.first - grid.first) / 4;
-        copyRows(old.ends, old.bricks, grid.ends, grid.bricks, offset);
-        copyRows(old.brickTextures, old.bricks, grid.brickTextures, grid.bricks, offset);
-    }
+    if (!fits) moveTo(roomFor(needed, held), grid);
     grid.box = {box.low - grid.first, box.high - grid.first};
     return !fits;
+}
+
+void moveTo(const CellBox& space, VoxelGrid& grid) {
+    const Array3i before = grid.bricks, offset = (grid.first - space.low) / 4;
+    grid.first = space.low;
+    grid.size = space.high - space.low;
+    grid.bricks = grid.size / 4;
+    if ((grid.bricks == before).all() && (offset == 0).all()) return;
+    grid.ends = movedRows(grid.ends, before, grid.bricks, offset);
+    grid.boxes = movedRows(grid.boxes, before, grid.bricks, offset);
+    grid.brickTextures = movedRows(grid.brickTextures, before, grid.bricks, offset);
 }
 
 void addBricks(const CellBox& box, std::vector<Array3i>& bricks) {

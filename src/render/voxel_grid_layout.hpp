@@ -11,12 +11,15 @@ namespace photonav {
 /// The bounding box of a map's cells, world indices; empty for an empty map.
 CellBox boundingBox(const TexturedOcTree& map);
 
-/// Makes `box` (world indices) the box of the grid. Where it does not fit, the grid is laid out
-/// anew around it, with room to grow if it was laid out before, and keeps its bricks, but not their
-/// empty boxes.
-/// @returns whether it was laid out anew
+/// Makes `box` (world indices) the box of the grid. Where it does not fit, the grid is moved to a
+/// larger space, with room to grow if it had any before.
+/// @returns whether it was moved
 /// @throws std::invalid_argument when the box has more than 2^31 cells
 bool layOut(const CellBox& box, VoxelGrid& grid);
+
+/// Moves the grid to a space of whole bricks (world indices) around the one it has, with all that
+/// it holds but VoxelGrid::box. In new bricks no cell ends rays, and they have no box.
+void moveTo(const CellBox& space, VoxelGrid& grid);
 
 /// Appends the bricks that hold cells of a box.
 void addBricks(const CellBox& box, std::vector<Eigen::Array3i>& bricks);

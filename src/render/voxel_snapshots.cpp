@@ -65,15 +65,11 @@ std::unique_ptr<VoxelRenderer> VoxelSnapshots::copyOfCurrent() const {
     Spares::Spare spare = spares_->take();
     if (spare.renderer == nullptr) return std::make_unique<VoxelRenderer>(*current_);
     const std::size_t missed = version_ - spare.version;
-    const auto first =
-        updates_.end() - static_cast<std::ptrdiff_t>(std::min(missed, updates_.size()));
-    const bool asAWhole =
-        missed > updates_.size() ||
-        std::any_of(first, updates_.end(), [](const auto& update) { return update.laidOutAnew; });
-    if (asAWhole) {
+    if (missed > updates_.size()) {
         spare.renderer->grid_ = current_->grid_;
     } else {
-        for (auto it = first; it != updates_.end(); ++it) {
+        for (auto it = updates_.end() - static_cast<std::ptrdiff_t>(missed); it != updates_.end();
+             ++it) {
             copyUpdate(current_->grid_, *it, spare.renderer->grid_);
         }
     }

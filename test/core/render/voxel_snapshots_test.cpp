@@ -184,6 +184,8 @@ TEST(VoxelSnapshots, CatchUpWithAllUpdatesTheyMissed) {
             for (int i = 0; i < 16; ++i) {
                 edited.set({4 * square - 20 + i % 4, i / 4, 0}, true, 0.9F, 63U);
             }
+            // Far out, so that the grid moves.
+            edited.set({45 + 30 * square, -45 - 20 * square, 0}, true, 0.2F, 63U);
             snapshots.update(edited.map, edited.takeChange());
         };
         auto held = snapshots.current();
