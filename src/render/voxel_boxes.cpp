@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "render/brick_counts.hpp"
+
 namespace photonav {
 namespace {
 
@@ -14,91 +16,12 @@ std::uint64_t fourBits(int from, int to) { return (1ULL << to) - (1ULL << from);
 
 std::uint64_t bitsBelow(int count) { return count < 64 ? (1ULL << count) - 1 : ~0ULL; }
 
-/// One mask of cells per brick, as in VoxelGrid::ends, for a box of bricks.
-struct BrickMasks {
-    CellBox bricks;
-    const std::uint64_t* masks;
-
-    const std::uint64_t* at(const Array3i& brick) const {
-        const Array3i i = brick - bricks.low, n = bricks.high - bricks.low;
-        return masks + (std::size_t(i.z()) * n.y() + i.y()) * n.x() + i.x();
-    }
-};
-
-BrickMasks endsOf(const VoxelGrid& grid) {
+BrickMasks endMasks(const VoxelGrid& grid) {
     return {{Array3i::Zero(), grid.bricks}, grid.ends.data()};
 }
 
-/// Counts the bricks with cells in their masks in boxes of bricks: a summed-area table.
-class BrickCounts {
-  public:
-    /// @param bricks a part of those that have masks
-    BrickCounts(const BrickMasks& masks, const CellBox& bricks)
-        : bricks_(bricks), size_(bricks.high - bricks.low + 1) {
-        sums_.assign(std::size_t(size_.x()) * size_.y() * size_.z(), 0);
-        for (int z = 1; z < size_.z(); ++z) {
-            for (int y = 1; y < size_.y(); ++y) {
-                const std::uint64_t* mask = masks.at(bricks.low + Array3i(0, y - 1, z - 1));
-                const std::size_t row = at({0, y, z});
-                const std::size_t rowBehind = row - size_.x(), below = at({0, y, z - 1}),
-                                  belowBehind = below - size_.x();
-                std::int32_t inRow = 0;
-                for (int x = 1; x < size_.x(); ++x) {
-                    inRow += mask[x - 1] != 0 ? 1 : 0;
-                    sums_[row + x] =
-                        inRow + sums_[rowBehind + x] + sums_[below + x] - sums_[belowBehind + x];
-                }
-            }
-        }
-    }
-
-    std::int32_t operator()(const CellBox& bricks) const {
-        const CellBox part = bricks.clippedTo(bricks_);
-        if (part.empty()) return 0;
-        const Array3i low = part.low - bricks_.low, high = part.high - bricks_.low;
-        const auto column = [&](int x, int y) {
-            return sums_[at({x, y, high.z()})] - sums_[at({x, y, low.z()})];
-        };
-        return column(high.x(), high.y()) - column(low.x(), high.y()) - column(high.x(), low.y()) +
-               column(low.x(), low.y());
-    }
-
-  private:
-    std::size_t at(const Array3i& i) const {
-        return (std::size_t(i.z()) * size_.y() + i.y()) * size_.x() + i.x();
-    }
-
-    CellBox bricks_;
-    Array3i size_;
-    std::vector<std::int32_t> sums_;
-};
-
-constexpr int kMostToScan = 8;  // bricks of a row: looking at them takes no longer than counting
-
-/// Whether a box holds cells of the masks.
-bool anyInside(const CellBox& cells, const BrickMasks& masks, const BrickCounts& counts) {
-    const CellBox bricks = bricksOf(cells).clippedTo(masks.bricks);
-    if (counts(bricks) == 0) return false;
-    for (int z = bricks.low.z(); z < bricks.high.z(); ++z) {
-        CellBox part = bricks;
-        part.low.z() = z;
-        part.high.z() = z + 1;
-        if (counts(part) == 0) continue;
-        for (int y = bricks.low.y(); y < bricks.high.y(); ++y) {
-            part.low.y() = y;
-            part.high.y() = y + 1;
-            if (bricks.high.x() - bricks.low.x() > kMostToScan && counts(part) == 0) continue;
-            const std::uint64_t* mask = masks.at(part.low);
-            for (int x = bricks.low.x(); x < bricks.high.x(); ++x, ++mask) {
-                if (*mask != 0 && (*mask & cellsInside(cells, {x, y, z})) != 0) return true;
-            }
-        }
-    }
-    return false;
-}
-
 /// The cells beside a box on one side.
-CellBox beside(const CellBox& box, int side, int thickness) {
+CellBox cellsBeside(const CellBox& box, int side, int thickness) {
     const int axis = side / 2;
     CellBox cells = box;
     if (side % 2 == 0) {
@@ -125,13 +48,13 @@ EmptyBox encoded(const CellBox& box, const Array3i& brick, std::uint64_t ends) {
 }
 
 /// Layers of a brick at one of its sides, the thickest first.
-struct Layer {
+struct BrickLayer {
     CellBox box;  ///< of the brick at the origin
     std::uint64_t cells;
 };
 
-std::array<Layer, 18> makeLayers() {
-    std::array<Layer, 18> layers;
+std::array<BrickLayer, 18> makeLayers() {
+    std::array<BrickLayer, 18> layers;
     auto layer = layers.begin();
     for (int thickness = 3; thickness > 0; --thickness) {
         for (int axis = 2; axis >= 0; --axis) {
@@ -147,10 +70,10 @@ std::array<Layer, 18> makeLayers() {
 
 /// The thickest layer of a brick, at one of its sides, without cells that end rays.
 CellBox emptyLayer(std::uint64_t ends, const Array3i& brick) {
-    static const std::array<Layer, 18> kLayers = makeLayers();
+    static const std::array<BrickLayer, 18> kLayers = makeLayers();
     if (ends == 0) return cellsOf(brick);
     if (ends == ~0ULL) return {};
-    for (const Layer& layer : kLayers) {
+    for (const BrickLayer& layer : kLayers) {
         if ((ends & layer.cells) == 0)
             return {layer.box.low + 4 * brick, layer.box.high + 4 * brick};
     }
@@ -163,8 +86,8 @@ class BoxFinder {
     BoxFinder(VoxelGrid& grid, const CellBox& around)
         : grid_(grid),
           cells_{Array3i::Zero(), grid.size},
-          full_(endsOf(grid), around.grown(EmptyBox::kFurthest / 4)
-                                  .clippedTo({Array3i::Zero(), Array3i(grid.bricks)})) {}
+          full_(endMasks(grid), around.grown(EmptyBox::kFurthest / 4)
+                                    .clippedTo({Array3i::Zero(), Array3i(grid.bricks)})) {}
 
     /// Finds the box of a brick. Neighbours have valid boxes, or of size 0.
     void find(const Array3i& brick) {
@@ -242,8 +165,8 @@ class BoxFinder {
 
     /// Extends a box to one side by `step` cells, if they are empty and within the limit.
     bool extend(CellBox& box, int side, int step, const CellBox& limit) const {
-        const CellBox more = beside(box, side, step).clippedTo(limit);
-        if (more.empty() || anyInside(more, endsOf(grid_), full_)) return false;
+        const CellBox more = cellsBeside(box, side, step).clippedTo(limit);
+        if (more.empty() || anyInside(more, endMasks(grid_), full_)) return false;
         box.extend(more);
         return true;
     }
@@ -314,7 +237,8 @@ class Affected {
     bool mayGrow(const CellBox& box) const {
         if ((*emptiedCounts_)(bricksOf(box.grown(1))) == 0) return false;
         for (int side = 0; side < 6; ++side) {
-            const CellBox cells = beside(box, side, 1).clippedTo({Array3i::Zero(), grid_.size});
+            const CellBox cells =
+                cellsBeside(box, side, 1).clippedTo({Array3i::Zero(), grid_.size});
             if (!cells.empty() && isFree(cells)) return true;
         }
         return false;

@@ -44,7 +44,7 @@ bool isSeveral(std::uint32_t plane) {
 
 std::uint32_t severalOf(std::uint32_t plane) { return plane & 0x1FFFFFFFU; }
 
-bool isInside(const CellBox& bricks, const Array3i& brick) {
+bool holdsBrick(const CellBox& bricks, const Array3i& brick) {
     return bricks.contains({brick, brick + 1});
 }
 
@@ -54,7 +54,7 @@ void addNewBricks(const CellBox& old, const CellBox& all, std::vector<ChangedBri
     for (int z = all.low.z(); z < all.high.z(); ++z) {
         for (int y = all.low.y(); y < all.high.y(); ++y) {
             for (int x = all.low.x(); x < all.high.x(); ++x) {
-                if (!isInside(old, {x, y, z})) changed.push_back({{x, y, z}, ~0ULL});
+                if (!holdsBrick(old, {x, y, z})) changed.push_back({{x, y, z}, ~0ULL});
             }
         }
     }
@@ -126,12 +126,13 @@ GridUpdate VoxelGridBuilder::update(const TexturedOcTree& map, const MapChange& 
     std::vector<ChangedBrick> changedEnds;
     Bricks changed;
     for (const Array3i& brick : toRead) {
-        if (!isInside(all, brick)) continue;
+        if (!holdsBrick(all, brick)) continue;
         const std::size_t index = grid.brickIndex(brick);
         const BrickContent content = readBrick(map, Array3i(brick + firstBrick));
         const std::uint64_t ends = endsOf(grid, brick, content, unknownEndsRays_);
         const std::uint64_t endsBefore = std::exchange(grid.ends[index], ends);
-        if (endsBefore != ends && isInside(old, brick)) changedEnds.push_back({brick, endsBefore});
+        if (endsBefore != ends && holdsBrick(old, brick))
+            changedEnds.push_back({brick, endsBefore});
         if (setSurface(index, content.surface, grid)) changed.push_back(brick);
     }
     addNewBricks(old, all, changedEnds);
@@ -208,7 +209,7 @@ SurfaceNeighbours VoxelGridBuilder::neighboursOf(const Array3i& brick,
             for (int x = -1; x <= 1; ++x) {
                 const Array3i at = brick + Array3i(x, y, z);
                 neighbours[i++] =
-                    &surfaces_[isInside(all, at) ? grid.brickTextures[grid.brickIndex(at)] : 0];
+                    &surfaces_[holdsBrick(all, at) ? grid.brickTextures[grid.brickIndex(at)] : 0];
             }
         }
     }
