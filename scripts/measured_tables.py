@@ -132,7 +132,7 @@ def table(rows):
 def main():
     name, kind, caption, *folders = sys.argv[1:]
     if kind == "text":
-        body = ["```", pathlib.Path(folders[0]).read_text().rstrip("\n"), "```"]
+        body = ["```", pathlib.Path(folders[0]).read_text().strip("\n"), "```"]
     else:
         rows = []
         for label, folder in (row.split("=", 1) for row in folders):
