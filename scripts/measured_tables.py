@@ -66,6 +66,8 @@ def explorationRows(label, result):
             "ends": ends(counts),
             "length": number(s["length"], 1) + " m",
             "duration": number(s["duration_s"], 0) + " s",
+            "mean trace": number(s["mean_trace"], 4) + " m²",
+            "goal trace": number(s["goal_trace"], 4) + " m²",
             "goal error": millimetres(s["goal_error_m"]),
             "position error": millimetres(s["position_rmse_m"]),
             "NEES": number(s["nees_per_dof"], 2),
