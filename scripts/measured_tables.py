@@ -5,7 +5,8 @@
 usage: measured_tables.py NAME KIND CAPTION ROW=FOLDER...
 
 FOLDER is a result folder of photonav, and ROW is what the table calls it. KIND is flights (results of fly), explorations or
-trials (of explore: a row for each planner, or for each flight), or replays. With KIND text, one file is quoted as it is.
+trials (of explore: a row for each planner, or for each flight), replays, or depth (of map --depth monocular). With KIND text,
+one file is quoted as it is.
 The table is enclosed in <!-- measured NAME --> and <!-- end -->, as in the pages.
 """
 
@@ -116,7 +117,19 @@ def replayRows(label, result):
     }
 
 
-KINDS = {"flights": flightRows, "explorations": explorationRows, "trials": trialRows, "replays": replayRows}
+def depthRows(label, result):
+    depth = result["monocular"]
+    yield {
+        "recording": label,
+        "completeness": number(100 * depth["completeness"], 1) + " %",
+        "relative error, median": number(100 * depth["median_relative_error"], 1) + " %",
+        "90th percentile": number(100 * depth["p90_relative_error"], 1) + " %",
+        "references": str(depth["references"]),
+    }
+
+
+KINDS = {"flights": flightRows, "explorations": explorationRows, "trials": trialRows, "replays": replayRows,
+         "depth": depthRows}
 
 
 def table(rows):
