@@ -112,7 +112,7 @@ def replayRows(label, result):
         "per second": relative("second") or "",
         "NEES": number(result["nees_per_dof"], 2),
         "median": number(result["nees_median_per_dof"], 2),
-        "position, rotation": f"{number(position['median'], 2)}, {number(rotation['median'], 2)}",
+        "median of position, rotation": f"{number(position['median'], 2)}, {number(rotation['median'], 2)}",
         "beyond 5 sigma": str(result["converged_beyond_5_sigma"]),
     }
 

@@ -71,7 +71,7 @@ class Tables(unittest.TestCase):
         (row,) = self.tables.replayRows("castle", result)
         self.assertEqual(row["per frame"], "5.3 mm, 0.21 deg")
         self.assertEqual(row["per second"], "")
-        self.assertEqual(row["position, rotation"], "1.15, 1.15")
+        self.assertEqual(row["median of position, rotation"], "1.15, 1.15")
 
 
 class Measure(unittest.TestCase):
