@@ -5,8 +5,8 @@
 usage: measured_tables.py NAME KIND CAPTION ROW=FOLDER...
 
 FOLDER is a result folder of photonav, and ROW is what the table calls it. KIND is flights (results of fly), explorations or
-trials (of explore: a row for each planner, or for each flight), replays, or depth (of map --depth monocular). With KIND text,
-one file is quoted as it is.
+trials (of explore: a row for each planner, or for each flight), replays, depth (of map --depth monocular), or paper (of sweep).
+With KIND text, one file is quoted as it is.
 The table is enclosed in <!-- measured NAME --> and <!-- end -->, as in the pages.
 """
 
@@ -128,8 +128,20 @@ def depthRows(label, result):
     }
 
 
+def paperRows(label, result):
+    """Our first planner beside the paper's Table I."""
+    for s in result["summary"]:
+        if s["planner"] != result["planners"][0]:
+            continue
+        row = {"config": label, "α": f"{s['alpha']:g}"}
+        for name, key, digits in (("length [m]", "length", 2), ("mean trace [m²]", "mean_trace", 4), ("goal trace [m²]", "goal_trace", 4)):
+            row[name] = number(s[f"{key}_mean"], digits)
+            row[f"paper's {name.split(' [')[0]}"] = number(s[f"paper_{key}"], digits)
+        yield row
+
+
 KINDS = {"flights": flightRows, "explorations": explorationRows, "trials": trialRows, "replays": replayRows,
-         "depth": depthRows}
+         "depth": depthRows, "paper": paperRows}
 
 
 def table(rows):
