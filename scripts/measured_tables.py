@@ -57,7 +57,7 @@ def flightRows(label, result):
 def explorationRows(label, result):
     for s in result["summary"]:
         trials = [trial for trial in result["trials"] if trial["planner"] == s["planner"]]
-        counts = {}
+        counts = dict.fromkeys(ENDS, 0)
         for trial in trials:
             name = trial["end"].removesuffix(" arrival")
             counts[name] = counts.get(name, 0) + 1
