@@ -90,8 +90,10 @@ FlyablePart flyablePart(const std::vector<BeliefPoint>& path, const SpaceAhead& 
         least = std::max(least, std::min(space.radius, now) - kSlack);
         return now < least;
     });
+    // What a camera that can be turned there does not see of its own surroundings, it looks at.
+    const double near = space.radius + (space.canLook ? 0. : space.hidden);
     const auto isNew = [&](const Eigen::Vector3d& p_w) {
-        return (p_w - here).norm() > space.radius + space.hidden && !space.isSeen(p_w);
+        return (p_w - here).norm() > near && !space.isSeen(p_w);
     };
     const Stop unseen =
         firstWhere(path, [&](const Eigen::Vector3d& p_w, const Eigen::Vector3d& leg) {

@@ -15,7 +15,8 @@ struct SpaceAhead {
     std::function<double(const Eigen::Vector3d& p_w)> clearance;  ///< in the present map [m]
     std::function<bool(const Eigen::Vector3d& p_w)> isSeen;       ///< there or below
     double radius = 0.;                                           ///< that must stay free [m]
-    double hidden = 0.;    ///< around the robot, that its tilted camera does not see [m]
+    double hidden = 0.;    ///< around the robot, that its tilted camera does not see: a robot that
+                           ///< cannot look there flies there all the same [m]
     bool canLook = false;  ///< the robot turns its camera ahead by its heading
 };
 

@@ -61,10 +61,15 @@ TEST(FlyablePart, BothSidesMustHaveBeenSeen) {
     }
 }
 
-/// A tilted camera never sees the places beside and behind the robot.
-TEST(FlyablePart, NeedNotBeSeenRightAroundTheRobot) {
+/// A tilted camera does not see the places beside and behind the robot: where it can be turned, it
+/// is, and else a robot could not fly there.
+TEST(FlyablePart, NeedNotBeSeenRightAroundARobotThatCannotLook) {
     SpaceAhead space = openSpace();
     space.isSeen = [](const Vector3d& p_w) { return p_w.norm() > 1.15; };  // 0.57 m around it
+    const FlyablePart look = flyablePart(straightPath(2.), space);
+    EXPECT_EQ(endOf(look), 0.);
+    EXPECT_NEAR(yawOf(look.plan.back().T_w_b), 0., 1e-9);
+    space.canLook = false;
     EXPECT_TRUE(flyablePart(straightPath(0.), space).isWhole);
     space.hidden = 0.2;
     EXPECT_FALSE(flyablePart(straightPath(0.), space).isWhole);
