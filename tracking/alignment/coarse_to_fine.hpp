@@ -63,7 +63,7 @@ class Comparison {
                                            const Exposure& exposure, const Loss& loss) = 0;
     /// Motion since the image that the model's depth was measured with; identity for maps.
     virtual Pose sinceModel(const Pose& /*T_c_w*/) const { return Pose::Identity(); }
-    /// See ResidualStatistics. @param depth mean depth of the view [m]
+    /// See ResidualStatistics; at the mean depth of the view [m].
     virtual double finerThanModel(double /*depth*/) const { return 0.; }
     /// Robust standard deviation of the residuals of the last comparison.
     virtual double robustSigma() const = 0;
