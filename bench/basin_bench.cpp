@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The basin of convergence: success rate of alignments without a prior, by initial offset, and how
-// often a wrong pose is accepted. The tables of docs/tracking.md.
+// often a wrong pose is accepted. The tables of docs/experiments/tracking.md.
 // Usage: basin_bench [trials per cell]
 #include <fmt/format.h>
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Are predicted covariances consistent? NEES per degree of freedom of simulated alignments and
 // flights, with independent noise and with the noise of a real camera, before and after
-// calibration. The numbers of docs/tracking.md. Usage: consistency_bench [alignments per row]
+// calibration. The numbers of docs/experiments/tracking.md. Usage: consistency_bench [alignments
+// per row]
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -2,7 +2,8 @@
 // Are covariances right where nothing was fitted? Images that no model here can make (pixels
 // average over their area, with noise, with a lens, with another light) are localised in a mesh and
 // in maps of cells, and aligned to images with depth, with one set of defaults. A table of
-// docs/tracking.md. Usage: residual_covariance_bench [alignments per row [largest width]]
+// docs/experiments/tracking.md. Usage: residual_covariance_bench [alignments per row [largest
+// width]]
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -183,7 +183,8 @@ AlignmentOptions alignmentOf(const ReplayOptions& options, const Sequence& seque
 void setWidth(KeyframeOptions& keyframe, const Camera& camera, int maxWidth) {
     keyframe.finest = 0;
     while (static_cast<int>(camera.width >> keyframe.finest) > maxWidth) ++keyframe.finest;
-    // Of all pixels only those with a gradient: faster, and as accurate (docs/replay.md).
+    // Of all pixels only those with a gradient: faster, and as accurate
+    // (docs/experiments/replays.md).
     if (keyframe.finest == 0) keyframe.minGradient = 0.02;
 }
 
