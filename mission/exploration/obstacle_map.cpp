@@ -22,18 +22,13 @@ Brick statesOf(const TexturedOcTree& map, const Eigen::Array3i& brick) {
     Brick states{};
     const TexturedOcTreeNode* node = findBrick(map, brick);
     if (node == nullptr) return states;
-    visitLeaves(map, *node,
-                [&](const TexturedOcTreeNode& leaf, const Eigen::Array3i& at, int edge) {
-                    const CellState state =
-                        map.isNodeOccupied(leaf) ? CellState::occupied : CellState::free;
-                    for (int z = at.z(); z < at.z() + edge; ++z) {
-                        for (int y = at.y(); y < at.y() + edge; ++y) {
-                            for (int x = at.x(); x < at.x() + edge; ++x) {
-                                states[(z * kEdge + y) * kEdge + x] = state;
-                            }
-                        }
-                    }
-                });
+    visitLeaves(
+        map, *node, [&](const TexturedOcTreeNode& leaf, const Eigen::Array3i& at, int edge) {
+            const CellState state =
+                map.isNodeOccupied(leaf) ? CellState::occupied : CellState::free;
+            visitCells(at, edge,
+                       [&](int x, int y, int z) { states[(z * kEdge + y) * kEdge + x] = state; });
+        });
     return states;
 }
 

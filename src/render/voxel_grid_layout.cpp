@@ -81,13 +81,11 @@ CellBox boundingBox(const TexturedOcTree& map) {
     return box;
 }
 
-bool layOut(const CellBox& box, VoxelGrid& grid) {
+void layOut(const CellBox& box, VoxelGrid& grid) {
     const CellBox held{grid.first, grid.first + grid.size};
     const CellBox needed = box.grown(1);
-    const bool fits = (needed.low >= held.low).all() && (needed.high <= held.high).all();
-    if (!fits) moveTo(roomFor(needed, held), grid);
+    if (!held.contains(needed)) moveTo(roomFor(needed, held), grid);
     grid.box = {box.low - grid.first, box.high - grid.first};
-    return !fits;
 }
 
 void moveTo(const CellBox& space, VoxelGrid& grid) {

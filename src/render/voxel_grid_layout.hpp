@@ -13,9 +13,8 @@ CellBox boundingBox(const TexturedOcTree& map);
 
 /// Makes `box` (world indices) the box of the grid. Where it does not fit, the grid is moved to a
 /// larger space, with room to grow if it had any before.
-/// @returns whether it was moved
 /// @throws std::invalid_argument when the box has more than 2^31 cells
-bool layOut(const CellBox& box, VoxelGrid& grid);
+void layOut(const CellBox& box, VoxelGrid& grid);
 
 /// Moves the grid to a space of whole bricks (world indices) around the one it has, with all that
 /// it holds but VoxelGrid::box. In new bricks no cell ends rays, and they have no box.

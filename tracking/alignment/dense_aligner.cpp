@@ -58,8 +58,7 @@ class DenseAligner::RenderedModel : public Comparison {
     const Camera& camera(std::size_t level) const override { return levels_[level].camera; }
     std::size_t pixels() const override { return std::size_t(camera(0).width) * camera(0).height; }
     double finerThanModel(double depth) const override {
-        const double cell = options_.cellSize * camera(0).fx() / depth;
-        return cell > 0. ? finerThan(cell, levels_[0].observed) : 0.;
+        return finerThan(options_.cellSize, depth, camera(0), levels_[0].observed);
     }
     double robustSigma() const override { return levels_[last_].compare.robustSigma(); }
 

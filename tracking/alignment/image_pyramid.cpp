@@ -59,7 +59,9 @@ ImageF widened(const ImageF& image, double variance) {
     return result;
 }
 
-double finerThan(double cell, const ImageF& image) {
+double finerThan(double cellSize, double depth, const Camera& camera, const ImageF& image) {
+    const double cell = cellSize * camera.fx() / depth;  // [pixels]
+    if (!(cell > 0.)) return 0.;
     const cv::Mat sharp = asMat(image);
     cv::Mat smooth;
     cv::GaussianBlur(sharp, smooth, {}, 0.5 * cell);

@@ -27,11 +27,12 @@ ImageF widened(const ImageF& image, double variance);
 /// 1 / scale pixels, as if it had been smoothed by a Gaussian, loses less than white noise.
 double noiseAfterWidening(double variance, double scale);
 
-/// Mean square of what an image shows finer than cells of this size, noise included. The texture of
+/// Mean square of what an image shows finer than a map's cells, noise included. The texture of
 /// cells, means over their area interpolated between their centres, is that of the surface smoothed
 /// with variance 1/12 + 1/6 of the squared edge.
-/// @param cell edge [pixels]
-double finerThan(double cell, const ImageF& image);
+/// @param cellSize edge [m]; 0: no cells, of which nothing is finer
+/// @param depth mean depth of the view [m]
+double finerThan(double cellSize, double depth, const Camera& camera, const ImageF& image);
 
 /// Half the size with the sharpness of a view rendered at that size: the binomial filter of 8 taps
 /// (variance 7/4) turns the point spread of the large image (variance 1/2 of its pixels) into pixel

@@ -222,8 +222,8 @@ std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const Uncert
 /// @param depth of the surfaces in view, mean [m]
 double WideAligner::residualVariance(const ImageF& observed, double depth) const {
     const double noise = std::pow(aligner_.options().photometric.sigma, 2);
-    const double cell = aligner_.options().cellSize * aligner_.camera().fx() / depth;
-    return cell > 0. ? std::max(noise, finerThan(cell, observed)) : noise;
+    const double cell = aligner_.options().cellSize;
+    return std::max(noise, finerThan(cell, depth, aligner_.camera(), observed));
 }
 
 double WideAligner::pixels() const {
