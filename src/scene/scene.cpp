@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/scene.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <stdexcept>
 
@@ -47,6 +49,16 @@ WallSides wallSides(const Wall& wall) {
 void addQuad(Scene& scene, const std::array<Eigen::Vector3d, 4>& corners, std::uint32_t texture,
              const Eigen::Vector2d& offset) {
     if (texture >= scene.textures.size()) throw std::invalid_argument("scene: no such texture");
+    for (const Eigen::Vector3d& corner : corners) {
+        if (!(corner.array().abs() <= kFarthestSurface).all()) {
+            throw std::invalid_argument(fmt::format(
+                "scene: surface farther than {:g} m from the origin", kFarthestSurface));
+        }
+    }
+    if (!(offset.array().abs() <= kFarthestSurface).all()) {
+        throw std::invalid_argument(
+            fmt::format("scene: texture offset beyond {:g} m", kFarthestSurface));
+    }
     const Eigen::Vector3d u = (corners[1] - corners[0]).normalized();
     const Eigen::Vector3d across = corners[3] - corners[0];
     const Eigen::Vector3d v = (across - across.dot(u) * u).normalized();

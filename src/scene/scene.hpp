@@ -43,9 +43,14 @@ Scene loadScene(const std::string& file);
 /// Adds a texture and returns its index, which surfaces refer to.
 std::uint32_t addTexture(Scene& scene, Texture texture);
 
+/// The farthest that a surface may be from the origin along an axis [m]; single precision tells
+/// centimetres apart there.
+inline constexpr double kFarthestSurface = 1e5;
+
 /// A parallelogram with corner, corner + u, corner + v. Texture coordinates run along u and v in
 /// metres from the corner; seen from where u points right and v points down an image is upright.
 /// @param offset texture position at the corner [m]
+/// @throws std::invalid_argument for a surface without area or beyond kFarthestSurface
 void addPlane(Scene& scene, const Eigen::Vector3d& corner, const Eigen::Vector3d& u,
               const Eigen::Vector3d& v, std::uint32_t texture,
               const Eigen::Vector2d& offset = Eigen::Vector2d::Zero());

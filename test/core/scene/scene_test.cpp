@@ -160,6 +160,15 @@ TEST(SceneYaml, ComplaintsNameFileKeyAndReason) {
               file + ": textures[0].file: no such image '" + folder.file("no.png") + "'");
     EXPECT_EQ(complaint(white + "boxes: [{min: [0, 0, 0], max: [1, 0, 1], texture: white}]"),
               file + ": boxes[0].max: box: max must be beyond min");
+    const std::string square = "u: [1, 0, 0], v: [0, 1, 0], texture: white";
+    EXPECT_EQ(complaint(white + "planes: [{corner: [0, 0, 1e39], " + square + "}]"),
+              file + ": planes[0].u: scene: surface farther than 100000 m from the origin");
+    EXPECT_EQ(
+        complaint(white + "planes: [{corner: [0, 0, 0], offset: [1e308, 0], " + square + "}]"),
+        file + ": planes[0].u: scene: texture offset beyond 100000 m");
+    EXPECT_EQ(
+        complaint(white + "walls: [{footprint: [[0, 0], [1, 0]], height: 1e39, texture: white}]"),
+        file + ": walls[0].footprint: scene: surface farther than 100000 m from the origin");
     EXPECT_EQ(complaint(white + "planes: [{corner: [0, 0, 0], u: [1, 0, 0], texture: white}]"),
               file + ": planes[0].v: missing");
     EXPECT_EQ(complaint(white), file + ": the scene has no surfaces");
