@@ -20,6 +20,11 @@ const CLI::Validator& notEmpty() {
     return validator;
 }
 
+/// The list that somebody typed, with or without its brackets, as help and files write it.
+std::string asList(const std::string& typed) {
+    return typed.starts_with("[") ? typed : "[" + typed + "]";
+}
+
 /// Sets a key. @returns why it cannot be set, or nothing
 std::string complaintAbout(const ConfigKey& key, const std::string& text) {
     try {
@@ -79,9 +84,7 @@ void addSeed(CLI::App& parser, std::vector<std::string>& overrides, const std::s
 
 void addPlanners(CLI::App& parser, std::vector<std::string>& overrides, const std::string& key,
                  const std::string& name) {
-    addValue(parser, overrides, name, key, "names of planners: a,b,c",
-             [](const std::string& typed) { return "[" + typed + "]"; })
-        ->type_name("NAMES");
+    addValue(parser, overrides, name, key, "names of planners: a,b,c", asList)->type_name("NAMES");
 }
 
 void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig) {
@@ -117,7 +120,7 @@ std::string optionOf(const ConfigKey& key) {
 }
 
 std::string valueOf(const ConfigKey& key, const std::string& text) {
-    return key.allowed.starts_with("`[") ? "[" + text + "]" : text;
+    return key.allowed.starts_with("`[") ? asList(text) : text;
 }
 
 void addKeyOptions(CLI::App& parser, const KeyTable& keys, const std::set<std::string>& without) {

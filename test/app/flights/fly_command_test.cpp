@@ -223,6 +223,7 @@ TEST_F(FlyCommand, RejectsBadInput) {
         EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
     };
     expect(fly("x", "--blackout 3"), "--blackout: expected 2 numbers, found 1");
+    expect(fly("x", "--blackout [3]"), "--blackout: expected 2 numbers, found 1");
     expect(fly("x", "--flights 0"), "--flights");
     expect(fly("x", "--scale 0"), "--scale: 0 is outside [1e-12, 1e+12]");
     expect(fly("x", "--least-sigma -1"), "--least-sigma: -1 is outside [0, 1000]");
