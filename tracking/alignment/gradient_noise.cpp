@@ -23,7 +23,8 @@ void GradientNoise::add(double x, double y, double w) {
 
 Matrix8 GradientNoise::subtractFrom(NormalEquations& e, const Eigen::Vector2d& notShared,
                                     double most, const Vector6& unit) const {
-    if (points_ < 1. || e.count < 1.) return Matrix8::Identity();
+    // Two equations a point, six unknowns: of fewer points the noise has no inverse.
+    if (points_ < 3. || e.count < 1.) return Matrix8::Identity();
     const auto variance = [&](double sum) {
         return kNoiseMargin * std::clamp(sum / e.count, kMinNoise, most);
     };
@@ -33,7 +34,7 @@ Matrix8 GradientNoise::subtractFrom(NormalEquations& e, const Eigen::Vector2d& n
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(e.AtA.topLeftCorner<6, 6>(),
                                                                    noise);
     const Vector6 kept = 1. - solver.eigenvalues().array().max(1.).inverse();
-    if (!kept.allFinite()) return Matrix8::Identity();  // fewer points than unknowns
+    if (!kept.allFinite()) return Matrix8::Identity();
     Matrix8 D = Matrix8::Identity();
     D.topLeftCorner<6, 6>() =
         solver.eigenvectors() * kept.asDiagonal() * solver.eigenvectors().transpose() * noise;
