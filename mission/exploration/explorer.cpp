@@ -133,7 +133,7 @@ void Explorer::stopIfInterrupted() const {
     if (interrupted_) throw RenderingStopped();
 }
 
-/// Whether the robot is where its plan ends for now.
+/// Whether the robot is where its present plan ends, short of the goal.
 bool Explorer::isWaiting() const {
     return !isWhole_ && (pilot_.route().isAtGoal() || time_ - lastUpdate_ > kWait);
 }

@@ -146,7 +146,7 @@ class BeliefPlanner : public ompl::base::Planner {
     /// Called when solve() begins.
     virtual void begin(const ompl::base::PlannerTerminationCondition&) {}
 
-    /// Called before solve() returns, when the vertex set is final for now.
+    /// Called before solve() returns, when it adds no more vertices.
     virtual void finish(const ompl::base::PlannerTerminationCondition&) {}
 
     /// Estimated duration of finish() [s]: growth ends that long before the deadline.

@@ -9,6 +9,9 @@ namespace {
 
 constexpr double kMinNoise = 1e-8;    // variance of a gradient, to avoid division by 0
 constexpr double kNoiseMargin = 1.2;  // for chance: pure noise then has no information
+// Of V^T N V = 1. Where the points do not determine a pose (one point, points on a line), N has no
+// inverse. Its factorisation may then divide by rounding errors and not fail.
+constexpr double kMostError = 1e-6;
 
 }  // namespace
 
@@ -23,8 +26,7 @@ void GradientNoise::add(double x, double y, double w) {
 
 Matrix8 GradientNoise::subtractFrom(NormalEquations& e, const Eigen::Vector2d& notShared,
                                     double most, const Vector6& unit) const {
-    // Two equations a point, six unknowns: of fewer points the noise has no inverse.
-    if (points_ < 3. || e.count < 1.) return Matrix8::Identity();
+    if (points_ < 1. || e.count < 1.) return Matrix8::Identity();
     const auto variance = [&](double sum) {
         return kNoiseMargin * std::clamp(sum / e.count, kMinNoise, most);
     };
@@ -33,11 +35,12 @@ Matrix8 GradientNoise::subtractFrom(NormalEquations& e, const Eigen::Vector2d& n
     const Matrix6 noise = e.AtA(7, 7) * (unit.asDiagonal() * perPoint * unit.asDiagonal());
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(e.AtA.topLeftCorner<6, 6>(),
                                                                    noise);
+    const Matrix6& V = solver.eigenvectors();
+    const double error = (V.transpose() * noise * V - Matrix6::Identity()).norm();
+    if (!(error < kMostError)) return Matrix8::Identity();
     const Vector6 kept = 1. - solver.eigenvalues().array().max(1.).inverse();
-    if (!kept.allFinite()) return Matrix8::Identity();
     Matrix8 D = Matrix8::Identity();
-    D.topLeftCorner<6, 6>() =
-        solver.eigenvectors() * kept.asDiagonal() * solver.eigenvectors().transpose() * noise;
+    D.topLeftCorner<6, 6>() = V * kept.asDiagonal() * V.transpose() * noise;
     e.AtA = D.transpose() * e.AtA * D;
     e.Atr = D.transpose() * e.Atr;
     return D;
