@@ -34,7 +34,7 @@ set(folders_mission_replay io geometry photometry render dataset evaluation alig
 set(folders_mission_robot estimation control)
 set(folders_mission_simulation geometry photometry render alignment depth estimation control robot)
 set(folders_mission_flight io geometry photometry render dataset evaluation belief estimation control result
-    config problem robot simulation)
+    config problem runs robot simulation)
 set(folders_mission_check io geometry photometry render dataset alignment estimation result config problem
     flight)
 set(folders_mission_exploration io geometry photometry map render evaluation belief planners alignment depth

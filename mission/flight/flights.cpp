@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flight/flights.hpp"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <mutex>
 
 #include "render/interruptible_views.hpp"
+#include "runs/work_items.hpp"
 
 namespace photonav {
 
@@ -29,23 +27,23 @@ std::vector<FlightResult> flyMany(const std::vector<PlannedView>& plan, const Fl
     FlightWorld stoppable = world;
     if (world.truth) stoppable.truth = std::make_shared<InterruptibleViews>(world.truth, isStopped);
     if (world.map) stoppable.map = std::make_shared<InterruptibleViews>(world.map, isStopped);
-    const auto flyOne = [&](unsigned number) {
-        if (interrupted) return;
+    const auto flyOne = [&](std::size_t number) {
+        if (interrupted) return false;
         FlightOptions own = options;
         own.seed = (options.seed << 32) + number;
         FlightResult& flight = flights[number];
         try {
             flight = fly(plan, stoppable, own, isStopped, number == 0 ? onExposure : OnExposure{});
         } catch (const RenderingStopped&) {
-            return;
+            return false;
         }
         flight.number = number;
-        if (!onFlight || flight.end == FlightEnd::stopped) return;
+        if (!onFlight || flight.end == FlightEnd::stopped) return true;
         const std::lock_guard lock(mutex);
         onFlight(flight);
+        return true;
     };
-    tbb::task_arena arena(static_cast<int>(jobs));
-    arena.execute([&] { tbb::parallel_for(0U, count, 1U, flyOne, tbb::simple_partitioner{}); });
+    workInOrder(count, jobs, flyOne);
     std::erase_if(flights, [](const FlightResult& f) { return f.end == FlightEnd::stopped; });
     return flights;
 }
