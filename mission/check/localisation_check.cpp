@@ -109,9 +109,9 @@ class Walk {
           T_b_c_(config.camera.T_b_c()),
           images_(views, camera_, config.photometric, alignmentIn(config, world)),
           loss_(options_, camera_) {
-        const Matrix6 toCamera = adjoint(T_b_c_.inverse());
-        belief_.covariance = toCamera * config.belief.initialCovariance * toCamera.transpose();
-        noise_ = toCamera * config.belief.motionNoise * toCamera.transpose();
+        const Pose T_c_b = T_b_c_.inverse();
+        belief_.covariance = inOtherFrame(config.belief.initialCovariance, T_c_b);
+        noise_ = inOtherFrame(config.belief.motionNoise, T_c_b);
     }
 
     CheckedPlace begin(const WayPlace& at) {

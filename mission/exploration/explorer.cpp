@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "geometry/se3.hpp"
 #include "io/stopwatch.hpp"
 #include "render/interruptible_views.hpp"
 
@@ -24,11 +23,6 @@ constexpr double kMostAtGoal = 30.;   // around the goal without an arrival, bef
                                       // as certain as it is [s]
 constexpr double kAroundGoal = 2.;    // [m]
 constexpr double kWait = 1.;  // before an update without a keyframe, while nothing moves [s]
-
-Matrix6 inCameraFrame(const Matrix6& covariance, const Pose& T_b_c) {
-    const Matrix6 toCamera = adjoint(T_b_c.inverse());
-    return toCamera * covariance * toCamera.transpose();
-}
 
 /// Flown from the exposure of an image that shows an obstacle until the robot stands, at full speed
 /// and if the image after it is missing.
@@ -88,7 +82,8 @@ UncertainPose beliefAtTakeOff(const Config& config) {
     Pose T_w_b = Pose::Identity();
     T_w_b.translation() = start.position;
     T_w_b.rotate(Eigen::AngleAxisd(start.yaw.value_or(0.), Eigen::Vector3d::UnitZ()));
-    return {(T_w_b * T_b_c).inverse(), inCameraFrame(config.explore.initialCovariance, T_b_c)};
+    return {(T_w_b * T_b_c).inverse(),
+            inOtherFrame(config.explore.initialCovariance, T_b_c.inverse())};
 }
 
 Explorer::Explorer(const ExplorerOptions& options, const Robot& robot, const std::string& planner,

@@ -52,9 +52,9 @@ BeliefModel::BeliefModel(const FlightSpace& space, std::shared_ptr<InformationFi
                          const BeliefOptions& options)
     : space_(space), field_(std::move(field)), options_(options) {
     options_.check();
-    const Matrix6 toCamera = adjoint(field_->mount().inverse());
-    initialCamera_ = toCamera * options_.initialCovariance * toCamera.transpose();
-    noiseCamera_ = toCamera * options_.motionNoise * toCamera.transpose();
+    const Pose T_c_b = field_->mount().inverse();
+    initialCamera_ = inOtherFrame(options_.initialCovariance, T_c_b);
+    noiseCamera_ = inOtherFrame(options_.motionNoise, T_c_b);
 }
 
 Belief BeliefModel::root(const ob::State* start) {

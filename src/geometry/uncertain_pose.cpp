@@ -132,9 +132,13 @@ UncertainPose compound(const UncertainPose& T_c_b, const UncertainPose& T_b_a,
                 .covariance};
 }
 
+Matrix6 inOtherFrame(const Matrix6& covariance, const Pose& T_b_a) {
+    return transport(adjoint(T_b_a), covariance);
+}
+
 UncertainPose inverse(const UncertainPose& T_b_a) {
     const Pose T_a_b = T_b_a.mean.inverse();
-    return {T_a_b, transport(adjoint(T_a_b), T_b_a.covariance)};
+    return {T_a_b, inOtherFrame(T_b_a.covariance, T_a_b)};
 }
 
 Matrix6 updateCovariance(const Matrix6& covariance, const Matrix6& information) {

@@ -145,6 +145,19 @@ TEST(Compound, TraceDoesNotDependOnTheWorldOrigin) {
 
 // --- Inverse ----------------------------------------------------------------------------------
 
+TEST(OtherFrame, IsTheAdjointSandwichAndSymmetric) {
+    std::srand(9);
+    for (int i = 0; i < 20; ++i) {
+        const Matrix6 covariance = randomCovariance(1., 0.1);
+        const Pose T_b_a = randomPose();
+        const Matrix6 inB = inOtherFrame(covariance, T_b_a);
+        EXPECT_EQ(inB, inB.transpose());
+        const Matrix6 Ad = adjoint(T_b_a);
+        EXPECT_TRUE(sameCovariance(inB, Ad * covariance * Ad.transpose(), 1e-12));
+        EXPECT_TRUE(sameCovariance(inOtherFrame(inB, T_b_a.inverse()), covariance, 1e-9));
+    }
+}
+
 TEST(Inverse, CarriesTheSamePerturbation) {
     std::srand(7);
     const UncertainPose T_b_a{randomPose(), randomCovariance(0.1, 0.05)};
