@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/predicted_image.hpp"
 
+#include "alignment/conclusion.hpp"
+
 namespace photonav {
 
 ImagePredictor::ImagePredictor(const ViewSource& map, const Camera& camera,
@@ -16,13 +18,13 @@ PredictedImage ImagePredictor::at(const Pose& T_c_w) {
     map_.render(camera_, T_c_w, view_);
     PredictedImage image{photometricInformation(view_, camera_, photometric_), {}};
     const NormalEquations equations = comparison_(view_, view_.intensity, Exposure{}, Loss{});
-    const MeasuredInformation measured{
-        poseEquations(equations, alignment_.photometric, alignment_.exposure), Matrix6::Zero()};
     image.alignment.T_c_w = T_c_w;
     image.alignment.verdict = Verdict::converged;
-    conclude(image.alignment, equations, view_.intensity.getSize(), measured,
-             alignment_.photometric.sigma, 0., alignment_.exposure.has_value(), {},
-             alignment_.trust);
+    conclude(image.alignment,
+             {.equations = equations,
+              .pixels = view_.intensity.getSize(),
+              .image = {poseEquations(equations, alignment_.photometric, alignment_.exposure)}},
+             alignment_);
     return image;
 }
 

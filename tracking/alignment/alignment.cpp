@@ -4,62 +4,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
 #include <cmath>
 
 #include "alignment/residual_covariance.hpp"
 
 namespace photonav {
-
-namespace {
-
-ResidualStatistics statisticsOf(const NormalEquations& e, const Exposure& exposure) {
-    ResidualStatistics s;
-    if (e.count < 1.) return s;
-    const double n = e.count;
-    s.mean = e.sum / n;
-    s.rms = std::sqrt(e.sumSquares / n);
-    const double meanI = e.sumPredicted / n;
-    const double g = exposure.gain;
-    const double varianceI = e.sumPredictedSquares / n - meanI * meanI;
-    const double varianceR = e.sumSquares / n - s.mean * s.mean;
-    const double covariance = e.sumPredictedTimesR / n - meanI * s.mean;
-    const double variance = varianceR + 2. * g * covariance + g * g * varianceI;  // of the image
-    const double both = variance + g * g * varianceI;
-    s.explained = variance - e.sumSquares / n;
-    // Two uniform images are either equal or unrelated.
-    const double without = e.sumSquares > 0. ? 1. : 0.;
-    s.unexplained = both > 0. ? std::min(1., e.sumSquares / n / both) : without;
-    return s;
-}
-
-/// Axes that lie most in the space spanned by the first `count` columns: pivots of the projector.
-std::vector<std::string> axesOf(const Matrix6& directions, int count) {
-    Matrix6 projector = directions.leftCols(count) * directions.leftCols(count).transpose();
-    std::array<bool, 6> open = {};
-    for (int k = 0; k < count; ++k) {
-        Eigen::Index axis = 0;
-        projector.diagonal().maxCoeff(&axis);
-        open[static_cast<std::size_t>(axis)] = true;
-        const Vector6 column = projector.col(axis) / std::sqrt(projector(axis, axis));
-        projector -= column * column.transpose();
-    }
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < open.size(); ++i) {
-        if (open[i]) names.emplace_back(kAxes.at(i));
-    }
-    return names;
-}
-
-Matrix6 covarianceWithoutPrior(const Spectrum& s) {
-    const Vector6 variance = s.values.cwiseMax(1.).cwiseInverse();
-    const Matrix6 V = s.unit.asDiagonal() * s.directions;
-    return V * variance.asDiagonal() * V.transpose();
-}
-
-bool isAtLimit(double gain, double most) { return gain > 0.999 * most || gain * most < 1.001; }
-
-}  // namespace
 
 std::string describe(const Alignment& a, const TrustOptions& options) {
     switch (a.verdict) {
@@ -132,37 +81,6 @@ Vector6 posteriorStep(const Spectrum& s, const PoseEquations& equations, const V
     information.diagonal() += damping * s.values.mean() * s.unit.cwiseAbs2().cwiseInverse();
     const Matrix6 left = Matrix6::Identity() + P * information;
     return left.partialPivLu().solve(P * equations.right - e);
-}
-
-void conclude(Alignment& a, const NormalEquations& equations, std::size_t pixels,
-              const MeasuredInformation& image, double sigma, double finer,
-              bool isExposureEstimated, const std::optional<Matrix6>& prior,
-              const TrustOptions& options) {
-    a.overlap = equations.count / static_cast<double>(pixels);
-    a.residual = statisticsOf(equations, a.exposure);
-    a.residual.finer = finer;
-    a.meanDepth = equations.meanInverseDepth > 0. ? 1. / equations.meanInverseDepth : 1.;
-    a.information = image.equations.information;
-    const Spectrum s = spectrum(a.information, a.meanDepth);
-    a.eigenvalues = s.values;
-    a.directions = s.directions;
-    const Matrix6 covariance = prior ? posteriorCovariance(*prior, a.information, image.repeating)
-                                     : covarianceWithoutPrior(s);
-    a.covariance = withLeastSigma(covariance, options.leastSigma, options.leastSigmaRotation);
-    const double least = 1. / (options.openSigma * options.openSigma);
-    const int open = static_cast<int>((s.values.array() < least).count());
-    a.openDirections = axesOf(s.directions, open);
-
-    const double noise = options.residualSigmas * sigma;
-    if (a.overlap < options.minOverlap) {
-        a.verdict = Verdict::lostOverlap;
-    } else if (a.residual.rms > noise && a.residual.unexplainedCoarse() > options.maxUnexplained) {
-        a.verdict = Verdict::lostResidual;
-    } else if (isExposureEstimated && isAtLimit(a.exposure.gain, options.maxGain)) {
-        a.verdict = Verdict::lostExposure;
-    } else if (!isLost(a.verdict)) {
-        a.verdict = open > 0 ? Verdict::degenerate : Verdict::converged;
-    }
 }
 
 Matrix6 withLeastSigma(const Matrix6& covariance, double translation, double rotation) {

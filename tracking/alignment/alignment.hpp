@@ -163,19 +163,6 @@ Vector6 imageStep(const Spectrum& spectrum, const Vector6& right, double minEige
 Vector6 posteriorStep(const Spectrum& spectrum, const PoseEquations& equations, const Vector6& e,
                       const Matrix6& P, double damping);
 
-struct MeasuredInformation;
-
-/// Completes an alignment from the equations of its last iterate: statistics, information,
-/// covariance and verdict.
-/// @param image the information of the image about the pose
-/// @param sigma noise of the image [grey value]
-/// @param finer see ResidualStatistics
-/// @param prior transported covariance at alignment.T_c_w, if there is one
-void conclude(Alignment& alignment, const NormalEquations& equations, std::size_t pixels,
-              const MeasuredInformation& image, double sigma, double finer,
-              bool isExposureEstimated, const std::optional<Matrix6>& prior,
-              const TrustOptions& options);
-
 /// The covariance, raised along the axes where it is below the least standard deviations
 /// (eigenvalues relative to their squares, clipped at 1). 0: no least one.
 /// @param translation least standard deviation [m]

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "alignment/conclusion.hpp"
 #include "alignment/measured_slope.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
@@ -257,10 +258,10 @@ Alignment Search::run(const Pose& T_start) {
     if (prior_ && at_.priorTerm > options_.trust.maxPriorDistance) {
         result.verdict = Verdict::lostImplausible;
     }
-    const NormalEquations last = confined(at_.equations, slope_);
-    conclude(result, last, comparison_.pixels(), image, options_.photometric.sigma,
-             finerThanModel(last), options_.exposure.has_value(), transportedPrior(),
-             options_.trust);
+    LastIterate last{confined(at_.equations, slope_), comparison_.pixels(), image};
+    last.finer = finerThanModel(last.equations);
+    last.prior = transportedPrior();
+    conclude(result, last, options_);
     result.residual.robustSigma = comparison_.robustSigma();
     return result;
 }
