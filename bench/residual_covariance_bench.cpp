@@ -170,7 +170,7 @@ std::shared_ptr<TexturedOcTree> mapOf(const Place& place, double resolution) {
 
 /// As `photonav replay --map`.
 AlignmentOptions optionsIn(MapKind kind, double cellSize) {
-    AlignmentOptions options = realCameraOptions(comparedBlur(kind, kAreaBlur));
+    AlignmentOptions options = realCameraOptions(kAreaBlur);
     options.modelErrors.surface = surfaceError(kind, cellSize);
     options.cellSize = kind == MapKind::mesh ? 0. : cellSize;
     options.robust = RobustWeight::huber;

@@ -22,7 +22,7 @@ set(folders_tracking_estimation geometry photometry map dataset alignment)
 set(folders_tracking_control geometry photometry alignment estimation)
 set(folders_mission_result geometry)
 set(folders_mission_config io geometry photometry map render belief planners)
-set(folders_mission_problem io geometry photometry scene map render belief planners alignment result config)
+set(folders_mission_problem io geometry photometry scene map render belief planners result config)
 set(folders_mission_servo geometry render evaluation control result simulation)
 set(folders_mission_runs io scene result config)
 set(folders_mission_sweep io geometry render space planners result problem runs)
@@ -31,7 +31,7 @@ set(folders_mission_recording io geometry photometry bag dataset evaluation alig
 set(folders_mission_mapping io map dataset evaluation depth result config recording)
 set(folders_mission_replay io geometry photometry render dataset evaluation alignment estimation result config
     problem recording mapping)
-set(folders_mission_robot estimation control)
+set(folders_mission_robot render estimation control)
 set(folders_mission_simulation geometry photometry render alignment depth estimation control robot)
 set(folders_mission_flight io geometry photometry render dataset evaluation belief estimation control result
     config problem runs robot simulation)

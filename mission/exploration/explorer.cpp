@@ -42,9 +42,8 @@ double stoppingRadius(const ExplorerOptions& options, double distance) {
     return std::min(config.robotRadius, options.bodyRadius + 3. * std::sqrt(variance));
 }
 
-TrackerOptions trackerFor(const ExplorerOptions& options, const Robot& robot, const OwnMap& map) {
+TrackerOptions trackerFor(const ExplorerOptions& options, const OwnMap& map) {
     TrackerOptions tracker = options.tracker;
-    tracker.T_b_c = robot.T_b_c();
     tracker.mapErrors = map.errors();
     return tracker;
 }
@@ -95,9 +94,9 @@ Explorer::Explorer(const ExplorerOptions& options, const Robot& robot, const std
       on_(std::move(on)),
       map_(config_),
       planner_(config_, map_, explorePlanner(planner), seed),
-      tracker_(views(), camera_, beliefAtTakeOff(config_), trackerFor(options, robot, map_)),
-      pilot_(stayingAt(beliefAtTakeOff(config_), T_b_c_), views(), camera_, T_b_c_,
-             pilotFor(options, planner_)),
+      tracker_(trackerOf(robot, views(), beliefAtTakeOff(config_), trackerFor(options, map_))),
+      pilot_(pilotOf(robot, stayingAt(beliefAtTakeOff(config_), T_b_c_), views(),
+                     pilotFor(options, planner_))),
       mapper_(config_, map_),
       toStop_(stoppingDistance(options)),
       tube_(stoppingRadius(options, toStop_)) {

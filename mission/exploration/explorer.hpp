@@ -22,7 +22,8 @@ namespace photonav {
 struct ExplorerOptions {
     /// Start, goal, camera, beliefs, and the section `explore`. Its camera must be the robot's.
     Config config;
-    TrackerOptions tracker;  ///< its camera mount is the robot's, its map errors those of the map
+    /// Mount and sharpness are the robot's, its map errors those of the map.
+    TrackerOptions tracker;
     PilotOptions pilot;      ///< its isFree asks the map
     double timeStep = 0.02;  ///< of control and odometry [s]
     /// Longest time from an exposure to the arrival of the next image, if that in between is
@@ -70,7 +71,8 @@ struct OnExplorer {
 /// by work, not by time.
 class Explorer {
   public:
-    /// @param robot its camera and mount are used; @param planner as explorePlanner() takes it
+    /// @param robot its camera, mount and sharpness are used; @param planner as explorePlanner()
+    /// takes it
     /// @param interrupted views and plans end with RenderingStopped when it becomes true; must
     ///        outlive the explorer
     /// @throws std::invalid_argument for a robot with another camera or mount than the config's

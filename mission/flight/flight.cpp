@@ -31,12 +31,6 @@ UncertainPose beliefAtStart(const std::vector<PlannedView>& plan, const FlightWo
     return {(plan.front().T_w_b * world.T_b_c).inverse(), options.initialCovariance};
 }
 
-TrackerOptions trackerOptions(const FlightWorld& world, const FlightOptions& options) {
-    TrackerOptions tracker = options.tracker;
-    tracker.T_b_c = world.T_b_c;
-    return tracker;
-}
-
 /// A flight of a plan, and its end.
 class PlannedFlight {
   public:
@@ -153,12 +147,13 @@ FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
                  const FlightOptions& options, const std::function<bool()>& isStopped,
                  const OnExposure& onExposure) {
     check(world);
-    Pilot pilot(plan, world.map, world.camera, world.T_b_c, options.pilot);
+    if (plan.size() < 2) throw std::invalid_argument("flight: a plan has at least two views");
     const UncertainPose start = beliefAtStart(plan, world, options);
     SimulatedRobot robot(world.truth, world.camera, world.T_b_c,
                          drawStart(start, world.T_b_c, options.seed), noiseOf(world, options),
                          options.robot, options.seed);
-    Tracker tracker(world.map, robot.camera(), start, trackerOptions(world, options));
+    Tracker tracker = trackerOf(robot, world.map, start, options.tracker);
+    Pilot pilot = pilotOf(robot, plan, world.map, options.pilot);
     PlannedFlight flight(world, options, plan.back(), robot);
     const auto onStep = [&](const Observation&, const std::vector<TrackedFrame>& tracked) {
         flight.onStep(tracked, tracker, pilot);

@@ -31,7 +31,7 @@ struct FlightOptions {
     Matrix6 initialCovariance = Matrix6::Zero();
     double timeStep = 0.02;  ///< of control and odometry [s]
     SimulatedRobotOptions robot;
-    TrackerOptions tracker{.searchPrior = true};  ///< its camera mount is that of the world
+    TrackerOptions tracker{.searchPrior = true};  ///< mount and sharpness are the robot's
     PilotOptions pilot;
     double bodyRadius = 0.1;        ///< an obstacle nearer than this is a collision [m]
     double arrivalTolerance = 0.3;  ///< distance to the goal of a flight that arrived [m]

@@ -2,8 +2,21 @@
 #include "flight/flight_loop.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 namespace photonav {
+
+Tracker trackerOf(const Robot& robot, std::shared_ptr<const ViewSource> map,
+                  const UncertainPose& start, TrackerOptions options) {
+    options.T_b_c = robot.T_b_c();
+    options.map.blur = robot.blur();
+    return {std::move(map), robot.camera(), start, options};
+}
+
+Pilot pilotOf(const Robot& robot, std::vector<PlannedView> plan,
+              std::shared_ptr<const ViewSource> map, const PilotOptions& options) {
+    return {std::move(plan), std::move(map), robot.camera(), robot.T_b_c(), options};
+}
 
 void flyLoop(Robot& robot, Tracker& tracker, Pilot& pilot, double timeStep,
              const OnFlightStep& onStep) {

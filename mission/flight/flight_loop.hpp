@@ -3,12 +3,22 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "control/pilot.hpp"
 #include "robot/robot.hpp"
 
 namespace photonav {
+
+/// A tracker of the robot's images. Camera, mount and sharpness are the robot's, whatever the
+/// options say. @param start belief T_c_w
+Tracker trackerOf(const Robot& robot, std::shared_ptr<const ViewSource> map,
+                  const UncertainPose& start, TrackerOptions options = {});
+
+/// A pilot of the robot. @param plan at least two views @throws std::invalid_argument otherwise
+Pilot pilotOf(const Robot& robot, std::vector<PlannedView> plan,
+              std::shared_ptr<const ViewSource> map, const PilotOptions& options = {});
 
 /// Called after every step, with what was measured in it and the images of that as they were
 /// tracked. @return whether to fly on

@@ -32,6 +32,7 @@ FlightOptions flightOptions(const Config& config, MapKind map, double cellSize) 
     FlightOptions flight;
     flight.robot = robotOptions(config);
     flight.tracker.map = flightAlignment(config, map, cellSize);
+    flight.robot.camera.blur = flight.tracker.map.blur;
     double& blindTime = flight.tracker.loss.blindTime;
     blindTime = fly.latency + std::max(blindTime, 4. * flight.robot.camera.period);
     flight.pilot.route.limits.maxSpeed = fly.speed;
@@ -59,7 +60,6 @@ AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellS
         // Odometry carries what the map's noise leaves open; replays without it would drift there.
         alignment.modelNoise = ModelNoise::measured;
     }
-    alignment.blur = comparedBlur(map, alignment.blur);
     alignment.modelErrors.surface = surfaceError(map, cellSize);
     alignment.cellSize = cellSize;
     return alignment;

@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "alignment/image_pyramid.hpp"
 #include "map/textured_octree.hpp"
 #include "photometry/view.hpp"
 #include "scene/scene.hpp"
@@ -23,13 +22,6 @@ enum class MapKind { mesh, cells, surfaces };
 inline double surfaceError(MapKind kind, double cellSize) {
     if (kind == MapKind::mesh) return 0.;
     return (kind == MapKind::cells ? 0.58 : 0.1) * cellSize;
-}
-
-/// Point spread that AlignmentOptions::blur states of images compared with views of a map [pixels].
-/// Texture in cells is blurred itself: images are used as they are.
-/// @param blur point spread of the images [pixels]
-inline double comparedBlur(MapKind kind, double blur) {
-    return kind == MapKind::mesh ? blur : kRenderedBlur;
 }
 
 struct TrackingMap {

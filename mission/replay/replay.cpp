@@ -158,7 +158,7 @@ AlignmentOptions alignmentOf(const ReplayOptions& options, const Sequence& seque
         alignment = KeyframeOptions().alignment;
         alignment.modelErrors.depthScale = depthError.relative;
     } else {
-        alignment = realCameraOptions(comparedBlur(map.kind, sequence.blur.value_or(kAreaBlur)));
+        alignment = realCameraOptions(sequence.blur.value_or(kAreaBlur));
         alignment.modelErrors.surface = map.surfaceError();
         alignment.cellSize = map.resolution();
         // The motion is only guessed, so that nothing else stops a pose from sliding away.

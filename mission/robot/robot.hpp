@@ -4,6 +4,7 @@
 
 #include "control/body_velocity.hpp"
 #include "estimation/observation.hpp"
+#include "render/area_sensor.hpp"
 
 namespace photonav {
 
@@ -20,6 +21,11 @@ class Robot {
 
     virtual const Camera& camera() const = 0;  ///< of the images
     virtual const Pose& T_b_c() const = 0;     ///< its mount
+    /// Point spread of the images, standard deviation [pixels]. By default that of a camera in
+    /// focus, whose pixels average over their area; with a defocus of d pixels hypot(kAreaBlur, d);
+    /// of images that a ViewSource renders kRenderedBlur. Images that are sharper or blurrier than
+    /// stated make the tracker overconfident.
+    virtual double blur() const { return kAreaBlur; }
 };
 
 }  // namespace photonav

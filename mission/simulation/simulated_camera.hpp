@@ -29,6 +29,9 @@ struct SimulatedCameraOptions {
     /// Noise of the pictures that `stereo` matches: the sensor's own, where that of the images may
     /// stand for errors of a model as well. None: no noise.
     ImageNoise pairNoise = {};
+    /// Point spread that the robot states of its images, a defocus by their noise included
+    /// [pixels].
+    double blur = kAreaBlur;
     /// Of the vertical that is measured with every image [rad]; 0: it is not measured.
     double verticalSigma = 0.;
     double period = 0.25;        ///< between exposures [s]

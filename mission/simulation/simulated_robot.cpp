@@ -11,6 +11,7 @@ SimulatedRobot::SimulatedRobot(std::shared_ptr<const ViewSource> world, const Ca
                                const SimulatedRobotOptions& options, std::uint64_t seed)
     : world_(std::move(world)),
       T_b_c_(T_b_c),
+      blur_(options.camera.blur),
       mav_(T_w_b, options.body, seedFor(seed, 1)),
       camera_(*world_, camera, noise, options.camera, seedFor(seed, 2)) {}
 

@@ -30,6 +30,7 @@ class SimulatedRobot : public Robot {
     Observation fly(const BodyVelocity& command, double seconds) override;
     const Camera& camera() const override { return camera_.camera(); }
     const Pose& T_b_c() const override { return T_b_c_; }
+    double blur() const override { return blur_; }
 
     // True values, for evaluation.
 
@@ -42,6 +43,7 @@ class SimulatedRobot : public Robot {
   private:
     std::shared_ptr<const ViewSource> world_;
     Pose T_b_c_;
+    double blur_;
     SimulatedMav mav_;
     SimulatedCamera camera_;
     double time_ = 0.;

@@ -37,6 +37,7 @@ class ObedientRobot : public Robot {
     }
     const Camera& camera() const override { return camera_; }
     const Pose& T_b_c() const override { return T_b_c_; }
+    double blur() const override { return kRenderedBlur; }
 
     Pose T_w_b = Pose::Identity();
     Matrix6 odometryCovariance = 1e-6 * Matrix6::Identity();  ///< of a step

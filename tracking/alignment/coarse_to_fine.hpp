@@ -24,7 +24,8 @@ struct AlignmentOptions {
     std::optional<ExposurePrior> exposure;
     /// Point spread of the images, standard deviation [pixels]: kRenderedBlur where they are as
     /// blurred as rendered views, kAreaBlur for a sensor without defocus whose pixels average over
-    /// their area. Image and rendered view are compared at the same sharpness.
+    /// their area. Image and rendered view are compared at the same sharpness; not those of cells,
+    /// whose texture is blurred itself.
     double blur = kRenderedBlur;
     int levels = 4;           ///< of the pyramid, each half the size; fewer when images are small
     int maxIterations = 25;   ///< views rendered per level and descent

@@ -102,7 +102,9 @@ class DenseAligner::RenderedModel : public Comparison {
     };
 
     /// Variance by which images are blurrier than rendered views; negative: sharper [pixels^2].
+    /// Texture in cells is blurred itself: images are compared as they are.
     double widening() const {
+        if (options_.cellSize > 0.) return 0.;
         return options_.blur * options_.blur - kRenderedBlur * kRenderedBlur;
     }
 

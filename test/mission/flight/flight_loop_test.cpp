@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "estimation/calibration.hpp"
 #include "geometry/constants.hpp"
 #include "mission/obedient_robot.hpp"
 #include "tracking/rooms.hpp"
@@ -28,12 +29,10 @@ class FlightLoop : public ::testing::Test {
     FlightLoop() {
         UncertainPose start{(straightTo(1.).front().T_w_b * robot.T_b_c()).inverse()};
         start.covariance = 1e-3 * Matrix6::Identity();
-        TrackerOptions options;
-        options.T_b_c = robot.T_b_c();
-        tracker.emplace(floor, robot.camera(), start, options);
+        tracker.emplace(trackerOf(robot, floor, start));
         PilotOptions flown;
         flown.route.responseTime = 0.;  // of an obedient robot
-        pilot.emplace(straightTo(1.), floor, robot.camera(), robot.T_b_c(), flown);
+        pilot.emplace(pilotOf(robot, straightTo(1.), floor, flown));
     }
 
     /// @return duration of the flight [s]
@@ -74,6 +73,7 @@ class StrictRobot : public Robot {
     }
     const Camera& camera() const override { return robot_.camera(); }
     const Pose& T_b_c() const override { return robot_.T_b_c(); }
+    double blur() const override { return robot_.blur(); }
 
     std::vector<BodyVelocity> commands;
     std::vector<double> steps;
@@ -191,6 +191,28 @@ TEST_F(FlightLoop, FliesBackOnTheWayItCameAndOnAlongThePlan) {
     EXPECT_LT(farthestOff, 0.15);
     EXPECT_EQ(tracker->loss().timesLost(), 1);
     EXPECT_LT((robot.T_w_b.translation() - Eigen::Vector3d(1.5, 1., 2.)).norm(), 0.05);
+}
+
+/// Options of photographs would take its rendered images for sharper than they are.
+TEST_F(FlightLoop, TheRobotStatesMountAndSharpnessOfItsImages) {
+    UncertainPose start{(straightTo(1.).front().T_w_b * robot.T_b_c()).inverse()};
+    start.covariance = 1e-3 * Matrix6::Identity();
+    TrackerOptions options{.map = photographOptions()};
+    const Observation image = robot.fly({}, 0.);
+    const Observation moved = robot.fly({.linear = {0.5, 0., 0.}}, 0.2);
+    const auto beliefOf = [&](Tracker used) {
+        used.update(image);
+        used.update(moved);
+        return used.beliefAtLastImage();
+    };
+    const UncertainPose belief = beliefOf(trackerOf(robot, floor, start, options));
+    options.T_b_c = robot.T_b_c();
+    const UncertainPose blurry = beliefOf({floor, robot.camera(), start, options});
+    options.map.blur = kRenderedBlur;
+    const UncertainPose expected = beliefOf({floor, robot.camera(), start, options});
+    EXPECT_EQ(belief.mean.matrix(), expected.mean.matrix());
+    EXPECT_EQ(belief.covariance, expected.covariance);
+    EXPECT_NE(blurry.covariance, expected.covariance);
 }
 
 TEST_F(FlightLoop, TimeMustPass) {

@@ -43,6 +43,7 @@ TEST(FlightSetup, ImagesAreAlignedAsTheCameraTakesThem) {
     EXPECT_TRUE(real.exposure.has_value());
     EXPECT_EQ(assumed.blur, kAreaBlur);
     EXPECT_GT(real.blur, 0.4);  // and its defocus
+    EXPECT_EQ(optionsFor({"camera.blur=0.4"}).robot.camera.blur, 0.4);
     EXPECT_EQ(assumed.informationScale, 1.);
     EXPECT_EQ(optionsFor({"fly.scale=0.5"}).tracker.map.informationScale, 0.5);
 }
@@ -62,7 +63,7 @@ TEST(FlightSetup, BodyAndToleranceAreThoseOfTheRobotUnlessGiven) {
     EXPECT_EQ(bounded.trust.leastSigmaRotation, 0.01);
 }
 
-/// Images are compared with a map as sharply as it is, and its surfaces err by parts of a cell.
+/// The surfaces of a map err by parts of a cell.
 TEST(FlightSetup, AlignmentsGoByTheKindOfMap) {
     const Config config = loadConfig(PHOTONAV_SOURCE_DIR "/config/two_textures.yaml",
                                      {"camera.blur=0.4", "camera.stride=2"});
@@ -75,8 +76,8 @@ TEST(FlightSetup, AlignmentsGoByTheKindOfMap) {
     EXPECT_EQ(mesh.modelNoise, ModelNoise::none);
     EXPECT_EQ(surfaces.modelNoise, ModelNoise::measured);
     EXPECT_EQ(mesh.blur, 0.4);
-    EXPECT_EQ(cells.blur, kRenderedBlur);
-    EXPECT_EQ(surfaces.blur, kRenderedBlur);
+    EXPECT_EQ(mesh.cellSize, 0.);  // else images are compared as they are
+    EXPECT_EQ(cells.cellSize, 0.1);
     EXPECT_EQ(mesh.photometric.stride, 1);  // whatever that of the planner is
 }
 

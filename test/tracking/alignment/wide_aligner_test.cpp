@@ -206,6 +206,21 @@ TEST_F(FineTexture, DoesNotContradictTheMapInASearch) {
     EXPECT_NE(find(another).verdict, Verdict::converged) << describe(find(another));
 }
 
+/// The texture of cells is blurred itself, whatever the sharpness of the images.
+TEST_F(FineTexture, OfCellsIsComparedWithImagesAsTheyAre) {
+    const MeshRenderer floor = floorOf(0.1, 0.15, 3);
+    const VoxelRenderer cells = mapOf(floor);
+    const UncertainPose belief = prior(cameraAt({0.27, -0.19, 1.54}, kDown), 0.02);
+    const ImageF image = seen(floor, truth);
+    const auto poseBy = [&](double blur) {
+        options.blur = blur;
+        return DenseAligner(cells, camera, options).align(image, belief).T_c_w;
+    };
+    EXPECT_NE(poseBy(kAreaBlur).matrix(), poseBy(kRenderedBlur).matrix());
+    options.cellSize = kCell;
+    EXPECT_EQ(poseBy(kAreaBlur).matrix(), poseBy(kRenderedBlur).matrix());
+}
+
 TEST_F(FineTexture, DoesNotContradictTheMapNearThePose) {
     const MeshRenderer floor = floorOf(0.03, 0.3, 3), another = floorOf(0.03, 0.3, 4);
     const VoxelRenderer cells = mapOf(floor);
