@@ -6,7 +6,6 @@
 
 #include "exercises.hpp"
 #include "flight/flight_setup.hpp"
-#include "flight/flights.hpp"
 #include "plot/figure.hpp"
 #include "problem/planning_problem.hpp"
 #include "scene/scene.hpp"

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "flight/flights.hpp"
+#include "flight/flight_setup.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 

@@ -65,6 +65,14 @@ AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellS
     return alignment;
 }
 
+std::vector<PlannedView> plannedViews(std::span<const BeliefPoint> path) {
+    std::vector<PlannedView> plan;
+    for (const BeliefPoint& point : path) {
+        plan.push_back({point.T_w_b, point.covariance, point.length, point.isWaypoint});
+    }
+    return plan;
+}
+
 FlightSetup setUpFlight(const PlanningProblem& problem) {
     const Config& config = problem.config();
     const World& world = problem.world();

@@ -2,12 +2,19 @@
 // From a planning problem to the flights of its plans.
 #pragma once
 
+#include <span>
+#include <vector>
+
+#include "belief/belief.hpp"
 #include "estimation/calibration.hpp"
 #include "flight/flight.hpp"
 #include "problem/planning_problem.hpp"
 #include "problem/tracking_map.hpp"
 
 namespace photonav {
+
+/// The plan that a flight flies: the beliefs along a path of the planner.
+std::vector<PlannedView> plannedViews(std::span<const BeliefPoint> path);
 
 struct FlightSetup {
     FlightWorld world;

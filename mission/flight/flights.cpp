@@ -8,14 +8,6 @@
 
 namespace photonav {
 
-std::vector<PlannedView> plannedViews(std::span<const BeliefPoint> path) {
-    std::vector<PlannedView> plan;
-    for (const BeliefPoint& point : path) {
-        plan.push_back({point.T_w_b, point.covariance, point.length, point.isWaypoint});
-    }
-    return plan;
-}
-
 std::vector<FlightResult> flyMany(const std::vector<PlannedView>& plan, const FlightWorld& world,
                                   const FlightOptions& options, unsigned count, unsigned jobs,
                                   const std::atomic<bool>& interrupted,

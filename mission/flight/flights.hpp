@@ -3,15 +3,11 @@
 #pragma once
 
 #include <atomic>
-#include <span>
+#include <vector>
 
-#include "belief/belief.hpp"
 #include "flight/flight.hpp"
 
 namespace photonav {
-
-/// A plan as a flight needs it.
-std::vector<PlannedView> plannedViews(std::span<const BeliefPoint> path);
 
 /// Flies number 0 to `count` - 1 on `jobs` threads; the seed of a flight follows from
 /// options.seed and its number, so that flights of different plans draw the same numbers.

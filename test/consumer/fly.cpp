@@ -1,7 +1,6 @@
 //! [fly]
 #include <iostream>
 #include <photonav/flight/flight_setup.hpp>
-#include <photonav/flight/flights.hpp>
 #include <photonav/io/error.hpp>
 
 int main(int argc, char** argv) {
