@@ -25,7 +25,7 @@ set(folders_mission_config io geometry photometry map render belief planners)
 set(folders_mission_problem io geometry photometry scene map render belief planners result config)
 set(folders_mission_servo geometry render evaluation control result simulation)
 set(folders_mission_runs io scene result config)
-set(folders_mission_sweep io geometry render space planners result problem runs)
+set(folders_mission_sweep io geometry render space belief planners result problem runs)
 set(folders_mission_recording io geometry photometry bag dataset evaluation alignment depth result config
     problem)
 set(folders_mission_mapping io map dataset evaluation depth result config recording)
@@ -39,7 +39,7 @@ set(folders_mission_check io geometry photometry render dataset alignment estima
     flight)
 set(folders_mission_exploration io geometry photometry map render evaluation belief planners alignment depth
     estimation control result config problem runs flight)
-set(folders_drawing_plot io)
+set(folders_drawing_plot io planners)
 set(folders_drawing_shapes geometry scene map dataset plot)
 set(folders_drawing_flightlog io geometry map result problem recording simulation exploration shapes)
 set(folders_drawing_figures io geometry photometry evaluation depth problem servo sweep recording replay

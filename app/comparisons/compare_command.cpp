@@ -10,7 +10,7 @@
 #include "figures/top_view.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
-#include "planners/planner_table.hpp"
+#include "planners/planner_traits.hpp"
 #include "render/interruptible_views.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"

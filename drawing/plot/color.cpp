@@ -8,6 +8,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "planners/planner_traits.hpp"
+
 namespace photonav {
 namespace {
 
@@ -45,12 +47,11 @@ Color inferno(double share) {
 }
 
 Color plannerColor(std::string_view planner) {
-    static constexpr std::pair<std::string_view, Color> kColors[]{
-        {"belief_rrt_star", {222, 79, 12}}, {"rrt_star", {28, 108, 214}},
-        {"pa_rrt_star", {230, 159, 0}},     {"rrbt", {0, 158, 115}},
-        {"rrt_star/fixed", {86, 180, 233}}, {"rrt_star/forward", {204, 121, 167}}};
-    for (const auto& [name, color] : kColors)
-        if (name == planner) return color;
+    if (const PlannerTraits* known = findPlanner(planner)) {
+        return {known->color[0], known->color[1], known->color[2]};
+    }
+    if (planner == "rrt_star/fixed") return {86, 180, 233};
+    if (planner == "rrt_star/forward") return {204, 121, 167};
     return {98, 104, 112};
 }
 

@@ -22,8 +22,8 @@ Color greyColor(double intensity);
 Color viridis(double share);
 Color inferno(double share);
 
-/// The colour of a planner in every figure, page and tutorial; distinguishable with any colour
-/// vision, on white and on a grey map. All other names are grey.
+/// The colour of a planner in every figure, page and tutorial (PlannerTraits), or of a policy of
+/// explorations. All other names are grey.
 Color plannerColor(std::string_view planner);
 
 /// "#rrggbb"

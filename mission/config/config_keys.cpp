@@ -8,7 +8,7 @@
 #include "belief/view_model_table.hpp"
 #include "geometry/constants.hpp"
 #include "io/number.hpp"
-#include "planners/planner_table.hpp"
+#include "planners/planner_traits.hpp"
 
 namespace photonav {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "planners/planner_table.hpp"
+#include "planners/planner_traits.hpp"
 
 namespace photonav {
 

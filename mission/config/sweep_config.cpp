@@ -10,7 +10,7 @@
 #include "config/config_keys.hpp"
 #include "geometry/constants.hpp"
 #include "io/number.hpp"
-#include "planners/planner_table.hpp"
+#include "planners/planner_traits.hpp"
 
 namespace photonav {
 namespace {

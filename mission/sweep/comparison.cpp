@@ -7,13 +7,14 @@
 #include <cmath>
 #include <functional>
 
-#include "planners/planner_table.hpp"
+#include "belief/view_model_table.hpp"
+#include "planners/planner_traits.hpp"
 
 namespace photonav {
 using nlohmann::json;
 namespace {
 
-constexpr unsigned kRrbtVertices = 400;
+constexpr const char* kNoModel = "none";
 
 using Values = std::vector<double>;
 
@@ -64,6 +65,25 @@ std::string tableRow(const std::string& method, const std::vector<const CompareR
         meanAndDeviation(ofRun([](const auto& o) { return o.planSeconds; }), 1));
 }
 
+/// Planners with views by the photometric model; then the default one by every other model, and
+/// without any; then the planners without views.
+std::vector<CompareMethod> allMethods() {
+    const std::string &ours = plannerNames().front(), paper = viewModelNames().front();
+    std::vector<CompareMethod> methods;
+    for (const std::string& planner : plannerNames()) {
+        if (!usesViews(planner)) continue;
+        methods.push_back({planner, paper, findPlanner(planner)->mostCompared});
+    }
+    for (const std::string& model : viewModelNames()) {
+        if (model != paper && model != kNoModel) methods.push_back({ours, model});
+    }
+    methods.push_back({ours, kNoModel});
+    for (const std::string& planner : plannerNames()) {
+        if (!usesViews(planner)) methods.push_back({planner, kNoModel});
+    }
+    return methods;
+}
+
 }  // namespace
 
 std::string CompareMethod::label() const {
@@ -72,14 +92,7 @@ std::string CompareMethod::label() const {
 }
 
 const std::vector<CompareMethod>& compareMethods() {
-    static const std::vector<CompareMethod> methods{{"belief_rrt_star", "photometric"},
-                                                    {"pa_rrt_star", "photometric"},
-                                                    {"rrbt", "photometric", kRrbtVertices},
-                                                    {"belief_rrt_star", "feature_reprojection"},
-                                                    {"belief_rrt_star", "feature_count"},
-                                                    {"belief_rrt_star", "map_uncertainty"},
-                                                    {"belief_rrt_star", "none"},
-                                                    {"rrt_star", "none"}};
+    static const std::vector<CompareMethod> methods = allMethods();
     return methods;
 }
 

@@ -13,9 +13,8 @@ namespace photonav {
 
 /// A planner and its information model.
 struct CompareMethod {
-    std::string planner;      ///< planner.name
-    std::string information;  ///< planner.information
-    /// RRBT keeps all beliefs: 19 thousand on 300 vertices of the stripes, 138 on 1000.
+    std::string planner;       ///< planner.name
+    std::string information;   ///< planner.information
     unsigned maxVertices = 0;  ///< 0: those of the config
 
     std::string label() const;

@@ -12,7 +12,7 @@
 #include "io/error.hpp"
 #include "io/number.hpp"
 #include "io/reading.hpp"
-#include "planners/planner_table.hpp"
+#include "planners/planner_traits.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {

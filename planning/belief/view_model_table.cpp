@@ -8,6 +8,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "belief/names_of.hpp"
+
 namespace photonav {
 namespace {
 
@@ -39,12 +41,7 @@ constexpr std::array kViewModels{
 }  // namespace
 
 const std::vector<std::string>& viewModelNames() {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> all;
-        all.reserve(kViewModels.size());
-        for (const ViewModelEntry& entry : kViewModels) all.emplace_back(entry.name);
-        return all;
-    }();
+    static const std::vector<std::string> names = namesOf(kViewModels, &ViewModelEntry::name);
     return names;
 }
 

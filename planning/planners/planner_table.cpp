@@ -8,6 +8,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "belief/names_of.hpp"
 #include "planners/perception_rrt_star.hpp"
 #include "planners/rrbt.hpp"
 
@@ -19,38 +20,46 @@ using Model = std::shared_ptr<BeliefModel>;
 using Planner = std::shared_ptr<BeliefPlanner>;
 
 struct PlannerEntry {
-    const char* name;
-    bool usesViews;
+    PlannerTraits traits;
     Planner (*make)(const ob::SpaceInformationPtr&, const Model&, const SearchOptions&,
                     const GrowthOptions&);
+    constexpr std::string_view name() const { return traits.name; }
 };
 
+/// RRBT keeps all beliefs: 19 thousand on 300 vertices of the stripes, 138 thousand on 1000.
+constexpr unsigned kMostOfRrbt = 400;
+
+/// All that is written of a planner outside of its class. The first one is the default.
 constexpr std::array kPlanners{
-    PlannerEntry{"belief_rrt_star", true,
+    PlannerEntry{{"belief_rrt_star", true, {222, 79, 12}},
                  [](const ob::SpaceInformationPtr& si, const Model& model,
                     const SearchOptions& search, const GrowthOptions& growth) -> Planner {
                      return std::make_shared<BeliefRRTstar>(si, model, search, growth);
                  }},
-    PlannerEntry{"pa_rrt_star", true,
+    PlannerEntry{{"pa_rrt_star", true, {230, 159, 0}},
                  [](const ob::SpaceInformationPtr& si, const Model& model, const SearchOptions&,
                     const GrowthOptions& growth) -> Planner {
                      return std::make_shared<PerceptionRRTstar>(si, model, growth);
                  }},
-    PlannerEntry{"rrbt", true,
+    PlannerEntry{{"rrbt", true, {0, 158, 115}, kMostOfRrbt},
                  [](const ob::SpaceInformationPtr& si, const Model& model, const SearchOptions&,
                     const GrowthOptions& growth) -> Planner {
                      return std::make_shared<RRBT>(si, model, growth);
                  }},
-    PlannerEntry{"rrt_star", false,
+    PlannerEntry{{"rrt_star", false, {28, 108, 214}},
                  [](const ob::SpaceInformationPtr& si, const Model& model, const SearchOptions&,
                     const GrowthOptions& growth) -> Planner {
                      return std::make_shared<PerceptionRRTstar>(
                          si, model, growth, PerceptionRRTstar::Minimises::length);
                  }}};
 
-const PlannerEntry& entryOf(const std::string& name) {
+const PlannerEntry* find(std::string_view name) {
     const auto* entry = std::ranges::find(kPlanners, name, &PlannerEntry::name);
-    if (entry != kPlanners.end()) return *entry;
+    return entry == kPlanners.end() ? nullptr : entry;
+}
+
+const PlannerEntry& entryOf(const std::string& name) {
+    if (const PlannerEntry* entry = find(name)) return *entry;
     throw std::invalid_argument(fmt::format("no planner is named {}; the names are {}", name,
                                             fmt::join(plannerNames(), ", ")));
 }
@@ -63,17 +72,17 @@ Model withAlpha(const Model& model, double alpha) {
 
 }  // namespace
 
+const PlannerTraits* findPlanner(std::string_view name) {
+    const PlannerEntry* entry = find(name);
+    return entry == nullptr ? nullptr : &entry->traits;
+}
+
 const std::vector<std::string>& plannerNames() {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> all;
-        all.reserve(kPlanners.size());
-        for (const PlannerEntry& entry : kPlanners) all.emplace_back(entry.name);
-        return all;
-    }();
+    static const std::vector<std::string> names = namesOf(kPlanners, &PlannerEntry::name);
     return names;
 }
 
-bool usesViews(const std::string& planner) { return entryOf(planner).usesViews; }
+bool usesViews(const std::string& planner) { return entryOf(planner).traits.usesViews; }
 
 double alphaOf(const std::string& planner, double alpha) { return usesViews(planner) ? alpha : 1.; }
 
@@ -82,7 +91,7 @@ std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
                                            const SearchOptions& search,
                                            const GrowthOptions& growth) {
     const PlannerEntry& entry = entryOf(name);
-    return entry.make(si, entry.usesViews ? model : withAlpha(model, 1.), search, growth);
+    return entry.make(si, entry.traits.usesViews ? model : withAlpha(model, 1.), search, growth);
 }
 
 }  // namespace photonav

@@ -4,20 +4,12 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "planners/belief_planner.hpp"
 #include "planners/belief_rrt_star.hpp"
+#include "planners/planner_traits.hpp"
 
 namespace photonav {
-
-/// Names that makePlanner() accepts.
-const std::vector<std::string>& plannerNames();
-
-/// Whether the planner minimises uncertainty as well, and so renders views. The others minimise the
-/// length alone.
-/// @throws std::invalid_argument for an unknown name
-bool usesViews(const std::string& planner);
 
 /// The weight of the length in the cost that this planner minimises, where `alpha` is that of the
 /// others: 1 for those that use no views.
