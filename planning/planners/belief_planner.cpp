@@ -48,17 +48,12 @@ BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<
       objective_(std::make_shared<OmplObjective>(si, model_)) {
     specs_.optimizingPaths = true;
     specs_.canReportIntermediateSolutions = false;
-    const auto declare = [this](const std::string& key, auto& value) {
-        using T = std::decay_t<decltype(value)>;
-        params_.declareParam<T>(
-            key, [&value](T v) { value = v; }, [&value] { return value; });
-    };
-    declare("range", growth_.range);
-    declare("goal_bias", growth_.goalBias);
-    declare("rewire_factor", growth_.rewireFactor);
-    declare("max_vertices", growth_.maxVertices);
-    declare("max_iterations", growth_.maxIterations);
-    declare("seed", growth_.seed);
+    declareOption("range", growth_.range);
+    declareOption("goal_bias", growth_.goalBias);
+    declareOption("rewire_factor", growth_.rewireFactor);
+    declareOption("max_vertices", growth_.maxVertices);
+    declareOption("max_iterations", growth_.maxIterations);
+    declareOption("seed", growth_.seed);
     const auto show = [this](const std::string& property, const auto& value) {
         addPlannerProgressProperty(property, [&value] { return std::to_string(value.load()); });
     };

@@ -123,6 +123,13 @@ class BeliefPlanner : public ompl::base::Planner {
         Belief belief;
     };
 
+    /// A parameter of OMPL that sets an option of the planner.
+    template <class T>
+    void declareOption(const std::string& key, T& value) {
+        params_.declareParam<T>(
+            key, [&value](T v) { value = v; }, [&value] { return value; });
+    }
+
     /// Called when a start has become a vertex.
     virtual void addRoot(const Root& root) = 0;
 

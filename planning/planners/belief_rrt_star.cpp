@@ -34,16 +34,11 @@ constexpr double kMaxLever = 100.;        // [m]
 BeliefRRTstar::BeliefRRTstar(const ob::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
                              const SearchOptions& search, const GrowthOptions& growth)
     : BeliefPlanner(si, std::move(model), "belief_rrt_star", growth), options_(search) {
-    const auto declare = [this](const std::string& key, auto& value) {
-        using T = std::decay_t<decltype(value)>;
-        params_.declareParam<T>(
-            key, [&value](T v) { value = v; }, [&value] { return value; });
-    };
-    declare("labels", options_.labels);
-    declare("informed", options_.informed);
-    declare("shortcut", options_.shortcut);
-    declare("commitment", options_.commitment);
-    declare("inflation", options_.inflation);
+    declareOption("labels", options_.labels);
+    declareOption("informed", options_.informed);
+    declareOption("shortcut", options_.shortcut);
+    declareOption("commitment", options_.commitment);
+    declareOption("inflation", options_.inflation);
     addPlannerProgressProperty("shortcuts tried INTEGER",
                                [this] { return std::to_string(shortcutsTried_); });
     addPlannerProgressProperty("shortcuts taken INTEGER",

@@ -11,8 +11,7 @@ namespace ob = ompl::base;
 RRBT::RRBT(const ob::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
            const GrowthOptions& growth, double epsilon)
     : BeliefPlanner(si, std::move(model), "rrbt", growth), epsilon_(epsilon) {
-    params_.declareParam<double>(
-        "epsilon", [this](double v) { epsilon_ = v; }, [this] { return epsilon_; });
+    declareOption("epsilon", epsilon_);
     addPlannerProgressProperty("beliefs INTEGER", [this] { return std::to_string(beliefs()); });
 }
 
