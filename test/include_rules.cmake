@@ -37,19 +37,20 @@ set(folders_mission_flight io geometry photometry render dataset evaluation beli
     config problem runs robot simulation)
 set(folders_mission_check io geometry photometry render dataset alignment estimation result config problem
     flight)
+set(folders_mission_posters io geometry scene render planners alignment result config problem runs check servo)
 set(folders_mission_exploration io geometry photometry map render evaluation belief planners alignment depth
     estimation control result config problem runs flight)
 set(folders_drawing_plot io planners)
 set(folders_drawing_shapes geometry scene map dataset plot)
 set(folders_drawing_flightlog io geometry map result problem recording simulation exploration shapes)
 set(folders_drawing_figures io geometry photometry evaluation depth problem servo sweep recording replay
-    flight check exploration plot shapes flightlog)
+    flight check posters exploration plot shapes flightlog)
 set(folders_drawing_interchange io bag dataset result shapes flightlog)
 set(folders_app_live io)
 set(folders_app_report io dataset problem plot shapes figures)
 set(folders_app_shared io result config runs report)
 set(folders_app_flights io geometry dataset planners alignment result config problem servo recording replay
-    flight flightlog figures report shared)
+    flight check posters flightlog figures report shared)
 set(folders_app_explorations io map dataset result config flight exploration flightlog figures live report
     shared flights)
 set(folders_app_recordings io geometry map render dataset result config recording mapping replay figures

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "config/config_keys.hpp"
 #include "flight/flight_setup.hpp"
 #include "flights/fly_command.hpp"
+#include "flights/posters_command.hpp"
 #include "flights/servo_command.hpp"
 #include "replay/calibration_file.hpp"
 #include "shared/command_line.hpp"
@@ -45,17 +47,21 @@ int flyCalibrated(FlyArguments& options, const std::atomic<bool>& interrupted) {
     return runFly(options, interrupted);
 }
 
-void addServoOptions(CLI::App& parser, ServoOptions& options) {
-    addCommon(parser, options);
+std::string listText(const std::vector<double>& numbers) {
+    return fmt::format("(default: {})", fmt::join(numbers, ","));
+}
+
+/// All of ServoOptions but what every command has.
+void addStudyOptions(CLI::App& parser, ServoOptions& options) {
     addSeed(parser, options.overrides, "seed of the starts and of the image noise");
     ServoStudyOptions& study = options.study;
     parser.add_option("--at", options.at,
                       "x,y,z[,yaw] of the robot at the goal (default: the config's goal)");
-    parser.add_option("--distances", options.distances,
-                      "distances of the starts from the goal: a,b,c [m] (default: "
-                      "0.1,0.2,0.4,0.8)");
+    parser.add_option(
+        "--distances", options.distances,
+        "distances of the starts from the goal: a,b,c [m] " + listText(study.distances));
     parser.add_option("--angles", options.angles,
-                      "rotations of the starts: a,b,c [degrees] (default: 0,10,20)");
+                      "rotations of the starts: a,b,c [degrees] " + listText(study.angles));
     addNumber(parser, "--trials", study.trials, "number of starts for each distance and angle", 1,
               100000);
     parser.add_flag("--tilt", study.hasTilt,
@@ -66,6 +72,39 @@ void addServoOptions(CLI::App& parser, ServoOptions& options) {
               1e6);
     addNumber(parser, "--rate", study.rate, "images per second", 0.1, 1e4);
     addNumber(parser, "--duration", study.duration, "time limit of a start [s]", 0.1, 1e5);
+}
+
+void addServoOptions(CLI::App& parser, ServoOptions& options) {
+    addCommon(parser, options);
+    addStudyOptions(parser, options);
+}
+
+void addPostersOptions(CLI::App& parser, PostersOptions& options) {
+    addCommon(parser, options);
+    parser
+        .add_option("--candidates", options.candidates,
+                    "YAML file of the candidates: a name and the keys of a scene file for each")
+        ->type_name("FILE")
+        ->required();
+    parser
+        .add_option("--trajectory", options.trajectory,
+                    "file of a trajectory, as photonav check reads it (default: a path is planned "
+                    "with every candidate)")
+        ->type_name("FILE");
+    parser
+        .add_option("--rank-by", options.rankBy,
+                    "path: certainty along it; goal: certainty of servoing there")
+        ->check(CLI::IsMember({"path", "goal"}))
+        ->capture_default_str();
+    parser.add_flag("--goal-only", options.goalOnly, "no path: rank by servoing at the goal");
+    addNumber(parser, "--most", options.most,
+              "number of candidates together; beyond one they are added to the best so far, one "
+              "by one",
+              std::size_t{1}, std::size_t{100});
+    addJobs(parser, options.jobs);
+    options.study.distances = {0.2};
+    options.study.angles = {10.};
+    addStudyOptions(parser, options);
 }
 
 }  // namespace
@@ -79,7 +118,11 @@ Commands flightCommands(CLI::App& app, const Invocation& invocation) {
             makeCommand<ServoOptions>(
                 app, invocation, "servo",
                 "Study photometric servoing at a goal: from where and how fast it converges.",
-                addServoOptions, runServo)};
+                addServoOptions, runServo),
+            makeCommand<PostersOptions>(
+                app, invocation, "posters",
+                "Rank posters and carpets by how certain they make a path, or servoing at a goal.",
+                addPostersOptions, runPosters)};
 }
 
 }  // namespace photonav

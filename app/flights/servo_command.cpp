@@ -28,6 +28,8 @@ std::vector<double> listOf(const char* option, const std::string& text, double m
     return *numbers;
 }
 
+}  // namespace
+
 ServoStudyOptions studyOf(const ServoOptions& options, const Config& config) {
     ServoStudyOptions study = options.study;
     if (options.distances) study.distances = listOf("--distances", *options.distances, 1e3);
@@ -38,8 +40,6 @@ ServoStudyOptions studyOf(const ServoOptions& options, const Config& config) {
     }
     return study;
 }
-
-}  // namespace
 
 int runServo(const ServoOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;

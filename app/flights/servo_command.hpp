@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "config/config.hpp"
 #include "servo/servo_study.hpp"
 #include "shared/command_io.hpp"
 
@@ -17,6 +18,10 @@ struct ServoOptions : CommandOptions {
     std::optional<std::string> angles;     ///< "a,b,c" [degrees]
     ServoStudyOptions study;
 };
+
+/// The study with the lists that were typed and the seed of the config.
+/// @throws InputError for bad input
+ServoStudyOptions studyOf(const ServoOptions& options, const Config& config);
 
 /// From how far a servo on the goal's grey values converges, how fast, and in which direction
 /// slowest. Writes result.json, config.yaml, basin.png, modes.png, goal.png, report.json and

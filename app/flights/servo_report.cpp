@@ -19,10 +19,6 @@ using nlohmann::json;
 
 constexpr double kPercent = 100.;
 
-bool isOpen(const ServoStudy& study) {
-    return study.modes.empty() || !(study.modes.front().rate > 0.);
-}
-
 ReportTable basinTable(const ServoStudy& study) {
     ReportTable table{"Converged", {}};
     for (const BasinCell& cell : study.basin) {
@@ -60,6 +56,11 @@ ReportTable servoSummary(const ServoReport& report) {
          slowest.rate > 0. ? fmt::format("{:.3g} s", 1. / slowest.rate) : "it never converges"},
         {"condition of the Hessian",
          std::isfinite(study.condition) ? fmt::format("{:.3g}", study.condition) : "singular"},
+        {"standard deviation from one image",
+         std::isfinite(study.positionSigma)
+             ? fmt::format("position {}, rotation {:.2g}°", lengthText(study.positionSigma),
+                           study.rotationSigma / kDegree)
+             : "a direction is open"},
         {"median depth of the view", fmt::format("{:.3g} m", study.depth)}};
     return table;
 }
@@ -68,7 +69,7 @@ void writeServoReport(const fs::path& folder, const ServoReport& report,
                       const std::string& commandLine, const json& result) {
     ReportData page = problemReport(report.config, report.world, commandLine, result);
     page.title = fs::path(report.config.file).stem().string();
-    page.subtitle = isOpen(report.study)
+    page.subtitle = report.study.openDirections() > 0
                         ? "Photometric servoing: the goal's view leaves a direction open."
                         : "Photometric servoing at the goal: where it converges, and how fast.";
     page.start = page.goal = report.goal.T_w_b.translation();

@@ -126,41 +126,45 @@ double lengthByVerdict(const CheckedTrajectory& checked, bool isRejected) {
     return sum;
 }
 
+json localisationJson(const CheckedTrajectory& checked) {
+    json result{
+        {"verdict", verdictOf(checked)},
+        {"is_lost", checked.isLost()},
+        {"length", checked.length},
+        {"metric_length", checked.places.back().distance},
+        {"mean_trace", checked.meanTrace},
+        {"goal_trace", checked.places.back().trace},
+        {"lost", lostJson(checked)},
+        {"lost_m", checked.lostLength()},
+        {"open_directions_m", lengthByVerdict(checked, false)},
+        {"rejected_images_m", lengthByVerdict(checked, true)},
+        {"worst", jsonOf(checked.worst())},
+        {"arrival",
+         {{"tolerance_m", checked.arrivalTolerance}, {"probability", checked.arrivalProbability}}},
+        {"covariance_frame", kCovarianceFrame},
+        {"path", json::array()}};
+    for (const CheckedPlace& place : checked.places) result["path"].push_back(jsonOf(place));
+    return result;
+}
+
 json checkResult(const CheckOutcome& report) {
-    const CheckedTrajectory& checked = report.checked;
     const GivenTrajectory& given = report.trajectory;
     json result = resultJson(
-        "check",
-        {{"status", report.interrupted ? "interrupted" : "done"},
-         {"verdict", verdictOf(checked)},
-         {"is_lost", checked.isLost()},
-         {"seed", report.config.seed},
-         {"trajectory",
-          {{"file", report.file},
-           {"format", given.format == TrajectoryFormat::cameraPoses ? "tum" : "table"},
-           {"poses", given.poses.size()},
-           {"has_heading", given.hasHeading},
-           {"tilt_deg", report.tilt / kDegree}}},
-         {"length", checked.length},
-         {"metric_length", checked.places.back().distance},
-         {"mean_trace", checked.meanTrace},
-         {"goal_trace", checked.places.back().trace},
-         {"characteristic_length", report.config.belief.characteristicLength},
-         {"lost", lostJson(checked)},
-         {"lost_m", checked.lostLength()},
-         {"open_directions_m", lengthByVerdict(checked, false)},
-         {"rejected_images_m", lengthByVerdict(checked, true)},
-         {"worst", jsonOf(checked.worst())},
-         {"arrival",
-          {{"tolerance_m", checked.arrivalTolerance}, {"probability", checked.arrivalProbability}}},
-         {"collisions", jsonOf(report.obstruction.collisions)},
-         {"out_of_bounds", jsonOf(report.obstruction.outside)},
-         {"least_clearance_m", finiteOrNull(report.obstruction.leastClearance)},
-         {"with_best_headings", turnedJson(report.turned)},
-         {"flights", flightsJson(report.flights)},
-         {"covariance_frame", kCovarianceFrame},
-         {"path", json::array()}});
-    for (const CheckedPlace& place : checked.places) result["path"].push_back(jsonOf(place));
+        "check", {{"status", report.interrupted ? "interrupted" : "done"},
+                  {"seed", report.config.seed},
+                  {"trajectory",
+                   {{"file", report.file},
+                    {"format", given.format == TrajectoryFormat::cameraPoses ? "tum" : "table"},
+                    {"poses", given.poses.size()},
+                    {"has_heading", given.hasHeading},
+                    {"tilt_deg", report.tilt / kDegree}}},
+                  {"characteristic_length", report.config.belief.characteristicLength},
+                  {"collisions", jsonOf(report.obstruction.collisions)},
+                  {"out_of_bounds", jsonOf(report.obstruction.outside)},
+                  {"least_clearance_m", finiteOrNull(report.obstruction.leastClearance)},
+                  {"with_best_headings", turnedJson(report.turned)},
+                  {"flights", flightsJson(report.flights)}});
+    result.update(localisationJson(report.checked));
     return result;
 }
 

@@ -36,6 +36,9 @@ std::string verdictOf(const CheckedTrajectory& checked);
 /// Way that ends at places whose image is rejected, or leaves directions open [m].
 double lengthByVerdict(const CheckedTrajectory& checked, bool isRejected);
 
+/// Everything about the belief along a checked trajectory, place by place.
+nlohmann::json localisationJson(const CheckedTrajectory& checked);
+
 /// result.json of `photonav check`; seconds are the caller's to fill.
 nlohmann::json checkResult(const CheckOutcome& report);
 

@@ -27,25 +27,34 @@ json cellJson(const BasinCell& cell) {
 
 }  // namespace
 
-json servoResult(const ServoGoal& goal, const ServoStudyOptions& options, const ServoStudy& study) {
+json servoOptionsJson(const ServoStudyOptions& options, const Camera& camera) {
+    return {{"degrees_of_freedom", options.hasTilt ? 6 : 4},
+            {"gain", options.gain},
+            {"damping", options.damping},
+            {"image_rate", options.rate},
+            {"image_width", camera.width}};
+}
+
+json servoStudyJson(const ServoStudy& study) {
     json modes = json::array(), cells = json::array();
     for (const ServoMode& mode : study.modes) modes.push_back(modeJson(mode, study.depth));
     for (const BasinCell& cell : study.basin) cells.push_back(cellJson(cell));
+    return {{"condition", finiteOrNull(study.condition)},
+            {"position_sigma_m", finiteOrNull(study.positionSigma)},
+            {"rotation_sigma_rad", finiteOrNull(study.rotationSigma)},
+            {"modes", modes},
+            {"basin", cells}};
+}
+
+json servoResult(const ServoGoal& goal, const ServoStudyOptions& options, const ServoStudy& study) {
     json result = resultJson(
         "servo",
         {{"interrupted", study.interrupted},
          {"goal", {{"position", vectorJson(goal.T_w_b.translation())}, {"depth_m", study.depth}}},
-         {"servo",
-          {{"degrees_of_freedom", options.hasTilt ? 6 : 4},
-           {"gain", options.gain},
-           {"damping", options.damping},
-           {"image_rate", options.rate},
-           {"image_width", goal.camera.width}}},
+         {"servo", servoOptionsJson(options, goal.camera)},
          {"seed", options.seed},
-         {"directions_are", "body twists x, y, z, roll, pitch, yaw [m, rad]"},
-         {"condition", finiteOrNull(study.condition)},
-         {"modes", modes},
-         {"basin", cells}});
+         {"directions_are", "body twists x, y, z, roll, pitch, yaw [m, rad]"}});
+    result.update(servoStudyJson(study));
     return result;
 }
 

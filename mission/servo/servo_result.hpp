@@ -8,6 +8,12 @@
 
 namespace photonav {
 
+/// The law and its images.
+nlohmann::json servoOptionsJson(const ServoStudyOptions& options, const Camera& camera);
+
+/// What was found: condition, standard deviations, modes and basin.
+nlohmann::json servoStudyJson(const ServoStudy& study);
+
 /// Everything of result.json but the time.
 nlohmann::json servoResult(const ServoGoal& goal, const ServoStudyOptions& options,
                            const ServoStudy& study);

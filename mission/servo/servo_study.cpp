@@ -149,6 +149,27 @@ double conditionOf(const Simulation& simulation) {
     return least > 1e-12 * most ? most / least : kInfinity;
 }
 
+/// Square root of the largest eigenvalue.
+double largestSigma(const Eigen::MatrixXd& covariance) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(0., solver.eigenvalues().maxCoeff()));
+}
+
+void setSigmas(const Simulation& simulation, ServoStudy& study) {
+    study.positionSigma = study.rotationSigma = kInfinity;
+    if (study.openDirections() > 0) return;
+    const Eigen::MatrixXd covariance = simulation.servo.information().inverse();
+    const Eigen::Index rotations = covariance.rows() - 3;
+    study.positionSigma = largestSigma(covariance.topLeftCorner(3, 3));
+    study.rotationSigma = largestSigma(covariance.bottomRightCorner(rotations, rotations));
+}
+
+/// The random numbers of a trial. Those of another trial do not depend on how long it lasts.
+Random randomOf(unsigned seed, std::size_t cell, int trial) {
+    std::seed_seq words{seed, static_cast<unsigned>(cell), static_cast<unsigned>(trial)};
+    return Random(words);
+}
+
 /// A start at a distance and a rotation, in a random direction of what is free.
 Eigen::VectorXd randomOffset(double distance, double angle, bool hasTilt, Random& random) {
     std::normal_distribution<double> normal;
@@ -203,13 +224,14 @@ ServoStudy studyServo(const ServoGoal& goal, const ServoStudyOptions& options,
     study.depth = simulation.depth;
     study.condition = conditionOf(simulation);
     addModes(simulation, study);
-    Random random(options.seed);
+    setSigmas(simulation, study);
     const double all = static_cast<double>(options.distances.size() * options.angles.size());
     for (const double angle : options.angles) {
         for (const double distance : options.distances) {
             BasinCell cell{distance, angle};
             std::vector<double> seconds;
             while (cell.trials < options.trials && !interrupted) {
+                Random random = randomOf(options.seed, study.basin.size(), cell.trials);
                 const double needed =
                     trial(simulation,
                           randomOffset(distance, angle * kDegree, options.hasTilt, random), random);
@@ -227,6 +249,23 @@ ServoStudy studyServo(const ServoGoal& goal, const ServoStudyOptions& options,
     }
     study.interrupted = interrupted;
     return study;
+}
+
+std::size_t ServoStudy::openDirections() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(modes, [](const ServoMode& mode) { return !(mode.rate > 0.); }));
+}
+
+int ServoStudy::trials() const {
+    int sum = 0;
+    for (const BasinCell& cell : basin) sum += cell.trials;
+    return sum;
+}
+
+int ServoStudy::converged() const {
+    int sum = 0;
+    for (const BasinCell& cell : basin) sum += cell.converged;
+    return sum;
 }
 
 std::string inWords(const ServoMode& mode, double depth) {

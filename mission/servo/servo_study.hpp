@@ -51,19 +51,28 @@ struct BasinCell {
 };
 
 struct ServoStudy {
-    double depth = 1.;             ///< median of the goal's view [m]; makes rotations comparable
-    double condition = 0.;         ///< of H, rotations times the depth; infinite: singular
+    double depth = 1.;      ///< median of the goal's view [m]; makes rotations comparable
+    double condition = 0.;  ///< of H, rotations times the depth; infinite: singular
+    /// Of the body's pose from one image at the goal (the inverse of its information), along the
+    /// weakest direction and about the weakest axis [m], [rad]; infinite: a direction is open.
+    double positionSigma = 0., rotationSigma = 0.;
     std::vector<ServoMode> modes;  ///< the slowest first
     std::vector<BasinCell> basin;
     bool interrupted = false;
+
+    /// Directions that the goal's view does not show: they never converge.
+    std::size_t openDirections() const;
+    /// Of all trials.
+    int trials() const;
+    int converged() const;
 };
 
 /// A trial has converged when it is within these of the goal.
 inline constexpr double kServoPosition = 0.01;  // [m]
 inline constexpr double kServoAngle = 0.01;     // [rad]
 
-/// Images have the noise of ServoGoal::photometric. Trials start in random directions; nothing
-/// stands in their way.
+/// Images have the noise of ServoGoal::photometric. Trials start in random directions, the same
+/// ones for the same seed whatever the goal; nothing stands in their way.
 ServoStudy studyServo(const ServoGoal& goal, const ServoStudyOptions& options,
                       const std::atomic<bool>& interrupted,
                       const std::function<void(double share)>& progress);

@@ -194,7 +194,8 @@ void YamlMap::fail(const std::string& key, const std::string& reason) const {
     const auto cut = [](const std::string& text) {
         return text.size() > kLongest ? text.substr(0, kLongest) + " ..." : text;
     };
-    throw InputError(file_, cut(prefix_.empty() ? key : prefix_ + "." + key), cut(reason));
+    const char* dot = prefix_.empty() || key.empty() ? "" : ".";
+    throw InputError(file_, cut(prefix_ + dot + key), cut(reason));
 }
 
 }  // namespace photonav

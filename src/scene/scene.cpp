@@ -88,6 +88,20 @@ Eigen::AlignedBox3d Scene::boundingBox() const {
     return box;
 }
 
+void Scene::append(const Scene& other) {
+    const auto before = static_cast<std::uint32_t>(textures.size());
+    const auto add = [](auto& list, const auto& more) {
+        list.insert(list.end(), more.begin(), more.end());
+    };
+    add(textures, other.textures);
+    add(solids, other.solids);
+    add(files, other.files);
+    for (Triangle triangle : other.triangles) {
+        triangle.texture += before;
+        triangles.push_back(triangle);
+    }
+}
+
 Scene loadScene(const std::string& file) {
     return reading(file, [&] {
         const auto extension = std::filesystem::path(file).extension();

@@ -34,6 +34,8 @@ struct Scene {
     std::vector<std::string> files;  ///< that were read for it: scene or mesh, textures, materials
 
     Eigen::AlignedBox3d boundingBox() const;
+    /// Adds all that another scene has.
+    void append(const Scene& other);
 };
 
 /// Reads .yaml and .yml as a procedural scene (scene_yaml.hpp), anything else as a mesh

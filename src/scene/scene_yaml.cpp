@@ -13,12 +13,11 @@ namespace {
 
 constexpr double kSmallest = 1e-6;  // [m]: what counts as a positive length
 
-/// Reads one scene file: textures by name first, then the surfaces that refer to them.
+/// Reads one scene: textures by name first, then the surfaces that refer to them.
 class SceneReader {
   public:
-    SceneReader(const std::string& file, double mostTexels)
-        : file_(file), root_(file, loadYaml(file)), texelsLeft_(mostTexels) {
-        scene_.files = {file};
+    SceneReader(YamlMap& root, double mostTexels) : root_(root), texelsLeft_(mostTexels) {
+        scene_.files = {root.file()};
     }
 
     Scene read() {
@@ -57,8 +56,7 @@ class SceneReader {
         }
     }
 
-    std::string file_;
-    YamlMap root_;
+    YamlMap& root_;
     unsigned seed_ = 1;
     std::vector<std::string> names_;
     double texelsLeft_;
@@ -161,7 +159,7 @@ Texture SceneReader::readImage(YamlMap& map) {
     double width = 1.;
     map.read("file", image);
     map.readNumber("width", width, kSmallest, kInfinity);
-    const auto path = std::filesystem::path(file_).parent_path() / image;
+    const auto path = std::filesystem::path(root_.file()).parent_path() / image;
     if (!std::filesystem::is_regular_file(path)) {
         map.fail("file", fmt::format("no such image '{}'", path.string()));
     }
@@ -250,7 +248,10 @@ void SceneReader::readWall(YamlMap& map) {
 }  // namespace
 
 Scene loadSceneYaml(const std::string& file, double mostTexels) {
-    return SceneReader(file, mostTexels).read();
+    YamlMap root(file, loadYaml(file));
+    return readScene(root, mostTexels);
 }
+
+Scene readScene(YamlMap& map, double mostTexels) { return SceneReader(map, mostTexels).read(); }
 
 }  // namespace photonav

@@ -6,6 +6,8 @@
 
 namespace photonav {
 
+class YamlMap;
+
 /// Reads a procedural scene. Lengths in metres, grey values in [0, 1]; unknown keys are errors.
 ///
 ///     seed: 1                     # of all noise textures that do not bring their own
@@ -31,5 +33,9 @@ namespace photonav {
 /// are made
 /// @throws InputError naming file, key and reason
 Scene loadSceneYaml(const std::string& file, double mostTexels = kMostTexels);
+
+/// Reads a scene from a mapping of another file: the keys above and those read before, no others.
+/// @throws InputError naming file, key and reason
+Scene readScene(YamlMap& map, double mostTexels = kMostTexels);
 
 }  // namespace photonav

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flights/posters_command.hpp"
+
+#include <fmt/format.h>
+
+#include "flights/posters_report.hpp"
+#include "io/error.hpp"
+#include "io/stopwatch.hpp"
+#include "posters/posters_result.hpp"
+#include "result/json_values.hpp"
+#include "shared/place_option.hpp"
+#include "shared/result_folder.hpp"
+
+namespace photonav {
+namespace {
+
+PosterProblem problemOf(const PostersOptions& options) {
+    PosterProblem problem{.config = loadConfig(options.config, options.overrides),
+                          .file = options.candidates};
+    const Config& config = problem.config;
+    if (config.sceneFile.empty()) {
+        throw InputError(options.config, "map.file", "posters need a scene: give scene.file");
+    }
+    PosterStudyOptions& study = problem.options;
+    study.servo = studyOf(options, config);
+    study.hasPath = !options.goalOnly;
+    study.rankBy = options.goalOnly || options.rankBy == "goal" ? RankBy::goal : RankBy::path;
+    study.most = options.most;
+    study.jobs = options.jobs;
+    if (!options.trajectory.empty()) {
+        study.trajectory = readGivenTrajectory(options.trajectory, config.camera.T_b_c());
+    }
+    problem.posters = readPosters(options.candidates);
+    problem.scene = *World(config).scene();
+    problem.T_w_goal = bodyAt(placeOf(options.at, config.goal, config));
+    checkPosters(problem);
+    return problem;
+}
+
+bool isSolved(const PosterSet& best, const PosterStudyOptions& options) {
+    return options.rankBy == RankBy::path ? best.path && !best.path->isLost()
+                                          : best.servo.openDirections() == 0;
+}
+
+}  // namespace
+
+int runPosters(const PostersOptions& options, const std::atomic<bool>& interrupted) {
+    const Stopwatch watch;
+    const PosterProblem problem = problemOf(options);
+    FolderTransaction folder = beginResult(
+        options, "posters", {problem.config.sceneFile, options.candidates, options.trajectory});
+    ProgressLine line(options.quiet);
+    const PosterRanking ranking =
+        rankPosters(problem, interrupted, [&](std::size_t done, const PosterIndices& set) {
+            line.show(fmt::format("{} studied, now {}", done, nameOf(set, problem.posters)));
+        });
+    line.clear();
+    nlohmann::json result = postersResult(problem, ranking);
+    result["time"]["total_s"] = watch.seconds();
+    writePostersReport(folder.path(), problem, ranking, options.commandLine, result);
+    concludeResult(folder, options, result,
+                   [&] { fmt::print("{}", rankingText(problem, ranking)); });
+    if (ranking.interrupted) return kInterrupted;
+    return isSolved(ranking.sets.front(), problem.options) ? kDone : kNoAnswer;
+}
+
+}  // namespace photonav

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Posters, carpets and boxes that could be brought into a scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace photonav {
+
+/// A textured surface at a place.
+struct Poster {
+    std::string name;
+    Scene surfaces;
+};
+
+/// The name of the scene as it is.
+inline constexpr const char* kNoPoster = "none";
+
+/// Reads a file of candidates, each with a name and the keys of a scene file (scene_yaml.hpp):
+///
+///     candidates:
+///       - name: carpet
+///         textures: [{name: wool, type: noise}]
+///         planes: [{corner: [1, 8, 0.01], u: [2, 0, 0], v: [0, 2, 0], texture: wool}]
+///
+/// @throws InputError naming file, key and reason; also when there is none, and for a name that is
+///         there twice
+std::vector<Poster> readPosters(const std::string& file);
+
+/// The key of a candidate in its file.
+std::string keyOf(std::size_t poster);
+
+}  // namespace photonav
