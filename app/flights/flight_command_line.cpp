@@ -51,9 +51,8 @@ std::string listText(const std::vector<double>& numbers) {
     return fmt::format("(default: {})", fmt::join(numbers, ","));
 }
 
-/// All of ServoOptions but what every command has.
+/// All of ServoOptions but what every command has, and the seed.
 void addStudyOptions(CLI::App& parser, ServoOptions& options) {
-    addSeed(parser, options.overrides, "seed of the starts and of the image noise");
     ServoStudyOptions& study = options.study;
     parser.add_option("--at", options.at,
                       "x,y,z[,yaw] of the robot at the goal (default: the config's goal)");
@@ -76,6 +75,7 @@ void addStudyOptions(CLI::App& parser, ServoOptions& options) {
 
 void addServoOptions(CLI::App& parser, ServoOptions& options) {
     addCommon(parser, options);
+    addSeed(parser, options.overrides, "seed of the starts and of the image noise");
     addStudyOptions(parser, options);
 }
 
@@ -102,6 +102,7 @@ void addPostersOptions(CLI::App& parser, PostersOptions& options) {
               "by one",
               std::size_t{1}, std::size_t{100});
     addJobs(parser, options.jobs);
+    addSeed(parser, options.overrides, "seed of the planner, the starts and the image noise");
     options.study.distances = {0.2};
     options.study.angles = {10.};
     addStudyOptions(parser, options);

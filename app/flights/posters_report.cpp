@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t kPathWidth = 34, kNameWidth = 17;  // of columns
+constexpr std::size_t kPathWidth = 34, kGoalWidth = 28, kWidth = 80;  // of columns
 
 /// A text in lines of whole words.
 std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
@@ -54,7 +54,7 @@ std::string pathColumns(const PosterSet& set) {
 
 std::string goalColumns(const ServoStudy& servo) {
     const ServoMode& slowest = servo.modes.front();
-    return fmt::format("{:>7}{:>6}{:>8}{:>6}", numberOr("open", servo.positionSigma, 1e3),
+    return fmt::format("{:>7}{:>6}{:>9}{:>6}", numberOr("open", servo.positionSigma, 1e3),
                        slowest.rate > 0. ? fmt::format("{:.3g}", 1. / slowest.rate) : "never",
                        numberOr("-", servo.condition),
                        fmt::format("{}/{}", servo.converged(), servo.trials()));
@@ -73,13 +73,16 @@ std::string goalText(const ServoStudy& servo) {
     return fmt::format("{}; {} of {} starts converged", start, servo.converged(), servo.trials());
 }
 
-std::string pathText(const CheckedTrajectory& path) {
+std::string pathText(const PosterSet& set) {
+    if (!set.path) return "no path found";
+    const CheckedTrajectory& path = *set.path;
     const CheckedPlace& worst = path.worst();
-    return fmt::format(
-        "{:.2f} m, mean trace {:.3g} m², {:.3g} m² at the goal; position at most {} "
-        "(after {:.2f} m); {}",
-        path.length, path.meanTrace, path.places.back().trace, lengthText(worst.positionSigma),
-        worst.length, verdictOf(path));
+    std::string text = fmt::format(
+        "{:.2f} m, mean trace {:.3g} m², at the goal {:.3g} m²; least certain after {:.2f} m: {}",
+        path.length, path.meanTrace, path.places.back().trace, worst.length,
+        lengthText(worst.positionSigma));
+    if (set.cost > 0.) text = fmt::format("cost {:.4g}, {}", set.cost, text);
+    return path.isLost() ? fmt::format("{}; {}", text, verdictOf(path)) : text;
 }
 
 std::vector<ReportTable> tablesOf(const PosterProblem& problem, const PosterRanking& ranking) {
@@ -89,7 +92,7 @@ std::vector<ReportTable> tablesOf(const PosterProblem& problem, const PosterRank
     for (const PosterSet& set : ranking.sets) {
         const std::string name =
             fmt::format("{}. {}", ++rank, nameOf(set.posters, problem.posters));
-        paths.rows.emplace_back(name, set.path ? pathText(*set.path) : "no path found");
+        paths.rows.emplace_back(name, pathText(set));
         goals.rows.emplace_back(name, goalText(set.servo));
     }
     if (!problem.options.hasPath) return {goals};
@@ -100,19 +103,20 @@ std::vector<ReportTable> tablesOf(const PosterProblem& problem, const PosterRank
 
 std::string rankingText(const PosterProblem& problem, const PosterRanking& ranking) {
     const bool hasPath = problem.options.hasPath;
+    const std::size_t nameWidth = kWidth - kGoalWidth - 2 - (hasPath ? kPathWidth : 0);
     std::string text;
     const auto add = [&](const std::string& path, const std::string& goal,
                          const std::string& name) {
-        text += fmt::format("{:{}}{:27}  {}", hasPath ? path : "", hasPath ? kPathWidth : 0, goal,
-                            name);
+        text += fmt::format("{:{}}{:{}}  {}", hasPath ? path : "", hasPath ? kPathWidth : 0, goal,
+                            kGoalWidth, name);
         text.erase(text.find_last_not_of(' ') + 1);
         text += "\n";
     };
     add("  path", "  servoing at the goal", "");
-    add("length   cost    mean    goal lost", "  sigma  slow  condi- conv-", "with");
-    add("   [m]          trace   trace  [m]", "   [mm]   [s]    tion erged", "");
+    add("length   cost    mean    goal lost", "  sigma  slow   condi- conv-", "with");
+    add("   [m]          trace   trace  [m]", "   [mm]   [s]     tion erged", "");
     for (const PosterSet& set : ranking.sets) {
-        const auto lines = wrapped(nameOf(set.posters, problem.posters), kNameWidth);
+        const auto lines = wrapped(nameOf(set.posters, problem.posters), nameWidth);
         add(pathColumns(set), goalColumns(set.servo), lines.front());
         for (std::size_t i = 1; i < lines.size(); ++i) add("", "", lines[i]);
     }
@@ -131,11 +135,7 @@ void writePostersReport(const fs::path& folder, const PosterProblem& problem,
     }
     ReportData page = problemReport(problem.config, world, commandLine, shown);
     page.title = fs::path(problem.config.file).stem().string();
-    page.subtitle = fmt::format("Posters and carpets ranked by {}: the best is '{}', shown here.",
-                                problem.options.rankBy == RankBy::path
-                                    ? "the certainty along the path"
-                                    : "the certainty of servoing at the goal",
-                                nameOf(best.posters, problem.posters));
+    page.subtitle = "Posters and carpets ranked; shown is the scene with the best.";
     page.goal = problem.T_w_goal.translation();
     page.paths = pathsOf(problem, sets);
     page.tables = tablesOf(problem, ranking);

@@ -10,7 +10,7 @@
 
 namespace photonav {
 
-/// The ranking as lines of at most 80 columns, if no word of a name is longer than 17.
+/// The ranking as lines of at most 80 columns, if no word of a name is longer than 16.
 std::string rankingText(const PosterProblem& problem, const PosterRanking& ranking);
 
 /// Writes all files of the result folder but result.json.

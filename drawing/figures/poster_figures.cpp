@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "check/check_result.hpp"
 #include "figures/images.hpp"
@@ -27,21 +28,20 @@ std::vector<std::vector<Item>> inRows(std::vector<Item> items) {
     return rows;
 }
 
-/// The sides of its triangles but those that two of them share.
+/// The sides of its triangles but those between two of one plane.
 void addOutline(const Scene& surfaces, std::vector<Edge>& outline) {
-    const std::size_t before = outline.size();
+    const auto normal = [](const Triangle& t) -> Eigen::Vector3f {
+        return (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).normalized();
+    };
     for (const Triangle& triangle : surfaces.triangles) {
         for (std::size_t i = 0; i < 3; ++i) {
             const auto &a = triangle.corners[i], &b = triangle.corners[(i + 1) % 3];
-            const auto known = std::find_if(
-                outline.begin() + static_cast<long>(before), outline.end(), [&](const Edge& edge) {
-                    return (edge[0] == a && edge[1] == b) || (edge[0] == b && edge[1] == a);
-                });
-            if (known == outline.end()) {
-                outline.push_back({a, b});
-            } else {
-                outline.erase(known);
-            }
+            const bool isWithin = std::ranges::any_of(surfaces.triangles, [&](const Triangle& t) {
+                return &t != &triangle && std::ranges::count(t.corners, a) > 0 &&
+                       std::ranges::count(t.corners, b) > 0 &&
+                       std::abs(normal(t).dot(normal(triangle))) > 0.999F;
+            });
+            if (!isWithin) outline.push_back({a, b});
         }
     }
 }
@@ -93,7 +93,7 @@ Figure posterSigmaFigure(const std::vector<DrawnPosterSet>& sets) {
                            .name = sets[i].name});
         if (!lost.empty()) plot.dots(lost, {.color = kLostPlace, .width = 5., .name = "lost"});
     }
-    return {"Standard deviation of the position along the path", {{plot}}, Figure::Legend::right};
+    return {"Standard deviation of the position along the path", {{plot}}};
 }
 
 Figure posterGoalsFigure(const std::vector<DrawnPosterSet>& sets) {
@@ -101,7 +101,7 @@ Figure posterGoalsFigure(const std::vector<DrawnPosterSet>& sets) {
     for (const DrawnPosterSet& drawn : sets) {
         images.push_back({drawn.name, predictedPicture(drawn.set->goalView)});
     }
-    return imagesFigure(inRows(std::move(images)), 420.);
+    return imagesFigure(inRows(std::move(images)), 460.);
 }
 
 Figure posterMapsFigure(const PosterProblem& problem, const std::vector<DrawnPosterSet>& sets) {

@@ -8,6 +8,9 @@
 
 namespace photonav {
 
+/// Which set is the best, and what it gains, in a sentence without its end.
+std::string verdictOf(const PosterProblem& problem, const PosterRanking& ranking);
+
 /// Everything of result.json but the time.
 nlohmann::json postersResult(const PosterProblem& problem, const PosterRanking& ranking);
 

@@ -60,8 +60,10 @@ const summaries = paths.map(summaryOf);
 
 /// A recorded trajectory is a path without beliefs.
 const hasBeliefs = paths.some((path) => path.points.some((point) => point.trace > 0));
-// The planner's own and its baseline's mean, with every sub-step, not only path points.
-[data.result, data.result.baseline].forEach((judged, i) => {
+// The planner's own and its baseline's mean, with every sub-step, not only path points; of posters, by name.
+const judgedPaths = !data.result.ranking ? [data.result, data.result.baseline]
+    : paths.map(({name}) => data.result.ranking.find((set) => set.name === name)?.path);
+judgedPaths.forEach((judged, i) => {
   if (summaries[i] && typeof judged?.mean_trace === 'number') summaries[i].meanTrace = judged.mean_trace;
 });
 

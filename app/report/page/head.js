@@ -111,7 +111,7 @@ function fillTiles() {
     ['goal position, 1σ', 100 * ours.goalSigma, 'cm'],
     ['goal trace', ours.goalTrace ?? result.goal_trace, 'm²'],
     ['mean trace', ours.meanTrace ?? result.mean_trace, 'm²'],
-    ['cost', ours.cost ?? result.cost, ''],
+    ['cost', hasCost ? ours.cost : result.cost, ''],
     ['vertices', result.vertices, ''],
     ['views predicted', result.views, ''],
     ['planning time', seconds, 's'],

@@ -112,7 +112,8 @@ function addComparison() {
   if (paths.length < 2 || !hasBeliefs || data.result.command === 'replay' || sweep) return;
   const box = make('div', undefined, {className: 'wide'}), table = make('table');
   const head = make('tr'), body = make('tbody');
-  head.append(...['Path', 'Length', 'Cost', 'Mean trace', 'Trace at the goal', '1σ at the goal'].map((t) => make('th', t)));
+  const shown = (columns) => columns.filter((_, i) => i !== 2 || hasCost);
+  head.append(...shown(['Path', 'Length', 'Cost', 'Mean trace', 'Trace at the goal', '1σ at the goal']).map((t) => make('th', t)));
   const thead = make('thead');
   thead.append(head);
   paths.forEach((path, i) => {
@@ -120,8 +121,9 @@ function addComparison() {
     const swatch = make('span', undefined, {className: 'swatch'});
     swatch.style.background = path.color;
     name.append(swatch, path.name);
-    row.append(name, ...[say(s.length, 'm'), say(s.cost), say(s.meanTrace, 'm²'), say(s.goalTrace, 'm²'),
-                         say(100 * s.goalSigma, 'cm')].map((t) => make('td', t)));
+    const cells = [name, say(s.length, 'm'), say(s.cost), say(s.meanTrace, 'm²'), say(s.goalTrace, 'm²'),
+                   say(100 * s.goalSigma, 'cm')];
+    row.append(...shown(cells).map((cell) => (cell === name ? name : make('td', cell))));
     body.append(row);
   });
   table.append(thead, body);
