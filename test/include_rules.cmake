@@ -37,7 +37,8 @@ set(folders_mission_flight io geometry photometry render dataset evaluation beli
     config problem runs robot simulation)
 set(folders_mission_check io geometry photometry render dataset alignment estimation result config problem
     flight)
-set(folders_mission_posters io geometry scene render planners alignment result config problem runs check servo)
+set(folders_mission_posters io geometry scene render planners alignment result problem runs check
+    servo)
 set(folders_mission_exploration io geometry photometry map render evaluation belief planners alignment depth
     estimation control result config problem runs flight)
 set(folders_drawing_plot io planners)

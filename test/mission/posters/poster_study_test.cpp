@@ -166,12 +166,12 @@ TEST_F(PosterStudy, ACandidateMustLeaveRoomForStartGoalAndTrajectory) {
         EXPECT_TRUE(refusal().starts_with("posters.yaml: candidates[1]: 'box' puts the " + what))
             << refusal();
     };
-    expectRefused(0., "start in collision: clearance 0.000 m");
-    expectRefused(4., "goal in collision: clearance 0.000 m");
+    expectRefused(0., "start in collision: clearance -0.0");
+    expectRefused(4., "goal in collision: clearance -0.0");
     problem_.posters = {boxAt(2.)};
     EXPECT_EQ(refusal(), "");  // a path is planned around it
     flyStraight();
-    expectRefused(2., "trajectory in collision: clearance 0.000 m");
+    expectRefused(2., "trajectory in collision: clearance -0.0");
 }
 
 TEST_F(PosterStudy, ACandidateMustNotLieInASurface) {

@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <random>
+
 #include "geometry/constants.hpp"
+#include "geometry/se3.hpp"
+#include "render/area_sensor.hpp"
 #include "render/mesh_renderer.hpp"
 #include "scene/scene.hpp"
+#include "simulation/camera_noise.hpp"
 
 namespace photonav {
 namespace {
@@ -53,6 +59,35 @@ TEST(ServoStudy, ConvergesNearTheGoalAsFastAsPredicted) {
     }
 }
 
+/// One step of Gauss-Newton from images with noise errs as much as their information says.
+TEST(ServoStudy, StandardDeviationsAreThoseOfOneImage) {
+    const MeshRenderer floor = floorOf(valueNoise({.size = {20., 20.}, .seed = 3}));
+    const ServoGoal goal = goalOver(floor);
+    const ServoStudy result = study(goal, {.distances = {0.05}, .angles = {0.}, .trials = 1});
+    View view;
+    AreaSensor(floor).render(goal.camera, (goal.T_w_b * goal.T_b_c).inverse(), view);
+    applyPointSpread(view);
+    Eigen::MatrixXd body = Eigen::MatrixXd::Zero(6, 4);
+    body.topLeftCorner<3, 3>().setIdentity();
+    body(5, 3) = 1.;
+    const LevenbergServo servo(view, goal.camera, -adjoint(Pose(goal.T_b_c.inverse())) * body,
+                               {goal.photometric, 1., 0.});
+    const ImageNoise noise = assumedNoise({.sigma = goal.photometric.sigma});
+    std::mt19937_64 random(1);
+    constexpr int kImages = 1000;
+    Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+    for (int i = 0; i < kImages; ++i) {
+        ImageF image = view.intensity;
+        noise(image, random);
+        const Eigen::VectorXd q = servo.velocity(image);
+        covariance += q * q.transpose() / kImages;
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> position(covariance.topLeftCorner<3, 3>());
+    EXPECT_NEAR(result.positionSigma, std::sqrt(position.eigenvalues()[2]),
+                0.1 * result.positionSigma);
+    EXPECT_NEAR(result.rotationSigma, std::sqrt(covariance(3, 3)), 0.1 * result.rotationSigma);
+}
+
 TEST(ServoStudy, NamesTheDirectionThatIsOpen) {
     const MeshRenderer floor = floorOf(stripes());  // bars along y
     const ServoStudy blind =
@@ -61,6 +96,8 @@ TEST(ServoStudy, NamesTheDirectionThatIsOpen) {
     EXPECT_EQ(inWords(blind.modes[0], blind.depth), "y");
     EXPECT_GT(blind.modes[1].rate, 0.);
     EXPECT_GT(blind.condition, 1e6);
+    EXPECT_EQ(blind.openDirections(), 1U);
+    EXPECT_EQ(blind.positionSigma, kInfinity);
 }
 
 TEST(ServoMode, IsSaidInWords) {
