@@ -64,9 +64,10 @@ std::string goalText(const ServoStudy& servo) {
     const ServoMode& slowest = servo.modes.front();
     const std::string direction = inWords(slowest, servo.depth);
     const std::string start =
-        servo.openDirections() > 0
-            ? fmt::format("{} of {} directions open ({})", servo.openDirections(),
-                          servo.modes.size(), direction)
+        servo.openDirections() == 1 ? direction + " is open"
+        : servo.openDirections() > 1
+            ? fmt::format("{} of {} directions are open", servo.openDirections(),
+                          servo.modes.size())
             : fmt::format("position {}, slowest {} in {:.3g} s, condition {:.3g}",
                           lengthText(servo.positionSigma), direction, 1. / slowest.rate,
                           servo.condition);
