@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "belief/information_field.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -11,8 +12,28 @@
 namespace photonav {
 namespace {
 
+/// The information without its negative eigenvalues. Views are summed in single precision: along
+/// bars that leaves -1 1/m^2 beside 1e8, enough to turn a standard deviation of a metre into a
+/// negative variance, negative costs of edges, and a tree with a cycle. The eigenvalues are those
+/// in units in which the diagonal is 1.
+Matrix6 withoutNegative(const Matrix6& information) {
+    constexpr double kNegligible = 1e-13;
+    if (!information.allFinite()) {
+        throw std::domain_error("information field: the information of a view is not finite");
+    }
+    const auto sqrtOr1 = [](double x) { return x == 0. ? 1. : std::sqrt(std::abs(x)); };
+    const Vector6 unit = information.diagonal().unaryExpr(sqrtOr1);
+    const Vector6 inverse = unit.cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(inverse.asDiagonal() * information *
+                                                        inverse.asDiagonal());
+    if (solver.eigenvalues()[0] >= -kNegligible) return information;
+    const Matrix6 V = unit.asDiagonal() * solver.eigenvectors();
+    const Matrix6 positive = V * solver.eigenvalues().cwiseMax(0.).asDiagonal() * V.transpose();
+    return 0.5 * (positive + positive.transpose());
+}
+
 void setInformation(const Matrix6& camera, const Pose& T_c_w, InformationField::Entry& entry) {
-    entry.information = inRotatedAxes(camera, T_c_w.linear().transpose());
+    entry.information = inRotatedAxes(withoutNegative(camera), T_c_w.linear().transpose());
     entry.isZero = camera.isZero(0.);
 }
 

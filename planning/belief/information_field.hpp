@@ -21,7 +21,8 @@ namespace photonav {
 /// not on the order of queries: a path costs the same whenever it is evaluated. Information is
 /// stored in world-oriented axes, rotated by the rotation of the camera at the centre, which
 /// rendered the view. In the camera's axes, a heading that differs from the centre's would mix
-/// observed and unobserved directions.
+/// observed and unobserved directions. Negative eigenvalues of what a model returns count as 0; a
+/// query throws std::domain_error where that is not finite.
 class InformationField {
   public:
     struct Options {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 #include "planning/fixture.hpp"
@@ -108,6 +109,20 @@ TEST(InformationField, AModelThatThrowsLeavesItUsable) {
     fail = false;
     EXPECT_TRUE(field.at(bodyAt(0., 0.)).information.isIdentity(1e-12));
     EXPECT_EQ(field.views(), 1U);
+}
+
+TEST(InformationField, NegativeInformationCountsAsNone) {
+    // Positive along the diagonal, but negative for y - z.
+    Matrix6 indefinite = vector6(4., 1., 1e4, 0., 1., 1.).asDiagonal();
+    indefinite(1, 2) = indefinite(2, 1) = 120.;
+    InformationField field([&](const Pose&) { return indefinite; }, Pose::Identity(), {});
+    const Matrix6 information = field.at(bodyAt(0., 0.)).information;
+    EXPECT_TRUE(isCovariance(information)) << information;
+    EXPECT_DOUBLE_EQ(information(0, 0), 4.);
+    EXPECT_GT(information(2, 2), 1e4);
+
+    indefinite(0, 0) = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(field.at(bodyAt(9., 0.)), std::domain_error);
 }
 
 TEST(InformationField, RejectsAPitchOfZero) {
