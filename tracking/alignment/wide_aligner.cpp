@@ -6,6 +6,7 @@
 
 #include "alignment/hole_margin.hpp"
 #include "alignment/image_pyramid.hpp"
+#include "alignment/repeated_texture.hpp"
 #include "geometry/se3.hpp"
 
 namespace photonav {
@@ -29,6 +30,7 @@ constexpr double kStuck = 0.3;       // share of the explained variance that dec
                                      // if all repetitions along a single wide axis were tried, as
                                      // hard edges stop alignments a pixel from the right pose
 constexpr double kElsewhere = 30.;   // squared Mahalanobis distance of another place
+constexpr double kNextApart = 1.5;   // of two repetitions, at least [pixels]
 
 /// Image motion over the uncertainty of a prior: principal axes [twist per pixel] and standard
 /// deviations [pixels].
@@ -139,6 +141,12 @@ AlignmentOptions forNear(AlignmentOptions options) {
     return options;
 }
 
+/// On coarser levels fine texture is averaged away. They lead to any of its repetitions.
+AlignmentOptions forFine(AlignmentOptions options) {
+    options.levels = 1;
+    return options;
+}
+
 Alignment undecided(Alignment a, const UncertainPose& prior, Verdict verdict) {
     a.T_c_w = prior.mean;
     a.covariance = prior.covariance;
@@ -183,7 +191,9 @@ WideAligner::WideAligner(const ViewSource& model, const Camera& camera,
       aligner_(model, camera, options),
       small_(model, quartered(camera), forSmall(unmeasured(options))),
       near_(model, camera, forNear(unmeasured(options))),
-      final_(model, camera, forNear(options)) {}
+      final_(model, camera, forNear(options)),
+      fine_(model, camera, forFine(unmeasured(options))),
+      fineFinal_(model, camera, forFine(options)) {}
 
 /// Poses within the prior whose views, at a quarter of the size, are most similar to the image.
 std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const UncertainPose& prior,
@@ -315,6 +325,40 @@ std::vector<Alignment> WideAligner::alignFrom(const std::vector<Pose>& starts,
     return found;
 }
 
+/// The best of an alignment and others, a repetition of the texture in view away from it. The prior
+/// may be wider than the texture's period, and then the first may be any of them.
+Alignment WideAligner::bestRepetition(const Alignment& first, const ImageF& observed,
+                                      const UncertainPose& prior) {
+    View predicted;
+    model_.render(aligner_.camera(), first.T_c_w, predicted);
+    const auto twists = repetitions(predicted, first.T_c_w, prior, aligner_.camera(),
+                                    weight() / pixels());
+    if (twists.empty()) return first;
+    std::vector<Pose> starts{first.T_c_w};
+    for (const Vector6& xi : twists) {
+        if (starts.size() <= kStarts) starts.push_back(expSE3(xi) * first.T_c_w);
+    }
+    const auto found = alignFrom(starts, fine_, observed, prior);
+    if (found.empty()) return first;
+    const auto cost = [&](const Alignment& a) { return costOf(a, prior); };
+    const Alignment& best =
+        *std::min_element(found.begin(), found.end(), [&](const Alignment& a, const Alignment& b) {
+            return cost(a) < cost(b);
+        });
+    const auto isApart = [&](const Alignment& a, const Alignment& b) {
+        const Vector6 apart = deviation(a.T_c_w, b.T_c_w);
+        return apart.head<3>().norm() / first.meanDepth + apart.tail<3>().norm() >
+                   kNextApart / aligner_.camera().fx() &&
+               squaredDistance(apart, first.covariance) > kElsewhere;
+    };
+    if (std::any_of(found.begin(), found.end(), [&](const Alignment& a) {
+            return isApart(a, best) && cost(a) < cost(best) + kAmbiguous;
+        })) {
+        return undecided(best, prior, Verdict::degenerate);
+    }
+    return isApart(first, best) ? fineFinal_.align(observed, prior, best.T_c_w) : first;
+}
+
 Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior) {
     const Alignment first = aligner_.align(observed, prior);
     variance_ = residualVariance(observed, first.meanDepth);
@@ -322,8 +366,9 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
     View expected;
     model_.render(small_.camera(), prior.mean, expected);
     const double depth = meanDepth(expected);
-    if (imageMotionOf(prior.covariance, aligner_.camera(), depth).sigmas.maxCoeff() < kBasinSigma)
-        return first;
+    if (imageMotionOf(prior.covariance, aligner_.camera(), depth).sigmas.maxCoeff() < kBasinSigma) {
+        return isLost(first.verdict) ? first : bestRepetition(first, observed, prior);
+    }
 
     const auto isLikelier = [&](const Alignment& a, const Alignment& b) {
         return costOf(a, prior) < costOf(b, prior);
@@ -354,7 +399,7 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
     if (explained < least || isAmbiguous(best, found, prior)) {
         return undecided(best, prior, Verdict::degenerate);
     }
-    return best;
+    return bestRepetition(best, observed, prior);
 }
 
 }  // namespace photonav

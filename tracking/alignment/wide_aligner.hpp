@@ -52,6 +52,8 @@ class WideAligner {
     bool isElsewhere(const Alignment& alignment, const Alignment& best) const;
     std::vector<Pose> ambiguousMatches(const Alignment& best, const std::vector<Alignment>& found,
                                        const UncertainPose& prior) const;
+    Alignment bestRepetition(const Alignment& first, const ImageF& observed,
+                             const UncertainPose& prior);
     bool isAmbiguous(const Alignment& best, const std::vector<Alignment>& found,
                      const UncertainPose& prior) const;
 
@@ -60,6 +62,8 @@ class WideAligner {
     DenseAligner small_;    ///< images of a quarter of the size
     DenseAligner near_;     ///< starts at the best poses of small images
     DenseAligner final_;    ///< starts at the best pose, with measured slope
+    DenseAligner fine_;     ///< at full size alone, starts at repetitions of texture
+    DenseAligner fineFinal_;
     double variance_ = 0.;  ///< of the residuals of the present image at the right pose
 };
 
