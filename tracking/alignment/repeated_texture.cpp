@@ -11,26 +11,27 @@
 namespace photonav {
 namespace {
 
-constexpr int kParts = 4;          // of a view's width, and of its height as many as are about square
-constexpr int kFarthest = 16;      // coarse levels tell texture of longer periods apart [pixels]
-constexpr double kWithin = 3.;      // standard deviations of the prior
-constexpr double kDip = 0.5;       // most of the hill that is left behind it
+constexpr int kParts = 4;       // of a view's width, and of its height as many as are about square
+constexpr int kFarthest = 16;   // coarse levels tell texture of longer periods apart [pixels]
+constexpr double kWithin = 3.;  // standard deviations of the prior
+constexpr double kDip = 0.5;    // most of the hill that is left behind it
 constexpr double kLeastHill = 12.;  // -2 log likelihood
-constexpr double kSame = 1.;       // of two twists that move all parts alike [pixels]
+constexpr double kSame = 1.;        // of two twists that move all parts alike [pixels]
 constexpr double kNoMotion = 1e-6;  // makes covariances definite [pixels^2]
 
 /// A rectangle of a view, and how its middle moves when the camera does.
 struct Part {
-    Eigen::Array2i begin, end;                     ///< (u, v) [pixels]
-    Eigen::Matrix<double, 2, 6> J;                 ///< pixels by the twist
-    Eigen::Vector2d mean;                          ///< motion to the prior's mean [pixels]
-    Eigen::Matrix2d covariance;                    ///< of the motion [pixels^2]
+    Eigen::Array2i begin, end;      ///< (u, v) [pixels]
+    Eigen::Matrix<double, 2, 6> J;  ///< pixels by the twist
+    Eigen::Vector2d mean;           ///< motion to the prior's mean [pixels]
+    Eigen::Matrix2d covariance;     ///< of the motion [pixels^2]
     Eigen::Matrix2d information;
 
     int pixels() const { return (end - begin).prod(); }
-    bool isPlausible(int u, int v) const {
+    /// Squared Mahalanobis distance of a motion from the prior's mean.
+    double squaredDistance(int u, int v) const {
         const Eigen::Vector2d d = Eigen::Vector2d(u, v) - mean;
-        return d.dot(information * d) <= kWithin * kWithin;
+        return d.dot(information * d);
     }
     /// Pixels within which motions are plausible.
     int reach() const {
@@ -90,9 +91,11 @@ std::vector<Part> partsOf(const View& view, const Camera& camera, const Vector6&
 /// Mean square differences of a part of an image from the image displaced.
 class SelfDifferences {
   public:
-    SelfDifferences(const ImageF& image, const Part& part, int reach)
+    /// @param weight of a sum of squares over pixels, see repetitions()
+    SelfDifferences(const ImageF& image, const Part& part, int reach, double weight)
         : image_(image),
           part_(part),
+          weight_(weight),
           reach_(reach + 1),
           known_(Eigen::ArrayXXd::Constant(2 * reach_ + 1, 2 * reach_ + 1, -1.)) {}
 
@@ -101,10 +104,11 @@ class SelfDifferences {
         if (known < 0.) known = difference(u, v);
         return known;
     }
+    /// Of what is left of the part and the prior: along bars all motions look the same.
     bool isMinimum(int u, int v) {
         for (int j = -1; j <= 1; ++j) {
             for (int i = -1; i <= 1; ++i) {
-                if ((i != 0 || j != 0) && at(u + i, v + j) <= at(u, v)) return false;
+                if ((i != 0 || j != 0) && cost(u + i, v + j) <= cost(u, v)) return false;
             }
         }
         return true;
@@ -122,6 +126,10 @@ class SelfDifferences {
     }
 
   private:
+    /// -2 log likelihood.
+    double cost(int u, int v) {
+        return weight_ * part_.pixels() * at(u, v) + part_.squaredDistance(u, v);
+    }
     double difference(int u, int v) const {
         const Eigen::Array2i size(image_.getWidth(), image_.getHeight());
         const Eigen::Array2i d(u, v);
@@ -142,6 +150,7 @@ class SelfDifferences {
 
     const ImageF& image_;
     const Part& part_;
+    double weight_;
     int reach_;
     Eigen::ArrayXXd known_;  // negative: not yet
 };
@@ -150,10 +159,11 @@ class SelfDifferences {
 std::vector<Eigen::Vector2d> repetitionsOf(const ImageF& image, const Part& part, double weight) {
     const int reach = part.reach();
     std::vector<Eigen::Vector2d> found;
-    SelfDifferences differences(image, part, reach);
+    SelfDifferences differences(image, part, reach, weight);
     for (int v = -reach; v <= reach; ++v) {
         for (int u = -reach; u <= reach; ++u) {
-            if (!part.isPlausible(u, v) || !differences.isMinimum(u, v)) continue;
+            if (part.squaredDistance(u, v) > kWithin * kWithin || !differences.isMinimum(u, v))
+                continue;
             const double hill = differences.hillBefore(u, v);
             const bool isHill = weight * part.pixels() * hill > kLeastHill;
             if (isHill && differences.at(u, v) < kDip * hill) found.emplace_back(u, v);

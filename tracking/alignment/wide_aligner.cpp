@@ -141,7 +141,7 @@ AlignmentOptions forNear(AlignmentOptions options) {
     return options;
 }
 
-/// On coarser levels fine texture is averaged away. They lead to any of its repetitions.
+/// Coarser levels average fine texture away, and lead to any of its repetitions.
 AlignmentOptions forFine(AlignmentOptions options) {
     options.levels = 1;
     return options;
@@ -325,38 +325,41 @@ std::vector<Alignment> WideAligner::alignFrom(const std::vector<Pose>& starts,
     return found;
 }
 
-/// The best of an alignment and others, a repetition of the texture in view away from it. The prior
-/// may be wider than the texture's period, and then the first may be any of them.
+/// Whether two alignments found different repetitions of the texture in view.
+/// @param at an alignment of either, with its covariance measured: along bars there is one place
+bool WideAligner::areApart(const Alignment& a, const Alignment& b, const Alignment& at) const {
+    const Vector6 apart = deviation(a.T_c_w, b.T_c_w);
+    const double radians = apart.head<3>().norm() / at.meanDepth + apart.tail<3>().norm();
+    return aligner_.camera().fx() * radians > kNextApart &&
+           squaredDistance(apart, at.covariance) > kElsewhere;
+}
+
+/// Where texture repeats within the prior, the first alignment may have found any repetition. The
+/// others are aligned as well, and the best is the result, if there is one.
 Alignment WideAligner::bestRepetition(const Alignment& first, const ImageF& observed,
                                       const UncertainPose& prior) {
     View predicted;
     model_.render(aligner_.camera(), first.T_c_w, predicted);
-    const auto twists = repetitions(predicted, first.T_c_w, prior, aligner_.camera(),
-                                    weight() / pixels());
-    if (twists.empty()) return first;
     std::vector<Pose> starts{first.T_c_w};
-    for (const Vector6& xi : twists) {
+    for (const Vector6& xi :
+         repetitions(predicted, first.T_c_w, prior, aligner_.camera(), weight() / pixels())) {
         if (starts.size() <= kStarts) starts.push_back(expSE3(xi) * first.T_c_w);
     }
+    if (starts.size() == 1) return first;
     const auto found = alignFrom(starts, fine_, observed, prior);
     if (found.empty()) return first;
-    const auto cost = [&](const Alignment& a) { return costOf(a, prior); };
-    const Alignment& best =
-        *std::min_element(found.begin(), found.end(), [&](const Alignment& a, const Alignment& b) {
-            return cost(a) < cost(b);
-        });
-    const auto isApart = [&](const Alignment& a, const Alignment& b) {
-        const Vector6 apart = deviation(a.T_c_w, b.T_c_w);
-        return apart.head<3>().norm() / first.meanDepth + apart.tail<3>().norm() >
-                   kNextApart / aligner_.camera().fx() &&
-               squaredDistance(apart, first.covariance) > kElsewhere;
+    const auto isLikelier = [&](const Alignment& a, const Alignment& b) {
+        return costOf(a, prior) < costOf(b, prior);
     };
-    if (std::any_of(found.begin(), found.end(), [&](const Alignment& a) {
-            return isApart(a, best) && cost(a) < cost(best) + kAmbiguous;
-        })) {
+    const Alignment& best = *std::min_element(found.begin(), found.end(), isLikelier);
+    const double decides = costOf(best, prior) + kAmbiguous;
+    const auto isRival = [&](const Alignment& a) {
+        return areApart(a, best, first) && costOf(a, prior) < decides;
+    };
+    if (std::any_of(found.begin(), found.end(), isRival)) {
         return undecided(best, prior, Verdict::degenerate);
     }
-    return isApart(first, best) ? fineFinal_.align(observed, prior, best.T_c_w) : first;
+    return areApart(first, best, first) ? fineFinal_.align(observed, prior, best.T_c_w) : first;
 }
 
 Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior) {

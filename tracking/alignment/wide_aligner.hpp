@@ -29,6 +29,10 @@ inline constexpr double kWidestSearchSpacing = 2. * kBasinSigma;
 /// explains it almost as well. Otherwise the result is the prior, and the verdict is `degenerate`
 /// along all axes (several poses match, or what is left unexplained is below
 /// TrustOptions::residualSigmas) or lost (no pose matches).
+///
+/// Fine texture may repeat within a prior that is not wide, too, as books on a shelf do. The
+/// repetitions() of the view at the result are then aligned as well, and the best is the result;
+/// where none is much better than the others it is the prior.
 class WideAligner {
   public:
     /// @param model must outlive the aligner
@@ -52,6 +56,7 @@ class WideAligner {
     bool isElsewhere(const Alignment& alignment, const Alignment& best) const;
     std::vector<Pose> ambiguousMatches(const Alignment& best, const std::vector<Alignment>& found,
                                        const UncertainPose& prior) const;
+    bool areApart(const Alignment& a, const Alignment& b, const Alignment& at) const;
     Alignment bestRepetition(const Alignment& first, const ImageF& observed,
                              const UncertainPose& prior);
     bool isAmbiguous(const Alignment& best, const std::vector<Alignment>& found,
@@ -59,12 +64,12 @@ class WideAligner {
 
     const ViewSource& model_;
     DenseAligner aligner_;
-    DenseAligner small_;    ///< images of a quarter of the size
-    DenseAligner near_;     ///< starts at the best poses of small images
-    DenseAligner final_;    ///< starts at the best pose, with measured slope
-    DenseAligner fine_;     ///< at full size alone, starts at repetitions of texture
-    DenseAligner fineFinal_;
-    double variance_ = 0.;  ///< of the residuals of the present image at the right pose
+    DenseAligner small_;      ///< images of a quarter of the size
+    DenseAligner near_;       ///< starts at the best poses of small images
+    DenseAligner final_;      ///< starts at the best pose, with measured slope
+    DenseAligner fine_;       ///< starts at repetitions of texture, at full size alone
+    DenseAligner fineFinal_;  ///< starts at the best of these, with measured slope
+    double variance_ = 0.;    ///< of the residuals of the present image at the right pose
 };
 
 }  // namespace photonav
