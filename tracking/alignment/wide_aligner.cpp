@@ -346,8 +346,8 @@ Alignment WideAligner::bestRepetition(const Alignment& first, const ImageF& obse
         if (starts.size() <= kStarts) starts.push_back(expSE3(xi) * first.T_c_w);
     }
     if (starts.size() == 1) return first;
-    const auto found = alignFrom(starts, fine_, observed, prior);
-    if (found.empty()) return first;
+    auto found = alignFrom(starts, fine_, observed, prior);
+    found.push_back(first);
     const auto isLikelier = [&](const Alignment& a, const Alignment& b) {
         return costOf(a, prior) < costOf(b, prior);
     };
