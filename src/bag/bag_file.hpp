@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The messages of a ROS 1 bag (format 2.0). Debian's librosbag-storage trusts the offsets that a
-// bag gives and crashes on a damaged one; here each is checked before it is used.
+// Reads the messages of a ROS 1 bag (format 2.0). Every offset in the file is checked before it is
+// used; Debian's librosbag-storage does not check them and crashes on damaged bags.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,15 @@ struct BagTopic {
     std::string type;  ///< "sensor_msgs/Image"
 };
 
-/// Where a message lies.
+/// The position of a message in a bag.
 struct BagMessage {
-    std::uint64_t chunk = 0;   ///< position of its chunk in the file
-    std::uint32_t offset = 0;  ///< in the chunk, uncompressed
+    std::uint64_t chunk = 0;   ///< position of its chunk in the file [bytes]
+    std::uint32_t offset = 0;  ///< position in the uncompressed chunk [bytes]
     std::uint32_t size = 0;
-    double received = 0.;  ///< when it was recorded [s]
+    double received = 0.;  ///< time at which it was recorded [s]
 };
 
-/// Reads one chunk at a time, and keeps the last one.
+/// A bag that is read chunk by chunk. The chunk read last is kept in memory.
 class BagFile {
   public:
     /// @throws InputError for a file that is missing, no bag, of an older format, or encrypted
@@ -34,17 +34,17 @@ class BagFile {
 
     const std::string& file() const { return file_; }
 
-    /// Whether a file begins as a bag does.
+    /// Whether a file begins with the signature of a bag.
     static bool isBag(const std::string& file);
 
     using Visit =
         std::function<void(const BagTopic&, const BagMessage&, std::span<const std::uint8_t>)>;
-    /// Calls `visit` with each message, in the order in which they were recorded.
+    /// Calls `visit` with each message, in the order of the file.
     /// @throws InputError for a bag that is cut short or damaged, and what `visit` throws, with the
     ///         file's name
     void forEachMessage(const Visit& visit);
 
-    /// The bytes of a message, until another one is read.
+    /// The bytes of a message, valid until another message is read.
     /// @throws InputError if the file has changed
     std::span<const std::uint8_t> read(const BagMessage& message);
 

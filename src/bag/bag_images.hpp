@@ -16,16 +16,17 @@ enum class ImageContent { grey, depth, other };
 /// (16UC1, 32FC1).
 ImageContent contentOf(const std::string& encoding);
 
-/// The same of a compressed image's format: depth of compressedDepth, grey of all else.
+/// What compressed images of a format show: depth for compressedDepth, grey values for all other
+/// formats.
 ImageContent contentOfFormat(const std::string& format);
 
-/// Grey values in [0, 1]; colour as OpenCV weighs it.
-/// @throws std::runtime_error for another size than the camera's and for what is damaged
+/// Grey values in [0, 1]; colour is converted with OpenCV's weights.
+/// @throws std::runtime_error for an image that is damaged or does not have the camera's size
 ImageF greyOf(const ImageMessage& image, const Camera& camera);
 ImageF greyOf(const CompressedImageMessage& image, const Camera& camera);
 
-/// Depth in metres; 0: none.
-/// @param scale value of one metre: 1000 of 16UC1 by ROS's convention, 1 of 32FC1
+/// Depth along the optical axis [m]; 0: not measured.
+/// @param scale stored value of one metre; by ROS's convention 1000 for 16UC1 and 1 for 32FC1
 /// @throws std::runtime_error as greyOf(), and for compressed 32-bit depth
 ImageF depthOf(const ImageMessage& image, const Camera& camera, double scale);
 ImageF depthOf(const CompressedImageMessage& image, const Camera& camera, double scale);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The messages of ROS that a recording is made of. Data refer to the bytes they were read from.
+// The ROS messages that a recording consists of. `data` members refer to the bytes that a message
+// was parsed from and must not outlive them.
 #pragma once
 
 #include <array>
@@ -14,7 +15,7 @@ namespace photonav {
 
 /// sensor_msgs/Image
 struct ImageMessage {
-    double stamp = 0.;  ///< of its header [s]; 0: none
+    double stamp = 0.;  ///< time stamp in the header [s]; 0: none
     std::uint32_t width = 0, height = 0;
     std::uint32_t step = 0;  ///< bytes of a row
     std::string encoding;    ///< "mono8", "16UC1", ...
@@ -34,16 +35,16 @@ struct CameraInfoMessage {
     std::uint32_t width = 0, height = 0;
     std::string distortionModel;
     std::vector<double> D;
-    std::array<double, 9> K{};   ///< by rows, of the image as it was taken
-    std::array<double, 12> P{};  ///< by rows, of the rectified image
+    std::array<double, 9> K{};   ///< row by row, for the image before rectification
+    std::array<double, 12> P{};  ///< row by row, for the rectified image
     bool isPart = false;         ///< binned or cropped
 };
 
-/// What a topic with poses says.
+/// A pose message of any type that isPoseType() accepts.
 struct PoseMessage {
     double stamp = 0.;
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
-    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< as it is, of any norm
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< as stored; may have any norm
 };
 
 // All throw std::runtime_error for a message that is damaged.
@@ -52,7 +53,7 @@ ImageMessage parseImage(std::span<const std::uint8_t> message);
 CompressedImageMessage parseCompressedImage(std::span<const std::uint8_t> message);
 CameraInfoMessage parseCameraInfo(std::span<const std::uint8_t> message);
 
-/// Whether parsePoseMessage() knows a type: PoseStamped, PoseWithCovarianceStamped and
+/// Whether parsePoseMessage() can parse a type: PoseStamped, PoseWithCovarianceStamped and
 /// TransformStamped of geometry_msgs, and nav_msgs/Odometry.
 bool isPoseType(const std::string& type);
 PoseMessage parsePoseMessage(const std::string& type, std::span<const std::uint8_t> message);

@@ -12,8 +12,8 @@ namespace photonav {
 
 using ByteSpan = std::span<const std::uint8_t>;
 
-/// Numbers and texts one after the other, as ROS writes them: little-endian, texts and lists after
-/// their length. No length is believed before the bytes are there.
+/// Reads numbers and texts in ROS's serialisation: little-endian, texts and lists preceded by their
+/// length. Every length is checked against the bytes that are left.
 class ByteReader {
   public:
     explicit ByteReader(ByteSpan bytes) : bytes_(bytes) {}
@@ -38,7 +38,7 @@ class ByteReader {
         return value;
     }
 
-    /// What follows its length.
+    /// A block of bytes preceded by its length (uint32).
     ByteSpan block() { return bytes(number<std::uint32_t>()); }
 
     std::string text() {

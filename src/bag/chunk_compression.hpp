@@ -8,10 +8,10 @@
 
 namespace photonav {
 
-/// A chunk of a bag as it was before it was compressed.
+/// Decompresses a chunk of a bag.
 /// @param compression "none", "bz2" or "lz4"
-/// @param size that it must have
-/// @throws std::runtime_error for another compression, and for what is damaged or too large
+/// @param size expected size of the result [bytes]
+/// @throws std::runtime_error for another compression, and for a chunk that is damaged or too large
 std::vector<std::uint8_t> uncompressed(const std::string& compression,
                                        std::span<const std::uint8_t> compressed,
                                        std::uint32_t size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MCAP files (mcap.dev), the recordings that Foxglove opens: messages in time, of JSON.
+// Writes MCAP files (mcap.dev) with time-stamped JSON messages, which Foxglove opens.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,14 @@
 
 namespace photonav {
 
-/// Collects messages, and writes them as chunks that are not compressed, with checksums and an
-/// index, so that a reader can jump to any time.
+/// Collects messages and writes them in uncompressed chunks with checksums. An index lets a reader
+/// jump to any time.
 class McapWriter {
   public:
     using ChannelId = std::uint16_t;
 
-    /// @param schema JSON Schema of its messages; channels with schemas of one name share the first
+    /// @param schema JSON Schema of the channel's messages. If several channels give the same
+    ///         schemaName, the schema of the first one is used for all.
     ChannelId addChannel(const std::string& topic, const std::string& schemaName,
                          const std::string& schema);
 
@@ -42,11 +43,12 @@ class McapWriter {
         ChannelId channel = 0;
         std::string json;
     };
-    /// What the index says of a chunk.
+    /// The index entry of a chunk.
     struct Chunk {
         std::uint64_t first = 0, last = 0;  ///< times [ns]
         std::uint64_t start = 0, length = 0, indexLength = 0, size = 0;
-        std::map<ChannelId, std::uint64_t> indices;  ///< where its messages of a channel are listed
+        std::map<ChannelId, std::uint64_t>
+            indices;  ///< by channel: position in the file of the index of its messages
     };
 
     std::string schemaRecords() const;

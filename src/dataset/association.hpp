@@ -6,7 +6,8 @@
 namespace photonav {
 
 /// Pairs two lists of timestamps, both in order: closest pairs first, each timestamp used at most
-/// once, as associate.py of the TUM benchmark does. Time n log n, memory n, however dense they are.
+/// once, as associate.py of the TUM benchmark does. Time n log n and memory n, also for dense
+/// timestamps.
 /// @param tolerance the largest difference of a pair [s]
 /// @returns for every timestamp of `a` the index of its partner in `b`, or -1
 std::vector<int> associate(const std::vector<double>& a, const std::vector<double>& b,

@@ -11,26 +11,29 @@
 
 namespace photonav {
 
-/// Images of a lens that distorts, as a pinhole camera sees them.
+/// Undistorts the images of a camera with lens distortion.
 class LensCorrection {
   public:
     virtual ~LensCorrection() = default;
-    /// Interpolated. @throws std::runtime_error for an image of another size
+    /// The undistorted image, interpolated bilinearly. @throws std::runtime_error for an image of
+    /// another size
     virtual ImageF corrected(const ImageF& image) const = 0;
-    /// Of the nearest pixel, so that no depth between two surfaces comes up.
+    /// The undistorted depth image. Depth is taken from the nearest pixel: interpolation would
+    /// produce depths between two surfaces.
     virtual ImageF correctedDepth(const ImageF& depth) const = 0;
 };
 
 struct BagCamera {
-    Camera camera;                               ///< of the corrected images
-    std::shared_ptr<const LensCorrection> lens;  ///< null: there is nothing to correct
+    Camera camera;                               ///< of the undistorted images
+    std::shared_ptr<const LensCorrection> lens;  ///< null: the images are already undistorted
 };
 
-/// The camera of a topic's images. A topic called image_rect... has rectified ones, of the
-/// camera P; others are of K and D, and the largest rectangle without gaps is what is left of them.
-/// @param source bag and topic, for messages
-/// @throws InputError for what is no camera, images that are binned or cropped, and lenses other
-///         than plumb_bob and rational_polynomial
+/// The camera of a topic's images. If the topic's name begins with image_rect, its images are
+/// rectified and P is their camera. Otherwise the images have K and D; after correction they are
+/// cropped to the largest rectangle without gaps.
+/// @param source bag and topic, named in error messages
+/// @throws InputError for invalid camera parameters, images that are binned or cropped, and
+///         distortion models other than plumb_bob and rational_polynomial
 BagCamera bagCamera(const CameraInfoMessage& info, const std::string& imageTopic,
                     const std::string& source);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The topics of a bag that a recording can be made of.
+// The topics of a bag that a recording can be read from.
 #pragma once
 
 #include <map>
@@ -19,7 +19,7 @@ struct StampedMessage {
     BagMessage where;
 };
 
-/// What is kept of a topic's messages.
+/// The contents of one topic.
 struct TopicContents {
     std::string type;
     ImageContent content = ImageContent::other;
@@ -33,19 +33,21 @@ struct TopicContents {
 
 struct BagContents {
     std::map<std::string, TopicContents> topics;
-    std::vector<Sequence::Skipped> skipped;  ///< poses that are none
+    std::vector<Sequence::Skipped> skipped;  ///< invalid poses
 };
 
 /// Reads a bag once, an image at a time.
 /// @throws InputError for a bag that is damaged
 BagContents contentsOf(BagFile& bag);
 
-/// The topic with the parameters of the camera that a topic's images are of, by ROS's convention
-/// for names; empty: there is none.
+/// The camera_info topic that belongs to an image topic by ROS's naming convention; empty if there
+/// is none.
 std::string cameraBeside(std::string image, const BagContents& contents);
 
-/// The topics to read, named by the options or the only ones of their types; empty: there is none.
-/// @throws InputError for what a recording needs and the bag lacks or has twice
+/// The topics to read: those named by the options, else the only topic of each type. A name is
+/// empty if there is no such topic.
+/// @throws InputError if a topic that a recording needs is missing, or is not named and there are
+///         several
 BagTopics chosenTopics(const std::string& file, const BagContents& contents,
                        const BagOptions& options);
 

@@ -24,9 +24,9 @@ Trajectory meansOf(const std::vector<StampedBelief>& beliefs);
 void writeCovariances(const std::string& file, const std::vector<StampedBelief>& beliefs);
 
 /// OpenVINS' lines `t tx ty tz qx qy qz qw Pr11 Pr12 Pr13 Pr22 Pr23 Pr33 Pt11 ... Pt33`, which its
-/// ov_eval reads: pose camera to world, covariance of the orientation in the camera frame (to
-/// first order phi, on the left of R_c_w), covariance of the position in the world's axes,
-/// R_w_c Sigma_rho R_w_c^T. What couples the two has no place in this format.
+/// ov_eval reads: pose camera to world, covariance of the orientation in the camera frame (to first
+/// order phi, on the left of R_c_w), covariance of the position in the world's axes, R_w_c
+/// Sigma_rho R_w_c^T. The format has no place for the correlation between the two.
 /// @throws InputError when the file cannot be written
 void writeOpenVinsTrajectory(const std::string& file, const std::vector<StampedBelief>& beliefs);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// camera.yaml of a recording: what its cameras are.
+// Reads and writes camera.yaml, the camera parameters of a recording.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace photonav {
 
-/// Sets what a camera file says: width, height, fx, fy, cx, cy [pixels], depth_scale,
+/// Reads a camera file into `sequence`: width, height, fx, fy, cx, cy [pixels], depth_scale,
 /// information_scale, blur (point spread [pixels]), depth_error (relative, of its scale and
 /// registration), and for depth images that are not registered to the colour images `depth_camera`
-/// with its own fx, fy, cx, cy, width and height (those of the colour camera), T_colour_depth
-/// (`[x, y, z, qx, qy, qz, qw]`, default: the same place) and whose poses are recorded (poses:
-/// colour, or depth).
+/// with its own fx, fy, cx, cy, width and height (those of the colour camera), T_colour_depth (`[x,
+/// y, z, qx, qy, qz, qw]`, default: the same place) and whose poses are recorded (poses: colour, or
+/// depth).
 /// @throws InputError naming file, key and reason
 void readCameraFile(const std::string& file, Sequence& sequence);
 
-/// A camera.yaml with everything that the sequence knows of its cameras.
+/// The text of a camera.yaml with all camera parameters of the sequence.
 std::string cameraYaml(const Sequence& sequence);
 
 }  // namespace photonav

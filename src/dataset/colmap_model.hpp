@@ -13,17 +13,18 @@ namespace photonav {
 /// sparse/0/.
 bool isColmapFolder(const std::string& folder);
 
-/// Reads cameras.txt and images.txt, no images. Those lie in the folder's images/ where there is
-/// one, else in the folder. They have no depth, and no times: they are taken in the order of their
-/// names, numbers in these by their values, a second apart. The unit of length is the model's.
+/// Reads cameras.txt and images.txt, but does not load the images, which lie in the subfolder
+/// images/ if it exists, else in the folder. The images have no depth and no times: they are sorted
+/// by name (numbers in names by value) and placed one second apart. The unit of length is that of
+/// the model.
 /// @throws InputError naming file, line and reason: for a camera with distortion, images of
-///         different cameras, what is not a finite number, a quaternion whose norm is not within
-///         0.1 of 1, an image listed twice, or a model without images
+///         different cameras, a value that is not a finite number, a quaternion whose norm is not
+///         within 0.1 of 1, an image listed twice, or a model without images
 Sequence readColmapSequence(const std::string& folder);
 
 /// An image of a model to be written.
 struct ColmapImage {
-    std::string name;  ///< of its file, in the folder that COLMAP is given
+    std::string name;  ///< file name, relative to the image folder that COLMAP is given
     Pose T_c_w = Pose::Identity();
 };
 

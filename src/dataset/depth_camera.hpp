@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth images of a camera beside the colour camera, as the colour camera would see them.
+// Registers the depth images of a separate depth camera to the colour camera.
 #pragma once
 
 #include "geometry/camera.hpp"
@@ -10,7 +10,7 @@ namespace photonav {
 /// A camera that takes depth images which are not registered to the colour images.
 struct DepthCamera {
     Camera camera;
-    Pose T_c_d = Pose::Identity();  ///< from its frame to the colour camera's
+    Pose T_c_d = Pose::Identity();  ///< maps from the depth camera's frame to the colour camera's
     bool hasPoses = false;          ///< recorded poses are those of the depth camera
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The direction of up, from the plane of the floor.
+// Estimates the direction up from the plane of the floor.
 #pragma once
 
 #include <optional>
@@ -17,8 +17,8 @@ struct FloorOptions {
 };
 
 /// The upward normal of the plane that most of the points lie on, by RANSAC with a fixed seed and a
-/// least-squares fit to what agrees. Tables and ceilings serve as well as the floor itself.
-/// @param points in any frame w [m], as seen from above: those above their camera left out
+/// least-squares fit to the inliers. Tables and ceilings serve as well as the floor itself.
+/// @param points in any frame w [m]; points above the camera that saw them must be left out
 /// @param roughUp unit vector in w, within maxTilt of the truth
 /// @return unit vector in w; nothing when less than a tenth of the points agree on a plane
 std::optional<Eigen::Vector3d> floorNormal(const std::vector<Eigen::Vector3d>& points,

@@ -16,9 +16,10 @@ struct StampedFile {
     std::string file;
 };
 
-/// Colour becomes grey as OpenCV weighs it; orientation tags are ignored.
-/// @param source the file and keys that give the camera's size, for messages: "camera.yaml (width,
-/// height)"
+/// Reads an 8-bit grey image. Colour is converted with OpenCV's weights; orientation tags are
+/// ignored.
+/// @param source the file and keys that give the camera's size, named in error messages:
+///         "camera.yaml (width, height)"
 /// @throws InputError for a file that is missing, damaged or of another size than the camera's
 vpImage<unsigned char> readGrey8(const std::string& file, const Camera& camera,
                                  const std::string& source);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Intrinsics that a camera may have. Beyond, a number in a file has gone wrong.
+// Plausible intrinsics of a camera. Values outside mean that a file holds a wrong number.
 #pragma once
 
 namespace photonav {

@@ -12,14 +12,14 @@
 
 namespace photonav {
 
-/// One recorded moment.
+/// One loaded frame of a recording.
 struct RecordedFrame {
     Pose T_c_w = Pose::Identity();
-    View view;              ///< measured; depth 0: no measurement
+    View view;              ///< measured image and depth; depth 0: not measured
     double timestamp = 0.;  ///< of the colour image [s]
 };
 
-/// What a dataset holds, without the images.
+/// The tables of a dataset, without the images.
 struct Sequence {
     struct Entry {
         double timestamp = 0.;  ///< of the colour image [s]
@@ -33,20 +33,22 @@ struct Sequence {
         std::string reason;
     };
 
-    Camera camera;  ///< of the colour images, and of the views loaded
-    /// Of the depth images, when they are not registered to the colour images.
+    Camera camera;  ///< of the colour images and of the loaded views
+    /// The depth camera, if depth images are not registered to the colour images.
     std::optional<DepthCamera> depthCamera;
-    std::string cameraFile;      ///< that says so; empty when it is assumed
-    bool cameraAssumed = false;  ///< the dataset does not say; this is the format's usual one
-    double depthScale = 5000.;   ///< depth image value of one metre
-    bool needsDepth = true;      ///< false: a depth image that cannot be used is as none
-    /// Factor on the photometric information, by the noise of these images, if given.
+    std::string cameraFile;  ///< file that `camera` was read from; empty if it is assumed
+    /// The dataset has no camera parameters; `camera` is the usual one of the format.
+    bool cameraAssumed = false;
+    double depthScale = 5000.;  ///< depth image value of one metre
+    /// False: a frame whose depth image cannot be used counts as a frame without depth.
+    bool needsDepth = true;
+    /// Factor on the photometric information that suits the noise of these images, if given.
     std::optional<double> informationScale;
-    /// Point spread of the colour images, standard deviation [pixels]; none: that of pixels which
-    /// average over their area.
+    /// Point spread of the colour images, standard deviation [pixels]; none: pixels that average
+    /// over their area (kAreaBlur).
     std::optional<double> blur;
-    /// Relative error of depth that repeats from image to image: a wrong scale, or depth images
-    /// that do not fit the colour images. None: not known.
+    /// Relative systematic error of depth, from a wrong scale or wrong registration to the colour
+    /// images. None: not known.
     std::optional<double> depthError;
     std::vector<Entry> frames;  ///< in order of time
     std::size_t recorded = 0;   ///< images that the dataset lists

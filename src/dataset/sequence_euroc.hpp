@@ -9,15 +9,15 @@
 
 namespace photonav {
 
-/// A pinhole camera with radial-tangential distortion, as it records: not rectified.
+/// A pinhole camera with radial-tangential distortion; its images are not rectified.
 struct DistortedCamera {
     Camera camera;  ///< size and intrinsics, as if there were no distortion
     Eigen::Vector4d distortion = Eigen::Vector4d::Zero();  ///< k1, k2, p1, p2
     Pose T_b_c = Pose::Identity();                         ///< mount on the body (T_BS)
-    std::string file;                                      ///< sensor.yaml that says so
+    std::string file;                                      ///< sensor.yaml that this was read from
 };
 
-/// What a dataset holds, without the images.
+/// The tables of a stereo dataset, without the images.
 struct StereoSequence {
     struct Entry {
         double timestamp = 0.;          ///< of the left image [s]
@@ -31,7 +31,8 @@ struct StereoSequence {
     std::vector<Entry> frames;  ///< in order of time
     std::size_t recorded = 0;   ///< left images that the dataset lists
     std::vector<Sequence::Skipped> skipped;
-    std::string groundtruthOf;  ///< "body" or "cam0": whose poses are recorded; "": none are
+    std::string
+        groundtruthOf;  ///< "body" or "cam0": frame whose poses are recorded; "": no ground truth
 };
 
 struct EurocOptions {
@@ -45,9 +46,9 @@ struct EurocOptions {
 /// there, `mav0/state_groundtruth_estimate0/data.csv` (`t, p, q (w first), ...`). `folder` holds
 /// mav0 or is it.
 ///
-/// Whose poses the ground truth gives is said by its `sensor.yaml`: T_BS when there (EuRoC's own
-/// has the identity, so the body's), else the left camera's when its comment names cam0, else the
-/// body's. Images without partner, and those whose timestamps repeat or go back, are skipped and
+/// The `sensor.yaml` of the ground truth determines whose poses it holds: T_BS if present (EuRoC's
+/// own is the identity, hence the body), else the left camera if its comment names cam0, else the
+/// body. Images without partner, and those whose timestamps repeat or go back, are skipped and
 /// listed; images without pose are kept.
 /// @throws InputError naming file, line or key, and reason: also for a missing camera, another
 ///         camera or distortion model, cameras that differ in size, no pair of images, and ground

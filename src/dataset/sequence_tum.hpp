@@ -12,13 +12,13 @@ namespace photonav {
 struct TumOptions {
     double tolerance = 0.02;  ///< largest time between images, or image and pose [s]
     double maxPoseGap = 0.1;  ///< interpolate between poses at most this far apart [s]
-    std::optional<double> depthScale = {};  ///< overrides what the dataset says
+    std::optional<double> depthScale = {};  ///< stored value of one metre; overrides the dataset's
     std::string cameraFile = {};            ///< instead of the dataset's camera.yaml
     /// For trackers: frames without pose are kept, groundtruth.txt need not be there, and rows that
     /// cannot be read or whose timestamps repeat or are out of order are skipped.
     bool forgiving = false;
-    /// Otherwise colour images without a depth image are kept, too, and `depth.txt` and the files
-    /// it names need not be there, or be usable.
+    /// False: colour images without a depth image are kept as well, and `depth.txt` and the files
+    /// that it names may be missing or unusable.
     bool needsDepth = true;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of a table in order of time, also where timestamps repeat or go back.
+// Brings the rows of a table into increasing order of time if timestamps repeat or go back.
 #pragma once
 
 #include <functional>
@@ -13,18 +13,19 @@ namespace photonav {
 enum class Repeats { kept, skipped };
 
 /// Which of the timestamps to keep so that they never decrease (nor repeat): the longest such
-/// subsequence, so that one wild timestamp costs one row, whichever way it is off.
+/// subsequence, so that one outlier among the timestamps costs one row only, whether it is too
+/// large or too small.
 std::vector<bool> inOrderOfTime(const std::vector<double>& timestamps, Repeats repeats);
 
-/// "line N: timestamp is ..." of a row that inOrderOfTime() leaves out.
-/// @param i the row's
+/// The error "line N: timestamp is ..." for a row that inOrderOfTime() leaves out.
+/// @param i index of the row
 InputError outOfOrder(const std::vector<TextRow>& rows, const std::vector<double>& timestamps,
                       const std::vector<bool>& kept, std::size_t i);
 
-/// Parses rows to items that have a `timestamp`.
-/// @param badRows where there is one it gets rows that `parse` throws an InputError for and those
-///        out of order, which are passed over; when there are more of them than items, one of them
-///        is thrown. Where there is none, the first bad row is thrown, and timestamps may repeat.
+/// Parses rows into items that have a member `timestamp` [s].
+/// @param badRows if given, rows for which `parse` throws an InputError, and rows out of order, are
+///         skipped and their errors appended to it. If more rows are skipped than kept, the first
+///         of these errors is thrown. If null, the first bad row throws, and timestamps may repeat.
 template <typename Item>
 std::vector<Item> parseInOrderOfTime(const std::vector<TextRow>& rows,
                                      const std::function<Item(const TextRow&)>& parse,

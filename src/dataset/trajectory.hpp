@@ -25,30 +25,32 @@ using Trajectory = std::vector<StampedPose>;  ///< timestamps never decrease
 /// @throws InputError naming the line for a wrong number of fields, a value that is not a finite
 ///         number, a position beyond 1e8 m, a quaternion whose norm is not within 0.1 of 1, or a
 ///         decreasing timestamp; also for a missing file and one without poses
-/// @param badRows where there is one it gets such lines, which are passed over; when there are more
-///        of them than poses the first is thrown
+/// @param badRows if given, such lines are skipped and their errors appended to it; if more lines
+///         are skipped than read, the first error is thrown
 Trajectory readTrajectory(const std::string& file, std::vector<InputError>* badRows = nullptr);
 
-/// A pose of a row. @throws InputError naming the line for a position beyond 1e8 m, and for a
-/// quaternion whose norm is not within 0.1 of 1
+/// The pose of one row, with a normalised quaternion. @throws InputError naming the line for a
+/// position beyond 1e8 m, and for a quaternion whose norm is not within 0.1 of 1
 StampedPose poseOfRow(const TextRow& row, double timestamp, const Eigen::Vector3d& position,
                       const Eigen::Quaterniond& rotation);
 
-/// The same of the rows of any table.
+/// The trajectory of the rows of any table. `file` is named in errors; `badRows` as in
+/// readTrajectory().
 Trajectory trajectoryOf(const std::string& file, const std::vector<TextRow>& rows,
                         const std::function<StampedPose(const TextRow&)>& parse,
                         std::vector<InputError>* badRows);
 
-/// The line that readTrajectory() reads, with 9 digits but for the time's 6 decimals.
+/// The line that readTrajectory() reads: 9 digits per number, 6 decimals for the time.
 std::string toLine(const StampedPose& pose);
 
 /// Writes what readTrajectory reads; translations and quaternions with 9 digits.
 /// @throws InputError when the file cannot be written
 void writeTrajectory(const std::string& file, const Trajectory& trajectory);
 
-/// Reads lines of 12 numbers: the upper three rows of T_w_c, row by row, as those of the KITTI
-/// odometry benchmark. They have no times: the poses are taken a second apart.
-/// @throws InputError as readTrajectory(), and for what is no rotation within 0.01
+/// Reads lines of 12 numbers: the upper three rows of T_w_c, row by row, as in the KITTI odometry
+/// benchmark. The file has no times: poses are placed one second apart.
+/// @throws InputError as readTrajectory(), and for a matrix that deviates from a rotation by more
+///         than 0.01
 Trajectory readKittiTrajectory(const std::string& file);
 
 /// Writes what readKittiTrajectory() reads, without the times.
@@ -61,8 +63,8 @@ void writeKittiTrajectory(const std::string& file, const Trajectory& trajectory)
 std::optional<Pose> poseAt(const Trajectory& trajectory, double timestamp, double tolerance,
                            double maxGap);
 
-/// What to throw when poseAt() has a pose for none of the images of a recording.
-/// @param first and last time of an image [s]
+/// The error to throw if poseAt() finds no pose for any image of a recording.
+/// @param first, last time of the first and last image [s]
 InputError noPoseNear(const std::string& file, const Trajectory& trajectory, double tolerance,
                       double first, double last);
 
@@ -74,8 +76,8 @@ const std::vector<std::string>& axisNames();
 /// @throws std::invalid_argument for a name that is not among axisNames()
 Eigen::Matrix3d worldUpRotation(std::string_view upAxis);
 
-/// The same for any direction: the rotation of the nearest axis, then the smallest one that is
-/// left.
+/// As above for any direction `up`: the rotation for the nearest axis, followed by the smallest
+/// rotation that makes `up` vertical.
 /// @param up unit vector in the recorded world
 Eigen::Matrix3d worldUpRotation(const Eigen::Vector3d& up);
 

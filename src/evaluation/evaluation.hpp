@@ -68,13 +68,13 @@ PoseErrors relativeErrors(const std::vector<PosePair>& pairs, Spacing spacing, d
 /// positive definite.
 std::optional<double> squaredNormalisedError(const UncertainPose& T_c_w, const Pose& T_c_w_truth);
 
-/// Squared errors in units of what a covariance says, per degree of freedom (NEES): each is 1 in
-/// the mean if covariances are consistent.
+/// Normalised estimation error squared (NEES), divided by the degrees of freedom: 1 on average if
+/// covariances are consistent.
 struct NormalisedError {
     double pose = 0.;
-    double position = 0.;  ///< by the covariance of the position alone
+    double position = 0.;  ///< with the marginal covariance of the position
     double rotation = 0.;
-    double largest = 0.;  ///< of the six coordinates, in standard deviations
+    double largest = 0.;  ///< largest error of the six coordinates, in standard deviations
 };
 /// Nothing where the covariance is singular.
 std::optional<NormalisedError> normalisedError(const UncertainPose& T_c_w, const Pose& T_c_w_truth);

@@ -8,12 +8,14 @@
 
 namespace photonav {
 
-/// An undistorted pinhole camera: x = (u - u0) / px, y = (v - v0) / py, pixel centres at integers.
+/// An undistorted pinhole camera. Normalised image coordinates are x = (u - u0) / px and y = (v -
+/// v0) / py; pixel centres lie at integer (u, v).
 struct Camera {
     unsigned width = 188;   ///< pixels (default: the paper's quarter-size image)
     unsigned height = 120;  ///< pixels
     vpCameraParameters intrinsics;
-    bool hasPointSpread = true;  ///< false: rendered pixels are single rays (applyPointSpread())
+    /// False: rendered pixels are single rays, applyPointSpread() is left out.
+    bool hasPointSpread = true;
 
     double fx() const { return intrinsics.get_px(); }
     double fy() const { return intrinsics.get_py(); }
@@ -30,7 +32,7 @@ struct Camera {
         return z * Eigen::Vector3d((u - cx()) / fx(), (v - cy()) / fy(), 1.);
     }
 
-    /// Derivative of project() [pixels per unit of p_c].
+    /// Derivative of project() by p_c [pixels/m].
     Eigen::Matrix<double, 2, 3> projectionJacobian(const Eigen::Vector3d& p_c) const {
         const double x = fx() / p_c.z(), y = fy() / p_c.z();
         Eigen::Matrix<double, 2, 3> J;
@@ -44,7 +46,8 @@ struct Camera {
 /// @throws std::invalid_argument for an empty image or a field of view outside (0, pi)
 Camera makeCamera(unsigned width, unsigned height, double horizontalFov);
 
-/// The same camera with every pixel split in `factor` x `factor` (or merged, factor < 1).
+/// The same field of view with `factor` times as many pixels along each axis; factor < 1 merges
+/// pixels.
 Camera scaled(const Camera& camera, double factor);
 
 /// Camera mount T_b_c for an optical axis in the body's x-z plane.

@@ -6,7 +6,7 @@
 
 namespace photonav {
 
-/// An open bound of a range; the cost of a state that cannot be reached.
+/// Used for the missing bound of a range, and for the cost of a state that cannot be reached.
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A missing value: null in JSON.

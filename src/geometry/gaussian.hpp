@@ -9,13 +9,14 @@
 
 namespace photonav {
 
-/// A matrix A with A A^T = covariance, which may be singular.
+/// A square root of a covariance: a matrix A with A A^T = covariance. The covariance may be
+/// singular.
 inline Matrix6 rootOf(const Matrix6& covariance) {
     const Eigen::SelfAdjointEigenSolver<Matrix6> solver(covariance);
     return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
 }
 
-/// A draw from N(0, root root^T).
+/// A random twist drawn from N(0, root root^T).
 inline Vector6 draw(const Matrix6& root, std::mt19937_64& random) {
     std::normal_distribution<double> normal;
     Vector6 z;

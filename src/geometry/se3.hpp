@@ -16,8 +16,8 @@ Pose expSE3(const Vector6& xi);
 /// The twist with expSE3(logSE3(T)) = T and a rotation angle in [0, pi].
 Vector6 logSE3(const Pose& T);
 
-/// The pose at a share s in [0, 1] of the way from a to b: positions on the straight line between
-/// them, orientations on the shortest turn.
+/// The pose at the fraction s in [0, 1] between a and b: the position is interpolated on the
+/// straight line, the orientation along the shortest rotation.
 Pose interpolate(const Pose& a, const Pose& b, double s);
 
 /// Heading of a body about the world's z axis [rad].

@@ -74,8 +74,8 @@ Matrix6 transported(const Matrix6& covariance, const Vector6& e);
 /// 1e-12 of its scale. Use it on input; the functions above do not check.
 bool isCovariance(const Matrix6& matrix);
 
-/// tr_W(covariance) = tr(rho block) + length^2 tr(phi block): m^2, with `length` [m] the distance
-/// at which a rotation error displaces a point.
+/// tr_W(covariance) = tr(rho block) + characteristicLength^2 tr(phi block) [m^2]. A rotation error
+/// is counted as the displacement that it causes at a distance of characteristicLength [m].
 double weightedTrace(const Matrix6& covariance, double characteristicLength = 1.0);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Conversions between Eigen's and ViSP's types; there are no others.
+// Conversions between Eigen's and ViSP's types. No other file converts them.
 #pragma once
 
 #include <visp3/core/vpColVector.h>
@@ -35,7 +35,7 @@ inline vpColVector toVisp(const Vector6& xi) {
     return v;
 }
 
-/// Takes the first six elements: v must have them.
+/// ViSP's (v, omega) as a twist (rho, phi). v must have at least six elements.
 inline Vector6 twistFromVisp(const vpColVector& v) { return Eigen::Map<const Vector6>(v.data); }
 
 inline vpMatrix toVisp(const Matrix6& matrix) {

@@ -8,10 +8,10 @@
 
 namespace photonav {
 
-/// Writes the whole file or nothing: into a temporary file beside it, renamed when complete. A
-/// reader (or a Ctrl-C) never meets half a file; an older file stays whole until it is replaced.
-/// Several writers of one file, threads or processes, have a temporary file each: the last one to
-/// finish wins.
+/// Writes the whole file or nothing. The content goes into a temporary file in the same folder,
+/// which is renamed when it is complete. A reader never finds half a file, also after Ctrl-C; an
+/// older file stays unchanged until it is replaced. If several threads or processes write the same
+/// file, each has its own temporary file, and the last one to finish wins.
 /// @throws InputError naming the file and the system's reason
 void writeFileAtomically(const std::filesystem::path& file, std::string_view content);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results are there as a whole or not at all, whatever happens while they are made.
+// Result folders that appear as a whole or not at all, even if the program is killed.
 #pragma once
 
 #include <atomic>
@@ -14,8 +14,9 @@ namespace photonav {
 /// and its last parents need not exist.
 std::filesystem::path resolvedFolder(const std::filesystem::path& path);
 
-/// The files that a program wrote into a folder: kept there as `.photonav`, one line each with
-/// size, checksum and name. What it does not list, or what was changed since, belongs to the user.
+/// The list of files that this program wrote into a folder. It is stored there as `.photonav`, one
+/// line per file with size, checksum and name. Files that are not listed, or were changed since,
+/// belong to the user.
 class Manifest {
   public:
     static constexpr const char* kFileName = ".photonav";
@@ -23,7 +24,7 @@ class Manifest {
     /// The files of a folder and its subfolders, as they are now.
     static Manifest of(const std::filesystem::path& folder);
 
-    /// That of an earlier run; empty where there is none.
+    /// The manifest of an earlier run; empty if the folder has none.
     /// @throws InputError when it is damaged
     static Manifest read(const std::filesystem::path& folder);
 
@@ -33,11 +34,12 @@ class Manifest {
     /// A file of the folder that is not listed or was changed since; nothing when all are listed.
     std::optional<std::filesystem::path> foreignFile(const std::filesystem::path& folder) const;
 
-    /// Removes the files of the folder that are listed. Links are not followed, and what a line
-    /// names outside of the folder stays.
+    /// Removes the listed files of the folder. Links are not followed, and files outside of the
+    /// folder are not removed even if a line names them.
     void removeFiles(const std::filesystem::path& folder) const;
 
-    /// Takes a file up that the program has written again. Does nothing without a manifest.
+    /// Updates the entry of a file that the program has written again. Does nothing if the folder
+    /// has no manifest.
     static void renew(const std::filesystem::path& folder, const std::filesystem::path& name);
 
   private:
@@ -47,14 +49,14 @@ class Manifest {
         std::uint32_t checksum;      // CRC-32
         bool operator==(const File&) const = default;
     };
-    /// Of the first file with this name or a later one.
+    /// Position of the first file whose name is not before this one in the sorted list.
     std::vector<File>::const_iterator placeOf(const std::filesystem::path& name) const;
     static File describe(const std::filesystem::path& folder, const std::filesystem::path& name);
 
     std::vector<File> files_;  // sorted by name
 };
 
-/// Of an open file, which it closes.
+/// Owns the descriptor of an open file and closes it.
 class FileDescriptor {
   public:
     FileDescriptor() = default;
@@ -75,8 +77,8 @@ class FileDescriptor {
 /// working folder is locked.
 class FolderTransaction {
   public:
-    /// What happens to a working folder that was not committed, and to one that a killed process
-    /// left: resumable work is kept and found again.
+    /// What happens to a working folder that was not committed, or that a killed process left
+    /// behind. `kept` is for work that can be resumed: the next transaction finds it again.
     enum class Unfinished { removed, kept };
 
     /// @param target need not exist; a link to a folder stays a link
@@ -98,8 +100,8 @@ class FolderTransaction {
     /// @throws InputError when that cannot be done; the working folder is kept then
     void commit();
 
-    /// Whether this process has one: before, there is nothing to keep when it is interrupted. May
-    /// be called in a signal handler.
+    /// Whether this process has an open transaction. Without one, an interrupted process has no
+    /// results to keep. May be called in a signal handler.
     static bool isAnyOpen() { return open_ > 0; }
 
     /// Whether another process is writing this folder.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Encoded images, checked before a decoder sees them. libpng and libjpeg write what they find wrong
-// to standard error, and pad what is missing with grey.
+// Checks of encoded images before they are decoded. Without these checks, libpng and libjpeg would
+// report damage on standard error only, and fill missing parts with grey.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,17 @@ namespace photonav {
 /// @throws InputError when it cannot be opened
 std::vector<std::uint8_t> readBytes(const std::string& file);
 
-/// What a decoder needs of an encoded image: of a PNG the chunks that make up the picture, each
-/// with a good checksum and the last one there; of a JPEG, all of it, when it has its end; other
-/// formats as they are. Empty when the image is empty, cut short or damaged.
+/// The bytes that a decoder needs. Of a PNG: the chunks that make up the picture, if all checksums
+/// are right and the last chunk is present. Of a JPEG: all bytes, if its end marker is present. Of
+/// other formats: all bytes. Empty if the image is empty, cut short or damaged.
 std::vector<std::uint8_t> soundImage(std::span<const std::uint8_t> encoded);
 
 struct ImageSize {
     std::uint64_t width, height;  ///< [pixels]
 };
 
-/// The size that the header of an encoded image declares, so that nothing is decoded that is not
-/// wanted: a file of 2 MB may hold an image of 2 GB.
+/// The size that the header of an encoded image declares. It is checked before decoding, because a
+/// file of 2 MB may hold an image of 2 GB.
 /// @returns nothing for other formats than PNG, JPEG, BMP, PGM and PPM, and without a whole header
 std::optional<ImageSize> declaredSize(std::span<const std::uint8_t> encoded);
 

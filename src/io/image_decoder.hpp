@@ -14,7 +14,7 @@ namespace photonav {
 /// @param flags   those of cv::imdecode
 /// @param wanted  is asked with the size that the header declares, before anything is decoded; what
 ///                it throws passes through
-/// @returns an empty matrix where it is not an image, damaged, or of a size that is not wanted
+/// @returns an empty matrix if the bytes are no image, are damaged, or `wanted` returned false
 cv::Mat decodedImage(std::span<const std::uint8_t> encoded, int flags,
                      const std::function<bool(const ImageSize&)>& wanted);
 

@@ -7,11 +7,12 @@
 
 namespace photonav {
 
-/// Of JSON that photonav writes, which has about ten: deeper text is something else.
+/// Deepest nesting of JSON that is accepted. photonav writes about ten levels: deeper text is not
+/// from photonav.
 inline constexpr std::size_t kMostJsonDepth = 100;
 
-/// How deep arrays and objects are nested in JSON text. Programs that read or write JSON by
-/// recursion run out of stack where that is 1e5.
+/// How deep arrays and objects are nested in JSON text. Recursive JSON parsers run out of stack at
+/// a depth of about 1e5.
 inline std::size_t nestingDepth(std::string_view text) {
     std::size_t depth = 0, most = 0;
     bool inString = false;

@@ -11,8 +11,9 @@
 
 namespace photonav {
 
-/// The number that a text is, with a decimal point whatever the locale says; "nan" and "inf" are
-/// numbers. Nothing where something else is before or behind it.
+/// Parses a text that consists of a number only. The decimal separator is a point in every locale;
+/// "nan" and "inf" are numbers. Returns nothing if the text has anything before or after the
+/// number.
 template <typename Number = double>
 std::optional<Number> numberIn(std::string_view text) {
     if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
@@ -29,8 +30,8 @@ Number toNumber(std::string_view text) {
     throw std::invalid_argument("not a number: '" + std::string(text) + "'");
 }
 
-/// The numbers of a list with a separator between them, blanks around a number left out; nothing
-/// unless each is one and finite.
+/// Parses a list of numbers with a separator between them; blanks around a number are ignored.
+/// Returns nothing unless every field is a finite number.
 inline std::optional<std::vector<double>> numbersIn(std::string_view text, char separator) {
     std::vector<double> numbers;
     for (;;) {

@@ -15,8 +15,8 @@
 
 namespace photonav {
 
-/// Runs what reads a file. What a library throws, and memory that runs out, becomes an InputError
-/// that names the file.
+/// Calls a function that reads a file. Exceptions of libraries, and std::bad_alloc, become an
+/// InputError that names the file.
 template <typename Read>
 auto reading(const std::string& file, const Read& read) {
     try {
@@ -30,10 +30,10 @@ auto reading(const std::string& file, const Read& read) {
     }
 }
 
-/// A file to read; one that is missing gives a stream that is not open. An error on the way throws;
-/// of its own accord a stream would just end early.
-/// @throws InputError for folders, pipes and devices, some of which never end, and for a file that
-///         may not be read
+/// Opens a file for reading; the stream is not open if the file is missing. Read errors throw
+/// std::ios::failure, because by default a stream would only end early.
+/// @throws InputError for folders, pipes and devices (some of them never end), and for a file
+///         without permission to read
 inline std::ifstream openIfThere(const std::string& file) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
@@ -51,7 +51,7 @@ inline std::ifstream openIfThere(const std::string& file) {
     return stream;
 }
 
-/// A file to read that must be there, as openIfThere() opens it.
+/// Opens a file for reading as openIfThere() does; the file must exist.
 /// @throws InputError "no such file" as well
 inline std::ifstream openToRead(const std::string& file) {
     std::ifstream stream = openIfThere(file);
@@ -59,7 +59,7 @@ inline std::ifstream openToRead(const std::string& file) {
     return stream;
 }
 
-/// The words and numbers of a line, with a decimal point whatever the program's locale says.
+/// A stream over the words and numbers of a line. The decimal separator is a point in every locale.
 inline std::istringstream wordsOf(const std::string& line) {
     std::istringstream words(line);
     words.imbue(std::locale::classic());

@@ -32,14 +32,14 @@ class TextRow {
     std::vector<std::string> fields_;
 };
 
-/// All rows of a file but blank lines and those that start with '#'.
-/// @throws InputError for a missing file and, without `badRows`, for a row that does not have
-///         `columns` fields
+/// All rows of a file, without blank lines and lines that start with '#'.
+/// @throws InputError for a missing file, and for a row that does not have `columns` fields; if
+///         `badRows` is given, such rows are skipped and their errors are appended to it instead
 std::vector<TextRow> readTable(const std::string& file, std::size_t columns,
                                std::vector<InputError>* badRows = nullptr);
 
-/// The same for fields with commas between them, as EuRoC's files have; blanks around a field do
-/// not count, and a row may have more fields than `leastColumns`.
+/// As readTable(), for fields that are separated by commas, as in EuRoC's files. Blanks around a
+/// field are ignored, and a row may have more fields than `leastColumns`.
 std::vector<TextRow> readCsv(const std::string& file, std::size_t leastColumns,
                              std::vector<InputError>* badRows = nullptr);
 

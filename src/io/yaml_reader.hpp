@@ -24,8 +24,8 @@ std::string numberText(double value);
 /// Loads a YAML file. @throws InputError when it is missing or does not parse.
 YAML::Node loadYaml(const std::string& file);
 
-/// Sets a value from a node as yaml-cpp does, but for numbers with a point, which yaml-cpp reads
-/// as the program's locale says. @throws YAML::Exception
+/// Sets a value from a node as yaml-cpp does. Numbers are read with a decimal point in every
+/// locale, which yaml-cpp does not do. @throws YAML::Exception
 template <typename T>
 void setFrom(const YAML::Node& node, T& value) {
     value = node.as<T>();
@@ -42,12 +42,12 @@ void setFrom(const YAML::Node& node, std::vector<T>& values) {
 class YamlMap {
   public:
     /// @param prefix dotted path of this mapping inside the file, for messages
-    /// @throws InputError when the node is no mapping, and for a key that is there twice
+    /// @throws InputError when the node is no mapping, and for a key that is given twice
     YamlMap(std::string file, const YAML::Node& node, std::string prefix = "");
 
     bool has(const std::string& key) const { return node_[key].IsDefined(); }
 
-    /// Overwrites `value` when the key is there; keeps it as the default otherwise.
+    /// Overwrites `value` if the key is present; otherwise keeps it as the default.
     template <typename T>
     void read(const std::string& key, T& value) {
         known_.insert(key);
@@ -85,9 +85,8 @@ class YamlMap {
     std::vector<YamlMap> list(const std::string& key);
 
     /// @param elsewhere dotted paths of keys of other mappings of the file
-    /// @throws InputError for the first key that was not read, naming the path of a key of that
-    /// name
-    ///         elsewhere, or else the nearest known one
+    /// @throws InputError for the first key that was not read. The message suggests a key of the
+    ///         same name in `elsewhere`, or else the known key with the most similar name
     void finish(const std::vector<std::string>& elsewhere = {}) const;
 
     /// @throws InputError naming this file and the dotted key

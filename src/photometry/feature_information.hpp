@@ -9,10 +9,10 @@
 namespace photonav {
 
 struct FeatureOptions {
-    double threshold = 0.02;     ///< contrast of a corner against the circle around it, grey values
-                                 ///< in [0, 1]
-    double pixelSigma = 1.;      ///< standard deviation of a tracked corner, each axis [px]
-    double referenceCount = 10;  ///< corners that halve the penalty of a view (see below)
+    double threshold = 0.02;  ///< threshold of the FAST detector: least difference between a corner
+                              ///< and the circle around it, grey values in [0, 1]
+    double pixelSigma = 1.;   ///< standard deviation of a tracked corner, each axis [px]
+    double referenceCount = 10;  ///< number of corners at which featurePenalty() is 1/2
 };
 
 /// A corner of a view: pixel and depth of its surface in the camera frame [m].

@@ -12,10 +12,10 @@ namespace photonav {
 /// The reference formulation of the photometric Jacobian, and a feature for visual servoing: usable
 /// wherever vpFeatureLuminance is (vpServo::addFeature, interaction(), error()).
 ///
-/// s holds the grey values of all pixels but the border of one, row by row. A row of interaction()
-/// is pixelJacobian(): ViSP's twist is that of the camera, ours that of the scene in the camera
-/// frame, and so is the sign of the change of intensity. Pixels that do not count (see
-/// photometricInformation) have a row of zeros, so a control law ignores them.
+/// s holds the grey values row by row, without a border of one pixel. A row of interaction() equals
+/// pixelJacobian(). Two signs cancel: ViSP's twist moves the camera, ours moves the scene in the
+/// camera frame, and the change of intensity has the opposite sign as well. Pixels that
+/// photometricInformation() leaves out have a row of zeros, so a control law ignores them.
 class PixelDepthLuminance : public vpFeatureLuminance {
   public:
     PixelDepthLuminance() { bord = 1; }

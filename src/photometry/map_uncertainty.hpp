@@ -8,20 +8,20 @@
 namespace photonav {
 
 struct MapUncertaintyOptions {
-    double priorSigma =
-        0.3;                 ///< standard deviation of log depth before the view: 30 % of the depth
-    double baseline = 0.25;  ///< way between the two images that a depth is measured from [m]
+    /// Standard deviation of log depth before the view: 30 % of the depth.
+    double priorSigma = 0.3;
+    double baseline = 0.25;  ///< distance between the two images that a depth is measured from [m]
     int stride = 2;          ///< use every stride-th row and column
 };
 
 /// How well a short motion measures the depths of the visible surfaces.
 struct MapCertainty {
-    double share = 0.;  ///< of the pixels that a motion can measure at all: those whose variance it
-                        ///< would at least halve if it went along their gradient
+    double share = 0.;  ///< share of the pixels whose depth a motion can measure: motion along the
+                        ///< gradient of such a pixel would at least halve the variance of its depth
     Eigen::Matrix3d gain = Eigen::Matrix3d::Zero();  ///< mean over these pixels (see below)
 
-    /// Variance of log depth left over the image by a motion along the unit vector t (camera
-    /// frame), relative to the prior: 1 where nothing is measured.
+    /// Mean variance of log depth over the image after a motion along the unit vector t (camera
+    /// frame), divided by the variance of the prior: 1 if nothing is measured.
     double remainingVariance(const Eigen::Vector3d& t_c) const {
         return 1. - share + share / (1. + t_c.dot(gain * t_c));
     }

@@ -8,7 +8,7 @@
 
 namespace photonav {
 
-/// The same pixels for OpenCV.
+/// The image as an OpenCV matrix that shares its pixels. The image must outlive the matrix.
 inline cv::Mat asMat(const ImageF& image) {
     return {static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_32F,
             image.bitmap};

@@ -6,11 +6,11 @@
 
 namespace photonav {
 
-/// What stands for the gradient at a pixel.
+/// How the image gradient at a pixel is computed.
 enum class GradientStencil {
-    central,  ///< central differences, over three pixels: of views with a point spread
-    square    ///< of the square of a pixel and those to its right and below: half as wide, at its
-              ///< middle; of views without a point spread
+    central,  ///< central differences over three pixels, for views with a point spread
+    square    ///< differences over the square of 2 x 2 pixels to the right and below, valid at its
+              ///< centre; half as wide, for views without a point spread
 };
 
 struct PhotometricOptions {

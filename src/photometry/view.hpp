@@ -40,14 +40,14 @@ inline bool hasDepthAround(const View& view, unsigned u, unsigned v) {
            d[v + 1][u] > 0.F;
 }
 
-/// Whether a recorded image is black, as with a covered lens: a mean grey value below 5 of 255.
+/// Whether a recorded image is black, as with a covered lens: its mean grey value is below 0.02.
 bool isBlack(const ImageF& image);
 
-/// The camera's point spread, applied by every renderer as its last step (unless the camera has
-/// none): a 3x3 binomial filter of
-/// the intensity, so that edges are about three pixels wide and central differences approximate
-/// their gradients. Pixels with an invalid neighbour (depth 0) keep their value, the image is
-/// extrapolated linearly beyond its border, and a constant image stays bit-identical.
+/// Applies the camera's point spread: a 3x3 binomial filter of the intensity. Edges become about
+/// three pixels wide, so that central differences approximate their gradients. Every renderer does
+/// this as its last step unless Camera::hasPointSpread is false. Pixels with an invalid neighbour
+/// (depth 0) keep their value, the image is extrapolated linearly beyond its border, and a constant
+/// image stays bit-identical.
 /// @throws std::invalid_argument when intensity and depth differ in size
 void applyPointSpread(View& view);
 
