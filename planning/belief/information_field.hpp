@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Information of the view from a body pose: computed when first needed, cached, and updated when
-// the map changes.
+// A cache of the information of views over body poses. Each value is computed when it is first
+// needed, and again after the map has changed in its view.
 #pragma once
 
 #include <array>
@@ -15,36 +15,36 @@
 
 namespace photonav {
 
-/// Information, or penalties, over body poses: one view per cell of a pose grid.
+/// Information, or penalties, of views over body poses: one view per cell of a grid of poses.
 ///
 /// The view is taken at the *centre* of the cell, so that the value depends on the pose alone and
 /// not on the order of queries: a path costs the same whenever it is evaluated. Information is
-/// stored in world-oriented axes, rotated by the rotation of the camera at the centre, which
-/// rendered the view. In the camera's axes, a heading that differs from the centre's would mix
-/// observed and unobserved directions. Negative eigenvalues of what a model returns count as 0; a
-/// query throws std::domain_error where that is not finite.
+/// stored in world-oriented axes, by the rotation of the camera at the centre of the cell. If it
+/// were stored in the camera frame, it would be applied at headings that differ from the centre's,
+/// which would mix observed and unobserved directions. Negative eigenvalues of the information that
+/// a model returns are set to 0; a query throws std::domain_error if the information is not finite.
 class InformationField {
   public:
     struct Options {
         double positionPitch = 0.125;  ///< edge of a cell [m]
         double rotationPitch =
             std::numbers::pi / 36.;  ///< per component of the rotation vector [rad]
-        /// After an update, only every `turns`-th of the entries in view of the change becomes
-        /// stale; the others follow in the next updates. 1: all at once.
+        /// Number of updates over which the entries with a change in view become stale: one part of
+        /// them at each update. 1: all at once.
         unsigned turns = 1;
     };
 
     struct Entry {
         Matrix6 information;  ///< about the camera centre, world-oriented axes (see Belief)
-        bool isZero;          ///< no information: the update can be skipped
-        bool isStale;         ///< to be evaluated again: call current() before use
-        std::uint32_t index;  ///< in the field
-        std::uint32_t epoch;  ///< of the field, when this was evaluated
-        ViewPenalty penalty;  ///< for fields of penalties; its reduction in world-oriented axes
+        bool isZero;          ///< no information: the update of the belief can be skipped
+        bool isStale;         ///< the map has changed: call current() before use
+        std::uint32_t index;  ///< number of the entry in the field
+        std::uint32_t epoch;  ///< epoch of the field at which the entry was evaluated
+        ViewPenalty penalty;  ///< for fields of penalties; `reduction` in world-oriented axes
     };
 
-    /// A field over a map.
-    /// @param views of the map; kept until update() replaces it
+    /// A field of information over a map.
+    /// @param views renders the map; kept until update() replaces it
     /// @param T_b_c camera mount
     /// @throws std::invalid_argument unless both pitches and the turns are positive
     InformationField(std::shared_ptr<const ViewSource> views, const Camera& camera,
@@ -53,8 +53,8 @@ class InformationField {
     InformationField(std::shared_ptr<const ViewSource> views, const Camera& camera,
                      const PenaltyModel& model, const Pose& T_b_c, const Options& options);
 
-    /// A field without a map, which no update() changes.
-    /// @param formula empty: there is no view anywhere, and no information
+    /// A field without a map; update() has no effect on it.
+    /// @param formula empty: there is no information at any pose
     InformationField(const InformationFormula& formula, const Pose& T_b_c, const Options& options);
     InformationField(const PenaltyFormula& formula, const Pose& T_b_c, const Options& options);
 
@@ -63,38 +63,41 @@ class InformationField {
     /// may make the entry stale.
     const Entry& at(const Pose& T_w_b);
 
-    /// The same, but an entry that is stale is not evaluated again.
+    /// As at(), but a stale entry is returned without being evaluated again.
     const Entry& atAnyEpoch(const Pose& T_w_b);
 
-    /// An entry of this field, evaluated again in place if it is stale.
+    /// Evaluates an entry of this field again, in place, if it is stale.
+    /// @returns the same entry
     const Entry& current(const Entry& entry);
 
     /// Updates the field after a change of the map. From now on views are rendered from `views`,
-    /// and entries whose view may depend on the change are stale. All other entries are
-    /// bit-identical to new ones, except for changes of grey values below the tolerance of
-    /// MapChange::texture. Costs about 1 us per entry in view of a change of 600 bricks
-    /// (map_update_bench): for 1000 entries as much as a few views.
+    /// and entries whose view may depend on the change become stale (see Options::turns). All other
+    /// entries equal newly evaluated ones bit by bit, except for changes of grey values below the
+    /// tolerance of MapChange::texture. Takes about 1 us per entry in view of a change of 600
+    /// bricks (map_update_bench): for 1000 entries as long as a few views.
     ///
-    /// The camera is assumed to be within the map's bounding box, or the unknown space on the way
-    /// to it to be free.
+    /// Assumes that cameras are inside the map's bounding box, or that the unknown space between
+    /// camera and box is free.
     /// @param views of the map after the change
     /// @throws std::invalid_argument without views, for a field over a map
     void update(std::shared_ptr<const ViewSource> views, const MapChange& change);
 
     std::uint32_t epoch() const { return epoch_; }  ///< number of updates so far
 
-    /// Whether motions are to be charged by penalty and not by covariance.
+    /// Whether the cost of motions depends on penalties instead of covariances.
     bool hasPenalties() const { return hasPenalties_; }
 
-    const Pose& mount() const { return T_b_c_; }
-    std::size_t size() const { return entries_.size(); }  ///< cells evaluated
-    std::size_t stale() const;                            ///< of them, those that are stale
-    std::size_t marked() const { return marked_; }        ///< touched by all updates together
-    std::size_t views() const { return views_; }          ///< evaluated, repeated ones included
+    const Pose& mount() const { return T_b_c_; }          ///< T_b_c, the camera mount
+    std::size_t size() const { return entries_.size(); }  ///< number of entries
+    std::size_t stale() const;                            ///< number of stale entries
+    /// Number of entries with a change in view, summed over all updates.
+    std::size_t marked() const { return marked_; }
+    /// Number of views evaluated, including those evaluated again.
+    std::size_t views() const { return views_; }
     std::size_t cacheHits() const { return cacheHits_; }  ///< queries answered without a view
-    double seconds() const { return seconds_; }           ///< spent on views
-    void forget();                                        ///< all entries; the counters stay
-    void clear();
+    double seconds() const { return seconds_; }           ///< time spent on views [s]
+    void forget();  ///< removes all entries; the counters stay
+    void clear();   ///< removes all entries and resets the counters
 
   private:
     using Cell = std::array<std::int32_t, 6>;

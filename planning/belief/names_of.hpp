@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The names in a table.
+// Lists the names of a table's entries.
 #pragma once
 
 #include <functional>
@@ -8,7 +8,8 @@
 
 namespace photonav {
 
-/// @param name member of an entry
+/// The names of all entries of a table, in its order.
+/// @param name pointer to the member of an entry, or to its member function, that gives the name
 template <class Table, class Name>
 std::vector<std::string> namesOf(const Table& table, Name name) {
     std::vector<std::string> names;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A coarse bound of the space that a view depends on, to test whether a change of the map affects
-// it.
+// the view.
 #pragma once
 
 #include <vector>
@@ -10,23 +10,24 @@
 
 namespace photonav {
 
-/// The space between a camera and the surfaces in its view: per tile of the image the largest depth
-/// of its pixels, infinite where a ray met no surface or unknown space.
+/// The space between a camera and the surfaces in its view, stored as the largest depth of the
+/// pixels of each tile of the image. Pixels without depth (no surface, or unknown space) count as
+/// unbounded.
 class ViewExtent {
   public:
     static constexpr unsigned kTile = 8;  ///< edge of a tile [px]
 
     ViewExtent() = default;
-    /// @param depth z of the surface in the camera frame [m]; 0: no surface, unknown
+    /// @param depth z of the surface in the camera frame [m]; 0: no surface, or unknown space
     ViewExtent(const Camera& camera, const ImageF& depth);
 
     /// Whether a ray of the view intersects the box before it ends. Conservative: may be true for a
     /// box that no ray intersects, but is never false for one that a ray intersects.
     /// @param T_c_w camera pose of the view
-    /// @param box_w in the world [m]
+    /// @param box_w box in the world frame [m]
     bool meets(const Camera& camera, const Pose& T_c_w, const Eigen::AlignedBox3d& box_w) const;
 
-    /// A box in the world around all of it [m].
+    /// A box in the world frame that contains the whole extent [m].
     Eigen::AlignedBox3d bounds(const Camera& camera, const Pose& T_c_w) const;
 
   private:
@@ -34,21 +35,24 @@ class ViewExtent {
     std::vector<float> depth_;  // by tile, row by row
 };
 
-/// The space that views depend on around the bricks of a change, as a tree of boxes.
+/// The bricks of a change, each grown to the space from which it can change a view, as a tree of
+/// boxes.
 ///
-/// A view depends on the cells along its rays and on those around the cells where rays end: grey
-/// values are interpolated between neighbouring faces, over steps of the surface, and where it
-/// ends.
+/// A view depends on the cells along its rays and on the cells around the ends of its rays: grey
+/// values are interpolated between neighbouring faces, also across steps and borders of the
+/// surface.
 class ChangedBricks {
   public:
-    /// Cells around the end of a ray that its grey value depends on (VoxelRenderer).
+    /// Distance from the end of a ray within which cells affect its grey value (VoxelRenderer)
+    /// [cells].
     static constexpr int kReach = 2;
 
-    /// Occupancy and texture bricks of a change, grown by kReach.
+    /// The bricks MapChange::occupancy and MapChange::texture, grown by kReach.
     explicit ChangedBricks(const MapChange& change);
 
-    /// Whether `meets(box)` is true for the box of any brick. It is called first for boxes around
-    /// several bricks, so it must be true for every box that contains one for which it is true.
+    /// Whether `meets(box)` is true for the box of any brick (world frame [m]). `meets` is first
+    /// called for boxes around several bricks: if it is true for a box, it must also be true for
+    /// every box that contains this box.
     template <class Predicate>
     bool any(const Predicate& meets) const {
         for (std::size_t i = 0; i < nodes_.size();) {

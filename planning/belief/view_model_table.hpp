@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All models of a view by name.
+// Makes view models by name.
 #pragma once
 
 #include <string>
@@ -10,10 +10,11 @@
 
 namespace photonav {
 
-/// Information about the pose, a penalty in its place, or none (std::monostate).
+/// A model of a view: its information about the pose, a penalty instead, or neither
+/// (std::monostate).
 using ViewModel = std::variant<std::monostate, InformationModel, PenaltyModel>;
 
-/// What the models are made of.
+/// Options of all view models.
 struct ViewModelOptions {
     PhotometricOptions photometric;
     FeatureOptions features;
@@ -24,7 +25,7 @@ struct ViewModelOptions {
 /// Names that makeViewModel() accepts.
 const std::vector<std::string>& viewModelNames();
 
-/// A model of the views of a camera.
+/// Makes the view model of this name for the views of a camera.
 /// @throws std::invalid_argument for an unknown name
 ViewModel makeViewModel(const std::string& name, const Camera& camera,
                         const ViewModelOptions& options);

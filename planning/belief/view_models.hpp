@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Models of a view for planners: information about the pose, or a penalty for flying past it.
+// View models for planners: the information of a view about the pose, or a penalty of the view.
 #pragma once
 
 #include <functional>
@@ -15,40 +15,45 @@ namespace photonav {
 /// perturbation, order (rho, phi).
 using InformationModel = std::function<Matrix6(const View& view)>;
 
-/// The same by a formula of the camera pose, for sensors that need no map (and for tests).
+/// Fisher information as a formula of the camera pose, for sensors that need no map and for tests;
+/// frame and order as InformationModel.
 using InformationFormula = std::function<Matrix6(const Pose& T_c_w)>;
 
-/// The model of the paper: the sum of the photometric Jacobians over the predicted image.
+/// The model of the paper: photometricInformation(), the sum of J^T J over the predicted image
+/// (eqs. (19) and (20)).
 InformationModel photometricModel(const Camera& camera, const PhotometricOptions& options);
 
-/// Makes the model of a camera's views, such as photometricModel().
+/// A function that makes the information model of a camera, such as photometricModel().
 using MakeInformationModel =
     std::function<InformationModel(const Camera& camera, const PhotometricOptions& options)>;
 
 /// Information of the visible corners' reprojection errors (Achtelik et al. 2014).
 InformationModel featureReprojectionModel(const Camera& camera, const FeatureOptions& options);
 
-/// Cost per metre of flying past a view, for planners whose objective is another one than the
+/// Penalty of flying past a view. It replaces the trace in the cost, for objectives other than the
 /// uncertainty of the pose.
 struct ViewPenalty {
-    double base = 0.;          ///< whatever the direction of the motion
-    MapCertainty reduction{};  ///< by what the motion measures of the map
+    double base = 0.;          ///< part that does not depend on the direction of the motion
+    MapCertainty reduction{};  ///< how well a motion measures the map, which reduces the penalty
 
-    /// @param t motion of the camera by distance flown, in the axes of `reduction`: a unit vector,
-    /// shorter where the camera also turns
+    /// The penalty for a direction of motion.
+    /// @param t displacement of the camera divided by the distance in the metric of the flight
+    ///        space, in the axes of `reduction`: a unit vector, shorter if the camera also turns
     double along(const Eigen::Vector3d& t) const {
         return base - (1. - reduction.remainingVariance(t));
     }
 };
 
-/// Relief in the camera frame.
+/// The penalty of a view; its `reduction` is in the camera frame.
 using PenaltyModel = std::function<ViewPenalty(const View& view)>;
 using PenaltyFormula = std::function<ViewPenalty(const Pose& T_c_w)>;
 
-/// Falls with the number of corners (Sadat et al. 2014); see featurePenalty().
+/// A penalty that falls with the number of visible corners (Sadat et al. 2014); see
+/// featurePenalty().
 PenaltyModel featureCountModel(const FeatureOptions& options);
 
-/// The depth variance that flying past a view leaves (Forster et al. 2014); see mapCertainty().
+/// The share of the map's depth variance that remains after flying past a view (Forster et al.
+/// 2014); see mapCertainty().
 PenaltyModel mapUncertaintyModel(const Camera& camera, const PhotometricOptions& photometric,
                                  const MapUncertaintyOptions& options);
 

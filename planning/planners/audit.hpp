@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A check of planners: every belief that a planner stores is computed again from the start.
+// Checks a planner: every belief that it stores is computed again from the start.
 #pragma once
 
 #include "planners/belief_planner.hpp"
 
 namespace photonav {
 
+/// Largest errors of the beliefs that a planner stores.
 struct Audit {
-    double maxCostError = 0.;        ///< |stored - recomputed| / (1 + recomputed)
-    double maxCovarianceError = 0.;  ///< Frobenius norm, relative to the recomputed covariance
-    std::size_t nodes = 0;           ///< beliefs recomputed
+    double maxCostError = 0.;  ///< |stored - recomputed| / (1 + recomputed)
+    /// Frobenius norm of the difference, divided by that of the recomputed covariance.
+    double maxCovarianceError = 0.;
+    std::size_t nodes = 0;  ///< number of beliefs recomputed
 };
 
-/// Computes every node of the planner's tree again from its root, by BeliefModel::evaluateMotion(),
-/// and compares cost and covariance with those that the planner stored.
+/// Computes every node of the planner's tree again from its root, with
+/// BeliefModel::evaluateMotion(), and compares cost and covariance with the stored ones. Nodes
+/// without a covariance are compared by cost only; their recomputed cost is the length of the path.
 Audit auditTree(const BeliefPlanner& planner);
 
 }  // namespace photonav

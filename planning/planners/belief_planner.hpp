@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all our planners share: growing a set of vertices by sampling, and OMPL's planner contract.
+// The base class of the planners: it grows a set of vertices by sampling, and implements OMPL's
+// planner interface.
 #pragma once
 
 #include <ompl/base/OptimizationObjective.h>
@@ -24,44 +25,46 @@
 namespace photonav {
 
 struct GrowthOptions {
-    double range = 0.;          ///< longest motion added [m]; 0: a fifth of the space's extent
-    double goalBias = 0.05;     ///< share of samples drawn at the goal until it is reached
-    double rewireFactor = 1.1;  ///< on the connection radius of Karaman and Frazzoli 2011
-    std::uint32_t seed = 1;     ///< of everything random in the planner
-    /// Growth ends with this number of vertices, or of samples since the map or the root last
-    /// changed; then finish() is called. 0: no limit but the termination condition.
+    /// Longest motion to a new vertex, metric of the space [m]; 0: a fifth of its maximum extent.
+    double range = 0.;
+    double goalBias = 0.05;     ///< share of samples at goals, until every goal state is a vertex
+    double rewireFactor = 1.1;  ///< factor on the connection radius of Karaman and Frazzoli 2011
+    std::uint32_t seed = 1;     ///< seed of the samples
+    /// Largest number of vertices. Growth ends when it is reached; 0: no limit.
     unsigned maxVertices = 0;
+    /// Largest number of samples since the map or the root last changed; 0: no limit.
     std::size_t maxIterations = 0;
-    /// Obstacles farther away than this do not matter: the robot's radius, or more if the validity
-    /// checker requires more [m]. mapChanged() checks motions within this distance of a change
-    /// again.
+    /// Distance beyond which obstacles do not affect a motion [m]: the robot's radius, or more if
+    /// the validity checker requires more. After a change of the map, motions within this distance
+    /// of the change are checked again.
     double obstacleReach = 1.;
 };
 
-/// A belief that the planner stores, and the node it was propagated from, for auditTree().
+/// A belief that the planner stores, and the node that it was propagated from, for auditTree().
 struct TreeNode {
     const ompl::base::State* state;
     int parent;  ///< index of an earlier node; -1 for a start
     double cost;
-    std::optional<Matrix6> covariance;  ///< of T_c_w, camera frame, left; none where the planner
-                                        ///< propagates no covariances
+    /// Covariance of T_c_w (left perturbation, camera frame); none if the planner propagates no
+    /// covariances.
+    std::optional<Matrix6> covariance;
 };
 
-/// How much of a planner an update changed: the calls of mapChanged() and moveRoot() since the last
-/// solve(), and the solve() after them.
+/// How many vertices and edges of a planner an update changed. An update consists of the calls of
+/// mapChanged() and moveRoot() after a solve(), and of the next solve().
 struct UpdateCounts {
     std::size_t verticesInvalidated = 0;  ///< removed: in collision, or no longer reached
-    std::size_t edgesInvalidated = 0;     ///< motions that had been free and are in collision now
-    std::size_t verticesAdded = 0;        ///< by sampling
-    std::size_t verticesRewired = 0;      ///< kept, but reached from another vertex than before
+    std::size_t edgesInvalidated = 0;     ///< motions that were free and are in collision now
+    std::size_t verticesAdded = 0;        ///< added by sampling
+    std::size_t verticesRewired = 0;      ///< kept, with another parent than before
 };
 
-/// Base of rrt_star, pa_rrt_star, rrbt and belief_rrt_star. Derived planners define how a new
-/// vertex is connected and where the best path is; everything else is here.
+/// Base class of rrt_star, pa_rrt_star, rrbt and belief_rrt_star. Derived planners define how a new
+/// vertex is connected and how the best path is found.
 ///
-/// While map and root stay, the solution is the best path ever found: its cost never rises,
-/// whatever happens to the tree. When one of them changes, the best path is evaluated again: it is
-/// dropped if it is no longer free, and its cost may rise.
+/// While map and root do not change, the solution is the best path found so far, even if the tree
+/// changes: its cost never rises. When the map or the root changes, the best path is evaluated
+/// again: it is dropped if it is no longer free, and its cost may rise.
 class BeliefPlanner : public ompl::base::Planner {
   public:
     BeliefPlanner(const ompl::base::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
@@ -70,60 +73,62 @@ class BeliefPlanner : public ompl::base::Planner {
 
     void setup() override;
 
-    /// Grows until the condition holds or the vertices or iterations of the options are used up,
-    /// then calls finish().
+    /// Grows until the condition holds or a limit of GrowthOptions is reached, then calls finish().
+    /// @return EXACT_SOLUTION if a path is known, else TIMEOUT; INVALID_START and
+    ///        UNRECOGNIZED_GOAL_TYPE as OMPL defines them
     ompl::base::PlannerStatus solve(const ompl::base::PlannerTerminationCondition& ptc) override;
 
-    /// Solves for a given time [s]. Unlike with a termination condition the end is known in
-    /// advance, so that planners can reserve time to improve their path.
+    /// Solves for a given time [s]. The deadline is known in advance, other than with a termination
+    /// condition, so that planners can reserve time to improve their path.
     ompl::base::PlannerStatus solve(double seconds);
     using ompl::base::Planner::solve;
 
     /// Updates the planner after a change of the map. Clearance and information field must be
     /// updated first. Vertices and motions in collision are removed; motions that the change may
     /// have freed are checked again. The best path is kept only if it is still free; its cost is
-    /// computed again in the views of the present map. The same holds for the solutions of the
-    /// problem definition. The next solve() continues from there.
+    /// computed again with the views of the present map. It replaces all solutions of the problem
+    /// definition. The next solve() continues from the updated planner.
     void mapChanged(const MapChange& change);
 
     /// Plans from another state and belief from now on, for example while a path is flown. The
     /// state becomes the only root of the tree, and the start state of the problem definition until
-    /// another one is set. The part of the best path ahead of it is kept.
-    /// @param belief as those of BeliefModel; costs are counted from its cost
+    /// another one is set. The part of the best path ahead of the state is kept.
+    /// @param belief belief at the state; its cost is part of the cost of all paths
     void moveRoot(const ompl::base::State* state, const Belief& belief);
 
-    /// Another model, of the same belief but with better views, that decides between paths that
-    /// may be the best: model() only ranks them then. Costs of the planner stay those of model().
+    /// Sets a second model of the same belief, with more accurate views than model(). After an
+    /// update, belief_rrt_star compares the kept path and a new one by this model; other planners
+    /// do not use it. The costs that the planner returns are always those of model().
     void judgeBy(std::shared_ptr<BeliefModel> judge) { judge_ = std::move(judge); }
 
     void clear() override;
     void getPlannerData(ompl::base::PlannerData& data) const override;
 
-    std::size_t vertices() const { return vertices_.size() - unused_.size(); }
-    std::size_t iterations() const { return iterations_; }
-    double bestCost() const { return best_.cost; }  ///< infinite until the goal is reached
-    /// The best path so far, from a root on; empty if there is none. The planner owns the states:
-    /// they are those of the path until it goes on or is changed.
+    std::size_t vertices() const { return vertices_.size() - unused_.size(); }  ///< number of them
+    std::size_t iterations() const { return iterations_; }  ///< number of samples so far
+    double bestCost() const { return best_.cost; }          ///< infinite until the goal is reached
+    /// The best path so far, from a root to a goal; empty if there is none. The planner owns the
+    /// states. They are valid until the next call that is not const.
     const std::vector<ompl::base::State*>& bestPath() const { return best_.states; }
-    /// The belief at the root, once moveRoot() has set it.
+    /// The belief that moveRoot() has set at the root; none before the first call of moveRoot().
     const std::optional<Belief>& movedRoot() const { return movedRoot_; }
     BeliefModel& model() const { return *model_; }
 
-    /// What the present update changed so far; of the first plan, before any update, the vertices
-    /// that were added.
+    /// Counts of the present update so far. Before the first update only
+    /// UpdateCounts::verticesAdded is set.
     const UpdateCounts& lastUpdate() const { return update_; }
 
-    /// Every belief the planner holds, parents before children.
+    /// All beliefs that the planner stores, parents before children.
     virtual std::vector<TreeNode> tree() const = 0;
 
   protected:
-    /// A start and the belief there.
+    /// A start and the belief at the start.
     struct Root {
         Vertex* vertex;
         Belief belief;
     };
 
-    /// A parameter of OMPL that sets an option of the planner.
+    /// Declares an OMPL parameter that sets an option of the planner.
     template <class T>
     void declareOption(const std::string& key, T& value) {
         params_.declareParam<T>(
@@ -133,53 +138,56 @@ class BeliefPlanner : public ompl::base::Planner {
     /// Called when a start has become a vertex.
     virtual void addRoot(const Root& root) = 0;
 
-    /// The belief at a start; renders the view from there.
+    /// The belief at a start. Renders the view from the start.
     virtual Belief rootBelief(const ompl::base::State* start) { return model_->root(start); }
 
     /// Connects a new vertex (not yet in the nearest-neighbour structure) to the vertices near it.
-    /// Motions to them are short but not checked for collision, except to the first one, from which
-    /// the new vertex was steered.
+    /// The motion from the first of them, toward the sample, is free. Motions from the others are
+    /// not checked for collision yet.
     virtual void connect(Vertex& fresh, const std::vector<Vertex*>& near,
                          const ompl::base::PlannerTerminationCondition& ptc) = 0;
 
-    /// Whether a sample whose nearest vertex is this one may improve the path. Asked for most
-    /// samples; the others are accepted anywhere, so that no region is excluded for ever.
+    /// Whether a sample whose nearest vertex is this one may improve the path. Most other samples
+    /// are rejected. Some are accepted, so that no region is excluded for ever.
     virtual bool isPromising(const Vertex&) { return true; }
 
-    /// Where samples are drawn after an update, until as many vertices were added as it removed or
-    /// too many samples in a row have added none.
+    /// Where samples are drawn after an update, until as many vertices were added as the update has
+    /// removed or too many samples in a row have added none.
     virtual SampleShares sampleShares() const { return {}; }
 
     /// Called when solve() begins.
     virtual void begin(const ompl::base::PlannerTerminationCondition&) {}
 
-    /// Called before solve() returns, when it adds no more vertices.
+    /// Called when growth has ended. If time is left until the deadline of solve(double), growth
+    /// continues afterwards.
     virtual void finish(const ompl::base::PlannerTerminationCondition&) {}
 
-    /// Estimated duration of finish() [s]: growth ends that long before the deadline.
+    /// Estimated duration of finish() [s]. Growth ends this time before the deadline.
     virtual double timeToFinish() const { return 0.; }
 
-    /// By vertex index the vertex that its best belief comes from; null at a root, and where there
-    /// is no belief.
+    /// By vertex index: the vertex from which the best belief of the vertex was propagated; null
+    /// for a root and for a vertex without a belief.
     virtual std::vector<const Vertex*> parents() const = 0;
 
-    /// Called when the map has changed: motions through changed space must be checked again.
+    /// The parts of a planner that a change of the map makes invalid.
     struct Invalid {
         std::vector<Vertex*> vertices;  // to be removed
-        std::size_t edges = 0;          // that had been free and are in collision now
+        std::size_t edges = 0;          // number of edges that were free and are in collision now
     };
+    /// Called when the map has changed: motions through changed space must be checked again.
     /// @param colliding vertices that are no longer valid
-    /// @return these vertices, and what else has to go
+    /// @return these vertices and all others that must be removed
     virtual Invalid invalidate(const ChangedSpace& changed, std::vector<Vertex*> colliding) = 0;
 
     /// Called before a vertex is removed.
     virtual void removeEdgesOf(const Vertex& vertex) = 0;
 
-    /// Called when the map has changed and vertices are removed: views may have changed as well.
+    /// Called when the map has changed, after invalid vertices were removed: beliefs must be
+    /// propagated again, because views may have changed.
     virtual void renewBeliefs() = 0;
 
     /// Called when `root` has become the only root.
-    /// @param near if root is a new vertex: the vertices near it, not connected yet
+    /// @param near if the root is a new vertex: the vertices near it, not connected yet
     /// @return vertices to be removed
     virtual std::vector<Vertex*> replaceRoots(const Root& root,
                                               const std::vector<Vertex*>& near) = 0;
@@ -193,17 +201,18 @@ class BeliefPlanner : public ompl::base::Planner {
         return si_->checkMotion(from.state, to.state);
     }
 
-    /// Vertices within the radius of RRT*, `nearest` in front.
+    /// The vertices within the connection radius of RRT* around a vertex, and `nearest`, which
+    /// comes first.
     std::vector<Vertex*> near(const Vertex& fresh, Vertex* nearest) const;
 
-    /// Stores a path (start first) if it is the best so far.
+    /// Stores a path (start first) if it costs less than the best one so far.
     void offer(double cost, const std::vector<const ompl::base::State*>& path);
 
-    /// Whether another model than model() decides what path is best.
+    /// Whether judgeBy() has set a second model.
     bool hasJudge() const { return judge_ != nullptr; }
-    /// What a path from a root on costs by judgeBy(), views at hand or not.
+    /// The cost of a path from a root, by the model of judgeBy(), or by model() if there is none.
     double judgedCost(const std::vector<ompl::base::State*>& path);
-    /// Takes a path (start first) in place of the best one, whatever it costs.
+    /// Replaces the best path by this one (start first), even if it costs more.
     void replaceBest(double cost, const std::vector<const ompl::base::State*>& path);
 
     /// Time until the deadline of solve(double) [s]; infinite without one.

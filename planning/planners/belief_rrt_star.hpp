@@ -15,32 +15,33 @@
 namespace photonav {
 
 struct SearchOptions {
-    unsigned labels = 5;       ///< kept per vertex, at most
-    bool informed = true;      ///< draw most samples only where a better path may pass
-    unsigned shortcut = 3000;  ///< changes tried on the best path of a search, at most; 0: none
-    /// A path that an update has kept is left only for one that costs less by this share. Costs
-    /// change a little with every view of a new map, and a robot that follows each of these changes
-    /// turns to and fro. Changes of the kept path itself are always taken.
+    unsigned labels = 5;       ///< largest number of labels kept per vertex
+    bool informed = true;      ///< reject most samples where no better path can pass
+    unsigned shortcut = 3000;  ///< largest number of changes tried on a search's best path
+    /// After an update another path replaces the kept one only if it costs less by this share.
+    /// Costs change a little with every new view of the map, and a robot that follows each of these
+    /// changes turns back and forth. Changes of the kept path itself are always accepted.
     double commitment = 0.;
-    /// Where there is much to see, paths cost more than the bound on the cost-to-go by about the
-    /// same share everywhere. A search raises its bound by this part, from 0 to 1, of the share
-    /// that the search before has found. It looks at much less then, and its path costs at most as
-    /// much more than the best one over the roadmap as the bound is raised.
+    /// Weighted A*: factor, from 0 to 1, on the raise of the bound on the cost-to-go. Where views
+    /// inform nearly everywhere, paths cost more than the base cost (see CostToGo) by about the
+    /// same share. A search raises its bound by this share, as the last search has found it, times
+    /// `inflation`. It then expands fewer labels. Its path costs more than the best one over the
+    /// roadmap by at most the share by which the bound is raised.
     double inflation = 0.;
 };
 
-/// Grows the roadmap that RRT* would (same samples, same connection radius), keeps all its edges,
-/// and searches beliefs over it with several labels per vertex: a costlier path to a vertex that
-/// arrives there better localised is kept as long as it is not dominated in the partial order of
-/// cost and covariance (Loewner order; Bry and Roy 2011). Algorithm 1 keeps only the cheapest
-/// belief and can stay in a local minimum however many vertices it adds.
+/// Grows a roadmap with the samples and the connection radius of RRT*, keeps all its edges, and
+/// searches over beliefs with several labels (vertex, belief) per vertex. A path to a vertex that
+/// costs more but has a smaller covariance is kept unless it is dominated in the partial order of
+/// cost and covariance (Loewner order; Bry and Roy 2011). The paper's Algorithm 1 keeps only the
+/// cheapest belief and can stay in a local minimum however many vertices it adds.
 ///
-/// The number of labels is limited and the order has a slack, so the result is the best path over
-/// the labels kept, not over all beliefs.
+/// The number of labels is limited and the partial order has a slack, so the result is the best
+/// path over the labels kept, not over all beliefs.
 ///
-/// The views along an edge are rendered only when a label is about to be propagated along it. For
-/// collision all edges are checked before a search: that costs microseconds, a view a millisecond,
-/// and the bound that steers the search does not lead through walls.
+/// The views along an edge are rendered only when a label is about to be propagated along the edge.
+/// All edges are checked for collision before a search: a check takes microseconds, a view a
+/// millisecond, and the bound that steers the search then does not lead through walls.
 ///
 /// The planner is anytime: whenever the roadmap has doubled, it is searched, and as many changes
 /// are tried on the resulting path as the roadmap has vertices. Then growth continues. With a known
@@ -48,8 +49,8 @@ struct SearchOptions {
 /// termination condition stops the planner at once.
 class BeliefRRTstar : public BeliefPlanner {
   public:
-    /// Vertices of the roadmap when it is searched for the first time. A path over edges that are
-    /// known to be free may be there before.
+    /// Number of vertices of the roadmap at its first search. A path over edges that are known to
+    /// be free may be found before.
     static constexpr std::size_t kFirstSearch = 100;
 
     BeliefRRTstar(const ompl::base::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
@@ -58,6 +59,7 @@ class BeliefRRTstar : public BeliefPlanner {
     void clear() override;
     std::vector<TreeNode> tree() const override;
 
+    /// Number of changes of paths tried so far.
     unsigned shortcutsTried() const { return shortcutsTried_; }
 
   private:
@@ -66,7 +68,7 @@ class BeliefRRTstar : public BeliefPlanner {
         int parent;  // index into settled_; -1 at a start
         Belief belief;
     };
-    /// A label to come: its edge is checked, and the belief propagated, only when it is next.
+    /// A label that is not settled yet. Its belief is propagated only when it comes first.
     struct Candidate {
         double bound;  // least cost of a path to the goal through here
         int parent;

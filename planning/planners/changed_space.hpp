@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a change of the map may have made motions free or put them in collision.
+// The part of space where a change of the map may have freed motions or put them in collision.
 #pragma once
 
 #include "map/map_change.hpp"
 
 namespace photonav {
 
-/// The box around the cells whose occupancy changed, grown by the distance at which obstacles
-/// matter.
+/// The bounding box of the bricks whose occupancy changed, grown by the distance within which
+/// obstacles affect a motion.
 class ChangedSpace {
   public:
-    /// @param obstacleReach obstacles farther away do not matter [m]
+    /// @param obstacleReach distance beyond which obstacles do not affect a motion [m]
     ChangedSpace(const MapChange& change, double obstacleReach);
 
+    /// Whether the box contains a point (world frame [m]).
     bool contains(const Eigen::Vector3d& p_w) const { return box_.contains(p_w); }
 
-    /// Whether a straight motion passes through.
+    /// Whether the straight motion between two points (world frame [m]) intersects the box.
     bool touches(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const;
 
   private:

@@ -12,39 +12,40 @@ namespace photonav {
 
 /// A lower bound on the cost-to-go over a roadmap, the sum of two parts.
 ///
-/// The base cost: what a motion costs however certain the pose is before it. Its length counts
-/// alpha, and the noise of a step is in the covariance at the end of the step, before the next
-/// view, so that it is charged over half the step. Where views inform nearly everywhere the cost is
-/// hardly more.
+/// The base cost is the least cost of a motion, even if the pose is known exactly before the
+/// motion: alpha times its length, and the cost of the motion noise. The noise of a step is in the
+/// covariance at the end of the step, before the next view, so that it counts over half the step.
+/// Where views inform nearly everywhere, motions cost little more than this.
 ///
-/// The uncertainty at the start: the conditional variance of a position coordinate given all others
-/// (the inverse of the precision's diagonal) never falls with motion, and only a view that observes
-/// the coordinate lowers it. So it is charged at least until
-/// the nearest place with such a view, and a path by way of this place has to go on to the goal
-/// from there.
+/// The second part is the cost of the uncertainty at the start. The conditional variance of a
+/// position coordinate given all others (the inverse of the precision's diagonal) never falls with
+/// motion; only a view that observes the coordinate reduces it. So it counts at least until the
+/// nearest vertex with such a view, and a path by way of this vertex must go on from there to the
+/// goal.
 ///
-/// Views not taken yet are guessed from those at the two ends of the motion: if neither end
-/// observes an axis, no view between them is assumed to. The bound can be too high where a texture
-/// lies between the vertices and is visible from none of them; it becomes right as motions get
-/// shorter. Of a view that the map has changed since, everything is assumed to be observed.
-/// Fourth-order terms and information below the threshold are covered by 1 % of the charge.
+/// The views along a motion are not known before they are rendered. They are assumed to observe an
+/// axis only if the view at one of the two ends does. The bound can therefore be too high where a
+/// texture lies between two vertices and is visible from neither; this error vanishes as motions
+/// get shorter. A stale view is assumed to observe all axes. Fourth-order terms and information
+/// below the threshold are covered by reducing the second part by 1 %.
 class CostToGo {
   public:
-    /// Where a search begins, and with which covariance.
+    /// A vertex at which a search begins, and its covariance as in Belief.
     struct Start {
         const Vertex* vertex;
         Matrix6 covariance;
     };
 
-    /// Computes the bound for a roadmap as it is now, and as the field's views are now. Evaluates
-    /// the views from vertices that were never evaluated, but skips vertices within `ds` of one
-    /// that was. Renders no view again.
+    /// Computes the bound for a roadmap and the views of the model's field. Views from vertices
+    /// that are not in the field yet are rendered, except for vertices within `ds` of one that was
+    /// evaluated. Stale views are not rendered again.
     void update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                 const std::vector<Vertex*>& goals, BeliefModel& model);
 
-    /// The same for a search from these starts. If no goal can be reached from them, or the
-    /// uncertainty there adds little and the last path was `wellObserved`, the bound is the base
-    /// cost alone, which needs no views.
+    /// Computes the bound for a search from these starts. The bound is the base cost alone, which
+    /// needs no views, if no goal can be reached from the starts, or if the uncertainty at the
+    /// starts adds little and `wellObserved` is set.
+    /// @param wellObserved whether the last path cost little more than its base cost
     void update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                 const std::vector<Vertex*>& goals, BeliefModel& model,
                 const std::vector<Start>& starts, bool wellObserved);
@@ -58,13 +59,15 @@ class CostToGo {
     using PerAxis = std::array<double, kAxes>;
     PerAxis variances(const Matrix6& covariance) const;
 
-    /// Least cost from a vertex to a goal. Infinity where no goal can be reached.
+    /// Lower bound on the cost from a vertex to a goal; infinite if no goal can be reached.
+    /// @param variance variances() of the belief at the vertex
     double from(const Vertex& vertex, const PerAxis& variance) const;
 
-    /// Least cost from a vertex to a goal if the path begins with this edge.
+    /// Lower bound on the cost from a vertex to a goal if the path begins with this edge.
     double over(const Roadmap::Edge& edge, const Vertex& vertex, const PerAxis& variance) const;
 
-    /// Shortest path to a goal over edges not known to be blocked [m].
+    /// Length of the shortest path from a vertex to a goal over edges not known to be blocked,
+    /// metric of the flight space [m].
     double distance(const Vertex& vertex) const { return toGoal_[vertex.index]; }
 
   private:

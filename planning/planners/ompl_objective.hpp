@@ -11,9 +11,10 @@
 namespace photonav {
 
 /// J = alpha * length + (1 - alpha) * kappa * integral of the trace, as an OMPL objective for
-/// comparing, printing and stopping at solutions. The cost of a motion depends on the belief it is
-/// flown with, which OMPL does not carry: motionCost() is the part that no belief can undercut, so
-/// the sum over a path (ompl::base::Path::cost) is a lower bound, exact for alpha = 1.
+/// comparing, printing and stopping at solutions. The cost of a motion depends on the belief before
+/// the motion, which OMPL's interface does not pass. motionCost() is therefore a lower bound for
+/// any belief, alpha times the length. The sum over a path (ompl::base::Path::cost) is a lower
+/// bound as well, exact for alpha = 1.
 class OmplObjective : public ompl::base::OptimizationObjective {
   public:
     OmplObjective(const ompl::base::SpaceInformationPtr& si,

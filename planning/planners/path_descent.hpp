@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Local descent on a path: shortcuts and shifted vertices, evaluated by the beliefs along it.
+// Local descent on a path: shortcuts and shifts of vertices, evaluated by the beliefs along the
+// path.
 #pragma once
 
 #include <ompl/base/PlannerTerminationCondition.h>
@@ -16,17 +17,17 @@
 namespace photonav {
 
 struct DescentOptions {
-    unsigned moves = 3000;   ///< changes tried, about
-    double firstStep = 3.;   ///< of the coarsest shifts [m, rad]
-    double lastStep = 0.02;  ///< of the finest ones
-    std::uint32_t seed = 1;  ///< of the directions that vertices are shifted in
+    unsigned moves = 3000;   ///< approximate number of changes that are tried
+    double firstStep = 3.;   ///< length of the first, coarsest shifts, metric of the space [m]
+    double lastStep = 0.02;  ///< length of the finest shifts, metric of the space [m]
+    std::uint32_t seed = 1;  ///< seed of the directions of shifts
 };
 
-/// Lowers the cost of a path in its neighbourhood by random changes: a vertex left out, a vertex
-/// shifted, a leg bent at a new vertex or shifted, a corner cut. The cost is that of the planners,
-/// with the integral and the views. It is not a smooth function of the path, so no derivatives are
-/// used. Only the beliefs behind a change are propagated again. The path stays free of collision
-/// and keeps its ends. Deterministic for a seed.
+/// Lowers the cost of a path by random local changes: a vertex is removed or shifted, a leg is
+/// shifted or bent at a new vertex, a corner is cut. A change is accepted if it lowers the cost,
+/// which is that of BeliefModel. This cost is not a smooth function of the path, so no derivatives
+/// are used. Only the beliefs after a change are propagated again. The path stays free of collision
+/// and keeps its ends. Deterministic for a given seed.
 class PathDescent {
   public:
     PathDescent(ompl::base::SpaceInformationPtr si, std::shared_ptr<BeliefModel> model,
@@ -34,18 +35,19 @@ class PathDescent {
 
     /// Starts from a path (at least one state) whose motions are free. The states are copied.
     void begin(const std::vector<const ompl::base::State*>& path);
-    /// The same with a given belief at the first state, instead of BeliefModel::root().
+    /// Starts from a path with a given belief at its first state, instead of BeliefModel::root().
     void begin(const std::vector<const ompl::base::State*>& path, const Belief& root);
 
-    /// Descends until the moves since begin() are used up (those of the options, or fewer) or the
-    /// condition holds. Continues where the last call ended.
+    /// Descends until the condition holds, or until this number of changes or that of the options,
+    /// counted since begin(), was tried. Continues where the last call ended.
     void descend(const ompl::base::PlannerTerminationCondition& ptc,
                  unsigned moves = std::numeric_limits<unsigned>::max());
 
+    /// Cost of the present path, including the cost of the belief at its first state.
     double cost() const { return nodes_.back().belief.cost; }
-    std::vector<const ompl::base::State*> path() const;  ///< owned by this object
-    unsigned tried() const { return tried_; }            ///< changes since begin()
-    unsigned accepted() const { return accepted_; }      ///< of them, those that lowered the cost
+    std::vector<const ompl::base::State*> path() const;  ///< its states, owned by this object
+    unsigned tried() const { return tried_; }            ///< number of changes since begin()
+    unsigned accepted() const { return accepted_; }  ///< number of changes that lowered the cost
 
   private:
     using StatePtr = std::shared_ptr<ompl::base::State>;

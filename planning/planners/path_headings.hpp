@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Headings that need no planner: rivals of planned ones.
+// Headings by a fixed rule, as baselines for planned headings.
 #pragma once
 
 #include <ompl/base/SpaceInformation.h>
@@ -12,15 +12,15 @@
 namespace photonav {
 
 enum class Headings {
-    fixed,   ///< that of the first state, all the way
+    fixed,   ///< the heading of the first state on the whole path
     forward  ///< along the motion: the robot turns on the spot at every waypoint
 };
 
-/// The positions of a path with other headings. RRT*, which minimises the length, leaves headings
-/// as they were drawn; these are what robots do that have none planned.
-/// @param path at least one state, of a space with a heading; the first one is where the robot is
-/// and
-///        how it is turned, and stays as it is. Legs that are vertical keep the heading before.
+/// Replaces the headings of a path. RRT* minimises the length, so that its headings are random
+/// samples; robots without planned headings follow one of these rules instead. A vertical leg keeps
+/// the heading of the leg before it.
+/// @param path at least one state; the first one is the present pose of the robot and is not
+///        changed
 /// @return the new states; a turn on the spot is a motion of its own
 /// @throws std::invalid_argument unless the space is StateKind::positionYaw
 std::vector<std::shared_ptr<ompl::base::State>> withHeadings(

@@ -6,15 +6,16 @@
 
 namespace photonav {
 
-/// Perception-aware RRT* as published (Algorithm 1): one belief per vertex, the parent with the
-/// least cost-to-come, rewiring with the beliefs of all descendants brought up to date. A map that
-/// changes is followed as in Algorithm 2; docs/planner.md has its lines beside ours. Minimising the
-/// length alone it is the standard RRT*, named rrt_star: no view is ever rendered.
+/// Perception-aware RRT* as published (Algorithm 1): each vertex has one belief and the parent with
+/// the least cost-to-come; rewiring updates the beliefs of all descendants. A change of the map is
+/// handled as in Algorithm 2; docs/concepts/online-planning.md compares its lines with this
+/// implementation. Minimises::length gives the standard RRT*, named rrt_star, which renders no
+/// views.
 class PerceptionRRTstar : public BeliefPlanner {
   public:
     enum class Minimises { lengthAndUncertainty, length };
 
-    /// @throws std::invalid_argument for the length alone unless alpha = 1
+    /// @throws std::invalid_argument for Minimises::length unless alpha = 1
     PerceptionRRTstar(const ompl::base::SpaceInformationPtr& si,
                       const std::shared_ptr<BeliefModel>& model, const GrowthOptions& growth = {},
                       Minimises minimises = Minimises::lengthAndUncertainty);

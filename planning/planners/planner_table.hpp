@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All planners by name.
+// Makes planners by name.
 #pragma once
 
 #include <memory>
@@ -11,14 +11,13 @@
 
 namespace photonav {
 
-/// The weight of the length in the cost that this planner minimises, where `alpha` is that of the
-/// others: 1 for those that use no views.
+/// The alpha of the cost that a planner minimises: 1 if it uses no views, else `alpha`.
 /// @throws std::invalid_argument for an unknown name
 double alphaOf(const std::string& planner, double alpha);
 
-/// A planner, without a problem definition yet.
-/// @param model of costs and beliefs; a planner that uses no views takes its own, with alpha = 1
-/// @param search for belief_rrt_star
+/// Makes a planner without a problem definition.
+/// @param model model of costs and beliefs; a planner that uses no views gets a copy with alpha = 1
+/// @param search options of belief_rrt_star; other planners ignore them
 /// @throws std::invalid_argument for an unknown name
 std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
                                            const ompl::base::SpaceInformationPtr& si,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known of a planner by its name, without OMPL.
+// Properties of the planners by name. Includes no header of OMPL.
 #pragma once
 
 #include <array>
@@ -12,21 +12,22 @@ namespace photonav {
 
 struct PlannerTraits {
     const char* name;
-    /// Whether it minimises uncertainty as well, and so renders views. The others minimise the
-    /// length alone.
+    /// Whether the planner minimises uncertainty as well as length, and so renders views; else it
+    /// minimises the length alone.
     bool usesViews;
-    /// Red, green and blue in every figure, page and tutorial: distinguishable from those of the
-    /// others with any colour vision, on white and on a grey map.
+    /// Red, green and blue in every figure, page and tutorial. The planners' colours are
+    /// distinguishable with any colour vision, on white and on a grey map.
     std::array<std::uint8_t, 3> color;
     unsigned mostCompared = 0;  ///< largest number of vertices in comparisons; 0: no limit
 };
 
-/// @return null for an unknown name
+/// The properties of a planner; null for an unknown name.
 const PlannerTraits* findPlanner(std::string_view name);
 
-/// Names of all planners: those that makePlanner() accepts.
+/// Names of all planners: those that makePlanner() accepts. The first one is the default.
 const std::vector<std::string>& plannerNames();
 
+/// PlannerTraits::usesViews of a planner.
 /// @throws std::invalid_argument for an unknown name
 bool usesViews(const std::string& planner);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simplest way to keep a plan up to date: the baseline of incremental replanning.
+// Replanning without reuse of the last plan: the baseline of incremental replanning.
 #pragma once
 
 #include <functional>
@@ -9,26 +9,26 @@
 
 namespace photonav {
 
-/// Effort of all replanning so far.
+/// Effort of all plans so far.
 struct ReplanEffort {
-    unsigned plans = 0;
-    std::size_t vertices = 0;
-    std::size_t views = 0;
-    double seconds = 0.;
+    unsigned plans = 0;        ///< number of plans
+    std::size_t vertices = 0;  ///< sum over the plans
+    std::size_t views = 0;     ///< number of views evaluated
+    double seconds = 0.;       ///< wall-clock time [s]
 };
 
-/// Plans anew whenever the map or the start has changed; no vertex and no view of the last plan is
-/// used again. This is how Sadat et al. (Feature-rich path planning for robust navigation of MAVs
-/// with mono-SLAM, 2014) replan in a growing map, with RRT* as the planner.
+/// Plans anew whenever the map or the start has changed, without any vertex or view of the last
+/// plan. Sadat et al. (Feature-rich path planning for robust navigation of MAVs with mono-SLAM,
+/// 2014) replan in a growing map in this way, with RRT* as the planner.
 class ReplanFromScratch {
   public:
-    /// Makes a planner on the map as it is now, set up for the start as it is now, whose model has
-    /// an information field of its own.
+    /// Makes a planner for the present map and start, whose model has an information field of its
+    /// own.
     using PlannerFactory = std::function<std::shared_ptr<BeliefPlanner>()>;
 
     explicit ReplanFromScratch(PlannerFactory makePlanner);
 
-    /// Forgets the last plan and solves the problem as it is now.
+    /// Drops the last plan and solves the present problem.
     ompl::base::PlannerStatus replan(const ompl::base::PlannerTerminationCondition& ptc);
 
     /// The planner of the last replan(); null before the first.

@@ -12,18 +12,20 @@
 
 namespace photonav {
 
-/// Edges stay where they are in memory until they are removed.
+/// An undirected graph of motions between vertices. References to an edge are valid until the edge
+/// is removed.
 class Roadmap {
   public:
     struct Edge {
         Vertex* from;
         Vertex* to;
-        Motion motion;               ///< keeps its views once a belief was propagated along it
-        std::optional<bool> isFree;  ///< nothing: not checked for collision yet
+        Motion motion;               ///< stores the views of beliefs propagated along it
+        std::optional<bool> isFree;  ///< none: not checked for collision yet
 
         Vertex* otherEnd(const Vertex* end) const { return end == from ? to : from; }
     };
 
+    /// Adds an edge that is not checked for collision.
     Edge& add(Vertex* from, Vertex* to, Motion motion);
 
     /// Removes all edges that begin or end at a vertex.
@@ -35,16 +37,17 @@ class Roadmap {
     /// Checks all edges that were not checked yet.
     void checkAll(const ompl::base::SpaceInformation& si);
 
-    /// Checks the edges through changed space again that had been free, and marks the others there
-    /// as not checked.
-    /// @return how many had been free and are not any more
+    /// Updates the edges that pass through changed space: edges that were free are checked again,
+    /// edges that were in collision are marked as not checked.
+    /// @return number of edges that were free and are in collision now
     std::size_t mapChanged(const ChangedSpace& changed, const FlightSpace& space,
                            const ompl::base::SpaceInformation& si);
 
     /// Edges that begin or end at a vertex.
     const std::vector<Edge*>& of(const Vertex* vertex) const { return edgesOf_[vertex->index]; }
 
-    std::size_t size() const { return edgesOf_.size(); }  ///< of a table by vertex
+    std::size_t size() const { return edgesOf_.size(); }  ///< number of vertices in its table
+    /// Prepares the table for this number of vertices; it never shrinks.
     void resize(std::size_t vertices) {
         if (vertices > edgesOf_.size()) edgesOf_.resize(vertices);
     }

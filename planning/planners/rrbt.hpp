@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rapidly-exploring random belief trees: the baseline that keeps every belief worth keeping.
+// Rapidly-exploring random belief trees: a baseline that keeps all beliefs that are not dominated.
 #pragma once
 
 #include "planners/belief_planner.hpp"
@@ -10,31 +10,32 @@ namespace photonav {
 /// RRBT of Bry and Roy (Rapidly-exploring random belief trees for motion planning under
 /// uncertainty, ICRA 2011).
 ///
-/// As published: a graph grown by sampling, whose vertices hold any number of belief nodes, each
-/// with its cost, its covariance and its parent node; a new vertex is joined to the nearest vertex
-/// and to all within the radius of RRG; the beliefs of its neighbours are queued, and everything in
-/// the queue is propagated over the edges until the queue is empty; a belief is appended unless one
-/// at the same vertex is better in the partial order
-///     a < b  <=>  cost_a < cost_b  and  Sigma_a < Sigma_b + epsilon 1  (Loewner order),
-/// and it removes those that are worse than itself (with epsilon = 0) and their descendants. No cap
-/// on the beliefs of a vertex, no bound by the best path so far.
+/// As published: a graph is grown by sampling. Each vertex has any number of belief nodes, each
+/// with a cost, a covariance and a parent node. A new vertex is joined to the nearest vertex and to
+/// all vertices within the radius of RRG. The beliefs of its neighbours are queued, and all beliefs
+/// in the queue are propagated over the edges until the queue is empty. A belief is appended unless
+/// another one at the same vertex is better in the partial order
+///     a < b  <=>  cost_a < cost_b  and  Sigma_a < Sigma_b + epsilon 1  (Loewner order).
+/// It then removes the beliefs that are worse than itself (with epsilon = 0) and their descendants.
+/// The number of beliefs of a vertex is not limited, and the best path so far is not used as a
+/// bound.
 ///
-/// Adapted to our problem: motions are straight lines whose views, noise and costs are those of
-/// BeliefModel::propagate, for all planners alike, and are steered at most `range` far; there is no
-/// controller, hence no second covariance of where the controller will be, and collision is a
-/// minimum clearance instead of a chance constraint on the belief. epsilon weighs rotations by the
-/// characteristic length, as the trace does. The queue is sorted by cost. A belief that was already
-/// propagated over an edge is not propagated again when a neighbour appears.
+/// Adapted to our problem: motions are straight lines of at most `range`, whose views, noise and
+/// costs are those of BeliefModel::propagate, as for all planners. There is no controller, hence no
+/// covariance of the controlled position, and a minimum clearance replaces the chance constraint on
+/// collisions. epsilon weighs rotations by the characteristic length, as the trace does. The queue
+/// is sorted by cost. When a new vertex appears, the beliefs of its neighbours are propagated over
+/// the new edges only.
 class RRBT : public BeliefPlanner {
   public:
-    /// @param epsilon slack of the partial order [m^2]: larger is fewer beliefs
+    /// @param epsilon slack of the partial order [m^2]: a larger one keeps fewer beliefs
     RRBT(const ompl::base::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
          const GrowthOptions& growth = {}, double epsilon = 1e-3);
 
     void clear() override;
     std::vector<TreeNode> tree() const override;
 
-    /// Beliefs held at all vertices together. May be read while another thread solves.
+    /// Number of beliefs at all vertices together. May be read while another thread runs solve().
     std::size_t beliefs() const { return beliefs_; }
 
   private:

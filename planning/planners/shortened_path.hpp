@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Smoothed paths of planners that look at nothing.
+// Shortens the paths of planners that use no views.
 #pragma once
 
 #include <ompl/base/PlannerTerminationCondition.h>
@@ -12,11 +12,11 @@
 
 namespace photonav {
 
-/// Shortens a path by the changes that PathDescent tries, as paths of belief_rrt_star are improved;
-/// here only the length counts, in the metric of the space. RRT* leaves corners that depend on its
-/// samples: a rival should not lose by them.
-/// @param path at least one state; motions are free
-/// @param changes tried, about
+/// Shortens a path by PathDescent, as belief_rrt_star improves its paths, but with the length in
+/// the metric of the space as the only cost. Paths of RRT* have corners that depend on its samples.
+/// Without them, a comparison with belief_rrt_star is fair.
+/// @param path at least one state; the motions must be free
+/// @param changes approximate number of changes that are tried
 /// @return the new states, from the same start to the same end; the motions are free
 std::vector<std::shared_ptr<ompl::base::State>> shortened(
     const ompl::base::SpaceInformationPtr& si, const FlightSpace& space,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a planner draws samples after an update: where vertices were removed, and where the map
-// changed.
+// The parts of the space in which a planner draws samples after an update: near removed vertices,
+// and where the map changed.
 #pragma once
 
 #include <ompl/base/SpaceInformation.h>
@@ -15,25 +15,25 @@
 
 namespace photonav {
 
-/// Shares of the samples that are drawn in parts of the space after an update, as long as the space
-/// has such parts. The rest is drawn everywhere.
+/// After an update, the shares of the samples that are drawn in parts of the space, if there are
+/// such parts. The other samples are drawn in the whole space.
 struct SampleShares {
     double removed = 0.;  ///< near vertices that were removed
-    double changed = 0.;  ///< where occupancy changed, if the state there is valid
+    double changed = 0.;  ///< where occupancy changed, if a valid state is found there
 };
 
-/// The parts of a space that an update concerns.
+/// The parts of a space that were affected by an update.
 class UpdatedSpace {
   public:
     UpdatedSpace(ompl::base::SpaceInformationPtr si, const FlightSpace& space);
 
-    /// Remembers the state of a vertex that is removed; of many, the latest.
+    /// Stores a copy of the state of a removed vertex. Only the latest 20000 are kept.
     void addRemoved(const ompl::base::State* state);
-    /// Remembers the bricks in which occupancy changed.
+    /// Stores the bricks in which occupancy changed.
     void addChange(const MapChange& change);
 
-    /// Draws a sample in one of the parts, near a removed vertex uniformly within `radius`.
-    /// @return whether it did: false for a sample that is to be drawn everywhere
+    /// Draws a sample in one of the parts; near a removed vertex, uniformly within `radius`.
+    /// @return false if no sample was drawn: the caller draws it in the whole space
     bool sample(ompl::base::State* state, const SampleShares& shares, double radius,
                 ompl::base::StateSampler& sampler, ompl::RNG& rng) const;
 

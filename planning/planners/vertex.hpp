@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A sampled state and its number in the tables of a planner.
+// A vertex of a planner: a sampled state and its index.
 #pragma once
 
 #include <ompl/base/State.h>
@@ -10,7 +10,7 @@ namespace photonav {
 
 struct Vertex {
     ompl::base::State* state = nullptr;  ///< null once the vertex was removed
-    std::uint32_t index = 0;  ///< of the vertex in every table that a planner keeps by vertex
+    std::uint32_t index = 0;             ///< index in every table that a planner has by vertex
     bool isGoal = false;
 };
 

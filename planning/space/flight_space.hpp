@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the robot may fly: OMPL state spaces of body poses, bounds, and collision by clearance.
+// The space that the robot flies in: OMPL state spaces of body poses, bounds, and collision checks
+// by clearance.
 #pragma once
 
 #include <ompl/base/MotionValidator.h>
@@ -20,14 +21,15 @@ enum class StateKind {
     se3           ///< full body pose
 };
 
-/// A state space of body poses T_w_b and the map between OMPL states and poses.
+/// A state space of body poses T_w_b, and the conversion between OMPL states and poses.
 ///
-/// The metric, used for neighbours, for cost and for noise alike, is metres of translation plus
-/// `rotationWeight` metres per radian of rotation.
+/// The metric is the translation in metres plus `rotationWeight` metres per radian of rotation. It
+/// is used for neighbours, for the cost and for the motion noise.
 class FlightSpace {
   public:
-    /// @param bounds of the position [m]; a flat box (equal heights) plans at one height
-    /// @param fixedHeading yaw of the body where the state has none (StateKind::position) [rad]
+    /// @param bounds of the position, world frame [m]; with a flat box the height is constant
+    /// @param rotationWeight see above [m/rad]
+    /// @param fixedHeading yaw of the body for StateKind::position, whose states have none [rad]
     /// @throws std::invalid_argument for empty bounds or a negative weight
     FlightSpace(StateKind kind, const Eigen::AlignedBox3d& bounds, double rotationWeight = 0.25,
                 double fixedHeading = 0.);
@@ -36,23 +38,30 @@ class FlightSpace {
     const ompl::base::StateSpacePtr& space() const { return space_; }
     const Eigen::AlignedBox3d& bounds() const { return bounds_; }
 
+    /// Position of the body in the world frame [m].
     Eigen::Vector3d position(const ompl::base::State* state) const;
+    /// T_w_b of a state.
     Pose bodyPose(const ompl::base::State* state) const;
-    /// Body pose a fraction in [0, 1] of the straight motion between two states.
+    /// T_w_b after a fraction in [0, 1] of the straight motion between two states.
     Pose poseBetween(const ompl::base::State* from, const ompl::base::State* to,
                      double fraction) const;
+    /// Sets position (world frame [m]) and yaw [rad] of a state. The yaw is ignored for
+    /// StateKind::position; roll and pitch become 0.
     void setState(ompl::base::State* state, const Eigen::Vector3d& position, double yaw) const;
-    /// Moves a state; its rotation stays.
+    /// Sets the position of a state (world frame [m]); its rotation stays.
     void setPosition(ompl::base::State* state, const Eigen::Vector3d& position) const;
 
     /// Uniform sampler with its own seed, independent of all other random numbers in the process.
     ompl::base::StateSamplerPtr sampler(std::uint32_t seed) const;
 
-    /// What the connection radius of RRT* depends on: the number of directions that have an extent,
-    /// the volume they span in the metric, and the volume of the metric's unit ball. The ball of a
-    /// sum of two distances is smaller than the Euclidean one.
+    // The connection radius of RRT* depends on the following three values.
+
+    /// Number of dimensions in which the space has an extent, at least 1.
     int dimension() const { return positionDimensions() + rotationDimensions(); }
+    /// Volume of the space over these dimensions, in the metric [m^dimension].
     double measure() const;
+    /// Volume of the metric's unit ball. It is smaller than that of the Euclidean ball, because the
+    /// metric is the sum of two distances.
     double unitBallMeasure() const;
 
   private:
@@ -66,13 +75,13 @@ class FlightSpace {
     ompl::base::StateSpacePtr space_;
 };
 
-/// Distance from a point in the world to the nearest obstacle [m]. The collision check of motions
-/// is as exact as this distance.
+/// Distance from a point in the world frame to the nearest obstacle [m]. Collision checks of
+/// motions are as exact as this distance.
 using Clearance = std::function<double(const Eigen::Vector3d& p_w)>;
 
-/// OMPL space information whose states are valid within the bounds and with more than `radius` of
-/// clearance, and whose motions are checked by conservative advancement: the step along the motion
-/// is what the clearance allows, and at least 5 mm.
+/// OMPL space information for planning. A state is valid if it is within the bounds and its
+/// clearance exceeds `radius` [m]. Motions are checked by conservative advancement: each step along
+/// the motion is as long as the clearance allows, and at least 5 mm.
 ompl::base::SpaceInformationPtr makeSpaceInformation(const FlightSpace& space, Clearance clearance,
                                                      double radius);
 
