@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The search that every alignment shares, whatever the image is compared with.
+// The coarse-to-fine search of all alignments, for any kind of model.
 #pragma once
 
 #include <functional>
@@ -9,42 +9,42 @@
 
 namespace photonav {
 
-/// Whether a model that can be rendered has noise of its own, whose gradients are to be told from
-/// texture (shared_gradients.hpp).
+/// Whether a model that can be rendered contains noise, whose gradients must be distinguished from
+/// those of texture (shared_gradients.hpp).
 enum class ModelNoise { none, measured };
 
 struct AlignmentOptions {
-    /// Noise and pixel rules, as the planner's; `scale` is the calibrated factor on Lambda and
-    /// `stride` must be 1.
+    /// Image noise and selection of pixels, as in the planner; `scale` is the calibrated factor on
+    /// Lambda and `stride` must be 1.
     PhotometricOptions photometric;
     TrustOptions trust;
     ModelNoise modelNoise = ModelNoise::none;  ///< of a model that can be rendered
     RobustWeight robust = RobustWeight::none;
-    /// Estimate gain and offset of the observed image as well, with this prior (by default: none).
+    /// Prior of gain and offset of the observed image, which are then estimated; none: fixed.
     std::optional<ExposurePrior> exposure;
-    /// Point spread of the images, standard deviation [pixels]: kRenderedBlur where they are as
+    /// Point spread of the images, standard deviation [pixels]: kRenderedBlur if they are as
     /// blurred as rendered views, kAreaBlur for a sensor without defocus whose pixels average over
-    /// their area. Image and rendered view are compared at the same sharpness; not those of cells,
-    /// whose texture is blurred itself.
+    /// their area. Image and rendered view are compared at the same sharpness, except for a model
+    /// made of cells, whose texture is blurred itself.
     double blur = kRenderedBlur;
-    int levels = 4;           ///< of the pyramid, each half the size; fewer when images are small
-    int maxIterations = 25;   ///< views rendered per level and descent
-    double coarseStep = 0.3;  ///< every level but the finest ends below this step [its pixels]
-    /// The finest level ends below this step [standard deviations, given the residuals]. At the
+    int levels = 4;           ///< levels of the pyramid, each half the size; fewer for small images
+    int maxIterations = 25;   ///< largest number of views rendered per descent on one level
+    double coarseStep = 0.3;  ///< step below which a coarser level ends [pixels of the level]
+    /// Step below which the finest level ends [standard deviations, given the residuals]. At the
     /// edges of surfaces visibility changes from pixel to pixel, which keeps steps at about 0.3.
     double fineStep = 0.3;
-    double cellSize = 0.;  ///< of a model made of cells: it shows no finer texture [m]; 0: a mesh
+    double cellSize = 0.;  ///< edge of the cells of the model [m]; 0: a mesh
     /// Errors of model and camera that repeat from image to image.
     ModelErrors modelErrors;
-    /// Covariance from the residuals (residual_covariance.hpp); else from `photometric.sigma` and
-    /// `scale`.
+    /// Whether the covariance follows from the residuals (residual_covariance.hpp); otherwise it
+    /// follows from `photometric.sigma` and `photometric.scale`.
     bool measureCovariance = false;
-    /// Factor on the information measured, as a calibration asks for.
+    /// Calibrated factor on the information by the residuals (calibration.hpp).
     double informationScale = 1.;
-    bool measureSlope = true;  ///< where a model can be rendered (measured_slope.hpp)
+    bool measureSlope = true;  ///< use measuredSlope() if the model can be rendered
 };
 
-/// An image and a model of what it shows, at several sizes: level 0 is the finest.
+/// An image and a model that it is compared with, at several sizes: level 0 is the finest.
 class Comparison {
   public:
     Comparison() = default;
@@ -54,21 +54,21 @@ class Comparison {
 
     virtual std::size_t levels() const = 0;
     virtual const Camera& camera(std::size_t level) const = 0;
-    /// How many pixels could count at the finest level.
+    /// Largest number of pixels that can be used at the finest level.
     virtual std::size_t pixels() const = 0;
     /// The normal equations at a pose; xi is its left perturbation.
     virtual NormalEquations compare(std::size_t level, const Pose& T_c_w, const Exposure& exposure,
                                     const Loss& loss) = 0;
-    /// The last comparison by blocks of the image; arguments as they were.
+    /// The normal equations of the last compare() by blocks of the image, for the same arguments.
     virtual std::vector<ImageBlock> blocks(std::size_t level, const Pose& T_c_w,
                                            const Exposure& exposure, const Loss& loss) = 0;
-    /// Motion since the image that the model's depth was measured with; identity for maps.
+    /// Motion T_c_k of the camera since the keyframe that is the model; identity for maps.
     virtual Pose sinceModel(const Pose& /*T_c_w*/) const { return Pose::Identity(); }
-    /// See ResidualStatistics; at the mean depth of the view [m].
+    /// ResidualStatistics::finer of the observed image, at the mean depth of the view [m].
     virtual double finerThanModel(double /*depth*/) const { return 0.; }
-    /// Robust standard deviation of the residuals of the last comparison.
+    /// Robust standard deviation of the residuals of the last comparison [grey value].
     virtual double robustSigma() const = 0;
-    /// How much of the gradients of the last comparison the image has as well.
+    /// sharedSlope() of model and image in the last comparison (shared_gradients.hpp).
     virtual Matrix6 sharedSlope(std::size_t /*level*/, const Exposure& /*exposure*/) const {
         return Matrix6::Identity();
     }
@@ -79,8 +79,9 @@ class Comparison {
     virtual AgainstPrediction predictionAsImage(std::size_t, const Pose&) { return {}; }
 };
 
-/// Coarse to fine, Gauss-Newton with Levenberg's damping, from a pose or from a prior's mean.
-/// @param prior minimises image and prior together when there is one
+/// Coarse-to-fine Gauss-Newton with Levenberg's damping.
+/// @param T_start camera pose T_c_w from which the search starts
+/// @param prior prior of T_c_w, which is part of the cost; null: none
 Alignment alignCoarseToFine(Comparison& comparison, const AlignmentOptions& options,
                             const Pose& T_start, const UncertainPose* prior);
 

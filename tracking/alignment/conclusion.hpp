@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What follows from the last iterate of an alignment.
+// The statistics, covariance and verdict of an alignment from its last iterate.
 #pragma once
 
 #include <optional>
@@ -8,12 +8,13 @@
 
 namespace photonav {
 
+/// The last iterate of an alignment.
 struct LastIterate {
     NormalEquations equations;
-    std::size_t pixels = 0;             ///< that could count
-    MeasuredInformation image = {};     ///< about the pose
+    std::size_t pixels = 0;             ///< largest number of pixels that could be used
+    MeasuredInformation image = {};     ///< information of the image about the pose
     double finer = 0.;                  ///< see ResidualStatistics
-    std::optional<Matrix6> prior = {};  ///< its covariance, transported() to the iterate
+    std::optional<Matrix6> prior = {};  ///< covariance of the prior, transported() to the iterate
 };
 
 /// Completes an alignment whose pose, exposure and convergence are known: statistics, information,

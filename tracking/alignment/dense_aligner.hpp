@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a camera is in a model, from one image: dense photometric alignment.
+// The pose of a camera in a model from one image: dense photometric alignment.
 #pragma once
 
 #include <memory>
@@ -8,13 +8,14 @@
 
 namespace photonav {
 
-/// Aligns images to a model that is rendered anew at every iterate and compared pixel by pixel with
-/// the observed image; the gradient is that of the synthetic image. (Warping the noisy image
-/// instead, with its own gradients, makes the covariance several times too small.) Coarse to fine,
-/// Gauss-Newton with Levenberg's damping.
+/// Aligns images to a model. The model is rendered at every iterate and compared pixel by pixel
+/// with the observed image. Gradients are those of the rendered image. (Gradients of the observed,
+/// noisy image, warped to the model, would make the covariance several times too small.)
+/// Coarse-to-fine Gauss-Newton with Levenberg's damping.
 ///
-/// With T_c_w = exp(xi^) T the predicted image changes by -J xi (photometric.hpp), so that observed
-/// - predicted = -J xi + noise. Along open directions, only a prior can change the pose.
+/// With T_c_w = exp(xi^) T the predicted image changes by -J xi (photometric.hpp):
+///     observed - predicted = -J xi + noise.
+/// In open directions (TrustOptions::openSigma) only a prior changes the pose.
 class DenseAligner {
   public:
     /// @param model must outlive the aligner
@@ -25,16 +26,19 @@ class DenseAligner {
     DenseAligner(DenseAligner&&) noexcept;
     DenseAligner& operator=(DenseAligner&&) noexcept;
 
-    /// The most likely pose given the image alone. Does not throw because of the image's content:
-    /// see the verdict. Not thread-safe (buffers are reused).
-    /// @param observed of the camera's size @throws std::invalid_argument otherwise
+    /// The most likely pose given the image alone. An image that cannot be aligned gives a verdict
+    /// that isLost(), not an exception. Not thread-safe (buffers are reused).
+    /// @param observed grey values in [0, 1], of the camera's size
+    /// @param T_start camera pose T_c_w from which the alignment starts
+    /// @throws std::invalid_argument for an image of another size
     Alignment align(const ImageF& observed, const Pose& T_start);
 
-    /// The most likely pose given the image and a prior, starting at its mean. The covariance is
-    /// (Lambda + P^-1)^-1, P the prior's covariance transported() to the result.
+    /// The most likely pose given the image and a prior of T_c_w, starting at the prior's mean. The
+    /// covariance is (Lambda + P^-1)^-1, where P is the prior's covariance transported() to the
+    /// result.
     Alignment align(const ImageF& observed, const UncertainPose& prior);
 
-    /// The same, starting at another pose.
+    /// The most likely pose given the image and a prior of T_c_w, starting at `T_start`.
     Alignment align(const ImageF& observed, const UncertainPose& prior, const Pose& T_start);
 
     const AlignmentOptions& options() const;

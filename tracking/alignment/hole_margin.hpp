@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pixels beside holes of a model, when the pose is not known to the pixel.
+// Excludes pixels beside holes of a model, where an uncertain pose may move the hole.
 #pragma once
 
 #include "geometry/camera.hpp"
@@ -8,23 +8,23 @@
 
 namespace photonav {
 
-/// Harmonic mean; 1 where there is no surface [m].
+/// Harmonic mean of the depths of a view [m]; 1 if there is no surface in view.
 double meanDepth(const View& view);
 
-/// How far holes reach into a view [pixels].
+/// Width of the margin around holes of a view [pixels].
 struct HoleMargin {
     int columns = 0;
     int rows = 0;
 };
 
-/// Pixels within three standard deviations of a hole's border may show the hole, whose content is
-/// unknown, so that their difference from the prediction is no evidence about the pose. The margin
-/// is at most the basin of convergence of an alignment.
-/// @param covariance of the camera's pose (camera frame, left)
+/// The margin around holes for an uncertain pose. Pixels within three standard deviations of a
+/// hole's border may show the hole, whose content is unknown, so that their residuals have no
+/// information about the pose. The margin is limited to the basin of convergence of an alignment.
+/// @param covariance of the camera pose (left perturbation, camera frame)
 /// @param depth mean of the view [m]
 HoleMargin holeMargin(const Matrix6& covariance, const Camera& camera, double depth);
 
-/// Takes the depth away from pixels within the margin of one that has none.
+/// Sets the depth to 0 at all pixels within the margin of a pixel without depth.
 void widenHoles(View& view, const HoleMargin& margin);
 
 }  // namespace photonav

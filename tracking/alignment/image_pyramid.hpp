@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Images at half the size, and half of that.
+// Image pyramids: images at half the size, and the point spread at each level.
 #pragma once
 
 #include <vector>
@@ -9,38 +9,43 @@
 
 namespace photonav {
 
-inline constexpr unsigned kMinSide = 12;  ///< pixels: smaller images get no level
+/// Least width and height of a level of a pyramid [pixels].
+inline constexpr unsigned kMinSide = 12;
 
-/// The camera of halved(): pixel (u, v) covers pixels 2u, 2u + 1, 2v, 2v + 1; an odd last row or
-/// column is dropped.
+/// The camera of an image at half the size: pixel (u, v) covers columns 2u, 2u + 1 and rows 2v, 2v
+/// + 1; an odd last row or column is dropped.
 Camera halved(const Camera& camera);
 
-/// Point spread of rendered views, standard deviation [pixels]: that of applyPointSpread(), and
-/// about a pixel's area again by the interpolation of textures (measured against AreaSensor).
+/// Point spread of rendered views, standard deviation [pixels]: the spread of applyPointSpread(),
+/// and about the area of a pixel by the interpolation of textures (measured against AreaSensor).
 inline constexpr double kRenderedBlur = 0.7638;
 
-/// The image with its point spread widened. A kernel of 3 x 3 pixels; borders repeat.
-/// @param variance of the additional spread [pixels^2], at most 0.5: more is taken as that
+/// Widens the point spread of an image by a kernel of 3 x 3 pixels; borders repeat.
+/// @param variance of the additional spread [pixels^2], limited to [0, 0.5]
 ImageF widened(const ImageF& image, double variance);
 
-/// Standard deviation of noise after widened(), by that before. Noise correlated over an area of
-/// 1 / scale pixels, as if it had been smoothed by a Gaussian, loses less than white noise.
+/// Standard deviation of noise after widened(), divided by that before. Correlated noise is reduced
+/// less than white noise.
+/// @param variance of the additional spread [pixels^2]
+/// @param scale inverse of the area over which the noise is correlated [1/pixels], as if it had
+///        been smoothed by a Gaussian; see PhotometricOptions::scale
 double noiseAfterWidening(double variance, double scale);
 
-/// Mean square of what an image shows finer than a map's cells, noise included. The texture of
-/// cells, means over their area interpolated between their centres, is that of the surface smoothed
-/// with variance 1/12 + 1/6 of the squared edge.
-/// @param cellSize edge [m]; 0: no cells, of which nothing is finer
+/// Mean square of the image content that is finer than a map's cells, noise included [grey
+/// value^2]. The texture of cells (means over their area, interpolated between their centres) is
+/// the texture of the surface, smoothed with variance 1/12 + 1/6 of the squared edge.
+/// @param cellSize edge of a cell [m]; 0: no cells, and the result is 0
 /// @param depth mean depth of the view [m]
 double finerThan(double cellSize, double depth, const Camera& camera, const ImageF& image);
 
-/// Half the size with the sharpness of a view rendered at that size: the binomial filter of 8 taps
-/// (variance 7/4) turns the point spread of the large image (variance 1/2 of its pixels) into pixel
-/// average and point spread of the small one (variance 1/4 + 4 * 1/2). Borders repeat.
+/// The image at half the size, as sharp as a view rendered at that size. The binomial filter of 8
+/// taps (variance 7/4) turns the point spread of the large image (variance 1/2 of its pixels) into
+/// pixel average and point spread of the small one (variance 1/4 + 4 * 1/2). Borders repeat.
 ImageF halvedAsRendered(const ImageF& image);
 
-/// Point spread of halvedAsRendered(), standard deviation [its pixels], by that of the large image
-/// [its pixels]. kRenderedBlur stays kRenderedBlur.
+/// Point spread after halvedAsRendered(), standard deviation [pixels of the small image].
+/// kRenderedBlur stays kRenderedBlur.
+/// @param blur point spread of the large image, standard deviation [pixels of the large image]
 double blurAfterHalving(double blur);
 
 }  // namespace photonav

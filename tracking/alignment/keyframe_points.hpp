@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pixels of a keyframe that have texture, and their look-up in another image. Included by .cpp
-// files only.
+// The pixels of a keyframe that have texture, and their comparison with another image. Included by
+// .cpp files only.
 #pragma once
 
 #include <vector>
@@ -11,34 +11,35 @@
 
 namespace photonav {
 
-/// Half the size: mean of two by two pixels. Odd last rows and columns are dropped.
+/// The image at half the size: means of 2 x 2 pixels. Odd last rows and columns are dropped.
 ImageF halvedByMean(const ImageF& image);
 
-/// Half the size: mean of the depths that are there, of two by two; nothing where they are spread
-/// by more than `spread` times the nearest.
+/// The depth image at half the size: mean of the measured depths among 2 x 2 pixels; 0 if they
+/// differ by more than `spread` times the smallest, or if there is none.
 ImageF halvedDepth(const ImageF& depth, float spread);
 
-/// One level of a keyframe.
+/// The points of one level of a keyframe.
 class PointSet {
   public:
-    /// Keeps the pixels that are used by the rules of photometricInformation() and have a gradient.
+    /// Takes the pixels that are used by the rules of photometricInformation() and KeyframeOptions.
     PointSet(const View& view, const Camera& camera, const KeyframeOptions& options);
 
-    /// Looks up every point in `observed` (bilinear), an image of the same camera. xi of the
-    /// equations is the perturbation of T on the right, T = T_mean exp(xi^). The noise of the
-    /// keyframe has gradients too; their contribution to AtA is subtracted.
-    /// @param T_c_k from the keyframe to the camera
+    /// Compares every point with `observed`, an image of the same camera, at its projection
+    /// (bilinear). xi of the equations is the right perturbation of T_c_k: T_c_k = T_mean exp(xi^).
+    /// The noise of the keyframe has gradients too; their contribution to AtA is subtracted
+    /// (GradientNoise).
+    /// @param T_c_k transforms from the keyframe to the camera
     NormalEquations compare(const ImageF& observed, const Pose& T_c_k, const Exposure& exposure,
                             const Loss& loss);
 
-    /// The equations of compare() by blocks of the keyframe's image, after it and with its
+    /// The equations of the last compare() by blocks of the keyframe's image, for the same
     /// arguments.
     std::vector<ImageBlock> blocks(const ImageF& observed, const Pose& T_c_k,
                                    const Exposure& exposure, const Loss& loss) const;
 
     const Camera& camera() const { return camera_; }
-    std::size_t size() const { return size_; }
-    /// Robust standard deviation of a sample of the residuals of the last comparison.
+    std::size_t size() const { return size_; }  ///< number of points
+    /// Robust standard deviation of a sample of the residuals of the last comparison [grey value].
     double robustSigma() const { return robustSigmaOf(residualSample_); }
 
   private:

@@ -8,24 +8,28 @@
 
 namespace photonav {
 
-/// Compares the image predicted at this pose, taken as observed, with the one predicted at exp(xi^)
-/// times this pose, weighted so that squares are -2 log likelihoods (AtA, Atr).
+/// Compares the image predicted at the present pose, taken as the observed image, with the image
+/// predicted at a displaced pose. The equations (AtA, Atr) are weighted so that squares are -2 log
+/// likelihoods.
+/// @param T_away_here displacement of the camera from the present pose
 using DisplacedComparison = std::function<NormalEquations(const Pose& T_away_here)>;
 
-/// J is a slope by central differences over two pixels. Predicted images are not that smooth: edges
-/// of surfaces and of sharp textures jump from pixel to pixel, and along an oblique edge J is not
+/// The slope M of predicted images over the uncertainty of the pose, relative to J. The gradients
+/// in J are central differences over two pixels. Predicted images are not that smooth: edges of
+/// surfaces and of sharp textures jump from pixel to pixel, and along an oblique edge J is not
 /// zero, although the image does not change. Therefore the camera is displaced in the model by one
 /// standard deviation to either side along each of six directions, which gives the slope D of the
 /// image over the uncertainty of the pose. An estimate that compares images by J has the
 /// information
 ///     D^T J (J^T J)^-1 J^T D / sigma^2 = (J M)^T (J M) / sigma^2,   M = (J^T J)^-1 J^T D
-/// ("sandwich": Godambe 1960, Huber 1967), limited in every direction to what J gives: D is steeper
-/// only if an edge happens to cross the middle of a pixel.
-/// @param prior covariance of the pose, left, camera frame; none: one mean depth and one radian.
-///        Directions about which the image informs much less are not measured.
-/// @param trust least standard deviations of the result. Directions that they determine are not
-///        measured.
-/// @return M
+/// ("sandwich": Godambe 1960, Huber 1967). It is limited in every direction to the information by
+/// J: D is steeper than J only if an edge happens to cross the middle of a pixel.
+/// @param prior covariance of the pose (left perturbation, camera frame); none: standard deviations
+///        of one mean depth and one radian. Directions in which the image has much less information
+///        than the prior are not measured.
+/// @param trust least standard deviations of the result. Directions whose variance they determine
+///        are not measured.
+/// @return M; identity in directions that are not measured
 Matrix6 measuredSlope(const std::optional<Matrix6>& prior, const TrustOptions& trust,
                       const DisplacedComparison& compare);
 

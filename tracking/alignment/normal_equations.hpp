@@ -13,10 +13,10 @@ namespace photonav {
 using Vector8 = Eigen::Matrix<double, 8, 1>;
 using Matrix8 = Eigen::Matrix<double, 8, 8>;
 
-/// How residuals are weighted. `huber` and `tukey` keep 95 % of the efficiency on Gaussian noise.
+/// How residuals are weighted. `huber` and `tukey` have 95 % efficiency for Gaussian noise.
 enum class RobustWeight { none, huber, tukey };
 
-/// A robust loss for residuals of the given scale.
+/// A robust loss function of residuals with the given scale.
 struct Loss {
     RobustWeight kind = RobustWeight::none;
     double sigma = 1.;  ///< standard deviation of the inliers [grey value]
@@ -25,48 +25,48 @@ struct Loss {
     double width() const { return (kind == RobustWeight::huber ? 1.345 : 4.685) * sigma; }
 };
 
-/// observed = gain * predicted + offset.
+/// Brightness change between a model and an image: observed = gain * predicted + offset.
 struct Exposure {
     double gain = 1.;
     double offset = 0.;
 };
 
-/// Sums with b, by which the exposed prediction changes per pixel^2 of blur, to first order: half
-/// of its Laplacian.
+/// Sums for an unknown blur of the image. With b the derivative of gain * predicted by the variance
+/// of the blur [per pixel^2], half of the Laplacian.
 struct BlurSums {
     Vector8 Atb = Vector8::Zero();  ///< sum w A^T b
     double btb = 0.;                ///< sum w b^2
     double btr = 0.;                ///< sum w b r
 
-    /// Variance of the blur after the image, divided by `noise`; times btr it is the likeliest
-    /// blur.
-    /// @param sigma standard deviation of the blur without the image [pixels^2]
+    /// Posterior variance of the blur, divided by `noise`. Multiplied by btr, it gives the most
+    /// likely blur [pixels^2].
+    /// @param sigma prior standard deviation of the blur [pixels^2]
     /// @param noise variance of a pixel [grey value^2]
     double variance(double sigma, double noise) const {
         return sigma > 0. && btb > 0. ? 1. / (btb + noise / (sigma * sigma)) : 0.;
     }
 };
 
-/// Sums over the pixels that count, for residuals r = observed - (gain * predicted + offset) and
-/// unknowns (xi, d gain, d offset), where xi is the left perturbation of the camera pose:
-/// r = A (xi, dg, do), A = [-gain * J | predicted | 1], J as in photometricInformation().
+/// Sums over the pixels used, for residuals r = observed - (gain * predicted + offset) and unknowns
+/// (xi, d gain, d offset), where xi is the left perturbation of the camera pose, (rho, phi):
+///     r = A (xi, dg, do),   A = [-gain * J | predicted | 1],   J as in photometricInformation().
 struct NormalEquations {
     Matrix8 AtA = Matrix8::Zero();  ///< sum w A^T A
     Vector8 Atr = Vector8::Zero();  ///< sum w A^T r
     double loss = 0.;               ///< sum rho(r), rho = r^2 where the weight is one
-    double count = 0.;              ///< pixels used
+    double count = 0.;              ///< number of pixels used
     double sum = 0.;                ///< of r, not weighted
     double sumSquares = 0.;         ///< of r^2, not weighted
     double sumPredicted = 0.;       ///< of the predicted grey values, not weighted
     double sumPredictedSquares = 0.;
     double sumPredictedTimesR = 0.;
-    double meanInverseDepth = 0.;  ///< over the surfaces in view [1/m]; 0: none
-    BlurSums byBlur;               ///< zero where it is not known
+    double meanInverseDepth = 0.;  ///< mean over the surfaces in view [1/m]; 0: no surface
+    BlurSums byBlur;               ///< zero if not computed
 };
 
-/// The equations of an image that is blurrier than the prediction by an unknown variance, which is
-/// eliminated. Where an edge is all that is in view, its width would tell the distance otherwise.
-/// @param sigma standard deviation of that variance, whose mean is zero [pixels^2]
+/// Eliminates an unknown blur, by which the image differs from the prediction, from the equations.
+/// If a single edge is in view, its width would otherwise determine the distance.
+/// @param sigma standard deviation of the variance of the blur, whose mean is zero [pixels^2]
 /// @param noise variance of a pixel [grey value^2]
 NormalEquations withoutBlur(NormalEquations e, double sigma, double noise);
 
@@ -84,29 +84,30 @@ struct ImageBlock {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the surface, camera frame; 0: unknown
 };
 
-/// The blocks with the residuals that the likeliest blur leaves; parameters as above.
+/// Corrects the residuals of all blocks by the most likely blur; parameters as above.
 std::vector<ImageBlock> withoutBlur(std::vector<ImageBlock> blocks, double sigma, double noise);
 
-/// Compares a predicted view with an observed image, pixel by pixel at the same place. The gradient
-/// is that of the prediction. Pixels are chosen by the prediction alone, by the rules of
-/// photometricInformation(), whose Lambda this is (times sigma^2, without weights).
-/// `photometric.stride` must be 1.
+/// Compares a predicted view with an observed image at the same pixels. Gradients are those of the
+/// prediction. Pixels are selected by the prediction alone, by the rules of
+/// photometricInformation(): without weights, the pose block of AtA is Lambda * sigma^2 / scale.
 class ViewComparison {
   public:
+    /// @throws std::invalid_argument for images below 3 x 3 pixels or a stride other than 1
     ViewComparison(const Camera& camera, const PhotometricOptions& photometric);
 
+    /// The normal equations of a predicted view and an observed image.
     /// @throws std::invalid_argument when the images and the camera differ in size
     NormalEquations operator()(const View& predicted, const ImageF& observed,
                                const Exposure& exposure, const Loss& loss);
 
-    /// 1.4826 times the median of |r| of the last call; 0 when no pixel counted.
+    /// 1.4826 times the median of |r| of the last call; 0 if no pixel was used.
     double robustSigma() const;
 
-    /// The equations of the last call by blocks of the image.
+    /// The equations of the last call by blocks of the image, for the same arguments.
     std::vector<ImageBlock> blocks(const Exposure& exposure, const Loss& loss) const;
 
-    /// sharedSlope() of the prediction's gradients, as they were exposed, with those of the
-    /// observed image, last call.
+    /// sharedSlope() of the gradients of the last prediction and of the last observed image, which
+    /// are divided by the gain.
     Matrix6 sharedSlope(const Exposure& exposure) const;
 
   private:

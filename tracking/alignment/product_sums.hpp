@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sums of products of whole image rows, for normal equations. Included by .cpp files only.
+// Vectorised sums of products over image rows, for normal equations. Included by .cpp files only.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@
 
 namespace photonav {
 
-/// Inverse depth of a pixel without surface: finite, but fails every test of a surface.
+/// Inverse depth of a pixel without a surface: finite, but fails every test for a surface.
 inline constexpr float kNoSurface = -1e30F;
 
 /// Residual of an unused pixel: larger than any difference of grey values.
 inline constexpr float kUnused = 4.F;
 
-/// What kernels leave out of the columns (J, predicted grey value, 1): half the focal length, the
-/// signs of J and -gain.
+/// Factors on the columns (J, predicted grey value, 1) that the kernels leave out: half the focal
+/// length, the signs of J and -gain.
 inline Vector8 columnUnits(double gain, double focal) {
     Vector8 unit;
     unit << 1., 1., -1., -1., 1., 1., 1., 1.;
@@ -27,15 +27,15 @@ inline Vector8 columnUnits(double gain, double focal) {
     return unit;
 }
 
-/// Accumulates the upper triangle of sum w c^T c for c = (7 columns, 1, residual), single precision
-/// within a few rows and double across them, with the weights of a robust loss.
-/// @tparam withBlur whether c has one more column at its end: what the pixel gains by blur
+/// Accumulates the upper triangle of sum w c^T c for c = (7 columns, 1, residual), with the weights
+/// w of a robust loss. Sums are single precision within a few rows and double across them.
+/// @tparam withBlur whether c has one more column at its end: b of BlurSums
 template <bool withBlur = false>
 class ProductSums {
   public:
     using Columns = std::array<simd::Float, 7>;
 
-    /// @param vectors the most that one row adds
+    /// @param vectors largest number of vectors that one row adds
     ProductSums(const Loss& loss, std::size_t vectors)
         : kind_(loss.kind), width_(static_cast<float>(loss.width())) {
         row_.reserve(vectors);
@@ -43,8 +43,9 @@ class ProductSums {
 
     void beginRow() { row_.clear(); }
 
-    /// @param used lanes to sum; the columns of others must be finite
-    /// @param byBlur must be finite
+    /// Adds the pixels of one vector to the present row.
+    /// @param used lanes to sum; the columns of other lanes must be finite as well
+    /// @param byBlur b of BlurSums; must be finite
     void add(const Columns& columns, const simd::Float& residual, const simd::Int& used,
              [[maybe_unused]] const simd::Float& byBlur = simd::splat(0.F)) {
         const simd::Float zero = simd::splat(0.F);
@@ -66,7 +67,8 @@ class ProductSums {
         plain_[6] += pixels.column[6] * r;
     }
 
-    /// In several passes, because 45 sums and their factors do not fit in 16 registers.
+    /// Adds the products of the present row to the sums. Done in several passes, because 45 sums
+    /// and their factors do not fit in 16 registers.
     void endRow() {
         addProducts<0, 1>();
         addProducts<1, 2>();
@@ -76,7 +78,8 @@ class ProductSums {
         if (++rowsInLanes_ == kRowsInLanes) flush();
     }
 
-    /// @param unit factor that each of the eight columns was left without
+    /// The normal equations of all rows so far.
+    /// @param unit factors on the eight columns, see columnUnits()
     NormalEquations result(const Vector8& unit) {
         flush();
         NormalEquations e;

@@ -1,45 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Alignment where the prior is wider than the basin of convergence.
+// Alignment with a prior that is wider than the basin of convergence.
 #pragma once
 
 #include "alignment/dense_aligner.hpp"
 
 namespace photonav {
 
-/// Standard deviation of a prior within which one start suffices [pixels].
+/// Largest standard deviation of a prior, as motion of the image, for which a single start suffices
+/// [pixels].
 inline constexpr double kBasinSigma = 6.;
 
-/// Distance between the views that a search of a prior compares, as motion of the image [pixels].
-/// The number of views is limited: from some width on they are farther apart.
-/// @param covariance of the prior, camera frame; @param depth mean depth of the view [m]
+/// Spacing of the views that the search of a prior compares, as motion of the image [pixels]. The
+/// number of views is limited, so that the spacing grows with a wide prior.
+/// @param covariance of the prior, camera frame
+/// @param depth mean depth of the view [m]
 double searchSpacing(const Matrix6& covariance, const Camera& camera, double depth);
 
-/// Farther apart, the true pose can be outside the basins of both views beside it: the search no
-/// longer covers the prior.
+/// Largest spacing at which a search covers the prior [pixels]. With a larger one, the true pose
+/// can be outside the basins of convergence of both neighbouring views.
 inline constexpr double kWidestSearchSpacing = 2. * kBasinSigma;
 
 /// Finds the most likely pose given an image and a prior. If the image content may have moved by
-/// more than a few pixels, texture matches in several places. Therefore small views from poses all
-/// over the prior are compared with the image, and the most similar ones are aligned; full
-/// alignments start from the best of these. The best result is then shifted to where other
-/// alignments ended and aligned again: this finds the other bars of a grating.
+/// more than a few pixels, texture can match in several places. Therefore small views from poses
+/// all over the prior are compared with the image, and the most similar ones are aligned at small
+/// size. Full alignments start from the best of these. The best result is then shifted to the
+/// results of the other alignments and aligned again, which finds the other bars of a grating.
 ///
-/// The best pose is the result if it explains the image down to the noise and, in a map of cells,
-/// to the texture that is finer than they are, the image has enough texture, and no other pose
-/// explains it almost as well. Otherwise the result is the prior, and the verdict is `degenerate`
-/// along all axes (several poses match, or what is left unexplained is below
-/// TrustOptions::residualSigmas) or lost (no pose matches).
+/// The best pose is the result if its residuals are within the image noise (in a map of cells: or
+/// within the texture that is finer than the cells), the image has enough texture, and no other
+/// pose explains the image almost as well. Otherwise the result is the prior. The verdict is then
+/// `degenerate` along all axes if several poses match or the residuals are below
+/// TrustOptions::residualSigmas, and lost if no pose matches.
 ///
-/// Fine texture may repeat within a prior that is not wide, too, as books on a shelf do. The
-/// repetitions() of the view at the result are then aligned as well, and the best is the result;
-/// where none is much better than the others it is the prior.
+/// Fine texture may also repeat within a narrow prior, as books on a shelf do. The poses that
+/// repetitions() predicts from the view at the result are then aligned as well, and the best one is
+/// the result. If no pose is much better than the others, the result is the prior.
 class WideAligner {
   public:
     /// @param model must outlive the aligner
     /// @throws std::invalid_argument as DenseAligner does
     WideAligner(const ViewSource& model, const Camera& camera, const AlignmentOptions& options);
 
-    /// @param observed of the camera's size @throws std::invalid_argument otherwise
+    /// The most likely pose given the image and a prior of T_c_w. Not thread-safe.
+    /// @param observed grey values in [0, 1], of the camera's size
+    /// @throws std::invalid_argument for an image of another size
     Alignment align(const ImageF& observed, const UncertainPose& prior);
 
   private:

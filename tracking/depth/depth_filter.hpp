@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth from one moving camera: a filter for every pixel of a reference image, updated by the
-// images around it.
+// Depth from one moving camera: a filter for every pixel of a reference image, updated by other
+// images.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,14 @@
 namespace photonav {
 
 struct DepthFilterOptions {
-    double minDepth = 0.5;      ///< of surfaces [m]; the largest depth is not limited
-    double sigma = 0.01;        ///< image noise, grey values in [0, 1]
-    double matchSigma = 0.25;   ///< error of a match along its epipolar line when images have no
-                                ///< noise: poses, interpolation [pixels]
+    double minDepth = 0.5;  ///< least depth of surfaces [m]; the largest depth is not limited
+    double sigma = 0.01;    ///< standard deviation of the image noise, grey values in [0, 1]
+    /// Standard deviation of a match along its epipolar line without image noise, by errors of
+    /// poses and interpolation [pixels].
+    double matchSigma = 0.25;
     double minScore = 0.6;      ///< least correlation of matching patches
     double converged = 0.02;    ///< standard deviation of a converged depth [share of the depth]
-    double minInliers = 0.6;    ///< share of inliers that a converged depth must have
+    double minInliers = 0.6;    ///< least share of inliers of a converged depth
     double maxOutliers = 0.95;  ///< share of outliers at which a pixel is given up
     int maxSteps = 120;         ///< longer searches along an epipolar line are skipped [pixels]
 };
@@ -34,7 +35,7 @@ enum class DepthState : std::uint8_t { searching, converged, givenUp };
 /// pixels that correlates best; tau is the standard deviation of this match by image noise and
 /// `matchSigma`. Converged pixels are not updated.
 ///
-/// Poses are taken as exact. Surfaces without texture along the epipolar line do not converge.
+/// Poses are assumed to be exact. Surfaces without texture along the epipolar line do not converge.
 class DepthFilter {
   public:
     /// @param T_r_w pose of the camera when it took the reference image
@@ -42,17 +43,22 @@ class DepthFilter {
     DepthFilter(ImageF reference, const Camera& camera, const Pose& T_r_w,
                 const DepthFilterOptions& options = {});
 
-    /// Updates the filter by another image of the same camera. @throws std::invalid_argument for
-    /// another size
+    /// Updates the filter by another image of the same camera.
+    /// @param T_c_w pose of the camera when it took `image`
+    /// @throws std::invalid_argument for an image of another size
     void observe(const ImageF& image, const Pose& T_c_w);
 
-    /// The reference image with the depths that have converged, for fuse() (map_fusion.hpp).
+    /// The reference image with the depths that have converged, 0 elsewhere, for fuse()
+    /// (map_fusion.hpp).
     View view() const;
 
+    /// State of the pixel in row v and column u.
     DepthState state(unsigned v, unsigned u) const { return seeds_[v * camera_.width + u].state; }
-    double shareConverged() const;               ///< of all pixels
-    double shareNarrowed() const;                ///< of all pixels: variance halved or less
-    std::optional<double> medianDepth() const;   ///< of the converged pixels [m]
+    double shareConverged() const;  ///< share of all pixels that have converged
+    /// Share of all pixels whose variance of inverse depth is at most half of the first one.
+    double shareNarrowed() const;
+    /// Median depth of the converged pixels [m]; none if no pixel has converged.
+    std::optional<double> medianDepth() const;
     const Pose& pose() const { return T_r_w_; }  ///< T_r_w
     const ImageF& reference() const { return reference_; }
 

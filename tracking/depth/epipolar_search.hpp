@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where along its epipolar line a pixel's surroundings appear in another image.
+// The search for a pixel's match along its epipolar line in another image.
 #pragma once
 
 #include <array>
@@ -13,11 +13,12 @@ struct EpipolarMatch {
     enum class Outcome {
         found,
         different,  ///< no patch on the line correlates
-        undecided,  ///< no texture along the line, several candidates, too long, out of the image
+        undecided,  ///< no texture along the line, several candidates, the line is too long, or out
+                    ///< of the image
     };
     Outcome outcome = Outcome::undecided;
     double w = 0.;      ///< inverse depth in the reference camera [1/m]
-    double sigma = 0.;  ///< its standard deviation
+    double sigma = 0.;  ///< standard deviation of w [1/m]
 };
 
 struct EpipolarOptions {
@@ -25,18 +26,21 @@ struct EpipolarOptions {
     int maxSteps;
 };
 
-/// Searches one image for pixels of another. Patches are 9 x 9 samples along and across the
-/// epipolar lines of the two images, which compensates the rotation of the camera, at a spacing
-/// that compensates the distance. They are compared by normalised correlation: gain and offset do
-/// not matter.
+/// Searches an image for pixels of a reference image. Patches are 9 x 9 samples along and across
+/// the epipolar lines of the two images, which compensates the rotation of the camera, at a spacing
+/// that compensates the distance. They are compared by normalised correlation, which gain and
+/// offset do not change.
 class EpipolarSearch {
   public:
-    /// @param reference, image must outlive the search
+    /// @param reference,image,camera must outlive the search
+    /// @param T_c_r transforms from the reference camera to the camera of `image`
     EpipolarSearch(const ImageF& reference, const ImageF& image, const Camera& camera,
                    const Pose& T_c_r, const EpipolarOptions& options);
 
-    /// @param w expected inverse depth of the reference's pixel (u, v), for the scale of its patch
-    /// @param low, high where to search; both ends are searched one pixel beyond
+    /// Searches for the pixel (u, v) of the reference image.
+    /// @param low,high interval of inverse depth that is searched [1/m], and one pixel beyond both
+    ///        ends
+    /// @param w expected inverse depth [1/m], for the scale of the patch
     EpipolarMatch operator()(unsigned u, unsigned v, double low, double w, double high);
 
   private:

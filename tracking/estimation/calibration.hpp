@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scale of the information and the least standard deviations that fit recorded errors.
+// Calibrates the covariances of alignments: fits the scale of the information and least standard
+// deviations to recorded errors.
 #pragma once
 
 #include <span>
@@ -9,15 +10,16 @@
 
 namespace photonav {
 
-/// One alignment whose truth is known.
+/// The error of one alignment with known ground truth.
 struct AlignmentError {
-    Vector6 xi = Vector6::Zero();           ///< deviation() of the true pose from the estimated
-    Matrix6 information = Matrix6::Zero();  ///< with factor 1, full rank
+    Vector6 xi = Vector6::Zero();           ///< deviation() of the true pose from the estimate
+    Matrix6 information = Matrix6::Zero();  ///< of the image, with scale 1; of full rank
 };
 
-/// NEES per degree of freedom, mean over the samples: 1 when covariances are consistent, above when
+/// NEES per degree of freedom, mean over the samples: 1 if covariances are consistent, larger if
 /// they are overconfident.
 /// @param scale factor on every information matrix
+/// @param leastSigma,leastSigmaRotation see Calibration
 double neesPerDof(std::span<const AlignmentError> errors, double scale = 1., double leastSigma = 0.,
                   double leastSigmaRotation = 0.);
 
@@ -29,27 +31,29 @@ struct Calibration {
     /// the whitened errors, 1 when every image errs in its own way. A filter that averages images
     /// must divide the scale by it. (calibrateLeastSigma does not measure it.)
     double correlationTime = 1.;
-    double neesBefore = 0.;  ///< per degree of freedom, without least sigmas and with scale 1
-                             ///< (calibrateLeastSigma: the scale)
-    double neesAfter = 0.;
+    /// neesPerDof() without least sigmas and with scale 1 (by calibrateLeastSigma(): with its
+    /// scale).
+    double neesBefore = 0.;
+    double neesAfter = 0.;  ///< neesPerDof() with this calibration
 };
 
-/// The scale and the least sigmas under which the errors are most likely (Gaussian). When a scale
-/// alone is nearly as likely, the least sigmas are 0.
+/// The scale and the least sigmas of maximum likelihood for Gaussian errors. If a scale alone is
+/// nearly as likely, the least sigmas are 0.
 /// @param errors in the order of the images
 /// @throws std::invalid_argument below 20 samples
 Calibration calibrate(std::span<const AlignmentError> errors);
 
-/// The least sigmas alone, with this scale: for maps of cells, whose errors repeat from image to
-/// image, so that a scale which describes one alignment would be averaged away by the next.
+/// The least sigmas of maximum likelihood with a given scale. For maps of cells, whose errors
+/// repeat from image to image: if a scale accounted for them, a filter would average them out over
+/// several images.
 /// @throws std::invalid_argument below 20 samples
 Calibration calibrateLeastSigma(std::span<const AlignmentError> errors, double scale);
 
-/// Options for images that the model did not make: covariances follow from their residuals.
+/// Options for images that were not rendered from the model: covariances follow from the residuals.
 /// @param blur point spread of the images, standard deviation [pixels]
 AlignmentOptions photographOptions(double blur = kAreaBlur);
 
-/// The same for a camera with automatic exposure, which is estimated.
+/// As photographOptions(), for a camera with automatic exposure: gain and offset are estimated.
 AlignmentOptions realCameraOptions(double blur = kAreaBlur);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Earlier images with depth as what an image is aligned to: visual odometry.
+// Visual odometry: images are aligned to a chain of keyframes, which are earlier images with depth.
 #pragma once
 
 #include <deque>
@@ -16,12 +16,12 @@ struct KeyframeChainOptions {
     double minOverlap = 0.8;     ///< share of the keyframe's points in view
     double maxShift = 0.12;      ///< distance from the keyframe [mean depths]
     double maxTurn = 0.2;        ///< angle from the keyframe [rad]
-    std::size_t keyframes = 12;  ///< remembered: a lost camera may come back to any of them
+    std::size_t keyframes = 12;  ///< number of keyframes stored, for relocalize()
 };
 
-/// Keyframes, each with the belief of its pose. The belief of an image is that of its keyframe
-/// compounded with the alignment: each keyframe adds its own error, none is ever taken back, since
-/// no loops are closed.
+/// Keyframes, each with the belief of its pose. The belief of an image is the belief of its
+/// keyframe compounded with the alignment. Each keyframe adds its own error; loops are not closed,
+/// so that errors are never corrected.
 class KeyframeChain {
   public:
     KeyframeChain(const Camera& camera, const KeyframeChainOptions& options)
@@ -29,32 +29,35 @@ class KeyframeChain {
 
     bool isEmpty() const { return keyframes_.empty(); }
     const KeyframeChainOptions& options() const { return options_; }
-    double latestTime() const { return keyframes_.back().time; }
+    double latestTime() const { return keyframes_.back().time; }  ///< of the latest keyframe [s]
 
-    /// Makes a keyframe of an image. One that cannot even be aligned to itself is none.
+    /// Makes an image with depth the latest keyframe.
+    /// @param T_k_w belief of its pose
+    /// @return false, without a new keyframe, if the image cannot be aligned to itself
     bool begin(const View& view, const UncertainPose& T_k_w, double time);
 
-    /// Alignment to the latest keyframe.
-    /// @param prior covariance relative to the keyframe
+    /// Aligns an image to the latest keyframe.
+    /// @param prior prior of T_c_w; its covariance is relative to the keyframe
     Alignment align(const ImageF& image, const UncertainPose& prior) {
         return keyframes_.back().model.align(image, prior);
     }
-    /// The same after the last image tracked became the latest keyframe; nothing when it is one.
+    /// Makes the image tracked last the latest keyframe and aligns to it; returns nothing if that
+    /// image is a keyframe already.
     std::optional<Alignment> alignToLastTracked(const ImageF& image, const UncertainPose& prior);
-    /// Alignment to the newest of the remembered keyframes that explains the image without a prior;
-    /// it is the latest afterwards.
-    /// @param maxUnexplained share of the variance, see TrustOptions
+    /// Aligns an image without a prior to the stored keyframes, newest first, until one explains
+    /// it. This keyframe becomes the latest one. Returns nothing if none explains the image.
+    /// @param maxUnexplained largest share of the variance, see TrustOptions
     std::optional<Alignment> relocalize(const ImageF& image, double maxUnexplained);
 
-    /// Belief of an image aligned to the latest keyframe.
+    /// Belief T_c_w of an image that was aligned to the latest keyframe.
     UncertainPose beliefOf(const Alignment& alignment) const;
 
-    /// An image was tracked: it becomes a keyframe if the latest one is too far.
+    /// Adds a tracked image: it becomes a keyframe if it is too far from the latest one.
     /// @param overlap share of the latest keyframe's points in view
     /// @param meanDepth of the view [m]
     void add(const View& view, const UncertainPose& T_c_w, double time, double overlap,
              double meanDepth);
-    /// An image was lost: the one before is no longer near.
+    /// Called after a rejected image: the image tracked last does not become a keyframe any more.
     void forgetLastTracked() { lastTracked_.reset(); }
 
   private:

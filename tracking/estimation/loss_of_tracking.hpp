@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When tracking counts as lost, how far the camera is then searched for, and what ends a loss.
+// Decides when tracking counts as lost, how widely the camera is then searched for, and when the
+// loss ends.
 #pragma once
 
 #include <optional>
@@ -9,68 +10,74 @@
 namespace photonav {
 
 struct LossOptions {
-    /// Rejected images in a row before tracking counts as lost. Without odometry one is enough:
-    /// motion is then only extrapolated.
+    /// Number of consecutive rejected images after which tracking counts as lost. Without odometry
+    /// one is enough, because motion is only extrapolated.
     int rejectedImages = 3;
-    double blindTime = 1.5;  ///< without any image before it counts as lost, with odometry [s]
-    /// While lost, images are aligned with a wider belief than the tracker's.
+    double blindTime = 1.5;  ///< time without images after which it counts as lost (odometry) [s]
+    // While lost, images are aligned with a wider belief than the tracker's.
     double searchRadius = 0.3;   ///< standard deviation added to each axis of the position [m]
-    double searchGrowth = 0.02;  ///< its growth with every rejected image, a share of searchRadius
+    double searchGrowth = 0.02;  ///< relative growth of searchRadius per rejected image
     double searchTurn = 0.1;     ///< standard deviation added about the vertical [rad]
-    /// Share of TrustOptions::maxUnexplained that an image may leave unexplained to end a loss:
-    /// little else supports its pose.
+    /// Factor on TrustOptions::maxUnexplained for an image that ends a loss, because little else
+    /// supports its pose.
     double maxUnexplainedShare = 0.5;
-    /// After as long a loss, odometry is believed more than a map that is made on the flight: the
-    /// map in view is doubted [s].
+    /// Duration of a loss after which odometry is trusted more than a map that is built on the same
+    /// flight [s]: TrackedFrame::isMapDoubted.
     double doubtAfter = 3.;
-    /// Without odometry, standard deviations at which a lost belief stops growing [m], [rad].
-    double maxTranslation = 1.;
-    double maxRotation = 0.5;
-    /// Rejected images in a row before keyframes begin anew where the camera is believed to be.
+    // With a map but without odometry: limits of the belief's standard deviations after rejected
+    // images.
+    double maxTranslation = 1.;  ///< [m]
+    double maxRotation = 0.5;    ///< [rad]
+    /// Number of consecutive rejected images after which keyframes begin anew at the present
+    /// belief.
     int freshStartAfter = 20;
-    /// Images that show something, but are rejected before any was tracked: after as many the start
-    /// counts as wrong.
+    /// Number of rejected images after which the start counts as wrong, if none was tracked yet.
+    /// Black images are not counted.
     int wrongStartAfter = 10;
 };
 
-/// Whether an alignment leaves no direction wide that the loss has widened. An image of a surface
-/// without texture, or of stripes that run along that direction, does not end a loss, however well
-/// it agrees with the map.
-/// @param before covariance of the belief without the widening
-/// @param prior covariance aligned with, widened
-/// @param after of the alignment, all three in the camera frame
+/// Whether an alignment ends a loss of tracking: it must reduce the covariance in all directions
+/// that the loss has widened. An image of a surface without texture, or of stripes along such a
+/// direction, does not end a loss, however well it agrees with the map.
+/// @param before covariance of the belief before it was widened, camera frame
+/// @param prior widened covariance, the prior of the alignment, camera frame
+/// @param after covariance after the alignment, camera frame
 bool resolvesLoss(const Matrix6& before, const Matrix6& prior, const Matrix6& after);
 
-/// The state of tracking over time.
+/// The state of tracking over time: tracked or lost.
 class LossOfTracking {
   public:
     explicit LossOfTracking(const LossOptions& options) : options_(options) {}
 
-    /// An image agreed with what it was aligned to, and, while lost, resolved the loss.
+    /// Reports an image that was accepted; it ends a loss. All times are in [s].
     void onTracked(double time);
-    /// An image was rejected. One that does not inform but agrees, as over a surface without
-    /// texture, is not: plans lead there by design.
-    /// @param isMotionMeasured by odometry; @param isBlack the image shows nothing
+    /// Reports an image that was rejected. With odometry, an image without information that agrees
+    /// with the prediction, such as a surface without texture, is accepted instead: planned paths
+    /// lead past such surfaces.
+    /// @param isMotionMeasured whether there is odometry
+    /// @param isBlack whether the image is black (photonav::isBlack())
     void onRejected(double time, bool isMotionMeasured, bool isBlack = false);
-    /// An image arrived of what a growing map does not show yet: no reason to doubt the pose.
+    /// Reports an image of a part of the scene that a growing map does not contain yet. It is
+    /// neither accepted nor rejected.
     void onUnmapped(double time) { lastImage_ = time; }
-    /// No further image has arrived until now.
+    /// Reports the present time, for losses without images (LossOptions::blindTime).
     void onTime(double time);
 
     bool isLost() const { return since_.has_value(); }
-    std::optional<double> since() const { return since_; }  ///< [s]
-    int timesLost() const { return timesLost_; }
-    double lostTime(double now) const;  ///< sum until now [s]
+    std::optional<double> since() const { return since_; }  ///< begin of the present loss [s]
+    int timesLost() const { return timesLost_; }            ///< number of losses
+    double lostTime(double now) const;                      ///< sum of all losses until now [s]
 
-    /// Whether waiting for earlier keyframes to be seen again has been in vain for long.
+    /// Whether keyframes should begin anew (LossOptions::freshStartAfter).
     bool wantsFreshStart() const { return rejectedInRow_ >= options_.freshStartAfter; }
-    /// Whether nothing agrees with the pose at which tracking began.
+    /// Whether the start counts as wrong (LossOptions::wrongStartAfter).
     bool isStartWrong() const { return !wasTracked_ && inVain_ >= options_.wrongStartAfter; }
 
-    /// The belief as uncertain as it is searched with; wider from image to image.
+    /// A belief with the wider covariance that the search while lost uses.
     UncertainPose widened(const UncertainPose& T_c_w) const;
 
-    /// Whether an image explains enough to end a loss.
+    /// Whether the residuals of an alignment are small enough to end a loss.
+    /// @param sigma standard deviation of the image noise [grey value]
     bool isExplained(const Alignment& alignment, const TrustOptions& trust, double sigma) const;
 
   private:

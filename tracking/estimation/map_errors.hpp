@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The errors of a map that was made on the flight itself.
+// The errors of a map that is built on the same flight that it is used for.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,61 +11,69 @@
 
 namespace photonav {
 
-/// A map fused at believed poses is displaced as these poses are wrong. Whoever aligns an image to
-/// it finds the pose relative to the keyframes that made what is in view, not the pose in the
-/// world.
+/// A map is fused at estimated poses, and is displaced by their errors. An alignment to this map
+/// gives the pose relative to the keyframes whose images were fused into the part in view, not the
+/// pose in the world.
 ///
-/// The covariance of the camera's pose is therefore kept jointly with those of all keyframes: a
-/// Schmidt-Kalman filter, in which keyframes are considered but, since the map is not fused anew,
-/// not corrected. With xi_c the error of the camera and xi_k that of keyframe k (left, in the frame
-/// of each camera), the part of the map in view is displaced by
+/// Therefore the joint covariance of the camera pose and of all keyframe poses is kept in a
+/// Schmidt-Kalman filter: the errors of keyframes are considered but not corrected, because the map
+/// is not fused again. With xi_c the error of the camera pose and xi_k the error of keyframe k
+/// (left perturbations, in the frame of each camera), the part of the map in view is displaced by
 ///     m = sum_k M_k xi_k,   M_k = (sum_j Lambda_j)^-1 Lambda_k Ad(T_c_k),
-/// where Lambda_k is the information of the pixels whose cells keyframe k has fused (shared equally
-/// between several). An alignment narrows xi_c - m alone: the belief never becomes better than the
-/// map in view was when it was made, and falls when the start is seen again.
+/// where Lambda_k is the information of the pixels whose cells were fused by keyframe k (divided
+/// equally between several keyframes). An alignment reduces the covariance of xi_c - m alone. So
+/// the belief does not become more certain than the part of the map in view was when it was fused;
+/// the covariance falls when the start comes into view again.
 class MapErrors {
   public:
     /// @param resolution edge of the map's cells [m]
     explicit MapErrors(double resolution);
 
-    /// What a view of the map has to do with the errors of its keyframes.
+    /// The joint covariance of the camera pose and the displacement m of the map in view.
     struct Relation {
         Matrix6 relative = Matrix6::Zero();  ///< covariance of xi_c - m
         Matrix6 ofMap = Matrix6::Zero();     ///< covariance of m
-        Matrix6 withMap = Matrix6::Zero();   ///< covariance of xi_c - m with m
+        Matrix6 withMap = Matrix6::Zero();   ///< cross-covariance of xi_c - m with m
+        /// Cross-covariance of m with the errors of all keyframes.
         Eigen::Matrix<double, 6, Eigen::Dynamic> mapWithKeyframes;
-        double views = 0.;  ///< keyframes that made what a pixel shows, mean; 0: none in view
+        /// Mean number of keyframes that were fused into the map at a pixel; 0: none in view.
+        double views = 0.;
     };
 
-    /// The camera has moved. @param T_next_now its motion
+    /// Propagates the errors over a motion of the camera.
     void propagate(const Pose& T_next_now);
 
-    /// Something else than the map has informed of the pose in the world.
-    /// @param covariance of the pose before; both in the camera frame, left
+    /// Updates by a measurement of the pose in the world that does not come from the map.
+    /// @param covariance of the pose before the measurement
+    /// @param information of the measurement; both for the left perturbation, camera frame
     void observe(const Matrix6& covariance, const Matrix6& information);
 
-    /// @param map view predicted from the believed pose
+    /// Relates the belief of the camera pose to the map in view.
+    /// @param map view of the map from the mean of the belief
     Relation relate(const View& map, const Camera& camera, const UncertainPose& T_c_w) const;
 
-    /// An alignment without the directions that the image informs little of. In a map of few noisy
-    /// images a nearly uniform surface seems to inform a little of all directions; from image to
-    /// image this would add up.
+    /// Removes from an alignment the directions about which the image has little information. In a
+    /// map of few noisy images, a nearly uniform surface seems to have a little information about
+    /// all directions, which would add up from image to image.
     /// @param T_c_w prior of the alignment
     static Alignment withoutWeak(const Alignment& alignment, const UncertainPose& T_c_w);
 
-    /// An image was aligned with the prior `relation.relative`.
-    /// @return covariance of the camera's pose in the world
+    /// Updates by an image that was aligned with the prior covariance `relation.relative`.
+    /// @return covariance of the camera pose in the world
     Matrix6 align(const Relation& relation, const Alignment& alignment);
 
-    /// The same where tracking was lost: the pose in the map is that of the alignment alone.
+    /// Updates by an image that was aligned while tracking was lost: the pose in the map follows
+    /// from the alignment alone.
+    /// @return covariance of the camera pose in the world
     Matrix6 relocalize(const Relation& relation, const Alignment& alignment);
 
-    /// The present pose is kept: its image is fused into the map, now or later.
-    /// @param T_c_w belief @return number of this keyframe
+    /// Adds the present pose as a keyframe, whose image is fused into the map now or later.
+    /// @param T_c_w belief of the present pose
+    /// @return number of this keyframe
     int addPose(const UncertainPose& T_c_w);
 
-    /// The image of a keyframe was fused, at the pose believed when it was taken.
-    /// @param depth of the surfaces fused [m]; 0: none
+    /// Reports that the image of a keyframe was fused at the mean of its belief.
+    /// @param depth depth of the fused surfaces [m]; 0: none
     void addSurfaces(int keyframe, const ImageF& depth, const Camera& camera);
 
     std::size_t keyframes() const { return poses_.size(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Odometry since the last image that has arrived.
+// Collects odometry between images.
 #pragma once
 
 #include <deque>
@@ -9,15 +9,16 @@
 
 namespace photonav {
 
-/// Images arrive late: what was measured after an exposure is kept until the image of that exposure
-/// is there.
+/// Odometry of the camera since the last image. Images may arrive late: odometry after an exposure
+/// is kept until the image of this exposure has arrived.
 class MeasuredMotion {
   public:
     /// @param T_b_c camera mount
     explicit MeasuredMotion(const Pose& T_b_c)
         : T_c_b_(T_b_c.inverse()), toCamera_(adjoint(T_c_b_)) {}
 
-    /// The body has moved until `time` [s]. @param T_next_now covariance in the next body frame
+    /// Adds a measured motion of the body that ends at `time` [s].
+    /// @param T_next_now covariance of the left perturbation, in the next body frame
     void add(double time, const UncertainPose& T_next_now) {
         steps_.push_back({time,
                           {T_c_b_ * T_next_now.mean * T_c_b_.inverse(),
@@ -25,8 +26,8 @@ class MeasuredMotion {
         pending_ = joined(steps_.back().T_next_now, pending_);
     }
 
-    /// Motion of the camera between the last image taken and an exposure, which is the last image
-    /// from now on.
+    /// Motion T_next_now of the camera from the last image to an exposure [s], which becomes the
+    /// last image. Steps of odometry that end later are kept.
     UncertainPose takeUntil(double exposure) {
         UncertainPose motion;
         while (!steps_.empty() && steps_.front().time <= exposure) {
@@ -38,7 +39,7 @@ class MeasuredMotion {
         return motion;
     }
 
-    /// Motion of the camera since the last image taken.
+    /// Motion of the camera since the last image.
     const UncertainPose& pending() const { return pending_; }
 
   private:

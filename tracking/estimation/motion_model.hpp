@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a camera probably is at the next image, from how it moved before.
+// Predicts the motion of a camera without odometry from its last velocity.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,16 @@
 namespace photonav {
 
 struct MotionNoise {
-    double speed = 0.5;  ///< standard deviation of a velocity's change between images [m/s]
-    double turn = 1.;    ///< of an angular velocity's [rad/s]
+    double speed = 0.5;  ///< standard deviation of the change of velocity between images [m/s]
+    double turn = 1.;    ///< standard deviation of the change of angular velocity [rad/s]
 };
 
-/// Constant velocity in the camera frame; none after a loss.
+/// Constant velocity in the camera frame; 0 before the first observe() and after forget().
 class MotionModel {
   public:
     explicit MotionModel(const MotionNoise& noise) : noise_(noise) {}
 
-    /// The motion T_next_now within `seconds`, covariance in the next camera frame.
+    /// The predicted motion T_next_now after `seconds`, covariance in the next camera frame.
     UncertainPose predict(double seconds) const {
         const double dt = std::max(0., seconds);
         UncertainPose motion{expSE3(dt * velocity_), Matrix6::Zero()};
@@ -28,10 +28,12 @@ class MotionModel {
         return motion;
     }
 
+    /// Sets the velocity by a motion of the camera that took `seconds`.
     void observe(const Pose& T_next_now, double seconds) {
         if (seconds > 0.) velocity_ = logSE3(T_next_now) / seconds;
     }
 
+    /// Sets the velocity to 0.
     void forget() { velocity_.setZero(); }
 
   private:

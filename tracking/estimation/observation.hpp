@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a robot measures: images and its own motion.
+// The measurements of a robot: images and its own motion.
 #pragma once
 
 #include <optional>
@@ -16,21 +16,22 @@ struct MeasuredVertical {
     double sigma = 0.;  ///< standard deviation of its angle about each horizontal axis [rad]
 };
 
-/// An image, and when it was exposed.
+/// An image and the time of its exposure.
 struct CameraFrame {
-    double time = 0.;  ///< [s]
-    View view;         ///< depth 0 where it was not measured, empty without a depth sensor
+    double time = 0.;  ///< time of the exposure [s]
+    View view;         ///< depth 0: not measured; the depth image is empty without a depth sensor
     std::optional<MeasuredVertical> vertical = {};  ///< at the exposure
 };
 
-/// What was measured between the observation before and `time`.
+/// The measurements since the last observation.
 struct Observation {
     double time = 0.;  ///< since take-off [s]
-    /// Motion of the body since the observation before, covariance in its new frame (left); none
-    /// where the robot has no odometry.
+    /// Motion of the body since the last observation, covariance of the left perturbation in the
+    /// new body frame; none if the robot has no odometry.
     std::optional<UncertainPose> T_next_now;
-    std::vector<CameraFrame>
-        frames;  ///< arrived by now, oldest first; exposed at `time` or earlier
+    /// Images that have arrived since the last observation, oldest first; exposed at `time` or
+    /// earlier.
+    std::vector<CameraFrame> frames;
 };
 
 }  // namespace photonav

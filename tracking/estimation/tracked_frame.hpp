@@ -9,19 +9,23 @@
 namespace photonav {
 
 struct TrackedFrame {
-    double time = 0.;         ///< of the exposure [s]
-    UncertainPose predicted;  ///< belief at the exposure, before the image and its vertical
-    UncertainPose T_c_w;  ///< after the image and its vertical; when rejected, without the image
-    /// The alignment that the belief follows from; when rejected, the first that was tried.
+    double time = 0.;         ///< time of the exposure [s]
+    UncertainPose predicted;  ///< belief T_c_w at the exposure, before the image and its vertical
+    /// Belief after the image and its vertical; if the image is rejected, after the vertical only.
+    UncertainPose T_c_w;
+    /// The alignment that the belief follows from; if the image is rejected, the first alignment
+    /// that was tried.
     Alignment alignment;
-    /// The image did not change the belief: no alignment explained it, or it shows what the map
-    /// lacks. One rejected image is no loss of tracking: see Tracker::loss().
+    /// Whether the image did not change the belief: no alignment explained it, or it shows a part
+    /// of the scene that the map does not contain. A single rejected image is no loss of tracking:
+    /// see Tracker::loss().
     bool rejected = false;
-    /// The map, made on the same flight, has contradicted the images for long: it is to be
-    /// forgotten where it is in view, and made again at the pose that odometry predicts.
+    /// Whether the map, which is built on the same flight, has disagreed with the images for long
+    /// (LossOptions::doubtAfter). The part in view should be erased and built again at the pose
+    /// that odometry predicts.
     bool isMapDoubted = false;
-    /// Time of the keyframe that the image was aligned to, its own if it began one [s]; none: it
-    /// was aligned to the map.
+    /// Time of the keyframe that the image was aligned to, or of the image itself if it became the
+    /// first keyframe [s]; none: it was aligned to the map.
     std::optional<double> keyframe;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the camera is, from odometry and images.
+// Tracks the pose of the camera by odometry and images.
 #pragma once
 
 #include <memory>
@@ -18,34 +18,37 @@ namespace photonav {
 
 struct TrackerOptions {
     AlignmentOptions map = {};  ///< alignment to the map
-    /// Search all of the prior where it is wide (WideAligner), not only around its mean.
+    /// Search the whole prior if it is wide (WideAligner), not only around its mean.
     bool searchPrior = false;
-    /// Align to earlier images where there is no map, or where it does not explain the image; such
-    /// images need depth. None: the map alone.
+    /// Align to keyframes (earlier images with depth) if there is no map, or if the map does not
+    /// explain the image. None: align to the map only.
     std::optional<KeyframeChainOptions> keyframes = {};
-    /// Errors of a map that is made on the same flight, at the beliefs of this tracker alone: the
-    /// belief never becomes better than the map in view. None: the map is exact.
+    /// Errors of a map that is built on the same flight at the beliefs of this tracker: the belief
+    /// does not become more certain than the map in view. Null: the map is exact.
     std::shared_ptr<MapErrors> mapErrors = {};
-    MotionNoise motion = {};  ///< where there is no odometry
+    MotionNoise motion = {};  ///< of the motion between images, without odometry
     LossOptions loss = {};
-    Pose T_b_c = Pose::Identity();  ///< camera mount on the body that odometry is of
+    Pose T_b_c = Pose::Identity();  ///< mount of the camera on the body whose motion is measured
 };
 
-/// The belief T_c_w = exp(xi^) mean, xi ~ N(0, covariance) in the camera frame. Between images it
-/// is propagated with odometry, or, without any, with the velocity so far; each image is aligned to
-/// the map with the belief as prior, or to keyframes, and the belief is then that of the alignment.
+/// Tracks the belief T_c_w = exp(xi^) mean, xi ~ N(0, covariance) in the camera frame. Between
+/// images the belief is propagated by odometry, or, without odometry, by the last velocity. Each
+/// image is aligned to the map or to keyframes with the belief as prior; the result is the next
+/// belief.
 ///
 /// A measured vertical corrects the belief before the image of the same time is aligned.
 ///
-/// A rejected image leaves the prediction. Tracking counts as lost after several of them
-/// (LossOptions); then the same images are aligned in a wider neighbourhood, and to remembered
-/// keyframes, and one ends the loss when it explains the image and leaves no direction as wide as
-/// the loss has made it. Where no image does for long, a map that is made on the flight is doubted
-/// rather than the odometry (TrackedFrame::isMapDoubted). Images may be late or missing.
+/// After a rejected image the belief is the prediction. Tracking counts as lost after several
+/// rejected images (LossOptions). Images are then aligned in a wider neighbourhood of the belief as
+/// well. (An image that the latest keyframe does not explain is always aligned to the stored
+/// keyframes, too.) An alignment ends the loss if it explains the image and reduces the covariance
+/// in all directions that the loss has widened (resolvesLoss()). If this takes too long, a map that
+/// is built on the same flight is doubted, not the odometry (TrackedFrame::isMapDoubted). Images
+/// may be late or missing.
 class Tracker {
   public:
-    /// @param map to align to; null: none, which needs options.keyframes
-    /// @param start belief T_c_w
+    /// @param map to align to; null: no map, which needs options.keyframes
+    /// @param start belief T_c_w at the start
     /// @throws std::invalid_argument without map and keyframes, and as DenseAligner does
     Tracker(std::shared_ptr<const ViewSource> map, const Camera& camera, const UncertainPose& start,
             const TrackerOptions& options = {});
@@ -53,28 +56,32 @@ class Tracker {
     Tracker(Tracker&&) noexcept;
     Tracker& operator=(Tracker&&) noexcept;
 
-    /// Exchanges the map; the belief stays. Null: keyframes alone.
+    /// Replaces the map; the belief stays.
+    /// @param map null: keyframes alone
+    /// @throws std::invalid_argument without map and keyframes
     void setMap(std::shared_ptr<const ViewSource> map);
 
-    /// Odometry, then images. @return one for every image
+    /// Processes the odometry, then the images of an observation.
+    /// @return one result per image
     std::vector<TrackedFrame> update(const Observation& observation);
 
-    /// The next image of a camera without odometry.
-    /// @param view of the camera's size @throws std::invalid_argument otherwise
-    /// @param time [s] larger than the one before
+    /// Processes the next image of a camera without odometry.
+    /// @param view of the camera's size
+    /// @param time time of the image, later than that of the last one [s]
+    /// @throws std::invalid_argument for a view of another size
     TrackedFrame track(const View& view, double time) { return track({time, view}); }
 
     /// Belief at the last image.
     const UncertainPose& beliefAtLastImage() const { return belief_; }
-    /// Belief of now: odometry since the last image included.
+    /// Present belief: propagated by the odometry since the last image.
     UncertainPose belief() const { return compound(odometry_.pending(), belief_); }
-    /// Belief at a later time, without odometry.
+    /// Belief at a later time [s], propagated by the last velocity without odometry.
     UncertainPose predicted(double time) const {
         return compound(velocity_.predict(imageTime_ ? time - *imageTime_ : 0.), belief_);
     }
 
     const LossOfTracking& loss() const { return loss_; }
-    /// Camera pose of the last image that determined all directions.
+    /// Camera pose T_c_w of the last image that determined all directions; the start before.
     const Pose& lastCertainView() const { return T_certain_w_; }
 
   private:
