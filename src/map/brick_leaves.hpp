@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The leaves of an octree that hold a brick of 4 x 4 x 4 cells.
+// Access to the leaves of an octree within a brick of 4 x 4 x 4 cells.
 #pragma once
 
 #include "map/map_change.hpp"
@@ -7,7 +7,7 @@
 
 namespace photonav {
 
-/// The brick of a cell: its index in the world, as in MapChange.
+/// The brick of a cell, by its index in the world as in MapChange.
 inline Eigen::Array3i brickOf(const octomap::OcTreeKey& key) {
     return Eigen::Array3i(key[0] - kKeyOfZero, key[1] - kKeyOfZero, key[2] - kKeyOfZero)
         .unaryExpr([](int cell) { return cell >> 2; });
@@ -20,7 +20,7 @@ inline bool hasChildren(const TexturedOcTree& map, const TexturedOcTreeNode& nod
     return false;
 }
 
-/// The node of a brick, or the larger leaf that holds it, or null where nothing is known.
+/// The node of a brick, or the larger leaf that contains it; null if all of its cells are unknown.
 /// @param brick index in the world, as in MapChange
 inline const TexturedOcTreeNode* findBrick(const TexturedOcTree& map, const Eigen::Array3i& brick) {
     const Eigen::Array3i corner = MapChange::kBrickEdge * brick + kKeyOfZero;
@@ -36,6 +36,8 @@ inline const TexturedOcTreeNode* findBrick(const TexturedOcTree& map, const Eige
 }
 
 /// Calls visit(x, y, z) for the cells of a cube, x fastest.
+/// @param lowest the first cell
+/// @param edge of the cube [cells]
 template <class Visit>
 void visitCells(const Eigen::Array3i& lowest, int edge, const Visit& visit) {
     for (int z = lowest.z(); z < lowest.z() + edge; ++z) {
@@ -45,9 +47,10 @@ void visitCells(const Eigen::Array3i& lowest, int edge, const Visit& visit) {
     }
 }
 
-/// Calls visit(leaf, lowest, edge) for every leaf at and below the node of a brick.
-/// @param lowest the node's first cell, counted from the brick's
-/// @param edge of the node in cells
+/// Calls visit(leaf, lowest, edge) for every leaf at and below the node of a brick, with the first
+/// cell (relative to that of the brick) and the edge [cells] of the leaf.
+/// @param lowest the first cell of the node, relative to that of the brick
+/// @param edge of the node [cells]
 template <class Visit>
 void visitLeaves(const TexturedOcTree& map, const TexturedOcTreeNode& node, const Visit& visit,
                  const Eigen::Array3i& lowest = Eigen::Array3i::Zero(),

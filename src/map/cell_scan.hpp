@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cells that one observation crosses and ends in, and what it adds to their surfaces.
+// The cells that the rays of one observation cross or end in, and the update of a map by them.
 #pragma once
 
 #include <array>
@@ -13,23 +13,24 @@
 
 namespace photonav {
 
-/// Standard deviation of a pixel's depth, as a structured-light or stereo camera has it [1/m],
-/// times the depth squared.
+/// Standard deviation of a pixel's depth, divided by the depth squared [1/m], typical of
+/// structured-light and stereo cameras.
 inline constexpr double kDepthNoise = 1.5e-3;
 
-/// The end cell of pixels: their grey values, and sums by the face that their normals point to.
+/// The pixels of one observation whose rays end in the same cell: their grey values, and sums over
+/// their points and normals for each face of the cell.
 struct CellPixels {
-    /// Weight, grey less the first pixel's (what is constant stays so to the bit), point (3),
-    /// normal (3).
+    /// Sums of: weight, grey value minus firstGrey (so that constant grey values stay
+    /// bit-identical), point (3), normal (3).
     using Sums [[gnu::vector_size(32)]] = float;
 
     double greySum = 0.;
     unsigned count = 0;
     float firstGrey = 0.F;
-    bool isBetween = false;  ///< no pixel shows it: these are points between pixels
+    bool isBetween = false;  ///< no ray ends in the cell; these are points between pixels
     std::array<Sums, 6> faces{};
 
-    static constexpr float kLeastWeight = 0.05F;  ///< of a pixel for one face: less is not summed
+    static constexpr float kLeastWeight = 0.05F;  ///< smaller weights of a pixel are not summed
 
     void add(float grey) {
         if (count == 0) firstGrey = grey;
@@ -37,7 +38,9 @@ struct CellPixels {
         ++count;
     }
 
-    /// @param p the pixel's point, from the cell's centre @param n its normal
+    /// Adds a surface point to the sums of the faces that its normal points to.
+    /// @param p point of the pixel relative to the cell's centre [cells]
+    /// @param n unit normal of the surface, world frame
     void addSurface(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float grey) {
         const Sums pixel{1.F, grey - firstGrey, p.x(), p.y(), p.z(), n.x(), n.y(), n.z()};
         for (int a = 0; a < 3; ++a) {
@@ -46,6 +49,7 @@ struct CellPixels {
         }
     }
 
+    /// Sum of the weights over all faces.
     float surfaceWeight() const {
         float sum = 0.F;
         for (const Sums& face : faces) sum += face[0];
@@ -53,11 +57,13 @@ struct CellPixels {
     }
 };
 
-/// The cells in view: which of them were crossed by a ray, which were hit, and the grey values
-/// observed there. A dense box, x fastest, that begins and ends at bricks of 4 x 4 x 4 cells of the
-/// octree. Coordinates are in cells, OctoMap's keys less kKeyOfZero.
+/// The cells in view of one observation: which of them were crossed by a ray, in which a ray ended
+/// (hit), and the grey values observed there. A dense box of cells, x fastest, that consists of
+/// whole bricks of 4 x 4 x 4 cells. Coordinates are in cells: OctoMap's keys minus kKeyOfZero.
 class CellScan {
   public:
+    /// @param cells box of cells that rays can reach [cells]
+    /// @param resolution edge of a cell [m]
     CellScan(const Eigen::AlignedBox3d& cells, double resolution)
         : resolution_(resolution),
           first_(cells.min().array().floor().cast<int>() / 4 * 4 - 4),
@@ -78,11 +84,12 @@ class CellScan {
         if (memory_.crossed.size() < kMostKept) spareMemory() = std::move(memory_);
     }
 
+    /// Largest number of cells that a scan of this box stores.
     static double cellsNeeded(const Eigen::AlignedBox3d& cells) {
         return (cells.sizes().array() + 12.).prod();
     }
 
-    /// The pixels of an end cell, valid until the next call.
+    /// The pixels of a cell that is hit. The reference is valid until the next call.
     CellPixels& obtain(const Eigen::Array3i& cell) {
         std::int32_t& brick = memory_.brickPixels[brickOf(cell)];
         if (brick == kNoPixels) {
@@ -99,21 +106,28 @@ class CellScan {
         return memory_.pixels[seen.cells[bit]];
     }
 
+    /// Marks a cell as crossed.
     /// @returns whether the cell was crossed for the first time
     bool cross(const Eigen::Array3i& cell) {
         return std::exchange(memory_.crossed[place(cell)], 1) == 0;
     }
 
+    /// Adds a ray to castRays().
+    /// @param end end of the ray [cells]
     void addRay(const Eigen::Vector3d& end) { memory_.rayEnds.push_back(end); }
 
-    /// Crosses the cells from the eye up to, not including, those that hold the ends of the rays.
+    /// Marks all cells as crossed from the eye up to, not including, the cells in which rays end.
+    /// @param eye position of the camera [cells]
     void castRays(const Eigen::Vector3d& eye);
 
-    /// Whether a surface point that rays passed by is where it was, as far as they show.
+    /// Whether a surface point of the map [cells] may still be there: the observation does not see
+    /// through it.
     using SurfaceCheck = std::function<bool(const Eigen::Vector3d& point)>;
 
-    /// @param eye without one, surfaces are seen from all sides
-    /// @param remains may be missing: no surface does
+    /// Updates the map by this observation.
+    /// @param eye position of the camera [cells]; without it, surfaces are observed from all sides
+    /// @param remains checks the surfaces of occupied cells that rays crossed; empty: none remains
+    /// @returns what changed in the map
     MapChange apply(TexturedOcTree& map, const std::optional<Eigen::Vector3d>& eye,
                     const FusionOptions& options, const SurfaceCheck& remains = {}) const;
 
@@ -126,8 +140,8 @@ class CellScan {
         std::array<std::int32_t, 64> cells;  // index into Memory::pixels of those that were hit
     };
 
-    /// Of the scan before on the same thread. Pages of new memory, which the system has to clear,
-    /// would take longer than casting the rays.
+    /// Memory that is reused by the next scan of the same thread. New memory, which the system has
+    /// to clear, would take longer than casting the rays.
     struct Memory {
         // Per cell; bytes, because setting single bits is slower.
         std::vector<std::uint8_t> crossed;

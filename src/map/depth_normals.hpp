@@ -9,22 +9,24 @@
 
 namespace photonav {
 
-/// Unit normals toward the camera from differences of the image's points over a given length to
-/// each side; to one side where the other has no depth or lies beyond a depth edge. Rows are
-/// computed one by one, since a map wants them only while it looks at their pixels.
+/// Computes unit normals that point toward the camera, from differences between the 3-D points of
+/// pixels at a given distance to each side. Only one side is used if the other has no depth or lies
+/// beyond a depth edge. Normals are computed and stored for one row at a time.
 class DepthNormals {
   public:
-    /// @param depth, camera must outlive this
-    /// @param R rotates normals from the camera frame
-    /// @param reach of the differences [m]: large against the depth's noise, small against the
-    ///        surfaces
-    /// @param depthJump a relative second difference of inverse depth above this is a depth edge
+    /// @param depth z in the camera frame [m]; 0: not measured. Must outlive this object
+    /// @param camera must outlive this object
+    /// @param R rotation from the camera frame to the frame of the normals
+    /// @param reach distance over which differences are taken to each side [m]: large compared with
+    ///        the noise of the depth, small compared with the surfaces
+    /// @param depthJump largest relative second difference of inverse depth that is no depth edge
     DepthNormals(const ImageF& depth, const Camera& camera, const Eigen::Matrix3f& R, double reach,
                  double depthJump);
 
+    /// Computes the normals of row v, which replace those of the last row.
     void computeRow(unsigned v);
 
-    /// Of a pixel in the row computed last; zero where there is none.
+    /// Unit normal at column u of the row computed last; zero if it cannot be computed.
     Eigen::Vector3f at(unsigned u) const { return {row_[0][u], row_[1][u], row_[2][u]}; }
 
   private:

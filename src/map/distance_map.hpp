@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clearance: how far a point is from the nearest obstacle.
+// Clearance: the distance from a point to the nearest obstacle.
 #pragma once
 
 #include <vector>
@@ -11,30 +11,31 @@
 
 namespace photonav {
 
-/// Capped exact Euclidean distance on a regular grid over a box.
+/// Exact Euclidean distance to obstacles, up to a limit, on a regular grid over a box.
 class DistanceMap {
   public:
     struct Options {
-        double maxDistance =
-            1.0;  ///< larger clearances are reported as this [m]; at most 180 cells
-        UnknownPolicy unknown = UnknownPolicy::occupied;  ///< of map cells no ray has visited
+        /// Upper limit of the clearance [m]; at most 180 cells.
+        double maxDistance = 1.0;
+        UnknownPolicy unknown = UnknownPolicy::occupied;  ///< how unknown cells are treated
     };
 
     /// No obstacles anywhere: every clearance is maxDistance.
     explicit DistanceMap(double maxDistance = 1.0) : maxDistance_(maxDistance) {}
 
-    /// Obstacles are the occupied (and, by policy, the unknown) cells of the map.
-    /// @param bounds box in which clearance is computed [m]; obstacles up to maxDistance outside
-    ///        the box are included
+    /// Clearance in a map. Obstacles are the occupied cells and, by Options::unknown, the unknown
+    /// ones.
+    /// @param bounds box in which clearance is computed, world frame [m]; obstacles up to
+    ///        maxDistance outside the box are included
     /// @throws std::invalid_argument for empty bounds, a maxDistance that is not positive or above
     ///        180 cells, or a grid above 3e9 bytes (the message names a resolution that would fit)
     DistanceMap(const TexturedOcTree& map, const Eigen::AlignedBox3d& bounds,
                 const Options& options);
 
-    /// Obstacles are all cells that a triangle touches (and, along slanted outlines, some of their
-    /// neighbours), and those whose centre is in a solid. Cells are cubes of `resolution` [m]
-    /// around its multiples. Throws as above. `unknown` has no effect, because a scene has no
-    /// unknown space.
+    /// Clearance in a scene. Obstacles are all cells that a triangle touches (and, along slanted
+    /// outlines, some of their neighbours), and all cells whose centre is in a solid. Cells are
+    /// cubes with an edge of `resolution` [m], centred at multiples of the resolution. Throws as
+    /// above. Options::unknown has no effect, because a scene has no unknown space.
     DistanceMap(const Scene& scene, double resolution, const Eigen::AlignedBox3d& bounds,
                 const Options& options);
 

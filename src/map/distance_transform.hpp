@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Squared distances to obstacles on a grid of cells that may change.
+// Squared distances to obstacles on a grid of cells, updated when obstacles change.
 #pragma once
 
 #include <array>
@@ -11,40 +11,42 @@
 
 namespace photonav {
 
-/// Capped exact squared Euclidean distance between the centres of cells, computed one axis after
-/// the other (the lower envelopes of Felzenszwalb and Huttenlocher, Distance Transforms of Sampled
-/// Functions, 2012). The result of every axis is stored: an update recomputes only cells within
-/// `reach` of a changed obstacle, and passes on to the next axis only the cells that have changed.
+/// Exact squared Euclidean distance between the centres of cells, up to a limit, computed one axis
+/// after the other (the lower envelopes of Felzenszwalb and Huttenlocher, Distance Transforms of
+/// Sampled Functions, 2012). The result of every axis is stored: an update recomputes only cells
+/// within `reach` of a changed obstacle, and for the next axis only cells that this has changed.
 ///
 /// Obstacles are set on the `outer` cells: the inner cells and `reach` more cells on every side.
 /// Distances are computed for the inner cells. At first there are no obstacles.
 class DistanceTransform {
   public:
-    static constexpr int kBlock = 32;  ///< cells along x that are computed together
+    static constexpr int kBlock = 32;  ///< number of cells along x that are computed together
 
     DistanceTransform() = default;
-    /// @param reach [cells], at most 180: distances are capped at this
+    /// @param inner number of inner cells along each axis
+    /// @param reach upper limit of the distances [cells], at most 180
     DistanceTransform(const Eigen::Array3i& inner, int reach);
 
-    /// Memory that a transform takes [bytes].
+    /// Memory of a transform with these parameters [bytes].
     static double bytes(const Eigen::Array3d& inner, double reach);
 
     bool empty() const { return column_.empty(); }
-    Eigen::Array3i outer() const { return inner_ + 2 * reach_; }
+    Eigen::Array3i outer() const { return inner_ + 2 * reach_; }  ///< number along each axis
 
-    /// Makes the outer cells of a box, as far as they exist, obstacles or free.
+    /// Makes the outer cells from `first` up to, not including, `last` obstacles or free. Parts
+    /// outside the outer cells are ignored.
     void set(const Eigen::Array3i& first, const Eigen::Array3i& last, bool isObstacle);
 
-    /// The same for each of 4 x 4 x 4 cells, x fastest.
+    /// Sets 4 x 4 x 4 outer cells from `first` on, x fastest.
     void setBlock(const Eigen::Array3i& first, const std::array<bool, 64>& isObstacle);
 
-    /// Squared distances of inner cells (x ... x + n - 1, y, z).
+    /// Receives the squared distances [cells^2] of the inner cells (x ... x + n - 1, y, z).
     using Visit =
         std::function<void(int x, int y, int z, int n, const std::uint16_t* squaredDistances)>;
 
-    /// Updates the distances after calls of set().
-    /// @param visit called for all cells whose squared distance changed, and for some that did not
-    ///        change; distances begin at reach^2
+    /// Updates the distances after calls of set() and setBlock().
+    /// @param visit called for all cells whose squared distance changed, and for some whose squared
+    ///        distance did not change; before the first update all are reach^2
     void update(const Visit& visit);
 
   private:

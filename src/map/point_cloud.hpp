@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coloured point clouds from PLY files, as laser scanners give them, read as a stream.
+// Reads coloured point clouds of laser scanners from PLY files, point by point.
 #pragma once
 
 #include <array>
@@ -19,24 +19,26 @@ struct ScanPoint {
     float grey = 0.F;
 };
 
-/// A PLY file of coloured points from one scanner position or several merged ones. Only the header
-/// is kept in memory, so that files of any size can be read.
+/// A PLY file of coloured points, taken from one or from several positions of a scanner. Only the
+/// header is kept in memory, so that files of any size can be read.
 ///
 /// Colours are `red green blue` (8-bit, or real in [0, 1]), converted to grey like textures;
 /// without them, `intensity` is used. Points that are not finite or farther from the origin than
-/// 1e8 m (no echo) are skipped. The
-/// position of the scanner is read from the `camera` element that PCL writes (view_px, view_py,
-/// view_pz).
+/// 1e8 m along an axis (no echo) are skipped. The position of the scanner is read from the `camera`
+/// element that PCL writes (view_px, view_py, view_pz).
 class PointCloudFile {
   public:
-    /// Reads the header. @throws InputError naming the file unless it is a PLY file with coloured
-    /// points that is at least as long as its header requires
+    /// Reads the header.
+    /// @throws InputError naming the file unless it is a PLY file with coloured points that is at
+    ///        least as long as its header requires
     explicit PointCloudFile(std::string file);
 
+    /// Number of points by the header, including those that are skipped.
     std::uint64_t size() const { return vertices_.count; }
+    /// Position of the scanner, world frame [m]; none if the file does not contain it.
     const std::optional<Eigen::Vector3d>& scanner() const { return scanner_; }
 
-    /// Calls `visit` for every finite point, in the order of the file.
+    /// Calls `visit` for every point that is not skipped, in the order of the file.
     /// @throws InputError where a line of an ASCII file is not a point, or a real colour is not in
     ///        [0, 1]
     void read(const std::function<void(const ScanPoint&)>& visit) const;
@@ -77,7 +79,7 @@ class PointCloudFile {
     std::streamoff firstVertex_ = 0;
     std::array<std::size_t, 3> position_{};
     std::vector<std::size_t> colour_;  // three columns, or one
-    double white_ = 1.;                // what the colour columns hold for white
+    double white_ = 1.;                // value of white in the colour columns
     std::optional<Eigen::Vector3d> scanner_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The surfaces of a map for other programs.
+// Exports the surfaces of a map for other programs.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace photonav {
 
-/// Writes the surfaces inside a map's cells as a point cloud that MeshLab and CloudCompare open:
-/// binary PLY, a point for every surface (its mean), with its normal and its grey value as colour.
-/// World frame [m]; empty for a map without surfaces.
+/// Writes the surfaces inside a map's cells as a point cloud that MeshLab and CloudCompare open: a
+/// binary PLY file with the mean point of every surface, its normal, and its grey value as colour.
+/// World frame [m]. A map without surfaces gives a file without points.
 /// @throws InputError when the file cannot be written
 void saveSurfaceCloud(const TexturedOcTree& map, const std::string& file);
 
