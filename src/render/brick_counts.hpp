@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether boxes of cells hold marked cells, with counts of the bricks that do.
+// Tests whether boxes of cells contain marked cells, by counts of the bricks with marked cells.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace photonav {
 
-/// One mask of cells per brick, as in VoxelGrid::ends, for a box of bricks.
+/// One mask of marked cells per brick, as in VoxelGrid::ends, for a box of bricks.
 struct BrickMasks {
     CellBox bricks;
     const std::uint64_t* masks;
@@ -20,10 +20,10 @@ struct BrickMasks {
     }
 };
 
-/// Counts the bricks with cells in their masks in boxes of bricks: a summed-area table.
+/// Counts the bricks with marked cells in any box of bricks, by a summed-area table.
 class BrickCounts {
   public:
-    /// @param bricks a part of those that have masks
+    /// @param bricks box of bricks that can be counted, within masks.bricks
     BrickCounts(const BrickMasks& masks, const CellBox& bricks)
         : bricks_(bricks), size_(bricks.high - bricks.low + 1) {
         sums_.assign(std::size_t(size_.x()) * size_.y() * size_.z(), 0);
@@ -43,6 +43,7 @@ class BrickCounts {
         }
     }
 
+    /// Number of bricks with marked cells in a box of bricks.
     std::int32_t operator()(const CellBox& bricks) const {
         const CellBox part = bricks.clippedTo(bricks_);
         if (part.empty()) return 0;
@@ -64,7 +65,7 @@ class BrickCounts {
     std::vector<std::int32_t> sums_;
 };
 
-/// Whether a box holds cells of the masks.
+/// Whether a box contains marked cells.
 inline bool anyInside(const CellBox& cells, const BrickMasks& masks, const BrickCounts& counts) {
     const CellBox bricks = bricksOf(cells).clippedTo(masks.bricks);
     if (counts(bricks) == 0) return false;

@@ -6,14 +6,17 @@
 
 namespace photonav {
 
+/// The content of a brick of the map.
 struct BrickContent {
     BrickSurface surface;       ///< without `exposed`, which depends on the neighbours
-    std::uint64_t present = 0;  ///< cells that the map has; the others are unknown
+    std::uint64_t present = 0;  ///< mask of the known cells (free or occupied)
 };
 
-/// @param node of the size of a brick, or a larger leaf
+/// Reads the brick of a node.
+/// @param node of the size of a brick, or a larger leaf that contains the brick
 BrickContent readBrick(const TexturedOcTree& map, const TexturedOcTreeNode& node);
 
+/// Reads a brick; it is empty if all of its cells are unknown.
 /// @param brick index in the world, as in MapChange
 BrickContent readBrick(const TexturedOcTree& map, const Eigen::Array3i& brick);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Large views in bands of rows, between which rendering can be stopped.
+// Renders large views in bands of rows; rendering can be stopped between two bands.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,29 @@
 
 namespace photonav {
 
-/// Thrown out of a view that was to be stopped.
+/// Thrown when the rendering of a view was stopped.
 struct RenderingStopped : std::runtime_error {
     RenderingStopped() : std::runtime_error("interrupted while rendering a view") {}
 };
 
-/// Larger views than this are rendered in bands [pixels].
+/// Size above which views are rendered in bands [pixels].
 inline constexpr std::size_t kBandPixels = std::size_t{1} << 21U;
 
+/// Number of pixels of a camera's images.
 inline std::size_t pixelsOf(const Camera& camera) {
     return std::size_t{camera.width} * camera.height;
 }
 
-/// Renders a view in bands of whole rows with at most `pixels` pixels each, or at once where it has
-/// no more. A band has one row more on either side for the point spread, which is left out.
-/// @param render fills a view of the camera it is given
+/// Renders a view in bands of whole rows with at most `pixels` pixels each (but at least one row),
+/// or at once if it has no more pixels. Each band is rendered with one more row on either side,
+/// because the point spread needs it.
+/// @param render renders a view for the camera of a band
 void renderInBands(const Camera& camera, std::size_t pixels,
                    const std::function<void(const Camera& band, View& view)>& render, View& view);
 
-/// The views of another source. Large ones end with RenderingStopped within a band; small ones,
-/// which take milliseconds, are never stopped and cost nothing more.
+/// The views of another source, which can be stopped. A large view throws RenderingStopped before
+/// its next band when `isStopped` returns true. Views of at most kBandPixels, which take
+/// milliseconds, are never stopped.
 class InterruptibleViews : public ViewSource {
   public:
     InterruptibleViews(std::shared_ptr<const ViewSource> views, std::function<bool()> isStopped)

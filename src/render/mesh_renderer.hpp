@@ -9,9 +9,10 @@
 
 namespace photonav {
 
-/// Visibility at pixel centres is exact: by the depth buffer where triangles are few for the number
-/// of pixels, else by Embree's ray packets; both find the same triangles. Depth and grey value come
-/// from the visible triangle's plane (surface_shader.hpp). Both sides of a triangle are visible.
+/// Renders views of a scene. Visibility at pixel centres is exact: by a depth buffer if there are
+/// few triangles per pixel, else by Embree's ray packets; both find the same triangles. Depth and
+/// grey value follow from the plane of the visible triangle (surface_shader.hpp). Both sides of a
+/// triangle are visible.
 class MeshRenderer : public ViewSource {
   public:
     explicit MeshRenderer(Scene scene);

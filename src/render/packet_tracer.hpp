@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Traces rays through a grid, several at once.
+// Traces packets of rays through a grid.
 #pragma once
 
 #include "photometry/view.hpp"
@@ -7,8 +7,9 @@
 
 namespace photonav {
 
-/// Depth and grey value of every pixel of a view, which has the camera's size; without point
-/// spread. All 0 where the camera is more than 10^6 cells away.
+/// Computes depth and grey value of every pixel of a view, without point spread. All pixels are 0
+/// if the camera is more than 10^6 cells away.
+/// @param view must have the camera's size
 void tracePackets(const VoxelGrid& grid, const Camera& camera, const Pose& T_c_w, View& view);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where rays meet the surfaces inside cells.
+// Intersections of rays with the surfaces inside cells.
 #pragma once
 
 #include <array>
@@ -8,25 +8,26 @@
 
 namespace photonav {
 
-/// Rays before a plane, each in its cell: by how much they are in front of it, along the plane's
-/// axis, and how fast that changes with t.
+/// The positions of rays relative to a plane in the cell of each ray.
 struct PlaneView {
+    /// Distance in front of the plane, along the plane's axis [cells], and its derivative by t.
     simd::Float height, rate;
-    simd::Int face;
-    simd::Int exists;
+    simd::Int face;    ///< face that the plane's normal points to
+    simd::Int exists;  ///< mask: the ray's cell has this plane
 
+    /// The height when t has grown by `after`.
     simd::Float heightAt(const simd::Float& after) const { return height + rate * after; }
 };
 
-/// Where rays meet the surface in a cell, after the present t.
+/// The intersections of rays with the surface in their cells.
 struct Meeting {
-    simd::Int met;      ///< the surface, or from behind a cell with surfaces: the
-                        ///< cell's face
-    simd::Float after;  ///< t less the present one
-    simd::Int face;
+    simd::Int met;      ///< mask: the ray ends in the cell, at the surface or at the cell's face
+    simd::Float after;  ///< t of the intersection minus the present t
+    simd::Int face;     ///< face that the plane's normal points to, or Rays::kNoPlane
 };
 
-/// Decodes planes (SurfacePlane) and looks at them from where rays are in their cells.
+/// Decodes planes (SurfacePlane) and computes the positions of rays relative to them.
+/// @param at positions of the rays relative to the centres of their cells [cells]
 [[gnu::always_inline]] inline PlaneView viewPlane(const simd::Int& plane,
                                                   const Vector3<simd::Float>& at,
                                                   const Vector3<simd::Float>& direction) {
@@ -44,12 +45,15 @@ struct Meeting {
     return {outward ? height : -height, outward ? rate : -rate, face, plane != 0};
 }
 
-/// A plane on the border of its cell, as a floor at a multiple of the cells' edge, lies beyond the
-/// cell by as much as planes are rounded: half a unit of the offset and of the slopes [cells].
+/// Tolerance for planes on the border of their cell, such as a floor at a multiple of the cells'
+/// edge: by rounding they can lie outside the cell by half a unit of the offset and of the slopes
+/// [cells].
 inline constexpr float kPlaneRounding =
     0.5F * SurfacePlane::kOffsetUnit + 0.5F * SurfacePlane::kSlopeUnit;
 
-/// Where rays meet a single plane.
+/// The intersections of rays with a single plane.
+/// @param toExit t at which rays leave their cells, minus the present t
+/// @param back largest distance by which an intersection may lie before the present t
 [[gnu::always_inline]] inline Meeting meetPlane(const PlaneView& plane, const simd::Float& toExit,
                                                 const simd::Float& back) {
     const simd::Int facing = plane.rate < 0.F;
@@ -58,7 +62,9 @@ inline constexpr float kPlaneRounding =
     return {met, simd::max(after, -back), facing ? plane.face : simd::splat(Rays::kNoPlane)};
 }
 
-/// Where rays meet planes that bound a cell's solid together.
+/// The intersections of rays with several planes that together bound the solid in a cell.
+/// @param edges ShownSurfaces::edges
+/// @param toExit,back see meetPlane()
 template <std::size_t N>
 Meeting meetPlanes(const std::array<PlaneView, N>& planes, const simd::Int& edges,
                    const simd::Float& toExit, const simd::Float& back) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth and grey value of the triangles that are visible in a view.
+// Computes depth and grey value of the visible triangles of a view.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct VisibilityImage {
     std::uint32_t* row(unsigned v) { return ids.data() + std::size_t{v} * pitch; }
     const std::uint32_t* row(unsigned v) const { return ids.data() + std::size_t{v} * pitch; }
 
-    unsigned pitch = 0;  ///< entries per row, a vector beyond the width; rows in fours
+    unsigned pitch = 0;  ///< entries per row, a vector more than the width; rows in multiples of 4
     std::vector<std::uint32_t> ids;
 };
 
@@ -35,11 +35,11 @@ struct VisibilityImage {
 /// and the near direction a little more than an isotropic footprint requires.
 class SurfaceShader {
   public:
-    /// @param scene must outlive this
+    /// @param scene must outlive this object
     explicit SurfaceShader(const Scene& scene);
 
-    /// Fills depth and intensity of `view`, which has the camera's size already. Pixels without
-    /// a triangle become 0. Thread-safe.
+    /// Computes depth and intensity of a view. Pixels without a triangle become 0. Thread-safe.
+    /// @param view must have the camera's size
     void shade(const Camera& camera, const Pose& T_c_w, const VisibilityImage& visible,
                View& view) const;
 

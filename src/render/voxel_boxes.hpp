@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the empty boxes of a grid, which rays leave in one step.
+// Finds the empty boxes of a grid, which rays cross in one step.
 #pragma once
 
 #include <vector>
@@ -16,19 +16,19 @@ inline CellBox emptyBoxOf(const VoxelGrid& grid, const Eigen::Array3i& brick) {
             first + Eigen::Array3i(box.after[0], box.after[1], box.after[2])};
 }
 
-/// Finds all boxes of a grid anew.
+/// Finds all boxes of a grid.
 void findBoxes(VoxelGrid& grid);
 
-/// A brick in which cells have begun or ceased to end rays.
+/// A brick whose VoxelGrid::ends has changed.
 struct ChangedBrick {
     Eigen::Array3i brick;
     std::uint64_t before;  ///< VoxelGrid::ends before the change
 };
 
-/// Finds anew the boxes in which cells end rays now, those of the changed bricks, and those beside
-/// bricks that have become empty. All others stay valid, but may have become smaller than what
-/// findBoxes() would find: that costs rays a step, and views do not change.
-/// @param changed every brick at most once
+/// Updates the boxes of a grid after a change: the boxes of the changed bricks, boxes that are not
+/// empty any more, and boxes beside bricks that have become empty. All other boxes stay valid, but
+/// may be smaller than those of findBoxes(): rays then take more steps, and views do not change.
+/// @param changed each brick at most once
 /// @returns the bricks whose boxes may have changed, as a box of bricks
 CellBox updateBoxes(VoxelGrid& grid, const std::vector<ChangedBrick>& changed);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A textured octree laid out for rays: a dense snapshot that VoxelRenderer marches through.
+// A dense snapshot of a textured octree, through which VoxelRenderer traces rays.
 #pragma once
 
 #include <array>
@@ -10,18 +10,18 @@
 
 namespace photonav {
 
-/// Grey values of 4 x 4 coplanar cell faces and of the faces around them, ready for bilinear
+/// Grey values of 4 x 4 coplanar cell faces and of the faces around them, for bilinear
 /// interpolation: entry 6 * (q + 1) + p + 1 belongs to the face at (p, q), -1 <= p, q <= 4.
 struct FacePatch {
     static constexpr int kSide = 6;
-    static constexpr int kValidIndex = kSide * kSide;  ///< of `valid`, in 16-bit words
+    static constexpr int kValidIndex = kSide * kSide;  ///< index of `valid` in 16-bit words
 
     std::array<std::uint16_t, kValidIndex> grey{};  ///< 65535 is white
     std::uint16_t valid = 0;                        ///< bit 4 * q + p: the face has a grey value
-    std::array<std::uint16_t, 3> unused{};          ///< 80 bytes; also lets one read past valid
+    std::array<std::uint16_t, 3> unused{};  ///< pads to 80 bytes; reads past `valid` stay inside
 };
 
-/// Cells of a grid from `low` up to, not including, `high`.
+/// A box of cells (or of bricks) from `low` up to, not including, `high`.
 struct CellBox {
     Eigen::Array3i low = Eigen::Array3i::Zero();
     Eigen::Array3i high = Eigen::Array3i::Zero();
@@ -40,32 +40,33 @@ struct CellBox {
     }
 };
 
-/// A box of cells that do not end rays, stored with a brick that holds some of them.
+/// A box of cells that do not end rays, stored with a brick that contains some of them.
 struct EmptyBox {
-    static constexpr int kFurthest = 252;  ///< reaches so many cells beyond the brick's first one
+    /// Largest distance from the brick's first cell to an end of the box [cells].
+    static constexpr int kFurthest = 252;
 
-    std::array<std::uint8_t, 3> before{};  ///< 3 + cells of the box before the brick's first
-    std::uint8_t restEnds = 0;  ///< 128: all cells of the brick that are not in the box end rays
+    std::array<std::uint8_t, 3> before{};  ///< 3 + number of cells before the brick's first cell
+    std::uint8_t restEnds = 0;  ///< 128 if all cells of the brick outside the box end rays
     std::array<std::uint8_t, 3> after{};  ///< cells from the brick's first one to the box's end
-    std::uint8_t unused = 0;              ///< 8 bytes, which rays read as two words
+    std::uint8_t unused = 0;              ///< pads to 8 bytes, which rays read as two words
 };
 
-/// Whole bricks of 4 x 4 x 4 cells that hold the map's bounding box and a border of at least one
-/// cell, x fastest, counted from `first`. Plain data; VoxelGridBuilder fills and changes it.
+/// Whole bricks of 4 x 4 x 4 cells that contain the map's bounding box and a border of at least one
+/// cell, x fastest, relative to `first`. Plain data; VoxelGridBuilder fills and updates it.
 struct VoxelGrid {
-    static constexpr int kPatchesPerBrick = 6 * 4;  ///< face, then layer along its normal
+    static constexpr int kPatchesPerBrick = 6 * 4;  ///< 6 faces x 4 layers along their normals
 
-    double resolution = 1.;                          ///< [m]
+    double resolution = 1.;                          ///< edge of a cell [m]
     Eigen::Array3i first = Eigen::Array3i::Zero();   ///< world index of cell (0, 0, 0)
-    Eigen::Array3i size = Eigen::Array3i::Zero();    ///< cells that are stored, multiples of 4
+    Eigen::Array3i size = Eigen::Array3i::Zero();    ///< number of cells stored, multiples of 4
     Eigen::Array3i bricks = Eigen::Array3i::Zero();  ///< size / 4
-    CellBox box;                                     ///< the map's bounding box; outside it is free
+    CellBox box;  ///< the map's bounding box; space outside it counts as free
 
-    /// Per brick, the cells that end rays: bit x + 4 y + 16 z.
+    /// Per brick: the cells that end rays, bit x + 4 y + 16 z.
     std::vector<std::uint64_t> ends;
 
-    /// Per brick, the box that rays in its cells leave in one step, as large as could be found; of
-    /// size 0 where there is none. Outside the box, rays go from cell to cell.
+    /// Per brick: an empty box that rays in its cells cross in one step, as large as was found; of
+    /// size 0 if there is none. Outside the box, rays go from cell to cell.
     std::vector<EmptyBox> boxes;
 
     /// Textures of a brick: entry brickTextures[brick] * kPatchesPerBrick + 4 * face + layer of
@@ -74,28 +75,32 @@ struct VoxelGrid {
     std::vector<std::int32_t> patchOf;
     std::vector<FacePatch> patches;
 
-    /// Where the surface lies in the cells of a brick: entry brickTextures[brick] * kCellsPerBrick
-    /// + x + 4 y + 16 z is a SurfacePlane, 0 (rays end at the cell's faces), or, with the code
-    /// kSeveral, has an index into `several` in its low bits. Entry 0 of `several` is not used.
+    /// Surfaces inside the cells of a brick: entry brickTextures[brick] * kCellsPerBrick + x + 4 y
+    /// + 16 z of `planes` is a SurfacePlane; or 0, if rays end at the cell's faces; or, with the
+    /// code SurfacePlane::kSeveral, has an index into `several` in its low bits. Entry 0 of
+    /// `several` is not used.
     static constexpr int kCellsPerBrick = 64;
     std::vector<std::uint32_t> planes;
     std::vector<ShownSurfaces> several;
 
+    /// Index of a brick in the vectors per brick.
     std::size_t brickIndex(const Eigen::Array3i& brick) const {
         return (std::size_t(brick.z()) * bricks.y() + brick.y()) * bricks.x() + brick.x();
     }
 };
 
+/// Bit of a cell in the masks of its brick: x + 4 y + 16 z.
 constexpr unsigned surfaceBit(int x, int y, int z) {
     return static_cast<unsigned>((x & 3) | (y & 3) << 2 | (z & 3) << 4);
 }
 
+/// The cells of a brick.
 inline CellBox cellsOf(const Eigen::Array3i& brick) { return {4 * brick, 4 * brick + 4}; }
 
-/// The cells of a brick that lie in a box, bit x + 4 y + 16 z.
+/// Mask of the cells of a brick that lie in a box, bit x + 4 y + 16 z.
 std::uint64_t cellsInside(const CellBox& box, const Eigen::Array3i& brick);
 
-/// The bricks that hold cells of a box.
+/// The bricks that contain cells of a box.
 inline CellBox bricksOf(const CellBox& box) {
     const auto quarter = [](int i) { return i >> 2; };
     return {box.low.unaryExpr(quarter), (box.high + 3).unaryExpr(quarter)};

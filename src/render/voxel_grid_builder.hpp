@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Makes the grid of a map, and keeps it up to date.
+// Makes the grid of a map, and updates it when the map changes.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,22 @@
 
 namespace photonav {
 
-/// The parts of a grid that an update has rewritten, for updating copies of the grid. Bricks are
-/// named by their index in the world, because a grid that grows may move.
+/// The parts of a grid that an update has rewritten, for updates of copies of the grid. Bricks are
+/// given by their index in the world, because the first cell of a grid that grows may change.
 struct GridUpdate {
-    CellBox boxes;                       ///< bricks: which cells end rays, and empty boxes
-    std::vector<Eigen::Array3i> bricks;  ///< textures
+    CellBox boxes;  ///< box of bricks whose VoxelGrid::ends and VoxelGrid::boxes were rewritten
+    std::vector<Eigen::Array3i> bricks;  ///< bricks whose textures were rewritten
 };
 
 /// Applies an update to `copy`, which was equal to `grid` before the update. Several updates are
 /// applied in their order.
 void copyUpdate(const VoxelGrid& grid, const GridUpdate& update, VoxelGrid& copy);
 
-/// Fills a grid from a map and updates it after changes of the map. Keeps the contents of every
+/// Fills a grid from a map and updates it after changes of the map. Stores the content of every
 /// brick with a surface, so that only changed bricks are read from the map again.
 class VoxelGridBuilder {
   public:
+    /// Fills `grid` from a map.
     /// @throws std::invalid_argument when the map's bounding box has more than 2^31 cells
     VoxelGridBuilder(const TexturedOcTree& map, UnknownPolicy unknown, VoxelGrid& grid);
 

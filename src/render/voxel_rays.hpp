@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Packets of rays on their way through the cells of a grid.
+// Packets of rays that are traced through the cells of a grid.
 #pragma once
 
 #include <array>
@@ -10,19 +10,19 @@
 
 namespace photonav {
 
-/// A vector in the grid, one lane per ray.
+/// A vector for each ray of a packet, in the axes of the grid; one lane per ray.
 template <class T>
 struct Vector3 {
     T x, y, z;
 };
 
-/// Rays of one camera pose in cells, counted from the cell of the eye: precision does not depend on
-/// where in the map the eye is.
+/// The frame of the rays of one camera pose: coordinates in cells relative to the cell of the eye
+/// (camera centre), so that precision does not depend on the position of the eye in the map.
 struct RayFrame {
-    Eigen::Matrix3f R;       ///< camera to world, metres to cells
-    Eigen::Array3i eye;      ///< cell of the grid (may lie outside it)
-    Eigen::Vector3f offset;  ///< of the eye in its cell, in [0, 1)
-    bool inReach;            ///< the eye is close enough for single precision
+    Eigen::Matrix3f R;       ///< rotates from camera to world and scales from metres to cells
+    Eigen::Array3i eye;      ///< cell of the eye in the grid (may lie outside it)
+    Eigen::Vector3f offset;  ///< position of the eye in its cell, in [0, 1)
+    bool inReach;            ///< whether the eye is close enough for single precision
 
     RayFrame(const VoxelGrid& grid, const Pose& T_c_w) {
         const Eigen::Matrix3d toCells = T_c_w.linear().transpose() / grid.resolution;
@@ -36,22 +36,22 @@ struct RayFrame {
     }
 };
 
-/// State of a packet of rays: at z-depth t, before testing `cell`, which they entered across
-/// `axis`.
+/// State of a packet of rays at depth t (z in the camera frame [m]), before `cell` is tested.
 struct Rays {
-    static constexpr int kNoAxis = 3;    ///< the eye is in the cell
-    static constexpr int kNoPlane = -1;  ///< the ray ended at a face of the cell
+    static constexpr int kNoAxis = 3;    ///< `axis` of the cell that contains the eye
+    static constexpr int kNoPlane = -1;  ///< `face` of a ray that ended at a face of the cell
 
     Vector3<simd::Float> direction, inverse;
     Vector3<simd::Int> cell;
     simd::Float t, tExit;
-    simd::Int axis;
+    simd::Int axis;  ///< axis along which the ray entered `cell`, or kNoAxis
     simd::Int active;
-    simd::Int face;  ///< that the surface met in a cell points to, or kNoPlane
+    simd::Int face;  ///< face that the normal of the surface at the ray's end points to
 };
 
-/// The cell of rays at time t along one axis: exactly the one behind the planes that they have
-/// crossed. @param counts lanes for which a plane that they cross at t itself is crossed
+/// The cells of rays at depth t, along one axis. Consistent with rounding: it is the cell behind
+/// all cell borders (planes of constant coordinate) that the ray has crossed before t.
+/// @param counts lanes for which a border that is crossed exactly at t counts as crossed
 [[gnu::always_inline]] inline simd::Int cellAt(const simd::Float& t, const simd::Float& direction,
                                                const simd::Float& inverse, float offset,
                                                const simd::Int& counts) {

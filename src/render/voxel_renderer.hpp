@@ -10,18 +10,19 @@
 
 namespace photonav {
 
-/// Predicts views from a snapshot of a map. Making one takes milliseconds per million cells of the
-/// map's bounding box; VoxelSnapshots makes them for a map that changes.
+/// Predicts views from a snapshot of a map. A snapshot takes milliseconds per million cells of the
+/// map's bounding box; VoxelSnapshots makes snapshots of a map that changes.
 ///
-/// A ray ends at the first surface: in an occupied cell at the planes that its faces have learnt
-/// (CellSurfaces), or, where there are none, at the face through which it enters. It goes on where
-/// it misses the planes; a cell whose surfaces all look away ends it at its face. In unknown space
-/// it continues (UnknownPolicy::free) or ends without a surface (UnknownPolicy::occupied). There is
-/// no surface outside the map's bounding box, and none in views from inside a solid. The grey value
-/// of the cell's face is interpolated bilinearly between neighbouring faces of the surface (also
-/// over steps of one cell), so that cell edges do not show. A face that was never observed takes
-/// the mean of its cell's observed faces; a cell without any has no depth in the view (0), since
-/// its grey value is unknown.
+/// A ray ends at the first surface. In an occupied cell these are the planes inside the cell
+/// (CellSurfaces); if there are none, it is the face through which the ray enters. A ray that
+/// misses the planes continues; if all planes of a cell face away from the ray, it ends at the face
+/// of the cell. In unknown space a ray continues (UnknownPolicy::free) or ends without a surface
+/// (UnknownPolicy::occupied). There is no surface outside the map's bounding box, and none in views
+/// from inside a solid. The grey value of the cell's face is interpolated bilinearly between
+/// neighbouring faces of the surface (also across steps of one cell), so that cell edges are not
+/// visible. A face that was never observed takes the mean grey value of the observed faces of its
+/// cell. A cell without observed faces has no depth in the view (0), because its grey value is
+/// unknown.
 class VoxelRenderer : public ViewSource {
   public:
     /// @throws std::invalid_argument when the map's bounding box has more than 2^31 cells

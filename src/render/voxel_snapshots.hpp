@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Views of a map that changes.
+// Renderers of a map that changes.
 #pragma once
 
 #include <deque>
@@ -11,10 +11,10 @@
 
 namespace photonav {
 
-/// Renderers of a map that changes, each showing the map at one time. A renderer never changes
-/// while it is in use. One that is no longer in use is updated and returned again, so that the cost
-/// of an update grows with the change, not with the map; so do not keep old renderers longer than
-/// needed.
+/// Makes renderers of a map that changes. Each renderer shows the map at the time of one update and
+/// does not change while it is in use. A renderer that is no longer in use is updated and returned
+/// again, so that the cost of an update grows with the size of the change, not of the map.
+/// Therefore, do not keep old renderers longer than needed.
 ///
 /// update() must not run while the map is written. Other threads may use and release renderers at
 /// any time.
@@ -26,8 +26,8 @@ class VoxelSnapshots {
     /// The renderer of the map at the last update; never null.
     const std::shared_ptr<const VoxelRenderer>& current() const { return current_; }
 
-    /// Updates to the present map. Views of the returned renderer are bit-identical to those of a
-    /// new VoxelRenderer of the map.
+    /// A renderer of the present map, which becomes current(). Its views are bit-identical to those
+    /// of a new VoxelRenderer of the map.
     /// @param change everything that changed in the map since the last update
     /// @throws std::invalid_argument when the map has grown too large (see above), or when the
     ///        change is of another resolution
