@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks of a mesh file before assimp opens it: assimp trusts the sizes in a header and the depth
-// of a scene, and reports neither elements nor files that are missing.
+// Checks a mesh file before assimp opens it: assimp does not check the sizes in a header and the
+// nesting of nodes, and does not report missing elements or files.
 #pragma once
 
 #include <string>
@@ -9,12 +9,13 @@ namespace photonav {
 
 enum class MeshFormat { ply, obj, gltf, glb };
 
-/// By the extension. @throws InputError for others
+/// The format of a mesh file by its extension.
+/// @throws InputError for any other extension
 MeshFormat meshFormatOf(const std::string& file);
 
-/// Checks that a PLY header is whole and that its elements fit into the file, that the material
-/// libraries an OBJ names are there, and that a glTF is of version 2 and its nodes are not nested
-/// without end.
+/// Checks that a PLY header is complete and its elements fit into the file; that the material
+/// libraries of an OBJ file exist; and that a glTF file has version 2 and its nodes are not nested
+/// too deeply or in a cycle.
 /// @throws InputError naming file and element, library or node; for other formats
 void checkMeshFile(const std::string& file);
 

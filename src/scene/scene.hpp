@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A textured triangle scene: what a mesh file or a procedural description becomes.
+// A scene of textured triangles, from a mesh file or a procedural description.
 #pragma once
 
 #include <array>
@@ -11,15 +11,15 @@
 
 namespace photonav {
 
-/// A triangle with its own corners: world frame, metres. Both sides are visible.
+/// A triangle. Both sides are visible.
 struct Triangle {
-    std::array<Eigen::Vector3f, 3> corners;
+    std::array<Eigen::Vector3f, 3> corners;  ///< world frame [m]
     std::array<Eigen::Vector2f, 3> uv{Eigen::Vector2f::Zero(), Eigen::Vector2f::Zero(),
                                       Eigen::Vector2f::Zero()};
     std::uint32_t texture = 0;  ///< index into Scene::textures
 };
 
-/// An upright prism full of matter.
+/// An upright solid prism.
 struct Prism {
     std::vector<Eigen::Vector2d> footprint;  ///< convex, x-y [m]
     double low = 0., high = 0.;              ///< z [m]
@@ -28,13 +28,13 @@ struct Prism {
 struct Scene {
     std::vector<Texture> textures;
     std::vector<Triangle> triangles;
-    /// Where there is no room although no surface is near: the inside of boxes and walls. (Of a
-    /// mesh only surfaces are known; its inside counts as free.)
+    /// The inside of solid boxes and walls, which is an obstacle away from surfaces as well. (The
+    /// inside of a mesh from a file counts as free.)
     std::vector<Prism> solids;
-    std::vector<std::string> files;  ///< that were read for it: scene or mesh, textures, materials
+    std::vector<std::string> files;  ///< files that were read: scene or mesh, textures, materials
 
-    Eigen::AlignedBox3d boundingBox() const;
-    /// Adds all that another scene has.
+    Eigen::AlignedBox3d boundingBox() const;  ///< of the triangles, world frame [m]
+    /// Adds the content of another scene.
     void append(const Scene& other);
 };
 
@@ -45,20 +45,24 @@ Scene loadScene(const std::string& file);
 /// Adds a texture and returns its index, which surfaces refer to.
 std::uint32_t addTexture(Scene& scene, Texture texture);
 
-/// The farthest that a surface may be from the origin along an axis [m]; single precision tells
-/// centimetres apart there.
+/// Largest distance of a surface from the origin along an axis [m]. Single precision resolves
+/// centimetres at this distance.
 inline constexpr double kFarthestSurface = 1e5;
 
-/// A parallelogram with corner, corner + u, corner + v. Texture coordinates run along u and v in
-/// metres from the corner; seen from where u points right and v points down an image is upright.
+/// Adds a parallelogram with corners corner, corner + u, corner + u + v and corner + v, world frame
+/// [m]. Texture coordinates run along u and across it, toward v, in metres from the corner. Seen
+/// from the side where u points right and v points down, an image is upright.
+/// @param texture index from addTexture()
 /// @param offset texture position at the corner [m]
 /// @throws std::invalid_argument for a surface without area or beyond kFarthestSurface
 void addPlane(Scene& scene, const Eigen::Vector3d& corner, const Eigen::Vector3d& u,
               const Eigen::Vector3d& v, std::uint32_t texture,
               const Eigen::Vector2d& offset = Eigen::Vector2d::Zero());
 
-/// The six faces of an axis-aligned box, which is full inside, or hollow as a room is.
+/// Whether a box is solid, or hollow like a room.
 enum class BoxInside { solid, hollow };
+/// Adds the six faces of an axis-aligned box, world frame [m].
+/// @throws std::invalid_argument unless `max` is beyond `min` along every axis
 void addBox(Scene& scene, const Eigen::Vector3d& min, const Eigen::Vector3d& max,
             std::uint32_t texture, BoxInside inside = BoxInside::solid);
 
@@ -68,8 +72,11 @@ struct Wall {
     double height = 2.5;                     ///< [m]
     double thickness = 0.1;                  ///< [m]
     double bottom = 0.;                      ///< z of its foot [m]
-    bool closed = false;                     ///< the last point is joined to the first
+    bool closed = false;                     ///< whether the last point is joined to the first
 };
+/// Adds the surfaces of a wall and its inside as solids.
+/// @throws std::invalid_argument for too few points, a footprint that turns back on itself, and a
+///        height or thickness that is not positive
 void addWall(Scene& scene, const Wall& wall, std::uint32_t texture);
 
 }  // namespace photonav

@@ -29,12 +29,13 @@ class YamlMap;
 ///       - {footprint: [[0, 0], [10, 0], [10, 10]], height: 2.5, thickness: 0.1, bottom: 0,
 ///          closed: false, texture: bars}
 ///
-/// @param mostTexels of all textures together; a scene that asks for more is refused before they
-/// are made
+/// @param mostTexels largest number of texels of all textures together, checked before textures are
+///        made
 /// @throws InputError naming file, key and reason
 Scene loadSceneYaml(const std::string& file, double mostTexels = kMostTexels);
 
-/// Reads a scene from a mapping of another file: the keys above and those read before, no others.
+/// Reads a scene from a mapping of another file, which may contain the keys above and those that
+/// the caller has read before.
 /// @throws InputError naming file, key and reason
 Scene readScene(YamlMap& map, double mostTexels = kMostTexels);
 
