@@ -15,7 +15,8 @@ inline double mean(const std::vector<double>& values, double ifEmpty) {
     return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
 }
 
-/// The upper median; `ifEmpty` for an empty list.
+/// The median, for an even number of values the larger one of the middle two; `ifEmpty` for an
+/// empty list.
 template <class T>
 double median(std::vector<T> values, double ifEmpty) {
     if (values.empty()) return ifEmpty;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The types that all modules share, and their conventions.
+// Types that are used by all modules, and their conventions.
 //
 // Frames. w: world, x forward, y left, z up. b: body, x forward, y left, z up. c: camera, optical
 // frame, x right, y down, z forward. T_a_b maps coordinates in b to coordinates in a (ViSP's aMb).

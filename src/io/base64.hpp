@@ -7,9 +7,11 @@
 
 namespace photonav {
 
+/// Encodes bytes as Base64.
 std::string base64Encode(std::string_view bytes);
 
-/// @throws std::invalid_argument for a character or a length that no encoded text has
+/// Decodes Base64 to bytes.
+/// @throws std::invalid_argument for an invalid character or length
 std::string base64Decode(std::string_view text);
 
 }  // namespace photonav

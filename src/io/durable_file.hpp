@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that are on the disk when the power fails.
+// Writes files durably: they are on the disk even if the power fails afterwards.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +7,14 @@
 
 namespace photonav {
 
-/// Writes the whole file or nothing, as writeFileAtomically() does, and the new file is on the disk
-/// before it replaces the older one. For files outside of a FolderTransaction, which brings all of
-/// its own to the disk at once.
+/// Writes the whole file or nothing, as writeFileAtomically() does. The new file is on the disk
+/// before it replaces the older one. For files outside a FolderTransaction, which synchronises all
+/// of its files together.
 /// @throws InputError naming the file and the system's reason
 void replaceFile(const std::filesystem::path& file, std::string_view content);
 
-/// Waits until a file, or the names in a folder, are on the disk.
-/// @param reported in an error
+/// Waits until a file, or the entries of a folder, are on the disk.
+/// @param reported path that errors name
 /// @throws InputError when they cannot be written
 void synchronise(const std::filesystem::path& path, const std::filesystem::path& reported);
 

@@ -7,8 +7,8 @@
 
 namespace photonav {
 
-/// A text with line breaks and other control characters written out ("\n", "\x1b"), so that what
-/// a file holds can neither break a message into lines nor steer a terminal.
+/// Escapes line breaks and other control characters in a text ("\n", "\x1b"), so that text from a
+/// file can neither break a message into lines nor control a terminal.
 inline std::string oneLine(std::string_view text) {
     constexpr std::string_view kDigits = "0123456789abcdef";
     std::string line;

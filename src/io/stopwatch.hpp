@@ -6,12 +6,13 @@
 
 namespace photonav {
 
-/// Wall-clock time from its construction on.
+/// Measures wall-clock time since its construction.
 class Stopwatch {
   public:
+    /// Time since the construction [s].
     double seconds() const { return since(begin_, Clock::now()); }
 
-    /// Seconds since the last lap (or the beginning).
+    /// Time since the last call of lap(), or since the construction [s].
     double lap() {
         const auto now = Clock::now();
         return since(std::exchange(last_, now), now);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grey values between pixels.
+// Bilinear interpolation of images.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace photonav {
 
-/// The image at (u, v) [pixels], interpolated between the four pixels around it. All four must be
-/// in the image: 0 <= u < width - 1, 0 <= v < height - 1.
+/// Value of an image at (u, v) [pixels], interpolated bilinearly between the four pixels around
+/// that point. All four must be in the image: 0 <= u < width - 1, 0 <= v < height - 1.
 inline float bilinear(const ImageF& image, double u, double v) {
     const auto column = static_cast<int>(u);
     const auto row = static_cast<int>(v);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Short vectors of the width the target offers, as GCC vector extensions: arithmetic and
-// comparisons are the language's own operators; this adds the few that are missing.
+// SIMD vectors of the widest registers of the target, by GCC's vector extensions. Arithmetic and
+// comparisons are the operators of the language; this file adds the functions that are missing.
 #pragma once
 
 #include <cstdint>
@@ -39,34 +39,34 @@ inline Int clamp(const Int& a, const Int& low, const Int& high) {
     return raised < high ? raised : high;
 }
 
-/// 0, 1, 2, ...
+/// The vector (0, 1, 2, ...).
 inline Float ramp() {
     Float lanes;
     for (int i = 0; i < kWidth; ++i) lanes[i] = static_cast<float>(i);
     return lanes;
 }
 
-/// Over the lanes, in double precision.
+/// Sum over the lanes, in double precision.
 inline double sum(const Float& a) {
     double total = 0.;
     for (int i = 0; i < kWidth; ++i) total += a[i];
     return total;
 }
 
-/// a + b, which may overflow: unused lanes may hold anything.
+/// a + b with wrap-around on overflow, because unused lanes may have any value.
 inline Int wrappingSum(const Int& a, const Int& b) {
     using Unsigned [[gnu::vector_size(kWidth * 4)]] = std::uint32_t;
     return reinterpret_cast<Int>(reinterpret_cast<Unsigned>(a) + reinterpret_cast<Unsigned>(b));
 }
 
-/// For |a| < 2^31; an undefined value otherwise.
+/// The largest integer not above a, for |a| < 2^31; an undefined value otherwise.
 inline Int floor(const Float& a) {
     const Int truncated = toInt(a);
     const Int above = toFloat(truncated) > a;
     return wrappingSum(truncated, above);
 }
 
-/// The nearest whole number, for |a| < 2^22; halves are rounded to either side.
+/// The nearest integer, for |a| < 2^22; halves are rounded up or down.
 inline Float rounded(const Float& a) {
     constexpr float kMagic = 12582912.F;  // 1.5 * 2^23: the sum has no bits for a fraction
     return (a + kMagic) - kMagic;
@@ -84,7 +84,7 @@ void store(T* to, const Vector& vector) {
     std::memcpy(to, &vector, sizeof(vector));
 }
 
-/// Bit i is set where lane i of the mask is.
+/// The mask as bits: bit i is set if lane i of the mask is set.
 inline unsigned bits(const Int& mask) {
 #if defined(__AVX512F__)
     return _mm512_test_epi32_mask(reinterpret_cast<__m512i>(mask), reinterpret_cast<__m512i>(mask));
