@@ -12,34 +12,36 @@
 
 namespace photonav {
 
-/// What was checked, and what came out.
+/// Input and outcome of a check.
 struct CheckOutcome {
     const Config& config;
     World world;
     GivenTrajectory trajectory;
-    std::string file;  ///< of the trajectory
-    double tilt = 0.;  ///< of the body, at most [rad]
+    std::string file;  ///< file of the trajectory
+    double tilt = 0.;  ///< largest tilt of the body along the trajectory [rad]
     Obstruction obstruction = {};
     CheckedTrajectory checked = {};
-    std::optional<CheckedTrajectory> turned = {};  ///< with the best headings
-    EvaluatedPath path = {};                       ///< of `checked`
+    std::optional<CheckedTrajectory> turned = {};  ///< the trajectory with the best headings
+    EvaluatedPath path = {};                       ///< pathOf(checked)
     FlightSet flights = {};
     bool interrupted = false;
 };
 
-/// A checked trajectory as a path that can be drawn.
+/// A checked trajectory as a path, for drawing. Cost and information are not set.
 EvaluatedPath pathOf(const CheckedTrajectory& checked, const std::string& name);
 
-/// "keeps the camera localised", or where it is lost and why.
+/// The result in one sentence: the camera stays localised, or it is lost after so many metres, with
+/// the cause.
 std::string verdictOf(const CheckedTrajectory& checked);
 
-/// Way that ends at places whose image is rejected, or leaves directions open [m].
+/// Length of the trajectory on which the images are rejected (isRejected) or leave directions open
+/// (not isRejected) [m]. Each image stands for the stretch that ends at it.
 double lengthByVerdict(const CheckedTrajectory& checked, bool isRejected);
 
-/// Everything about the belief along a checked trajectory, place by place.
+/// Summary and places of a checked trajectory as JSON.
 nlohmann::json localisationJson(const CheckedTrajectory& checked);
 
-/// result.json of `photonav check`; seconds are the caller's to fill.
+/// The content of result.json of `photonav check`. The caller must add computation times.
 nlohmann::json checkResult(const CheckOutcome& report);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trajectories of other programs: TUM and KITTI files, CSV tables and lists of waypoints.
+// Reads trajectories of other programs: TUM and KITTI files, CSV tables and lists of waypoints.
 #pragma once
 
 #include <optional>
@@ -16,34 +16,34 @@ struct GivenPose {
 };
 
 enum class TrajectoryFormat {
-    cameraPoses,  ///< camera to world; TUM: `t tx ty tz qx qy qz qw`, KITTI: rows of the matrix
-    table         ///< positions of the body, and perhaps times and headings
+    cameraPoses,  ///< T_w_c; TUM: `t tx ty tz qx qy qz qw`, KITTI: rows of the 3x4 matrix
+    table         ///< positions of the body, optionally with times and headings
 };
 
-/// The heading of a table that has none: where the robot flies, or always this one [rad].
+/// The heading for a table without headings [rad]; nothing: along the motion.
 using GivenHeading = std::optional<double>;
 
 struct GivenTrajectory {
     TrajectoryFormat format = TrajectoryFormat::table;
-    bool hasHeading = false;       ///< the file says how the body is turned
+    bool hasHeading = false;       ///< the file contains orientations or headings
     std::vector<GivenPose> poses;  ///< at least two; times never decrease
 };
 
-/// Reads a trajectory. Eight columns without commas are a TUM file, twelve numbers without commas
-/// one of KITTI, which has no times. Any other table has columns x,
-/// y, z and perhaps t and yaw [s, m, rad], with blanks or commas between them: in the order of the
-/// names in its first line, or else x,y,z or t,x,y,z,yaw. Other columns, if they have a name, are
-/// passed over.
-/// @param T_b_c camera mount, which turns camera poses into body poses
-/// @param heading where a table has none; nothing: along the motion from above, as it was before
-///        where that is vertical
-/// @throws InputError naming file, line and reason: for what is not a finite number, a position
-///         beyond 100 km, a quaternion whose norm is not within 0.1 of 1, a decreasing time, four
-///         columns without names, fewer than two poses, or poses that are all the same
+/// Reads a trajectory. A file with eight columns without commas is a TUM file, one with twelve
+/// numbers per line without commas is a KITTI file, which has no times. Any other file is a table
+/// with the columns x, y, z and optionally t and yaw [m, s, rad], separated by blanks or commas. A
+/// first line may name the columns; other named columns are ignored. Without names the columns are
+/// x,y,z or t,x,y,z,yaw.
+/// @param T_b_c camera mount, with which camera poses are converted into body poses
+/// @param heading heading of the body for a table without headings; nothing: the horizontal
+///        direction of motion (during vertical motion the previous heading)
+/// @throws InputError naming file, line and reason: for a value that is not a finite number, a
+///         position beyond 100 km, a quaternion whose norm is not within 0.1 of 1, a decreasing
+///         time, four columns without names, fewer than two poses, or poses that are all the same
 GivenTrajectory readGivenTrajectory(const std::string& file, const Pose& T_b_c,
                                     const GivenHeading& heading = {});
 
-/// The smallest box around the positions [m].
+/// The bounding box of the positions, world frame [m].
 Eigen::AlignedBox3d boxAround(const GivenTrajectory& trajectory);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a camera that flies a given trajectory can be localised all along it.
+// Checks whether a camera that flies a given trajectory can be localised everywhere along it.
 #pragma once
 
 #include <atomic>
@@ -16,9 +16,9 @@
 namespace photonav {
 
 struct CheckOptions {
-    int headings = 24;  ///< compared at every place, evenly spread; 0: none
-    /// Standard deviation of the position along its weakest direction above which the camera counts
-    /// as lost [m]; none: what the tracker's search covers.
+    int headings = 24;  ///< number of headings compared at every place, evenly spread; 0: none
+    /// The camera also counts as lost if the standard deviation of its position along the weakest
+    /// direction exceeds this value [m]; none: no such limit.
     std::optional<double> maxSigma = {};
 };
 
@@ -26,74 +26,80 @@ struct CheckOptions {
 enum class LossCause {
     none,
     rejectedImages,  ///< several images in a row show too little of the map (LossOptions)
-    wideBelief,      ///< the tracker's search does not cover the belief (searchSpacing())
-    maxSigma         ///< more uncertain than asked for
+    wideBelief,      ///< the belief is wider than the tracker's search (searchSpacing())
+    maxSigma         ///< the position is more uncertain than CheckOptions::maxSigma
 };
 std::string nameOf(LossCause cause);
 
-/// The heading with the least trace after one view from a place, all others compared with it.
+/// A comparison of headings at a place by the weighted trace after one view [m^2].
 struct BestHeading {
-    double yaw = 0.;             ///< of the body [rad]
-    double trace = 0.;           ///< after a view with this heading
-    double ownTrace = 0.;        ///< after a view with the heading of the trajectory
-    std::vector<double> traces;  ///< of every heading, from that of the trajectory on, to the left
+    double yaw = 0.;             ///< heading of the body with the least trace [rad]
+    double trace = 0.;           ///< trace after a view with this heading
+    double ownTrace = 0.;        ///< trace after a view with the heading of the trajectory
+    std::vector<double> traces;  ///< traces for all headings, counterclockwise from the heading of
+                                 ///< the trajectory
 };
 
-/// A place where an image is taken: the belief, and how the tracker would judge the image.
+/// A place where an image is taken: the belief, and the tracker's expected verdict on the image.
 struct CheckedPlace {
     std::optional<double> time;  ///< [s]
     Pose T_w_b = Pose::Identity();
-    double length = 0.;                    ///< way of the position so far [m]
-    double distance = 0.;                  ///< the same with turns counted [m]
-    Matrix6 covariance = Matrix6::Zero();  ///< of T_c_w with the image, left, camera frame
-    double traceBefore = 0., trace = 0.;   ///< weighted, without and with the image
-    double positionSigma = 0.;             ///< along its weakest direction, with the image [m]
-    double rotationSigma = 0.;             ///< about its weakest axis, with the image [rad]
-    Eigen::Vector3d weakest_w = Eigen::Vector3d::UnitX();  ///< unit vector, z >= 0
+    double length = 0.;    ///< length of the trajectory so far [m]
+    double distance = 0.;  ///< distance so far, including turns (Config::rotationWeight) [m]
+    Matrix6 covariance = Matrix6::Zero();  ///< of T_c_w after the image, left, camera frame
+    double traceBefore = 0., trace = 0.;   ///< weighted trace before and after the image [m^2]
+    double positionSigma = 0.;             ///< along the weakest direction, after the image [m]
+    double rotationSigma = 0.;             ///< about the weakest axis, after the image [rad]
+    /// Weakest direction of the position, world frame: unit vector, z >= 0.
+    Eigen::Vector3d weakest_w = Eigen::Vector3d::UnitX();
     double overlap = 0.;                           ///< share of the pixels that the map predicts
     Verdict verdict = Verdict::converged;          ///< converged, degenerate or lostOverlap
     std::vector<std::string> openDirections = {};  ///< of the image, see Alignment::openDirections
     LossCause loss = LossCause::none;
-    std::optional<BestHeading> best = {};
+    std::optional<BestHeading> best = {};  ///< none if no headings are compared
 };
 
 struct CheckedTrajectory {
     std::vector<CheckedPlace> places;
-    double length = 0.;              ///< of the positions [m]
-    double meanTrace = 0.;           ///< integral of the trace over the distance, divided by it
-    double arrivalProbability = 0.;  ///< believed, within `arrivalTolerance` of the last place
-    double arrivalTolerance = 0.;    ///< [m]
+    double length = 0.;     ///< length of the trajectory [m]
+    double meanTrace = 0.;  ///< weighted trace, averaged over the distance flown [m^2]
+    /// Probability, by the belief, that the body ends within arrivalTolerance of the last place.
+    double arrivalProbability = 0.;
+    double arrivalTolerance = 0.;  ///< [m]
 
-    /// The first place where the camera is lost; null: none.
+    /// The first place where the camera is lost; null if there is none.
     const CheckedPlace* firstLost() const;
     bool isLost() const { return firstLost() != nullptr; }
-    /// Way that ends at places where the camera is lost [m].
+    /// Length of the trajectory on which the camera is lost [m]. Each place stands for the stretch
+    /// that ends at it.
     double lostLength() const;
-    /// The place with the least certain position.
+    /// The place with the largest positionSigma.
     const CheckedPlace& worst() const;
 };
 
-/// Carries the belief of the config along a trajectory, with an image every planner.ds, and judges
-/// every image as the tracker of a flight would (flightAlignment(), LossOptions):
+/// Propagates the initial belief of the config along a trajectory, with an image every planner.ds.
+/// Images are evaluated as by the tracker of a flight (flightAlignment(), LossOptions):
 ///
-/// - an image of which the map predicts less than TrustOptions::minOverlap is rejected, and does
-///   not count; after LossOptions::rejectedImages of them in a row the camera is lost, until an
-///   image determines all directions;
-/// - an image that leaves directions open does not lose the camera: odometry goes on there;
-/// - where the belief is wider than the tracker's search covers, the camera is lost, and no image
-///   counts from there on.
+/// - An image of which the map predicts less than TrustOptions::minOverlap is rejected: it does not
+///   update the belief. After LossOptions::rejectedImages rejected images in a row the camera is
+///   lost until an image determines all directions.
+/// - An image that leaves directions open is used. The camera is not lost: odometry covers the open
+///   directions.
+/// - When the belief is wider than the tracker's search, the camera is lost, and all later images
+///   are ignored.
 ///
-/// Views are rendered exactly where the trajectory has them, not at the centres of the planner's
+/// Views are rendered at the exact poses of the trajectory, not at the centres of the planner's
 /// cells.
-/// @param interrupted the places so far are returned when it is set
-/// @throws RenderingStopped when there are none yet, inside a large view
-/// @param onProgress share done, in [0, 1]
+/// @param interrupted when it is set, the places so far are returned
+/// @param onProgress called with the share done, in [0, 1]
+/// @throws RenderingStopped when it is interrupted inside a large view at the first place
 CheckedTrajectory checkLocalisation(const GivenTrajectory& trajectory, const Config& config,
                                     const World& world, const CheckOptions& options = {},
                                     const std::atomic<bool>& interrupted = kNotInterrupted,
                                     const std::function<void(double)>& onProgress = {});
 
-/// The same positions with the best heading wherever it gains a tenth of the trace.
+/// The checked positions, with the best heading at all places where it reduces the trace by more
+/// than a tenth.
 GivenTrajectory withBestHeadings(const CheckedTrajectory& checked);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a trajectory is in collision or out of bounds.
+// Finds where a trajectory is in collision or out of bounds.
 #pragma once
 
 #include <vector>
@@ -10,18 +10,20 @@
 
 namespace photonav {
 
-/// A part of a trajectory, by the way of the position so far.
+/// A part of a trajectory, between two lengths from its beginning.
 struct Stretch {
     double begin = 0., end = 0.;  ///< [m]
 };
 
 struct Obstruction {
-    std::vector<Stretch> collisions = {};  ///< nearer to an obstacle than the robot's radius
-    std::vector<Stretch> outside = {};     ///< of the bounds of the config
-    double leastClearance = 0.;  ///< within the bounds; at most World::clearance() reaches [m]
+    std::vector<Stretch> collisions = {};  ///< parts nearer to an obstacle than the robot's radius
+    std::vector<Stretch> outside = {};     ///< parts outside of the bounds of the config
+    /// Least clearance within the bounds, limited by the range of World::clearance() [m]; infinite
+    /// if all of the trajectory is out of bounds.
+    double leastClearance = 0.;
 };
 
-/// Looks at every 2 cm of the straight motions between the poses, and at the poses themselves.
+/// Checks the poses and the straight motions between them, every 2 cm.
 Obstruction obstructionOf(const GivenTrajectory& trajectory, const Config& config,
                           const World& world);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tracker would make of an image from a pose, predicted by the map.
+// Predicts an image from a map, and the tracker's verdict on it.
 #pragma once
 
 #include "alignment/coarse_to_fine.hpp"
@@ -9,18 +9,18 @@
 namespace photonav {
 
 struct PredictedImage {
-    Matrix6 information = Matrix6::Zero();  ///< of the planner: photometricInformation()
-    /// Verdict (converged, degenerate or lostOverlap), overlap, open directions and mean depth of
-    /// an image that equals its prediction.
+    Matrix6 information = Matrix6::Zero();  ///< photometricInformation(), as the planner uses it
+    /// The alignment of an image that equals its prediction: verdict (converged, degenerate or
+    /// lostOverlap), overlap, open directions and mean depth.
     Alignment alignment;
 };
 
-/// Renders images and judges them by the rules of alignments.
+/// Renders images and applies the tracker's rules for accepting alignments.
 class ImagePredictor {
   public:
-    /// @param map must outlive it
-    /// @param photometric of the planner's information
-    /// @param alignment of the tracker; its noise and pixels must be the planner's
+    /// @param map must outlive the predictor
+    /// @param photometric options of the planner's information
+    /// @param alignment options of the tracker; noise and stride must be those of `photometric`
     ImagePredictor(const ViewSource& map, const Camera& camera,
                    const PhotometricOptions& photometric, const AlignmentOptions& alignment);
 

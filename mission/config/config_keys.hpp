@@ -7,15 +7,17 @@
 
 namespace photonav {
 
-/// Every key with its default or present value, which must outlive the table.
+/// The table of all keys. Its entries read and write the members of `config`, which must outlive
+/// the table.
 KeyTable keysOf(Config& config);
 
-/// The sections `fly`, `sweep` and `explore`.
+/// Add the keys of the sections `fly`, `sweep` and `explore`. `config` must outlive the table.
 void addKeys(KeyTable& keys, FlyConfig& config);
 void addKeys(KeyTable& keys, SweepConfig& config);
 void addKeys(KeyTable& keys, ExploreConfig& config);
 
-/// Degrees below the horizon of a mount name or number; nothing when it is neither.
+/// The angle of a camera mount below the horizon [degrees], from its name (down, front45, forward)
+/// or a number within +-90; nothing for other texts.
 std::optional<double> mountDegrees(const std::string& mount);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ways to plan in a scene that comes into view: a planner, and what is done with its plans.
+// Planning during an exploration: a planner, its headings and its replanning policy.
 #pragma once
 
 #include <optional>
@@ -10,18 +10,19 @@
 namespace photonav {
 
 enum class Replanning {
-    repair,   ///< tree or roadmap are kept and repaired as the map changes
+    repair,   ///< the tree or roadmap is kept, and repaired when the map changes
     scratch,  ///< a new tree or roadmap after every change; views of unchanged space are kept
-    never     ///< the first plan is flown to its end, or until an obstacle is seen on it
+    never     ///< the first plan is flown to its end, or until an obstacle is observed on it
 };
 
-/// As it is named in a config: a planner, or a planner and a policy, "rrt_star/forward".
+/// A planner and an optional policy, as named in a config: "rrt_star" or "rrt_star/forward".
 struct ExplorePlanner {
-    std::string name;                            ///< one of plannerNames()
-    std::optional<Headings> headings;            ///< "fixed", "forward"; none: the planner's
-    Replanning replanning = Replanning::repair;  ///< "replan": scratch, "once": never
+    std::string name;                  ///< one of plannerNames()
+    std::optional<Headings> headings;  ///< policies "fixed", "forward"; none: the planner chooses
+    Replanning replanning = Replanning::repair;  ///< policies "replan" (scratch), "once" (never)
 };
 
+/// Parses a name as used in `explore.planners`.
 /// @throws std::invalid_argument for an unknown planner or policy
 ExplorePlanner explorePlanner(const std::string& name);
 

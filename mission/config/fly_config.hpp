@@ -10,22 +10,28 @@
 namespace photonav {
 
 struct FlyConfig {
-    std::string plan;       ///< result.json of `photonav plan` to fly, absolute; empty: plan anew
-    unsigned flights = 20;  ///< per planner
-    double speed = 1.;      ///< at most [m/s]
-    double rate = 0.;       ///< of the camera [Hz]; 0: a view every planner.ds at full speed
-    double latency = 0.05;  ///< of images [s]
+    std::string plan;       ///< result.json of `photonav plan`, absolute path; empty: a new plan
+    unsigned flights = 20;  ///< flights per planner
+    double speed = 1.;      ///< largest speed [m/s]
+    double rate = 0.;       ///< image rate [Hz]; 0: one image every planner.ds at full speed
+    double latency = 0.05;  ///< delay from exposure to arrival of an image [s]
     double drop = 0.;       ///< share of the images that never arrive
     double black = 0.;      ///< share of the images that are black
-    Eigen::Vector2d blackout = Eigen::Vector2d::Zero();  ///< all are black: from, how long [s]
-    std::string camera = "assumed";  ///< noise of images: as planned with, or as of a real camera
-    double odometry = 1.;            ///< true odometry variance / the assumed one
-    double bodyRadius = 0.;          ///< of collisions [m]; 0: half of robot.radius
-    bool photometricGoal = true;     ///< servo on the goal's image at the end
-    std::string map;  ///< octree, mesh or scene file to track in, absolute; empty: the true world
-    std::optional<double> scale;               ///< factor on the measured information; none: 1
-    std::optional<double> leastSigma;          ///< least standard deviations of an alignment [m]
-    std::optional<double> leastSigmaRotation;  ///< [rad]; none: 0
+    /// Start and length of a time in which all images are black [s].
+    Eigen::Vector2d blackout = Eigen::Vector2d::Zero();
+    std::string camera = "assumed";  ///< image noise: "assumed" as by the planner, or "real" as of
+                                     ///< a real camera
+    double odometry = 1.;            ///< true odometry variance divided by the assumed one
+    double bodyRadius = 0.;          ///< radius of the body in collisions [m]; 0: half of
+                                     ///< robot.radius
+    bool photometricGoal = true;     ///< at the end, servo on the image of the goal
+    std::string map;  ///< octree, mesh or scene file to track in, absolute path; empty: the true
+                      ///< world
+    std::optional<double> scale;       ///< factor on the information of an alignment; none: 1
+    std::optional<double> leastSigma;  ///< least standard deviation of an aligned position [m];
+                                       ///< none: 0
+    std::optional<double> leastSigmaRotation;  ///< least standard deviation of an aligned rotation
+                                               ///< [rad]; none: 0
 };
 
 }  // namespace photonav

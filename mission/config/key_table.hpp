@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keys of a YAML file as a table: one line per key gives its name, allowed values, unit and
-// meaning, and where its value is kept. Reading, writing, command-line options and the reference in
-// docs/config.md all follow from it.
+// The keys of a YAML file as a table. One entry per key gives its name, allowed values, unit,
+// meaning and a reference to its value. Reading, writing, command-line options and the reference in
+// docs/config.md are all generated from the table.
 #pragma once
 
 #include <concepts>
@@ -16,13 +16,13 @@
 
 namespace photonav {
 
-/// Allowed values of a number.
+/// Allowed interval of a number, limits included.
 struct Range {
     double min = -kInfinity;
     double max = kInfinity;
 };
 
-/// Name, unit and meaning of a key, as its user reads them.
+/// Name, unit and meaning of a key, as shown to users.
 struct KeyWords {
     std::string name;  ///< within its section
     std::string unit;  ///< may be empty
@@ -30,38 +30,39 @@ struct KeyWords {
 };
 
 struct ConfigKey {
-    std::string section = {};  ///< empty: a key of the file itself
+    std::string section = {};  ///< empty: a key at the top level of the file
     KeyWords words = {};
     std::string allowed = {};  ///< allowed values in words, may be empty
-    bool isFile = false;       ///< a path, relative to the file that contains it
-    bool isText = false;       ///< typed on a command line it is taken as it is, not as YAML
-    std::function<void(YamlMap&)> read = {};
-    std::function<YAML::Node()> value = {};  ///< null: no value, not written
+    bool isFile = false;       ///< the value is a path, relative to the file that contains it
+    bool isText = false;       ///< set() takes a text literally, not as YAML
+    std::function<void(YamlMap&)> read = {};  ///< reads the value, if the section has the key
+    std::function<YAML::Node()> value = {};   ///< the present value; null: none, the key is not
+                                              ///< written
 
-    /// "section.name".
+    /// "section.name", or "name" at the top level.
     std::string path() const;
     /// Meaning, unit and present value without markup, for the help of a command.
     std::string description() const;
-    /// Sets the value as typed on a command line. @throws InputError without file name
+    /// Sets the value from the text of a command-line option. @throws InputError without file name
     void set(const std::string& text) const;
 };
 
 class KeyTable {
   public:
-    /// Keys added from now on belong to this section; "" is the file itself.
+    /// Keys added from now on belong to this section; "" is the top level of the file.
     void beginSection(const std::string& name) { section_ = name; }
 
-    // Keys by type. Every reference must outlive the table.
+    // Add a key of each type. `value` must outlive the table.
 
     void number(const KeyWords& words, double& value, Range range);
     void number(const KeyWords& words, std::optional<double>& value, Range range);
     void flag(const KeyWords& words, bool& value);
     void text(const KeyWords& words, std::string& value);
     void file(const KeyWords& words, std::string& value);
-    /// A path without which a file cannot be read.
+    /// A path that must be given: read() throws if the key is missing.
     void requiredFile(const KeyWords& words, std::string& value);
     void choice(const KeyWords& words, std::string& value, const std::vector<std::string>& choices);
-    /// Six variances in the order of a pose's error: the diagonal of the matrix.
+    /// Six variances, the diagonal of a covariance in the order (rho, phi) [m^2, rad^2].
     void variances(const KeyWords& words, Matrix6& value);
 
     /// A whole number.
@@ -79,7 +80,7 @@ class KeyTable {
             [&value](double number) { value = static_cast<T>(number); });
     }
 
-    /// @param names of the values of the enumeration, in its order
+    /// @param names name of each value of the enumeration, in the order of their definition
     template <typename Enum>
     requires std::is_enum_v<Enum>
     void choice(const KeyWords& words, Enum& value, const std::vector<std::string>& names) {
@@ -88,23 +89,24 @@ class KeyTable {
             [&value](std::size_t index) { value = static_cast<Enum>(index); });
     }
 
-    /// A key with a reader and writer of its own; the section is the current one.
+    /// A key with its own reader and writer. It is added to the current section.
     void add(ConfigKey key);
 
     const std::vector<ConfigKey>& keys() const { return keys_; }
-    /// The key of this path; null: there is none.
+    /// The key with this path (ConfigKey::path()); null if there is none.
     const ConfigKey* find(const std::string& path) const;
 
-    /// Overwrites the values that the file has.
+    /// Sets the values of all keys in the file; other values are not changed.
     /// @throws InputError naming file, key and reason, also for a key that the table does not have
     void read(YamlMap& root) const;
     void read(const std::string& file) const;
 
-    /// All values as YAML that read() reads back.
+    /// All values as YAML that read() can read.
     std::string toYaml() const;
 
-    /// Rows | key | value | unit | allowed | meaning | in Markdown.
-    /// @param names of sections or keys; empty: all
+    /// A Markdown table with the columns key, default (the present value), unit, allowed values and
+    /// meaning.
+    /// @param names sections or key paths to list; empty: all
     /// @throws InputError for a name that is neither
     std::string toMarkdown(const std::vector<std::string>& names) const;
 
@@ -118,13 +120,14 @@ class KeyTable {
     std::string section_;
 };
 
-/// Numbers as a YAML list on one line, to as many digits as they need.
+/// Numbers as a YAML list on one line, with the fewest digits that give the same numbers back.
 YAML::Node yamlList(const std::vector<double>& numbers);
 YAML::Node yamlList(const std::vector<std::string>& words);
-/// A number to as many digits as it needs.
+/// A number with the fewest digits that give the same number back.
 YAML::Node yamlNumber(double value);
 
-/// A path in a file is relative to the folder of that file; one without file stays as it is.
+/// A path that was read from a file, made absolute relative to the folder of that file. Returned
+/// unchanged if it is absolute, or if `path` or `file` is empty.
 std::string resolvedPath(const std::string& path, const std::string& file);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a map may be out of date.
+// Columns of a map that may be out of date.
 #pragma once
 
 #include <cstdint>
@@ -12,20 +12,23 @@
 
 namespace photonav {
 
-/// A new obstacle that an image shows may go on beyond the image, or behind what is in view. Until
-/// they are seen again, nothing is known of the columns of cells around it that the image does not
-/// show.
+/// A new obstacle that appears in an image may extend beyond the image, or behind other surfaces.
+/// The columns of cells within 1 m of it therefore count as unobserved until a depth image shows
+/// them again.
 class DoubtedColumns {
   public:
-    /// @param cell edge [m]
-    /// @param height below the camera at which a column is looked for [m]
+    /// @param cell edge of a cell [m]
+    /// @param height a column is checked by look() from the camera's height down to this distance
+    ///        below it [m]
     DoubtedColumns(double cell, double height) : cell_(cell), height_(height) {}
 
-    /// @param places on new obstacles; of a column one is enough
+    /// Marks the columns around new obstacles as doubted.
+    /// @param places points on new obstacles, world frame [m]; one per column is enough
     void doubtAround(const std::vector<Eigen::Vector3d>& places);
-    /// A column is no longer doubted once a depth image shows free space or a surface in it.
+    /// Removes the doubt from all columns in which a depth image shows free space or a surface.
     void look(const ImageF& depth, const Camera& camera, const Pose& T_c_w);
 
+    /// Whether the column of a place is doubted.
     bool contains(const Eigen::Vector3d& p_w) const {
         return !columns_.empty() && columns_.contains(columnOf(p_w.x(), p_w.y()));
     }

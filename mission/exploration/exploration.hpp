@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The flight of a simulated robot to a goal in a scene that it does not know.
+// The flight of a simulated robot to a goal in an unknown scene.
 #pragma once
 
 #include "exploration/explorer.hpp"
@@ -7,24 +7,24 @@
 
 namespace photonav {
 
-/// A flight of a simulated robot, against the truth. Its samples' distance is the length of the
-/// true path.
+/// A flight of a simulated robot, evaluated against the ground truth. FlightSample::distance is the
+/// length of the true path so far [m].
 struct ExplorationResult : FlightResult, ExplorationRecord {
-    double wallSeconds = 0.;  ///< that it took to simulate
+    double wallSeconds = 0.;  ///< wall-clock time of the simulation [s]
 };
 
 /// The unknown scene and the conditions of flight.
 struct ExplorationSetup {
     Config config;
-    FlightWorld truth;  ///< its map is not used
+    FlightWorld truth;  ///< the true world; FlightWorld::map is not used
     FlightOptions flight;
 };
 
-/// @param problem of the config in its true World, which must outlive the setup
+/// @param problem the config's problem in the true World, which must outlive the setup
 /// @throws InputError as explorerOptions() does, and for a start in collision
 ExplorationSetup setUpExploration(const PlanningProblem& problem);
 
-/// The part of a setup that is the robot's own.
+/// The options of the robot in a setup, without the true world.
 ExplorerOptions explorerOptions(const ExplorationSetup& setup);
 
 /// Called after every update of the plan.
@@ -43,8 +43,9 @@ struct OnExploration {
     OnExplorationMoment moment = {};  ///< after `update`
 };
 
-/// Explores with a simulated robot. Deterministic for a seed.
-/// @param planner as explorePlanner() takes it
+/// Explores with a simulated robot. Deterministic for a seed. When interrupted, the result holds
+/// the flight so far and ends as FlightEnd::stopped.
+/// @param planner a name for explorePlanner()
 ExplorationResult explore(const ExplorationSetup& setup, const std::string& planner,
                           std::uint32_t seed, const std::atomic<bool>& interrupted,
                           const OnExploration& on = {});

@@ -9,12 +9,13 @@
 
 namespace photonav {
 
-/// The flights of an exploration, of one run or merged from shards.
+/// The flights of an exploration: of one call of the command, or merged from its shards.
 struct ExplorationSet {
-    std::vector<ExplorationResult> flights;  ///< in the order of trialItems(); the first with a map
+    std::vector<ExplorationResult> flights;  ///< in the order of trialItems(); the first has a map
     std::vector<ExplorationSummary> summaries = {};  ///< one per planner
-    std::size_t ended = 0;                           ///< without a first one that was interrupted
-    std::size_t asked = 0;                           ///< flights there should be
+    std::size_t ended = 0;  ///< number of complete flights; an interrupted first flight is in
+                            ///< `flights`, but does not count
+    std::size_t asked = 0;  ///< number of flights of the complete exploration or shard
     bool interrupted = false;
 };
 

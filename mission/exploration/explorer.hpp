@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A robot that flies to a goal in a scene that it does not know. It is any robot: what it measures
-// is all that is used.
+// Exploration: flies any robot to a goal in an unknown scene, using only the robot's measurements.
 #pragma once
 
 #include <atomic>
@@ -20,43 +19,45 @@
 namespace photonav {
 
 struct ExplorerOptions {
-    /// Start, goal, camera, beliefs, and the section `explore`. Its camera must be the robot's.
+    /// Start, goal, camera, beliefs, and the section `explore`. Camera and mount must be those of
+    /// the robot.
     Config config;
-    /// Mount and sharpness are the robot's, its map errors those of the map.
+    /// Mount and blur are replaced by the robot's, map errors by those of the robot's map.
     TrackerOptions tracker;
-    PilotOptions pilot;      ///< its isFree asks the map
-    double timeStep = 0.02;  ///< of control and odometry [s]
-    /// Longest time from an exposure to the arrival of the next image, if that in between is
+    PilotOptions pilot;      ///< isFree is replaced by a test in the robot's map
+    double timeStep = 0.02;  ///< time step of control and odometry [s]
+    /// Longest time from an exposure to the arrival of the next image, if one image in between is
     /// missing [s].
     double imageAge = 0.55;
-    double bodyRadius = 0.1;  ///< kept free of what the last image shows [m]
+    double bodyRadius = 0.1;  ///< radius kept free of obstacles in the last image [m]
 };
 
-/// Options that follow from a config, as for the simulated robot of `photonav explore`.
-/// @throws InputError for headings of explore.planners where the heading is not free
+/// The options that follow from a config, as `photonav explore` uses them.
+/// @throws InputError if explore.planners asks for headings and the space is not xyz_yaw
 ExplorerOptions explorerOptions(const Config& config);
 
-/// Of T_c_w: the start of a config, with the covariance explore.initial.
+/// The belief of T_c_w at take-off: the start of a config, with the covariance explore.initial in
+/// the camera frame.
 UncertainPose beliefAtTakeOff(const Config& config);
 
-/// An exploration as the robot itself knows it.
+/// The course of an exploration, without ground truth.
 struct ExplorationRecord {
     std::string planner;
     std::uint32_t seed = 0;
-    std::string reason;  ///< of an end that is not arrived
-    int keyframes = 0;
-    int blindSteps = 0;  ///< into space that could not be looked at first
+    std::string reason;  ///< why the flight ended without arrival; empty otherwise
+    int keyframes = 0;   ///< number of images fused into the map
+    int blindSteps = 0;  ///< number of steps into space that could not be observed first
     std::vector<PlanUpdate> updates;
-    std::shared_ptr<TexturedOcTree> map;  ///< that the robot made; empty: not kept
+    std::shared_ptr<TexturedOcTree> map;  ///< the map made by the robot; null: not kept
 };
 
-/// The moment right after an update of the plan, for logs and figures.
+/// The state right after an update of the plan, for logs and figures.
 struct ExplorerMoment {
     const OnlinePlanner& planner;
     const OwnMap& map;
-    const MapChange& change;     ///< of the map, since the last moment
-    const UncertainPose& T_c_w;  ///< believed
-    const View& image;           ///< that was tracked last
+    const MapChange& change;     ///< change of the map since the last update
+    const UncertainPose& T_c_w;  ///< the belief
+    const View& image;           ///< the image tracked last
     const View& predicted;       ///< view of the map before this update, from the believed pose
 };
 
@@ -66,16 +67,16 @@ struct OnExplorer {
     std::function<void(const ExplorerMoment& moment)> moment = {};  ///< after `update`
 };
 
-/// Tracker, pilot, own map and planner, for flyLoop(): the map is made, and the plan repaired, as
-/// the scene comes into view. Deterministic for a seed and what the robot measures: planning ends
-/// by work, not by time.
+/// Tracker, pilot, map and planner of an exploring robot, for flyLoop(). While the robot flies, it
+/// extends its map and repairs its plan. Deterministic for a given seed and given measurements:
+/// planning is limited by work, not by time.
 class Explorer {
   public:
-    /// @param robot its camera, mount and sharpness are used; @param planner as explorePlanner()
-    /// takes it
-    /// @param interrupted views and plans end with RenderingStopped when it becomes true; must
-    ///        outlive the explorer
-    /// @throws std::invalid_argument for a robot with another camera or mount than the config's
+    /// @param robot gives camera, mount and blur
+    /// @param planner a name for explorePlanner()
+    /// @param interrupted rendering and planning end with RenderingStopped when it becomes true;
+    ///        must outlive the explorer
+    /// @throws std::invalid_argument for a robot whose camera or mount is not that of the config
     Explorer(const ExplorerOptions& options, const Robot& robot, const std::string& planner,
              std::uint32_t seed, const std::atomic<bool>& interrupted, OnExplorer on = {});
     Explorer(const Explorer&) = delete;
@@ -85,13 +86,15 @@ class Explorer {
     const Tracker& tracker() const { return tracker_; }
     Pilot& pilot() { return pilot_; }
 
-    /// After every step of flyLoop(). @return whether to fly on
+    /// Is to be called after every step of flyLoop(). @return whether to fly on
     bool onStep(const Observation& observation, const std::vector<TrackedFrame>& tracked);
 
     const ExplorationRecord& record() const { return record_; }
-    /// None while it is flown. Arrived: reported at the goal, which is not checked.
+    /// The end of the flight; none during the flight. FlightEnd::arrived means that the robot
+    /// reported its arrival; the true position is not checked.
     std::optional<FlightEnd> end() const { return end_; }
-    /// Of a flight that ended at its believed goal.
+    /// Position and arrival probability by the belief, for a flight that ended at the believed
+    /// goal.
     const std::optional<BelievedArrival>& arrival() const { return arrival_; }
 
   private:
@@ -110,7 +113,7 @@ class Explorer {
     Pose bodyOf(const Pose& T_c_w) const { return (T_b_c_ * T_c_w).inverse(); }
     bool isInTheWay(const TrackedFrame& tracked, const View& image);
     double clearance(const Eigen::Vector3d& p_w) const;
-    /// Views of the present map.
+    /// Renders views of the present map.
     std::shared_ptr<const ViewSource> views() const;
 
     Config config_;
@@ -124,31 +127,33 @@ class Explorer {
     Pilot pilot_;
     SpaceAhead space_;
     Mapper mapper_;
-    double toStop_;           // flown until the robot stands, from an image on [m]
-    double tube_;             // radius of the way that must be free in every depth image [m]
-    ObstaclesInView inView_;  // of the last image
+    double toStop_;           // stopping distance, from the exposure of an image on [m]
+    double tube_;             // radius around the path that must be free in every depth image [m]
+    ObstaclesInView inView_;  // in the last image
     double time_ = 0.;        // [s]
-    bool isWhole_ = false;    // the plan flown leads to the goal
-    int withoutWay_ = 0;      // updates in a row
-    std::optional<double> stoppedSince_;  // by an obstacle in view [s]
-    int blindInVain_ = 0;                 // steps since the map last grew
-    double lastUpdate_ = 0.;              // [s]
-    std::optional<double> atGoalSince_;   // reached, and not left by far [s]
+    bool isWhole_ = false;    // the part of the plan being flown leads to the goal
+    int withoutWay_ = 0;      // updates in a row without a path
+    std::optional<double> stoppedSince_;  // time of the stop before an obstacle in view [s]
+    int blindInVain_ = 0;                 // blind steps since the map last grew
+    double lastUpdate_ = 0.;              // time of the last update [s]
+    std::optional<double> atGoalSince_;   // time of reaching the goal, if still near it [s]
     Corrections corrections_;
     ExplorationRecord record_;
     std::optional<FlightEnd> end_;
     std::optional<BelievedArrival> arrival_;
 };
 
-/// The end of an exploration, as the robot itself knows it.
+/// The course and end of an exploration, without ground truth.
 struct ExplorationOutcome : ExplorationRecord {
-    FlightEnd end = FlightEnd::stopped;  ///< arrived: reported at the goal, which is not checked
-    double duration = 0.;                ///< [s]
-    std::optional<BelievedArrival> arrival;  ///< of a flight that ended at its believed goal
+    FlightEnd end = FlightEnd::stopped;      ///< see Explorer::end()
+    double duration = 0.;                    ///< [s]
+    std::optional<BelievedArrival> arrival;  ///< see Explorer::arrival()
 };
 
 /// Explores with any robot.
-/// @param onStep may look at each step, and end the flight as stopped
+/// @param planner a name for explorePlanner()
+/// @param onStep called after each step before the explorer's own; may end the flight as
+///        FlightEnd::stopped
 /// @throws std::invalid_argument as Explorer does
 ExplorationOutcome explore(Robot& robot, const ExplorerOptions& options, const std::string& planner,
                            std::uint32_t seed, const std::atomic<bool>& interrupted,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The part of a path that may be flown at once.
+// The first part of a path, which may be flown before the map is updated again.
 #pragma once
 
 #include <functional>
@@ -10,31 +10,33 @@
 
 namespace photonav {
 
-/// What is known of the space ahead.
+/// The robot's present information about the space around it.
 struct SpaceAhead {
     std::function<double(const Eigen::Vector3d& p_w)> clearance;  ///< in the present map [m]
-    std::function<bool(const Eigen::Vector3d& p_w)> isSeen;       ///< there or below
-    double radius = 0.;                                           ///< that must stay free [m]
-    double hidden = 0.;    ///< around the robot, that its tilted camera does not see: a robot that
-                           ///< cannot look there flies there all the same [m]
-    bool canLook = false;  ///< the robot turns its camera ahead by its heading
+    /// Whether a place was observed (OwnMap::isSeen()).
+    std::function<bool(const Eigen::Vector3d& p_w)> isSeen;
+    double radius = 0.;  ///< radius around the body that must stay free [m]
+    /// Radius around the robot that a tilted camera does not observe [m]. A robot that cannot turn
+    /// its camera there may fly there without observation.
+    double hidden = 0.;
+    bool canLook = false;  ///< the camera looks ahead and is turned by the robot's heading
 };
 
 struct FlyablePart {
-    std::vector<PlannedView> plan;  ///< at least two views; the robot stays where they are equal
-    bool isWhole = false;           ///< it leads to the end of the path
-    bool isBlocked = false;         ///< by an obstacle: the path is out of date
-    bool isStopped = false;         ///< the obstacle is right ahead: the robot stays
-    bool isBlind = false;           ///< into space that was not seen and cannot be looked at first
+    std::vector<PlannedView> plan;  ///< at least two views; equal poses: the robot hovers
+    bool isWhole = false;           ///< the part is the whole path
+    bool isBlocked = false;         ///< an obstacle is on the path: the path is out of date
+    bool isStopped = false;         ///< the obstacle is right ahead: the robot hovers
+    bool isBlind = false;           ///< the part leads into space that could not be observed before
 };
 
-/// The path up to what was not seen, or up to an obstacle. Where nothing ahead was seen, the robot
-/// first turns to look there; a camera that cannot be turned there (it looks down, or the heading
-/// is fixed) sees the next step from a short one.
-/// @param path from the robot on
+/// The part of a path up to unobserved space or to an obstacle. If the space right ahead was not
+/// observed, the robot first turns its camera there. If it cannot (the camera looks down, or the
+/// heading is fixed), it makes a short blind step, from which it observes the next one.
+/// @param path from the robot's position on
 FlyablePart flyablePart(const std::vector<BeliefPoint>& path, const SpaceAhead& space);
 
-/// The plan of staying at a pose.
+/// A plan to hover at a pose: two equal views.
 std::vector<PlannedView> hovering(const Pose& T_w_b, const Matrix6& covariance);
 
 }  // namespace photonav

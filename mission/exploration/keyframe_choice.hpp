@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which images of a depth sensor become part of the map while the robot flies on.
+// Selects the images that are fused into the map while the robot flies.
 #pragma once
 
 #include <optional>
@@ -14,13 +14,15 @@ class KeyframeChoice {
   public:
     explicit KeyframeChoice(const ExploreConfig& config) : config_(config) {}
 
-    /// Whether an image should be fused: it is far from the last one fused, or much of it is new.
-    /// An image that the map contradicts is not.
+    /// Whether an image should be fused: it is usable, and it is the first one, far from the last
+    /// fused image, or shows many surfaces that the map lacks (ExploreConfig::keyframe...).
     /// @param shown view of the map from the believed pose
     bool isKeyframe(const TrackedFrame& tracked, const View& image, const View& shown) const;
-    /// Whether an image may be fused at all: it is not black, and the map does not contradict it.
+    /// Whether an image may be fused: it is not black, and its alignment was accepted. A rejected
+    /// image is usable, too, if the map shows too little for an alignment or is out of date.
     bool isUsable(const TrackedFrame& tracked, const View& image) const;
 
+    /// Is to be called after an image was fused. @param T_c_w its pose
     void fused(const Pose& T_c_w) { T_last_w_ = T_c_w; }
 
   private:

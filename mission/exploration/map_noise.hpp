@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Information of views of a map that is made of few noisy images.
+// Corrects the information of views of a map that was made from few noisy images.
 #pragma once
 
 #include <memory>
@@ -8,20 +8,22 @@
 
 namespace photonav {
 
-/// The noise of the images stays in the map, and its gradients look like texture: a blank floor
-/// would seem to determine the pose. The variance of these gradients is measured with every image,
-/// as the part of the map's gradients that the image does not share, and their information is
-/// subtracted.
+/// The noise of the fused images remains in the map. Its gradients look like texture: a blank floor
+/// would seem to determine the pose. The variance of these gradients is estimated from every new
+/// image, as the part of the map's gradients that the image does not share, and their information
+/// is subtracted.
 class MapNoise {
   public:
-    /// An image and the view of the map from its pose, before the image is fused.
+    /// Adds a measurement.
+    /// @param map view of the map from the image's pose, before the image is fused
     void observe(const View& map, const ImageF& image, const Camera& camera);
 
-    /// photometricInformation() without that of the noise as it is measured when a view is asked
-    /// for. May be used as long as any of its copies is.
+    /// photometricInformation() minus the information of the noise. The noise is the estimate at
+    /// the time at which the model is evaluated. The model may outlive this object.
     InformationModel model(const Camera& camera, const PhotometricOptions& options) const;
 
-    /// Of a component of the gradient, by unit of a normalised coordinate [grey value^2].
+    /// Estimated noise variance of a component of the image gradient, with respect to a normalised
+    /// image coordinate [grey value^2].
     double variance() const { return noise_->images > 0 ? noise_->sum / noise_->images : 0.; }
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a robot must not fly into, in a map that does not show everything.
+// The cells that count as occupied for collision checks in an incomplete map.
 #pragma once
 
 #include <memory>
@@ -12,44 +12,47 @@
 
 namespace photonav {
 
-/// Occupied cells of a column, one above the other, that go on upward.
+/// Least number of occupied cells above each other in a column that count as a wall. Walls are
+/// continued upward.
 inline constexpr int kWallCells = 4;
 
-/// A camera that looks down sees the foot of a wall, but seldom the wall at the height at which the
-/// robot flies. Obstacles are therefore continued upward: above at least four occupied cells of a
-/// column, unknown cells count as occupied, until one that is known to be free. The highest surface
-/// of a box has such a cell right above it.
+/// A camera that looks down observes the foot of a wall, but seldom the wall at the height at which
+/// the robot flies. Walls are therefore continued upward: above at least four occupied cells of a
+/// column, unknown cells count as occupied, up to the first cell that is known to be free. Above
+/// the top of a box, for example, that is the next cell.
 ///
-/// Other unknown cells are free (optimistic) or occupied (pessimistic), except where the body is.
+/// Other unknown cells are free (optimistic) or occupied (pessimistic), except at the body.
+///
+/// All functions that change obstacles return the bricks (blocks of cells) whose obstacles changed.
 class ObstacleMap {
   public:
-    /// @param bounds of the positions flown to [m]
+    /// @param resolution edge of the map's cells [m]
+    /// @param bounds of the body's position, world frame [m]
     ObstacleMap(double resolution, const Eigen::AlignedBox3d& bounds, UnknownSpace unknown);
 
-    /// The occupied cells, and with pessimistic the free ones.
+    /// The occupied cells; for UnknownSpace::pessimistic also the free cells.
     const std::shared_ptr<TexturedOcTree>& cells() const { return cells_; }
 
-    /// @param change of the map
-    /// @return bricks whose obstacles changed
+    /// Updates the obstacles after a change of the map.
     MapChange update(const TexturedOcTree& map, const MapChange& change);
 
-    /// A wall has appeared below cells that may have been seen free before: until they are seen
-    /// free again, nothing is known of them. @return bricks whose obstacles changed
+    /// Treats cells as unknown until they are observed as free again. Is to be called for the cells
+    /// above a new wall, which may have been observed as free before the wall appeared.
     MapChange forget(const TexturedOcTree& map, const std::vector<octomap::OcTreeKey>& cells);
-    /// An image shows surfaces behind forgotten cells.
-    /// @return bricks whose obstacles changed
+    /// Ends the effect of forget() for the cells that a depth image shows to be free, with a
+    /// surface behind them.
     MapChange remember(const TexturedOcTree& map, const ImageF& depth, const Camera& camera,
                        const Pose& T_c_w);
 
-    /// Columns near a camera that looks down whose floor is in the image but hidden by a nearer
-    /// surface, and of which nothing was seen. They and their eight neighbours count as occupied
-    /// from `radius` below the camera upward.
-    /// @param radius around the camera [m]
-    /// @return bricks that changed
+    /// For a camera that looks down: adds obstacles near the camera that the image hides. These are
+    /// columns without any known cell whose floor lies within the image, but behind a nearer
+    /// surface. Each of them and its eight neighbours count as occupied from `radius` below the
+    /// camera upward.
+    /// @param radius half the edge of the square around the camera that is searched [m]
     MapChange addHidden(const TexturedOcTree& map, const View& image, const Camera& camera,
                         const Pose& T_c_w, double radius);
 
-    /// Frees unknown cells where the body is. @return bricks that changed
+    /// For UnknownSpace::pessimistic: frees the unknown cells within `radius` [m] of the body.
     MapChange addBody(const TexturedOcTree& map, const Eigen::Vector3d& p_w, double radius);
 
   private:
@@ -57,7 +60,7 @@ class ObstacleMap {
     void updateColumn(const TexturedOcTree& map, const Eigen::Array2i& column, MapChange& changed);
 
     std::shared_ptr<TexturedOcTree> cells_;
-    int lowest_, highest_;  // bricks that obstacles are looked for in
+    int lowest_, highest_;  // heights of the bricks that are updated
     UnknownSpace unknown_;
     std::unordered_set<octomap::OcTreeKey, octomap::OcTreeKey::KeyHash> forgotten_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plan that is kept up to date while map and robot change.
+// Online planning: updates a plan while the map grows and the robot moves.
 #pragma once
 
 #include "config/explore_planner.hpp"
@@ -8,40 +8,44 @@
 
 namespace photonav {
 
-/// What an update of the plan changed and cost.
+/// Changes, wall-clock times and result of an update of the plan.
 struct PlanUpdate {
-    double time = 0.;  ///< of the flight [s]
-    UpdateCounts counts;
-    std::size_t viewsMarked = 0, viewsRendered = 0;
-    double fuseSeconds = 0., clearanceSeconds = 0.;
-    double viewSeconds = 0., planSeconds = 0.;  ///< the views are part of planning
-    double cost = 0.;    ///< from here to the goal, as planners count [m]; NaN: no path
-    double length = 0.;  ///< the same [m]
-    double trace = 0.;   ///< of the belief here, weightedTrace() [m^2]
+    double time = 0.;                                ///< time in the flight [s]
+    UpdateCounts counts;                             ///< changes of the tree or roadmap
+    std::size_t viewsMarked = 0, viewsRendered = 0;  ///< cached views: outdated, rendered
+    double fuseSeconds = 0., clearanceSeconds = 0.;  ///< wall-clock time [s]
+    double viewSeconds = 0., planSeconds = 0.;  ///< wall-clock time [s]; planning includes views
+    double cost = 0.;    ///< cost of the path from the robot to the goal [m]; NaN: no path
+    double length = 0.;  ///< length of the path from the robot to the goal [m]; NaN: no path
+    double trace = 0.;   ///< weightedTrace() of the robot's present belief [m^2]
 };
 
-/// The problem of a config in the robot's own map, its planner and the path found last:
+/// The planning problem of a config in the robot's own map, its planner and its best path.
 ///
-///     update(change):  distances and views follow the map   (World, PlanningProblem::followMap)
-///                      what collides or looks otherwise now is repaired      (BeliefPlanner)
-///                      root and belief move to where the robot is, the search goes on
-///                      beliefs along the best path                           (path())
+///     update(change):  update clearance and cached views    (World, PlanningProblem::followMap)
+///                      invalidate and repair edges and views that the change affects
+///                                                                            (BeliefPlanner)
+///                      move the root to the robot's pose, continue the search
+///                      evaluate beliefs along the best path                  (path())
 class OnlinePlanner {
   public:
-    /// @param map must outlive it
+    /// @param map must outlive the planner
+    /// @param kind planner, headings and replanning policy
     OnlinePlanner(const Config& config, const OwnMap& map, const ExplorePlanner& kind,
                   std::uint32_t seed);
 
-    /// Plans from a believed pose, once the map has changed.
-    /// @param update all but `time` and `fuseSeconds` is set
+    /// Updates the plan from the believed pose after a change of the map.
+    /// @param change everything that changed in map and obstacles since the last call
+    /// @param T_c_w the robot's present belief
+    /// @param update receives all values except `time` and `fuseSeconds`
     /// @throws RenderingStopped when it is interrupted inside a large view
     void update(const MapChange& change, const UncertainPose& T_c_w, PlanUpdate& update,
                 const std::atomic<bool>& interrupted);
 
-    /// From the robot to the goal, with the beliefs predicted; empty: none was found.
+    /// The path from the robot to the goal with predicted beliefs; empty if none was found.
     const std::vector<BeliefPoint>& path() const { return path_; }
 
-    /// The present map as it is seen.
+    /// Renders views of the present map.
     std::shared_ptr<const ViewSource> views() const { return world_.sharedViews(); }
     const World& world() const { return world_; }
     const BeliefPlanner& planner() const { return *planner_; }
@@ -66,7 +70,7 @@ class OnlinePlanner {
     ExplorePlanner kind_;
     std::uint32_t seed_;
     std::shared_ptr<BeliefPlanner> planner_;
-    States plan_;  // empty: none was found
+    States plan_;  // empty if no path was found
     std::vector<BeliefPoint> path_;
 };
 

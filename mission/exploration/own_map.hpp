@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The map that a robot makes on its flight.
+// The map that a robot makes during its flight.
 #pragma once
 
 #include <optional>
@@ -15,52 +15,58 @@
 
 namespace photonav {
 
-/// Whether a camera looks ahead of its robot, rather than at the place below.
+/// Whether a camera looks ahead rather than down: its axis is more than about 15 degrees from the
+/// vertical.
 bool looksAhead(const Pose& T_b_c);
 
-/// Standard deviation of the depths of a config's sensor at 1 m, growing with depth squared [m]; of
-/// stereo and monocular depth that of 0.2 pixels of disparity.
+/// Standard deviation of measured depth at 1 m, which grows with depth squared [m]: depth_sigma of
+/// a depth sensor; for stereo and monocular depth it follows from 0.2 pixels of disparity.
 double depthSigmaAtOneMetre(const Config& config);
 
-/// Map, obstacles in it, and how wrong it is, all from the images fused.
+/// The map with its obstacles and a model of its errors, all made from the fused images.
 class OwnMap {
   public:
-    /// @param config its section explore, bounds and radius
+    /// @param config uses camera, section `explore`, bounds and robot.radius
     explicit OwnMap(const Config& config);
 
-    /// Measures how much information of the map's views is noise, by one that an image can be
-    /// compared with.
-    /// @param shown view of the map from where the image was taken
+    /// Updates the estimate of the map's noise (MapNoise), and of the information expected of
+    /// unknown space (UnseenInformation) if the config asks for it.
+    /// @param shown view of the map from the pose of the image, before the image is fused
     void compare(const View& shown, const ImageF& image, const Camera& camera);
 
-    /// A pose whose image is fused, now or later. @return its number
+    /// Registers the pose of an image that is fused now or later. @return the number of the pose
     int addPose(const UncertainPose& T_c_w) { return errors_->addPose(T_c_w); }
-    /// Fuses an image at the believed pose of its camera.
-    /// @param number of this pose
-    /// @return what changed in the map and in the obstacles
+    /// Fuses an image.
+    /// @param T_c_w believed pose of the camera
+    /// @param number of this pose, from addPose()
+    /// @return the change of map and obstacles
     MapChange fuse(const View& image, const Camera& camera, const Pose& T_c_w, int number);
-    /// Forgets the surfaces that a view of the map shows. @return what changed
+    /// Removes the surfaces that a view of the map shows. They count as free until they are
+    /// observed again. @return the change of map and obstacles
     MapChange forget(const View& shown, const Camera& camera, const Pose& T_c_w);
-    /// The body's own place is free. @return what changed
+    /// Marks the space of the body as free, see ObstacleMap::addBody(). @return the change of
+    /// obstacles
     MapChange addBody(const Eigen::Vector3d& p_w) {
         return obstacles_.addBody(*cells_, p_w, radius_);
     }
 
-    /// What an image shows that is not fused yet, near enough to matter.
-    /// @param distance from the camera [m]
+    /// The obstacles in a depth image that is not fused yet, within the heights that the robot may
+    /// reach.
+    /// @param distance largest horizontal distance from the camera [m]
     ObstaclesInView obstaclesIn(const ImageF& depth, const Camera& camera, const Pose& T_c_w,
                                 double distance) const;
 
-    /// Whether a surface or free space was seen at a place or below it, within the sensor's range,
-    /// and no new obstacle near by has made this doubtful since.
+    /// Whether a surface or free space was observed at a place, or below it within explore.range,
+    /// and the column of the place is not doubted (DoubtedColumns).
     bool isSeen(const Eigen::Vector3d& p_w) const;
 
     const std::shared_ptr<TexturedOcTree>& cells() const { return cells_; }
     const std::shared_ptr<TexturedOcTree>& obstacles() const { return obstacles_.cells(); }
     const std::shared_ptr<MapErrors>& errors() const { return errors_; }
 
-    /// Of views of this map, for planning: without the information that its noise pretends, and
-    /// with what is expected of unknown space if the config says so.
+    /// The information model for planning with views of this map: without the information of its
+    /// noise (MapNoise), and with the information expected of unknown space (UnseenInformation) if
+    /// the config asks for it.
     InformationModel information(const Camera& camera, const PhotometricOptions& options) const;
 
   private:
@@ -72,9 +78,9 @@ class OwnMap {
     std::optional<UnseenInformation> unseen_;
     PhotometricOptions photometric_;
     FusionOptions fusion_;
-    double precise_;           // depth at which three standard deviations are a cell [m]
-    double lowest_, highest_;  // that obstacles matter at [m]
-    double radius_;            // of the robot [m]
+    double precise_;           // depth at which three standard deviations equal a cell [m]
+    double lowest_, highest_;  // heights of relevant obstacles [m]
+    double radius_;            // radius of the robot [m]
     bool looksDown_;
 };
 

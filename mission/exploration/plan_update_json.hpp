@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Updates of a plan in results, journals and logs.
+// Plan updates as JSON, for results, journals and logs.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,19 +8,19 @@
 
 namespace photonav {
 
-/// An update as journals and results hold it, but for the wall-clock times, which journals keep in
-/// seconds and results in milliseconds. Costs and lengths of no way are null.
+/// An update without wall-clock times, which journals store in seconds and results in milliseconds.
+/// Cost and length are null if there is no path.
 nlohmann::json untimedJson(const PlanUpdate& update);
 
-/// The same with the wall-clock times [s], and back.
-/// @throws std::exception for numbers that no update gives
+/// An update with wall-clock times [s], for journals.
 nlohmann::json lineOf(const PlanUpdate& update);
+/// The inverse of lineOf(). @throws std::exception for missing or impossible values
 PlanUpdate planUpdateFrom(const nlohmann::json& line);
 
-/// A duration, length or share of them. @throws std::exception for anything else
+/// The value of a key, a number >= 0. @throws std::exception for other values
 double nonNegative(const nlohmann::json& line, const char* key);
 
-/// A number; NaN for null. @throws std::exception for anything else
+/// The value of a key, a number; NaN for null. @throws std::exception for other values
 double numberOrNone(const nlohmann::json& line, const char* key);
 
 }  // namespace photonav

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The file that keeps each of many explorations as soon as it ended, and what makes two sets of
-// explorations the same.
+// The journal that stores each exploration flight when it ends, and the identity by which sets of
+// flights are compared.
 #pragma once
 
 #include "exploration/explorations.hpp"
@@ -8,9 +8,10 @@
 
 namespace photonav {
 
-/// Flights of an unknown scene, for Journal. A line holds what results, figures and summaries of
-/// explorations read of a flight; numbers have all digits. The map of a flight that has one is
-/// kMapFile beside the journal: at most one flight of a journal keeps its map.
+/// The kind of run that an exploration stores in a Journal: flights in an unknown scene. A line
+/// holds everything that results, figures and summaries use, without loss of digits. The map of a
+/// flight is stored as kMapFile in the folder of the journal; at most one flight of a journal has a
+/// map.
 struct TrialKind {
     using Item = TrialItem;
     using Run = ExplorationResult;
@@ -19,19 +20,20 @@ struct TrialKind {
     static constexpr const char* kMapFile = "map.ot";
 
     static TrialItem itemOf(const Run& flight) { return photonav::itemOf(flight); }
-    /// The config without what flights set themselves, and without the section of sweeps.
+    /// identityOf() the config without the keys that each flight sets itself, and without the
+    /// section `sweep`.
     static Identity identity(const Config& config);
     static Identity runIdentity(const Identity& exploration);
     static nlohmann::json save(const Run& flight, const std::filesystem::path& folder);
-    /// A map that is missing leaves the flight without.
-    /// @throws std::exception for numbers that no flight gives; InputError for a damaged map
+    /// If the map file is missing, the flight has no map.
+    /// @throws std::exception for missing or impossible values; InputError for a damaged map
     static Run load(const nlohmann::json& line, const std::filesystem::path& folder);
 };
 
 using TrialJournal = Journal<TrialKind>;
 
-/// A result shows the map of its first flight: the others drop theirs. A first flight that has none
-/// is dropped, to be flown again.
+/// Keeps only the map of the first flight, which results show. A first flight without a map is
+/// removed from the list, so that it is flown again.
 void keepMapOf(const TrialItem& first, std::vector<ExplorationResult>& flights);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Information that is expected of what the map does not show yet.
+// The information expected of surfaces that are not in the map yet.
 #pragma once
 
 #include <memory>
@@ -8,20 +8,22 @@
 
 namespace photonav {
 
-/// Information expected behind the edge of the map: that of the last views flown through, on
-/// average. The paper counts unknown space as without information, and names its prediction as
-/// future work.
+/// Predicts the information of unknown space: a running average over about the last 20 views of the
+/// flight. In the paper, unknown space has no information; its prediction is named as future work.
 class UnseenInformation {
   public:
-    /// A view of the map from a pose that was flown through, if it shows enough of the map.
-    /// @param information of the pixels with a surface, camera frame
+    /// Adds a view of the map from a pose of the flight. Views in which less than half of the
+    /// pixels show a surface are ignored.
+    /// @param information of the view, from its pixels with a surface, camera frame
     void observe(const View& shown, const Matrix6& information);
 
-    /// A model whose information of a view has that of its pixels without a surface added, as it
-    /// is expected when the view is asked for. May be used as long as any of its copies is.
+    /// A model that adds the expected information for the pixels of a view without a surface. The
+    /// expectation is the one at the time at which the model is evaluated. The model may outlive
+    /// this object.
     InformationModel complete(InformationModel model) const;
 
-    /// Of a view that shows only surfaces, camera frame; zero before anything was observed.
+    /// Expected information of a view in which all pixels show a surface, camera frame; zero before
+    /// the first observation.
     const Matrix6& expected() const { return *expected_; }
 
   private:

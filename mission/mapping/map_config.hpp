@@ -10,33 +10,35 @@
 
 namespace photonav {
 
-/// Every key of either kind of map, those of its recording included.
+/// The keys of a map of a recording (including those of the recording) and of a map of laser scans.
+/// `options` must outlive the table.
 KeyTable keysOf(MapOptions& options);
 KeyTable keysOf(ScanMapOptions& options);
 
-/// Everything a map depends on, as YAML that readMapConfig() reads back: up as it was found, paths
-/// absolute.
+/// Everything on which a map depends, as YAML that readMapConfig() can read. It contains the upward
+/// direction, stereo method and depth scale that were used, and absolute paths.
 std::string toYaml(const MapOptions& options, const Recording& recording);
 
-/// The same of a map of laser scans.
+/// As above, for a map of laser scans and readScanConfig().
 std::string toYaml(const ScanMapOptions& options);
 
-/// Whether this is the config of a recording's map: it has a key `dataset`.
-/// @throws InputError if it is no YAML
+/// Whether a file is the config of a map of a recording: it has a key `dataset`.
+/// @throws InputError if the file is no YAML
 bool isMapConfig(const std::string& file);
 
-/// Whether this is the config of a map of laser scans: it has a key `scans`.
-/// @throws InputError if it is no YAML
+/// Whether a file is the config of a map of laser scans: it has a key `scans`.
+/// @throws InputError if the file is no YAML
 bool isScanConfig(const std::string& file);
 
-/// Overwrites the values that the file has; paths in it are relative to the file.
+/// Sets the options whose keys are in the file; paths are relative to the folder of the file.
 /// @throws InputError naming file, key and reason
 void readMapConfig(const std::string& file, MapOptions& options);
 void readScanConfig(const std::string& file, ScanMapOptions& options);
 
-/// What the map in a file was made of, as `photonav map` notes it in config.yaml beside it.
-/// @return nothing where there is no config of a recording's map, and for an empty name
-/// @throws InputError for one that cannot be used
+/// The options with which a map was made from a recording: `photonav map` writes them as
+/// config.yaml into the folder of the map.
+/// @return nothing if the folder has no config of a map of a recording, and for an empty file name
+/// @throws InputError for a config that cannot be used
 std::optional<MapOptions> optionsOfMap(const std::string& mapFile);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What becomes a map, and how: a recording, or laser scans.
+// Options of mapping a recording or laser scans.
 #pragma once
 
 #include <optional>
@@ -10,22 +10,27 @@
 
 namespace photonav {
 
+/// Options of a map of a recording.
 struct MapOptions : RecordingOptions {
     double resolution = 0.05;  ///< edge of a cell [m]
     FusionOptions fusion;
-    std::string depth = "recorded";  ///< or "monocular": from the images, with their poses
-    UnknownPolicy unknownToCamera =
-        UnknownPolicy::free;  ///< in the views that the map is judged by
+    std::string depth = "recorded";  ///< "recorded", or "monocular": depth is estimated from the
+                                     ///< images of one camera and their poses
+    /// Unknown cells in the views by which the map is evaluated.
+    UnknownPolicy unknownToCamera = UnknownPolicy::free;
 };
 
-/// Nearest depth entered when nothing else is asked for [m].
+/// Default of FusionOptions::minRange [m].
+/// @param depth MapOptions::depth
 double defaultMinRange(const std::string& depth);
 
+/// Options of a map of laser scans.
 struct ScanMapOptions {
-    std::string scans;         ///< a PLY file, or a folder with one per station of the scanner
+    std::string scans;         ///< a PLY file, or a folder with one PLY file per scanner station
     double resolution = 0.05;  ///< edge of a cell [m]
-    double maxRange = 40.;     ///< farther points are not entered [m]
-    std::optional<Eigen::Vector3d> scanner;  ///< of a single file without its position [m]
+    double maxRange = 40.;     ///< points farther from the scanner are not mapped [m]
+    /// Position of the scanner, for a single file that does not contain it [m].
+    std::optional<Eigen::Vector3d> scanner;
 };
 
 }  // namespace photonav

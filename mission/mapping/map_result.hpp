@@ -8,11 +8,11 @@
 
 namespace photonav {
 
-/// How many cells are free and occupied, and the box of the occupied ones.
+/// The numbers of free and occupied cells, and the bounding box of the occupied cells [m].
 nlohmann::json voxelsJson(const TexturedOcTree& map);
 
-/// result.json but for the cells and the time it took.
-/// @param compared frames and their predictions
+/// The content of result.json without voxelsJson() and computation times.
+/// @param compared differences between frames and their predictions, a JSON list
 nlohmann::json mapResult(const MapOptions& options, const Recording& recording,
                          const FusedRecording& run, const nlohmann::json& compared,
                          bool interrupted);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map from images and poses alone, and how its depths compare with the recorded ones.
+// Mapping from the images of one camera and their poses: estimates depth by depth filters, fuses
+// it, and compares it with recorded depth if there is any.
 #pragma once
 
 #include <array>
@@ -13,30 +14,33 @@
 
 namespace photonav {
 
+/// Fuses the images of a recording, one after the other, into a map.
 class MonocularFusion {
   public:
-    /// A reference image whose depths have been fused.
+    /// A reference image whose depth filter is finished.
     struct Reference {
         const DepthFilter& filter;
-        const ImageF& recorded;  ///< depth [m], 0: not known
-        double timestamp;        ///< [s]
+        const ImageF& recorded;  ///< recorded depth of the image [m]; 0: not measured
+        double timestamp;        ///< of the image [s]
     };
 
-    /// @param map, camera must outlive it
-    /// @param onReference called with every reference image; may be missing
+    /// @param map     must outlive this object
+    /// @param camera  must outlive this object
+    /// @param onReference called with every reference image before its depth is fused; may be empty
     MonocularFusion(TexturedOcTree& map, const Camera& camera, const FusionOptions& options,
                     std::function<void(const Reference&)> onReference);
 
-    /// The next image; its recorded depth is used for comparison only.
+    /// Adds the next image. Recorded depth is only compared, never fused.
     /// @throws std::invalid_argument see fuse()
     void add(const RecordedFrame& frame);
 
-    /// Fuses the depths of the last reference image.
+    /// Fuses the depth of the last reference image.
     void finish();
 
-    /// {references, references_given_up; converged, given_up, searching: shares of their pixels;
-    /// completeness, median_relative_error, p90_relative_error, share_above_10_percent: of the
-    /// pixels with recorded depth, null when there are none}.
+    /// Statistics of all reference images: {references, references_given_up: numbers of images;
+    /// converged, given_up, searching: shares of their pixels by DepthState; completeness,
+    /// median_relative_error, p90_relative_error, share_above_10_percent: over the pixels with
+    /// recorded depth, null without them}.
     nlohmann::json result() const;
 
   private:
@@ -49,11 +53,11 @@ class MonocularFusion {
     std::function<void(const Reference&)> onReference_;
     MonocularDepth depth_;
     ImageF recorded_;        ///< depth of the current reference
-    double timestamp_ = 0.;  ///< of the same [s]
+    double timestamp_ = 0.;  ///< of the current reference [s]
     int references_ = 0;
-    std::array<std::size_t, 3> states_{};  ///< pixels of references by DepthState
-    std::size_t pixels_ = 0;               ///< of references, with recorded depth
-    std::vector<float> errors_;            ///< relative, where both are known
+    std::array<std::size_t, 3> states_{};  ///< number of pixels by DepthState
+    std::size_t pixels_ = 0;               ///< number of pixels with recorded depth
+    std::vector<float> errors_;            ///< relative depth errors
 };
 
 }  // namespace photonav

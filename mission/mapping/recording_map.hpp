@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A recording becomes a textured OctoMap.
+// Fuses a recording into a textured OctoMap.
 #pragma once
 
 #include <functional>
@@ -12,32 +12,33 @@
 
 namespace photonav {
 
-/// readRecording() for a map, after a check of the options.
+/// Checks the options and reads the tables of the recording by readRecording().
 /// @throws InputError for a recording that cannot be used and an option out of range
 Recording openForMap(const MapOptions& options);
 
-/// What was fused, and how long it took.
+/// The frames that were fused, and the time it took.
 struct FusedRecording {
-    std::size_t frames = 0;                ///< looked at: less than all when stopped
-    std::vector<Sequence::Skipped> black;  ///< of these, not fused
-    Trajectory trajectory;                 ///< of all of these
-    nlohmann::json monocular;  ///< how good its depths are, null when they were recorded
-    double loadSeconds = 0.;   ///< images
-    double fuseSeconds = 0.;
+    std::size_t frames = 0;                ///< processed frames; fewer than all when stopped
+    std::vector<Sequence::Skipped> black;  ///< processed frames that are black and were not fused
+    Trajectory trajectory;                 ///< camera poses T_w_c of all processed frames
+    nlohmann::json monocular;  ///< MonocularFusion::result(); null if depth was recorded
+    double loadSeconds = 0.;   ///< wall-clock time of loading images [s]
+    double fuseSeconds = 0.;   ///< wall-clock time of fusing them [s]
 };
 
-/// Called during the fusion; either may be empty.
+/// Callbacks of fuseRecording(); each may be empty.
 struct FusionCalls {
-    /// After each frame with the number done and the number there are.
+    /// Called after each frame with the number of processed frames and of all frames.
     std::function<void(std::size_t done, std::size_t total)> progress;
-    /// With every reference image of monocular depth.
+    /// Called with every reference image of monocular depth.
     std::function<void(const MonocularFusion::Reference&)> onReference;
 };
 
-/// Fuses all frames into an empty map of the resolution asked for.
+/// Fuses all frames into a map.
+/// @param map empty, with the resolution of the options
 /// @param isStopped asked before every frame
-/// @throws InputError for images that cannot be used, implausible depths, and cells too small for
-///         the recording
+/// @throws InputError for images that cannot be used, for implausible depths, and for cells that
+///         are too small for the extent of the recording
 FusedRecording fuseRecording(TexturedOcTree& map, const Recording& recording,
                              const MapOptions& options, const std::function<bool()>& isStopped = {},
                              const FusionCalls& calls = {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which of some posters make a path, or servoing at a goal, most certain.
+// A study of which posters improve localisation along a path, or servoing at a goal, most.
 #pragma once
 
 #include <atomic>
@@ -15,68 +15,76 @@
 
 namespace photonav {
 
+/// The criterion of a ranking: localisation along the path, or servoing at the goal.
 enum class RankBy { path, goal };
 
 struct PosterStudyOptions {
-    std::optional<GivenTrajectory> trajectory = {};  ///< none: planned with every set
-    bool hasPath = true;                             ///< false: servoing at the goal alone
+    std::optional<GivenTrajectory> trajectory = {};  ///< none: a path is planned for every set
+    bool hasPath = true;  ///< false: only servoing at the goal is studied
     RankBy rankBy = RankBy::path;
-    std::size_t most = 1;  ///< posters of a set; beyond one they are added greedily
+    std::size_t most = 1;  ///< most posters in a set; beyond one, posters are added greedily
     ServoStudyOptions servo = {};
     unsigned jobs = 1;  ///< threads
 };
 
-/// A scene and what could be brought into it.
+/// A scene and the posters that could be added to it.
 struct PosterProblem {
     Config config;
     Scene scene = {};
-    Pose T_w_goal = Pose::Identity();  ///< of the body that servos
+    Pose T_w_goal = Pose::Identity();  ///< goal pose of the body, for servoing
     std::vector<Poster> posters = {};
-    std::string file;  ///< of the posters, for messages
+    std::string file;  ///< file of the posters, named in messages
     PosterStudyOptions options = {};
 };
 
+/// Indices into PosterProblem::posters.
 using PosterIndices = std::vector<std::size_t>;
 
-/// What some posters together do.
+/// A set of posters and the results in the scene with these posters.
 struct PosterSet {
-    PosterIndices posters;            ///< empty: the scene as it is
-    GivenTrajectory trajectory = {};  ///< that was flown
-    std::optional<CheckedTrajectory> path =
-        {};            ///< none: the planner found none, or none was asked for
-    double cost = 0.;  ///< of the path, if it was planned: alpha length +
-                       ///< (1 - alpha) kappa integral of the trace
+    PosterIndices posters;            ///< empty: the scene without posters
+    GivenTrajectory trajectory = {};  ///< the trajectory that was checked
+    /// Localisation along the trajectory; none: the planner found no path, or
+    /// PosterStudyOptions::hasPath is false.
+    std::optional<CheckedTrajectory> path = {};
+    /// Cost of a planned path: alpha length + (1 - alpha) kappa integral of the trace; 0 for a
+    /// given trajectory.
+    double cost = 0.;
     ServoStudy servo = {};
-    View goalView = {};  ///< of the config's camera
+    View goalView = {};  ///< view of the config's camera at the goal
 };
 
 struct PosterRanking {
-    std::vector<PosterSet> sets;  ///< the most certain first
-    bool interrupted = false;     ///< sets that were not finished are left out
+    std::vector<PosterSet> sets;  ///< best set first
+    bool interrupted = false;     ///< unfinished sets are then left out
 };
 
-/// "carpet + poster", or kNoPoster.
+/// The names of the posters in a set, "carpet + poster", or kNoPoster for an empty set.
 std::string nameOf(const PosterIndices& set, const std::vector<Poster>& posters);
 
-/// The scene with posters in it.
+/// The scene with a set of posters.
 World worldWith(const PosterProblem& problem, const PosterIndices& set);
 
-/// @throws InputError naming file and key: for a start or goal in collision, a trajectory in
-///         collision with a poster, and a poster in a surface of the scene, where the renderer
-///         would show now the one, now the other
+/// @throws InputError naming file and key: for a start or goal in collision, for a poster that puts
+///         the given trajectory in collision, and for a poster that coincides with a surface of the
+///         scene (the renderer could not decide which of the two is in front)
 void checkPosters(const PosterProblem& problem);
 
-/// What ranks sets, the least first, entry by entry. By the path: the way on which the camera is
-/// lost (infinite without a path), the cost, the mean trace; by the goal: the number of open
-/// directions, the share of starts that do not converge, the standard deviation of the position.
-/// The others follow. Four digits count: what differs less is rounding.
+/// The key by which sets are sorted, in lexicographic order, smallest first. For RankBy::path:
+/// length of the path on which the camera is lost [m], cost, mean trace [m^2] (a single infinite
+/// entry without a path), then the entries for the goal. For RankBy::goal: number of open
+/// directions, share of starts that do not converge, standard deviation of the position [m], then
+/// the entries for the path. Entries are rounded to four digits, so that numerical differences do
+/// not decide.
 std::vector<double> rankKey(const PosterSet& set, RankBy by);
 
-/// Studies the scene as it is, every poster alone, and then, up to options.most, the best set so
-/// far with one more poster each, as long as that is better. Posters that lie in each other are not
-/// combined. Paths are planned with one seed and one kappa, that of the scene as it is; where the
-/// path of the set before is free and cheaper, that is taken.
-/// @param onBegin called before a set is studied, with the number of sets that are done
+/// Studies the scene without posters and with every single poster. Then, up to options.most
+/// posters, it adds each remaining poster to the best set so far, as long as the best set improves.
+/// Posters with coincident surfaces are not combined. All paths are planned with the same seed and
+/// with the kappa of the scene without posters. The path of the smaller set is kept if it is free
+/// of collisions and better than the new one.
+/// @param onBegin called before a set is studied, with the number of sets that are done and the
+///        posters of this set; never called twice at a time
 /// @throws RenderingStopped when interrupted before the first set is done
 PosterRanking rankPosters(const PosterProblem& problem, const std::atomic<bool>& interrupted,
                           const std::function<void(std::size_t, const PosterIndices&)>& onBegin);

@@ -8,10 +8,11 @@
 
 namespace photonav {
 
-/// Which set is the best, and what it gains, in a sentence without its end.
+/// The best set and its improvement over the scene without posters, in a sentence without full
+/// stop.
 std::string verdictOf(const PosterProblem& problem, const PosterRanking& ranking);
 
-/// Everything of result.json but the time.
+/// The content of result.json without the computation time.
 nlohmann::json postersResult(const PosterProblem& problem, const PosterRanking& ranking);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a perception-aware path gains over the shortest one.
+// The advantage of a perception-aware path over the shortest path, in words.
 #pragma once
 
 #include <string>
@@ -8,15 +8,17 @@
 
 namespace photonav {
 
-/// Costs that differ by less, as a share, are the same.
+/// Least relative difference of costs that counts as an advantage.
 inline constexpr double kLeastAdvantage = 0.01;
 
-/// Why a path has no advantage over the shortest one: its cost is not lower by kLeastAdvantage.
-/// "no advantage: ..." with the reason, or an empty text where it has one.
-/// @param alpha of both costs
+/// The reason why a path has no advantage over the shortest one, "no advantage over the shortest
+/// path: ..."; empty if it has one. A path has an advantage if its cost, and also the part of the
+/// cost that is charged for uncertainty, is lower by more than kLeastAdvantage times the cost of
+/// the shortest path.
+/// @param alpha weight of length in both costs
 std::string noAdvantage(const EvaluatedPath& path, const EvaluatedPath& shortest, double alpha);
 
-/// "12 % length, 88 % uncertainty": the shares of the cost.
+/// The shares of length and uncertainty in the cost: "12 % length, 88 % uncertainty".
 std::string costShares(const EvaluatedPath& path);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What ends work that takes long: a flag that a signal sets.
+// Interrupts long computations by a flag, which a signal handler sets.
 #pragma once
 
 #include <atomic>
@@ -8,10 +8,12 @@ namespace photonav {
 
 inline const std::atomic<bool> kNotInterrupted{false};
 
-/// While it exists, a flag ends the rendering of large views (RenderingStopped).
+/// As long as this object exists, the rendering of large views ends with RenderingStopped when a
+/// flag is set.
 class InterruptionScope {
   public:
-    /// @param current what the views look at
+    /// @param current pointer to the flag that rendering checks; restored at the end of the scope
+    /// @param flag must outlive the scope
     InterruptionScope(const std::atomic<bool>*& current, const std::atomic<bool>& flag)
         : current_(current), before_(current) {
         current_ = &flag;

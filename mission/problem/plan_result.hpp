@@ -9,9 +9,10 @@
 
 namespace photonav {
 
-/// result.json of `photonav plan`; time.total_s (until the report is drawn) is the caller's to
-/// fill.
-/// @param kappa of the cost [1/m]
+/// The content of result.json of `photonav plan`. The caller must set time.total_s, which includes
+/// the drawing of the report.
+/// @param kappa weight of uncertainty in the cost [1/m]
+/// @param baseline the path of RRT*, if it was planned
 nlohmann::json planResult(const Config& config, double kappa, const PlanOutcome& outcome,
                           const std::optional<EvaluatedPath>& baseline, bool interrupted);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plan from the result folder of `photonav plan`.
+// Reads a plan from the result folder of `photonav plan`.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace photonav {
 
-/// A config, and the plan made from it if there is one already.
+/// A config, and a plan made from it if there is one.
 struct PlanSource {
     std::string configFile;
     std::filesystem::path resultFile;  ///< result.json of `photonav plan`; empty: none
@@ -19,8 +19,9 @@ struct PlanSource {
 /// @throws InputError for a folder that has no plan
 PlanSource findPlan(const std::string& argument);
 
-/// The path of a result.json, judged anew.
+/// Reads the waypoints of a result.json and evaluates the path in a problem.
 /// @throws InputError naming file and key for a result of another command or without a path
+/// @throws RenderingStopped when it is interrupted inside a large view
 EvaluatedPath readPlannedPath(const std::filesystem::path& resultFile, PlanningProblem& problem,
                               const std::atomic<bool>& interrupted = kNotInterrupted);
 

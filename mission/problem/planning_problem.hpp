@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a config to a planner, and to a path with beliefs.
+// A planning problem: makes planners from a config, and evaluates paths with beliefs.
 #pragma once
 
 #include <ompl/geometric/PathGeometric.h>
@@ -17,67 +17,74 @@
 
 namespace photonav {
 
-/// A path and its photometric beliefs, whatever information model its planner used.
+/// A path with its beliefs and cost by the photometric information, also if the planner used
+/// another information model.
 struct EvaluatedPath {
     std::string planner;
     std::vector<BeliefPoint> points;
-    double cost = 0.;         ///< with the problem's alpha, and the config's kappa
-    double length = 0.;       ///< of the positions [m]
-    double lengthShare = 1.;  ///< of the cost: alpha times the length, turns counted
-    double meanTrace = 0.;    ///< integral of the trace over the distance flown, divided by it
-    double goalTrace = 0.;    ///< after the last view
+    double cost = 0.;         ///< J with the problem's alpha and kappa [m]
+    double length = 0.;       ///< length of the position's path [m]
+    double lengthShare = 1.;  ///< share of the cost due to length: alpha * distance / cost, where
+                              ///< the distance includes turns
+    double meanTrace = 0.;    ///< weighted trace, averaged over the distance flown [m^2]
+    double goalTrace = 0.;    ///< weighted trace at the end, after the last view [m^2]
 
-    /// Positions of the points in x and y of w [m].
+    /// The x and y coordinates of the points, world frame [m].
     std::vector<Eigen::Vector2d> fromAbove() const;
 };
 
-/// State of the search when its best cost changed (and at its end).
+/// State of a running search.
 struct PlanProgress {
     std::size_t vertices = 0;
-    double seconds = 0.;
-    double cost = 0.;  ///< the planner's own; infinite: no path yet
-    std::size_t views = 0;
+    double seconds = 0.;    ///< wall-clock time since the search began [s]
+    double cost = 0.;       ///< best cost by the planner's own model [m]; infinite: no path yet
+    std::size_t views = 0;  ///< number of rendered views
 };
 
 using OnPlanProgress = std::function<void(const PlanProgress&)>;
 
-using TreeSegment = std::array<Eigen::Vector3f, 2>;  ///< end points in w [m]
+using TreeSegment = std::array<Eigen::Vector3f, 2>;  ///< end points of an edge, world frame [m]
 
 /// Result and effort of planning.
 struct PlanOutcome {
     std::optional<EvaluatedPath> path;  ///< none: the goal was not reached
-    double plannerCost = 0.;            ///< of the path, by the planner's own model
-    double alpha = 0.;
+    double plannerCost = 0.;            ///< cost of the path by the planner's own model [m]
+    double alpha = 0.;                  ///< alpha with which the planner searched
+    /// Vertices of the tree or roadmap, samples drawn, views rendered, views taken from the cache,
+    /// and steps at which compounding of fourth order was replaced by second order.
     std::size_t vertices = 0, iterations = 0, views = 0, cacheHits = 0, fallbacks = 0;
+    /// Wall-clock times [s]: of planning in all, and of this for views and for beliefs.
     double planSeconds = 0., viewSeconds = 0., beliefSeconds = 0.;
     std::vector<PlanProgress> progress;
     std::vector<TreeSegment> tree;
-    Audit audit;  ///< of the tree, and of the path's cost
+    Audit audit;  ///< check of the tree's beliefs and costs, and of the path's cost
 
-    /// A path whose cost is a number: where noise or information are absurd, it overflows.
+    /// Whether a path of finite cost was found. The cost overflows for absurd values of noise or
+    /// information.
     bool isSolved() const { return path && std::isfinite(path->cost); }
-    /// In a word or two: "done", "failed" or "no path".
+    /// "done", "failed" (the path's cost is not finite) or "no path".
     std::string status() const { return isSolved() ? "done" : path ? "failed" : "no path"; }
 };
 
-/// Start, goal and robot of a config in a world, and the planners that solve them:
+/// Start, goal and robot of a config in a world. The problem makes planners and evaluates paths:
 ///
 ///     const Config config = loadConfig("config/two_textures.yaml");
 ///     const World world(config);
 ///     const PlanOutcome outcome = PlanningProblem(config, world).solve(config.planner);
 ///
-/// Planners and evaluate() share views from the centres of cells (InformationField). With
-/// Config::quickViews, planners rank paths by views of half the size there, and evaluate(), which
-/// also judges for planners what may be the best path, uses whole views from the exact poses.
+/// Planners and evaluate() share cached views, rendered from the centres of cells of the pose space
+/// (InformationField). With Config::quickViews, planners compare paths by cached views of half the
+/// size; evaluate(), which planners also use for candidates of the best path, then renders
+/// full-size views from the exact poses.
 class PlanningProblem {
   public:
-    /// @param world must outlive it
-    /// @param alpha of the cost; default: the config's, whatever its planner. The cost that the
-    ///        planner of a config minimises, for rrt_star the length, has alphaOf(its name, ...).
-    /// @param photometric makes the information of views, in place of photometricModel()
+    /// @param world must outlive the problem
+    /// @param alpha weight of length in the cost; default: the config's planner.alpha. Use
+    ///        alphaOf(planner, ...) for the cost that a planner minimises (for rrt_star: length).
+    /// @param photometric makes the photometric information model of views
     PlanningProblem(const Config& config, const World& world, std::optional<double> alpha = {},
                     MakeInformationModel photometric = photometricModel);
-    /// The same problem with another trade-off, over the same views.
+    /// The same problem with another alpha. Both share the cached views.
     PlanningProblem(const PlanningProblem& other, double alpha);
     PlanningProblem(PlanningProblem&&) = default;
     PlanningProblem(const PlanningProblem&) = delete;  // both would share the planners made here
@@ -85,75 +92,82 @@ class PlanningProblem {
     /// @throws InputError for a start or goal in collision
     void checkPlaces() const;
 
-    /// Grows the planner of this name until it has the config's number of vertices.
+    /// Makes a planner and grows it to the config's number of vertices. Gives up after 200 samples
+    /// per requested vertex.
+    /// @param planner one of plannerNames()
+    /// @param onProgress called every 50 vertices, every 0.5 s without new vertices, and at the end
     /// @throws RenderingStopped when it is interrupted inside a large view, without a path so far
-    /// @param onProgress called now and then while planning
     PlanOutcome solve(const std::string& planner,
                       const std::atomic<bool>& interrupted = kNotInterrupted,
                       const OnPlanProgress& onProgress = {});
-    /// Grows a planner of makePlanner() as far as its parameters allow: a new one, or once more one
-    /// after followMap().
+    /// As above, for a planner of makePlanner(). It may be called again after followMap(): the
+    /// planner then continues its search.
     PlanOutcome solve(const std::shared_ptr<BeliefPlanner>& planner,
                       const std::atomic<bool>& interrupted = kNotInterrupted,
                       const OnPlanProgress& onProgress = {});
 
-    /// The status of an outcome and, unless it is done, the reason: "no path: ...".
+    /// PlanOutcome::status() and, unless it is "done", the reason: "no path: ...".
     std::string statusOf(const PlanOutcome& outcome) const;
 
-    /// The best path found by descent from these waypoints (of the body).
-    /// @return nothing if the motions between them are not free
+    /// The best path found by local descent.
+    /// @param waypoints body poses T_w_b of the path from which the descent starts
+    /// @return nothing if the motions between the waypoints are not free
     std::optional<EvaluatedPath> descend(const std::vector<Pose>& waypoints,
                                          const DescentOptions& options,
                                          const std::atomic<bool>& interrupted);
 
-    /// The kappa of all costs: the config's, or, where that is automatic, the one with which both
-    /// terms weigh the same on the path of rrt_star with the seed of the config, or on the straight
-    /// line where it finds none: the length of the path, turns counted, by its charged trace (0
-    /// where nothing is charged). Chosen when it is needed first, and the same from then on,
-    /// whatever becomes of the map.
+    /// The kappa of all costs [1/m]: the config's, or the automatic one. Automatic kappa gives both
+    /// terms of the cost the same weight on the path of rrt_star with the seed of the config (on
+    /// the straight line if rrt_star finds no path): it is the path's distance, including turns,
+    /// divided by the charged trace (0 if no trace is charged). It is computed when first needed
+    /// and does not change afterwards, also if the map changes.
     /// @throws RenderingStopped when it is interrupted inside a large view
     double kappa(const std::atomic<bool>& interrupted = kNotInterrupted);
 
     /// Evaluates a path given by its waypoints.
+    /// @param planner name of the planner, stored in the result
     /// @throws RenderingStopped when it is interrupted inside a large view
     EvaluatedPath evaluate(const std::string& planner, const std::vector<Place>& waypoints,
                            const std::atomic<bool>& interrupted = kNotInterrupted);
 
-    /// The information of the view from a body pose, cached; for heat maps.
+    /// The photometric information of the view from a body pose (cached), for heat maps.
     Matrix6 informationAt(const Pose& T_w_b) { return evaluator_->informationAt(T_w_b); }
     /// The covariance at the start before any view, camera frame.
     const Matrix6& initialCovariance() const { return evaluator_->initialCovariance(); }
+    /// Whether the clearance at a position of the body is larger than robot.radius.
     bool isFlyable(const Eigen::Vector3d& p_w) const;
 
     // For programs that run planners themselves.
 
     const ompl::base::SpaceInformationPtr& spaceInformation() const { return si_; }
-    /// Start and goal.
+    /// Start and goal as an OMPL problem. A goal without heading is given as eight goal states with
+    /// different headings.
     ompl::base::ProblemDefinitionPtr definition() const;
     const FlightSpace& space() const { return space_; }
-    /// A planner that is set up for it.
-    /// @param name one of plannerNames() @throws std::invalid_argument for any other
+    /// A planner that is set up for this problem.
+    /// @param name one of plannerNames()
     /// @param seed default: the config's
+    /// @throws std::invalid_argument for another name
     std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
                                                std::optional<std::uint32_t> seed = {});
-    /// Lets a flag end the large views of planners and of evaluations, which throw
-    /// RenderingStopped.
+    /// As long as the result exists, rendering large views for planners and evaluations ends with
+    /// RenderingStopped when the flag is set.
     [[nodiscard]] InterruptionScope interruptedBy(const std::atomic<bool>& interrupted) {
         return {*interruption_, interrupted};
     }
-    /// Updates the cached views and the planners made here by all changes of World::mapChanged()
-    /// since the last call; until then they are those of the map before. Planners keep what is
-    /// still valid: solve() goes on from there. Call it for every problem in the world, one by one.
+    /// Applies all changes of World::mapChanged() since the last call to the cached views and to
+    /// the planners made here; before, they use the old map. Planners keep what is still valid, and
+    /// solve() continues from there. Call it for every problem in the world, one after the other.
     void followMap();
     const Config& config() const { return config_; }
     const World& world() const { return world_; }
-    /// The model that paths are evaluated by.
+    /// The belief model by which paths are evaluated.
     BeliefModel& evaluator();
-    /// Evaluates the solution of a planner that has one.
+    /// Evaluates the solution of a planner. The planner must have one.
     EvaluatedPath evaluate(const BeliefPlanner& planner);
-    /// Evaluates a path of any planner of OMPL.
+    /// Evaluates a path of any OMPL planner.
     EvaluatedPath evaluate(const std::string& planner, ompl::geometric::PathGeometric& path);
-    /// Clears the cached views. Planners made before must be cleared, or not be used again.
+    /// Clears the cached views. Planners made before must be cleared before they are used again.
     void forgetViews() {
         field_->clear();
         plannersField_->clear();
@@ -174,23 +188,23 @@ class PlanningProblem {
     EvaluatedPath evaluate(const std::string& planner,
                            const std::vector<const ompl::base::State*>& path);
 
-    Config config_;  // its kappa may be automatic until it is needed
+    Config config_;  // kappa may be automatic until it is first needed
     const World& world_;
-    std::shared_ptr<MapChange> notFollowed_;  // changes of its map
-    /// What ends the rendering of views; of all problems over the same views.
+    std::shared_ptr<MapChange> notFollowed_;  // changes of the map since the last followMap()
+    /// Points to the flag that interrupts rendering. Shared by all problems over the same views.
     std::shared_ptr<const std::atomic<bool>*> interruption_ =
         std::make_shared<const std::atomic<bool>*>(&kNotInterrupted);
     MakeInformationModel photometric_;
     FlightSpace space_;
     ompl::base::SpaceInformationPtr si_;
-    std::shared_ptr<InformationField> field_;             // photometric, of evaluator_
-    std::shared_ptr<InformationField> plannersField_;     // of the planner
-    std::shared_ptr<BeliefModel> evaluator_;              // without costs while kappa is automatic
+    std::shared_ptr<InformationField> field_;             // photometric, for evaluator_
+    std::shared_ptr<InformationField> plannersField_;     // for planners
+    std::shared_ptr<BeliefModel> evaluator_;              // with kappa = 0 while it is automatic
     std::vector<std::weak_ptr<BeliefPlanner>> planners_;  // made here
 };
 
-/// The config with a number as kappa, for problems that have to share it: those of other seeds, or
-/// with other numbers of vertices.
+/// The config with automatic kappa replaced by its value, for several problems that must share
+/// kappa although they differ in seed or number of vertices.
 Config withKappa(Config config, const World& world,
                  const std::atomic<bool>& interrupted = kNotInterrupted);
 

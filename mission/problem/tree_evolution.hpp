@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a planner's tree grows: the paper's Fig. 5.
+// The growth of a planner's tree in stages, as in the paper's Fig. 5.
 #pragma once
 
 #include <atomic>
@@ -8,12 +8,12 @@
 
 namespace photonav {
 
-/// A planner's tree, and the best path so far, when it had as many vertices.
+/// A planner's tree and its best path at one stage.
 struct TreeStage {
-    std::size_t vertices = 0;
+    std::size_t vertices = 0;  ///< number of vertices at this stage
     std::vector<TreeSegment> tree;
-    std::vector<Eigen::Vector3d> path;  ///< positions in w; empty: none yet
-    double cost = 0.;                   ///< of that path, as `plan` evaluates it
+    std::vector<Eigen::Vector3d> path;  ///< positions, world frame [m]; empty: no path yet
+    double cost = 0.;                   ///< EvaluatedPath::cost of the path
 };
 
 struct TreeEvolution {
@@ -21,14 +21,15 @@ struct TreeEvolution {
     std::vector<TreeStage> stages;
 };
 
-/// Grows a planner in stages with these numbers of vertices (in rising order). solve() ends at
-/// every stage, and belief_rrt_star then searches its roadmap. Its last stage therefore differs
-/// slightly from a problem without stages.
+/// Grows a planner in stages. The planner's solve() ends at every stage, where belief_rrt_star
+/// searches its roadmap. The result of the last stage therefore differs slightly from the result
+/// without stages.
+/// @param vertices numbers of vertices of the stages, in rising order
 TreeEvolution growInStages(PlanningProblem& problem, const std::string& planner,
                            const std::vector<std::size_t>& vertices,
                            const std::atomic<bool>& interrupted);
 
-/// The motions of the tree, each listed once even if several beliefs use it.
+/// The edges of a planner's tree. An edge is listed once, also if several beliefs use it.
 std::vector<TreeSegment> drawnEdges(const BeliefPlanner& planner);
 
 }  // namespace photonav

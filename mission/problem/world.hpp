@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scene or map of a config, with its views and clearance.
+// The scene or map of a config, which renders views and measures clearance.
 #pragma once
 
 #include <memory>
@@ -16,49 +16,56 @@ namespace photonav {
 class World {
   public:
     /// Loads the scene or map of the config.
-    /// @throws InputError when it cannot be read, or is too large for the resolution asked for
+    /// @throws InputError if it cannot be read, or if the bounds are too large for the resolution
     explicit World(const Config& config);
-    /// A scene of the program's own, in the bounds of the config.
+    /// A world made from a given scene; clearance is measured within the bounds of the config.
     World(Scene scene, const Config& config);
-    /// A map of the program's own, in the bounds of the config. It may change and gain texture:
-    /// call mapChanged() then.
-    /// @throws std::invalid_argument for a map that is too large
+    /// A world made from a given map; clearance is measured within the bounds of the config. The
+    /// caller may change the map (occupancy and texture) and must then call mapChanged().
+    /// @throws std::invalid_argument if the bounds are too large for the resolution of the map
     World(std::shared_ptr<const TexturedOcTree> map, const Config& config);
-    /// The same where obstacles are the occupied cells of another map, of the same resolution. A
-    /// change must list what changed in either.
+    /// As above, but obstacles are the occupied cells of another map of the same resolution.
+    /// mapChanged() must be told the changes of both maps.
     World(std::shared_ptr<const TexturedOcTree> map,
           std::shared_ptr<const TexturedOcTree> obstacles, const Config& config);
 
-    /// Updates clearance and views after a change of the program's own map, at a cost that grows
-    /// with the change. Nothing else may use the world meanwhile. Planning problems in it follow
-    /// when PlanningProblem::followMap() is called.
+    /// Updates clearance and views after a change of the map, in a time that grows with the change.
+    /// The world must not be used by other threads during the call. Planning problems in the world
+    /// are updated by PlanningProblem::followMap().
     /// @param change everything that changed since the last call
-    /// @throws std::logic_error for a world made otherwise
+    /// @throws std::logic_error unless the world was made from a given map
     void mapChanged(const MapChange& change);
 
-    /// The map's changes, from now on until they are taken out, are joined in the value returned.
-    /// Nothing is ever added where the map cannot change.
+    /// Registers a collector of changes: all later changes of the map are joined into the value
+    /// returned, which the caller may empty at any time. It stays empty if the map cannot change.
     std::shared_ptr<MapChange> collectChanges() const;
 
+    /// Renders views of the present scene or map.
     const ViewSource& views() const { return *views_; }
-    /// The same with shared ownership.
+    /// views() with shared ownership.
     std::shared_ptr<const ViewSource> sharedViews() const { return views_; }
     /// Whether any surface has a grey value: false for a map of occupancy only.
     bool hasTexture() const { return hasTexture_; }
+    /// Distance from a place to the nearest obstacle [m], see DistanceMap::clearance().
     double clearance(const Eigen::Vector3d& p_w) const { return distances_.clearance(p_w); }
 
-    /// Box of everything that can be seen [m]. Goes through all cells of a map.
+    /// Bounding box of the scene or map, world frame [m]. For a map, visits all cells.
     Eigen::AlignedBox3d extent() const;
 
-    /// The scene or the map that the world was made from; null if it was made from the other.
+    /// The scene from which the world was made; null if it was made from a map.
     const Scene* scene() const { return scene_; }
+    /// The map from which the world was made; null if it was made from a scene.
     const TexturedOcTree* map() const { return map_.get(); }
 
-    /// The grey values below height z, from above, nearly orthographic: first row at the largest y.
+    /// A nearly orthographic picture from above, grey values in [0, 1]. Image right is x, the first
+    /// row is at the largest y. Places without surface are white, edges of objects are darkened.
+    /// @param area part of the world in x and y [m]
+    /// @param z only surfaces below this height are shown [m]
+    /// @param pixelSize edge of a pixel [m]
     ImageF pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const;
 
   private:
-    /// Those who collect changes.
+    /// The collectors of changes.
     struct Collectors;
 
     void useScene(Scene scene, const Config& config);
@@ -66,13 +73,13 @@ class World {
                 std::shared_ptr<const TexturedOcTree> obstacles, const Config& config);
 
     std::shared_ptr<const ViewSource> views_;
-    std::optional<VoxelSnapshots> snapshots_;  // that views_ is of, where the map may change
-    std::shared_ptr<Collectors> collectors_;   // there, too
+    std::optional<VoxelSnapshots> snapshots_;  // source of views_, if the map may change
+    std::shared_ptr<Collectors> collectors_;   // not null if the map may change
     bool hasTexture_ = true;
     DistanceMap distances_;
     std::shared_ptr<const TexturedOcTree> map_;
     std::shared_ptr<const TexturedOcTree> obstacles_;
-    const Scene* scene_ = nullptr;  // of the renderer in views_
+    const Scene* scene_ = nullptr;  // owned by the renderer in views_
 };
 
 }  // namespace photonav

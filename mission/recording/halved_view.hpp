@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Smaller views: to be tracked fast, or to be looked at.
+// Reduces views to half their size, for faster tracking and for figures.
 #pragma once
 
 #include "photometry/view.hpp"
 
 namespace photonav {
 
-inline constexpr unsigned kShownWidth = 640;  ///< of views in figures, at most [pixels]
+inline constexpr unsigned kShownWidth = 640;  ///< largest width of views in figures [pixels]
 
-/// Halves a view: grey values by halvedAsRendered(), depth taken from the first of four pixels.
+/// Halves the size of a view several times. Grey values are reduced by halvedAsRendered(); depth is
+/// taken from the upper left of each four pixels.
 void halve(View& view, int times);
 
-/// How often a view of this width is halved until it is at most kShownWidth wide.
+/// Number of halvings after which a view of this width [pixels] is at most kShownWidth wide.
 int halvingsToShow(unsigned width);
 
 }  // namespace photonav

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which recording, in the config.yaml that `photonav map` and `photonav replay` write.
+// The keys that describe a recording, in the config.yaml that `photonav map` and `photonav replay`
+// write.
 #pragma once
 
 #include "config/key_table.hpp"
@@ -7,7 +8,8 @@
 
 namespace photonav {
 
-/// Every key of a recording but `forgiving` and `needsDepth`; without `dataset` reading fails.
+/// Adds the keys of all options except `forgiving` and `needsDepth`. `dataset` is required when a
+/// file is read. `options` must outlive the table.
 void addKeys(KeyTable& keys, RecordingOptions& options);
 
 }  // namespace photonav

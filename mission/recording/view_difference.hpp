@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How well a map predicts the images it was made from.
+// Measures how well a map predicts the images from which it was made.
 #pragma once
 
 #include <optional>
@@ -9,20 +9,21 @@
 
 namespace photonav {
 
-/// Differences of a predicted and an observed view, over the pixels where both are known.
+/// Differences between a predicted and an observed view, over the pixels at which the map has a
+/// surface (for depth: and at which depth was observed).
 struct ViewDifference {
-    // These three: none where nothing is predicted.
-    std::optional<double> meanIntensity;    ///< mean absolute, grey values in [0, 1]
-    std::optional<double> medianIntensity;  ///< median absolute
-    std::optional<double>
-        contrast;  ///< mean absolute deviation of the observed image from its median over
-                   ///< the same pixels: what predicting the best uniform grey would cost
-    std::optional<double> meanDepth;    ///< mean absolute [m]; none without observed depth
-    std::optional<double> medianDepth;  ///< median absolute [m]
-    double predicted = 0.;              ///< fraction of all pixels at which the map has a surface
+    // The first three values are missing if the map predicts no pixel.
+    std::optional<double> meanIntensity;    ///< mean absolute difference, grey values in [0, 1]
+    std::optional<double> medianIntensity;  ///< median absolute difference, grey values in [0, 1]
+    /// Mean absolute deviation of the observed image from its median over these pixels: the
+    /// meanIntensity of the best uniform grey image.
+    std::optional<double> contrast;
+    std::optional<double> meanDepth;    ///< mean absolute difference [m]; none without depth
+    std::optional<double> medianDepth;  ///< median absolute difference [m]; none without depth
+    double predicted = 0.;              ///< share of all pixels at which the map has a surface
 };
 
-/// A predicted image with the gain and offset of an observed one, to be compared with it.
+/// Applies gain and offset of an observed image to a predicted one, before the two are compared.
 void expose(ImageF& predicted, const Exposure& exposure);
 
 /// @throws std::invalid_argument unless both views have the same size

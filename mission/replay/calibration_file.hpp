@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The calibration of a tracker as a file, which a replay writes and replays and flights read.
+// Files with the calibration of a tracker's covariances. Replays write them; replays and flights
+// read them.
 #pragma once
 
 #include <optional>
@@ -10,17 +11,17 @@
 
 namespace photonav {
 
-/// For the command line, and as YAML that readCalibration() reads back.
-/// @param map that images were aligned to; none: to keyframes (odometry)
+/// YAML that readCalibration() can read. A comment gives the same values as command-line options.
+/// @param map kind of the map to which images were aligned; none: keyframes (odometry)
 std::string toYaml(const Calibration& calibration, std::optional<MapKind> map);
 
-/// Scale, least sigmas and correlation time of such a file.
+/// Reads scale, least sigmas and correlation time.
 /// @throws InputError naming file, key and reason
 Calibration readCalibration(const std::string& file);
 
-/// The same, of alignments to this kind of map, or to keyframes. A file that does not say what it
-/// is of is taken as it is.
-/// @throws InputError as above, and for a file of another kind
+/// As above, with a check that the file is for alignments to this kind of map (none: to keyframes).
+/// A file without the key `mode` is accepted.
+/// @throws InputError as above, and for a file for another kind of alignments
 Calibration readCalibration(const std::string& file, std::optional<MapKind> map);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the depth camera of a recording sits beside its colour camera.
+// Estimates the pose of a recording's depth camera relative to its colour camera.
 #pragma once
 
 #include <functional>
@@ -11,18 +11,20 @@
 namespace photonav {
 
 struct DepthRegistration {
-    Sequence sequence;  ///< of the recording, with the depth camera found
+    Sequence sequence;  ///< the recording's sequence, with the calibrated depth camera
     DepthCalibration calibration;
-    std::size_t pairs = 0;  ///< of images that it rests on
+    std::size_t pairs = 0;  ///< image pairs used for the calibration
     bool isInterrupted = false;
 };
 
-/// Pairs images that are a twentieth of the mean depth apart, by visual odometry, and calibrates
-/// the depth camera on them. Poses are not needed. It starts at the depth camera that the dataset's
-/// camera.yaml (or `cameraFile`) knows, else at the colour camera.
-/// @param progress is called with the images done and all there are
-/// @throws InputError for a recording that cannot be used: without depth images, or with too little
-///         motion for DepthCalibrator::kLeastPairs
+/// Selects image pairs whose camera positions are a twentieth of the mean depth apart, measured by
+/// visual odometry, and calibrates the depth camera on these pairs. Recorded poses are not needed.
+/// The initial value is the depth camera of the dataset's camera.yaml (or `cameraFile`), else the
+/// colour camera.
+/// @param isStopped asked before every image
+/// @param progress called after every image with the number of processed and of all images
+/// @throws InputError for a recording without depth images, or with too little motion for
+///         DepthCalibrator::kLeastPairs pairs
 DepthRegistration registerDepth(
     const RecordingOptions& options, const std::function<bool()>& isStopped = {},
     const std::function<void(std::size_t done, std::size_t all)>& progress = {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the depth images of a recording say about the sensor that took them.
+// Estimates the noise of a recording's depth sensor from its depth images.
 #pragma once
 
 #include <cstddef>
@@ -10,40 +10,42 @@
 
 namespace photonav {
 
-/// The noise of depth images. Along their rows, inverse depth is linear on a plane, whatever its
-/// slope: noise and rounding are what bends it.
+/// Estimator of the noise of depth images. On a plane of any slope, inverse depth is linear along
+/// an image row: its second differences are due to noise and rounding.
 class DepthNoise {
   public:
-    /// Pixels at the edges of surfaces, where depth steps by more than 3 %, are left out.
+    /// Adds the pixels of a depth image [m], without those at edges of surfaces, where depth
+    /// changes by more than 3 % from pixel to pixel.
     void add(const ImageF& depth);
 
-    /// Standard deviation at a depth of 1 m, of noise that grows with depth squared [m]; 0 where
-    /// nothing was added.
+    /// Standard deviation of depth at 1 m, if noise grows with depth squared [m]; 0 without pixels.
     double atOneMetre() const;
-    /// Standard deviation, over all depths [m]; 0 where nothing was added.
+    /// Standard deviation of depth, over all pixels [m]; 0 without pixels.
     double overall() const;
 
   private:
-    std::vector<float> relative_, absolute_;  // bends over depth squared [1/m], bends [m]
+    // Absolute second differences of inverse depth [1/m], and the same times depth squared [m].
+    std::vector<float> relative_, absolute_;
 };
 
-/// A look at a few images of a recording.
+/// Statistics of a few depth images of a recording.
 struct DepthLook {
-    std::optional<double> median;  ///< [m]; 0: no depth; nothing: none of the images can be used
+    std::optional<double> median;  ///< median depth [m]; 0: no depth; nothing: no usable image
     DepthNoise noise;
 };
+/// Evaluates about five images, spread over a recording.
 DepthLook lookAtDepth(const Recording& recording);
 
-/// What depth gets wrong in the same way in every image, as a share of the motion between two
-/// images: a wrong scale, depth images that do not fit the colour images. No residual shows it.
+/// The systematic error of depth: a wrong scale, or depth images that are not registered to the
+/// colour images. It is the same in every image, so that no residual shows it.
 struct DepthError {
-    double relative = 0.;
-    bool isAssumed = false;  ///< the recording does not say
+    double relative = 0.;    ///< error of an estimated motion as a share of this motion
+    bool isAssumed = false;  ///< true: the recording does not state it
 };
 
-/// As `depth_error` of camera.yaml says. Without it, the noise decides: rendered depth is exact;
-/// for that of a sensor the error of depth that is not registered is assumed, the largest that
-/// sensors are known to have.
+/// The systematic depth error of a recording: `depth_error` of camera.yaml, if it is there. Else it
+/// is assumed from the noise: 0 for rendered depth and depth from stereo; for a depth sensor the
+/// error of unregistered depth, the largest one known of such sensors.
 DepthError depthErrorOf(const Recording& recording, const DepthNoise& noise);
 
 }  // namespace photonav

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What scale and least sigmas would have made the covariances of a replay true.
+// Calibrates the covariances of alignments, by scale and least sigmas, from a replay with ground
+// truth.
 #pragma once
 
 #include <optional>
@@ -10,14 +11,15 @@
 
 namespace photonav {
 
-constexpr std::size_t kLeastForCalibration = 20;  ///< alignments
+constexpr std::size_t kLeastForCalibration = 20;  ///< least number of alignment errors
 
-/// The errors of the alignments that converged, of images whose true pose is known: in the map, or
-/// relative to the keyframe aligned to.
+/// The errors of all converged alignments of images with ground truth: of the pose in the map, or,
+/// for odometry, of the pose relative to the keyframe.
 std::vector<AlignmentError> alignmentErrors(const ReplayRun& run);
 
-/// Nothing when there are too few of them.
-/// @param leastSigmaOnly keep the factor: for maps of cells
+/// The calibration by these errors; nothing if there are fewer than kLeastForCalibration.
+/// @param leastSigmaOnly true: only the least sigmas are estimated, and the scale of the run is
+///        kept, as is right for maps of cells (calibrateLeastSigma())
 std::optional<Calibration> calibrationOf(const ReplayRun& run, bool leastSigmaOnly);
 
 }  // namespace photonav

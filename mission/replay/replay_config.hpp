@@ -7,7 +7,7 @@
 
 namespace photonav {
 
-/// Every key of a replay, those of its recording included.
+/// Adds all keys of a replay, including those of its recording. `options` must outlive the table.
 void addKeys(KeyTable& keys, ReplayOptions& options);
 
 }  // namespace photonav

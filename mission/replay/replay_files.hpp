@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What result.json says of a replay's input, and its model of COLMAP.
+// The input of a replay as part of result.json, and the result as a COLMAP model.
 #pragma once
 
 #include <filesystem>
@@ -10,13 +10,15 @@
 namespace photonav {
 
 /// The options in use.
+/// @param options completed by Replay::options()
 nlohmann::json optionsJson(const ReplayOptions& options);
 
-/// The recording.
+/// The recording: folder, layout, camera and depth.
 nlohmann::json datasetJson(const Replay& replay);
 
-/// The images that were tracked with their estimated poses, as a model of COLMAP: their files are
-/// named as from the folder of the dataset. Rectified images, and those of a bag, are no files.
+/// Writes the tracked images with their estimated poses as a COLMAP model. Image files are named
+/// relative to the folder of the dataset. Nothing is written for recordings without image files
+/// (Recording::hasImageFiles).
 void writeColmap(const std::filesystem::path& folder, const Replay& replay, const ReplayRun& run);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which recorded flight to track, and how.
+// Options for tracking a recorded flight.
 #pragma once
 
 #include <optional>
@@ -9,28 +9,30 @@
 
 namespace photonav {
 
-inline constexpr int kLeastWidth = 24;       ///< of the images that are tracked [pixels]
-inline constexpr double kStartSigma = 0.05;  ///< in a map, when nothing else is said [m], [rad]
+inline constexpr int kLeastWidth = 24;       ///< least value of ReplayOptions::maxWidth [pixels]
+inline constexpr double kStartSigma = 0.05;  ///< default of ReplayOptions::startSigma [m], [rad]
 
-/// Either `mapFile` or `odometry`.
+/// Exactly one of `mapFile` and `odometry` must be given.
 struct ReplayOptions : RecordingOptions {
     std::string mapFile;      ///< localise in this textured octree (.ot), mesh or scene
-    bool odometry = false;    ///< instead: no map, from image to image
-    std::string calibration;  ///< file with the scale and least sigmas that are not given below
-    std::string start;        ///< "x,y,z,qx,qy,qz,qw" of the first frame's camera, in the map's
-                              ///< world (z up); empty: the ground truth's
-    /// Standard deviation of the start, per axis [m] and [rad]; only in a map: odometry is exact
-    /// where it begins.
+    bool odometry = false;    ///< track from image to image, without a map
+    std::string calibration;  ///< file that gives the scale and least sigmas not given below
+    std::string start;        ///< "x,y,z,qx,qy,qz,qw": camera pose of the first frame, in the map's
+                              ///< world (z up) [m]; empty: the true pose
+    /// Standard deviation of the start pose, per axis [m] and [rad]. Only in a map: the start of
+    /// odometry is exact.
     std::optional<double> startSigma;
-    double sigma = 0.02;                       ///< image noise, grey values in [0, 1]
-    std::optional<double> scale;               ///< factor on the measured information; none: 1
-    std::optional<double> leastSigma;          ///< least standard deviations of an alignment [m]
-    std::optional<double> leastSigmaRotation;  ///< [rad]; none: 0
-    double minOverlap = 0.2;  ///< least share of the image's pixels that the model must explain
-    /// Images are halved until they are as wide [pixels]; by default 320 in a map, once in
-    /// odometry.
-    std::optional<int> maxWidth;  ///< at least kLeastWidth
-    bool exposure = true;         ///< estimate gain and offset of every image
+    double sigma = 0.02;               ///< standard deviation of image noise, grey values in [0, 1]
+    std::optional<double> scale;       ///< factor on the information of an alignment; none: 1
+    std::optional<double> leastSigma;  ///< least standard deviation of an aligned position [m];
+                                       ///< none: 0
+    std::optional<double> leastSigmaRotation;  ///< least standard deviation of an aligned rotation
+                                               ///< [rad]; none: 0
+    double minOverlap = 0.2;  ///< least share of the image's pixels that the model must cover
+    /// Images are halved until they are at most this wide [pixels], at least kLeastWidth. None: 320
+    /// in a map, one halving in odometry.
+    std::optional<int> maxWidth;
+    bool exposure = true;  ///< estimate gain and offset of every image
 };
 
 }  // namespace photonav

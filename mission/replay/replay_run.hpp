@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The frames of a recording as they were tracked.
+// The tracking results of all frames of a recording.
 #pragma once
 
 #include <functional>
@@ -19,54 +19,57 @@ enum class FrameStatus {
 };
 
 struct ReplayedFrame {
-    std::size_t index = 0;  ///< among the frames used
+    std::size_t index = 0;  ///< index in Recording::sequence
     double timestamp = 0.;  ///< [s]
     FrameStatus status = FrameStatus::unreadable;
-    TrackedFrame tracked;           ///< nothing in it when unreadable
+    TrackedFrame tracked;           ///< default values if the frame is unreadable
     std::optional<Pose> truth_c_w;  ///< true T_c_w
-    double seconds = 0.;            ///< of tracking, pyramids included
+    double seconds = 0.;            ///< wall-clock time of halving and tracking the image [s]
     double density = 0.;            ///< share of the pixels with depth, before halving
-    bool isBlack = false;           ///< nothing to be seen in the image
-    std::string words;              ///< the alignment's verdict, or why the frame is unreadable
+    bool isBlack = false;           ///< the image is black
+    std::string words;              ///< verdict on the alignment, or why the frame is unreadable
 };
 
-/// The observed view of a frame, and the one predicted at the believed pose with its exposure,
-/// small enough to be looked at.
+/// The observed view of a frame, and the view that the model predicts at the estimated pose with
+/// the estimated exposure, reduced in size for figures.
 struct ReplayStrip {
     std::size_t frame = 0;  ///< index into ReplayRun::frames
     std::string caption;
     View observed, predicted;
-    bool isSample = false;  ///< one of the few that stand for all, or the first that was lost
+    bool isSample = false;  ///< one of about five samples, or the first lost frame
 };
 
 struct ReplayRun {
     bool odometry = false;  ///< tracked without a map
-    double scale = 1.;      ///< factor on the information of the alignments that was in use
+    double scale = 1.;      ///< factor on the information of the alignments
     std::vector<ReplayedFrame> frames;
-    std::vector<ReplayStrip> strips;          ///< of at most some forty frames, evenly apart
-    std::optional<std::size_t> alignedFrame;  ///< at which alignToTruth() set the estimate
-    std::string stopped;  ///< why it ended before the last frame; empty: it did not
+    std::vector<ReplayStrip> strips;          ///< about forty frames, evenly spread
+    std::optional<std::size_t> alignedFrame;  ///< index of the frame at which alignToTruth() made
+                                              ///< the estimate equal to the ground truth
+    std::string stopped;  ///< why tracking gave up before the last frame; empty if it did not
     bool interrupted = false;
-    double loadSeconds = 0.;   ///< images, and depth from stereo
-    double trackSeconds = 0.;  ///< everything else
+    double loadSeconds = 0.;   ///< wall-clock time of loading images and of stereo matching [s]
+    double trackSeconds = 0.;  ///< wall-clock time of halving and tracking images [s]
 };
 
-/// Tracks a recording, image by image; frames whose images cannot be used are passed over.
-/// @param isStopped asked before every frame
-/// @param progress called after every frame with the number done
-/// @throws InputError when none of the first ten frames can be loaded, with the reason of the first
+/// Tracks a recording, image by image. Frames whose images cannot be used are skipped.
+/// @param isStopped asked before every frame and between the steps of a frame
+/// @param progress called after every frame with the number of frames done
+/// @throws InputError if none of the first ten frames can be loaded, with the reason for the first
 ReplayRun replay(const Recording& recording, const ReplayTracker& tracker,
                  const std::function<bool()>& isStopped,
                  const std::function<void(std::size_t)>& progress);
 
-/// The frame of this timestamp, which is one of them.
+/// The frame with this time stamp. The run must contain it.
 const ReplayedFrame& frameAt(const ReplayRun& run, double timestamp);
 
-/// The first frame whose images could be used; the end when there is none.
+/// The first readable frame; the end iterator if there is none.
 std::vector<ReplayedFrame>::const_iterator firstRead(const ReplayRun& run);
 
-/// Odometry estimates motions only: moves all of its poses so that they begin at the truth, or,
-/// where the first image has no true pose, agree with it at the first tracked image that has one.
+/// Transforms the trajectory of odometry, which is estimated relative to its first pose, into the
+/// world: all poses are moved by one rigid motion, so that the estimate equals the ground truth at
+/// the first readable frame. If that frame has no true pose, the first tracked frame with a true
+/// pose is used. Without ground truth, nothing changes.
 void alignToTruth(ReplayRun& run);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A replay as tables and trajectories for other programs.
+// Writes a replay as tables and trajectories for other programs.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,12 @@
 
 namespace photonav {
 
-std::vector<StampedBelief> beliefsOf(const ReplayRun& run);  ///< of the frames tracked
+/// The beliefs of all tracked frames.
+std::vector<StampedBelief> beliefsOf(const ReplayRun& run);
 
-/// Writes frames.csv (a row per frame), trajectory.tum, .kitti, .cov and .ov of the frames tracked,
-/// and groundtruth.tum of the frames used, in the same world and of the same camera.
+/// Writes frames.csv (one row per frame), trajectory.tum, .kitti, .cov and .ov (tracked frames),
+/// and groundtruth.tum (all frames with a true pose, if there are any). All poses are those of the
+/// camera, in the same world.
 /// @throws InputError for a file that cannot be written
 void writeReplayTables(const std::filesystem::path& folder, const ReplayRun& run,
                        const ReplayErrors& errors);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tracker of a replay: odometry, or localisation in a map.
+// The tracker of a replay: visual odometry or localisation in a map.
 #pragma once
 
 #include <functional>
@@ -10,33 +10,38 @@
 
 namespace photonav {
 
-/// A frame as it was given to the tracker, and the result.
+/// A frame's view and its tracking result.
 struct TrackedView {
     View view;
     TrackedFrame tracked;
 };
 
 struct ReplayTracker {
+    /// Tracks the next frame. @param view with `camera`; @param timestamp [s]
     std::function<TrackedFrame(const View& view, double timestamp)> track;
-    /// The view of a frame as the model predicts it at the believed pose; depth 0: nothing there.
-    /// Of the size of the frame's view, which may have been halved some more times.
-    /// @param keyframe that the frame was aligned to, if any; of the same size
+    /// Predicts the view of a frame at its estimated pose, from the map or the keyframe. Depth 0:
+    /// the model has no surface there. The prediction has the size of the frame's view, which may
+    /// be reduced by further halvings.
+    /// @param keyframe the keyframe to which the frame was aligned, if any, in the same size
     std::function<View(const TrackedView& frame, const std::optional<TrackedView>& keyframe)>
         predict;
-    bool odometry = false;  ///< without a map
+    bool odometry = false;  ///< tracks without a map
     double scale = 1.;      ///< factor on the information of its alignments
-    TrustOptions trust;     ///< of its alignments, to put them in words
-    Camera camera;          ///< of the views to be given to it
-    int halvings = 0;       ///< of the recorded views
-    /// Whether to give up, because nothing agrees with the start; empty: never.
+    TrustOptions trust;     ///< thresholds of its alignments, for describe()
+    Camera camera;          ///< intrinsics of the views for track()
+    int halvings = 0;       ///< number of halvings from recorded views to views for track()
+    /// Whether to give up, because no image could be aligned near the start; empty: never.
     std::function<bool()> hasGivenUp;
 };
 
-/// Odometry from `start`.
+/// A tracker by visual odometry from a start pose T_c_w.
 ReplayTracker odometryTracker(const Camera& camera, const UncertainPose& start,
                               const KeyframeChainOptions& options);
 
-/// Localisation in a map, with images halved until they are at most `maxWidth` wide.
+/// A tracker in a map.
+/// @param camera intrinsics of the recorded views
+/// @param start initial belief of T_c_w
+/// @param maxWidth images are halved until they are at most this wide [pixels]
 ReplayTracker mapTracker(const std::shared_ptr<const ViewSource>& map, const Camera& camera,
                          const UncertainPose& start, const TrackerOptions& options,
                          unsigned maxWidth);

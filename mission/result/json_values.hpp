@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Values of result files.
+// JSON values of result files.
 #pragma once
 
 #include <cstdint>
@@ -15,21 +15,24 @@ namespace photonav {
 
 /// A JSON number, or null for a missing value (infinite or NaN).
 nlohmann::json finiteOrNull(double value);
+/// A JSON number, or null for no value.
 nlohmann::json orNull(const std::optional<double>& value);
 
-/// A result.json: an object, with schema, command and version added.
+/// The content of a result.json: an object, to which schema, command and version are added.
 nlohmann::json resultJson(const std::string& command, nlohmann::json content);
 
+/// [x, y, z].
 nlohmann::json vectorJson(const Eigen::Vector3d& v);
 
-/// The upper triangle of a symmetric matrix, by rows.
+/// The upper triangle of a symmetric matrix, row by row (21 numbers).
 nlohmann::json triangleJson(const Matrix6& matrix);
 
-/// What covariances of poses in result files are.
+/// The convention of pose covariances in result files, as text.
 inline constexpr const char* kCovarianceFrame =
     "camera, left perturbation T_c_w = exp(xi) mean, order (rho, phi), upper triangle by rows";
 
-/// A whole number that the type can hold. @throws std::exception for other values
+/// A non-negative integer of type Number. @throws std::exception for a value that is none or is too
+/// large for the type
 template <typename Number>
 Number wholeNumber(const nlohmann::json& value) {
     if (!value.is_number_unsigned()) throw std::invalid_argument("not a whole number");
@@ -40,14 +43,14 @@ Number wholeNumber(const nlohmann::json& value) {
     return static_cast<Number>(number);
 }
 
-/// A result file's text, one value per line. Bytes that are not UTF-8 (of a file name, say) are
-/// replaced: nothing that was computed is lost for them.
+/// The text of a result file, one value per line. Bytes that are not UTF-8 (in a file name, for
+/// example) are replaced: they cause no error.
 std::string jsonText(const nlohmann::json& value);
 
-/// The same on one line.
+/// As jsonText(), on one line.
 std::string jsonLine(const nlohmann::json& value);
 
-/// Size and intrinsics [pixels].
+/// Image size and intrinsics [pixels].
 nlohmann::json cameraJson(const Camera& camera);
 
 }  // namespace photonav

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What results depend on, to find out whether runs of different times and machines belong together.
+// The identity of results: everything on which they depend. Runs with the same identity can be
+// merged, also if they were made at other times or on other machines.
 #pragma once
 
 #include <map>
@@ -10,17 +11,19 @@
 
 namespace photonav {
 
-/// Everything that results depend on, by dotted key.
+/// Values on which results depend, by dotted key ("planner.vertices").
 using Identity = std::map<std::string, std::string>;
 
-/// All keys of the config, the contents of the scene or map and of the textures, buffers and
-/// materials it is made of (whose folder does not matter), the program's version.
+/// The identity of all results of a config: all its keys, checksums of the scene or map file and of
+/// the textures, buffers and materials that it uses, and the program's version. Folders of files do
+/// not matter.
 Identity identityOf(const Config& config);
 
-/// Leaves out keys, "seed", and whole sections, "fly.".
+/// An identity without some keys ("seed") and whole sections ("fly.").
 Identity without(const std::set<std::string>& keysOrSections, Identity identity);
 
-/// The first key that differs, as "planner.vertices: 300 instead of 2500"; empty when none does.
+/// The first key whose values differ, as "planner.vertices: 300 instead of 2500"; empty if there is
+/// none.
 std::string difference(const Identity& found, const Identity& expected);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The runs that are done, of many of one kind, in memory and in a file.
+// A journal of finished runs, in memory and in a file.
 #pragma once
 
 #include <set>
@@ -9,13 +9,17 @@
 
 namespace photonav {
 
-/// Runs as they end; an item has one run. A kind of run (SweepKind, TrialKind) has
+/// The finished runs, in the order in which they ended, at most one per item. Kind (SweepKind,
+/// TrialKind) describes the runs:
 ///
-///     Item     what is run, ordered            Run    its result
-///     kWords   RunWords                        itemOf(run)
-///     identity(config)                         what the results depend on
-///     runIdentity(identity)                    a single run: without what chooses the runs
-///     save(run, folder), load(line, folder)    the JSON of a run, and any files beside the journal
+///     Item                   the input of a run; has an order
+///     Run                    the result of a run
+///     itemOf(run)            the item of a result
+///     kWords                 RunWords
+///     identity(config)       everything on which the results of all runs depend
+///     runIdentity(identity)  the same without the keys that choose the runs
+///     save(run, folder)      a run as JSON; may write other files into the journal's folder
+///     load(line, folder)     the inverse of save()
 template <typename Kind>
 class Journal {
   public:
@@ -23,8 +27,9 @@ class Journal {
     using Item = typename Kind::Item;
     static constexpr const char* kFileName = Kind::kWords.file;
 
-    /// Begins a file with the runs done so far. One that is there stays whole until then.
-    /// @throws InputError if it cannot be written
+    /// Writes a new file with the given finished runs. An older file is replaced when the new one
+    /// is complete.
+    /// @throws InputError if the file cannot be written
     static Journal create(const std::filesystem::path& folder, const JournalHeader& header,
                           std::vector<Run> runs = {}) {
         Journal journal(folder);
@@ -36,9 +41,10 @@ class Journal {
         return journal;
     }
 
-    /// Reads the file of a folder; a last line that was cut is dropped, and so is a second run of
-    /// an item.
-    /// @throws InputError if it is missing or not ours, and for numbers that no run gives
+    /// Reads the file in a folder. An incomplete last line and a second run of the same item are
+    /// ignored.
+    /// @throws InputError if the file is missing or no journal of this kind, and for impossible
+    ///         values
     static Journal read(const std::filesystem::path& folder) {
         Journal journal(folder);
         std::set<Item> known;
@@ -49,7 +55,7 @@ class Journal {
         return journal;
     }
 
-    /// @throws InputError if it cannot be written
+    /// Adds a run. @throws InputError if the file cannot be written
     void append(Run run) {
         file_.append(Kind::save(run, folder_));
         runs_.push_back(std::move(run));
@@ -59,7 +65,7 @@ class Journal {
     const std::vector<Run>& runs() const { return runs_; }
     const std::filesystem::path& file() const { return file_.path(); }
 
-    /// The runs that belong to `items`, in their order.
+    /// The runs of the given items, in the order of the items. Items without run are left out.
     std::vector<Run> runsOf(const std::vector<Item>& items) const {
         std::map<Item, const Run*> done;
         for (const Run& run : runs_) done.emplace(Kind::itemOf(run), &run);
@@ -70,7 +76,7 @@ class Journal {
         return runs;
     }
 
-    /// Those of `items` that have no run yet.
+    /// The items that have no run yet.
     std::vector<Item> missing(const std::vector<Item>& items) const {
         std::set<Item> done;
         for (const Run& run : runs_) done.insert(Kind::itemOf(run));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The file that keeps each of many runs as soon as it is done, as lines of JSON.
+// The file of a journal: one line of JSON per finished run, written as soon as the run is done.
 #pragma once
 
 #include <filesystem>
@@ -13,10 +13,10 @@
 
 namespace photonav {
 
-/// What runs of a kind, and all of them together, are called in files and messages.
+/// The words for runs of a kind, and for all of them together, in files and messages.
 struct RunWords {
     const char* command;   ///< "sweep"
-    const char* file;      ///< the journal's name, "runs.jsonl"
+    const char* file;      ///< file name of the journal, "runs.jsonl"
     const char* run;       ///< "run"
     const char* aWhole;    ///< "a sweep"
     const char* theWhole;  ///< "the sweep"
@@ -24,29 +24,31 @@ struct RunWords {
 
 /// The first line of a journal.
 struct JournalHeader {
-    std::string name;    ///< of the config
-    std::string config;  ///< YAML, complete
+    std::string name;    ///< name of the config
+    std::string config;  ///< complete config as YAML
     Identity identity;
     Shard shard;
 };
 
-/// The lines of a journal: a header, then one per run, in the order they ended. Lines are only
-/// added, and each is flushed: a killed program loses the runs in progress.
+/// The lines of a journal: a header, then one line per run, in the order in which runs ended. Lines
+/// are only appended, and each is flushed: a killed program loses only the unfinished runs.
 class JournalFile {
   public:
     JournalFile(const std::filesystem::path& folder, const RunWords& words)
         : path_(folder / words.file), words_(words) {}
 
-    /// Begins a file with a header and whole lines. One that is there stays whole until then.
-    /// @throws InputError if it cannot be written
+    /// Writes a new file with a header and complete lines. An older file is replaced when the new
+    /// one is complete.
+    /// @throws InputError if the file cannot be written
     void create(const JournalHeader& header, const std::string& lines);
 
-    /// Reads the header and each line; a last line that was cut is dropped.
-    /// @param onLine throws for what is no run
-    /// @throws InputError naming file and line if it is missing or not ours; those of onLine
+    /// Reads the header and all lines. An incomplete last line is ignored.
+    /// @param onLine called with each line after the header; throws if the line is no run
+    /// @throws InputError naming file and line if the file is missing, is no journal of this kind,
+    ///         or onLine throws
     JournalHeader read(const std::function<void(const nlohmann::json&)>& onLine);
 
-    /// @throws InputError if it cannot be written
+    /// Appends a line. @throws InputError if the file cannot be written
     void append(const nlohmann::json& line);
 
     const std::filesystem::path& path() const { return path_; }
@@ -56,7 +58,7 @@ class JournalFile {
 
     std::filesystem::path path_;
     RunWords words_;
-    std::uintmax_t size_ = 0;  // of the whole lines [bytes]
+    std::uintmax_t size_ = 0;  // size of all complete lines [bytes]
     std::ofstream stream_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many independent runs as a list of items: its shards, and the threads that work on it.
+// Many independent runs as a list of items, divided into shards and worked on by several threads.
 #pragma once
 
 #include <functional>
@@ -10,19 +10,20 @@
 
 namespace photonav {
 
-/// Part `index` of `count`, counted from 1: every count-th item of a list.
+/// Part `index` (from 1) of `count` parts of a list: every count-th item, from item `index` on.
 struct Shard {
     unsigned index = 1;
     unsigned count = 1;
     bool operator==(const Shard&) const = default;
 };
 
-/// Reads "k/n". @throws InputError naming --shard unless 1 <= k <= n
+/// Parses "k/n". @throws InputError naming --shard unless 1 <= k <= n
 Shard parseShard(const std::string& text);
 
+/// "k/n".
 std::string toString(const Shard& shard);
 
-/// The items of one shard.
+/// The items of one shard, in their order.
 template <typename Item>
 std::vector<Item> itemsOf(const Shard& shard, const std::vector<Item>& items) {
     std::vector<Item> chosen;
@@ -32,13 +33,14 @@ std::vector<Item> itemsOf(const Shard& shard, const std::vector<Item>& items) {
     return chosen;
 }
 
-/// @throws InputError unless there are `runs` seeds from the config's on
+/// Checks that seed, seed + 1, ... are valid seeds for a number of runs.
+/// @throws InputError if they exceed the largest 32-bit number
 void checkSeeds(const Config& config, unsigned runs);
 
-/// Calls work(0), work(1), ... work(count - 1) on `jobs` threads. They begin in this order, however
-/// many threads there are.
-/// @param work returns false where no further calls shall begin on its thread
-/// @throws what a call threw first
+/// Calls work(0), work(1), ... work(count - 1) on `jobs` threads. The calls begin in this order,
+/// whatever the number of threads.
+/// @param work returns false if its thread shall begin no further calls
+/// @throws the first exception that a call throws
 void workInOrder(std::size_t count, unsigned jobs, const std::function<bool(std::size_t)>& work);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// result.json of a study of servoing.
+// result.json of a study of photometric servoing.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,13 +8,13 @@
 
 namespace photonav {
 
-/// The law and its images.
+/// Parameters of the control law, rate and width of its images.
 nlohmann::json servoOptionsJson(const ServoStudyOptions& options, const Camera& camera);
 
-/// What was found: condition, standard deviations, modes and basin.
+/// The results of the study: condition number, standard deviations, modes and basin of convergence.
 nlohmann::json servoStudyJson(const ServoStudy& study);
 
-/// Everything of result.json but the time.
+/// The content of result.json without the computation time.
 nlohmann::json servoResult(const ServoGoal& goal, const ServoStudyOptions& options,
                            const ServoStudy& study);
 

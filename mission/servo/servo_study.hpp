@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Photometric servoing at a goal: from how far it converges, how fast, and in which direction
-// slowest.
+// A study of photometric servoing at a goal: basin of convergence, rate of convergence and slowest
+// directions.
 #pragma once
 
 #include <atomic>
@@ -13,71 +13,79 @@
 namespace photonav {
 
 struct ServoStudyOptions {
-    bool hasTilt = false;   ///< six degrees of freedom; false: x, y, z, yaw, as a MAV's
-    double gain = 1.;       ///< [1/s]
+    bool hasTilt = false;   ///< true: six degrees of freedom; false: x, y, z, yaw, as for a MAV
+    double gain = 1.;       ///< gain of the control law [1/s]
     double damping = 0.01;  ///< mu of LevenbergServo
-    double rate = 10.;      ///< images a second
-    double duration = 20.;  ///< that a trial may last [s]
-    std::vector<double> distances{0.1, 0.2, 0.4, 0.8};  ///< of starts from the goal [m]
-    std::vector<double> angles{0., 10., 20.};           ///< and their rotations [degrees]
-    int trials = 10;                                    ///< of each pair
+    double rate = 10.;      ///< images and velocity commands per second [1/s]
+    double duration = 20.;  ///< longest duration of a trial [s]
+    std::vector<double> distances{0.1, 0.2, 0.4, 0.8};  ///< distances of starts from the goal [m]
+    std::vector<double> angles{0., 10., 20.};  ///< rotations of starts from the goal [degrees]
+    int trials = 10;                           ///< trials per pair of distance and angle
     unsigned seed = 1;
 };
 
-/// What there is at a goal.
+/// The goal, the scene around it, and the camera.
 struct ServoGoal {
-    const ViewSource& views;  ///< must outlive the study
+    const ViewSource& views;  ///< renders the scene; must outlive the study
     Camera camera = {};
-    Pose T_b_c = Pose::Identity();
-    Pose T_w_b = Pose::Identity();  ///< of the body at the goal
+    Pose T_b_c = Pose::Identity();  ///< camera mount
+    Pose T_w_b = Pose::Identity();  ///< pose of the body at the goal
     PhotometricOptions photometric = {};
 };
 
-/// A direction that converges at a rate of its own.
+/// A mode of the linearised servo: an offset in its direction decays exponentially, at its rate.
 struct ServoMode {
-    Vector6 direction = Vector6::Zero();  ///< body twist (x, y, z, roll, pitch, yaw) in the body's
-                                          ///< axes; |rho| + depth |phi| = 1
-    double rate = 0.;                     ///< predicted, continuous in time [1/s]; 0: never
-    /// Of a servo without noise from a small offset in this direction, in discrete time as the
-    /// study runs it: by the first-order prediction, and simulated [1/s].
+    /// Body twist (x, y, z, roll, pitch, yaw) in the body's axes, scaled so that
+    /// |rho| + depth |phi| = 1.
+    Vector6 direction = Vector6::Zero();
+    double rate = 0.;  ///< predicted rate in continuous time [1/s]; 0: the offset does not decay
+    /// Decay rates in discrete time, at the image rate of the study [1/s]: the first-order
+    /// prediction, and the simulation without noise from a small offset in this direction.
     double predictedDecay = 0., simulatedDecay = 0.;
 };
 
+/// The trials that start at one distance and angle from the goal.
 struct BasinCell {
     double distance = 0., angle = 0.;  ///< [m], [degrees]
     int trials = 0, converged = 0;
-    double low = 0., high = 1.;  ///< 95 % interval of the share that converges (Wilson)
-    double seconds = 0.;         ///< median time to converge; 0: none did
+    double low = 0., high = 1.;  ///< 95 % interval of the share of trials that converge (Wilson)
+    double seconds = 0.;         ///< median time to converge [s]; 0: no trial converged
 };
 
 struct ServoStudy {
-    double depth = 1.;      ///< median of the goal's view [m]; makes rotations comparable
-    double condition = 0.;  ///< of H, rotations times the depth; infinite: singular
-    /// Of the body's pose from one image at the goal (the inverse of its information), along the
-    /// weakest direction and about the weakest axis [m], [rad]; infinite: a direction is open.
+    double depth = 1.;  ///< median depth of the view at the goal [m]; 1 rad counts as this length
+    double condition = 0.;  ///< condition number of H, rotations scaled by the depth; infinite: H
+                            ///< is singular
+    /// Standard deviations of the body's pose from one image at the goal (inverse of the
+    /// information): along the weakest direction [m] and about the weakest axis [rad]. Infinite if
+    /// a direction is open.
     double positionSigma = 0., rotationSigma = 0.;
-    std::vector<ServoMode> modes;  ///< the slowest first
+    std::vector<ServoMode> modes;  ///< slowest mode first
     std::vector<BasinCell> basin;
     bool interrupted = false;
 
-    /// Directions that the goal's view does not show: they never converge.
+    /// Number of directions that the view at the goal does not determine (modes of rate 0).
     std::size_t openDirections() const;
-    /// Of all trials.
+    /// Number of trials in all cells of the basin.
     int trials() const;
+    /// Number of trials that converged, in all cells of the basin.
     int converged() const;
 };
 
-/// A trial has converged when it is within these of the goal.
+/// A trial has converged when the body stays within these distances of the goal for five images.
 inline constexpr double kServoPosition = 0.01;  // [m]
 inline constexpr double kServoAngle = 0.01;     // [rad]
 
-/// Images have the noise of ServoGoal::photometric. Trials start in random directions, the same
-/// ones for the same seed whatever the goal; nothing stands in their way.
+/// Linearises the servo at the goal and simulates trials from many starts. Images have independent
+/// noise with the sigma of ServoGoal::photometric. Starts lie in random directions that depend on
+/// the seed, not on the goal. Collisions are not modelled.
+/// @param progress called after each cell of the basin with the share done, in (0, 1]
 ServoStudy studyServo(const ServoGoal& goal, const ServoStudyOptions& options,
                       const std::atomic<bool>& interrupted,
                       const std::function<void(double share)>& progress);
 
-/// A direction in words: "x and pitch (0.9, 0.4)": parts above a third of the largest.
+/// The axes of a mode's direction, largest component first: "x and pitch". Components below a third
+/// of the largest are left out; rotations are compared after multiplication with the depth [m].
 std::string inWords(const ServoMode& mode, double depth);
 
 }  // namespace photonav

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A camera in a simulated world: noisy images at a fixed rate, whose pixels average over their
-// area, with depth if it has a depth sensor, with latency and lost images.
+// A simulated camera: noisy images at a fixed rate, whose pixels average over their area, with
+// latency, lost images and, with a depth sensor, depth.
 #pragma once
 
 #include <cstdint>
@@ -17,52 +17,54 @@ namespace photonav {
 
 enum class DepthSensor {
     none,
-    rgbd,    ///< depth of every pixel, with DepthNoiseOptions
-    stereo,  ///< a second camera to the right, and StereoDepth
+    rgbd,    ///< depth of every pixel with the noise of DepthNoiseOptions
+    stereo,  ///< stereo matching (StereoDepth) with a second camera to the right
 };
 
 struct SimulatedCameraOptions {
     DepthSensor depth = DepthSensor::none;
-    DepthNoiseOptions depthNoise = {};  ///< rgbd
-    double baseline = 0.11;             ///< stereo [m]
+    DepthNoiseOptions depthNoise = {};  ///< noise of DepthSensor::rgbd
+    double baseline = 0.11;             ///< baseline of DepthSensor::stereo [m]
     StereoOptions stereo{.halvings = 0, .blockSize = 21};
-    /// Noise of the pictures that `stereo` matches: the sensor's own, where that of the images may
-    /// stand for errors of a model as well. None: no noise.
+    /// Noise of the images that stereo matching uses: only the noise of the sensor, whereas the
+    /// noise of the robot's images may also represent errors of a model. Empty: no noise.
     ImageNoise pairNoise = {};
-    /// Point spread that the robot states of its images, a defocus by their noise included
-    /// [pixels].
+    /// Standard deviation of the images' point spread, as stated by Robot::blur() [pixels]. It must
+    /// include any defocus that the image noise adds.
     double blur = kAreaBlur;
-    /// Of the vertical that is measured with every image [rad]; 0: it is not measured.
+    /// Standard deviation of the vertical measured with every image [rad]; 0: not measured.
     double verticalSigma = 0.;
-    double period = 0.25;        ///< between exposures [s]
-    double latency = 0.;         ///< from the exposure to the image being there [s]
-    double dropRate = 0.;        ///< share of the frames that never arrive
-    double blackRate = 0.;       ///< share of the frames that are black
-    double blackoutStart = 0.;   ///< all frames taken from here on [s] ...
-    double blackoutLength = 0.;  ///< ... for as long as this are black [s]
+    double period = 0.25;        ///< time between exposures [s]
+    double latency = 0.;         ///< delay from exposure to arrival of an image [s]
+    double dropRate = 0.;        ///< share of the images that never arrive
+    double blackRate = 0.;       ///< share of the images that are black
+    double blackoutStart = 0.;   ///< start of a time in which all images are black [s]
+    double blackoutLength = 0.;  ///< length of this time [s]; 0: none
 };
 
 /// An exposure. Its image may arrive late or never.
 struct Exposed {
-    double time = 0.;               ///< [s]
-    Pose T_c_w = Pose::Identity();  ///< true
-    ImageF image;                   ///< with noise
-    ImageF depth;                   ///< true [m]
+    double time = 0.;               ///< time of the exposure [s]
+    Pose T_c_w = Pose::Identity();  ///< true pose
+    ImageF image;                   ///< image with noise, grey values in [0, 1]
+    ImageF depth;                   ///< true depth [m]
 };
 
-/// Deterministic for a seed.
+/// Takes images of a world. Deterministic for a seed.
 class SimulatedCamera {
   public:
-    /// @param world the true one; must outlive the camera
-    /// @throws std::invalid_argument for a period that is not positive, a negative latency, a
-    ///         baseline that is not positive with stereo
+    /// @param world the true world; must outlive the camera
+    /// @param noise noise of the images; empty: no noise
+    /// @throws std::invalid_argument for a period that is not positive, for a negative latency, and
+    ///         with stereo for a baseline that is not positive
     SimulatedCamera(const ViewSource& world, const Camera& camera, ImageNoise noise,
                     const SimulatedCameraOptions& options, std::uint64_t seed);
 
-    /// Takes an image when it is time to. @return nothing when it is not
+    /// Takes an image if the next exposure is due. @return nothing if it is not
+    /// @param time present time [s]; @param T_c_w true pose of the camera
     std::optional<Exposed> expose(double time, const Pose& T_c_w);
 
-    /// The next image that has arrived by now, oldest first.
+    /// Takes out the oldest image that has arrived by `time` [s]; nothing if there is none.
     std::optional<CameraFrame> receive(double time);
 
     const Camera& camera() const { return camera_; }
@@ -80,7 +82,7 @@ class SimulatedCamera {
     SimulatedCameraOptions options_;
     std::mt19937_64 random_, depthRandom_, verticalRandom_;
     std::optional<StereoDepth> stereo_;
-    double next_ = 0.;  // exposure [s]
+    double next_ = 0.;  // time of the next exposure [s]
     std::deque<CameraFrame> onTheWay_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A small multirotor near hover, and its odometry.
+// A simulated small multirotor near hover, with odometry.
 #pragma once
 
 #include <cstdint>
@@ -12,32 +12,33 @@ namespace photonav {
 
 struct MavOptions {
     double lag = 0.25;  ///< time constant of the velocity's response [s]
-    /// Covariance of the measured motion per metre flown, body frame, left perturbation;
-    /// what the planner assumes.
+    /// Assumed covariance of the measured motion per metre flown, body frame, left perturbation. It
+    /// is also the covariance that the planner assumes.
     Matrix6 odometryNoise = Matrix6::Zero();
-    double rotationWeight = 0.25;  ///< metres flown that turning by a radian counts as
+    double rotationWeight = 0.25;  ///< a turn by 1 rad has the noise of rotationWeight metres
     double odometryFactor = 1.;    ///< true odometry variance divided by the assumed one
-    /// Standard deviation, in each direction, of a velocity that the controller does not remove
-    /// (wind, trim) [m/s], and the time over which it changes [s].
+    /// Standard deviation, per axis, of a random velocity that the controller does not remove, such
+    /// as wind or trim [m/s].
     double drift = 0.;
-    double driftTime = 2.;
+    double driftTime = 2.;  ///< correlation time of the drift [s]
 };
 
 /// The true pose of the body, moved by velocity commands with a first-order lag and by drift, and
-/// its odometry: every step is measured with noise drawn from (odometryFactor times) the assumed
-/// covariance.
-/// Deterministic for a seed.
+/// its odometry: the motion of every step is measured with noise whose covariance is odometryFactor
+/// times the assumed one. Deterministic for a seed.
 class SimulatedMav {
   public:
-    /// @throws std::invalid_argument for a negative lag, factor or drift, or no time of drift
+    /// @param T_w_b initial pose
+    /// @throws std::invalid_argument for a negative lag, factor or drift, and for a drift time that
+    ///         is not positive
     SimulatedMav(const Pose& T_w_b, const MavOptions& options, std::uint64_t seed);
 
     /// Flies for `dt` seconds.
-    /// @return the measured motion T_next_now of the body, with the covariance assumed of it
+    /// @return the measured motion T_next_now of the body, with its assumed covariance
     UncertainPose step(const BodyVelocity& command, double dt);
 
     const Pose& T_w_b() const { return T_w_b_; }
-    /// Response to the commands, without drift.
+    /// Present velocity due to the commands, without drift, in body axes.
     const BodyVelocity& velocity() const { return velocity_; }
 
   private:

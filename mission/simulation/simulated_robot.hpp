@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A robot in a simulated world. Only this class knows the true pose.
+// A robot in a simulated world. This class holds the true pose; tracker and pilot have no access.
 #pragma once
 
 #include <memory>
@@ -16,12 +16,13 @@ struct SimulatedRobotOptions {
     SimulatedCameraOptions camera;
 };
 
-/// Body and camera, each with its own random numbers, so that options of one do not change those
-/// of the other. Deterministic for a seed.
+/// A simulated body and camera. Each has its own random numbers, so that options of one do not
+/// change the random numbers of the other. Deterministic for a seed.
 class SimulatedRobot : public Robot {
   public:
-    /// @param world the true one
-    /// @param T_w_b where it begins
+    /// @param world the true world
+    /// @param T_w_b initial pose of the body
+    /// @param noise noise of the images; empty: no noise
     /// @throws std::invalid_argument as SimulatedMav and SimulatedCamera do
     SimulatedRobot(std::shared_ptr<const ViewSource> world, const Camera& camera, const Pose& T_b_c,
                    const Pose& T_w_b, const ImageNoise& noise, const SimulatedRobotOptions& options,
@@ -50,7 +51,8 @@ class SimulatedRobot : public Robot {
     std::optional<Exposed> exposed_;
 };
 
-/// Independent seeds from one, for everything that draws random numbers.
+/// Derives independent seeds from one seed.
+/// @param use number that distinguishes the uses of random numbers
 std::uint64_t seedFor(std::uint64_t seed, std::uint64_t use);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Our planners in OMPL's benchmark.
+// Runs photonav's planners in OMPL's benchmark (ompl::tools::Benchmark).
 #pragma once
 
 #include <atomic>
@@ -15,27 +15,29 @@ namespace photonav {
 struct BenchmarkCurve {
     std::string planner;
     std::vector<double> seconds;
-    std::vector<double> cost;  ///< the planner's own, infinite until the goal was reached
+    std::vector<double> cost;  ///< by the planner's own model; infinite until the goal was reached
 };
 
 struct BenchmarkOutcome {
     std::vector<SweepRun> runs;
     std::vector<BenchmarkCurve> curves;  ///< one per run
-    std::string log;                     ///< as ompl_benchmark_statistics reads it
+    std::string log;                     ///< in the format of ompl_benchmark_statistics
 };
 
 struct BenchmarkLimits {
-    double interval = 0.01;   ///< between samples of the progress [s]
-    double timeLimit = 600.;  ///< of a run [s]
+    double interval = 0.01;   ///< time between samples of the progress [s]
+    double timeLimit = 600.;  ///< longest duration of a run [s]
 };
 
-/// Runs the planners of the config's sweep with its alpha and seeds one after the other, each run
-/// from scratch, until it has the config's number of vertices.
+/// Runs the planners in the config's section `sweep` one after the other, with planner.alpha and
+/// sweep.runs seeds. Each run starts from scratch, without cached views, and ends when it has the
+/// config's number of vertices.
 ///
-/// Beside OMPL's own, the log holds per run the seed, cost, length, mean trace and trace at the
-/// goal of the path by the photometric beliefs, vertices and views; and over time the
-/// planner's best cost, vertices, iterations and views, the last sample being the result.
-/// @param onRun called before each run with what is about to be done
+/// In addition to OMPL's properties, the log holds for every run the seed, vertices and views, and
+/// the path's cost, length, mean trace and trace at the goal by the photometric beliefs. It holds
+/// over time the planner's best cost, vertices, iterations and views; the last sample is the
+/// result.
+/// @param onRun called before each run with its item
 BenchmarkOutcome benchmarkPlanners(const Config& config, const World& world,
                                    const BenchmarkLimits& limits,
                                    const std::atomic<bool>& interrupted,

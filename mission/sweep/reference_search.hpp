@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The search for the best path of a reference table.
+// The search for near-optimal paths, which fill a reference table.
 #pragma once
 
 #include <atomic>
@@ -11,20 +11,23 @@
 
 namespace photonav {
 
-/// All that is done for one alpha.
+/// The search for one value of alpha. Every path that it finds is offered to the table.
 class ReferenceSearch {
   public:
-    /// @param config with the alpha and the effort; @param moves tried by the descent from each
-    /// path
-    /// @param table, world and `interrupted` must outlive the search
-    /// @throws InputError for a start or goal that cannot be flown to
+    /// @param config  gives alpha (belief.alpha) and the effort: vertices and labels
+    /// @param moves   changes that the descent tries on each path
+    /// @param world   must outlive the search
+    /// @param table   must outlive the search
+    /// @param interrupted  must outlive the search
+    /// @throws InputError for a start or goal in collision
     ReferenceSearch(const Config& config, unsigned moves, const World& world, ReferenceTable& table,
                     const std::atomic<bool>& interrupted);
 
-    /// Descends from the path known so far, which may be of another problem, or not at its best.
+    /// Evaluates the table's path for this alpha again and improves it by descent. The path may
+    /// come from a search with another config; it is dropped if it is not free.
     void refresh();
 
-    /// Plans, and descends from the path.
+    /// Plans a path and improves it by descent.
     void plan(const std::string& planner, std::uint32_t seed);
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The best paths known for a problem, by alpha, in two CSV files.
+// The best known path of a problem for each alpha, stored in two CSV files.
 #pragma once
 
 #include <filesystem>
@@ -13,32 +13,38 @@ namespace photonav {
 
 struct ReferencePath {
     double alpha = 0.;
-    double cost = 0.;  ///< J with this alpha
-    double length = 0., meanTrace = 0., goalTrace = 0.;
-    std::string planner = {};  ///< that found the path from which the descent started
-    unsigned vertices = 0, labels = 0;
+    double cost = 0.;                                    ///< J with this alpha
+    double length = 0., meanTrace = 0., goalTrace = 0.;  ///< as in EvaluatedPath [m], [m^2], [m^2]
+    std::string planner = {};           ///< planner of the path from which the descent started
+    unsigned vertices = 0, labels = 0;  ///< effort of this planner
     std::uint32_t seed = 0;
     std::vector<Pose> waypoints = {};  ///< body poses T_w_b, start and goal included
 };
 
-/// FILE.csv holds the numbers, after lines that begin with # and describe the search, a row
-/// per alpha in rising order; FILE_paths.csv beside it the waypoints (alpha, x, y, z, yaw), so that
-/// the costs can be checked. Roll and pitch are not kept.
+/// Two CSV files. FILE.csv begins with lines that start with # and describe the search, followed by
+/// a row of numbers per alpha in rising order. FILE_paths.csv in the same folder holds the
+/// waypoints (alpha, x, y, z, yaw [m, rad]), so that the costs can be checked. Roll and pitch are
+/// not stored.
 class ReferenceTable {
   public:
-    /// Reads what is there; empty if nothing is.
-    /// @throws InputError naming file and line
+    /// An empty table of a file. Nothing is read yet.
     explicit ReferenceTable(std::filesystem::path file);
 
+    /// Reads both files; the table is empty afterwards if FILE.csv does not exist.
+    /// @throws InputError naming file and line
     void read();
+    /// Writes both files. @throws InputError if that is not possible
     void write() const;
 
-    /// Adds a line to the file about the search that was done, unless the line is already there.
+    /// Adds a comment line to the file that describes a search, unless the line is already there.
     void addNote(const std::string& text);
 
-    /// Stores a path if there is none with its alpha yet, or only a costlier one.
+    /// Stores a path if the table has no path with its alpha yet, or one of higher cost.
+    /// @return whether it was stored
     bool offer(const ReferencePath& path);
+    /// The path for an alpha (to 1e-6); null if there is none.
     const ReferencePath* at(double alpha) const;
+    /// Removes the path for an alpha, if there is one.
     void drop(double alpha);
     std::vector<double> alphas() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The results of a sweep's runs, and their lines in its journal.
+// The results of the runs of a sweep, and the journal that stores them.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,20 +12,20 @@
 
 namespace photonav {
 
-/// The result of one run. Numbers about the path are NaN when there is none.
+/// The result of one run. Numbers about the path are NaN if no path was found.
 struct SweepRun {
     SweepItem item;
     double cost, length, meanTrace, goalTrace;  ///< as in EvaluatedPath, with the item's alpha
     std::size_t vertices = 0;
-    std::size_t views = 0;    ///< rendered by this run alone, with no cached views
-    double seconds = 0.;      ///< planning with no cached views; wall clock
-    std::string status;       ///< "done", or why there is no path
-    std::vector<Place> path;  ///< its waypoints, the body's
+    std::size_t views = 0;    ///< views rendered by this run, which starts without cached views
+    double seconds = 0.;      ///< wall-clock time of planning without cached views [s]
+    std::string status;       ///< "done", or the reason why there is no path
+    std::vector<Place> path;  ///< waypoints of the body
 
     bool isSolved() const { return status == "done"; }
 };
 
-/// Runs of a sweep, for Journal.
+/// The kind of run that a sweep stores in a Journal.
 struct SweepKind {
     using Item = SweepItem;
     using Run = SweepRun;
@@ -35,13 +35,13 @@ struct SweepKind {
     static Identity identity(const Config& config) { return sweepIdentity(config); }
     static Identity runIdentity(const Identity& sweep) { return photonav::runIdentity(sweep); }
     static nlohmann::json save(const Run& run, const std::filesystem::path& folder);
-    /// @throws std::exception for numbers that no run gives
+    /// @throws std::exception for values that no run can have
     static Run load(const nlohmann::json& line, const std::filesystem::path& folder);
 };
 
 using SweepJournal = Journal<SweepKind>;
 
-/// A run as result.json holds it, `path` left out.
+/// A run as an object of result.json, without `path`.
 nlohmann::json toJson(const SweepRun& run);
 
 }  // namespace photonav

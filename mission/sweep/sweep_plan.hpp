@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A sweep as a list of independent runs, and what makes two sweeps the same.
+// A sweep as a list of independent runs, and the identity by which sweeps are compared.
 #pragma once
 
 #include <compare>
@@ -20,14 +20,17 @@ struct SweepItem {
     auto operator<=>(const SweepItem&) const = default;
 };
 
-/// All runs that a config asks for: planner by planner, alpha by alpha, seed by seed.
+/// All runs of a config's sweep: ordered by planner, then alpha, then seed, each in the order of
+/// the config.
 std::vector<SweepItem> sweepItems(const Config& config);
 
-/// Everything that the results of a sweep depend on: identityOf() the config without what the sweep
-/// sets itself or only compares with, and without the sections of other commands.
+/// Everything that the results of a sweep depend on: identityOf() the config without the keys that
+/// the sweep sets itself, without published values and references, and without the sections of
+/// other commands.
 Identity sweepIdentity(const Config& config);
 
-/// What a single run depends on: the same without the keys that choose which runs there are.
+/// Everything that the result of a single run depends on: the sweep's identity without the keys
+/// that choose the runs (seed and the section `sweep`).
 Identity runIdentity(const Identity& sweep);
 
 }  // namespace photonav

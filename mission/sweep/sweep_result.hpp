@@ -11,29 +11,30 @@
 
 namespace photonav {
 
-/// The outcome of a sweep, of one run or merged from shards.
+/// The outcome of a sweep: of one call of the command, or merged from its shards.
 struct SweepOutcome {
-    std::string name;  ///< of the config
+    std::string name;  ///< name of the config
     std::string commandLine;
     Shard shard;
-    std::vector<SweepRun> runs;  ///< in the order of sweepItems()
-    std::size_t asked = 0;       ///< runs there should be
+    std::vector<SweepRun> runs;  ///< finished runs, in the order of sweepItems()
+    std::size_t asked = 0;       ///< number of runs of the complete sweep or shard
     bool interrupted = false;
-    double seconds = 0.;  ///< since the command was started
+    double seconds = 0.;  ///< wall-clock time since the command was started [s]
 };
 
-/// result.json of `photonav sweep`.
+/// The content of result.json of `photonav sweep`.
 nlohmann::json sweepResult(const Config& config, const SweepOutcome& outcome,
                            const ReferenceCosts& reference);
 
-/// "done", "no path" or "interrupted".
+/// "interrupted", else "done" if any run found a path, else "no path".
 std::string sweepStatus(const std::vector<SweepRun>& runs, bool interrupted);
 
-/// Decimals of traces in the table: two digits of the smallest one, four at least.
+/// Number of decimals for traces in the table: enough for two digits of the smallest mean trace,
+/// and at least four.
 int traceDecimals(const std::vector<SweepCell>& cells);
 
-/// runs.csv and summary.csv.
-/// @param result of sweepResult()
+/// Writes runs.csv and summary.csv into a folder.
+/// @param result returned by sweepResult()
 void writeSweepTables(const std::filesystem::path& folder, const nlohmann::json& result,
                       const ReferenceCosts& reference);
 

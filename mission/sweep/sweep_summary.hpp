@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The runs of a sweep as a table: a row per planner and alpha, beside published values.
+// Summary of the runs of a sweep: one row per planner and alpha, with published values to compare.
 #pragma once
 
 #include <map>
@@ -10,14 +10,15 @@
 
 namespace photonav {
 
-/// Mean and sample standard deviation; NaN of no values, the deviation also of a single one.
+/// Mean and sample standard deviation. Both are NaN without values; the deviation is also NaN for a
+/// single value.
 struct Statistic {
     double mean, deviation;
 };
 
 Statistic statisticOf(const std::vector<double>& values);
 
-/// Best known cost by alpha.
+/// The best known cost for each alpha.
 class ReferenceCosts {
   public:
     ReferenceCosts() = default;
@@ -26,41 +27,45 @@ class ReferenceCosts {
     /// @throws InputError naming file and line
     explicit ReferenceCosts(const std::string& file);
 
+    /// The cost for an alpha (to 1e-6); nothing if there is none.
     std::optional<double> at(double alpha) const;
 
-    /// How far a run's cost is above the reference, as a fraction of it; NaN where there is none.
+    /// Relative excess of a run's cost over the reference: cost / reference - 1. NaN without a
+    /// reference or a path.
     double excess(const SweepRun& run) const;
 
   private:
     std::map<double, double> costs_;
 };
 
-/// All runs of one planner with one alpha.
+/// Summary of all runs of one planner with one alpha.
 struct SweepCell {
     std::string planner;
     double alpha = 0.;
     std::size_t runs = 0;
-    std::size_t solved = 0;  ///< runs with a path: only these have a cost, length and traces
+    std::size_t solved = 0;  ///< runs with a path; only these have cost, length and traces
     std::map<std::string, Statistic> columns;  ///< by name, see sweepColumns()
-    std::optional<PaperRow> paper;             ///< of a planner that uses views; traces in m^2
+    std::optional<PaperRow> paper;  ///< published values, for planners that use views; traces [m^2]
 };
 
-/// A column of the table: its name in result.json and how a run's value is found.
+/// A column of the table: its name in result.json, and a function that returns a run's value.
 struct SweepColumn {
     std::string name;
     std::function<double(const SweepRun&)> value;
 };
 
+/// All columns: cost, length, traces, vertices, views, seconds and excess over the reference.
 std::vector<SweepColumn> sweepColumns(const ReferenceCosts& reference);
 
-/// In the config's order of planners and alphas; cells without runs are left out.
+/// One cell per planner and alpha, in the order of the config; cells without runs are left out.
 std::vector<SweepCell> summarize(const SweepConfig& config, const std::vector<SweepRun>& runs,
                                  const ReferenceCosts& reference);
 
-/// A row of result.json's `summary`.
+/// A cell as a row of `summary` in result.json.
 nlohmann::json toJson(const SweepCell& cell);
 
-/// Rows of flat objects as CSV, nulls empty; `keys` gives the columns and their order.
+/// A list of flat JSON objects as CSV. Null values give empty fields.
+/// @param keys the columns, in their order
 std::string toCsv(const nlohmann::json& rows, const std::vector<std::string>& keys);
 
 }  // namespace photonav
