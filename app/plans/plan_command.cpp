@@ -33,7 +33,7 @@ void printSummary(const PlanOutcome& outcome, const std::optional<EvaluatedPath>
     if (outcome.path) row(*outcome.path);
     if (baseline) row(*baseline);
     if (outcome.isSolved()) {
-        fmt::print("cost: {} (alpha {}, kappa {:.4g} 1/m)\n", costShares(*outcome.path),
+        fmt::print("cost: {} (alpha {}, kappa {:.4g} 1/m^2)\n", costShares(*outcome.path),
                    outcome.alpha, kappa);
     }
     if (outcome.isSolved() && baseline) {

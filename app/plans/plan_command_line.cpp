@@ -16,7 +16,7 @@ void addPlanOptions(CLI::App& parser, PlanOptions& options) {
     addValue(parser, options.overrides, "--alpha", "planner.alpha",
              "1: the shortest path, 0: the most certain one");
     addValue(parser, options.overrides, "--kappa", "planner.kappa",
-             "metres of detour that 1 m of flight at tr(Sigma) = 1 m^2 is worth, or auto [1/m]");
+             "metres of detour that 1 m of flight at tr(Sigma) = 1 m^2 is worth, or auto [1/m^2]");
     parser.add_flag(
         "--audit", options.audit,
         "propagate every stored belief again from the start and print the largest error");

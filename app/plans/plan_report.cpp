@@ -66,7 +66,7 @@ ReportTable costTable(const PlanOutcome& outcome, const std::optional<EvaluatedP
     ReportTable table{"Cost", {}};
     const bool isAutomatic = result.at("kappa_is_automatic");
     table.rows = {{"alpha", fmt::format("{}", outcome.alpha)},
-                  {"kappa", fmt::format("{:.4g} 1/m{}", result.at("kappa").get<double>(),
+                  {"kappa", fmt::format("{:.4g} 1/m²{}", result.at("kappa").get<double>(),
                                         isAutomatic ? ", automatic" : "")}};
     const auto add = [&](const EvaluatedPath& path) {
         table.rows.emplace_back("J of " + path.planner,

@@ -213,7 +213,7 @@ void addObjective(KeyTable& keys, Config& c) {
     keys.number({"alpha", "", "1: the shortest path, 0: the most certain one"}, c.belief.alpha,
                 {0., 1.});
     keys.add(
-        {.words = {"kappa", "1/m",
+        {.words = {"kappa", "1/m^2",
                    "metres of detour that 1 m of flight at tr(Sigma) = 1 m^2 is worth; `auto`: "
                    "[both terms weigh the same on the shortest path]"
                    "(concepts/cost.md#which-kappa)"},

@@ -51,9 +51,9 @@ TrackerOptions trackerFor(const ExplorerOptions& options, const OwnMap& map) {
 PilotOptions pilotFor(const ExplorerOptions& options, const OnlinePlanner& planner) {
     PilotOptions pilot = options.pilot;
     pilot.photometricGoal = false;
-    pilot.isFree = [&planner, radius = options.config.robotRadius](const Eigen::Vector3d& p_w) {
-        return planner.clearance(p_w) >= radius;
-    };
+    pilot.radius = options.config.robotRadius;
+    pilot.bodyRadius = options.bodyRadius;
+    pilot.clearance = [&planner](const Eigen::Vector3d& p_w) { return planner.clearance(p_w); };
     return pilot;
 }
 

@@ -39,6 +39,8 @@ FlightOptions flightOptions(const Config& config, MapKind map, double cellSize) 
     flight.pilot.photometric = flight.tracker.map.photometric;
     flight.pilot.photometricGoal = fly.photometricGoal;
     flight.bodyRadius = fly.bodyRadius > 0. ? fly.bodyRadius : 0.5 * config.robotRadius;
+    flight.pilot.radius = config.robotRadius;
+    flight.pilot.bodyRadius = flight.bodyRadius;
     flight.arrivalTolerance = photonav::arrivalTolerance(config);
     flight.seed = config.seed + (fly.map.empty() ? 0 : kSeedInMaps);
     return flight;
@@ -89,9 +91,7 @@ FlightSetup setUpFlight(const PlanningProblem& problem) {
     setup.map = map.kind;
     setup.options = flightOptions(config, map.kind, map.resolution());
     setup.options.initialCovariance = problem.initialCovariance();
-    setup.options.pilot.isFree = [&world, radius = config.robotRadius](const Eigen::Vector3d& p_w) {
-        return world.clearance(p_w) >= radius;
-    };
+    setup.options.pilot.clearance = setup.world.clearance;
     return setup;
 }
 

@@ -116,11 +116,11 @@ class PlanningProblem {
                                          const DescentOptions& options,
                                          const std::atomic<bool>& interrupted);
 
-    /// The kappa of all costs [1/m]: the config's, or the automatic one. Automatic kappa gives both
-    /// terms of the cost the same weight on the path of rrt_star with the seed of the config (on
-    /// the straight line if rrt_star finds no path): it is the path's distance, including turns,
-    /// divided by the charged trace (0 if no trace is charged). It is computed when first needed
-    /// and does not change afterwards, also if the map changes.
+    /// The kappa of all costs [1/m^2]: the config's, or the automatic one. Automatic kappa gives
+    /// both terms of the cost the same weight on the path of rrt_star with the seed of the config
+    /// (on the straight line if rrt_star finds no path): it is the path's distance, including
+    /// turns, divided by the charged trace (0 if no trace is charged). It is computed when first
+    /// needed and does not change afterwards, also if the map changes.
     /// @throws RenderingStopped when it is interrupted inside a large view
     double kappa(const std::atomic<bool>& interrupted = kNotInterrupted);
 

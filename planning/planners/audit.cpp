@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planners/audit.hpp"
 
+#include <cmath>
+
 namespace photonav {
+namespace {
+
+/// The larger error. NaN is larger than any number.
+double largerError(double a, double b) { return std::isnan(a) || a >= b ? a : b; }
+
+}  // namespace
 
 Audit auditTree(const BeliefPlanner& planner) {
     BeliefModel& model = planner.model();
@@ -36,11 +44,11 @@ Audit auditTree(const BeliefPlanner& planner) {
         }
         const BeliefPoint& truth = replayed.back();
         const double costError = std::abs(node.cost - truth.cost) / (1. + truth.cost);
-        if (!(costError <= audit.maxCostError)) audit.maxCostError = costError;  // NaN counts
+        audit.maxCostError = largerError(audit.maxCostError, costError);
         if (node.covariance) {
             const double error = (*node.covariance - truth.covariance).norm() /
                                  std::max(truth.covariance.norm(), 1e-300);
-            if (!(error <= audit.maxCovarianceError)) audit.maxCovarianceError = error;
+            audit.maxCovarianceError = largerError(audit.maxCovarianceError, error);
         }
         ++audit.nodes;
     }

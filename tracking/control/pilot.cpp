@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "control/pilot.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -14,6 +15,8 @@ constexpr double kPhotometricStep = 0.01;  // below which, or twice the noise, i
                                            // [m, rad]
 constexpr int kPhotometricImages = 6;      // in a row
 constexpr double kOtherView = 0.7;         // so far on, other things are in view [m]
+constexpr double kBelievedSigmas = 3.;     // within which the body is counted on to be
+constexpr double kClearanceStep = 0.05;    // between places asked for their clearance [m]
 
 /// An image in the exposure of the model.
 ImageF asModelled(const ImageF& observed, const Exposure& exposure) {
@@ -22,6 +25,21 @@ ImageF asModelled(const ImageF& observed, const Exposure& exposure) {
         image.bitmap[i] = static_cast<float>((image.bitmap[i] - exposure.offset) / exposure.gain);
     }
     return image;
+}
+
+/// Offsets of the body from its mean to places all around on the ellipsoid of kBelievedSigmas [m].
+std::vector<Eigen::Vector3d> believedOffsets(const UncertainPose& T_c_w, const Pose& T_b_c) {
+    const Matrix6 covariance = inOtherFrame(T_c_w.covariance, T_b_c);  // of T_b_w
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance.topLeftCorner<3, 3>());
+    const Eigen::Vector3d sigmas = solver.eigenvalues().cwiseMax(0.).cwiseSqrt();
+    const Eigen::Matrix3d axes_w = (T_b_c * T_c_w.mean).linear().transpose() *
+                                   solver.eigenvectors() * (kBelievedSigmas * sigmas).asDiagonal();
+    std::vector<Eigen::Vector3d> offsets_w;
+    for (int i = 0; i < 27; ++i) {
+        const Eigen::Vector3d toward(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        offsets_w.push_back(axes_w * toward.normalized());  // of the centre: none
+    }
+    return offsets_w;
 }
 
 }  // namespace
@@ -35,10 +53,19 @@ Pilot::Pilot(std::vector<PlannedView> plan, std::shared_ptr<const ViewSource> ma
       route_(std::move(plan), T_b_c, options.route),
       servo_(T_b_c, options.servoGain),
       goalServo_(servoToGoal()),
-      search_(map_, camera, T_b_c, options.photometric, options.isFree) {}
+      search_(searchInMap()) {}
 
 PhotometricServo Pilot::servoToGoal() const {
     return {*map_, camera_, T_b_c_, route_.goal().T_w_b, {.photometric = options_.photometric}};
+}
+
+ViewSearch Pilot::searchInMap() const {
+    std::function<bool(const Eigen::Vector3d&)> isFree;
+    if (options_.clearance) {
+        isFree = [clearance = options_.clearance, radius = options_.radius](
+                     const Eigen::Vector3d& p_w) { return clearance(p_w) >= radius; };
+    }
+    return {map_, camera_, T_b_c_, options_.photometric, std::move(isFree)};
 }
 
 void Pilot::setPlan(std::vector<PlannedView> plan) {
@@ -53,7 +80,7 @@ void Pilot::setPlan(std::vector<PlannedView> plan) {
 void Pilot::setMap(std::shared_ptr<const ViewSource> map) {
     map_ = std::move(map);
     goalServo_ = servoToGoal();
-    search_ = ViewSearch(map_, camera_, T_b_c_, options_.photometric, options_.isFree);
+    search_ = searchInMap();
     leaveImage();
 }
 
@@ -99,7 +126,7 @@ BodyVelocity Pilot::decide(const Tracker& tracker, double time, double dt) {
         }
         if (!searchSince_) beginSearch(tracker, time);
     }
-    if (wayBack_) return follow(wayBack_->advance(belief, dt), belief);
+    if (wayBack_) return follow(advance(*wayBack_, tracker, dt), belief);
     if (searched_) {
         route_.halt();
         return servo_.toward(belief.mean, route_.cameraAt(*searched_));
@@ -114,7 +141,7 @@ BodyVelocity Pilot::decide(const Tracker& tracker, double time, double dt) {
 BodyVelocity Pilot::alongRoute(const Tracker& tracker, double time, double dt) {
     const UncertainPose belief = tracker.belief();
     const double before = route_.lastWaypoint().distance;
-    const Route::Reference reference = route_.advance(belief, dt);
+    const Route::Reference reference = advance(route_, tracker, dt);
     const bool isMissed = route_.needs(route_.lastWaypoint(), belief);
     const bool isPassed = route_.lastWaypoint().distance > before;
     if (isPassed && isMissed && !tracker.loss().isLost()) beginSearch(tracker, time);
@@ -123,6 +150,24 @@ BodyVelocity Pilot::alongRoute(const Tracker& tracker, double time, double dt) {
         hasMissedGoal_ = isMissed;
     }
     return follow(reference, belief);
+}
+
+/// A plan has accepted how near to obstacles it leads, with the images that it counts on. While
+/// tracking is lost there are none.
+Route::Reference Pilot::advance(Route& route, const Tracker& tracker, double dt) const {
+    const UncertainPose belief = tracker.belief();
+    if (!tracker.loss().isLost() || !options_.clearance) return route.advance(belief, dt);
+    const auto isFree = [&, offsets_w = believedOffsets(belief, T_b_c_)](const auto& p_w) {
+        return std::all_of(offsets_w.begin(), offsets_w.end(), [&](const Eigen::Vector3d& offset) {
+            const int steps = 1 + static_cast<int>(offset.norm() / kClearanceStep);
+            for (int i = 0; i <= steps; ++i) {
+                if (options_.clearance(p_w + offset * i / steps) < options_.bodyRadius)
+                    return false;
+            }
+            return true;
+        });
+    };
+    return route.advance(belief, dt, isFree);
 }
 
 BodyVelocity Pilot::follow(const Route::Reference& reference, const UncertainPose& belief) {

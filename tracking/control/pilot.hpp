@@ -23,8 +23,11 @@ struct PilotOptions {
     PhotometricOptions photometric;  ///< of that image
     double hoverTime = 1.;           ///< waited on the spot after a loss before flying on [s]
     double giveUpTime = 20.;         ///< searched in vain before giving up [s]
-    /// Whether the body may be at a place of the world, for searches off the plan; empty: nowhere.
-    std::function<bool(const Eigen::Vector3d& p_w)> isFree;
+    /// Distance of a place of the world from obstacles [m]; empty: unknown. Then there are no
+    /// searches off the plan, and a lost robot stops for nothing.
+    std::function<double(const Eigen::Vector3d& p_w)> clearance;
+    double radius = 0.2;      ///< kept free by searches off the plan [m]
+    double bodyRadius = 0.1;  ///< an obstacle nearer than this is touched [m]
 };
 
 /// Flies past the views of a plan on a smooth path, with its velocity and visual servoing on the
@@ -33,7 +36,9 @@ struct PilotOptions {
 /// it; what is not found in time leaves the route as uncertain as before, and a goal not reached
 /// for certain is given up. While tracking is lost the pilot hovers, then flies back on the way it
 /// came to the last view that determined the pose, or on along the route to one that should narrow
-/// the belief, whichever is nearer. It gives up after a while.
+/// the belief, whichever is nearer; but only as far as the body touches nothing wherever within
+/// three standard deviations it is. There it hovers, which adds little to the errors of odometry.
+/// It gives up after a while.
 class Pilot {
   public:
     /// @param plan at least two views @throws std::invalid_argument otherwise
@@ -65,6 +70,7 @@ class Pilot {
   private:
     BodyVelocity decide(const Tracker& tracker, double time, double dt);
     BodyVelocity alongRoute(const Tracker& tracker, double time, double dt);
+    Route::Reference advance(Route& route, const Tracker& tracker, double dt) const;
     BodyVelocity follow(const Route::Reference& reference, const UncertainPose& belief);
     void beginSearch(const Tracker& tracker, double time);
     void continueSearch(const Tracker& tracker, double time);
@@ -74,6 +80,7 @@ class Pilot {
     void approachOnImage(const ImageF& image, const Pose& T_w_b);
     void leaveImage();
     PhotometricServo servoToGoal() const;
+    ViewSearch searchInMap() const;
 
     std::shared_ptr<const ViewSource> map_;
     Camera camera_;

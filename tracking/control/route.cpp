@@ -15,7 +15,8 @@ namespace photonav {
 namespace {
 
 constexpr double kCatchUp = 2.;    // of the phase, toward the body's own [1/s]
-constexpr double kApproach = 1.5;  // of a view that is needed: rate by the phase left [1/s]
+constexpr double kApproach = 1.5;  // of where it may have to stop: rate by the phase left [1/s]
+constexpr double kLook = 0.05;     // of phase between the places ahead that are looked at [s]
 
 Station stationOf(const Pose& T_w_b) {
     Station station;
@@ -77,7 +78,8 @@ double Route::allowedRate(const UncertainPose& belief, const Station& offset) co
     return std::clamp(2. - tolerances, 0., 1.);
 }
 
-Route::Reference Route::advance(const UncertainPose& belief, double dt) {
+Route::Reference Route::advance(const UncertainPose& belief, double dt,
+                                const std::function<bool(const Eigen::Vector3d& p_w)>& isFree) {
     const Pose T_w_b = (T_b_c_ * belief.mean).inverse();
     const auto offsetFrom = [&](const Station& station) {
         Station offset = stationOf(T_w_b) - station;
@@ -89,7 +91,8 @@ Route::Reference Route::advance(const UncertainPose& belief, double dt) {
     const double ahead = along(before.first, offset);
     const double allowed = allowedRate(belief, offset - ahead * before.first);
     const double growth = path_.rateGrowth(phase_, rate_);
-    const double most = std::min(allowed, approachRate(belief));
+    double most = std::min(allowed, approachRate(belief));
+    if (isFree) most = std::min(most, freeRate(offset.head<3>(), isFree));
     rate_ = std::min({rate_ + growth * dt, most, path_.rateLimit(phase_)});
     phase_ = std::clamp(phase_ + (rate_ + allowed * kCatchUp * ahead) * dt, 0., path_.end());
 
@@ -121,6 +124,16 @@ double Route::approachRate(const UncertainPose& belief) const {
         if (plan_[i].isWaypoint && needs(plan_[i], belief)) return std::max(0., kApproach * left);
     }
     return 1.;
+}
+
+/// @param offset_w of the belief from the path, kept on the way ahead
+double Route::freeRate(const Eigen::Vector3d& offset_w,
+                       const std::function<bool(const Eigen::Vector3d& p_w)>& isFree) const {
+    double left = 0.;
+    while (kApproach * left < 1. && isFree(path_.at(phase_ + left).station.head<3>() + offset_w)) {
+        left += kLook;
+    }
+    return std::clamp(kApproach * (left - kLook), 0., 1.);
 }
 
 void Route::passViews(const UncertainPose& belief) {

@@ -2,6 +2,7 @@
 // How far along its plan a flight is, and what to fly next.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -51,7 +52,10 @@ class Route {
         BodyVelocity velocity;          ///< in the believed axes of the body
     };
     /// Goes on for `dt` seconds, as far as the believed pose allows.
-    Reference advance(const UncertainPose& belief, double dt);
+    /// @param isFree where the body may be believed: the route slows down before a place that is
+    /// not, and stops; empty: everywhere
+    Reference advance(const UncertainPose& belief, double dt,
+                      const std::function<bool(const Eigen::Vector3d& p_w)>& isFree = {});
     /// The flight was interrupted: the route goes on from standstill.
     void halt() { rate_ = 0.; }
 
@@ -80,6 +84,8 @@ class Route {
     double along(const Station& slope, const Station& offset) const;
     double allowedRate(const UncertainPose& belief, const Station& offset) const;
     double approachRate(const UncertainPose& belief) const;
+    double freeRate(const Eigen::Vector3d& offset_w,
+                    const std::function<bool(const Eigen::Vector3d& p_w)>& isFree) const;
     void passViews(const UncertainPose& belief);
 
     std::vector<PlannedView> plan_;

@@ -272,7 +272,7 @@ TEST_F(Flight, LooksAroundForAViewThatItMissed) {
     int lost = 0;
     int astray = 0;
     for (const bool isSearching : {false, true}) {
-        if (isSearching) options.pilot.isFree = [](const Eigen::Vector3d&) { return true; };
+        if (isSearching) options.pilot.clearance = world.clearance;
         int now = 0;
         for (options.seed = 1; options.seed <= 8; ++options.seed) {
             const FlightResult flight = fly(plan, world, options);
