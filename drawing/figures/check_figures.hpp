@@ -8,19 +8,21 @@
 
 namespace photonav {
 
-/// Standard deviations of position and rotation along the trajectory, above places where images
-/// leave directions open, are rejected, or the camera is lost.
+/// Standard deviations of position and rotation along the trajectory. Stretches are shaded where
+/// images leave directions open or are rejected, or where the camera is lost.
 Figure sigmaFigure(const CheckedTrajectory& checked);
 
-/// Trace after one view, by distance and heading, with the trajectory's heading and the best one.
-/// @param checked with headings compared
+/// Weighted trace after one view over distance and heading, with the heading of the trajectory and
+/// the best heading.
+/// @param checked must contain a comparison of headings (CheckOptions::headings)
 Figure headingsFigure(const CheckedTrajectory& checked);
 
-/// Stretches on which the camera is lost, as lines from above.
+/// Stretches of the trajectory on which the camera is lost, as lines.
 DrawnTree lostStretches(const CheckedTrajectory& checked);
 
-/// Short lines from the places into the best heading, where it gains a tenth of the trace.
-/// @param length of a line [m]
+/// Lines from places into the direction of the best heading, where this heading reduces the trace
+/// by more than a tenth.
+/// @param length length of a line [m]
 DrawnTree betterHeadings(const CheckedTrajectory& checked, double length);
 
 }  // namespace photonav

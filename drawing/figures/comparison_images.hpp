@@ -10,14 +10,15 @@
 
 namespace photonav {
 
-/// Observed, predicted and absolute difference.
-/// @param caption of the first image
+/// Observed image, predicted image and their absolute difference.
+/// @param caption caption of the observed image
 /// @throws std::invalid_argument unless both views have the same size
 std::vector<CaptionedImage> comparisonImages(const View& observed, const View& predicted,
                                              const std::string& caption);
 
-/// Per waypoint: the view predicted there, the frame, its prediction and their difference.
-/// @throws std::invalid_argument without frames
+/// One row per waypoint: the view predicted at the waypoint, the nearest recorded frame, its
+/// prediction, and the difference of these two.
+/// @throws std::invalid_argument for a comparison without frames
 Figure recordedFramesFigure(const RecordedComparison& comparison);
 
 }  // namespace photonav

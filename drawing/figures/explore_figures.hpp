@@ -8,20 +8,22 @@
 
 namespace photonav {
 
-inline constexpr double kMapPixel = 0.025;  ///< of the picture of the map from above [m]
+inline constexpr double kMapPixel = 0.025;  ///< pixel of the picture of the map from above [m]
 
-/// The true positions of a flight.
+/// The true camera positions of a flight.
 DrawnTree drawnWay(const ExplorationResult& flight);
 
-/// Its beliefs, about ten per metre.
+/// The beliefs of a flight, about ten per metre. PathPoint::cost is the time of the flight [s].
+/// @param characteristicLength see weightedTrace() [m]
 DrawnPath drawnBeliefs(const ExplorationResult& flight, double characteristicLength);
 
-/// Over the way flown: trace of the beliefs, and their NEES; time of the updates.
+/// Three panels over the distance flown: weighted trace of the beliefs, NEES, and wall-clock time
+/// of the updates of the plan.
 Figure explorationFigure(const std::vector<ExplorationResult>& flights,
                          double characteristicLength);
 
-/// Trace of the beliefs over the share of the way flown: for every planner the mean of its flights
-/// and, of several, the band in which 95 % of them are.
+/// Weighted trace of the beliefs over the share of the distance flown: for every planner the mean
+/// over its flights and, for several flights, the band that contains 95 % of them.
 Figure traceBandsFigure(const std::vector<ExplorationResult>& flights, double characteristicLength);
 
 }  // namespace photonav

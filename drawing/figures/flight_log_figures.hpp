@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Figures of a flight from its log.
+// Figures of an exploration flight, drawn from its log.
 #pragma once
 
 #include "figures/flight_log_pictures.hpp"
@@ -8,23 +8,29 @@
 
 namespace photonav {
 
-/// Moments of the flight from left to right, at equal distances flown; from above the scene with
-/// tree, plan and way flown, what is free at the height of the robot, and the information of views.
-/// @param log at least one moment
-/// @param scene from above: its area, background, start and goal
+/// One column per moment, at about equal distances flown. The rows show, from above, the scene with
+/// tree, plan and flown path; free and occupied space at the robot's height; and the information of
+/// views.
+/// @param log must have at least one moment
+/// @param scene gives area, background, start and goal
+/// @param columns number of moments
 Figure stagesFigure(const FlightLog& log, const TopView& scene, std::size_t columns = 4);
 
-/// At most a dozen plans, evenly chosen, and the way flown.
+/// At most twelve plans, evenly spread over the updates, and the true flown path.
+/// @param log must have at least one moment
 Figure plansFigure(const FlightLog& log, const TopView& scene);
 
-/// The frames of a film: scene, obstacles, information, images and uncertainty. All have the same
-/// size.
+/// Draws the frames of a film: scene, obstacles, information, images and uncertainty. All frames
+/// have the same size.
 class FilmScript {
   public:
-    /// @param log at least one moment; both must outlive the script
+    /// @param log must have at least one moment, and outlive the script
+    /// @param scene must outlive the script
     FilmScript(const FlightLog& log, const TopView& scene);
 
-    /// @param time [s]; @param moment the last one before it, or the first
+    /// The frame at a time.
+    /// @param time in the flight [s]
+    /// @param moment index of the last moment before this time, or of the first moment
     Figure frame(double time, std::size_t moment) const;
 
   private:
@@ -32,11 +38,11 @@ class FilmScript {
 
     const FlightLog& log_;
     const TopView& scene_;
-    Plot::Points traces_;  // over time
+    Plot::Points traces_;  // time [s], trace [m^2]
     LevelRange range_;
 };
 
-/// The truth until a time, in w [m].
+/// The true camera positions until a time [s], x and y in the world frame [m].
 Plot::Points flownUntil(const FlightLog& log, double time);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The encoded images and grids of a flight log as pictures in colour.
+// Decodes the images and grids of a flight log into colour pictures.
 #pragma once
 
 #include "flightlog/flight_log.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results of flights.
+// Figures of flights of a plan.
 #pragma once
 
 #include "flight/flight_set.hpp"
@@ -8,15 +8,15 @@
 
 namespace photonav {
 
-/// A panel for every plan, all at the same scale: predicted 1 and 3 sigma of the position along the
-/// plan, the errors of all flights and their root mean square.
+/// Position errors along each plan, one panel per plan in the same scale: predicted bands of 1 and
+/// 3 sigma, the errors of all flights and their root mean square.
 Figure errorBandsFigure(const std::vector<FlightSet>& sets);
 
-/// NEES per degree of freedom along the plan, mean over the flights; 1 if covariances are
-/// consistent.
+/// NEES per degree of freedom along the plan, averaged over the flights. It is about 1 if the
+/// covariances are consistent.
 Figure neesFigure(const std::vector<FlightSet>& sets);
 
-/// True positions of the flights, as lines from above.
+/// The true camera positions of all flights, as lines.
 DrawnTree drawnFlights(const FlightSet& set);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Values over a horizontal area.
+// Heat maps of values over a horizontal area.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@ namespace photonav {
 /// A value per cell of a horizontal grid, for example the information of a view there.
 struct HeatMap {
     std::string title = {};
-    std::string label = {};         ///< quantity and unit, beside the colour bar
-    Eigen::AlignedBox2d area = {};  ///< that the cells fill, x and y in w [m]
-    Eigen::ArrayXXd values = {};    ///< (i, j): i-th cell along x, j-th along y, both from the
-                                    ///< smallest; not finite: not flyable, drawn hatched
-    bool logScale = false;          ///< values <= 0 are drawn in dark grey
+    std::string label = {};         ///< quantity and unit, for the colour bar
+    Eigen::AlignedBox2d area = {};  ///< the area of all cells, x and y in the world frame [m]
+    Eigen::ArrayXXd values = {};  ///< (i, j): i-th cell along x and j-th along y, in rising order;
+                                  ///< not finite: not flyable, drawn hatched
+    bool logScale = false;        ///< logarithmic colours; values <= 0 are drawn in dark grey
 };
 
 /// @throws std::invalid_argument if the area or the grid is empty

@@ -16,25 +16,27 @@ struct CaptionedImage {
     Picture picture;
 };
 
-inline constexpr Color kUnknownColor{24, 44, 92};  ///< of pixels without a value
+inline constexpr Color kUnknownColor{24, 44, 92};  ///< colour of pixels without a value
 
-/// @param scale of the image's values to [0, 1]
+/// A grey picture.
+/// @param scale factor that maps the image's values to [0, 1]
 Picture greyPicture(const ImageF& image, double scale = 1.);
 
-/// A predicted view; pixels without a surface in kUnknownColor.
+/// A predicted view. Pixels without a surface have kUnknownColor.
 Picture predictedPicture(const View& predicted);
 
-/// |predicted - observed| in viridis, pixels without a predicted surface in kUnknownColor.
-/// @param full difference of grey values that is drawn in the brightest colour
+/// |predicted - observed| in the colours of viridis. Pixels without a predicted surface have
+/// kUnknownColor.
+/// @param full difference of grey values that has the brightest colour
 Picture differencePicture(const ImageF& observed, const View& predicted, double full);
 
-/// The contribution of each pixel (see contributionImage()) as colour over the dimmed grey image.
-/// The square root is drawn, scaled to its 99.5th percentile: weak pixels stay visible.
+/// The contribution of each pixel (see contributionImage()) as colour over the darkened grey image.
+/// Its square root is drawn, scaled to the 99.5th percentile, so that weak pixels remain visible.
 /// @throws std::invalid_argument if the sizes differ or the images are empty
 Picture contributionPicture(const ImageF& intensity, const ImageF& contribution);
 
-/// All images of equal width, in rows.
-/// @param width of one image [px]
+/// Rows of images of equal width, with captions.
+/// @param width width of an image [px]
 /// @throws std::invalid_argument without images
 Figure imagesFigure(const std::vector<std::vector<CaptionedImage>>& rows, double width = 480.);
 

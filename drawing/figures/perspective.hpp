@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A world in perspective, from above one of its corners, with paths in it.
+// Perspective views of a world with paths.
 #pragma once
 
 #include "photometry/view.hpp"
@@ -10,12 +10,12 @@ namespace photonav {
 
 struct Perspective {
     std::string title;
-    Eigen::AlignedBox3d box;  ///< what is to be in the picture, in w [m]
+    Eigen::AlignedBox3d box;  ///< part of the world that the picture shows, world frame [m]
     std::vector<DrawnPath> paths;
 };
 
-/// The box seen from above the corner of its least x and y, with axes along its floor; paths with
-/// their shadows on what is below them, thinner and pale where something hides them.
+/// The box, seen from above its corner of least x and y, with axes along its floor. Paths are drawn
+/// with their shadows on the surfaces below; hidden parts of a path are thin.
 Figure perspectiveFigure(const ViewSource& world, const Perspective& perspective);
 
 }  // namespace photonav

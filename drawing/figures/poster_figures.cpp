@@ -98,6 +98,7 @@ Figure posterSigmaFigure(const std::vector<DrawnPosterSet>& sets) {
 
 Figure posterGoalsFigure(const std::vector<DrawnPosterSet>& sets) {
     std::vector<CaptionedImage> images;
+    images.reserve(sets.size());
     for (const DrawnPosterSet& drawn : sets) {
         images.push_back({drawn.name, predictedPicture(drawn.set->goalView)});
     }

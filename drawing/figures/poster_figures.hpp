@@ -8,27 +8,28 @@
 
 namespace photonav {
 
-/// A set as figures draw it.
+/// A set of posters with its name and colour in all figures.
 struct DrawnPosterSet {
     const PosterSet* set;
     std::string name;
     Color color;
 };
 
-/// The best sets, each in a colour of its own, and the scene as it is, in grey; the best first.
+/// At most six sets, the best ones, each in its own colour, and the scene without posters in grey;
+/// best set first.
 std::vector<DrawnPosterSet> drawnSets(const PosterProblem& problem, const PosterRanking& ranking);
 
-/// The paths of sets that have one.
+/// The paths of all sets that have one.
 std::vector<DrawnPath> pathsOf(const PosterProblem& problem,
                                const std::vector<DrawnPosterSet>& sets);
 
-/// Standard deviation of the position along the path of each set.
+/// Standard deviation of the position, along its weakest direction, over the path of each set.
 Figure posterSigmaFigure(const std::vector<DrawnPosterSet>& sets);
 
-/// The image at the goal with each set.
+/// The view at the goal with each set of posters.
 Figure posterGoalsFigure(const std::vector<DrawnPosterSet>& sets);
 
-/// The scene with each set from above: its posters outlined, and its path.
+/// The scene from above with each set: outlines of the posters, and the path.
 Figure posterMapsFigure(const PosterProblem& problem, const std::vector<DrawnPosterSet>& sets);
 
 }  // namespace photonav

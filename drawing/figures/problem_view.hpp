@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Planning problems and their paths from above.
+// Views of planning problems and their paths from above.
 #pragma once
 
 #include <functional>
@@ -11,22 +11,29 @@
 
 namespace photonav {
 
-/// The bounds from above, grown by the robot's radius [m].
+/// The bounds of the config in x and y, enlarged by the robot's radius [m].
 Eigen::AlignedBox2d areaOf(const Config& config);
 
-/// A path to be drawn, with its beliefs.
+/// A path with its beliefs, for drawing.
+/// @param T_b_c camera mount
 DrawnPath drawnPath(const EvaluatedPath& path, const Pose& T_b_c);
 
-/// Start, goal and paths over what lies below the bounds.
+/// Start, goal and paths over a picture of the surfaces below the top of the bounds.
 TopView viewFromAbove(const Config& config, const World& world,
                       const std::vector<DrawnPath>& paths);
 
-/// Where the views of a heat map are: the height, and the heading [rad] where it is free.
+/// The poses of a heat map's views in words: their height [m] and, unless the space is xyz, their
+/// heading, "1.20 m, heading 90 deg".
+/// @param yaw heading [rad]
 std::string placeText(const Config& config, double height, double yaw);
 
-/// A value of the view from every cell of a horizontal grid; NaN where the robot cannot be.
-/// @param cells about how many along the longer side
-/// @param value of the view's Fisher information (camera frame)
+/// A value of the view from each cell of a horizontal grid; NaN where the robot cannot be. (i, j)
+/// is the i-th cell along x and the j-th along y.
+/// @param area the area of all cells, x and y [m]
+/// @param height of the body [m]
+/// @param yaw heading of the body [rad]
+/// @param cells number of cells along the longer side
+/// @param value computes the value from the view's Fisher information (camera frame)
 Eigen::ArrayXXd viewGrid(PlanningProblem& problem, const Eigen::AlignedBox2d& area, double height,
                          double yaw, int cells, const std::function<double(const Matrix6&)>& value);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results of a replay.
+// Figures of a replay.
 #pragma once
 
 #include <string>
@@ -10,17 +10,18 @@
 
 namespace photonav {
 
-/// Errors of position and orientation over time with the predicted bands of one and three standard
-/// deviations, and below them the squared normalised error; grey where tracking was lost. Without
-/// ground truth the bands alone.
+/// Errors of position and orientation over time, with the predicted bands of one and three standard
+/// deviations, and below them the NEES per degree of freedom. Times of lost tracking are grey.
+/// Without ground truth only the bands are drawn.
 Figure replayErrorsFigure(const std::string& title, const ReplayRun& run,
                           const ReplayErrors& errors);
 
-/// Observed, predicted and difference of the samples among the strips, one below the other.
-/// @throws std::invalid_argument without any
+/// Observed image, predicted image and their difference for the samples (ReplayStrip::isSample),
+/// one row each.
+/// @throws std::invalid_argument if there is no sample
 Figure stripsFigure(const std::vector<ReplayStrip>& strips);
 
-/// The same of one.
+/// Observed image, predicted image and their difference for one strip.
 Figure stripFigure(const ReplayStrip& strip);
 
 }  // namespace photonav

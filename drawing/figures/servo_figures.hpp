@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Figures of a study of servoing.
+// Figures of a study of photometric servoing.
 #pragma once
 
 #include "plot/figure.hpp"
@@ -7,10 +7,11 @@
 
 namespace photonav {
 
-/// The share of starts that converge over their distance, a curve an angle.
+/// The basin of convergence: share of trials that converge over the distance of the start, one
+/// curve per angle, with 95 % intervals.
 Figure servoBasinFigure(const ServoStudyOptions& options, const ServoStudy& study);
 
-/// Rates of the modes, predicted and simulated.
+/// Predicted and simulated decay rates of the modes.
 Figure servoModesFigure(const ServoStudy& study);
 
 }  // namespace photonav

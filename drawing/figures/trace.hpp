@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Uncertainty along paths.
+// Figures of the uncertainty along paths.
 #pragma once
 
 #include "plot/figure.hpp"
@@ -7,8 +7,8 @@
 
 namespace photonav {
 
-/// Trace of the pose covariance over the distance along each path.
-/// @param logScale decades instead of a linear axis from 0
+/// Weighted trace of the pose covariance [m^2] over the distance along each path.
+/// @param logScale true: logarithmic axis; false: linear axis from 0
 Figure traceFigure(const std::string& title, const std::vector<DrawnPath>& paths, bool logScale);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a planner's tree grows: the paper's Fig. 5.
+// A figure of the growth of planners' trees, as the paper's Fig. 5.
 #pragma once
 
 #include "figures/top_view.hpp"
@@ -7,8 +7,9 @@
 
 namespace photonav {
 
-/// A row of maps per planner, a column per stage: those with `columns` vertices.
-/// @param map area, background, start and goal of all of them
+/// One row of maps per planner and one column per stage.
+/// @param map gives area, background, start and goal of all maps
+/// @param columns numbers of vertices of the stages to draw
 Figure treeEvolutionFigure(const TopView& map, const std::vector<TreeEvolution>& evolutions,
                            const std::vector<std::size_t>& columns);
 

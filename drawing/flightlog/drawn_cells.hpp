@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The occupied cells of a map that grows, as what changed since the last time.
+// The occupied cells of a growing map, as changes from update to update.
 #pragma once
 
 #include <map>
@@ -10,18 +10,19 @@
 
 namespace photonav {
 
-/// Cells of the map, or cubes of 2^level of them a side: so many that what can be seen from within
-/// the bounds takes at most about a hundred thousand.
+/// Drawn cells are cells of the map, or cubes of 2^level cells per side. The level is chosen so
+/// that about 100 000 drawn cells cover the six sides of the bounds.
 class DrawnCells {
   public:
-    /// @param bounds of the flight [m]; @param resolution of the map [m]
+    /// @param bounds of the flight, world frame [m]
+    /// @param resolution edge of the map's cells [m]
     DrawnCells(const Eigen::AlignedBox3d& bounds, double resolution);
 
-    double size() const { return size_; }  ///< of a drawn cell [m]
+    double size() const { return size_; }  ///< edge of a drawn cell [m]
 
-    /// What is drawn otherwise since the last call. Changes of the grey level below a fortieth are
-    /// left out until they add up to more.
-    /// @param change all that changed in the map since then
+    /// The drawn cells that changed since the last call. A change of the grey level by less than
+    /// about 1/40 is left out until it adds up to more.
+    /// @param change everything that changed in the map since the last call
     CellChanges update(const TexturedOcTree& map, const MapChange& change);
 
   private:

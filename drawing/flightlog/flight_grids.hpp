@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is free and what informs of the pose at the height of a robot, in the map that it makes.
+// Horizontal grids of obstacles and of the information of views at the robot's height, in the
+// robot's own map.
 #pragma once
 
 #include <vector>
@@ -9,34 +10,38 @@
 
 namespace photonav {
 
-/// Follows what has been seen of an area as the map grows.
+/// The part of an area that was observed so far.
 class SeenGround {
   public:
-    /// @param area in x and y [m]
+    /// @param area x and y in the world frame [m]
     explicit SeenGround(const Eigen::AlignedBox2d& area) : area_(area) {}
 
-    /// @param change all that changed in the map; @param height of the robot [m]
+    /// Marks the columns in which the map changed below a height.
+    /// @param change everything that changed in the map since the last call
+    /// @param height height of the robot [m]
     void update(const MapChange& change, double height);
 
-    /// Whether anything below the robot's height was seen, within four cells of the map.
+    /// Whether anything below the robot's height was observed at a place. Places are distinguished
+    /// by columns of four by four cells of the map.
     bool isSeen(const Eigen::Vector2d& p_w) const;
 
   private:
     Eigen::Array2i columnOf(const Eigen::Vector2d& p_w) const;
 
     Eigen::AlignedBox2d area_;
-    double edge_ = 0.;                               // of a column of bricks [m]
-    Eigen::Array2i first_ = Eigen::Array2i::Zero();  // column
-    Eigen::Array2i size_ = Eigen::Array2i::Zero();   // columns
-    std::vector<bool> seen_;                         // columns, x fastest
+    double edge_ = 0.;                               // edge of a column of bricks [m]
+    Eigen::Array2i first_ = Eigen::Array2i::Zero();  // index of the first column
+    Eigen::Array2i size_ = Eigen::Array2i::Zero();   // numbers of columns
+    std::vector<bool> seen_;                         // by column, x fastest
 };
 
-/// ObstacleLevel at the height of the robot, for a picture of `area`.
+/// A picture of `area` with the ObstacleLevel at the robot's height; first row at the largest y.
 vpImage<unsigned char> obstacleGrid(const ExplorationMoment& moment, const SeenGround& seen,
                                     const Eigen::AlignedBox2d& area);
 
-/// informationLevel() of views from the robot's height with its present heading. Views are of a
-/// quarter of the camera's size, and count as those of the whole camera.
+/// A picture of `area` with the informationLevel() of views from the robot's height with its
+/// present heading; first row at the largest y. For speed, views have half the camera's width and
+/// height; their information is scaled to that of full-size views.
 vpImage<unsigned char> informationGrid(const ExplorationMoment& moment, const SeenGround& seen,
                                        const Eigen::AlignedBox2d& area);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An exploration as it can be watched again: at every update of the plan what changed in the map,
-// tree, path, beliefs, images and grids. Made by FlightLogger; drawn by the report, its figures and
-// the film.
+// The log of an exploration flight: for every update of the plan the changes of the map, tree,
+// path, beliefs, images and grids. FlightLogger makes it; the report, its figures and the film draw
+// it.
 #pragma once
 
 #include <cstdint>
@@ -24,18 +24,19 @@ struct CellChanges {
     std::vector<std::uint8_t> greys;    ///< 1 per cell: 0 to 254
 };
 
-/// Where the robot was at an exposure.
+/// True and believed position at an exposure.
 struct FlownPoint {
-    float time = 0.F, way = 0.F;  ///< [s], truly flown [m]
-    Eigen::Vector3f believed = Eigen::Vector3f::Zero();
-    Eigen::Vector3f truth = Eigen::Vector3f::Zero();  ///< camera centre in w [m]
-    float trace = 0.F;                                ///< of the belief, weightedTrace() [m^2]
-    float yaw = 0.F;                                  ///< believed heading of the body [rad]
+    float time = 0.F, way = 0.F;  ///< time [s], length of the true path so far [m]
+    Eigen::Vector3f believed = Eigen::Vector3f::Zero();  ///< camera centre, world frame [m]
+    Eigen::Vector3f truth = Eigen::Vector3f::Zero();     ///< camera centre, world frame [m]
+    float trace = 0.F;                                   ///< weightedTrace() of the belief [m^2]
+    float yaw = 0.F;                                     ///< believed heading of the body [rad]
 };
 
-/// Images and grids of a moment, as encoded files. A part that is empty was not logged then.
+/// Tree, images and grids of a moment; images and grids as the content of encoded files. An empty
+/// part was not logged at this moment.
 struct MomentPictures {
-    std::vector<Edge> tree;   ///< of the planner
+    std::vector<Edge> tree;   ///< the planner's search tree
     std::string observed;     ///< JPEG of the camera's image
     std::string predicted;    ///< JPEG of the view of the map from the believed pose
     std::string obstacles;    ///< PNG, see ObstacleLevel; first row at the largest y
@@ -44,21 +45,24 @@ struct MomentPictures {
     bool empty() const { return tree.empty() && observed.empty() && obstacles.empty(); }
 };
 
-/// Grey levels of MomentPictures::obstacles, at the height of the robot.
+/// Grey levels of MomentPictures::obstacles: space at the robot's height that is not observed, is
+/// occupied, is nearer to an obstacle than the robot's radius, or is free.
 enum class ObstacleLevel : std::uint8_t { unseen = 0, occupied = 85, tooNear = 170, free = 255 };
 
-/// Grey level of the trace of a view's Fisher information: 20 per decade from 1 on; 255: the robot
-/// cannot be there, or has not seen the place.
+/// Grey level of MomentPictures::information for the trace of a view's Fisher information: 20
+/// levels per decade, from a trace of 1 (level 0) on, at most 254.
 std::uint8_t informationLevel(double trace);
 inline constexpr int kLevelsPerDecade = 20;
+/// Grey level for places where the robot cannot be, or that were not observed.
 inline constexpr std::uint8_t kNoInformation = 255;
 
+/// The state after an update of the plan.
 struct LoggedMoment {
     PlanUpdate update;
-    double way = 0.;                ///< truly flown [m]
-    PathPoint robot;                ///< the believed pose
-    std::vector<FlownPoint> flown;  ///< since the last moment
-    std::vector<PathPoint> plan;    ///< from here to the goal; empty: no way
+    double way = 0.;                ///< length of the true path so far [m]
+    PathPoint robot;                ///< the belief
+    std::vector<FlownPoint> flown;  ///< exposures since the last moment
+    std::vector<PathPoint> plan;    ///< path from the robot to the goal; empty if there is none
     CellChanges cells;
     MomentPictures pictures;
 };
@@ -68,28 +72,30 @@ struct FlightLog {
 
     std::string planner;
     std::uint32_t seed = 0;
-    Eigen::AlignedBox3d box;    ///< of the tree and of what may be flown [m]
-    Eigen::AlignedBox3d scene;  ///< of what can be seen [m]
-    Eigen::AlignedBox2d area;   ///< of the grids [m]
+    Eigen::AlignedBox3d box;    ///< bounds of the flight, which contain the tree [m]
+    Eigen::AlignedBox3d scene;  ///< bounding box of the true scene [m]
+    Eigen::AlignedBox2d area;   ///< area of the grids, x and y [m]
     double cell = 0.;           ///< edge of the drawn cells [m]
     std::vector<LoggedMoment> moments;
-    std::vector<FlownPoint> rest;  ///< flown after the last moment
-    std::string end;               ///< nameOf(FlightEnd); empty while it is flown
-    std::string reason;
+    std::vector<FlownPoint> rest;  ///< exposures after the last moment
+    std::string end;               ///< nameOf(FlightEnd); empty during the flight
+    std::string reason;            ///< why the flight ended without arrival
 };
 
-/// What does not change in a flight.
+/// The members that do not change during a flight.
 nlohmann::json headerJson(const FlightLog& log);
+/// A moment. Large arrays are base64 of little-endian numbers.
 nlohmann::json momentJson(const FlightLog& log, const LoggedMoment& moment);
+/// The end of a flight, with the exposures after the last moment.
 nlohmann::json endJson(const FlightLog& log);
 
-/// {"header": ..., "moments": [...], "end": ...}: large arrays as base64 of little-endian numbers.
+/// A whole log: {"header": headerJson(), "moments": [momentJson(), ...], "end": endJson()}.
 nlohmann::json flightLogJson(const FlightLog& log);
 
-/// @throws std::exception for what is no log
+/// The inverse of flightLogJson(). @throws std::exception for JSON that is no log
 FlightLog flightLogFrom(const nlohmann::json& json);
 
-/// @throws InputError naming the file for what is no log
+/// Reads a log from a file. @throws InputError naming the file if it is no log
 FlightLog readFlightLog(const std::filesystem::path& file);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes down a flight while it is flown.
+// Makes the log of a flight while it is flown.
 #pragma once
 
 #include "flightlog/drawn_cells.hpp"
@@ -7,20 +7,23 @@
 
 namespace photonav {
 
-/// Makes the log of one flight. Its size is bounded: of a long flight, pictures and trees of every
-/// second, fourth, ... moment are kept, `mostPictures` at most.
+/// Makes the log of one flight. The size of the log is bounded: for a long flight, only every
+/// second, fourth, ... moment keeps its pictures and tree, at most `mostPictures` moments.
 class FlightLogger {
   public:
     static constexpr std::size_t kMostPictures = 160;
 
-    /// @param config of the flight; @param world the true one, for the size of what can be seen
+    /// @param config config of the flight
+    /// @param world the true world, for its bounding box
+    /// @param item the flight
+    /// @param mostPictures largest number of moments with pictures
     FlightLogger(const Config& config, const World& world, const TrialItem& item,
                  std::size_t mostPictures = kMostPictures);
 
     /// Adds a moment of the flight.
     void add(const ExplorationMoment& moment);
 
-    /// Adds how the flight ended, and what was flown since the last moment.
+    /// Adds the end of the flight, and the exposures since the last moment.
     void finish(const ExplorationResult& flight);
 
     const FlightLog& log() const { return log_; }
@@ -36,10 +39,10 @@ class FlightLogger {
     FlightLog log_;
     DrawnCells cells_;
     SeenGround seen_;
-    std::size_t samples_ = 0;        // taken into the log
-    std::size_t stride_ = 1;         // moments from one with pictures to the next
-    double lastFlown_ = -1.;         // [s]
-    double lastInformation_ = -1e9;  // [s]
+    std::size_t samples_ = 0;        // number of samples in the log
+    std::size_t stride_ = 1;         // every stride_-th moment has pictures
+    double lastFlown_ = -1.;         // time of the last exposure in the log [s]
+    double lastInformation_ = -1e9;  // time of the last information grid [s]
 };
 
 }  // namespace photonav

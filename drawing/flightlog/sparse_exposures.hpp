@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Some of the images of a flight: few and small enough to be kept and looked at.
+// Keeps a small number of a flight's images, reduced in size, for figures.
 #pragma once
 
 #include <cstddef>
@@ -14,15 +14,15 @@ struct KeptExposure {
     View view;         ///< image and true depth, at most kShownWidth wide
 };
 
-/// Keeps the first exposure, and every n-th from there on; n is doubled whenever there are more
-/// than `most`.
+/// Keeps the first exposure and every n-th one after it. n is doubled whenever more than `most`
+/// exposures are kept.
 class SparseExposures {
   public:
     explicit SparseExposures(std::size_t most = 40) : most_(most) {}
 
     void add(const Exposed& exposed);
 
-    /// In order of time.
+    /// The kept exposures, in the order of time.
     const std::vector<KeptExposure>& kept() const { return kept_; }
 
   private:

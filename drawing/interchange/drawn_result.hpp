@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the report of a result draws, read back from its report.json.
+// Reads the drawn objects of a report from its report.json.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,11 +10,13 @@
 
 namespace photonav {
 
-// All take the content of a report.json and throw std::exception for what is not as it should be.
+// `report` is the content of a report.json. All functions throw std::exception if it is damaged.
 
+/// The paths with their beliefs.
 std::vector<DrawnPath> drawnPaths(const nlohmann::json& report);
 
-/// The map's cells, and the scene's surfaces as points that are evenly apart; empty: neither.
+/// The centres of the map's cells, and points spread evenly over the scene's surfaces, with their
+/// grey values; empty if the report has neither.
 GreyPoints drawnSurroundings(const nlohmann::json& report);
 
 }  // namespace photonav

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages that Foxglove's panels show, as JSON, in the frame "world" (z up, metres). Their fields
-// are those of docs.foxglove.dev/docs/visualization/message-schemas.
+// JSON messages for Foxglove's panels, in the frame "world" (z up, metres). Their fields are
+// defined by docs.foxglove.dev/docs/visualization/message-schemas.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ namespace photonav {
 
 /// Points with grey values.
 struct GreyPoints {
-    std::vector<float> positions;    ///< 3 a point [m]
-    std::vector<std::uint8_t> grey;  ///< 1 a point
+    std::vector<float> positions;    ///< 3 per point, world frame [m]
+    std::vector<std::uint8_t> grey;  ///< 1 per point
 
     void add(const Eigen::Vector3f& position, std::uint8_t value);
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A result folder as an MCAP file, to be watched in Foxglove.
+// Exports a result folder as an MCAP file for Foxglove.
 #pragma once
 
 #include <filesystem>
@@ -8,16 +8,16 @@
 namespace photonav {
 
 struct McapExport {
-    std::string content;  ///< of the file
+    std::string content;  ///< content of the MCAP file
     std::size_t messages = 0;
-    double duration = 0.;  ///< from the first to the last [s]
+    double duration = 0.;  ///< time from the first to the last message [s]
 };
 
-/// Map and scene, paths with their beliefs, and poses in time; of an exploration its plans, cells
-/// and images as well. Times are those of the flight or of the recording; a plan is flown at a
-/// metre a second.
+/// Exports map and scene, paths with their beliefs, and poses over time; for an exploration also
+/// its plans, the cells of its map and its images. Times are those of the flight or recording; a
+/// plan has no times and is played at 1 m/s.
 /// @param report content of the folder's report.json
-/// @throws InputError for a folder that is damaged
+/// @throws InputError for a damaged folder
 McapExport exportMcap(const std::filesystem::path& folder, const std::string& report);
 
 }  // namespace photonav

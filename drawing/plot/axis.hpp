@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Axes: from quantities to shares of a frame, with ticks at round numbers.
+// Axes of plots: map values to positions along a frame, with ticks at round numbers.
 #pragma once
 
 #include <limits>
@@ -11,15 +11,16 @@ namespace photonav {
 struct Axis {
     static constexpr double kAuto = std::numeric_limits<double>::quiet_NaN();
 
-    double min = kAuto, max = kAuto;  ///< positive on a logarithmic axis; kAuto: from the data
-    bool log = false;
-    std::string label = {};  ///< quantity and unit
+    double min = kAuto, max = kAuto;  ///< limits; kAuto: from the data; positive if `log`
+    bool log = false;                 ///< logarithmic axis
+    std::string label = {};           ///< quantity and unit
 
-    /// 0 at min, 1 at max. Infinities, and values that have no logarithm, are at the ends.
+    /// The position of a value: 0 at min, 1 at max. Infinite values, and on a logarithmic axis
+    /// values <= 0, are at the ends.
     double fraction(double value) const;
 
-    /// With limits around the given values (those that are finite and, on a logarithmic axis,
-    /// positive) in place of kAuto, and a length in any case.
+    /// This axis with limits that enclose the given values in place of kAuto. Values that are not
+    /// finite, or not positive on a logarithmic axis, are ignored. min < max in any case.
     Axis fittedTo(const std::vector<double>& values) const;
 };
 
@@ -28,9 +29,9 @@ struct Tick {
     std::string label;
 };
 
-/// About `wanted` ticks at multiples of 1, 2 or 5 times a power of ten; decades (and 2 and 5
-/// between them when there are few) on a logarithmic axis, unless fewer than two of these are on
-/// it.
+/// About `wanted` ticks at multiples of 1, 2 or 5 times a power of ten. A logarithmic axis has
+/// ticks at decades, and at 2 and 5 between them if there are few decades; if fewer than two of
+/// these lie on the axis, it has linear ticks.
 std::vector<Tick> ticksOf(const Axis& axis, int wanted);
 
 }  // namespace photonav

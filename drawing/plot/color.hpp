@@ -15,18 +15,19 @@ struct Color {
 
 inline constexpr Color kInk{34, 38, 43}, kWhite{255, 255, 255};
 
-/// Of a grey value; those outside [0, 1] are clamped.
+/// The colour of a grey value, clamped to [0, 1].
 Color greyColor(double intensity);
 
-/// Colours of perceptually uniform colour maps: dark at 0, bright at 1; clamped.
+/// Colours of the perceptually uniform colour maps viridis and inferno: dark at 0, bright at 1.
+/// `share` is clamped to [0, 1].
 Color viridis(double share);
 Color inferno(double share);
 
-/// The colour of a planner in every figure, page and tutorial (PlannerTraits), or of a policy of
-/// explorations. All other names are grey.
+/// The colour of a planner (PlannerTraits), or of a planner with a policy of explorations
+/// ("rrt_star/fixed"), in all figures and pages. Grey for all other names.
 Color plannerColor(std::string_view planner);
 
-/// "#rrggbb"
+/// A colour as "#rrggbb".
 std::string hexColor(const Color& color);
 
 }  // namespace photonav

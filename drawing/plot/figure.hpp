@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Panels in rows with a title and a legend, as PNG, SVG or PDF.
+// Figures: panels in rows with a title and a legend, as PNG, SVG or PDF.
 #pragma once
 
 #include <filesystem>
@@ -14,19 +14,20 @@ struct Figure {
     enum class Legend { above, right, none };
 
     std::string title = {};
-    std::vector<std::vector<Plot>> rows = {};  ///< frames of a column, and of a row, are aligned
-    Legend legend = Legend::above;             ///< the topmost mark of a panel first
+    std::vector<std::vector<Plot>> rows = {};  ///< frames are aligned in rows and columns
+    Legend legend =
+        Legend::above;  ///< place of the legend; entries of marks drawn on top come first
 
-    // The bytes of a file. @throws std::invalid_argument without panels
+    // The content of a file. @throws std::invalid_argument without panels
     std::string png() const;
     std::string svg() const;
     std::string pdf() const;
 
-    /// Its pixels. @throws std::invalid_argument without panels
+    /// The figure as pixels. @throws std::invalid_argument without panels
     Picture picture() const;
 
-    /// Writes .png, .svg or .pdf.
-    /// @throws InputError if the name ends otherwise, or the file cannot be written
+    /// Writes a file whose format is given by its ending: .png, .svg or .pdf.
+    /// @throws InputError for another ending, and if the file cannot be written
     void save(const std::filesystem::path& file) const;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the units of a plot's axes to pixels.
+// Maps points from the units of a plot's axes to pixels.
 #pragma once
 
 #include "plot/painter.hpp"

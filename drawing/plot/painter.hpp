@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The drawing operations of figures, in pixels (y downward), on a surface of cairo.
+// The drawing operations of figures on a cairo surface, in pixels (y downward).
 #pragma once
 
 #include <cairo.h>
@@ -29,31 +29,32 @@ enum class Align { left, center, right };
 struct Font {
     double size = 15.;  ///< [px]
     Color color = kInk;
-    bool upward = false;  ///< reads from below to above
+    bool upward = false;  ///< rotated by 90 degrees: reads from bottom to top
 };
 
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 
-/// Appends to a std::string: cairo's way to write files into memory.
+/// Appends bytes to a std::string: a cairo_write_func_t, for files in memory.
+/// @param text pointer to the std::string
 cairo_status_t appendTo(void* text, const unsigned char* bytes, unsigned count);
 
 class Painter {
   public:
     explicit Painter(cairo_surface_t* surface) : cairo_(cairo_create(surface), &cairo_destroy) {}
 
-    /// Lines through the points; one that is not finite leaves a gap.
+    /// A line through the points; a point that is not finite leaves a gap.
     void line(const std::vector<Point>& points, const Color& color, double width,
               bool dashed = false);
     void fill(const std::vector<Point>& outline, const Color& color);
     void disc(const Point& center, double diameter, const Color& color);
     void box(const Frame& frame, const Color& color);
     void outline(const Frame& frame, const Color& color, double width);
-    /// Diagonal lines that meet those of the boxes beside it.
+    /// Diagonal lines. The lines of neighbouring frames join.
     void hatching(const Frame& frame, const Color& color, double width);
     /// A picture stretched over a frame.
     void picture(const Picture& picture, const Frame& frame, bool smooth);
 
-    /// One line of text; `at` is on its base line.
+    /// One line of text; `at` is on the base line.
     void text(const std::string& content, const Point& at, Align align, const Font& font = {});
     double textWidth(const std::string& content, double size = Font{}.size);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pixels in colour.
+// Colour pictures.
 #pragma once
 
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace photonav {
 
-using Png = std::string;  ///< the bytes of a PNG file
+using Png = std::string;  ///< the content of a PNG file
 
 struct Picture {
-    std::vector<Color> pixels;  ///< row by row, the top one first
+    std::vector<Color> pixels;  ///< row by row, top row first
     int columns = 0;
 
     int rows() const { return columns > 0 ? static_cast<int>(pixels.size()) / columns : 0; }
 };
 
-/// Pixel by pixel, without a frame.
+/// A picture as a PNG file of the same size.
 Png pngOf(const Picture& picture);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A panel of a figure: a frame with two axes and what is drawn in it.
+// A panel of a figure: a frame with two axes and the marks drawn in it.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,15 +19,15 @@ struct Mapping;
 
 struct Style {
     Color color = kInk;
-    double width = 2.;      ///< of a line; the diameter of a dot [px]
-    double opacity = 1.;    ///< of a whole mark, also where it overlaps itself
-    std::string name = {};  ///< in the legend; marks of the same name share an entry
+    double width = 2.;      ///< width of a line, or diameter of a dot [px]
+    double opacity = 1.;    ///< of a mark as a whole, also where the mark overlaps itself
+    std::string name = {};  ///< name in the legend; marks of the same name share an entry
     bool dashed = false;
-    double halo = 0.;  ///< white on both sides [px]
+    double halo = 0.;  ///< width of the white border on both sides of a line [px]
 };
 
-/// Marks are drawn in the order of the calls. Coordinates are in the units of the axes; infinite
-/// ones are at the border of the frame, and NaN leaves a gap.
+/// Marks are drawn in the order of the calls. Coordinates are in the units of the axes. Infinite
+/// coordinates are at the border of the frame; NaN leaves a gap.
 class Plot {
   public:
     using Point = Eigen::Vector2d;
@@ -35,16 +35,17 @@ class Plot {
 
     std::string title = {};
     Axis x = {}, y = {};
-    double width = 860., height = 260.;  ///< of the frame [px]
+    double width = 860., height = 260.;  ///< size of the frame [px]
     bool hasAxes = true;
 
-    /// A map of an area in metres, at the same scale in x and y.
-    /// @param side of the longer side [px]
+    /// An empty plot of an area [m], with the same scale in x and y.
+    /// @param side longer side of the frame [px]
     /// @throws std::invalid_argument if the area is empty
     static Plot map(const Eigen::AlignedBox2d& area, double side);
 
-    /// A picture alone.
-    /// @param width of the frame [px]; its height follows
+    /// A plot of a picture, without axes.
+    /// @param width width of the frame [px]; the height follows from the picture
+    /// @param smooth true: pixels are interpolated
     static Plot image(Picture picture, double width, bool smooth = false);
 
     void curve(Points points, Style style);
@@ -54,13 +55,13 @@ class Plot {
     void fill(std::vector<Points> outlines, Style style);
     /// The area between two curves of as many points.
     void band(const Points& low, const Points& high, Style style);
-    /// Dots set off by white: places.
+    /// A dot with a white border, for places.
     void marker(const Point& at, const Color& color, const std::string& name);
-    /// Words in the middle of a place.
+    /// Text centred at a point.
     void text(const Point& at, const std::string& words);
     void picture(Picture picture, const Eigen::AlignedBox2d& box, bool smooth);
     void hatched(std::vector<Eigen::AlignedBox2d> boxes, const std::string& name);
-    /// A scale of viridis on the right of the frame.
+    /// Adds a colour bar of viridis on the right of the frame.
     void colorBar(const Axis& scale) { bar_ = {scale}; }
 
   private:
@@ -81,7 +82,7 @@ class Plot {
     std::vector<Axis> bar_;        ///< none or one
 };
 
-/// Outline of the ellipse in which `sigmas` standard deviations of a point lie.
+/// Outline of the ellipse of `sigmas` standard deviations around a point.
 Plot::Points ellipse(const Plot::Point& mean, const Eigen::Matrix2d& covariance, double sigmas);
 
 }  // namespace photonav

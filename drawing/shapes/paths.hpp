@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paths with their beliefs, and trees, as figures and pages draw them.
+// Paths with their beliefs, and trees, for figures and pages.
 #pragma once
 
 #include <array>
@@ -15,22 +15,24 @@ namespace photonav {
 inline constexpr Color kTreeColor{38, 140, 122};
 inline constexpr Color kStartColor{22, 128, 57}, kGoalColor{160, 28, 92};
 
-/// One point of a path: the belief there, reduced to what is drawn.
+/// One point of a path with the parts of its belief that are drawn.
 struct PathPoint {
-    Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< camera centre in w [m]
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< camera centre, world frame [m]
     Pose T_w_c = Pose::Identity();
-    double trace = 0.0;  ///< tr_W of the 6x6 covariance [m^2], as in weightedTrace()
-    Eigen::Matrix3d positionCovariance = Eigen::Matrix3d::Zero();  ///< of `position`, axes of w
-    double distance = 0.0;                                         ///< along the path [m]
-    double cost = 0.0;  ///< cost to come, in the planner's unit
+    double trace = 0.0;  ///< weightedTrace() of the 6x6 covariance [m^2]
+    Eigen::Matrix3d positionCovariance =
+        Eigen::Matrix3d::Zero();  ///< of `position`, axes of the world [m^2]
+    double distance = 0.0;        ///< length of the path up to the point [m]
+    double cost = 0.0;            ///< cost-to-come [m]
 };
 
-/// The point of a belief T_c_w (covariance in c, left side, (rho, phi)). To first order the camera
-/// centre moves by -R_w_c rho, so its covariance is R_w_c Sigma_rho R_w_c^T.
+/// The point of a belief of T_c_w (covariance in the camera frame, left perturbation, order
+/// (rho, phi)). To first order the camera centre moves by -R_w_c rho, so that its covariance is
+/// R_w_c Sigma_rho R_w_c^T.
 PathPoint makePathPoint(const UncertainPose& T_c_w, double trace, double distance, double cost);
 
 struct DrawnPath {
-    std::string name;  ///< of the planner, for legends
+    std::string name;  ///< name in legends, usually of the planner
     Color color = kInk;
     std::vector<PathPoint> points = {};
 };
@@ -38,16 +40,17 @@ struct DrawnPath {
 /// Appends a point and sets its distance along the path.
 void append(DrawnPath& path, PathPoint point);
 
-using Edge = std::array<Eigen::Vector3f, 2>;  ///< end points in w [m]
+using Edge = std::array<Eigen::Vector3f, 2>;  ///< end points, world frame [m]
 
 struct DrawnTree {
     std::string name = "search tree";
     Color color = kTreeColor;
     std::vector<Edge> edges = {};
-    bool isOnTop = false;  ///< drawn over the paths, and stronger: flights
+    bool isOnTop = false;  ///< drawn over the paths with thicker lines, as for flights
 };
 
-/// Whether most points of a path are nearer than `tolerance` [m] to another one, in x and y.
+/// Whether more than half of the points of a path are nearer than `tolerance` [m] to another path,
+/// in x and y.
 bool runsAlong(const DrawnPath& path, const DrawnPath& other, double tolerance);
 
 }  // namespace photonav

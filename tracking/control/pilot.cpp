@@ -35,9 +35,12 @@ std::vector<Eigen::Vector3d> believedOffsets(const UncertainPose& T_c_w, const P
     const Eigen::Matrix3d axes_w = (T_b_c * T_c_w.mean).linear().transpose() *
                                    solver.eigenvectors() * (kBelievedSigmas * sigmas).asDiagonal();
     std::vector<Eigen::Vector3d> offsets_w;
-    for (int i = 0; i < 27; ++i) {
-        const Eigen::Vector3d toward(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-        offsets_w.push_back(axes_w * toward.normalized());  // of the centre: none
+    for (const double x : {-1., 0., 1.}) {
+        for (const double y : {-1., 0., 1.}) {
+            for (const double z : {-1., 0., 1.}) {
+                offsets_w.push_back(axes_w * Eigen::Vector3d(x, y, z).normalized());
+            }
+        }
     }
     return offsets_w;
 }
