@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way back to where the pose was known.
+// The way back to the last view that determined the pose.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,16 @@
 
 namespace photonav {
 
-/// Body poses since the last view that determined the pose, as they were believed. Nothing stood on
-/// the way that was flown; a straight line back may lead through a wall.
+/// The believed body poses since the last view that determined the pose. The way that was flown is
+/// free of obstacles; a straight line back may lead through a wall.
 class FlownWay {
   public:
-    /// The body has moved on.
-    /// @param T_w_certain pose of the body at the last view that determined it: a new one begins
-    /// the way anew
+    /// Adds a body pose.
+    /// @param T_w_certain pose of the body at the last view that determined the pose; if it is a
+    ///        new one, the way begins there
     void moved(const Pose& T_w_b, const Pose& T_w_certain);
 
-    /// From where the body is now to where the way begins, with the headings on the way.
+    /// The plan from the present pose to the beginning of the way, with the headings of the way.
     std::vector<PlannedView> back() const;
     double length() const;  ///< [m]
 

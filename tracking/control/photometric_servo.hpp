@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The last centimetres: servoing on the grey values of the goal's view.
+// Photometric visual servoing on the view of the goal, for the last centimetres.
 #pragma once
 
 #include <memory>
@@ -11,8 +11,9 @@ namespace photonav {
 
 struct PhotometricServoOptions {
     PhotometricOptions photometric;
-    double gain = 1.;        ///< of the error's exponential decrease [1/s]
-    double maxSigma = 0.02;  ///< the goal's view is good for it when it leaves no more [m, rad]
+    double gain = 1.;  ///< rate at which the error decreases exponentially [1/s]
+    /// Largest standard deviation that the goal's view may leave to be used [m, rad].
+    double maxSigma = 0.02;
     double maxUnexplained = 0.4;  ///< see TrustOptions
 };
 
@@ -22,26 +23,27 @@ struct PhotometricServoOptions {
 class PhotometricServo {
   public:
     /// @param map must outlive the servo
-    /// @param T_w_goal body pose of the goal
+    /// @param T_w_goal body pose at the goal
     PhotometricServo(const ViewSource& map, const Camera& camera, const Pose& T_b_c,
                      const Pose& T_w_goal, const PhotometricServoOptions& options);
     ~PhotometricServo();
     PhotometricServo(PhotometricServo&&) noexcept;
     PhotometricServo& operator=(PhotometricServo&&) noexcept;
 
-    /// Whether the goal's view determines all four velocities.
+    /// Whether the goal's view determines all four velocities well enough (maxSigma).
     bool isInformative() const;
     /// Largest standard deviation that the noise of one image leaves in a displacement [m, rad].
     double sigma() const;
 
     struct Step {
-        BodyVelocity velocity;      ///< before any limit
-        BodyVelocity displacement;  ///< from here to the goal to first order [m, rad]
+        BodyVelocity velocity;      ///< not limited
+        BodyVelocity displacement;  ///< to the goal, to first order [m, rad]
         double unexplained = 1.;    ///< share of the images' variance, see TrustOptions
         bool isTrusted = false;     ///< the goal's view explains the image
     };
-    /// @param T_w_b believed pose of the body; of it only the tilt counts, which the four
-    /// velocities cannot mend and which a view that hung otherwise would take for a displacement
+    /// @param T_w_b believed pose of the body. Only its tilt is used: the view of the goal is
+    /// rendered
+    ///        with this tilt, which the four velocities cannot correct
     Step toward(const ImageF& observed, const Pose& T_w_b);
 
   private:

@@ -18,52 +18,60 @@ namespace photonav {
 
 struct PilotOptions {
     RouteOptions route;
-    double servoGain = 1.5;       ///< of the pose error's exponential decrease [1/s]
-    bool photometricGoal = true;  ///< servo on the goal's image where it determines all velocities
-    PhotometricOptions photometric;  ///< of that image
-    double hoverTime = 1.;           ///< waited on the spot after a loss before flying on [s]
-    double giveUpTime = 20.;         ///< searched in vain before giving up [s]
-    /// Distance of a place of the world from obstacles [m]; empty: unknown. Then there are no
-    /// searches off the plan, and a lost robot stops for nothing.
+    double servoGain = 1.5;  ///< rate at which a pose error decreases exponentially [1/s]
+    bool photometricGoal =
+        true;  ///< photometric servoing at the goal, if its image determines all velocities
+    PhotometricOptions photometric;  ///< options for the information of the goal's image
+    double hoverTime = 1.;  ///< time to hover after tracking was lost, before a search begins [s]
+    double giveUpTime =
+        20.;  ///< time of a search without success after which the flight is given up [s]
+    /// Distance from a position to the nearest obstacle of the map [m]. Empty: not known; then the
+    /// pilot does not search beside the plan, and does not stop before obstacles while tracking is
+    /// lost.
     std::function<double(const Eigen::Vector3d& p_w)> clearance;
-    double radius = 0.2;      ///< kept free by searches off the plan [m]
-    double bodyRadius = 0.1;  ///< an obstacle nearer than this is touched [m]
+    double radius = 0.2;      ///< least clearance of positions in a search beside the plan [m]
+    double bodyRadius = 0.1;  ///< radius of the body: a smaller clearance is a collision [m]
 };
 
-/// Flies past the views of a plan on a smooth path, with its velocity and visual servoing on the
-/// believed pose; at the goal on its image. A waypoint at which the belief is much wider than
-/// planned, so that its view cannot have been seen, begins a search for a view around that narrows
-/// it; what is not found in time leaves the route as uncertain as before, and a goal not reached
-/// for certain is given up. While tracking is lost the pilot hovers, then flies back on the way it
-/// came to the last view that determined the pose, or on along the route to one that should narrow
-/// the belief, whichever is nearer; but only as far as the body touches nothing wherever within
-/// three standard deviations it is. There it hovers, which adds little to the errors of odometry.
-/// It gives up after a while.
+/// Computes velocity commands from a plan and the present belief.
+///
+/// The robot follows a smooth path past the views of the plan: the command is the velocity of the
+/// path plus visual servoing toward the pose on it. At the goal it servos on the goal's image. If
+/// the belief at a waypoint is much wider than planned, the view of the waypoint was not seen: the
+/// pilot searches around it for a view that reduces the uncertainty. If it finds none in time, it
+/// goes on along the plan; if the goal is not reached with certainty, it gives up.
+///
+/// While tracking is lost, the pilot first hovers. Then it flies back on the way it came, to the
+/// last view that determined the pose, or on along the plan to a view that should reduce the
+/// uncertainty, whichever is nearer. It goes only where the body collides with nothing at any
+/// position within three standard deviations of the belief, and hovers before other places: errors
+/// of odometry grow with the distance flown. After giveUpTime it gives up.
 class Pilot {
   public:
     /// @param plan at least two views @throws std::invalid_argument otherwise
-    /// @param map in which the goal's image is rendered
+    /// @param map the view of the goal is rendered from it
     Pilot(std::vector<PlannedView> plan, std::shared_ptr<const ViewSource> map,
           const Camera& camera, const Pose& T_b_c, const PilotOptions& options);
 
-    /// Flies another plan from now on, without a stop where it goes on in the same direction.
-    /// @throws std::invalid_argument below two views
+    /// Replaces the plan. The robot does not stop if the new plan begins in its direction of
+    /// flight.
+    /// @throws std::invalid_argument for fewer than two views
     void setPlan(std::vector<PlannedView> plan);
-    /// Exchanges the map; the plan stays.
+    /// Replaces the map; the plan stays.
     void setMap(std::shared_ptr<const ViewSource> map);
 
-    /// An image was tracked: for servoing on the goal's.
+    /// Call it after an image was tracked; used for servoing on the goal's image.
     void observe(const Tracker& tracker, const TrackedFrame& tracked, const ImageF& image);
 
     /// Velocity for the next `dt` seconds, within the limits of the route.
     /// @param time now [s]
     BodyVelocity command(const Tracker& tracker, double time, double dt);
 
-    /// Whether the belief has been at the goal for long enough, or the image is the goal's.
+    /// Whether the belief has been at the goal for long enough, or the image equals the goal's.
     bool hasArrived(const Tracker& tracker, double time) const;
     bool hasGivenUp(const Tracker& tracker, double time) const;
 
-    /// Whether the goal's image was servoed on.
+    /// Whether photometric servoing at the goal was used.
     bool hasServoedOnImage() const { return hasServoedOnImage_; }
     const Route& route() const { return route_; }
 
@@ -91,14 +99,14 @@ class Pilot {
     PhotometricServo goalServo_;
     ViewSearch search_;
     std::optional<double> searchSince_;  ///< [s]
-    std::optional<Pose> searched_;       ///< body pose to search from; none: the route goes on
+    std::optional<Pose> searched_;       ///< body pose of the search; none: the route is followed
     FlownWay flown_;                     ///< since the last view that determined the pose
     std::optional<Route> wayBack_;       ///< to that view, while tracking is lost
-    bool hasMissedGoal_ = false;         ///< at the goal, but not for certain
+    bool hasMissedGoal_ = false;  ///< the belief reached the goal, but was not certain enough
     BodyVelocity command_;
     std::optional<double> atGoalSince_;    ///< [s]
-    std::optional<BodyVelocity> onImage_;  ///< wanted by the goal's image
-    int smallSteps_ = 0;                   ///< in a row
+    std::optional<BodyVelocity> onImage_;  ///< velocity by photometric servoing at the goal
+    int smallSteps_ = 0;  ///< consecutive small displacements from the goal's image
     bool hasServoedOnImage_ = false;
 };
 
