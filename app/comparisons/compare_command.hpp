@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `photonav compare`: every planner, information model and objective on the same problems.
+// `photonav compare`: compares all planners, information models and objectives on the same
+// problems.
 #pragma once
 
 #include <atomic>
@@ -11,18 +12,18 @@
 namespace photonav {
 
 struct CompareOptions {
-    std::vector<std::string> configs;    ///< YAML files
-    std::vector<std::string> overrides;  ///< key.path=value, for all of them
+    std::vector<std::string> configs;    ///< YAML files of planning problems
+    std::vector<std::string> overrides;  ///< key.path=value, for all configs
     std::filesystem::path out = "out/compare";
-    unsigned runs = 3;  ///< seeds: the config's and those after it
+    unsigned runs = 3;  ///< number of seeds per method, from the config's seed on
     bool quiet = false;
 };
 
-/// Writes, for every config, <name>.md (table) and <name>.png (the first seed's paths from above)
-/// and at last result.json with all runs. An interrupt leaves out the run in progress and all later
-/// ones.
-/// @return the exit code; 1 when no run found a path
-/// @throws InputError also when two configs have the same name
+/// Writes for every config <name>.md (a table) and <name>.png (the first path of each method, from
+/// above), and finally result.json with all runs.
+/// @param interrupted when set, the run in progress and all later runs are left out (exit code 130)
+/// @return the exit code: kNoAnswer if no run found a path
+/// @throws InputError for bad input, also if two configs have the same name
 int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `photonav explore`: to the goal of a problem in a scene that the robot does not know.
+// `photonav explore`: flies to a goal in an unknown scene.
 #pragma once
 
 #include <atomic>
@@ -9,20 +9,21 @@
 
 namespace photonav {
 
-/// All that the results depend on is in the config (ExploreConfig) and its overrides.
+/// Options of the command. The flights depend only on the config (ExploreConfig) with its
+/// overrides.
 struct ExploreOptions : ManyRunsOptions {
-    std::filesystem::path record;  ///< folder for the first flight as a recording; empty: none
-    std::string serve;             ///< where browsers see the first flight; empty: nowhere
-    bool film = false;             ///< write one of the first flight
+    std::filesystem::path record;  ///< folder for a recording of the first flight; empty: none
+    std::string serve;             ///< "[ADDRESS:]PORT" of a server that shows the first flight
+                                   ///< while it is flown; empty: no server
+    bool film = false;             ///< also write film.webm, a film of the first flight
 };
 
-/// Flies every trial, or merges the shards of an exploration, and writes trials.jsonl, result.json,
-/// config.yaml, map.ot, flight.json, trajectory.tum, .cov and .ov and groundtruth.tum of the first
-/// flight, figures, report.json and report.html.
-/// @param interrupted when set, flying ends with the flights that ended, and the first as far as it
-///        was flown (exit code 130)
-/// @return the exit code: kNoAnswer unless the first flight arrived or, with several trials, one of
-///         the first planner's did
+/// Flies all trials, or merges the shards of an exploration. Writes trials.jsonl, result.json,
+/// config.yaml, figures, report.json and report.html, and for the first flight map.ot, flight.json,
+/// trajectory.tum, .cov and .ov, and groundtruth.tum.
+/// @param interrupted when set, all flights end; the results contain the complete flights, and the
+///        first flight even if it is incomplete (exit code 130)
+/// @return the exit code: kDone if a flight of the first planner arrived, otherwise kNoAnswer
 /// @throws InputError for bad input, before anything is written
 int runExplore(const ExploreOptions& options, const std::atomic<bool>& interrupted);
 

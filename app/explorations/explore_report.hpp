@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Result and report of `photonav explore`.
+// Report of `photonav explore`.
 #pragma once
 
 #include "exploration/explore_result.hpp"
@@ -9,20 +9,24 @@
 namespace photonav {
 
 struct ExploreOutcome : ExplorationSet {
-    std::string name;  ///< of the config
-    std::string commandLine;
-    std::optional<FlightLog> log;  ///< of the first flight
+    std::string name;              ///< name of the config
+    std::string commandLine;       ///< the command as typed
+    std::optional<FlightLog> log;  ///< log of the first flight; none: it was not kept
 };
 
-/// Writes the map, the trajectories of the first flight, figures and the page.
-/// @param world the true one
+/// Writes map.ot and the trajectory files of the first flight, figures, config.yaml, report.json
+/// and report.html.
+/// @param world the true world
+/// @param result content of result.json
 void writeExploreReport(const std::filesystem::path& folder, const ExplorationSetup& setup,
                         const World& world, const ExploreOutcome& outcome,
                         const nlohmann::json& result);
 
-/// The page of a flight that has yet to begin: it listens to the events "moment" (momentJson()) and
-/// "end" (endJson()) at the address `events` beside it.
-/// @param log without moments; @param world the true one
+/// The HTML page that shows a flight while it is flown. The page receives the server-sent events
+/// "moment" (momentJson()) and "end" (endJson()) from the relative address `events`.
+/// @param world the true world
+/// @param name name of the config
+/// @param log log of the flight before its first moment
 std::string livePage(const ExplorationSetup& setup, const World& world, const std::string& name,
                      const std::string& commandLine, const FlightLog& log);
 

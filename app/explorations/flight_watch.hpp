@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The first flight of an exploration, written down as it is flown, and shown to browsers.
+// Logs the first flight of an exploration, and shows it to browsers while it is flown.
 #pragma once
 
 #include <filesystem>
@@ -12,21 +12,25 @@
 
 namespace photonav {
 
+/// The log of a flight and, on request, a server for browsers.
 class FlightWatch {
   public:
-    /// @param config of the flight; @param world the true one
+    /// @param config config of the flight
+    /// @param world the true world
+    /// @param item the flight
     FlightWatch(const Config& config, const World& world, const TrialItem& item)
         : logger_(config, world, item) {}
 
-    /// Shows the flight from here on.
+    /// Starts a server that shows the flight, and prints its address.
     /// @param page livePage() of log()
-    /// @throws InputError as LiveServer
+    /// @throws InputError as the constructor of LiveServer does
     void serve(const ServerAddress& address, std::string page);
 
-    /// Must not outlive the watch.
+    /// A callback that adds a moment to the log and sends it to the browsers. It must not outlive
+    /// the watch.
     OnExplorationMoment onMoment();
 
-    /// The flight has ended: writes its log into a folder.
+    /// Adds the end of the flight, writes the log into a folder and informs the browsers.
     void finish(const ExplorationResult& flight, const std::filesystem::path& folder);
 
     const FlightLog& log() const { return logger_.log(); }
@@ -36,10 +40,13 @@ class FlightWatch {
     std::unique_ptr<LiveServer> server_;
 };
 
-/// The log of a flight in a folder; none where there is none, or one of another flight.
-/// @throws InputError for a damaged one
+/// Reads the log of a flight from a folder; nothing if the folder has no log, or the log of another
+/// flight.
+/// @throws InputError for a damaged log
 std::optional<FlightLog> readFlightLog(const std::filesystem::path& folder, const TrialItem& item);
 
+/// Writes the log as FlightLog::kFileName.
+/// @throws InputError if the file cannot be written
 void writeFlightLog(const std::filesystem::path& folder, const FlightLog& log);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The recording of a flight that `--record` asks for.
+// The recording of a flight, for the option --record.
 #pragma once
 
 #include <filesystem>
@@ -11,27 +11,31 @@
 
 namespace photonav {
 
-/// Begins with the first image; its folder is there once it is committed.
+/// Writes the images of a flight as a TUM RGB-D recording. The folder appears at its place with
+/// commit().
 class FlightRecording {
   public:
-    /// @param folder empty: nothing is recorded
-    /// @param result the folder of the result, from which a recording is apart
-    /// @param images how they are aligned: the recording states their blur and their information
-    /// @throws InputError where the folder holds a recording already, or the result
+    /// @param folder folder of the recording; empty: nothing is recorded
+    /// @param result result folder of the command; neither folder may contain the other
+    /// @param camera camera of the flight
+    /// @param images give blur and information scale of the images, for the recording's camera file
+    /// @throws InputError if the folder already holds a recording, or contains or is inside the
+    ///         result folder
     FlightRecording(const std::filesystem::path& folder, const std::filesystem::path& result,
                     const Camera& camera, const AlignmentOptions& images);
 
-    /// Adds an exposure; empty where nothing is recorded. Must not outlive the recording.
+    /// A callback that adds an exposure; empty if nothing is recorded. It must not outlive the
+    /// recording.
     OnExposure onExposure();
 
-    /// Does nothing without an image.
+    /// Completes the recording; does nothing if no image was added.
     void commit();
 
   private:
     Camera camera_;
     double informationScale_, blur_;
     std::optional<FolderTransaction> folder_;
-    std::optional<FlightRecorder> recorder_;  // from the first image on
+    std::optional<FlightRecorder> recorder_;  // created with the first image
 };
 
 }  // namespace photonav

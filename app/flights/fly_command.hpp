@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `photonav fly`: a plan flown in closed loop, many times, beside the shortest path.
+// `photonav fly`: flies a plan, and the shortest path for comparison, in closed loop, many times.
 #pragma once
 
 #include <atomic>
@@ -9,19 +9,20 @@
 
 namespace photonav {
 
-/// All that the results depend on is in the config (FlyConfig) and its overrides.
+/// Options of the command. The flights depend only on the config (FlyConfig) with its overrides.
 struct FlyOptions : CommandOptions {
-    unsigned jobs = 1;             ///< threads
-    std::string calibration;       ///< file whose scale and least sigmas are among the overrides
-    std::filesystem::path record;  ///< folder for the first flight as a recording; empty: none
+    unsigned jobs = 1;             ///< number of threads
+    std::string calibration;       ///< calibration.yaml whose scale and least sigmas are among the
+                                   ///< overrides; empty: none
+    std::filesystem::path record;  ///< folder for a recording of the first flight; empty: none
 };
 
-/// Plans (or takes the plan of a result folder), flies it and writes result.json, config.yaml,
-/// trajectory.tum, .cov and .ov and groundtruth.tum of the first flight, errors.png, nees.png,
-/// top_view.png, report.json and report.html.
-/// @param interrupted when set, flying ends with the flights that were flown (exit code 130)
-/// @return the exit code: kNoAnswer when there was no path or no flight of the config's own planner
-///         arrived (whether RRT*'s did does not count)
+/// Plans, or reads the plan of a result folder, and flies the plan. Writes result.json,
+/// config.yaml, errors.png, nees.png, top_view.png, report.json and report.html, and for the first
+/// flight trajectory.tum, .cov and .ov, and groundtruth.tum.
+/// @param interrupted when set, the results contain the flights so far (exit code 130)
+/// @return the exit code: kNoAnswer if there is no path, or no flight along it arrived; flights of
+///         RRT* for comparison do not count
 /// @throws InputError for bad input, before anything is written
 int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A flight as the page plays it.
+// The frames of the animation of a flight, for the report.
 #pragma once
 
 #include "flight/flight_set.hpp"
@@ -8,9 +8,11 @@
 
 namespace photonav {
 
-/// Images of a flight, the views that the map predicts at the believed poses, and their
-/// differences.
-/// @param exposures of the flight
+/// One frame per kept exposure: the observed image, the view that the map predicts at the believed
+/// pose, and their difference.
+/// @param planner name of the plan's planner, for captions and colour
+/// @param exposures kept exposures of this flight
+/// @param world gives map and camera
 std::vector<ReportFrame> flightFrames(const std::string& planner, const FlightResult& flight,
                                       const std::vector<KeptExposure>& exposures,
                                       const FlightWorld& world);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The results of flights: numbers, figures, page.
+// Writes the result files of flights: trajectories, figures and page.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,9 @@ namespace photonav {
 
 /// Writes config.yaml, the first flight's trajectory files, errors.png, nees.png, top_view.png,
 /// report.json and report.html.
-/// @param frames of flights to be played in the page, see flightFrames()
+/// @param sets one set of flights per plan, the config's own plan first
+/// @param frames frames of the page's animation, see flightFrames()
+/// @param result content of result.json
 void writeFlyReport(const std::filesystem::path& folder, const Config& config, const World& world,
                     const std::vector<FlightSet>& sets, std::vector<ReportFrame> frames,
                     const std::string& commandLine, const nlohmann::json& result);

@@ -10,10 +10,12 @@
 
 namespace photonav {
 
-/// The ranking as lines of at most 80 columns, if no word of a name is longer than 16.
+/// The ranking as a table for a terminal. Lines have at most 80 columns if no word of a name has
+/// more than 16 characters.
 std::string rankingText(const PosterProblem& problem, const PosterRanking& ranking);
 
-/// Writes all files of the result folder but result.json.
+/// Writes all files of the result folder except result.json.
+/// @param result content of result.json
 void writePostersReport(const std::filesystem::path& folder, const PosterProblem& problem,
                         const PosterRanking& ranking, const std::string& commandLine,
                         const nlohmann::json& result);

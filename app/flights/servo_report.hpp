@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report of photometric servoing at a goal.
+// The report of a study of photometric servoing at a goal.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +11,7 @@
 
 namespace photonav {
 
+/// Input and outcome of a study.
 struct ServoReport {
     const Config& config;
     const World& world;
@@ -19,9 +20,11 @@ struct ServoReport {
     const ServoStudy& study;
 };
 
+/// The main numbers of a study, for the terminal and the page.
 ReportTable servoSummary(const ServoReport& report);
 
-/// Writes all files of the result folder but result.json.
+/// Writes all files of the result folder except result.json.
+/// @param result content of result.json
 void writeServoReport(const std::filesystem::path& folder, const ServoReport& report,
                       const std::string& commandLine, const nlohmann::json& result);
 

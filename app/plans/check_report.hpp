@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The results of checking a trajectory: numbers, figures, page.
+// Writes the result files of a check of a trajectory: figures and page.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +12,11 @@
 
 namespace photonav {
 
-/// The summary, for the terminal and the page.
+/// The main numbers of a check, for the terminal and the page.
 ReportTable summaryOf(const CheckOutcome& report);
 
-/// Writes config.yaml, path.tum, the figures of checkFigures(), report.json and report.html.
+/// Writes config.yaml, path.tum, path.kitti, the figures, report.json and report.html.
+/// @param result content of result.json
 void writeCheckReport(const std::filesystem::path& folder, const CheckOutcome& report,
                       const std::string& commandLine, const nlohmann::json& result);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far a plan is, in a line.
+// The progress of planning, as one line of text.
 #pragma once
 
 #include <optional>
@@ -10,17 +10,19 @@
 
 namespace photonav {
 
-/// Predicts when the last vertex will be added: the time of growth follows a power of the number of
-/// vertices, which is fitted from half the present number on. Until a first path is found and
-/// searched, growth takes next to no time and predicts nothing. The last search and the descent,
-/// which follow, are not part of it: their duration is not known before.
+/// Predicts the time until the last vertex is added. The model is a power law, time over number of
+/// vertices, fitted to two points: the present number of vertices and half of it. Before a first
+/// path is found and searched, the tree grows so fast that its times predict nothing. The last
+/// search and the descent after the last vertex are not included: their duration cannot be
+/// predicted.
 class RemainingGrowth {
   public:
+    /// @param vertices number of vertices at the end
     explicit RemainingGrowth(unsigned vertices) : vertices_(vertices) {}
 
     void add(const PlanProgress& progress) { history_.push_back(progress); }
 
-    /// Until the last vertex [s]; nothing while no path was known at half the present number of
+    /// Time until the last vertex [s]. Nothing if no path was known at half the present number of
     /// vertices, and after the last vertex.
     std::optional<double> seconds() const;
 
@@ -29,7 +31,8 @@ class RemainingGrowth {
     std::vector<PlanProgress> history_;
 };
 
-/// Vertices, cost and views so far, and what comes when.
+/// One line of text: vertices, best cost and views so far, and the time so far or the time left.
+/// @param vertices number of vertices at the end
 std::string progressText(const PlanProgress& progress, unsigned vertices,
                          const RemainingGrowth& growth);
 

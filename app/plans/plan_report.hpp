@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The results of a plan: numbers, figures, page.
+// Writes the result files of a plan: path, figures and page.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +12,15 @@
 
 namespace photonav {
 
-/// Writes config.yaml, top_view.png, report.json and report.html; with a path also path.tum,
-/// trace.png, information.png (unless the world has no texture), and recorded_frames.png where
-/// there is a recording to compare with; tree_evolution.png and an animation in the page if there
-/// are evolutions.
+/// Writes config.yaml, top_view.png, report.json and report.html. With a path it also writes
+/// path.tum and trace.png and, if the world has texture, information.png and views.png. Other
+/// figures: perspective.png if the world has texture and the bounds have a height,
+/// recorded_frames.png if `recorded` is given, tree_evolution.png and an animation in the page if
+/// there are evolutions.
+/// @param baseline path of RRT* for comparison
+/// @param recorded views along the path with the nearest recorded frames
+/// @param evolutions growth of the trees, at the same stages for all planners; may be empty
+/// @param result content of result.json
 void writePlanReport(const std::filesystem::path& folder, const Config& config, const World& world,
                      PlanningProblem& problem, const PlanOutcome& outcome,
                      const std::optional<EvaluatedPath>& baseline,

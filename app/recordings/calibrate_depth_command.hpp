@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `photonav calibrate-depth`: where the depth camera of a recording sits.
+// `photonav calibrate-depth`: estimates the pose of a recording's depth camera relative to its
+// colour camera.
 #pragma once
 
 #include <atomic>
@@ -13,21 +14,21 @@
 namespace photonav {
 
 struct CalibrateDepthOptions : RecordingOptions {
-    std::filesystem::path out;  ///< folder for the results; made when missing
+    std::filesystem::path out;  ///< result folder; created if it does not exist
 
-    /// Called after each image with the number done and the number there are.
+    /// Called after each image with the number of images done and their total number.
     std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
 struct CalibrateDepthReport {
-    nlohmann::json result;
-    ReportTable summary;
-    int exitCode = 0;
+    nlohmann::json result;  ///< content of result.json
+    ReportTable summary;    ///< main numbers of the result, for the terminal
+    int exitCode = 0;       ///< kDone or kInterrupted
 };
 
-/// Writes camera.yaml, with the pose of the depth camera, and result.json into options.out; nothing
-/// when interrupted.
-/// @throws InputError as registerDepth(), and for a folder that cannot be written
+/// Writes camera.yaml, with the pose of the depth camera, and result.json into options.out.
+/// @param interrupted when set, nothing is written
+/// @throws InputError as registerDepth() does, and for a folder that cannot be written
 CalibrateDepthReport runCalibrateDepth(const CalibrateDepthOptions& options,
                                        const std::atomic<bool>& interrupted);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `photonav map`: a recorded sequence becomes a textured OctoMap.
+// `photonav map`: makes a textured OctoMap from a recording.
 #pragma once
 
 #include <atomic>
@@ -14,30 +14,40 @@
 namespace photonav {
 
 struct MapCommandOptions : MapOptions {
-    std::filesystem::path out;  ///< folder for the results; made when missing
-    int compareEvery = 10;      ///< predict every n-th used frame from the finished map; 0: none
-    std::string commandLine;    ///< for the report
+    std::filesystem::path out;  ///< result folder; created if it does not exist
+    int compareEvery = 10;      ///< every n-th used frame is compared with its prediction from the
+                                ///< finished map; 0: none
+    std::string commandLine;    ///< the command as typed, for the report
 
-    /// Called after each fused frame with the number done and the number there are.
+    /// Called after each fused frame with the number of frames done and their total number.
     std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
+/// Outcome of the commands that make or describe a map.
 struct MapReport {
-    nlohmann::json result;  ///< what was written as result.json
-    ReportTable summary;    ///< the same in words
-    int exitCode = 0;       ///< 130 when interrupted
+    nlohmann::json result;  ///< content of result.json
+    ReportTable summary;    ///< main numbers of the result, for terminal and page
+    int exitCode = 0;       ///< kNoAnswer if a recording gave an empty map, kInterrupted when
+                            ///< interrupted
 };
 
-/// Maps a dataset and writes into options.out: map.ot (TexturedOcTree), map_color.ot (ColorOcTree,
-/// for octovis), map.bt, surfaces.ply (points with normals), trajectory.tum (camera to world, of
-/// the frames used, in the map's world), config.yaml (with it `plan` finds the frames again),
-/// result.json, comparison_N.png (observed, predicted and difference of up to four frames), with
-/// depth from the images alone convergence.png (what a few references have learned of every pixel),
-/// report.json and report.html. The world of the map has z up: `up` states how the recorded world
-/// was turned.
-/// @param interrupted checked between frames; what is there then is written, without comparison
-/// @throws InputError for a dataset that cannot be used, an option out of range ("--every") and a
-///         folder that cannot be written, the last before any work is done; no new folder is left
+/// Makes a map from a dataset and writes into options.out:
+///
+/// - map.ot (TexturedOcTree), map_color.ot (ColorOcTree, for octovis), map.bt (occupancy) and
+///   surfaces.ply (points with normals);
+/// - trajectory.tum: T_w_c of the used frames, in the world frame of the map;
+/// - config.yaml, from which `photonav plan` finds the recorded frames;
+/// - comparison_N.png: observed image, predicted image and difference for at most four frames;
+/// - convergence.png, only for depth from the images alone: the state of a few depth filters;
+/// - result.json, report.json and report.html.
+///
+/// The world frame of the map has z up; "up" in result.json is the upward direction in the recorded
+/// world frame.
+/// @param interrupted when set, the map of the frames so far is written, and no more frames are
+///        compared
+/// @throws InputError for a dataset that cannot be used, for an option out of range, and for a
+///         folder that cannot be written. The folder is checked before any frame is fused; no new
+///         folder is left.
 MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `photonav info MAP`: what a map file holds.
+// `photonav info MAP`: describes a map file.
 #pragma once
 
 #include "recordings/map_command.hpp"
@@ -7,9 +7,10 @@
 
 namespace photonav {
 
-/// Says how large the map in the file `config` is and how much of it has grey values. Writes
-/// result.json, overview.png, report.json and report.html.
-/// @throws InputError for a file that is no map, and for overrides: a map has no keys
+/// Describes the map in the file options.config: its size, its numbers of cells, and the share of
+/// cells with grey values. Writes result.json, overview.png (unless the map is empty), report.json
+/// and report.html.
+/// @throws InputError for a file that is no map, and for overrides, because a map has no keys
 MapReport runMapInfo(const CommandOptions& options);
 
 }  // namespace photonav

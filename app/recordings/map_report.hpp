@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The results of a map made from a recording: numbers and page.
+// The report of a map made from a recording.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,14 +12,15 @@
 
 namespace photonav {
 
-/// Results of mapping besides the cells.
+/// Results of mapping in addition to the map.
 struct MapRun : FusedRecording {
-    nlohmann::json compared = nlohmann::json::array();  ///< frames and their predictions
+    /// Comparisons of frames with their predictions.
+    nlohmann::json compared = nlohmann::json::array();
     std::vector<NamedFigure> figures;
     bool interrupted = false;
 };
 
-/// The map in perspective, from above one of its corners.
+/// A perspective view of the map, from above one of its corners: overview.png.
 NamedFigure overview(const TexturedOcTree& map, const std::string& title);
 
 /// The main numbers of result.json, with labels.

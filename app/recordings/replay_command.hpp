@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `photonav replay`: a recorded flight through the tracker.
+// `photonav replay`: runs the tracker on a recorded flight and evaluates the estimates.
 #pragma once
 
 #include <atomic>
@@ -15,30 +15,33 @@
 namespace photonav {
 
 struct ReplayCommandOptions : ReplayOptions {
-    std::filesystem::path out;  ///< folder for the results; made when missing
-    bool calibrate = false;     ///< also write calibration.yaml: scale and least sigmas that fit
-    std::string commandLine;    ///< for the report
+    std::filesystem::path out;  ///< result folder; created if it does not exist
+    bool calibrate = false;     ///< also fit scale and least sigmas, and write calibration.yaml
+    std::string commandLine;    ///< the command as typed, for the report
 
-    /// Called after each frame with the number done and the number there are.
+    /// Called after each frame with the number of frames done and their total number.
     std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
-/// The keys of the config.yaml that a replay writes into its folder, and repeats when given it.
+/// The keys of the config.yaml that a replay writes into its result folder. `photonav replay` with
+/// this file repeats the replay.
+/// @param options are set through the table, and must outlive it
 KeyTable keysOf(ReplayCommandOptions& options);
 
 struct ReplayReport {
-    nlohmann::json result;  ///< what was written as result.json
-    ReportTable summary;    ///< the same in words
-    int exitCode = 0;       ///< 1 when lost for good, 130 when interrupted
+    nlohmann::json result;  ///< content of result.json
+    ReportTable summary;    ///< main numbers of the result, for terminal and page
+    int exitCode = 0;       ///< kNoAnswer if tracking was lost until the end, kInterrupted when
+                            ///< interrupted
 };
 
 /// Replays a dataset and writes into options.out: result.json, config.yaml (complete), frames.csv
-/// (a row per frame), trajectory.tum, .kitti, .cov and .ov and groundtruth.tum (camera to world),
-/// cameras.txt, images.txt and points3D.txt (a model of COLMAP), errors.png, strips.png,
-/// top_view.png and report.html.
-/// @param interrupted checked between frames; what is there then is written
-/// @throws InputError for a dataset or map that cannot be used, an option out of range and a folder
-///         that cannot be written, the last before any work is done
+/// (one row per frame), trajectory.tum, .kitti, .cov and .ov, groundtruth.tum (T_w_c), cameras.txt,
+/// images.txt and points3D.txt (a COLMAP model), errors.png, strips.png, top_view.png, report.json
+/// and report.html; with options.calibrate also calibration.yaml.
+/// @param interrupted when set, the results contain the frames so far
+/// @throws InputError for a dataset or map that cannot be used, for an option out of range, and,
+///         before any frame is tracked, for a folder that cannot be written
 ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

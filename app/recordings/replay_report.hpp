@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page of a replay.
+// The report of a replay.
 #pragma once
 
 #include "recordings/replay_command.hpp"
@@ -12,7 +12,7 @@ namespace photonav {
 ReportTable replaySummary(const nlohmann::json& result);
 
 /// Writes config.yaml, errors.png, strips.png, top_view.png, report.json and report.html.
-/// @param config as YAML, complete
+/// @param config complete config as YAML
 void writeReplayReport(const std::filesystem::path& folder, const ReplayCommandOptions& options,
                        const std::string& config, const nlohmann::json& result,
                        const Replay& replay, const ReplayRun& run, const ReplayErrors& errors);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The report of a run: one self-contained HTML page (3-D view, charts, figures, numbers) that opens
-// offline, and the JSON it is made of.
+// offline, and the JSON from which the page is made.
 #pragma once
 
 #include <cstddef>
@@ -31,14 +31,14 @@ struct ReportFigure {
     Png image;
 };
 
-/// A picture of an animation, with the robot of that time in the 3-D view.
+/// A frame of an animation, with the pose of the robot at that time in the 3-D view.
 struct ReportFrame {
     std::string caption;
     Png image;
-    std::string series = {};                    ///< frames of one name are played in a row
-    std::optional<PathPoint> believed = {};     ///< none: no robot is drawn
-    std::optional<Eigen::Vector3d> truth = {};  ///< of the camera centre, in w [m]
-    Color color = kInk;                         ///< of the robot
+    std::string series = {};  ///< frames of one series are played one after the other
+    std::optional<PathPoint> believed = {};     ///< the belief; none: no robot is drawn
+    std::optional<Eigen::Vector3d> truth = {};  ///< true camera centre, world frame [m]
+    Color color = kInk;                         ///< colour of the robot
 };
 
 struct ReportTable {
@@ -46,66 +46,67 @@ struct ReportTable {
     std::vector<std::pair<std::string, std::string>> rows;  ///< label, value with unit
 };
 
-/// All the page shows. Empty members are simply not shown.
+/// The content of the page. Empty members are not shown.
 struct ReportData {
     std::string title;
     std::string subtitle;     ///< one sentence: what was done
-    std::string commandLine;  ///< as typed
+    std::string commandLine;  ///< the command as typed
     std::string version = PHOTONAV_VERSION;
-    nlohmann::json result = nlohmann::json::object();  ///< result.json of the run
-    std::string config;                                ///< YAML, complete
+    nlohmann::json result = nlohmann::json::object();  ///< content of result.json
+    std::string config;                                ///< complete config as YAML
     DrawnMesh mesh;
     DrawnVoxels voxels;
     std::vector<DrawnTree> trees;
-    std::vector<DrawnPath> paths;  ///< the answer first, then what it is compared with
-    Eigen::Vector3d start = Eigen::Vector3d::Zero();
-    Eigen::Vector3d goal = Eigen::Vector3d::Zero();
-    Eigen::Vector2d fieldOfView{1.2217, 0.84};  ///< of the camera, full angles, horizontal and
-                                                ///< vertical [rad]
+    std::vector<DrawnPath> paths;  ///< the result first, then paths for comparison
+    Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< world frame [m]
+    Eigen::Vector3d goal = Eigen::Vector3d::Zero();   ///< world frame [m]
+    Eigen::Vector2d fieldOfView{1.2217, 0.84};        ///< full angles of the camera, horizontal
+                                                      ///< and vertical [rad]
     std::vector<ReportView> views;
     std::vector<PlanProgress> progress;
     std::vector<ReportFigure> figures;
-    std::vector<ReportFrame> frames;  ///< one after the other, as an animation
+    std::vector<ReportFrame> frames;  ///< frames of the animation, in their order
     std::vector<ReportTable> tables;
-    nlohmann::json flight;  ///< flightLogJson() of a flight to be watched; null: none
+    nlohmann::json flight;  ///< flightLogJson() of a flight to play in the 3-D view; null: none
 };
 
-/// "0.537 m", "3.75 mm".
+/// A length as text: "0.537 m"; below 0.1 m in millimetres, "3.75 mm".
 std::string lengthText(double metres);
 
 /// Full angles of a camera, horizontal and vertical [rad].
 Eigen::Vector2d fieldOfView(const Camera& camera);
 
-/// The JSON that the page draws, the content of report.json: large arrays as base64 of
-/// little-endian float32, uint32 or uint8, pictures as base64 of PNG.
+/// The content of report.json, from which the page is drawn. Large arrays are base64 of
+/// little-endian float32, uint32 or uint8; pictures are PNG files as data URIs (base64).
 std::string reportJson(const ReportData& data);
 
-/// The content of report.json.
-/// @throws InputError naming file and reason if it is missing, cut or not ours
+/// Reads a report.json.
+/// @throws InputError naming file and reason if the file is missing, incomplete, or not a report of
+///         this version of photonav's format
 std::string readReportJson(const std::filesystem::path& file);
 
-/// The content of the report.json of a result folder.
-/// @throws InputError also for a folder without one
+/// Reads the report.json of a result folder.
+/// @throws InputError as readReportJson() does, and for a folder without a report.json
 std::string readReportOf(const std::filesystem::path& folder);
 
-/// The page, HTML.
-/// @param content of reportJson() or readReportJson()
+/// The HTML page.
+/// @param content content of report.json, from reportJson() or readReportJson()
 std::string reportPage(std::string_view content);
 
-/// Writes the page, whole or not at all.
-/// @param content of reportJson() or readReportJson()
-/// @throws InputError if it cannot be written
+/// Writes the HTML page. An earlier file is replaced only when the new one is complete.
+/// @param content content of report.json, from reportJson() or readReportJson()
+/// @throws InputError if the file cannot be written
 void writeReport(const std::filesystem::path& file, std::string_view content);
 
-/// A figure and the file it goes to.
+/// A figure with the name of its file in the result folder.
 struct NamedFigure {
     std::string name;
     ReportFigure figure;
 };
 
-/// Writes the figures (also into the report), config.yaml (unless the report has none), report.json
-/// and report.html. result.json comes last and is the command's: where it is, the folder is
-/// complete.
+/// Writes the figures, config.yaml (unless the report has no config), report.json and report.html,
+/// and adds the figures to the report. result.json is not written here: the command writes it last,
+/// so that a folder with a result.json is complete.
 void writeResultFolder(const std::filesystem::path& folder, ReportData& report,
                        const std::vector<NamedFigure>& figures);
 

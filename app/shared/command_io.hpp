@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all commands share: their options, exit codes and the terminal.
+// Common to all commands: options, exit codes and output on the terminal.
 #pragma once
 
 #include <filesystem>
@@ -8,18 +8,20 @@
 
 namespace photonav {
 
+/// Exit codes of all commands. kNoAnswer: the command found no solution, for example no path, or
+/// failed for a reason other than its input. kInterrupted: stopped by a signal.
 enum ExitCode { kDone = 0, kNoAnswer = 1, kBadInput = 2, kInterrupted = 130 };
 
 struct CommandOptions {
-    std::string config;                  ///< YAML file
+    std::string config;                  ///< YAML file of the planning problem
     std::vector<std::string> overrides;  ///< key.path=value
     std::filesystem::path out;           ///< result folder; empty: out/<command>-<config name>
-    bool quiet = false;                  ///< no progress, no summary
-    bool json = false;                   ///< result.json on standard output as well
-    std::string commandLine;             ///< as typed, for the report
+    bool quiet = false;                  ///< print no progress and no summary
+    bool json = false;        ///< print result.json on standard output, without a summary
+    std::string commandLine;  ///< the command as typed, for the report
 };
 
-/// What happens to the results of a run, among the options of a command.
+/// References to the members `out`, `quiet` and `json` of a command's options.
 struct OutputOptions {
     template <typename Options>
     OutputOptions(Options& options) : out(options.out), quiet(options.quiet), json(options.json) {}
@@ -29,9 +31,11 @@ struct OutputOptions {
     bool& json;
 };
 
-/// A single line on standard error that is overwritten on a terminal, and dropped elsewhere.
+/// A progress line on standard error, which is overwritten by the next one. Nothing is printed
+/// unless standard error is a terminal.
 class ProgressLine {
   public:
+    /// @param quiet true: nothing is printed
     explicit ProgressLine(bool quiet);
     ~ProgressLine();
     ProgressLine(const ProgressLine&) = delete;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command line of each subcommand, and what they share.
+// The command lines of the subcommands, and options that several of them share.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,29 +14,31 @@
 
 namespace photonav {
 
-/// How a command answers to Ctrl-C and SIGTERM.
+/// The reaction of a command to Ctrl-C and SIGTERM.
 enum class OnInterrupt {
-    finish,        ///< with the results so far; ends at once where there are none yet
-    finishAlways,  ///< it has files of its own, no result folder
-    endAtOnce      ///< there is nothing to keep
+    finish,        ///< ends with the results so far, or at once if no result folder is begun
+    finishAlways,  ///< always ends by itself: it writes files without a result folder
+    endAtOnce      ///< ends at once: there is nothing to keep
 };
 
-/// A subcommand and what to do when it was chosen.
+/// A subcommand: its parser and its function.
 struct Command {
     CLI::App* parser;
     std::function<int()> run;  ///< returns the exit code; throws InputError
     OnInterrupt onInterrupt = OnInterrupt::finish;
 };
 
-/// What every command needs besides its own options.
+/// Input of every command in addition to its own options.
 struct Invocation {
-    std::string commandLine;  ///< as typed, for reports
-    const std::atomic<bool>& interrupted;
+    std::string commandLine;               ///< the command as typed, for reports
+    const std::atomic<bool>& interrupted;  ///< set by Ctrl-C and SIGTERM
 };
 
-/// A subcommand, its options as a value of `Options`.
+/// Adds a subcommand to `app`. Its options are stored in a value of type `Options`.
+/// @param name name of the subcommand
+/// @param description sentence for --help
 /// @param addOptions called with the parser and the options, which live as long as the command
-/// @param run called with the options and the flag of an interrupt, returns the exit code
+/// @param run called with the options and Invocation::interrupted; returns the exit code
 template <typename Options, typename AddOptions, typename Run>
 Command makeCommand(CLI::App& app, const Invocation& invocation, const char* name,
                     const char* description, const AddOptions& addOptions, const Run& run) {
@@ -51,7 +53,7 @@ Command makeCommand(CLI::App& app, const Invocation& invocation, const char* nam
 
 using Commands = std::vector<Command>;
 
-// The commands of each folder.
+// Each function adds the commands of one folder of app/.
 Commands planCommands(CLI::App& app, const Invocation& invocation);
 Commands comparisonCommands(CLI::App& app, const Invocation& invocation);
 Commands flightCommands(CLI::App& app, const Invocation& invocation);
@@ -59,17 +61,21 @@ Commands explorationCommands(CLI::App& app, const Invocation& invocation);
 Commands recordingCommands(CLI::App& app, const Invocation& invocation);
 Commands toolCommands(CLI::App& app, const Invocation& invocation);
 
-/// Of all commands that `app` has when it runs.
+/// Adds `photonav completion`, which prints a completion script for bash or zsh. The script covers
+/// all commands that `app` has when the command runs.
 Command completionCommand(CLI::App& app);
 
+/// Adds --out, --quiet and --json.
+/// @param defaultFolder default of --out, for the help text
 void addOutput(CLI::App& parser, const OutputOptions& output, const std::string& defaultFolder);
 
+/// Adds --quiet.
 void addQuiet(CLI::App& parser, bool& quiet);
 
-/// The format of --help.
+/// The format of the help texts: at most 80 columns.
 std::shared_ptr<CLI::FormatterBase> helpFormat();
 
-/// A number from `least` to `most`; its value is the default.
+/// Adds an option for a number from `least` to `most`. The value of `number` is the default.
 template <typename Number>
 void addNumber(CLI::App& parser, const std::string& name, Number& number,
                const std::string& description, Number least, Number most) {
@@ -78,62 +84,69 @@ void addNumber(CLI::App& parser, const std::string& name, Number& number,
         ->capture_default_str();
 }
 
-/// --set. Options that override a key as well come before it.
+/// Adds --set, which appends to `overrides`. Other options that override keys are inserted before,
+/// so that --set has precedence.
 void addOverrides(CLI::App& parser, std::vector<std::string>& overrides);
 
-/// An option that overrides a key of the config, before --set; the config's value is its default.
-/// @param text of the key's value, from what was typed; throws InputError
+/// Adds an option that overrides a key of the config; --set has precedence. The default is the
+/// config's value.
+/// @param key path of the key, "planner.alpha"
+/// @param text converts the argument into the key's value, and may throw InputError; empty: the
+///        argument is the value
 CLI::Option* addValue(CLI::App& parser, std::vector<std::string>& overrides,
                       const std::string& name, const std::string& key,
                       const std::string& description,
                       std::function<std::string(const std::string&)> text = {});
 
-/// --seed, as addValue().
+/// Adds --seed, which overrides the key `seed`, as addValue().
+/// @param what description of the seed
 void addSeed(CLI::App& parser, std::vector<std::string>& overrides, const std::string& what);
 
-/// A list of planners, as addValue().
+/// Adds an option for a list of planners, as addValue().
 void addPlanners(CLI::App& parser, std::vector<std::string>& overrides, const std::string& key,
                  const std::string& name = "--planners");
 
-/// config, --set and the output.
+/// Adds the argument CONFIG, --set, and the options of addOutput().
 void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig = true);
 
+/// Adds --jobs.
 void addJobs(CLI::App& parser, unsigned& jobs);
 
-/// --jobs, --shard, --merge and --resume. Shards are merged without a config.
+/// Adds --jobs, --shard, --merge and --resume.
 void addManyRuns(CLI::App& parser, ManyRunsOptions& options, const RunWords& words);
 
-/// --record of the first flight.
+/// Adds --record, a folder for a recording of the first flight.
 void addRecord(CLI::App& parser, std::filesystem::path& folder);
 
-/// "--body-radius" of the key body_radius.
+/// The name of the option for a key: "--body-radius" for body_radius.
 std::string optionOf(const ConfigKey& key);
 
-/// The value of a key as it was typed: lists are typed without brackets.
+/// The value of a key from the argument of its option: a list gets brackets if they are missing.
 std::string valueOf(const ConfigKey& key, const std::string& text);
 
-/// An option per key, which sets what the table refers to.
+/// Adds an option per key, which sets the variable of the key.
 /// @param keys must outlive the parser
-/// @param without names of keys that are typed in another way
+/// @param without names of keys that get no option
 void addKeyOptions(CLI::App& parser, const KeyTable& keys, const std::set<std::string>& without);
 
-/// Options of a command with keys of the config, of type `Section`, among them.
+/// Options of a command together with a section of the config, of type `Section`, as options.
 template <typename Options, typename Section>
 struct WithKeys : Options {
-    Section typed;  ///< the defaults
-    KeyTable keys;  ///< of `typed`
+    Section typed;  ///< values of the options; initially the defaults
+    KeyTable keys;  ///< keys of `typed`
 };
 
-/// As addKeyOptions(), and what was typed goes over the config, as with addValue(). Files are meant
-/// from the working directory.
+/// Adds the options of addKeyOptions(). Options that are given also override the config, as with
+/// addValue(). File names are relative to the working directory.
 void addKeyOverrides(CLI::App& parser, const KeyTable& keys, const std::set<std::string>& without,
                      std::vector<std::string>& overrides);
 
-/// Last part of a path, without a closing slash.
+/// The last component of a path, also if the path ends with a slash.
 std::string folderName(const std::string& path);
 
-/// For a complete config: options besides it are errors.
-/// @throws InputError for the first one that was given
+/// Checks that no option is given together with a complete config, except --out, --quiet and
+/// --json.
+/// @throws InputError for the first other option
 void refuseOptionsBeside(const std::string& config, const CLI::App& parser);
 
 }  // namespace photonav

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Commands of many runs: --jobs, --resume, --shard and --merge.
+// Commands that make many runs: the options --jobs, --resume, --shard and --merge.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,61 +16,69 @@
 namespace photonav {
 
 struct ManyRunsOptions : CommandOptions {
-    unsigned jobs = 1;                 ///< threads
-    std::optional<std::string> shard;  ///< "k/n"
-    std::vector<std::string> merge;    ///< folders of shards: no runs, only the result
-    bool resume = false;               ///< go on with what the result folder holds, or extend it
+    unsigned jobs = 1;                 ///< number of threads
+    std::optional<std::string> shard;  ///< "k/n": do only the k-th of n parts; none: do all runs
+    std::vector<std::string> merge;    ///< result folders of all shards, to merge without new runs
+    bool resume = false;  ///< keep the finished runs of the result folder and add to them
 };
 
-/// Whether the folders of shards are to be merged.
-/// @throws InputError for options that exclude each other, and where there is no config to run
+/// Whether the command merges shards instead of making runs.
+/// @throws InputError for options that exclude each other, and if neither a config nor shards are
+///         given
 bool isMerge(const ManyRunsOptions& options, const RunWords& words);
 
-/// The shard asked for, else the whole. @throws InputError as parseShard()
+/// The shard of the option --shard; without the option, the only shard 1/1.
+/// @throws InputError as parseShard() does
 Shard shardOf(const ManyRunsOptions& options);
 
-/// The folder of the options, or out/<command>-<name>, with -<k>of<n> for a shard.
+/// The result folder options.out or, if it is empty, out/<command>-<name>, with -<k>of<n> for a
+/// shard.
 std::filesystem::path folderOf(const ManyRunsOptions& options, const RunWords& words,
                                const std::string& name, const Shard& shard);
 
-/// Begins the result at a folder, where unfinished work stays.
-/// @param inputs besides the config and the shards
-/// @throws InputError also when the folder is or contains an input
+/// Begins to write a result folder. Its working folder is kept if the program is killed, for
+/// --resume.
+/// @param inputs files that the command reads, without the config and the shards
+/// @throws InputError as beginResult() does
 FolderTransaction beginRuns(const ManyRunsOptions& options, const std::filesystem::path& folder,
                             InputPaths inputs);
 
-/// Remaining time from what each planner's runs took so far.
+/// Estimates the remaining time from the mean duration of each planner's runs so far.
 class RemainingTime {
   public:
-    /// @param open the items still to do, which name a planner
+    /// @param open items that are not yet done; each has a member `planner`
     template <typename Item>
     explicit RemainingTime(const std::vector<Item>& open) {
         for (const Item& item : open) ++open_[item.planner];
     }
 
-    /// @param seconds that the run took; @param wall since the first one began [s]
+    /// Adds a finished run.
+    /// @param seconds duration of the run [s]
+    /// @param wall wall-clock time since the first run began [s]
     void count(const std::string& planner, double seconds, double wall);
 
-    /// Time that is left, times what the clock showed per second of a run. @param wall now [s]
+    /// Remaining wall-clock time [s]: the expected durations of all open runs, times the wall-clock
+    /// time per second of finished runs (below 1 with several threads). 0 before a run has ended.
+    /// @param wall wall-clock time since the first run began [s]
     double seconds(double wall) const;
 
-    /// ", about 3 min left"; empty before the first run has ended.
+    /// The remaining time as text, ", about 3 min left"; empty before the first run has ended.
     std::string text(double wall) const;
 
   private:
     std::pair<double, double> all() const;
 
-    std::map<std::string, double> open_;                      // runs
+    std::map<std::string, double> open_;                      // number of open runs
     std::map<std::string, std::pair<double, double>> taken_;  // seconds, runs
     double wall_ = 0.;
 };
 
-/// "90 s", "12 min", "3.5 h".
+/// A duration [s] as text: "90 s", "12 min", "3.5 h".
 std::string durationText(double seconds);
 
-/// Where the runs so far are: in the unfinished folder of a killed program, in the result, or
-/// nowhere.
-/// @throws InputError for runs of a killed program without --resume
+/// The journal of earlier runs: from the working folder of a killed program or, with --resume, from
+/// the result folder; nothing if there is none.
+/// @throws InputError if a killed program left runs, and --resume is not given
 template <typename Kind>
 std::optional<Journal<Kind>> earlierRuns(const ManyRunsOptions& options,
                                          const FolderTransaction& folder) {
@@ -91,14 +99,20 @@ std::optional<Journal<Kind>> earlierRuns(const ManyRunsOptions& options,
     return Runs::read(folder.target());
 }
 
-/// @throws InputError unless the runs of a journal are those of `wanted`. Which runs are wanted may
-///         have changed, what they depend on may not.
+/// Checks that the runs of an earlier journal can be kept: they must have the same shard and depend
+/// on the same values. The choice of runs may differ.
+/// @param found header of the earlier journal
+/// @param wanted header of the new journal
+/// @param runIdentity removes from an identity the keys that only choose the runs
+/// @param file the earlier journal, for the message
+/// @throws InputError if they cannot be kept
 void checkIsSame(const JournalHeader& found, const JournalHeader& wanted, const RunWords& words,
                  const std::function<Identity(const Identity&)>& runIdentity,
                  const std::filesystem::path& file);
 
-/// The runs to go on with: those of a killed program, or of one that ended; none without --resume.
-/// @throws InputError for runs of another config
+/// The finished runs to keep with --resume, of a killed or of a complete command; none without
+/// --resume.
+/// @throws InputError as earlierRuns() and checkIsSame() do
 template <typename Kind>
 std::vector<typename Kind::Run> runsSoFar(const ManyRunsOptions& options,
                                           const FolderTransaction& folder,
@@ -109,14 +123,19 @@ std::vector<typename Kind::Run> runsSoFar(const ManyRunsOptions& options,
     return journal->runs();
 }
 
-/// @throws InputError naming the folder that is being written
+/// Checks that no other process is writing a folder.
+/// @throws InputError naming the folder if a process is writing it
 void checkIsNotWritten(const std::string& folder);
 
-/// @throws InputError naming the folder that does not fit, or the shard that is missing
+/// Checks that shards belong together and are complete: each of the n shards once, with the same
+/// config.
+/// @param shards headers of the journals in `folders`
+/// @throws InputError naming a folder that does not belong to the first one, or a missing shard
 void checkMakeOneWhole(const std::vector<std::string>& folders,
                        const std::vector<JournalHeader>& shards);
 
-/// The shards to merge. @throws InputError unless they make one whole
+/// Reads the journals of the shards to merge.
+/// @throws InputError as checkIsNotWritten(), Journal::read() and checkMakeOneWhole() do
 template <typename Kind>
 std::vector<Journal<Kind>> readShards(const std::vector<std::string>& folders) {
     std::vector<Journal<Kind>> shards;
@@ -129,18 +148,24 @@ std::vector<Journal<Kind>> readShards(const std::vector<std::string>& folders) {
     return shards;
 }
 
-/// @throws InputError where the result would replace one of its shards
+/// Checks that the result folder is not the folder of a shard.
+/// @throws InputError naming the shard that the result would replace
 void checkIsNoShard(const ManyRunsOptions& options, const std::filesystem::path& target);
 
-/// The config of the shards: the one given, which must be theirs, or the one they keep.
-/// @param journal of a shard, with its `header`
+/// The config of the shards: the config of the options if given, otherwise the config in the
+/// header.
+/// @param header header of a shard's journal
+/// @param journal file of this journal
+/// @param load reads a config from a file, with the overrides of the options
+/// @param identity everything on which the results of the runs depend
+/// @throws InputError if the config differs from the config of the shards
 Config configOfShards(const ManyRunsOptions& options, const JournalHeader& header,
                       const std::filesystem::path& journal,
                       const std::function<Config(const std::string& file)>& load,
                       const std::function<Identity(const Config&)>& identity);
 
 /// All runs of the shards, in the order of `items`.
-/// @throws InputError naming the first folder with runs to do
+/// @throws InputError naming the first folder in which runs are missing
 template <typename Kind>
 std::vector<typename Kind::Run> gather(const ManyRunsOptions& options,
                                        const std::vector<Journal<Kind>>& shards,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Places on a command line.
+// Reads places from the command line.
 #pragma once
 
 #include <optional>
@@ -9,12 +9,14 @@
 
 namespace photonav {
 
-/// The place "x,y,z" or "x,y,z,yaw" of --at, or the one of the config; without a heading that of
-/// the config's start.
-/// @throws InputError for another text and for a place outside the bounds
+/// The place of the option --at, "x,y,z" or "x,y,z,yaw" (body, world frame [m, rad]). A place
+/// without a heading gets the heading of the config's start.
+/// @param at text of the option; none: the option was not given
+/// @param otherwise the place if the option was not given
+/// @throws InputError for another text, and for a place outside the bounds of the config
 Place placeOf(const std::optional<std::string>& at, const Place& otherwise, const Config& config);
 
-/// T_w_b of a level body.
+/// T_w_b of a level body at a place; heading 0 if the place has none.
 Pose bodyAt(const Place& place);
 
 }  // namespace photonav

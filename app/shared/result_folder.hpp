@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The folder that a command writes its results to, and what it prints at the end.
+// Writes the result folder of a command and prints its summary.
 #pragma once
 
 #include <filesystem>
@@ -14,35 +14,39 @@
 
 namespace photonav {
 
-using InputPaths = std::vector<std::filesystem::path>;  ///< files and folders; empty ones are none
+/// Files and folders that a command reads; empty paths are ignored.
+using InputPaths = std::vector<std::filesystem::path>;
 
-/// Begins the result at a folder; it is there once it is committed.
-/// @param inputs what this run reads
-/// @throws InputError also when the folder is or contains an input
+/// Begins to write a result folder, which appears at its place with commitResult().
+/// @param inputs files and folders that the command reads
+/// @param unfinished fate of the working folder if the result is not committed
+/// @throws InputError if the folder is or contains an input, and as FolderTransaction does
 FolderTransaction beginResult(
     const std::filesystem::path& folder, const InputPaths& inputs,
     FolderTransaction::Unfinished unfinished = FolderTransaction::Unfinished::removed);
 
-/// The same at the folder of the options, or at out/<command>-<config name>.
-/// @param inputs besides the config
+/// Begins to write the result folder options.out, or out/<command>-<config name> if it is empty.
+/// @param inputs files and folders that the command reads, without the config
 FolderTransaction beginResult(const CommandOptions& options, const std::string& command,
                               InputPaths inputs = {});
 
 /// Writes result.json, the last file of a result, and commits the folder.
 void commitResult(FolderTransaction& folder, const nlohmann::json& result);
 
-/// The same, and then prints result.json as asked for, else a summary and where the report is.
+/// Calls commitResult(), then prints result.json (--json), or the summary and the path of the
+/// report, or nothing (--quiet).
 void concludeResult(FolderTransaction& folder, const CommandOptions& options,
                     const nlohmann::json& result, const std::function<void()>& printSummary);
 
-/// Prints result.json as asked for, else the summary and where the `files` of the folder are.
+/// Prints result.json (--json), or the summary and the paths of `files`, or nothing (--quiet).
+/// @param files names of files in the result folder
 void printOutput(const OutputOptions& output, const nlohmann::json& result,
                  const ReportTable& summary, const std::vector<std::string>& files);
 
-/// Prints the rows, values below each other.
+/// Prints the rows of a table with aligned values.
 void printTable(const ReportTable& table);
 
-/// "report: out/plan-room/report.html"
+/// Prints the path of a file, "report: out/plan-room/report.html".
 void printFile(const std::filesystem::path& file);
 
 }  // namespace photonav

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `photonav doctor`: whether this installation works here.
+// `photonav doctor`: checks this installation.
 #pragma once
 
 namespace photonav {
 
-/// Prints versions of the libraries, what the processor offers, programs that open results, and
-/// plans a small sample.
-/// @return kNoAnswer unless all of it that is needed works
+/// Prints the versions of the libraries; checks processor, memory, display and the programs that
+/// open results; and plans a small sample problem.
+/// @return the exit code: kNoAnswer if the processor lacks instructions or the sample plan fails
 int runDoctor();
 
 }  // namespace photonav

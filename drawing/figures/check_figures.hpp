@@ -8,8 +8,9 @@
 
 namespace photonav {
 
-/// Standard deviations of position and rotation along the trajectory. Stretches are shaded where
-/// images leave directions open or are rejected, or where the camera is lost.
+/// Standard deviations of position and rotation along their weakest directions, over the length of
+/// the trajectory. Stretches are shaded where images leave directions open or are rejected, or
+/// where the camera is lost.
 Figure sigmaFigure(const CheckedTrajectory& checked);
 
 /// Weighted trace after one view over distance and heading, with the heading of the trajectory and
@@ -17,7 +18,7 @@ Figure sigmaFigure(const CheckedTrajectory& checked);
 /// @param checked must contain a comparison of headings (CheckOptions::headings)
 Figure headingsFigure(const CheckedTrajectory& checked);
 
-/// Stretches of the trajectory on which the camera is lost, as lines.
+/// Stretches of the trajectory on which the camera is lost, as lines between body positions.
 DrawnTree lostStretches(const CheckedTrajectory& checked);
 
 /// Lines from places into the direction of the best heading, where this heading reduces the trace

@@ -13,7 +13,7 @@ namespace photonav {
 /// views.
 /// @param log must have at least one moment
 /// @param scene gives area, background, start and goal
-/// @param columns number of moments
+/// @param columns largest number of moments
 Figure stagesFigure(const FlightLog& log, const TopView& scene, std::size_t columns = 4);
 
 /// At most twelve plans, evenly spread over the updates, and the true flown path.

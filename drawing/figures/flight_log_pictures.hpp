@@ -7,26 +7,35 @@
 
 namespace photonav {
 
-/// What is drawn at a moment: its own part, or the last one before it. Null: there is none.
-/// @param part of MomentPictures
+/// The picture to draw at a moment: the moment's own picture or, if it has none, the last one
+/// before it; null if there is none. The pointer refers into the log.
+/// @param moment index into FlightLog::moments
+/// @param part which of the pictures
 const std::string* latest(const FlightLog& log, std::size_t moment,
                           std::string MomentPictures::*part);
 
-/// A grey image; empty where it cannot be decoded.
+/// Decodes a grey image. The picture is empty if the file is damaged or a side exceeds 4096 pixels.
+/// @param file content of a JPEG or PNG file
 Picture greyPicture(const std::string& file);
 
-/// Of MomentPictures::obstacles.
+/// Colours for the ObstacleLevel of each pixel; empty as for greyPicture().
+/// @param file content of MomentPictures::obstacles
 Picture obstaclePicture(const std::string& file);
 
-/// The range of informationLevel() over some grids.
+/// The smallest and largest informationLevel() in several grids.
 struct LevelRange {
     int least = kNoInformation, largest = 0;
+    /// Extends the range by the levels of a grid.
+    /// @param file content of MomentPictures::information
     void add(const std::string& file);
     bool empty() const { return largest < least; }
+    /// The trace of the Fisher information for a level: the inverse of informationLevel().
     static double traceOf(int level);
 };
 
-/// Of MomentPictures::information, in viridis over a range.
+/// A grid of information in the colours of viridis over a range; grey for kNoInformation. Empty as
+/// for greyPicture().
+/// @param file content of MomentPictures::information
 Picture informationPicture(const std::string& file, const LevelRange& range);
 
 }  // namespace photonav

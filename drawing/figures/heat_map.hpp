@@ -18,6 +18,7 @@ struct HeatMap {
     bool logScale = false;        ///< logarithmic colours; values <= 0 are drawn in dark grey
 };
 
+/// A figure of the heat map with a colour bar.
 /// @throws std::invalid_argument if the area or the grid is empty
 Figure heatMapFigure(const HeatMap& map);
 

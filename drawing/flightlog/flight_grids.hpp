@@ -16,7 +16,7 @@ class SeenGround {
     /// @param area x and y in the world frame [m]
     explicit SeenGround(const Eigen::AlignedBox2d& area) : area_(area) {}
 
-    /// Marks the columns in which the map changed below a height.
+    /// Marks the columns in which the occupancy of the map changed below a height.
     /// @param change everything that changed in the map since the last call
     /// @param height height of the robot [m]
     void update(const MapChange& change, double height);
@@ -40,8 +40,8 @@ vpImage<unsigned char> obstacleGrid(const ExplorationMoment& moment, const SeenG
                                     const Eigen::AlignedBox2d& area);
 
 /// A picture of `area` with the informationLevel() of views from the robot's height with its
-/// present heading; first row at the largest y. For speed, views have half the camera's width and
-/// height; their information is scaled to that of full-size views.
+/// present heading; first row at the largest y. To save time, views have half the camera's width
+/// and height; their information is scaled to the information of full-size views.
 vpImage<unsigned char> informationGrid(const ExplorationMoment& moment, const SeenGround& seen,
                                        const Eigen::AlignedBox2d& area);
 

@@ -15,13 +15,13 @@
 
 namespace photonav {
 
-/// What changed among the drawn cells of a map: cubes of `FlightLog::cell` metres. The cube (i, j,
-/// k) begins at (i, j, k) times its size, in w.
+/// Changes of the drawn cells of a map, which are cubes of edge FlightLog::cell [m]. The corner of
+/// the cube (i, j, k) with the least coordinates is (i, j, k) times the edge, world frame.
 struct CellChanges {
-    static constexpr std::uint8_t kGone = 255;  ///< as grey level: no longer occupied
+    static constexpr std::uint8_t kGone = 255;  ///< grey level of a cell that is no longer occupied
 
-    std::vector<std::int16_t> indices;  ///< 3 per cell
-    std::vector<std::uint8_t> greys;    ///< 1 per cell: 0 to 254
+    std::vector<std::int16_t> indices;  ///< i, j, k of each changed cell
+    std::vector<std::uint8_t> greys;    ///< 1 per changed cell: 0 to 254, or kGone
 };
 
 /// True and believed position at an exposure.
@@ -61,7 +61,7 @@ struct LoggedMoment {
     PlanUpdate update;
     double way = 0.;                ///< length of the true path so far [m]
     PathPoint robot;                ///< the belief
-    std::vector<FlownPoint> flown;  ///< exposures since the last moment
+    std::vector<FlownPoint> flown;  ///< exposures since the last moment, at least 0.1 s apart
     std::vector<PathPoint> plan;    ///< path from the robot to the goal; empty if there is none
     CellChanges cells;
     MomentPictures pictures;
@@ -72,9 +72,9 @@ struct FlightLog {
 
     std::string planner;
     std::uint32_t seed = 0;
-    Eigen::AlignedBox3d box;    ///< bounds of the flight, which contain the tree [m]
-    Eigen::AlignedBox3d scene;  ///< bounding box of the true scene [m]
-    Eigen::AlignedBox2d area;   ///< area of the grids, x and y [m]
+    Eigen::AlignedBox3d box;    ///< bounds of the flight, which contain the tree; world frame [m]
+    Eigen::AlignedBox3d scene;  ///< bounding box of the true scene, world frame [m]
+    Eigen::AlignedBox2d area;   ///< area of the grids, x and y in the world frame [m]
     double cell = 0.;           ///< edge of the drawn cells [m]
     std::vector<LoggedMoment> moments;
     std::vector<FlownPoint> rest;  ///< exposures after the last moment
@@ -82,9 +82,9 @@ struct FlightLog {
     std::string reason;            ///< why the flight ended without arrival
 };
 
-/// The members that do not change during a flight.
+/// The members of a log that do not change during a flight.
 nlohmann::json headerJson(const FlightLog& log);
-/// A moment. Large arrays are base64 of little-endian numbers.
+/// A moment as JSON. Large arrays are base64 of little-endian numbers.
 nlohmann::json momentJson(const FlightLog& log, const LoggedMoment& moment);
 /// The end of a flight, with the exposures after the last moment.
 nlohmann::json endJson(const FlightLog& log);

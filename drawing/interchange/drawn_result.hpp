@@ -15,8 +15,8 @@ namespace photonav {
 /// The paths with their beliefs.
 std::vector<DrawnPath> drawnPaths(const nlohmann::json& report);
 
-/// The centres of the map's cells, and points spread evenly over the scene's surfaces, with their
-/// grey values; empty if the report has neither.
+/// The centres of the map's drawn cells, and points spread evenly over the scene's surfaces, with
+/// their grey values; empty if the report has neither.
 GreyPoints drawnSurroundings(const nlohmann::json& report);
 
 }  // namespace photonav

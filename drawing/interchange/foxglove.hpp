@@ -19,20 +19,24 @@ struct GreyPoints {
     void add(const Eigen::Vector3f& position, std::uint8_t value);
 };
 
-/// The JSON Schema of messages: PoseInFrame, PointCloud, CompressedImage or SceneUpdate of
-/// Foxglove, or photonav.Belief. @throws std::invalid_argument for another name
+/// The JSON Schema of a kind of message.
+/// @param name foxglove.PoseInFrame, foxglove.PointCloud, foxglove.CompressedImage,
+///        foxglove.SceneUpdate or photonav.Belief
+/// @throws std::invalid_argument for another name
 const std::string& messageSchema(std::string_view name);
 
-// Messages; times in s.
+// The messages. Times are in seconds.
 
 std::string poseMessage(double time, const Pose& T_w_c);
 std::string pointCloudMessage(double time, const GreyPoints& points);
+/// @param bytes content of the image file
 /// @param format "jpeg" or "png"
 std::string imageMessage(double time, std::string_view bytes, const std::string& format);
-/// A path as a line, with ellipsoids of three standard deviations of the position at some fifty
-/// places. It replaces an earlier one of that name.
+/// A path as a line, with 3-sigma ellipsoids of the position at about fifty places. It replaces an
+/// earlier path of the same name.
 std::string pathMessage(double time, const DrawnPath& path);
-/// Numbers for plots: way [m], standard deviation of the position [m], weighted trace [m^2].
+/// Numbers for plots: distance along the path [m], standard deviation of the position (square root
+/// of the trace of its covariance) [m], weighted trace [m^2].
 std::string beliefMessage(const PathPoint& point);
 
 }  // namespace photonav

@@ -15,8 +15,8 @@ struct Figure {
 
     std::string title = {};
     std::vector<std::vector<Plot>> rows = {};  ///< frames are aligned in rows and columns
-    Legend legend =
-        Legend::above;  ///< place of the legend; entries of marks drawn on top come first
+    /// Place of the legend. Entries of marks drawn on top come first.
+    Legend legend = Legend::above;
 
     // The content of a file. @throws std::invalid_argument without panels
     std::string png() const;

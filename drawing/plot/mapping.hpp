@@ -7,6 +7,7 @@
 
 namespace photonav {
 
+/// The frame of a plot and its axes. at() maps points and boxes in the units of the axes to pixels.
 struct Mapping {
     Frame frame;
     Axis x, y;

@@ -42,7 +42,7 @@ class Painter {
   public:
     explicit Painter(cairo_surface_t* surface) : cairo_(cairo_create(surface), &cairo_destroy) {}
 
-    /// A line through the points; a point that is not finite leaves a gap.
+    /// A line through the points, `width` pixels wide; a point that is not finite leaves a gap.
     void line(const std::vector<Point>& points, const Color& color, double width,
               bool dashed = false);
     void fill(const std::vector<Point>& outline, const Color& color);
@@ -58,10 +58,10 @@ class Painter {
     void text(const std::string& content, const Point& at, Align align, const Font& font = {});
     double textWidth(const std::string& content, double size = Font{}.size);
 
-    /// What `draw` draws lets through what is below it, where its parts overlap as well as
-    /// elsewhere.
+    /// Draws the marks of `draw` as one layer with an opacity: where they overlap each other, the
+    /// opacity is the same as elsewhere.
     void translucent(double opacity, const std::function<void()>& draw);
-    /// Only what `draw` draws inside the frame remains.
+    /// Draws the marks of `draw`, cut at the frame.
     void clipped(const Frame& frame, const std::function<void()>& draw);
 
   private:

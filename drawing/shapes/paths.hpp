@@ -20,10 +20,10 @@ struct PathPoint {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< camera centre, world frame [m]
     Pose T_w_c = Pose::Identity();
     double trace = 0.0;  ///< weightedTrace() of the 6x6 covariance [m^2]
-    Eigen::Matrix3d positionCovariance =
-        Eigen::Matrix3d::Zero();  ///< of `position`, axes of the world [m^2]
-    double distance = 0.0;        ///< length of the path up to the point [m]
-    double cost = 0.0;            ///< cost-to-come [m]
+    /// Covariance of `position`, world frame [m^2].
+    Eigen::Matrix3d positionCovariance = Eigen::Matrix3d::Zero();
+    double distance = 0.0;  ///< length of the path up to the point [m]
+    double cost = 0.0;      ///< cost-to-come [m]
 };
 
 /// The point of a belief of T_c_w (covariance in the camera frame, left perturbation, order
@@ -32,7 +32,7 @@ struct PathPoint {
 PathPoint makePathPoint(const UncertainPose& T_c_w, double trace, double distance, double cost);
 
 struct DrawnPath {
-    std::string name;  ///< name in legends, usually of the planner
+    std::string name;  ///< name in legends, usually the planner's
     Color color = kInk;
     std::vector<PathPoint> points = {};
 };

@@ -25,7 +25,7 @@ class World {
     /// @throws std::invalid_argument if the bounds are too large for the resolution of the map
     World(std::shared_ptr<const TexturedOcTree> map, const Config& config);
     /// As above, but obstacles are the occupied cells of another map of the same resolution.
-    /// mapChanged() must be told the changes of both maps.
+    /// The change given to mapChanged() must list the changes of both maps.
     World(std::shared_ptr<const TexturedOcTree> map,
           std::shared_ptr<const TexturedOcTree> obstacles, const Config& config);
 
