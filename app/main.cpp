@@ -61,7 +61,8 @@ void onInterrupt(int signal) {
 }
 
 void onAlarm(int /*signal*/) {
-    say("photonav: interrupted; finishing what is begun and writing the results so far (once more "
+    say("photonav: interrupted; finishing the current step and writing the results so far (once "
+        "more "
         "to stop at once, which keeps an earlier result as it was)\n");
 }
 

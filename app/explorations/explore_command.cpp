@@ -162,7 +162,9 @@ std::vector<TrialItem> itemsOfShard(const Shard& shard, const Config& config) {
 void checkIsOpen(const ExploreOptions& options, bool isFlown) {
     if (!isFlown) return;
     if (!options.record.empty()) {
-        throw InputError("--record", "", "the first flight has been flown: it has no images now");
+        throw InputError(
+            "--record", "",
+            "the first flight is finished, and its images were not stored: record a new run");
     }
     if (!options.serve.empty()) {
         throw InputError("--serve", "",

@@ -93,10 +93,11 @@ void addPostersOptions(CLI::App& parser, PostersOptions& options) {
         ->type_name("FILE");
     parser
         .add_option("--rank-by", options.rankBy,
-                    "path: certainty along it; goal: certainty of servoing there")
+                    "path: by the uncertainty along it; goal: by servoing there")
         ->check(CLI::IsMember({"path", "goal"}))
         ->capture_default_str();
-    parser.add_flag("--goal-only", options.goalOnly, "no path: rank by servoing at the goal");
+    parser.add_flag("--goal-only", options.goalOnly,
+                    "do not plan paths, rank by servoing at the goal");
     addNumber(parser, "--most", options.most,
               "number of candidates together; beyond one they are added to the best so far, one "
               "by one",

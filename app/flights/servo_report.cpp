@@ -38,7 +38,7 @@ ReportTable modesTable(const ServoStudy& study) {
                                 mode.rate > 0.
                                     ? fmt::format("{:.3g} per second predicted, {:.3g} simulated",
                                                   mode.predictedDecay, mode.simulatedDecay)
-                                    : "never: the view says nothing");
+                                    : "never: the view has no information about this direction");
     }
     return table;
 }

@@ -116,7 +116,7 @@ Figure headingsFigure(const CheckedTrajectory& checked) {
     plot.colorBar(scale);
     plot.x = {.min = 0., .max = length, .label = "distance along the trajectory [m]"};
     plot.y = {.min = -180., .max = 180., .label = "heading [deg]"};
-    return {"What each heading is worth", {{plot}}};
+    return {"Uncertainty after one view, by heading", {{plot}}};
 }
 
 DrawnTree lostStretches(const CheckedTrajectory& checked) {

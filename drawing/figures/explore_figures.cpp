@@ -146,7 +146,7 @@ Figure traceBandsFigure(const std::vector<ExplorationResult>& flights,
         if (!flight.samples.empty()) ofPlanner[flight.planner].push_back(&flight);
     }
     for (const auto& [planner, own] : ofPlanner) addBand(plot, own, characteristicLength);
-    return {"Beliefs along the normalised way", {{plot}}};
+    return {"Uncertainty over the share of the distance flown", {{plot}}};
 }
 
 }  // namespace photonav

@@ -38,7 +38,7 @@ Figure servoBasinFigure(const ServoStudyOptions& options, const ServoStudy& stud
                            .name = fmt::format("rotated by {:g} degrees", angles[k])});
         plot.dots(curve, {.color = color, .width = 7.});
     }
-    return {.title = "From how far the servo converges (bands: 95 % intervals)", .rows = {{plot}}};
+    return {.title = "Basin of convergence of the servo (bands: 95 % intervals)", .rows = {{plot}}};
 }
 
 Figure servoModesFigure(const ServoStudy& study) {
@@ -46,7 +46,7 @@ Figure servoModesFigure(const ServoStudy& study) {
     plot.x = {.min = 0.5,
               .max = 0.5 + static_cast<double>(study.modes.size()),
               .label = "direction, the slowest first"};
-    plot.y = {.min = 0., .label = "decrease of an offset [1/s]"};
+    plot.y = {.min = 0., .label = "decay rate of the error [1/s]"};
     Plot::Points predicted, simulated;
     for (const ServoMode& mode : study.modes) {
         const double x = static_cast<double>(predicted.size() + 1);
@@ -58,7 +58,7 @@ Figure servoModesFigure(const ServoStudy& study) {
         {.color = plannerColor("rrt_star"), .width = 16., .name = "predicted by the Hessian"});
     plot.dots(simulated,
               {.color = plannerColor("belief_rrt_star"), .width = 8., .name = "simulated"});
-    return {.title = "How fast offsets shrink, direction by direction", .rows = {{plot}}};
+    return {.title = "Decay rate of the error, by direction", .rows = {{plot}}};
 }
 
 }  // namespace photonav

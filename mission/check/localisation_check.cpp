@@ -227,7 +227,7 @@ std::string nameOf(LossCause cause) {
         case LossCause::rejectedImages:
             return "images rejected";
         case LossCause::wideBelief:
-            return "belief wider than the search";
+            return "the pose is more uncertain than the tracker's search covers";
         case LossCause::maxSigma:
             break;
     }

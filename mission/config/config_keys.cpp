@@ -49,7 +49,7 @@ Eigen::AlignedBox3d readBounds(YamlMap& root) {
         root.fail("bounds", fmt::format("farther than {} m from the origin", kFarthest));
     }
     if (box.isEmpty()) root.fail("bounds", "the first corner must be the lower one");
-    if (box.sizes().isZero(0.)) root.fail("bounds", "a point leaves nothing to plan");
+    if (box.sizes().isZero(0.)) root.fail("bounds", "the bounds must not be a single point");
     return box;
 }
 

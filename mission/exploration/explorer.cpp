@@ -225,7 +225,7 @@ std::string Explorer::reasonForNoWay() const {
     if (clearance < config_.robotRadius) {
         return fmt::format("the goal is in collision: clearance {:.2f} m in the map", clearance);
     }
-    if (!planner_.path().empty()) return "the sensor does not show the way ahead";
+    if (!planner_.path().empty()) return "the sensor cannot observe the space ahead";
     return "the map shows no way to the goal";
 }
 
@@ -244,7 +244,7 @@ bool Explorer::hasEnded() {
     }
     if (withoutWay_ >= kMostInVain) return endAs(FlightEnd::noWay, reasonForNoWay());
     if (stoppedSince_ && time_ - *stoppedSince_ > kMostStopped) {
-        return endAs(FlightEnd::noWay, "an obstacle in view that the map does not show");
+        return endAs(FlightEnd::noWay, "an obstacle in view that is not in the map");
     }
     if (time_ > config_.explore.timeLimit) {
         return endAs(FlightEnd::outOfTime, "the time limit was reached");

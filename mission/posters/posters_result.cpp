@@ -15,7 +15,7 @@ using nlohmann::json;
 
 std::string verdictOf(const PosterProblem& problem, const PosterRanking& ranking) {
     const PosterSet& best = ranking.sets.front();
-    if (best.posters.empty()) return "no candidate is better than the scene as it is";
+    if (best.posters.empty()) return "no candidate improves on the scene as it is";
     const auto asItIs = std::ranges::find_if(
         ranking.sets, [](const PosterSet& set) { return set.posters.empty(); });
     std::string text =

@@ -62,7 +62,7 @@ Eigen::Vector3d upByFloor(const Recording& recording) {
         throw InputError("--up", "floor", "the recording has no depth images to find it in");
     }
     if (!recording.sequence.hasPoses()) {
-        throw InputError("--up", "", "the recording has no true poses to turn");
+        throw InputError("--up", "", "needs recorded poses, which this recording does not have");
     }
     Eigen::Vector3d roughUp = Eigen::Vector3d::Zero();  // the upper edge of the images
     for (const auto& frame : recording.sequence.frames) {
@@ -136,7 +136,7 @@ Recording readDepthRecording(const RecordingOptions& options) {
 /// The images of a COLMAP model, without depth.
 Recording readColmapRecording(const RecordingOptions& options) {
     const auto refuse = [](const char* option) {
-        throw InputError(option, "", "means nothing for a COLMAP model");
+        throw InputError(option, "", "does not apply to a COLMAP model");
     };
     if (!options.stereo.empty()) refuse("--stereo");
     if (options.depthScale) refuse("--depth-scale");

@@ -78,7 +78,7 @@ Recording openRecording(const ReplayOptions& options) {
     reading.needsDepth = options.odometry;
     Recording recording = readRecording(reading);
     if (options.up != "z" && !recording.sequence.hasPoses()) {
-        throw InputError("--up", "", "the recording has no true poses to turn");
+        throw InputError("--up", "", "needs recorded poses, which this recording does not have");
     }
     if (options.odometry && recording.sequence.frames.size() < 2) {
         throw InputError(options.dataset, "", "a single frame: odometry needs two or more");

@@ -98,7 +98,8 @@ json skippedJson(const Sequence& sequence, const ReplayRun& run) {
     return list;
 }
 
-constexpr const char* kOverlapHint = "; a smaller --min-overlap asks for less";
+constexpr const char* kOverlapHint =
+    "; a smaller --min-overlap accepts images that show less of the map";
 
 bool isLostFrame(const ReplayedFrame& frame) { return frame.status == FrameStatus::lost; }
 
@@ -123,7 +124,8 @@ std::string whyLostAtOnce(const ReplayRun& run, std::size_t lost) {
     text += first == run.frames.begin() ? "first image: " : fmt::format("image {}: ", first->index);
     text += first->words;
     if (isShortOfOverlap(*first)) text += kOverlapHint;
-    if (!run.odometry) text += "; poses and map must share a world (--up, --start)";
+    if (!run.odometry)
+        text += "; check that start pose and map use the same world frame (--up, --start)";
     return text;
 }
 

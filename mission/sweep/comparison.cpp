@@ -110,8 +110,7 @@ CompareRun runMethod(const Config& config, const World& world, const CompareMeth
 
 std::string compareTable(const std::vector<CompareRun>& runs) {
     std::string table =
-        "| planner, information | cost J | length [m] | mean trace [m²] | goal trace [m² + "
-        "rad²] | "
+        "| planner, information | cost J | length [m] | mean trace [m²] | goal trace [m²] | "
         "vertices | views | seconds |\n|---|---|---|---|---|---|---|---|\n";
     for (const CompareMethod& method : compareMethods()) {
         std::vector<const CompareRun*> own;

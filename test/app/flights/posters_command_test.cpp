@@ -70,7 +70,7 @@ TEST_F(PostersCommand, SaysWhenNothingHelps) {
     const Execution run = posters("--rank-by goal --trajectory " + way + " --candidates " + file);
     EXPECT_EQ(run.exitCode, 1) << run.output;  // directions stay open
     EXPECT_EQ(result()["path_is"], "given");
-    EXPECT_EQ(result()["verdict"], "no candidate is better than the scene as it is");
+    EXPECT_EQ(result()["verdict"], "no candidate improves on the scene as it is");
     EXPECT_TRUE(result()["ranking"][0]["cost"].is_null());
 }
 

@@ -53,7 +53,7 @@ TEST_F(ColmapRecording, HasItsImagesInAnUprightWorld) {
 
 TEST_F(ColmapRecording, RefusesWhatNeedsDepthAndOptionsOfOtherLayouts) {
     options_.stereo = "bm";
-    expectReason("--stereo: means nothing for a COLMAP model");
+    expectReason("--stereo: does not apply to a COLMAP model");
     options_.stereo.clear();
     options_.depthScale = 1000.;
     expectReason("--depth-scale: means nothing");
