@@ -100,7 +100,7 @@ Figure posterGoalsFigure(const std::vector<DrawnPosterSet>& sets) {
     std::vector<CaptionedImage> images;
     images.reserve(sets.size());
     for (const DrawnPosterSet& drawn : sets) {
-        images.push_back({drawn.name, predictedPicture(drawn.set->goalView)});
+        images.push_back({drawn.name, predictedPicture(*drawn.set->goalView)});
     }
     return imagesFigure(inRows(std::move(images)), 460.);
 }

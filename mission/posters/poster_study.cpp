@@ -89,8 +89,9 @@ std::optional<PosterSet> studySet(const PosterProblem& problem, const PosterIndi
     } catch (const RenderingStopped&) {
     }
     if (interrupted) return {};
-    world.views().render(camera, (problem.T_w_goal * config.camera.T_b_c()).inverse(),
-                         set.goalView);
+    const auto view = std::make_shared<View>();
+    world.views().render(camera, (problem.T_w_goal * config.camera.T_b_c()).inverse(), *view);
+    set.goalView = view;
     return set;
 }
 

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,7 +52,9 @@ struct PosterSet {
     /// given trajectory.
     double cost = 0.;
     ServoStudy servo = {};
-    View goalView = {};  ///< view of the config's camera at the goal
+    /// View of the config's camera at the goal. Shared, because sets are moved when they are
+    /// sorted, and a vpImage that is assigned to after it was moved from never frees its memory.
+    std::shared_ptr<const View> goalView = {};
 };
 
 struct PosterRanking {

@@ -110,7 +110,7 @@ TEST_F(PosterStudy, WhatIsOutOfViewChangesNothing) {
     EXPECT_EQ(localisationJson(*out.path), localisationJson(*none.path));
     EXPECT_EQ(out.cost, none.cost);
     EXPECT_EQ(out.servo.condition, none.servo.condition);
-    const ImageF &seen = out.goalView.intensity, &before = none.goalView.intensity;
+    const ImageF &seen = out.goalView->intensity, &before = none.goalView->intensity;
     EXPECT_TRUE(std::equal(seen.bitmap, seen.bitmap + seen.getSize(), before.bitmap));
 }
 

@@ -44,7 +44,8 @@ TEST(Reference, CoversEveryCellAndItsPathsCostWhatItSays) {
             ASSERT_NE(reference, nullptr);
             const auto path = problem.descend(reference->waypoints, {.moves = 0}, interrupted);
             ASSERT_TRUE(path.has_value());
-            EXPECT_NEAR(path->cost, reference->cost, 1e-6 * reference->cost);
+            // Along bars, rounding of single-precision sums is all the information there is.
+            EXPECT_NEAR(path->cost, reference->cost, 1e-5 * reference->cost);
             EXPECT_NEAR(path->length, reference->length, 1e-4 * reference->length);
             EXPECT_TRUE(path->points.front().T_w_b.translation().isApprox(config.start.position));
             EXPECT_TRUE(path->points.back().T_w_b.translation().isApprox(config.goal.position));
