@@ -104,7 +104,7 @@ DrawnPath drawnBeliefs(const ExplorationResult& flight, double characteristicLen
         if (sample.distance < last + kApart && !isLast) continue;
         last = sample.distance;
         const double trace = weightedTrace(sample.belief.covariance, characteristicLength);
-        path.points.push_back(makePathPoint(sample.belief, trace, sample.distance, sample.time));
+        path.points.push_back(makePathPoint(sample.belief, trace, sample.distance, 0.));
     }
     return path;
 }

@@ -13,7 +13,7 @@ inline constexpr double kMapPixel = 0.025;  ///< pixel of the picture of the map
 /// The true camera positions of a flight.
 DrawnTree drawnWay(const ExplorationResult& flight);
 
-/// The beliefs of a flight, about ten per metre. PathPoint::cost is the time of the flight [s].
+/// The beliefs of a flight, about ten per metre. They have no cost (PathPoint::cost is 0).
 /// @param characteristicLength see weightedTrace() [m]
 DrawnPath drawnBeliefs(const ExplorationResult& flight, double characteristicLength);
 
