@@ -201,7 +201,7 @@ TEST_F(ExploreCommand, AnEndedExplorationIsExtended) {
                    "the exploration was begun with another config: camera.sigma: 0.03 instead of");
     expectBadInput(explore("out", wanted + " --shard 1/2"), "holds shard 1/1, not 1/2");
     expectBadInput(explore("out", wanted + " --record " + at("flight")),
-                   "--record: the first flight has been flown");
+                   "--record: the first flight is finished");
     EXPECT_EQ(result("out")["trials"].size(), 4U);  // still there
 }
 

@@ -107,7 +107,7 @@ TEST_F(RoomToExplore, SaysThatItSeesNothingOfTheWay) {
     config.explore.depthMissing = 1.;
     const ExplorationResult flight = flown(test::roomToExplore());
     EXPECT_EQ(nameOf(flight.end), "no way");
-    EXPECT_NE(flight.reason.find("sensor does not show"), std::string::npos) << flight.reason;
+    EXPECT_NE(flight.reason.find("sensor cannot observe"), std::string::npos) << flight.reason;
     EXPECT_LT(flight.flown, 0.5);
 }
 

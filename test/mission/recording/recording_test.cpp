@@ -56,10 +56,10 @@ TEST_F(ColmapRecording, RefusesWhatNeedsDepthAndOptionsOfOtherLayouts) {
     expectReason("--stereo: does not apply to a COLMAP model");
     options_.stereo.clear();
     options_.depthScale = 1000.;
-    expectReason("--depth-scale: means nothing");
+    expectReason("--depth-scale: does not apply");
     options_.depthScale.reset();
     options_.cameraFile = "camera.yaml";
-    expectReason("--camera: means nothing");
+    expectReason("--camera: does not apply");
     options_.cameraFile.clear();
     options_.needsDepth = true;
     expectReason("a COLMAP model has no depth images");

@@ -170,7 +170,7 @@ TEST_F(ReplayFixture, TheStartCanBeGiven) {
     fs::remove(data / "groundtruth.txt");
     expectRejected({"--start", "no ground truth"});
     options.up = "y";
-    expectRejected({"--up", "no true poses"});
+    expectRejected({"--up", "needs recorded poses"});
     options.up = "z";
     const Pose T_w_c = flight.T_w_c(0);
     const Eigen::Quaterniond q(T_w_c.linear());
@@ -255,7 +255,7 @@ TEST_F(ReplayFixture, RejectsWhatItCannotReplay) {
     writeText(data / "groundtruth.txt", "5 0 0 1 0 0 0 1\n");
     expectRejected({"groundtruth.txt", "poses from 5.000", "images from 50.000 to 51.100"});
     fs::remove(data / "groundtruth.txt");
-    rejected([&] { options.up = "floor"; }, {"--up", "no true poses"});
+    rejected([&] { options.up = "floor"; }, {"--up", "needs recorded poses"});
     const double infinite = std::numeric_limits<double>::infinity();
     rejected([&] { options.depthScale = infinite; }, {"--depth-scale", "above 0"});
 }
