@@ -144,7 +144,8 @@ TEST_F(ReplayInMap, InTheMapOfAnotherRoomItIsLostAtOnce) {
     EXPECT_EQ(result["lost"], 10);
     const auto verdict = result["verdict"].get<std::string>();
     EXPECT_TRUE(verdict.starts_with("lost at once")) << verdict;
-    EXPECT_NE(verdict.find("use the same world frame (--up, --start)"), std::string::npos) << verdict;
+    EXPECT_NE(verdict.find("use the same world frame (--up, --start)"), std::string::npos)
+        << verdict;
     EXPECT_EQ(verdict.find("--min-overlap"), std::string::npos) << verdict;
 }
 
