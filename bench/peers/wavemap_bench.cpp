@@ -80,7 +80,7 @@ Effort integrateByWavemap(const Recording& recording, const FusionOptions& optio
 }
 
 /// Log-odds within 0.001 of 0 are unknown: wavelets round.
-Cell cellOf(float logOdds) {
+Cell stateOf(float logOdds) {
     if (wavemap::OccupancyClassifier::isUnobserved(logOdds)) return Cell::unknown;
     return logOdds > 0.F ? Cell::occupied : Cell::free;
 }
@@ -89,7 +89,7 @@ Cell cellOf(float logOdds) {
 template <typename Work>
 void forEachKnownLeaf(const WaveletMap& map, const Work& work) {
     map.forEachLeaf([&](const wavemap::OctreeIndex& index, float logOdds) {
-        if (cellOf(logOdds) != Cell::unknown) work(index, cellOf(logOdds));
+        if (stateOf(logOdds) != Cell::unknown) work(index, stateOf(logOdds));
     });
 }
 
@@ -99,14 +99,18 @@ std::size_t countKnownLeaves(const WaveletMap& map) {
     return count;
 }
 
-/// wavemap's cell (i, j, k) is ours: both have corners at whole multiples of the resolution.
+/// wavemap's cell that has the same centre: cells of both maps have corners at whole multiples of
+/// the resolution.
+wavemap::Index3D indexOf(const TexturedOcTree& ours, const octomap::OcTreeKey& key) {
+    const octomap::point3d centre = ours.keyToCoord(key);
+    return wavemap::convert::pointToFloorIndex<3>({centre.x(), centre.y(), centre.z()},
+                                                  1.F / static_cast<float>(ours.getResolution()));
+}
+
 Agreement compare(TexturedOcTree& ours, const WaveletMap& theirs) {
     Agreement agreement;
     forEachCell(ours, [&](const octomap::OcTreeKey& key, Cell cell) {
-        const octomap::point3d centre = ours.keyToCoord(key);
-        const wavemap::Index3D index = wavemap::convert::pointToFloorIndex<3>(
-            {centre.x(), centre.y(), centre.z()}, 1.F / theirs.getMinCellWidth());
-        agreement.add(cell, cellOf(theirs.getCellValue(index)));
+        agreement.add(cell, stateOf(theirs.getCellValue(indexOf(ours, key))));
     });
     forEachKnownLeaf(theirs, [&](const wavemap::OctreeIndex& leaf, Cell cell) {
         for (const wavemap::Index3D& index :
@@ -121,6 +125,27 @@ Agreement compare(TexturedOcTree& ours, const WaveletMap& theirs) {
     return agreement;
 }
 
+/// wavemap's surfaces begin at the measured depth, ours fill the cell around it: where we say
+/// occupied and wavemap free, a cell next to it should be occupied in wavemap's map.
+void printTouching(TexturedOcTree& ours, const WaveletMap& theirs) {
+    const wavemap::Index3D one = wavemap::Index3D::Ones();
+    std::size_t cells = 0, touching = 0;
+    forEachCell(ours, [&](const octomap::OcTreeKey& key, Cell cell) {
+        const wavemap::Index3D index = indexOf(ours, key);
+        if (cell != Cell::occupied || stateOf(theirs.getCellValue(index)) != Cell::free) return;
+        ++cells;
+        bool touches = false;
+        for (const wavemap::Index3D& next : wavemap::Grid<3>(index - one, index + one)) {
+            touches = touches || stateOf(theirs.getCellValue(next)) == Cell::occupied;
+        }
+        touching += touches ? 1 : 0;
+    });
+    fmt::print(
+        "of the {} cells that are occupied in ours and free in wavemap's, {} touch a cell that "
+        "is occupied in wavemap's\n",
+        cells, touching);
+}
+
 void run(const RecordingOptions& options, double resolution) {
     const Recording recording = readRecording(options);
     const FusionOptions fusion;
@@ -133,6 +158,7 @@ void run(const RecordingOptions& options, double resolution) {
     const Effort effort = integrateByWavemap(recording, fusion, theirs);
     printRow("wavemap, chunked wavelet octree", effort, countKnownLeaves(*theirs));
     print(compare(ours, *theirs), "wavemap's");
+    printTouching(ours, *theirs);
 }
 
 }  // namespace
