@@ -52,13 +52,9 @@ Agreement compare(TexturedOcTree& ours, octomap::OcTree& theirs) {
     return agreement;
 }
 
-void run(const RecordingOptions& options, double resolution) {
-    const Recording recording = readRecording(options);
-    const FusionOptions fusion;
-    printHeading(options, recording, resolution, fusion);
-    TexturedOcTree ours(resolution);
-    integrateByUs(recording, fusion, ours);
-    octomap::OcTree theirs(resolution), discrete(resolution);
+void compareWithOctomap(const Recording& recording, const FusionOptions& fusion,
+                        TexturedOcTree& ours) {
+    octomap::OcTree theirs(ours.getResolution()), discrete(ours.getResolution());
     const Effort perPixel = integrateByOctomap(recording, fusion, false, theirs);
     printRow("OctoMap, a ray per pixel", perPixel, theirs.getNumLeafNodes());
     const Effort perCell = integrateByOctomap(recording, fusion, true, discrete);
@@ -68,4 +64,6 @@ void run(const RecordingOptions& options, double resolution) {
 
 }  // namespace
 
-int main(int argc, char** argv) { return runComparison(argc, argv, "octomap_bench", run); }
+int main(int argc, char** argv) {
+    return runComparison(argc, argv, "octomap_bench", compareWithOctomap);
+}

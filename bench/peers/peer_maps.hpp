@@ -113,16 +113,22 @@ inline void print(const Agreement& agreement, const char* theirs) {
                100. * static_cast<double>(agreed) / static_cast<double>(known), known);
 }
 
-/// The main function of a comparison, called as PROGRAM [DATASET [resolution [every]]].
-/// @param run is given the recording to read and the resolution
-template <typename Run>
-int runComparison(int argc, char** argv, const char* program, const Run& run) {
+/// The main function of a comparison, called as PROGRAM [DATASET [resolution [every]]]. Integrates
+/// the recording into our map first.
+/// @param compareWith is given the recording, the options of our fusion, and our map
+template <typename CompareWith>
+int runComparison(int argc, char** argv, const char* program, const CompareWith& compareWith) {
     RecordingOptions options;
     options.dataset = argc > 1 ? argv[1] : PHOTONAV_SOURCE_DIR "/data/flight_front45";
     const double resolution = argc > 2 ? std::atof(argv[2]) : 0.05;
     if (argc > 3) options.every = std::max(1, std::atoi(argv[3]));
     try {
-        run(options, resolution);
+        const Recording recording = readRecording(options);
+        const FusionOptions fusion;
+        printHeading(options, recording, resolution, fusion);
+        TexturedOcTree ours(resolution);
+        integrateByUs(recording, fusion, ours);
+        compareWith(recording, fusion, ours);
         return 0;
     } catch (const InputError& error) {
         fmt::print(stderr, "{}: {}\n", program, error.what());

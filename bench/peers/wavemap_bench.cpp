@@ -146,14 +146,10 @@ void printTouching(TexturedOcTree& ours, const WaveletMap& theirs) {
         cells, touching);
 }
 
-void run(const RecordingOptions& options, double resolution) {
-    const Recording recording = readRecording(options);
-    const FusionOptions fusion;
-    printHeading(options, recording, resolution, fusion);
-    TexturedOcTree ours(resolution);
-    integrateByUs(recording, fusion, ours);
+void compareWithWavemap(const Recording& recording, const FusionOptions& fusion,
+                        TexturedOcTree& ours) {
     wavemap::HashedChunkedWaveletOctreeConfig config;
-    config.min_cell_width = static_cast<float>(resolution);
+    config.min_cell_width = static_cast<float>(ours.getResolution());
     const auto theirs = std::make_shared<WaveletMap>(config);
     const Effort effort = integrateByWavemap(recording, fusion, theirs);
     printRow("wavemap, chunked wavelet octree", effort, countKnownLeaves(*theirs));
@@ -163,4 +159,6 @@ void run(const RecordingOptions& options, double resolution) {
 
 }  // namespace
 
-int main(int argc, char** argv) { return runComparison(argc, argv, "wavemap_bench", run); }
+int main(int argc, char** argv) {
+    return runComparison(argc, argv, "wavemap_bench", compareWithWavemap);
+}
