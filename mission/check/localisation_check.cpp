@@ -5,11 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "alignment/wide_aligner.hpp"
+#include "alignment/search_grid.hpp"
 #include "check/predicted_image.hpp"
 #include "estimation/loss_of_tracking.hpp"
 #include "flight/arrival.hpp"
 #include "flight/flight_setup.hpp"
+#include "geometry/gaussian.hpp"
 #include "geometry/se3.hpp"
 #include "render/interruptible_views.hpp"
 
@@ -166,10 +167,9 @@ class Walk {
         place.covariance = belief_.covariance;
         place.trace = trace(belief_.covariance);
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> position(
-            belief_.covariance.topLeftCorner<3, 3>()),
-            rotation(belief_.covariance.bottomRightCorner<3, 3>(), Eigen::EigenvaluesOnly);
+            belief_.covariance.topLeftCorner<3, 3>());
         place.positionSigma = std::sqrt(std::max(0., position.eigenvalues()[2]));
-        place.rotationSigma = std::sqrt(std::max(0., rotation.eigenvalues()[2]));
+        place.rotationSigma = largestSigma(belief_.covariance.bottomRightCorner<3, 3>());
         place.weakest_w = belief_.mean.linear().transpose() * position.eigenvectors().col(2);
         if (place.weakest_w.z() < 0.) place.weakest_w = -place.weakest_w;
     }

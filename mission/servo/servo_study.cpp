@@ -10,6 +10,7 @@
 
 #include "evaluation/averages.hpp"
 #include "geometry/constants.hpp"
+#include "geometry/gaussian.hpp"
 #include "geometry/se3.hpp"
 #include "render/area_sensor.hpp"
 #include "simulation/camera_noise.hpp"
@@ -147,12 +148,6 @@ double conditionOf(const Simulation& simulation) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled, Eigen::EigenvaluesOnly);
     const double least = solver.eigenvalues()[0], most = solver.eigenvalues()[unit.size() - 1];
     return least > 1e-12 * most ? most / least : kInfinity;
-}
-
-/// Square root of the largest eigenvalue.
-double largestSigma(const Eigen::MatrixXd& covariance) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance, Eigen::EigenvaluesOnly);
-    return std::sqrt(std::max(0., solver.eigenvalues().maxCoeff()));
 }
 
 void setSigmas(const Simulation& simulation, ServoStudy& study) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random draws from a Gaussian distribution of twists.
+// Gaussian distributions: random draws of twists, and the largest standard deviation.
 #pragma once
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "geometry/types.hpp"
@@ -14,6 +16,15 @@ namespace photonav {
 inline Matrix6 rootOf(const Matrix6& covariance) {
     const Eigen::SelfAdjointEigenSolver<Matrix6> solver(covariance);
     return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
+}
+
+/// The largest standard deviation in any direction: the square root of the largest eigenvalue of a
+/// covariance, in its units.
+template <typename Covariance>
+double largestSigma(const Eigen::MatrixBase<Covariance>& covariance) {
+    const Eigen::SelfAdjointEigenSolver<typename Covariance::PlainObject> solver(
+        covariance, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(0., solver.eigenvalues().maxCoeff()));
 }
 
 /// A random twist drawn from N(0, root root^T).
