@@ -7,14 +7,12 @@
 #include "alignment/hole_margin.hpp"
 #include "alignment/image_pyramid.hpp"
 #include "alignment/repeated_texture.hpp"
+#include "alignment/search_grid.hpp"
 #include "geometry/se3.hpp"
 
 namespace photonav {
 namespace {
 
-constexpr double kSpacing = 8.;      // between the views compared [pixels]
-constexpr double kReach = 3.;        // of these views from the prior's mean [standard deviations]
-constexpr double kMaxPlaces = 4e3;   // views compared; the spacing grows beyond
 constexpr std::size_t kTried = 64;   // most similar views, which are aligned at small size
 constexpr std::size_t kStarts = 8;   // of full alignments, at most
 constexpr double kJitter = 1.5;      // of starts, as hard edges may stop alignments [pixels]
@@ -31,52 +29,6 @@ constexpr double kStuck = 0.3;       // share of the explained variance that dec
                                      // hard edges stop alignments a pixel from the right pose
 constexpr double kElsewhere = 30.;   // squared Mahalanobis distance of another place
 constexpr double kNextApart = 1.5;   // of two repetitions, at least [pixels]
-
-/// Image motion over the uncertainty of a prior: principal axes [twist per pixel] and standard
-/// deviations [pixels].
-struct ImageMotion {
-    Matrix6 axes;
-    Vector6 sigmas;
-};
-
-ImageMotion imageMotionOf(const Matrix6& covariance, const Camera& camera, double depth) {
-    // At the side of the image, a motion dz along the optical axis moves the content by side * dz /
-    // depth, and a rotation about this axis by side times the angle.
-    const double side = 0.5 * camera.width;
-    Vector6 pixels;
-    pixels << camera.fx() / depth, camera.fy() / depth, side / depth, camera.fy(), camera.fx(),
-        side;
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(pixels.asDiagonal() * covariance *
-                                                        pixels.asDiagonal());
-    return {pixels.cwiseInverse().asDiagonal() * solver.eigenvectors(),
-            solver.eigenvalues().cwiseMax(0.).cwiseSqrt()};
-}
-
-/// Between points of a grid in the box around an ellipsoid, which has no more than kMaxPlaces
-/// [pixels].
-double spacingWithin(const Vector6& sigmas) {
-    const double volume = (2. * kReach * sigmas / kSpacing).cwiseMax(1.).prod();
-    return kSpacing * std::cbrt(std::max(1., volume / kMaxPlaces));
-}
-
-/// Points of a grid within an ellipsoid, its middle included [pixels].
-std::vector<Vector6> placesWithin(const Vector6& sigmas) {
-    const Vector6 radii = kReach * sigmas;
-    const double spacing = spacingWithin(sigmas);
-    std::vector<Vector6> places{Vector6::Zero()};
-    for (int axis = 0; axis < 6; ++axis) {
-        const int reach = static_cast<int>(radii[axis] / spacing);
-        for (std::size_t k = places.size(); k-- > 0;) {
-            for (int i = -reach; i <= reach; ++i) {
-                Vector6 place = places[k];
-                place[axis] = spacing * i;
-                const Vector6 share = place.cwiseQuotient(radii.cwiseMax(spacing));
-                if (i != 0 && share.squaredNorm() <= 1.) places.push_back(place);
-            }
-        }
-    }
-    return places;
-}
 
 /// Share of the pixels that have an image's contrast: the participation ratio of its squares.
 double contrastShare(const ImageF& image) {
@@ -181,10 +133,6 @@ std::vector<Pose> distinct(const std::vector<Start>& starts, double distance, st
 
 }  // namespace
 
-double searchSpacing(const Matrix6& covariance, const Camera& camera, double depth) {
-    return spacingWithin(imageMotionOf(covariance, camera, depth).sigmas);
-}
-
 WideAligner::WideAligner(const ViewSource& model, const Camera& camera,
                          const AlignmentOptions& options)
     : model_(model),
@@ -220,7 +168,7 @@ std::vector<Pose> WideAligner::likelyStarts(const ImageF& observed, const Uncert
         aligned.push_back({a.T_c_w, hasNoOverlap ? kInfinity : costOf(a, prior)});
     }
     sortByCost(aligned);
-    const double apart = 0.5 * kSpacing * depth / aligner_.camera().fx();
+    const double apart = 0.5 * kSearchSpacing * depth / aligner_.camera().fx();
     std::vector<Pose> likely = distinct(aligned, apart, kStarts);
     // Alignments do without the outermost pixels, which are many of a small image: where texture is
     // only there, they all end at the prior's mean.
@@ -255,6 +203,12 @@ double WideAligner::costOf(const Alignment& a, const UncertainPose& prior) const
            squaredDistance(e, transported(prior.covariance, e));
 }
 
+const Alignment& WideAligner::likeliest(const std::vector<Alignment>& found,
+                                        const UncertainPose& prior) const {
+    return *std::ranges::min_element(found, {},
+                                     [&](const Alignment& a) { return costOf(a, prior); });
+}
+
 /// Whether image and prediction agree down to what no pose explains, relative to the contrast in
 /// view: where a strip of texture comes into view beside white, the wrong strip differs in few
 /// pixels.
@@ -269,7 +223,7 @@ double WideAligner::pixel(const Alignment& a) const { return a.meanDepth / align
 
 bool WideAligner::isElsewhere(const Alignment& a, const Alignment& best) const {
     const Vector6 apart = deviation(a.T_c_w, best.T_c_w);
-    return apart.head<3>().norm() > kSpacing * pixel(best) &&
+    return apart.head<3>().norm() > kSearchSpacing * pixel(best) &&
            squaredDistance(apart, best.covariance) > kElsewhere;
 }
 
@@ -292,7 +246,7 @@ std::vector<Pose> WideAligner::ambiguousMatches(const Alignment& best,
     }
     sortByCost(starts);
     std::vector<Pose> around;
-    for (const Pose& T_c_w : distinct(starts, 0.5 * kSpacing * pixel(best), kStarts)) {
+    for (const Pose& T_c_w : distinct(starts, 0.5 * kSearchSpacing * pixel(best), kStarts)) {
         for (const double pixels : {0., -kJitter, kJitter}) {
             around.push_back(expSE3(pixels * motion.axes.col(5)) * T_c_w);
         }
@@ -348,10 +302,7 @@ Alignment WideAligner::bestRepetition(const Alignment& first, const ImageF& obse
     if (starts.size() == 1) return first;
     auto found = alignFrom(starts, fine_, observed, prior);
     found.push_back(first);
-    const auto isLikelier = [&](const Alignment& a, const Alignment& b) {
-        return costOf(a, prior) < costOf(b, prior);
-    };
-    const Alignment& best = *std::min_element(found.begin(), found.end(), isLikelier);
+    const Alignment& best = likeliest(found, prior);
     const double decides = costOf(best, prior) + kAmbiguous;
     const auto isRival = [&](const Alignment& a) {
         return areApart(a, best, first) && costOf(a, prior) < decides;
@@ -373,17 +324,13 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
         return isLost(first.verdict) ? first : bestRepetition(first, observed, prior);
     }
 
-    const auto isLikelier = [&](const Alignment& a, const Alignment& b) {
-        return costOf(a, prior) < costOf(b, prior);
-    };
     auto found = alignFrom(likelyStarts(observed, prior, depth), near_, observed, prior);
     if (!isLost(first.verdict)) found.push_back(first);
     if (found.empty()) return first;
-    const Pose T_best_w = std::min_element(found.begin(), found.end(), isLikelier)->T_c_w;
-    Alignment best = final_.align(observed, prior, T_best_w);
+    Alignment best = final_.align(observed, prior, likeliest(found, prior).T_c_w);
     if (isLost(best.verdict)) return undecided(best, prior, best.verdict);
     for (Alignment& a : alignFrom(ambiguousMatches(best, found, prior), final_, observed, prior)) {
-        if (isLikelier(a, best)) std::swap(a, best);
+        if (costOf(a, prior) < costOf(best, prior)) std::swap(a, best);
         found.push_back(a);
     }
     if (!fits(best)) {

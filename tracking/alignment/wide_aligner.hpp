@@ -6,20 +6,6 @@
 
 namespace photonav {
 
-/// Largest standard deviation of a prior, as motion of the image, for which a single start suffices
-/// [pixels].
-inline constexpr double kBasinSigma = 6.;
-
-/// Spacing of the views that the search of a prior compares, as motion of the image [pixels]. The
-/// number of views is limited, so that the spacing grows with a wide prior.
-/// @param covariance of the prior, camera frame
-/// @param depth mean depth of the view [m]
-double searchSpacing(const Matrix6& covariance, const Camera& camera, double depth);
-
-/// Largest spacing at which a search covers the prior [pixels]. With a larger one, the true pose
-/// can be outside the basins of convergence of both neighbouring views.
-inline constexpr double kWidestSearchSpacing = 2. * kBasinSigma;
-
 /// Finds the most likely pose given an image and a prior. If the image content may have moved by
 /// more than a few pixels, texture can match in several places. Therefore small views from poses
 /// all over the prior are compared with the image, and the most similar ones are aligned at small
@@ -55,6 +41,8 @@ class WideAligner {
     double pixels() const;
     double weight() const;
     double costOf(const Alignment& alignment, const UncertainPose& prior) const;
+    const Alignment& likeliest(const std::vector<Alignment>& found,
+                               const UncertainPose& prior) const;
     bool fits(const Alignment& alignment) const;
     double pixel(const Alignment& alignment) const;
     bool isElsewhere(const Alignment& alignment, const Alignment& best) const;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "alignment/search_grid.hpp"
 #include "geometry/gaussian.hpp"
 #include "map/map_fusion.hpp"
 #include "render/voxel_renderer.hpp"
