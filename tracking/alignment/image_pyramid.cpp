@@ -18,6 +18,25 @@ constexpr std::array<float, kTaps> kBinomial = {1.F / 128,  7.F / 128,  21.F / 1
                                                 35.F / 128, 21.F / 128, 7.F / 128,  1.F / 128};
 constexpr double kBinomialVariance = 0.25 * (kTaps - 1);  // [pixels^2]
 
+/// Smoothed by a Gaussian of any width, in a time that does not grow with it: a wide one is applied
+/// to the reduced image. One as wide as the image leaves nothing but its mean.
+cv::Mat smoothed(const cv::Mat& image, double sigma) {
+    sigma = std::min(sigma, static_cast<double>(std::max(image.rows, image.cols)));
+    constexpr double kLeastSigma = 8.;  // of a reduced image [pixels]: reducing blurs little beside
+    const int reduction =
+        std::clamp(static_cast<int>(sigma / kLeastSigma), 1, std::min(image.rows, image.cols));
+    cv::Mat smooth;
+    if (reduction == 1) {
+        cv::GaussianBlur(image, smooth, {}, sigma);
+        return smooth;
+    }
+    cv::resize(image, smooth, {image.cols / reduction, image.rows / reduction}, 0., 0.,
+               cv::INTER_AREA);
+    cv::GaussianBlur(smooth, smooth, {}, sigma / reduction);
+    cv::resize(smooth, smooth, image.size(), 0., 0., cv::INTER_LINEAR);
+    return smooth;
+}
+
 }  // namespace
 
 Camera halved(const Camera& camera) {
@@ -63,9 +82,7 @@ double finerThan(double cellSize, double depth, const Camera& camera, const Imag
     const double cell = cellSize * camera.fx() / depth;  // [pixels]
     if (!(cell > 0.)) return 0.;
     const cv::Mat sharp = asMat(image);
-    cv::Mat smooth;
-    cv::GaussianBlur(sharp, smooth, {}, 0.5 * cell);
-    return cv::norm(sharp, smooth, cv::NORM_L2SQR) / image.getSize();
+    return cv::norm(sharp, smoothed(sharp, 0.5 * cell), cv::NORM_L2SQR) / image.getSize();
 }
 
 ImageF halvedAsRendered(const ImageF& image) {

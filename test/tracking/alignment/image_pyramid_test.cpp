@@ -5,6 +5,11 @@
 
 #include <cmath>
 
+#include <opencv2/imgproc.hpp>
+
+#include "scene/texture.hpp"
+#include "photometry/opencv_image.hpp"
+
 namespace photonav {
 namespace {
 
@@ -39,6 +44,26 @@ TEST(ImagePyramid, BlurAfterHalvingIsThatOfTheHalvedImage) {
         EXPECT_NEAR(spreadOf(half), blurAfterHalving(sigma), 1e-3) << sigma;
     }
     EXPECT_NEAR(blurAfterHalving(kRenderedBlur), kRenderedBlur, 1e-4);
+}
+
+/// Cells of any size, also when the camera nearly touches the surface.
+TEST(ImagePyramid, ContentFinerThanCellsIsWhatAGaussianRemoves) {
+    const ImageF image =
+        valueNoise({.size = {1.6, 1.2}, .cells = {0.6, 0.1, 0.03}, .seed = 3}).image;
+    const Camera camera(160, 120, vpCameraParameters(100., 100., 79.5, 59.5));
+    const cv::Mat sharp = asMat(image);
+    for (const double cell : {3., 20., 31., 33., 60., 150.}) {  // [pixels]
+        cv::Mat smooth;
+        cv::GaussianBlur(sharp, smooth, {}, 0.5 * cell);
+        const double expected = cv::norm(sharp, smooth, cv::NORM_L2SQR) / image.getSize();
+        EXPECT_NEAR(finerThan(0.01 * cell, 1., camera, image), expected, 0.02 * expected) << cell;
+    }
+    cv::Scalar mean, sigma;
+    cv::meanStdDev(sharp, mean, sigma);
+    const double variance = sigma[0] * sigma[0];
+    for (const double depth : {1e-3, 1e-9, 0.}) {
+        EXPECT_NEAR(finerThan(0.1, depth, camera, image), variance, 0.02 * variance) << depth;
+    }
 }
 
 }  // namespace
