@@ -16,7 +16,6 @@ constexpr double kPhotometricStep = 0.01;  // below which, or twice the noise, i
 constexpr int kPhotometricImages = 6;      // in a row
 constexpr double kOtherView = 0.7;         // so far on, other things are in view [m]
 constexpr double kBelievedSigmas = 3.;     // within which the body is counted on to be
-constexpr double kClearanceStep = 0.05;    // between places asked for their clearance [m]
 
 /// An image in the exposure of the model.
 ImageF asModelled(const ImageF& observed, const Exposure& exposure) {
@@ -62,14 +61,7 @@ PhotometricServo Pilot::servoToGoal() const {
     return {*map_, camera_, T_b_c_, route_.goal().T_w_b, {.photometric = options_.photometric}};
 }
 
-ViewSearch Pilot::searchInMap() const {
-    std::function<bool(const Eigen::Vector3d&)> isFree;
-    if (options_.clearance) {
-        isFree = [clearance = options_.clearance, radius = options_.radius](
-                     const Eigen::Vector3d& p_w) { return clearance(p_w) >= radius; };
-    }
-    return {map_, camera_, T_b_c_, options_.photometric, std::move(isFree)};
-}
+ViewSearch Pilot::searchInMap() const { return {map_, camera_, T_b_c_, options_.photometric}; }
 
 void Pilot::setPlan(std::vector<PlannedView> plan) {
     route_ = Route(std::move(plan), T_b_c_, options_.route, command_);
@@ -127,6 +119,7 @@ BodyVelocity Pilot::decide(const Tracker& tracker, double time, double dt) {
             route_.halt();
             return {};
         }
+        if (searched_ && !isSearchSafe(belief)) rejoinPlan(belief);
         if (!searchSince_) beginSearch(tracker, time);
     }
     if (wayBack_) return follow(advance(*wayBack_, tracker, dt), belief);
@@ -160,17 +153,35 @@ BodyVelocity Pilot::alongRoute(const Tracker& tracker, double time, double dt) {
 Route::Reference Pilot::advance(Route& route, const Tracker& tracker, double dt) const {
     const UncertainPose belief = tracker.belief();
     if (!tracker.loss().isLost() || !options_.clearance) return route.advance(belief, dt);
-    const auto isFree = [&, offsets_w = believedOffsets(belief, T_b_c_)](const auto& p_w) {
+    return route.advance(belief, dt, untouchedBy(belief));
+}
+
+/// Where the body touches nothing, wherever within three standard deviations it is.
+IsFree Pilot::untouchedBy(const UncertainPose& belief) const {
+    const auto touchesNothing = [this](const Eigen::Vector3d& p_w) {
+        return options_.clearance(p_w) >= options_.bodyRadius;
+    };
+    return [=, offsets_w = believedOffsets(belief, T_b_c_)](const Eigen::Vector3d& p_w) {
         return std::all_of(offsets_w.begin(), offsets_w.end(), [&](const Eigen::Vector3d& offset) {
-            const int steps = 1 + static_cast<int>(offset.norm() / kClearanceStep);
-            for (int i = 0; i <= steps; ++i) {
-                if (options_.clearance(p_w + offset * i / steps) < options_.bodyRadius)
-                    return false;
-            }
-            return true;
+            return isLineFree(p_w, p_w + offset, touchesNothing);
         });
     };
-    return route.advance(belief, dt, isFree);
+}
+
+/// The nearest view beside the plan that narrows the belief, on a way on which the body touches
+/// nothing.
+std::optional<Pose> Pilot::nearestView(const UncertainPose& belief) const {
+    if (!options_.clearance) return {};
+    const auto isFree = [&, isUntouched = untouchedBy(belief)](const Eigen::Vector3d& p_w) {
+        return options_.clearance(p_w) >= options_.radius && isUntouched(p_w);
+    };
+    return search_.nearest(belief, route_.lastWaypoint().T_w_b, isFree);
+}
+
+/// Whether this is still so of the searched view, with a belief that has become wider.
+bool Pilot::isSearchSafe(const UncertainPose& belief) const {
+    const Eigen::Vector3d from_w = bodyOf(belief.mean).translation();
+    return isLineFree(from_w, searched_->translation(), untouchedBy(belief));
 }
 
 BodyVelocity Pilot::follow(const Route::Reference& reference, const UncertainPose& belief) {
@@ -183,7 +194,7 @@ BodyVelocity Pilot::follow(const Route::Reference& reference, const UncertainPos
 void Pilot::beginSearch(const Tracker& tracker, double time) {
     searchSince_ = time;
     if (!tracker.loss().isLost()) {
-        searched_ = search_.nearest(tracker.belief(), route_.lastWaypoint().T_w_b);
+        searched_ = nearestView(tracker.belief());
         if (!searched_) endSearch();
     } else if (isCertainViewNearer(tracker)) {
         route_.halt();
@@ -195,16 +206,18 @@ void Pilot::beginSearch(const Tracker& tracker, double time) {
 void Pilot::continueSearch(const Tracker& tracker, double time) {
     if (tracker.loss().isLost()) return;
     const UncertainPose belief = tracker.belief();
-    if (wayBack_) {
-        route_ = route_.rejoined(bodyOf(belief.mean));
-        return endSearch();
-    }
+    if (wayBack_) return rejoinPlan(belief);
     const bool isTooLong = time - *searchSince_ > options_.giveUpTime;
     if (!searched_ || isTooLong || !route_.needs(route_.lastWaypoint(), belief)) return endSearch();
     const Eigen::Vector3d p_w = bodyOf(belief.mean).translation();
     if ((p_w - searched_->translation()).norm() > options_.route.tolerance.position) return;
     search_.visited(*searched_);
-    searched_ = search_.nearest(belief, route_.lastWaypoint().T_w_b);
+    searched_ = nearestView(belief);
+}
+
+void Pilot::rejoinPlan(const UncertainPose& belief) {
+    route_ = route_.rejoined(bodyOf(belief.mean));
+    endSearch();
 }
 
 void Pilot::endSearch() {

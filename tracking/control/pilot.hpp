@@ -41,11 +41,14 @@ struct PilotOptions {
 /// pilot searches around it for a view that reduces the uncertainty. If it finds none in time, it
 /// goes on along the plan; if the goal is not reached with certainty, it gives up.
 ///
-/// While tracking is lost, the pilot first hovers. Then it flies back on the way it came, to the
-/// last view that determined the pose, or on along the plan to a view that should reduce the
-/// uncertainty, whichever is nearer. It goes only where the body collides with nothing at any
-/// position within three standard deviations of the belief, and hovers before other places: errors
-/// of odometry grow with the distance flown. After giveUpTime it gives up.
+/// While tracking is lost, the pilot first hovers. Then it goes on to the view that it was searching
+/// for, if it was. Otherwise it flies back on the way it came, to the last view that determined the
+/// pose, or on along the plan to a view that should reduce the uncertainty, whichever is nearer.
+/// After giveUpTime it gives up.
+///
+/// Beside the plan and while tracking is lost it goes only where the body collides with nothing at
+/// any position within three standard deviations of the belief. A lost robot hovers before other
+/// places: errors of odometry grow with the distance flown.
 class Pilot {
   public:
     /// @param plan at least two views @throws std::invalid_argument otherwise
@@ -83,6 +86,10 @@ class Pilot {
     void beginSearch(const Tracker& tracker, double time);
     void continueSearch(const Tracker& tracker, double time);
     void endSearch();
+    void rejoinPlan(const UncertainPose& belief);
+    std::optional<Pose> nearestView(const UncertainPose& belief) const;
+    IsFree untouchedBy(const UncertainPose& belief) const;
+    bool isSearchSafe(const UncertainPose& belief) const;
     bool isCertainViewNearer(const Tracker& tracker) const;
     Pose bodyOf(const Pose& T_c_w) const { return T_c_w.inverse() * T_b_c_.inverse(); }
     void approachOnImage(const ImageF& image, const Pose& T_w_b);

@@ -26,6 +26,15 @@ WidestDirection widestDirection(const Matrix6& covariance) {
 
 }  // namespace
 
+bool isLineFree(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w, const IsFree& isFree) {
+    constexpr double kStep = 0.05;  // [m]
+    const int steps = 1 + static_cast<int>((to_w - from_w).norm() / kStep);
+    for (int i = 0; i <= steps; ++i) {
+        if (!isFree(from_w + (to_w - from_w) * i / steps)) return false;
+    }
+    return true;
+}
+
 double widestSigma(const Matrix6& covariance) {
     return std::sqrt(widestDirection(covariance).variance);
 }
@@ -47,8 +56,8 @@ bool ViewSearch::narrows(const UncertainPose& belief, const Pose& T_w_b) const {
     return true;
 }
 
-std::optional<Pose> ViewSearch::nearest(const UncertainPose& belief, const Pose& T_w_b) const {
-    if (!isFree_) return {};
+std::optional<Pose> ViewSearch::nearest(const UncertainPose& belief, const Pose& T_w_b,
+                                        const IsFree& isFree) const {
     const Eigen::Vector3d from_w = (T_b_c_ * belief.mean).inverse().translation();
     const double step = 0.25 * footprint(T_w_b);
     const int rings = 4 + static_cast<int>(kSearchedSigmas * widestSigma(belief.covariance) / step);
@@ -59,7 +68,7 @@ std::optional<Pose> ViewSearch::nearest(const UncertainPose& belief, const Pose&
             place.translation() +=
                 ring * step * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.);
             if (wasVisited(place, 0.5 * step)) continue;
-            if (isReachable(from_w, place.translation()) && narrows(belief, place)) return place;
+            if (isLineFree(from_w, place.translation(), isFree) && narrows(belief, place)) return place;
         }
     }
     return {};
@@ -70,15 +79,6 @@ double ViewSearch::footprint(const Pose& T_w_b) const {
     View view;
     map_->render(camera_, (T_w_b * T_b_c_).inverse(), view);
     return meanDepth(view) * camera_.height / camera_.fy();
-}
-
-bool ViewSearch::isReachable(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const {
-    constexpr double kStep = 0.05;  // [m]
-    const int steps = 1 + static_cast<int>((to_w - from_w).norm() / kStep);
-    for (int i = 0; i <= steps; ++i) {
-        if (!isFree_(from_w + (to_w - from_w) * i / steps)) return false;
-    }
-    return true;
 }
 
 bool ViewSearch::wasVisited(const Pose& T_w_b, double apart) const {

@@ -218,6 +218,45 @@ TEST_F(FlightLoop, ALostRobotHoversBeforeAGapThatItMayMiss) {
     EXPECT_NEAR(robot.T_w_b.translation().x(), 6., 0.05);
 }
 
+/// A robot half a metre from where it believes to be does not see the carpet that it expects, and
+/// searches for it, toward a wall. When its images fail, the wall is within three standard
+/// deviations.
+TEST_F(FlightLoop, ALostRobotDoesNotSearchWhereItMayTouchAWall) {
+    Scene scene;
+    addPlane(scene, {-10., -10., 0.}, {20., 0., 0.}, {0., 20., 0.},
+             addTexture(scene, uniformTexture(0.9F)));
+    addPlane(scene, {0.6, 0.2, 0.01}, {2., 0., 0.}, {0., 2., 0.},
+             addTexture(scene, valueNoise({.size = {2., 2.}, .seed = 3})));
+    const auto carpet = std::make_shared<MeshRenderer>(scene);
+    std::vector<PlannedView> plan;
+    for (int i = 0; i <= 20; ++i) {
+        plan.push_back(straightTo(std::min(1., 0.1 * i)).back());
+        plan.back().T_w_b.translation().y() = -1. - std::max(0., 0.1 * i - 1.);
+        plan.back().distance = 0.1 * i;
+        plan.back().covariance = (i < 10 ? 1. : 1e-4) * Matrix6::Identity();
+    }
+    Vector6 variances;
+    variances << 1e-4, 0.25, 1e-4, 1e-5, 1e-5, 1e-5;
+    UncertainPose start{(plan.front().T_w_b * robot.T_b_c()).inverse()};
+    start.covariance = inOtherFrame(Matrix6(variances.asDiagonal()), robot.T_b_c().inverse());
+    const auto highestY = [&](double wallY) {
+        test::ObedientRobot searching{carpet, robot.camera(), robot.T_b_c(), {0., -1.5, 2.}};
+        flown.clearance = [=](const Eigen::Vector3d& p_w) { return wallY - p_w.y(); };
+        Tracker seeing = trackerOf(searching, carpet, start);
+        Pilot flying = pilotOf(searching, plan, carpet, flown);
+        double highest = -kInfinity;
+        flyLoop(searching, seeing, flying, 0.1, [&](const Observation& observation, const auto&) {
+            const double y = searching.T_w_b.translation().y();
+            highest = std::max(highest, y);
+            searching.isBlind = searching.T_w_b.translation().x() > 0.9;
+            return observation.time < 12.;
+        });
+        return highest;
+    };
+    EXPECT_GT(highestY(5.), -0.9) << "nothing is near";
+    EXPECT_LT(highestY(0.9), -1.);
+}
+
 /// Options of photographs would take its rendered images for sharper than they are.
 TEST_F(FlightLoop, TheRobotStatesMountAndSharpnessOfItsImages) {
     UncertainPose start{(straightTo(1.).front().T_w_b * robot.T_b_c()).inverse()};
