@@ -62,6 +62,7 @@ class Session {
         constexpr double kMemory = 16384.;  // [MB]
         const ompl::tools::Benchmark::Request request(limits.timeLimit, kMemory, config_.sweep.runs,
                                                       limits.interval, false, false, false);
+        const InterruptionScope scope = plan_.interruptedBy(interrupted_);
         try {
             benchmark_.benchmark(request);
         } catch (const Interrupted&) {
@@ -96,8 +97,8 @@ class Session {
     void record(ob::Planner& planner, ompl::tools::Benchmark::RunProperties& properties) {
         const auto& ours = dynamic_cast<const BeliefPlanner&>(planner);
         const bool hasPath = planner.getProblemDefinition()->hasExactSolution();
-        if (interrupted_ && !hasPath) throw Interrupted();  // cut, inside a large view
-        PlanOutcome noPath;                                 // unless one is found below
+        if (interrupted_) throw Interrupted();  // a run that was cut is no measurement
+        PlanOutcome noPath;                     // unless one is found below
         noPath.vertices = ours.vertices();
         noPath.iterations = ours.iterations();
         SweepRun run{item(outcome_.runs.size()),

@@ -87,7 +87,8 @@ ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& pt
     }
 
     try {
-        growUntil(ptc);
+        growUntil(ob::plannerOrTerminationCondition(
+            ptc, ob::PlannerTerminationCondition(isInterrupted_)));
     } catch (const RenderingStopped&) {
         if (best_.states.empty()) throw;
     }

@@ -11,9 +11,11 @@
 #include <atomic>
 #include <chrono>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "belief/belief.hpp"
@@ -82,6 +84,10 @@ class BeliefPlanner : public ompl::base::Planner {
     /// condition, so that planners can reserve time to improve their path.
     ompl::base::PlannerStatus solve(double seconds);
     using ompl::base::Planner::solve;
+
+    /// Every solve() ends also when this returns true; for conditions that the caller of solve(),
+    /// for example OMPL's benchmark, does not know.
+    void endWhen(std::function<bool()> isInterrupted) { isInterrupted_ = std::move(isInterrupted); }
 
     /// Updates the planner after a change of the map. Clearance and information field must be
     /// updated first. Vertices and motions in collision are removed; motions that the change may
@@ -267,6 +273,7 @@ class BeliefPlanner : public ompl::base::Planner {
 
     GrowthOptions growth_;
     std::shared_ptr<BeliefModel> judge_;  // null: model_
+    std::function<bool()> isInterrupted_ = [] { return false; };
     std::shared_ptr<ompl::NearestNeighbors<Vertex*>> neighbours_;
     ompl::base::StateSamplerPtr sampler_;
     ompl::RNG rng_;

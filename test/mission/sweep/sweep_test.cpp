@@ -11,6 +11,7 @@
 
 #include "io/error.hpp"
 #include "reason_of.hpp"
+#include "sweep/planner_benchmark.hpp"
 #include "sweep/sweep_summary.hpp"
 #include "sweep_run.hpp"
 #include "temporary_folder.hpp"
@@ -279,6 +280,18 @@ TEST(SweepThreads, HandOnWhatIsThrownAndStopWhenInterrupted) {
         interrupted = true;
     });
     EXPECT_EQ(done, 1U);
+}
+
+TEST(PlannerBenchmark, ARunThatIsInterruptedEndsAndDoesNotCount) {
+    const Config config = smallSweep();
+    const World world(config);
+    std::atomic<bool> interrupted{false};
+    int begun = 0;
+    const BenchmarkOutcome outcome = benchmarkPlanners(
+        config, world, {}, interrupted, [&](const SweepItem&) { interrupted = ++begun == 2; });
+    EXPECT_EQ(begun, 2);
+    EXPECT_EQ(outcome.runs.size(), 1U);
+    EXPECT_EQ(outcome.curves.size(), 1U);
 }
 
 TEST(SweepStatistics, AreMeanAndSampleDeviation) {
