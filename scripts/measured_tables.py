@@ -4,9 +4,10 @@
 
 usage: measured_tables.py NAME KIND CAPTION ROW=FOLDER...
 
-FOLDER is a result folder of photonav, and ROW is what the table calls it. KIND is flights (results of fly), explorations or
-trials (of explore: a row for each planner, or for each flight), replays, depth (of map --depth monocular), or paper (of sweep).
-With KIND text, one file is quoted as it is.
+FOLDER is a result folder of photonav, and ROW is what the table calls it. KIND is flights (results of fly), ends (of fly: how
+flights ended; with ROW=FOLDER,FOLDER... those of several folders are counted together), explorations or trials (of explore: a
+row for each planner, or for each flight), replays, depth (of map --depth monocular), or paper (of sweep). With KIND text, one
+file is quoted as it is.
 The table is enclosed in <!-- measured NAME --> and <!-- end -->, as in the pages.
 """
 
@@ -51,6 +52,15 @@ def flightRows(label, result):
             "at the goal": number(s["nees_at_goal_per_dof"], 2),
             "goal error": millimetres(s["goal_error_m"]),
             "speed": number(s["mean_speed_mps"], 2) + " m/s" if s["mean_speed_mps"] else "",
+        }
+
+
+def endRows(label, *results):
+    for summaries in zip(*(result["planners"] for result in results)):
+        yield {
+            "config": label,
+            "planner": summaries[0]["planner"],
+            "ends": ends({name: sum(s[key] for s in summaries) for name, key in ENDS.items()}),
         }
 
 
@@ -140,7 +150,7 @@ def paperRows(label, result):
         yield row
 
 
-KINDS = {"flights": flightRows, "explorations": explorationRows, "trials": trialRows, "replays": replayRows,
+KINDS = {"flights": flightRows, "ends": endRows, "explorations": explorationRows, "trials": trialRows, "replays": replayRows,
          "depth": depthRows, "paper": paperRows}
 
 
@@ -157,13 +167,14 @@ def table(rows):
 
 
 def main():
-    name, kind, caption, *folders = sys.argv[1:]
+    name, kind, caption, *rowsOfFolders = sys.argv[1:]
     if kind == "text":
-        body = ["```", pathlib.Path(folders[0]).read_text().strip("\n"), "```"]
+        body = ["```", pathlib.Path(rowsOfFolders[0]).read_text().strip("\n"), "```"]
     else:
         rows = []
-        for label, folder in (row.split("=", 1) for row in folders):
-            rows += KINDS[kind](label, json.loads((pathlib.Path(folder) / "result.json").read_text()))
+        for label, folders in (row.split("=", 1) for row in rowsOfFolders):
+            results = (json.loads((pathlib.Path(folder) / "result.json").read_text()) for folder in folders.split(","))
+            rows += KINDS[kind](label, *results)
         body = table(rows)
     print(f"<!-- measured {name} -->", f"*{caption}*\n", *body, "<!-- end -->\n", sep="\n")
 

@@ -57,6 +57,10 @@ class Tables(unittest.TestCase):
         rows = [row for seed in (1, 2) for row in self.tables.flightRows("room", {**FLOWN, "seed": seed})]
         self.assertIn("| config | seed |", next(self.tables.table(rows)))
 
+    def test_endsOfAllSeedsAreCountedTogether(self):
+        _, _, *rows = self.tables.table(list(self.tables.endRows("room", FLOWN, FLOWN)))
+        self.assertEqual(rows, ["| room | belief_rrt_star | 2 arrived, 4 uncertain |", "| | rrt_star | 2 arrived, 4 uncertain |"])
+
     def test_explorationsOfAPlannerCountItsFlights(self):
         (row,) = self.tables.explorationRows("kitchen", EXPLORED)
         self.assertEqual(row["ends"], "2 uncertain")
@@ -103,6 +107,12 @@ class Measure(unittest.TestCase):
         self.assertEqual(len(self.calls()), 8)
         self.assertEqual(self.measure("explorations", "--trials", "5").returncode, 0)
         self.assertEqual(len(self.calls()), 15)
+
+    def test_faultyFlightsOfFiveSeedsAreOneRow(self):
+        (self.folder / "result.json").write_text(json.dumps(FLOWN))
+        self.assertEqual(self.measure("faults").returncode, 0)
+        self.assertEqual(self.calls(), (["plan"] + ["fly"] * 5) * 4)
+        self.assertIn("| kitchen | belief_rrt_star | 5 arrived, 10 uncertain |\n", (self.folder / "out/faults.md").read_text())
 
     def test_pagesGetTheTables(self):
         self.measure("explorations")
