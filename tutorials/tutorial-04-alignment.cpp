@@ -115,7 +115,7 @@ void watchItConverge(const ViewSource& model, const Camera& camera, const ImageF
                         {"predicted in step " + std::to_string(step), predictedPicture(view)},
                         {"residual", greyPicture(difference)}});
         const PoseEquations p = poseEquations(e, kPhotometric);
-        T_c_w = expSE3(p.information.ldlt().solve(p.right)) * T_c_w;
+        T_c_w = expSE3(p.information.ldlt().solve(p.rhs)) * T_c_w;
     }
     //! [gauss newton]
     rows.resize(3);

@@ -44,7 +44,7 @@ Plot drawMap(const ExplorationResult& flight, const Config& config) {
     plot.picture(greyPicture(map.pictureFromAbove(area, 1.4, 0.05)), area, false);
     plot.curve(
         fromAbove(flight.samples),
-        {.color = plannerColor(flight.planner), .width = 3., .name = "way flown", .halo = 1.});
+        {.color = plannerColor(flight.planner), .width = 3., .name = "path flown", .halo = 1.});
     plot.marker(config.start.position.head<2>(), kInk, "start");
     plot.marker(config.goal.position.head<2>(), Color{222, 79, 12}, "goal");
     return plot;
@@ -62,7 +62,7 @@ Eigen::Vector2d errorsOf(const FlightSample& s) {
 Plot drawErrors(const std::vector<FlightSample>& samples) {
     Plot plot;
     plot.width = 640.;
-    plot.x = {.min = 0., .label = "way flown [m]"};
+    plot.x = {.min = 0., .label = "path flown [m]"};
     plot.y = {.min = 0., .label = "position error [mm]"};
     Plot::Points believed, actual;
     for (const FlightSample& s : samples) {
@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
     const Config config = flightThrough();
     const World truth(room(), config);  // that the robot does not know
     const PlanningProblem problem(config, truth);
-    std::puts("  time  cells mapped  edges blocked  way to go");
+    std::puts("  time  cells mapped  edges blocked  path to go");
     const auto onUpdate = [](const ExplorationResult& soFar) {
         const PlanUpdate& update = soFar.updates.back();
         std::printf("%4.1f s  %12zu  %13zu  %7.2f m\n", update.time, soFar.map->size(),

@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
          {std::pair{"fixed", Headings::fixed}, {"forward", Headings::forward}}) {
         ompl::geometric::PathGeometric rival(problem.spaceInformation());
         for (const auto& state :
-             withHeadings(problem.spaceInformation(), problem.space(), states, headings)) {
+             replaceHeadings(problem.spaceInformation(), problem.space(), states, headings)) {
             rival.append(state.get());
         }
         show(name, problem.evaluate(name, rival), plannerColor(std::string("rrt_star/") + name));

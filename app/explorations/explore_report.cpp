@@ -41,7 +41,7 @@ ReportTable tableOf(const ExplorationSummary& s) {
 ReportTable tableOfUpdates(const ExplorationResult& flight) {
     ReportTable table{
         "Updates of the first flight: vertices gone, new, rewired; views rendered; "
-        "fusion + clearance + planning; way to go",
+        "fusion + clearance + planning; path to go",
         {}};
     for (const PlanUpdate& u : flight.updates) {
         const std::string way =
@@ -79,24 +79,24 @@ std::vector<NamedFigure> figuresOf(const ExplorationSetup& setup, const World& w
          {"The true scene from above, with the true positions of all flights.",
           topViewFigure(view).png()}},
         {"trace.png",
-         {"Trace of the belief and NEES (1: consistent) over the way flown, and the time of "
+         {"Trace of the belief and NEES (1: consistent) over the path flown, and the time of "
           "the updates.",
           explorationFigure(flights, setup.config.belief.characteristicLength).png()}},
         {"bands.png",
-         {"Trace of the beliefs along the normalised way: mean of the flights of a planner, and "
+         {"Trace of the beliefs along the normalised path: mean of the flights of a planner, and "
           "the band in which 95 % of them are.",
           traceBandsFigure(flights, setup.config.belief.characteristicLength).png()}}};
     if (!outcome.log || outcome.log->moments.empty()) return figures;
     view.trees.clear();
     figures.push_back({"stages.png",
-                       {"The first flight in stages. Above: the true scene, the way flown and, "
+                       {"The first flight in stages. Above: the true scene, the path flown and, "
                         "transparent, the plan. In the middle: what is free at the height of the "
                         "robot (white), too near to an obstacle (brown), an obstacle (black) or "
                         "not seen yet (grey). Below: the information of views with the robot's "
                         "heading.",
                         stagesFigure(*outcome.log, view).png()}});
     figures.push_back({"plans.png",
-                       {"Plans of the first flight, dark to bright over time, and the way flown.",
+                       {"Plans of the first flight, dark to bright over time, and the path flown.",
                         plansFigure(*outcome.log, view).png()}});
     return figures;
 }

@@ -42,7 +42,7 @@ ReportTable tableOf(const FlightSet& set) {
         {"true distance to the goal at the end, median", lengthText(s.goalError)},
         {"time without tracking, all flights", fmt::format("{:.1f} s", s.lostTime)},
         {"duration, mean", fmt::format("{:.1f} s", s.duration)},
-        {"speed on the way to the goal, mean", fmt::format("{:.2f} m/s", s.meanSpeed)}};
+        {"mean speed until the goal is reached", fmt::format("{:.2f} m/s", s.meanSpeed)}};
     if (s.photometric > 0) {
         table.rows.emplace_back(
             "servoing on the image of the goal",

@@ -53,9 +53,9 @@ std::string flightsText(const FlightSet& set) {
     const FlightSummary s = summarise(set);
     std::size_t withLoss = 0;
     for (const FlightResult& flight : set.flights) withLoss += flight.timesLost > 0;
-    return fmt::format(
-        "{} of {} arrived, {} lost track on the way, position error {} rms (predicted {})",
-        s.arrived, s.flights, withLoss, lengthText(s.positionRmse), lengthText(s.predictedSigma));
+    return fmt::format("{} of {} arrived, {} lost track, position error {} rms (predicted {})",
+                       s.arrived, s.flights, withLoss, lengthText(s.positionRmse),
+                       lengthText(s.predictedSigma));
 }
 
 std::vector<ReportView> viewsAlong(const CheckOutcome& report) {

@@ -13,7 +13,7 @@ namespace photonav {
 namespace {
 
 constexpr double kExploreWidth = 900., kExploreHeight = 240.;  // of a panel [px]
-constexpr const char* kWay = "way flown [m]";
+constexpr const char* kWay = "path flown [m]";
 
 Plot panel(const std::string& label, bool isLog) {
     Plot plot;
@@ -84,7 +84,7 @@ void addBand(Plot& plot, const std::vector<const ExplorationResult*>& flights, d
 DrawnTree drawnWay(const ExplorationResult& flight) {
     const auto darker = [](std::uint8_t level) { return static_cast<std::uint8_t>(level * 3 / 5); };
     const Color color = plannerColor(flight.planner);
-    DrawnTree way{"true way, " + flight.planner,
+    DrawnTree way{"true path, " + flight.planner,
                   {darker(color.red), darker(color.green), darker(color.blue)},
                   {},
                   true};
@@ -97,7 +97,7 @@ DrawnTree drawnWay(const ExplorationResult& flight) {
 
 DrawnPath drawnBeliefs(const ExplorationResult& flight, double characteristicLength) {
     constexpr double kApart = 0.1;  // [m]
-    DrawnPath path{"believed way", plannerColor(flight.planner)};
+    DrawnPath path{"believed path", plannerColor(flight.planner)};
     double last = -kApart;
     for (const FlightSample& sample : flight.samples) {
         const bool isLast = &sample == &flight.samples.back();
@@ -133,14 +133,14 @@ Figure explorationFigure(const std::vector<ExplorationResult>& flights,
         nees.curve(ofNees, styleOf(flight));
         updates.dots(ofUpdate, {.color = plannerColor(flight.planner), .width = 5.});
     }
-    return {"Beliefs along the way", {{traces}, {nees}, {updates}}};
+    return {"Beliefs along the path", {{traces}, {nees}, {updates}}};
 }
 
 Figure traceBandsFigure(const std::vector<ExplorationResult>& flights,
                         double characteristicLength) {
     Plot plot = panel("trace of the belief [m²]", true);
     plot.height = 340.;
-    plot.x = {.min = 0., .max = 1., .label = "share of the way flown"};
+    plot.x = {.min = 0., .max = 1., .label = "share of the path flown"};
     std::map<std::string, std::vector<const ExplorationResult*>> ofPlanner;
     for (const ExplorationResult& flight : flights) {
         if (!flight.samples.empty()) ofPlanner[flight.planner].push_back(&flight);

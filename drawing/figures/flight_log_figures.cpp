@@ -40,10 +40,10 @@ Plot::Points placesOf(const std::vector<PathPoint>& plan) {
     return places;
 }
 
-/// Plan, way flown and robot over a map.
+/// Plan, path flown and robot over a map.
 void addFlight(Plot& plot, const FlightLog& log, const LoggedMoment& moment) {
     plot.curve(flownUntil(log, moment.update.time),
-               {.color = kFlown, .width = 2.4, .name = "way flown", .halo = 1.2});
+               {.color = kFlown, .width = 2.4, .name = "path flown", .halo = 1.2});
     plot.curve(placesOf(moment.plan), {.color = plannerColor(log.planner),
                                        .width = 3.2,
                                        .name = "plan, " + log.planner,
@@ -57,7 +57,7 @@ Plot scenePanel(const FlightLog& log, const LoggedMoment& moment, TopView scene,
     Plot plot = topViewPlot(scene, side);
     plot.title = fmt::format("{:.1f} s, {:.1f} m flown", moment.update.time, moment.way);
     plot.curve(flownUntil(log, moment.update.time),
-               {.color = kFlown, .width = 2.4, .name = "way flown", .halo = 1.2});
+               {.color = kFlown, .width = 2.4, .name = "path flown", .halo = 1.2});
     const Eigen::Matrix2d covariance = moment.robot.positionCovariance.topLeftCorner<2, 2>();
     plot.fill({ellipse(moment.robot.position.head<2>(), covariance, 3.)},
               {.color = kInk, .opacity = 0.5, .name = "3σ of the robot"});
@@ -150,7 +150,7 @@ Figure plansFigure(const FlightLog& log, const TopView& scene) {
                    {.color = viridis(moment.update.time / last), .width = 2.6, .halo = 0.8});
     }
     plot.curve(flownUntil(log, std::numeric_limits<double>::infinity()),
-               {.color = kInk, .width = 1.6, .name = "way flown", .dashed = true});
+               {.color = kInk, .width = 1.6, .name = "path flown", .dashed = true});
     plot.colorBar({.min = 0., .max = last, .label = "time of the plan [s]"});
     return {"Plans over time, " + log.planner, {{plot}}};
 }

@@ -18,7 +18,7 @@ json jsonOf(const PlanUpdate& update) {
     return result;
 }
 
-/// The trace of the belief over the way flown.
+/// The trace of the belief over the path flown.
 json traceOf(const ExplorationResult& flight, double characteristicLength) {
     json trace = json::array();
     for (const FlightSample& sample : flight.samples) {

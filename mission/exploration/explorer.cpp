@@ -42,7 +42,7 @@ double stoppingRadius(const ExplorerOptions& options, double distance) {
     return std::min(config.robotRadius, options.bodyRadius + 3. * std::sqrt(variance));
 }
 
-TrackerOptions trackerFor(const ExplorerOptions& options, const OwnMap& map) {
+TrackerOptions trackerFor(const ExplorerOptions& options, const OnlineMap& map) {
     TrackerOptions tracker = options.tracker;
     tracker.mapErrors = map.errors();
     return tracker;
@@ -240,7 +240,7 @@ bool Explorer::isStuckAtGoal() {
 bool Explorer::hasEnded() {
     stopIfInterrupted();
     if (tracker_.loss().isLost() && pilot_.hasGivenUp(tracker_, time_)) {
-        return endAs(FlightEnd::lost, "tracking was lost for good");
+        return endAs(FlightEnd::lost, "tracking was lost and not regained");
     }
     if (withoutWay_ >= kMostInVain) return endAs(FlightEnd::noWay, reasonForNoWay());
     if (stoppedSince_ && time_ - *stoppedSince_ > kMostStopped) {

@@ -54,7 +54,7 @@ struct ExplorationRecord {
 /// The state right after an update of the plan, for logs and figures.
 struct ExplorerMoment {
     const OnlinePlanner& planner;
-    const OwnMap& map;
+    const OnlineMap& map;
     const MapChange& change;     ///< change of the map since the last update
     const UncertainPose& T_c_w;  ///< the belief
     const View& image;           ///< the image tracked last
@@ -121,7 +121,7 @@ class Explorer {
     Pose T_b_c_;
     const std::atomic<bool>& interrupted_;
     OnExplorer on_;
-    OwnMap map_;
+    OnlineMap map_;
     OnlinePlanner planner_;
     Tracker tracker_;
     Pilot pilot_;

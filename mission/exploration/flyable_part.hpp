@@ -13,7 +13,7 @@ namespace photonav {
 /// The robot's present information about the space around it.
 struct SpaceAhead {
     std::function<double(const Eigen::Vector3d& p_w)> clearance;  ///< in the present map [m]
-    /// Whether a place was observed (OwnMap::isSeen()).
+    /// Whether a place was observed (OnlineMap::isSeen()).
     std::function<bool(const Eigen::Vector3d& p_w)> isSeen;
     double radius = 0.;  ///< radius around the body that must stay free [m]
     /// Radius around the robot that a tilted camera does not observe [m]. A robot that cannot turn

@@ -7,7 +7,7 @@ bool KeyframeChoice::isUsable(const TrackedFrame& tracked, const View& image) co
     if (isBlack(image.intensity)) return false;
     // Where the map shows too little to be aligned to, it has to grow; where it is doubted, it has
     // to be made again.
-    return !tracked.rejected || tracked.isMapDoubted ||
+    return !tracked.rejected || tracked.isMapInconsistent ||
            tracked.alignment.verdict == Verdict::lostOverlap;
 }
 

@@ -18,7 +18,7 @@ MonocularOptions monocularFor(const PhotometricOptions& photometric) {
 
 }  // namespace
 
-Mapper::Mapper(const Config& config, OwnMap& map)
+Mapper::Mapper(const Config& config, OnlineMap& map)
     : camera_(config.camera.camera()), map_(map), choice_(config.explore) {
     if (config.explore.sensor != ExploreSensor::monocular) return;
     depth_.emplace(camera_, monocularFor(config.photometric));
@@ -27,10 +27,10 @@ Mapper::Mapper(const Config& config, OwnMap& map)
 std::optional<MapChange> Mapper::add(const TrackedFrame& tracked, const View& image,
                                      const View& shown, bool isNeeded) {
     std::optional<MapChange> forgotten;
-    if (tracked.isMapDoubted) forgotten = map_.forget(shown, camera_, tracked.T_c_w.mean);
+    if (tracked.isMapInconsistent) forgotten = map_.forget(shown, camera_, tracked.T_c_w.mean);
     std::optional<MapChange> change =
         depth_ ? addToFilter(tracked, image, shown, isNeeded)
-               : addKeyframe(tracked, image, shown, isNeeded || tracked.isMapDoubted);
+               : addKeyframe(tracked, image, shown, isNeeded || tracked.isMapInconsistent);
     if (!forgotten) return change;
     if (change) forgotten->join(*change);
     return forgotten;

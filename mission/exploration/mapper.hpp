@@ -6,7 +6,7 @@
 
 #include "depth/monocular_depth.hpp"
 #include "exploration/keyframe_choice.hpp"
-#include "exploration/own_map.hpp"
+#include "exploration/online_map.hpp"
 
 namespace photonav {
 
@@ -16,7 +16,7 @@ namespace photonav {
 class Mapper {
   public:
     /// @param map must outlive the mapper
-    Mapper(const Config& config, OwnMap& map);
+    Mapper(const Config& config, OnlineMap& map);
 
     /// Adds a tracked image.
     /// @param shown view of the map from the believed pose
@@ -36,7 +36,7 @@ class Mapper {
                                          const View& shown, bool isNeeded);
 
     Camera camera_;
-    OwnMap& map_;
+    OnlineMap& map_;
     KeyframeChoice choice_;
     std::optional<MonocularDepth> depth_;  // of a camera without a depth sensor
     int reference_ = 0;                    // number of the reference image's pose in the map

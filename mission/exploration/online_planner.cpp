@@ -32,7 +32,7 @@ Config configOf(Config config, const std::string& planner) {
     config.quickViews = true;
     config.field.positionPitch *= 2.;
     config.field.rotationPitch *= 2.;
-    config.field.turns = config.explore.viewTurns;
+    config.field.updatesUntilStale = config.explore.viewTurns;
     config.belief.initialCovariance = config.explore.initialCovariance;
     config.unknownToCamera = UnknownPolicy::free;
     config.unknownToPlanner = config.explore.unknown == UnknownSpace::optimistic
@@ -47,7 +47,7 @@ std::shared_ptr<ob::State> copyOf(const ob::SpaceInformationPtr& si, const ob::S
 
 }  // namespace
 
-OnlinePlanner::OnlinePlanner(const Config& config, const OwnMap& map, const ExplorePlanner& kind,
+OnlinePlanner::OnlinePlanner(const Config& config, const OnlineMap& map, const ExplorePlanner& kind,
                              std::uint32_t seed)
     : config_(configOf(config, kind.name)),
       world_(map.cells(), map.obstacles(), config_),
@@ -152,13 +152,13 @@ OnlinePlanner::States OnlinePlanner::solution(const std::atomic<bool>& interrupt
     if (usesViews(kind_.name)) {
         for (const ob::State* state : states) plan.push_back(copyOf(si, state));
     } else {
-        plan = shortened(si, problem_.space(), states, kChangesWithoutViews,
-                         ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+        plan = shortenPath(si, problem_.space(), states, kChangesWithoutViews,
+                           ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
     }
     if (!kind_.headings) return plan;
     states.clear();
     for (const auto& state : plan) states.push_back(state.get());
-    return withHeadings(si, problem_.space(), states, *kind_.headings);
+    return replaceHeadings(si, problem_.space(), states, *kind_.headings);
 }
 
 /// What is left of a plan for a robot that flies along it; empty: an obstacle was seen on it.

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "config/explore_planner.hpp"
-#include "exploration/own_map.hpp"
+#include "exploration/online_map.hpp"
 #include "problem/planning_problem.hpp"
 
 namespace photonav {
@@ -31,7 +31,7 @@ class OnlinePlanner {
   public:
     /// @param map must outlive the planner
     /// @param kind planner, headings and replanning policy
-    OnlinePlanner(const Config& config, const OwnMap& map, const ExplorePlanner& kind,
+    OnlinePlanner(const Config& config, const OnlineMap& map, const ExplorePlanner& kind,
                   std::uint32_t seed);
 
     /// Updates the plan from the believed pose after a change of the map.

@@ -175,7 +175,7 @@ std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(
     SearchOptions search = config_.search;
     if (hasQuickViews()) search.inflation = kInflationByQuickViews;
     auto planner = photonav::makePlanner(name, si_, model, search, growth);
-    if (hasQuickViews()) planner->judgeBy(evaluator_);
+    if (hasQuickViews()) planner->setReferenceModel(evaluator_);
     planner->endWhen([flag = interruption_] { return (*flag)->load(); });
     planner->setProblemDefinition(definition());
     planner->setup();

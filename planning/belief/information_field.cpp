@@ -50,8 +50,8 @@ InformationField::InformationField(Evaluate evaluate, const Pose& T_b_c, const O
     if (!(options.positionPitch > 0. && options.rotationPitch > 0.)) {
         throw std::invalid_argument("information field: the pitch must be positive");
     }
-    if (options.turns == 0) {
-        throw std::invalid_argument("information field: the turns must be positive");
+    if (options.updatesUntilStale == 0) {
+        throw std::invalid_argument("information field: updatesUntilStale must be positive");
     }
 }
 
@@ -156,7 +156,7 @@ void InformationField::update(std::shared_ptr<const ViewSource> views, const Map
             isTouched = 1;
             ++marked_;
         }
-        if ((entry.index + epoch_) % options_.turns != 0) continue;
+        if ((entry.index + epoch_) % options_.updatesUntilStale != 0) continue;
         entry.isStale = true;
         isTouched = 0;
     }

@@ -31,7 +31,7 @@ class InformationField {
             std::numbers::pi / 36.;  ///< per component of the rotation vector [rad]
         /// Number of updates over which the entries with a change in view become stale: one part of
         /// them at each update. 1: all at once.
-        unsigned turns = 1;
+        unsigned updatesUntilStale = 1;
     };
 
     struct Entry {

@@ -27,7 +27,7 @@ Audit auditTree(const BeliefPlanner& planner) {
         return point;
     };
     for (const TreeNode& node : nodes) {
-        if (!node.covariance) {  // a planner without beliefs: its cost is the way flown
+        if (!node.covariance) {  // a planner without beliefs: its cost is the path flown
             BeliefPoint point{};
             if (planner.movedRoot()) point.cost = planner.movedRoot()->cost;
             if (node.parent >= 0) {

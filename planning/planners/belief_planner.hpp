@@ -105,7 +105,9 @@ class BeliefPlanner : public ompl::base::Planner {
     /// Sets a second model of the same belief, with more accurate views than model(). After an
     /// update, belief_rrt_star compares the kept path and a new one by this model; other planners
     /// do not use it. The costs that the planner returns are always those of model().
-    void judgeBy(std::shared_ptr<BeliefModel> judge) { judge_ = std::move(judge); }
+    void setReferenceModel(std::shared_ptr<BeliefModel> reference) {
+        reference_ = std::move(reference);
+    }
 
     void clear() override;
     void getPlannerData(ompl::base::PlannerData& data) const override;
@@ -214,10 +216,11 @@ class BeliefPlanner : public ompl::base::Planner {
     /// Stores a path (start first) if it costs less than the best one so far.
     void offer(double cost, const std::vector<const ompl::base::State*>& path);
 
-    /// Whether judgeBy() has set a second model.
-    bool hasJudge() const { return judge_ != nullptr; }
-    /// The cost of a path from a root, by the model of judgeBy(), or by model() if there is none.
-    double judgedCost(const std::vector<ompl::base::State*>& path);
+    /// Whether setReferenceModel() has set a second model.
+    bool hasReferenceModel() const { return reference_ != nullptr; }
+    /// The cost of a path from a root, by the model of setReferenceModel(), or by model() if there
+    /// is none.
+    double referenceCost(const std::vector<ompl::base::State*>& path);
     /// Replaces the best path by this one (start first), even if it costs more.
     void replaceBest(double cost, const std::vector<const ompl::base::State*>& path);
 
@@ -272,7 +275,7 @@ class BeliefPlanner : public ompl::base::Planner {
     void freeMemory();
 
     GrowthOptions growth_;
-    std::shared_ptr<BeliefModel> judge_;  // null: model_
+    std::shared_ptr<BeliefModel> reference_;  // null: model_
     std::function<bool()> isInterrupted_ = [] { return false; };
     std::shared_ptr<ompl::NearestNeighbors<Vertex*>> neighbours_;
     ompl::base::StateSamplerPtr sampler_;

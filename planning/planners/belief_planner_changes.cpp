@@ -160,12 +160,12 @@ std::optional<double> BeliefPlanner::costOf(const std::vector<ob::State*>& path)
     return belief.cost;
 }
 
-double BeliefPlanner::judgedCost(const std::vector<ob::State*>& path) {
-    BeliefModel& judge = judge_ ? *judge_ : *model_;
+double BeliefPlanner::referenceCost(const std::vector<ob::State*>& path) {
+    BeliefModel& reference = reference_ ? *reference_ : *model_;
     Belief belief = rootAt(path.front())->belief;
     for (std::size_t i = 1; i < path.size(); ++i) {
-        Motion motion = judge.motion(path[i - 1], path[i]);
-        belief = judge.propagate(belief, motion);
+        Motion motion = reference.motion(path[i - 1], path[i]);
+        belief = reference.propagate(belief, motion);
     }
     return belief.cost;
 }

@@ -49,7 +49,7 @@ BeliefRRTstar::BeliefRRTstar(const ob::SpaceInformationPtr& si, std::shared_ptr<
 void BeliefRRTstar::begin(const ob::PlannerTerminationCondition& ptc) {
     keptCost_ = isFollowing_ ? bestCost() : kInfinity;
     kept_.reset();
-    if (isFollowing_ && hasJudge()) {
+    if (isFollowing_ && hasReferenceModel()) {
         kept_.emplace(si_);
         for (const ob::State* state : bestPath()) kept_->append(state);
     }
@@ -129,7 +129,7 @@ void BeliefRRTstar::follow(const ob::PlannerTerminationCondition& ptc) {
     if (!path_.empty()) {
         const double kept = bestCost();
         descend(ptc, options_.shortcut);
-        judgeKept();
+        compareWithKept();
         const bool wasInVain = bestCost() >= kept;
         gain_ = bestCost() / pathCost_ * (wasInVain ? kCaution : 1.);
     } else if (options_.shortcut > 0) {
@@ -143,12 +143,12 @@ void BeliefRRTstar::follow(const ob::PlannerTerminationCondition& ptc) {
     limitOfUpdate_ = kInfinity;
 }
 
-/// Returns to the path that an update has kept, unless the judge as well finds the other one
-/// better.
-void BeliefRRTstar::judgeKept() {
+/// Returns to the path that an update has kept, unless the reference model as well finds the other
+/// one better.
+void BeliefRRTstar::compareWithKept() {
     if (!kept_ || bestCost() == keptCost_) return;
     auto& kept = kept_->getStates();
-    if (judgedCost(bestPath()) <= (1. - options_.commitment) * judgedCost(kept)) return;
+    if (referenceCost(bestPath()) <= (1. - options_.commitment) * referenceCost(kept)) return;
     replaceBest(keptCost_, {kept.begin(), kept.end()});
 }
 

@@ -116,7 +116,7 @@ class BeliefRRTstar : public BeliefPlanner {
     PathDescent descentAt(const std::vector<const ompl::base::State*>& path,
                           double firstStep) const;
     void follow(const ompl::base::PlannerTerminationCondition& ptc);
-    void judgeKept();
+    void compareWithKept();
 
     SearchOptions options_;
     Roadmap roadmap_;
@@ -127,7 +127,7 @@ class BeliefRRTstar : public BeliefPlanner {
     bool isSearchDue_ = false;                // something has changed since
     bool isFollowing_ = false;                // an update has kept a path
     double keptCost_ = kInfinity;             // of this path
-    std::optional<ompl::geometric::PathGeometric> kept_;  // the same, for the judge
+    std::optional<ompl::geometric::PathGeometric> kept_;  // the same, for the reference model
     double limitOfUpdate_ = kInfinity;                    // see limitOfUpdate()
     bool isWellObserved_ = true;                          // along the last path
     double overBase_ = 1.;                                // its cost over its base cost

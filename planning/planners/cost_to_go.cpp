@@ -86,7 +86,7 @@ void CostToGo::findObserved(const Roadmap& roadmap, const std::deque<Vertex>& ve
         else
             observes_.push_back(near == nullptr ? observedFrom(vertex) : observes_[near->index]);
     }
-    for (int k = 0; k < kAxes; ++k) findViews(roadmap, vertices, k);
+    for (int k = 0; k < kPositionAxes; ++k) findViews(roadmap, vertices, k);
 }
 
 /// Whether the uncertainty at the start may add much to the base cost.
@@ -116,7 +116,7 @@ CostToGo::Observed CostToGo::observedFrom(const Vertex& vertex) const {
     const auto& view = model_->field().atAnyEpoch(model_->space().bodyPose(vertex.state));
     if (view.isStale) return {true, true, true};
     Observed observed{};
-    for (int k = 0; k < kAxes; ++k) observed[k] = view.information(k, k) > kMinInformation;
+    for (int k = 0; k < kPositionAxes; ++k) observed[k] = view.information(k, k) > kMinInformation;
     return observed;
 }
 
@@ -146,7 +146,7 @@ double CostToGo::from(const Vertex& vertex, const PerAxis& variance) const {
     if (charge_ == 0. || length == kInfinity) return base;
     double unobserved = 0.;  // charge until each axis is observed, on the shortest path
     double detour = 0.;      // at least as much more for one of the axes
-    for (int k = 0; k < kAxes; ++k) {
+    for (int k = 0; k < kPositionAxes; ++k) {
         const double toView = toView_[k][vertex.index];
         const double least = charge_ * variance[k] * std::min(toView, length);
         const double never = charge_ * variance[k] * length;
@@ -164,7 +164,7 @@ double CostToGo::over(const Roadmap::Edge& edge, const Vertex& vertex,
     PerAxis left = variance;
     double cost = baseCostOf(edge);
     if (charge_ > 0.) {
-        for (int k = 0; k < kAxes; ++k) {
+        for (int k = 0; k < kPositionAxes; ++k) {
             if (observes(edge, k)) left[k] = 0.;
             cost += charge_ * left[k] * edge.motion.length;
         }
@@ -178,7 +178,7 @@ CostToGo::PerAxis CostToGo::variances(const Matrix6& covariance) const {
     const Eigen::LLT<Matrix6> llt(covariance);
     if (llt.info() != Eigen::Success) return variance;
     const Matrix6 precision = llt.solve(Matrix6::Identity());
-    for (int k = 0; k < kAxes; ++k) variance[k] = 1. / precision(k, k);
+    for (int k = 0; k < kPositionAxes; ++k) variance[k] = 1. / precision(k, k);
     return variance;
 }
 

@@ -55,8 +55,8 @@ class CostToGo {
 
     /// Conditional variance of each position coordinate (axes of the world) given all other
     /// coordinates of the belief [m^2]; neither motion nor uninformative views reduce it.
-    static constexpr int kAxes = 3;
-    using PerAxis = std::array<double, kAxes>;
+    static constexpr int kPositionAxes = 3;
+    using PerAxis = std::array<double, kPositionAxes>;
     PerAxis variances(const Matrix6& covariance) const;
 
     /// Lower bound on the cost from a vertex to a goal; infinite if no goal can be reached.
@@ -71,7 +71,7 @@ class CostToGo {
     double distance(const Vertex& vertex) const { return toGoal_[vertex.index]; }
 
   private:
-    using Observed = std::array<bool, kAxes>;  // whether a view informs about an axis
+    using Observed = std::array<bool, kPositionAxes>;  // whether a view informs about an axis
 
     const Vertex* evaluatedNear(const Roadmap& roadmap, const Vertex& vertex) const;
     Observed observedFrom(const Vertex& vertex) const;
@@ -94,8 +94,10 @@ class CostToGo {
     std::vector<double> baseCost_;    // by vertex: least sum of base costs to a goal
     std::vector<Observed> observes_;  // by vertex
     std::vector<bool> isEvaluated_;   // by vertex; else it observes what a near one does
-    std::array<std::vector<double>, kAxes> toView_;   // by vertex: distance to a view of the axis
-    std::array<std::vector<double>, kAxes> viaView_;  // by vertex: base costs to the goal by there
+    std::array<std::vector<double>, kPositionAxes>
+        toView_;  // by vertex: distance to a view of the axis
+    std::array<std::vector<double>, kPositionAxes>
+        viaView_;  // by vertex: base costs to the goal by there
 };
 
 }  // namespace photonav

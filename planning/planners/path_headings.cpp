@@ -9,10 +9,10 @@
 namespace photonav {
 namespace ob = ompl::base;
 
-std::vector<std::shared_ptr<ob::State>> withHeadings(const ob::SpaceInformationPtr& si,
-                                                     const FlightSpace& space,
-                                                     const std::vector<const ob::State*>& path,
-                                                     Headings headings) {
+std::vector<std::shared_ptr<ob::State>> replaceHeadings(const ob::SpaceInformationPtr& si,
+                                                        const FlightSpace& space,
+                                                        const std::vector<const ob::State*>& path,
+                                                        Headings headings) {
     constexpr double kVertical = 1e-6;  // a leg with a shorter way from above has no heading [m]
     if (space.kind() != StateKind::positionYaw) {
         throw std::invalid_argument("headings: the space has none that is free");

@@ -23,7 +23,7 @@ enum class Headings {
 ///        changed
 /// @return the new states; a turn on the spot is a motion of its own
 /// @throws std::invalid_argument unless the space is StateKind::positionYaw
-std::vector<std::shared_ptr<ompl::base::State>> withHeadings(
+std::vector<std::shared_ptr<ompl::base::State>> replaceHeadings(
     const ompl::base::SpaceInformationPtr& si, const FlightSpace& space,
     const std::vector<const ompl::base::State*>& path, Headings headings);
 

@@ -6,11 +6,11 @@
 namespace photonav {
 namespace ob = ompl::base;
 
-std::vector<std::shared_ptr<ob::State>> shortened(const ob::SpaceInformationPtr& si,
-                                                  const FlightSpace& space,
-                                                  const std::vector<const ob::State*>& path,
-                                                  unsigned changes,
-                                                  const ob::PlannerTerminationCondition& ptc) {
+std::vector<std::shared_ptr<ob::State>> shortenPath(const ob::SpaceInformationPtr& si,
+                                                    const FlightSpace& space,
+                                                    const std::vector<const ob::State*>& path,
+                                                    unsigned changes,
+                                                    const ob::PlannerTerminationCondition& ptc) {
     const auto blind = std::make_shared<InformationField>(InformationFormula{}, Pose::Identity(),
                                                           InformationField::Options{});
     BeliefOptions byLength;

@@ -18,7 +18,7 @@ namespace photonav {
 /// @param path at least one state; the motions must be free
 /// @param changes approximate number of changes that are tried
 /// @return the new states, from the same start to the same end; the motions are free
-std::vector<std::shared_ptr<ompl::base::State>> shortened(
+std::vector<std::shared_ptr<ompl::base::State>> shortenPath(
     const ompl::base::SpaceInformationPtr& si, const FlightSpace& space,
     const std::vector<const ompl::base::State*>& path, unsigned changes,
     const ompl::base::PlannerTerminationCondition& ptc);

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "render/surface_meeting.hpp"
+#include "render/surface_intersection.hpp"
 #include "render/voxel_boxes.hpp"
 #include "render/voxel_rays.hpp"
 
@@ -70,7 +70,7 @@ class PacketTracer {
     Vector3<Int> gridCells(const Rays& rays) const;
     Int bricksAt(const Vector3<Int>& cells) const;
     Int enterCells(Rays& rays, Int& inside) const;
-    Meeting meetSurfaces(const Rays& rays, const Int& planes, const Exit& exit) const;
+    Intersection meetSurfaces(const Rays& rays, const Int& planes, const Exit& exit) const;
     Int planesOf(const Rays& rays, const Int& wanted) const;
     Vector3<Float> fromCentre(const Rays& rays) const;
     Exit exitOf(const Rays& rays) const;
@@ -276,7 +276,8 @@ inline Int PacketTracer::planesOf(const Rays& rays, const Int& wanted) const {
 }
 
 /// Where rays in cells with these planes meet the surface.
-Meeting PacketTracer::meetSurfaces(const Rays& rays, const Int& planes, const Exit& exit) const {
+Intersection PacketTracer::meetSurfaces(const Rays& rays, const Int& planes,
+                                        const Exit& exit) const {
     const auto& d = rays.direction;
     const Vector3<Float> at = fromCentre(rays);
     const auto& inverse = rays.inverse;  // the least one is the time to cross a cell
@@ -284,7 +285,7 @@ Meeting PacketTracer::meetSurfaces(const Rays& rays, const Int& planes, const Ex
                                         simd::abs(inverse.z));
     const Float toExit = exit.t - rays.t;
     const Int several = (planes >> 29 & 7) == static_cast<int>(SurfacePlane::kSeveral);
-    if (!simd::any(several)) return meetPlane(viewPlane(planes, at, d), toExit, back);
+    if (!simd::any(several)) return intersectPlane(viewPlane(planes, at, d), toExit, back);
     const Int index = (planes & 0x1FFFFFFF & several) * 4;
     const auto part = [&](int i) { return simd::gather<4>(grid_.several.data(), index + i); };
     return meetPlanes<3>({viewPlane(several ? part(0) : planes, at, d), viewPlane(part(1), at, d),
@@ -298,7 +299,7 @@ Meeting PacketTracer::meetSurfaces(const Rays& rays, const Int& planes, const Ex
 inline Int PacketTracer::enterCells(Rays& rays, Int& inside) const {
     const Int planes = planesOf(rays, inside);
     const Exit exit = exitOf(rays);
-    const Meeting meeting = meetSurfaces(rays, planes, exit);
+    const Intersection meeting = meetSurfaces(rays, planes, exit);
     const Int met = inside & ((planes == 0) | meeting.met);
     const Int moved = met & (planes != 0) & (meeting.face >= 0);
     rays.t = moved ? rays.t + meeting.after : rays.t;

@@ -15,7 +15,7 @@ std::string describe(const Alignment& a, const TrustOptions& options) {
         case Verdict::converged:
             return "converged";
         case Verdict::degenerate:
-            if (a.openDirections.size() == kAxes.size()) return "degenerate along all axes";
+            if (a.openDirections.size() == kTwistAxes.size()) return "degenerate along all axes";
             return fmt::format("degenerate along {}", fmt::join(a.openDirections, ", "));
         case Verdict::lostOverlap:
             return fmt::format("lost: overlap {:.2f} below {:.2f}", a.overlap, options.minOverlap);
@@ -38,7 +38,7 @@ PoseEquations poseEquations(const NormalEquations& equations, const PhotometricO
     const double weight = options.scale / (options.sigma * options.sigma);
     PoseEquations p;
     p.information = weight * equations.AtA.topLeftCorner<6, 6>();
-    p.right = weight * equations.Atr.head<6>();
+    p.rhs = weight * equations.Atr.head<6>();
     if (!prior) return p;
     const Eigen::Vector2d known = prior->information();
     const Eigen::Vector2d atLeast =
@@ -50,9 +50,9 @@ PoseEquations poseEquations(const NormalEquations& equations, const PhotometricO
         weight * equations.Atr.tail<2>() - known.cwiseProduct(ExposurePrior::difference(exposure));
     const Eigen::Matrix<double, 2, 6> coupling = weight * equations.AtA.bottomLeftCorner<2, 6>();
     p.exposureOfPose = inverse * coupling;
-    p.exposureRight = inverse * right;
+    p.exposureRhs = inverse * right;
     p.information -= coupling.transpose() * p.exposureOfPose;
-    p.right -= coupling.transpose() * p.exposureRight;
+    p.rhs -= coupling.transpose() * p.exposureRhs;
     p.information = 0.5 * (p.information + p.information.transpose()).eval();
     return p;
 }
@@ -80,7 +80,7 @@ Vector6 posteriorStep(const Spectrum& s, const PoseEquations& equations, const V
     Matrix6 information = equations.information;
     information.diagonal() += damping * s.values.mean() * s.unit.cwiseAbs2().cwiseInverse();
     const Matrix6 left = Matrix6::Identity() + P * information;
-    return left.partialPivLu().solve(P * equations.right - e);
+    return left.partialPivLu().solve(P * equations.rhs - e);
 }
 
 Matrix6 withLeastSigma(const Matrix6& covariance, double translation, double rotation) {

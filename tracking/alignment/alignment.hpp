@@ -95,7 +95,7 @@ struct ResidualStatistics {
 
 /// Names of the components of the camera's twist: translations along x, y, z of the camera frame,
 /// then rotations about x, y, z.
-inline constexpr std::array kAxes = {"x", "y", "z", "pitch", "yaw", "roll"};
+inline constexpr std::array kTwistAxes = {"x", "y", "z", "pitch", "yaw", "roll"};
 
 /// Result of an alignment.
 struct Alignment {
@@ -119,13 +119,14 @@ struct Alignment {
     Matrix6 directions = Matrix6::Identity();
     double meanDepth = 1.;  ///< harmonic mean over the view [m]
     Verdict verdict = Verdict::lostDivergence;
-    /// Names from kAxes, one per open direction: the axes closest to the space of open directions.
+    /// Names from kTwistAxes, one per open direction: the axes closest to the space of open
+    /// directions.
     std::vector<std::string> openDirections;
 };
 
 /// Whether all directions are open: the image determines no component of the pose.
 inline bool isUninformative(const Alignment& alignment) {
-    return alignment.openDirections.size() == kAxes.size();
+    return alignment.openDirections.size() == kTwistAxes.size();
 }
 
 /// The verdict in words: "converged", "degenerate along x, yaw", "lost: overlap 0.12 below 0.20".
@@ -139,9 +140,9 @@ inline constexpr double kExposureSigma = 0.3;
 /// right side b = J^T r / sigma^2. The step by the image alone solves information * xi = b.
 struct PoseEquations {
     Matrix6 information = Matrix6::Zero();
-    Vector6 right = Vector6::Zero();
-    /// (d gain, d offset) = exposureRight - exposureOfPose * xi; zero with a fixed exposure.
-    Eigen::Vector2d exposureRight = Eigen::Vector2d::Zero();
+    Vector6 rhs = Vector6::Zero();
+    /// (d gain, d offset) = exposureRhs - exposureOfPose * xi; zero with a fixed exposure.
+    Eigen::Vector2d exposureRhs = Eigen::Vector2d::Zero();
     Eigen::Matrix<double, 2, 6> exposureOfPose = Eigen::Matrix<double, 2, 6>::Zero();
 };
 /// Eliminates the exposure from normal equations.

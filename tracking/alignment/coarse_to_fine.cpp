@@ -124,7 +124,7 @@ Vector6 Search::step(const PoseEquations& equations, double damping) const {
     }
     // A level of a quarter of the pixels has about a quarter of the information.
     const double sigma = options_.trust.openSigma * scale();
-    return imageStep(s, equations.right, 1. / (sigma * sigma), damping);
+    return imageStep(s, equations.rhs, 1. / (sigma * sigma), damping);
 }
 
 bool Search::isSmall(const Vector6& xi, const Matrix6& information) const {
@@ -155,7 +155,7 @@ bool Search::improve(double& damping) {
     const PoseEquations equations = this->equations();
     for (;;) {
         const Vector6 xi = step(equations, damping);
-        const Eigen::Vector2d change = equations.exposureRight - equations.exposureOfPose * xi;
+        const Eigen::Vector2d change = equations.exposureRhs - equations.exposureOfPose * xi;
         const double most = options_.trust.maxGain;
         const Exposure exposure{std::clamp(at_.exposure.gain + change[0], 1. / most, most),
                                 at_.exposure.offset + change[1]};
@@ -219,7 +219,7 @@ MeasuredInformation Search::measured() {
                                     options_.photometric, options_.exposure, options_.modelErrors,
                                     comparison_.camera(level_), comparison_.sinceModel(at_.T_c_w)));
     image.equations.information *= options_.informationScale;
-    image.equations.right *= options_.informationScale;
+    image.equations.rhs *= options_.informationScale;
     image.repeating /= options_.informationScale;
     at_.T_c_w = expSE3(step(image.equations, 0.)) * at_.T_c_w;
     relateToPrior(at_);

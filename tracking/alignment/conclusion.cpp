@@ -41,7 +41,7 @@ std::vector<std::string> axesOf(const Matrix6& directions, int count) {
     }
     std::vector<std::string> names;
     for (std::size_t i = 0; i < open.size(); ++i) {
-        if (open[i]) names.emplace_back(kAxes.at(i));
+        if (open[i]) names.emplace_back(kTwistAxes.at(i));
     }
     return names;
 }

@@ -235,7 +235,7 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
     equations.information = seen.toY.transpose() * whole.ldlt().solve(seen.toY);
     equations.information =
         0.5 * (equations.information + equations.information.transpose()).eval();
-    equations.right = equations.information * x.head<6>();
+    equations.rhs = equations.information * x.head<6>();
     return result;
 }
 
@@ -244,7 +244,7 @@ MeasuredInformation respondingBy(const Matrix6& M, const MeasuredInformation& im
     const Matrix6 inverse = (M + kNoResponse * Matrix6::Identity()).inverse();
     MeasuredInformation result = image;
     result.equations.information = M.transpose() * image.equations.information * M;
-    result.equations.right = M.transpose() * image.equations.right;
+    result.equations.rhs = M.transpose() * image.equations.rhs;
     result.repeating = inverse * image.repeating * inverse.transpose();
     return result;
 }

@@ -103,7 +103,8 @@ Alignment undecided(Alignment a, const UncertainPose& prior, Verdict verdict) {
     a.T_c_w = prior.mean;
     a.covariance = prior.covariance;
     a.verdict = verdict;
-    if (verdict == Verdict::degenerate) a.openDirections.assign(kAxes.begin(), kAxes.end());
+    if (verdict == Verdict::degenerate)
+        a.openDirections.assign(kTwistAxes.begin(), kTwistAxes.end());
     return a;
 }
 

@@ -41,10 +41,10 @@ struct PilotOptions {
 /// pilot searches around it for a view that reduces the uncertainty. If it finds none in time, it
 /// goes on along the plan; if the goal is not reached with certainty, it gives up.
 ///
-/// While tracking is lost, the pilot first hovers. Then it goes on to the view that it was searching
-/// for, if it was. Otherwise it flies back on the way it came, to the last view that determined the
-/// pose, or on along the plan to a view that should reduce the uncertainty, whichever is nearer.
-/// After giveUpTime it gives up.
+/// While tracking is lost, the pilot first hovers. Then it goes on to the view that it was
+/// searching for, if it was. Otherwise it flies back on the way it came, to the last view that
+/// determined the pose, or on along the plan to a view that should reduce the uncertainty,
+/// whichever is nearer. After giveUpTime it gives up.
 ///
 /// Beside the plan and while tracking is lost it goes only where the body collides with nothing at
 /// any position within three standard deviations of the belief. A lost robot hovers before other

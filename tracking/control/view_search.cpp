@@ -68,7 +68,8 @@ std::optional<Pose> ViewSearch::nearest(const UncertainPose& belief, const Pose&
             place.translation() +=
                 ring * step * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.);
             if (wasVisited(place, 0.5 * step)) continue;
-            if (isLineFree(from_w, place.translation(), isFree) && narrows(belief, place)) return place;
+            if (isLineFree(from_w, place.translation(), isFree) && narrows(belief, place))
+                return place;
         }
     }
     return {};

@@ -27,10 +27,7 @@ class ViewSearch {
   public:
     ViewSearch(std::shared_ptr<const ViewSource> map, const Camera& camera, const Pose& T_b_c,
                const PhotometricOptions& photometric)
-        : map_(std::move(map)),
-          camera_(camera),
-          T_b_c_(T_b_c),
-          photometric_(photometric) {}
+        : map_(std::move(map)), camera_(camera), T_b_c_(T_b_c), photometric_(photometric) {}
 
     /// The nearest body pose level with `T_w_b` from which an image should narrow the belief and
     /// which can be reached on a straight line; not one that was visited. The farthest ones are a

@@ -22,8 +22,8 @@ struct LossOptions {
     /// supports its pose.
     double maxUnexplainedShare = 0.5;
     /// Duration of a loss after which odometry is trusted more than a map that is built on the same
-    /// flight [s]: TrackedFrame::isMapDoubted.
-    double doubtAfter = 3.;
+    /// flight [s]: TrackedFrame::isMapInconsistent.
+    double inconsistentAfter = 3.;
     // With a map but without odometry: limits of the belief's standard deviations after rejected
     // images.
     double maxTranslation = 1.;  ///< [m]

@@ -21,9 +21,9 @@ struct TrackedFrame {
     /// see Tracker::loss().
     bool rejected = false;
     /// Whether the map, which is built on the same flight, has disagreed with the images for long
-    /// (LossOptions::doubtAfter). The part in view should be erased and built again at the pose
-    /// that odometry predicts.
-    bool isMapDoubted = false;
+    /// (LossOptions::inconsistentAfter). The part in view should be erased and built again at the
+    /// pose that odometry predicts.
+    bool isMapInconsistent = false;
     /// Time of the keyframe that the image was aligned to, or of the image itself if it became the
     /// first keyframe [s]; none: it was aligned to the map.
     std::optional<double> keyframe;

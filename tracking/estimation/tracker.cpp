@@ -260,8 +260,8 @@ void Tracker::miss(const View& view, const Pose& stayed, TrackedFrame& frame) {
         belief_.mean = stayed;
         if (map_) belief_ = bounded(belief_);
     }
-    if (isMapDoubted(view)) {
-        frame.isMapDoubted = true;
+    if (isMapInconsistent(view)) {
+        frame.isMapInconsistent = true;
         loss_.onTracked(now_);
     }
     if (!keyframes_) return;
@@ -280,9 +280,9 @@ void Tracker::miss(const View& view, const Pose& stayed, TrackedFrame& frame) {
 }
 
 /// Whether a map made on the flight has contradicted the images for long.
-bool Tracker::isMapDoubted(const View& view) const {
+bool Tracker::isMapInconsistent(const View& view) const {
     return options_.mapErrors && hasOdometry_ && loss_.isLost() && !isBlack(view.intensity) &&
-           now_ - *loss_.since() > options_.loss.doubtAfter;
+           now_ - *loss_.since() > options_.loss.inconsistentAfter;
 }
 
 UncertainPose Tracker::bounded(UncertainPose belief) const {

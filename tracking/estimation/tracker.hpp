@@ -43,8 +43,8 @@ struct TrackerOptions {
 /// well. (An image that the latest keyframe does not explain is always aligned to the stored
 /// keyframes, too.) An alignment ends the loss if it explains the image and reduces the covariance
 /// in all directions that the loss has widened (resolvesLoss()). If this takes too long, a map that
-/// is built on the same flight is doubted, not the odometry (TrackedFrame::isMapDoubted). Images
-/// may be late or missing.
+/// is built on the same flight is doubted, not the odometry (TrackedFrame::isMapInconsistent).
+/// Images may be late or missing.
 class Tracker {
   public:
     /// @param map to align to; null: no map, which needs options.keyframes
@@ -109,7 +109,7 @@ class Tracker {
     bool isResolvedBy(const Alignment& alignment, const UncertainPose& prior) const;
     void take(const View& view, const Match& match, const Pose& before, TrackedFrame& frame);
     void miss(const View& view, const Pose& stayed, TrackedFrame& frame);
-    bool isMapDoubted(const View& view) const;
+    bool isMapInconsistent(const View& view) const;
     UncertainPose bounded(UncertainPose belief) const;
 
     Camera camera_;

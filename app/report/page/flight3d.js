@@ -1,5 +1,5 @@
 // A flight in the 3-D view: the map as it was then, the planner's tree, its path and beliefs, the
-// way flown and the robot.
+// path flown and the robot.
 'use strict';
 
 /// @param view3d as createView3d() gives it
@@ -26,8 +26,8 @@ function createFlight3d(view3d, flight) {
   view3d.addLayer('tree', 'tree', '#268c7a', tree);
   view3d.addLayer('plan', `plan, ${header.planner}`, header.color, plan);
   view3d.addLayer('ellipsoids', '3σ of the plan', header.color, beliefs);
-  view3d.addLayer('way', 'believed way', header.color, way);
-  view3d.addLayer('truth', 'true way', kTruthColor, trueWay);
+  view3d.addLayer('way', 'believed path', header.color, way);
+  view3d.addLayer('truth', 'true path', kTruthColor, trueWay);
   view3d.addLayer('robot', 'robot, with 3σ', cssColor('--ink'), robot);
 
   // Map -----------------------------------------------------------------------------------------

@@ -92,7 +92,7 @@ function flyTiles({planners}) {
 
 function exploreTiles(r) {
   return [
-    ['way flown', r.length, 'm'], ['time of flight', r.duration_s, 's'],
+    ['path flown', r.length, 'm'], ['time of flight', r.duration_s, 's'],
     ['position error, rms', times(100, r.position_rmse_m ?? null), 'cm'],
     ['NEES per degree of freedom', r.nees_per_dof, ''],
     ['true distance to the goal', times(100, r.goal_error_m ?? null), 'cm'],

@@ -226,7 +226,7 @@ function setUpView() {
   element('top').addEventListener('click', view3d.views.top);
   element('scene-caption').textContent =
       (hasBeliefs ? `Paths with the 3σ ellipsoids of the ${isRecorded ? 'estimated' : 'predicted'} position` : paths.length ? 'Paths'
-          : flight ? 'The map that the robot makes, its plan, and the way flown' : 'The map') +
+          : flight ? 'The map that the robot makes, its plan, and the path flown' : 'The map') +
       `, grid of ${say(view3d.gridStep, 'm')}. Drag to turn, right button or two fingers to move, ` +
       'wheel to zoom after a click.' +
       (waypoints.length ? ` Click a white ${placeName.toLowerCase()}, or use ← and →, to see ${data.views.length ? 'through the camera there' : 'its numbers'}.` : '');

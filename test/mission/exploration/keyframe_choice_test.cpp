@@ -74,9 +74,9 @@ TEST_F(Keyframes, AreNotBlackOrContradictedByTheMap) {
         EXPECT_FALSE(choice.isUsable(tracked, image));
         EXPECT_FALSE(isKeyframe());
     }
-    tracked.isMapDoubted = true;  // the map has to be made again
+    tracked.isMapInconsistent = true;  // the map has to be made again
     EXPECT_TRUE(choice.isUsable(tracked, image));
-    tracked.isMapDoubted = false;
+    tracked.isMapInconsistent = false;
     tracked.alignment.verdict = Verdict::lostOverlap;  // the map shows too little: it has to grow
     EXPECT_TRUE(isKeyframe());
     image.intensity = 0.F;

@@ -35,7 +35,7 @@ class OnlinePlannerTest : public ::testing::Test {
         config_.camera.width = 40;
         config_.camera.height = 30;
         config_.explore.vertices = 150;
-        map_ = std::make_unique<OwnMap>(config_);
+        map_ = std::make_unique<OnlineMap>(config_);
     }
 
     OnlinePlanner planner(const std::string& name) {
@@ -71,7 +71,7 @@ class OnlinePlannerTest : public ::testing::Test {
     }
 
     Config config_ = test::flightThroughRoom();
-    std::unique_ptr<OwnMap> map_;
+    std::unique_ptr<OnlineMap> map_;
 };
 
 TEST_F(OnlinePlannerTest, HeadingsAreThoseOfThePolicy) {

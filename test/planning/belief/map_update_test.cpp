@@ -207,7 +207,7 @@ TEST(FieldUpdate, EntriesThatTakeTurnsAreAllRenewed) {
     const Camera camera = makeCamera(94, 60, 1.2);
     const auto field = [&](const std::shared_ptr<const ViewSource>& views, unsigned turns) {
         return InformationField(views, camera, photometricModel(camera, {}), cameraMount(0.8),
-                                {.positionPitch = 1e-3, .turns = turns});
+                                {.positionPitch = 1e-3, .updatesUntilStale = turns});
     };
     const auto viewsNow = [&] {
         return std::make_shared<VoxelRenderer>(room.map, UnknownPolicy::free);

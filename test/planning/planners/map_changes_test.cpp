@@ -288,7 +288,7 @@ TEST(ChangedFloor, VerticesWhoseInformationChangedAreRewired) {
     EXPECT_LT(planner.bestCost(), 0.99 * before);
 }
 
-/// The new texture is worth a detour to the planner's views, not to those of the judge.
+/// The new texture is worth a detour to the planner's views, not to the reference model.
 TEST(ChangedFloor, APathIsOnlyLeftForOneThatTheJudgeFindsBetter) {
     const auto lengthAfterPainting = [](bool isJudged, double& before) {
         ChangingFlight flight("belief_rrt_star", SceneKind::overTexture, 4);
@@ -301,8 +301,8 @@ TEST(ChangedFloor, APathIsOnlyLeftForOneThatTheJudgeFindsBetter) {
         if (isJudged) {
             const auto blind = std::make_shared<InformationField>(
                 InformationFormula{}, planner.model().field().mount(), InformationField::Options{});
-            planner.judgeBy(std::make_shared<BeliefModel>(planner.model().space(), blind,
-                                                          planner.model().options()));
+            planner.setReferenceModel(std::make_shared<BeliefModel>(planner.model().space(), blind,
+                                                                    planner.model().options()));
         }
         before = length();
         flight.paint({Eigen::Vector2d(4., 0.), Eigen::Vector2d(8., 5.)}, 0.8);

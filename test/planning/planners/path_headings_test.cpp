@@ -27,7 +27,7 @@ class PathHeadings : public testing::Test {
     ~PathHeadings() override { si->freeStates(path); }
 
     std::vector<std::shared_ptr<ob::State>> with(Headings headings) {
-        return withHeadings(si, problem.space(), {path.begin(), path.end()}, headings);
+        return replaceHeadings(si, problem.space(), {path.begin(), path.end()}, headings);
     }
     double yaw(const std::shared_ptr<ob::State>& state) {
         return yawOf(problem.space().bodyPose(state.get()));
@@ -62,8 +62,8 @@ TEST_F(PathHeadings, LieAlongTheMotionAfterATurnOnTheSpot) {
 
 TEST_F(PathHeadings, NeedASpaceThatHasThem) {
     const Problem flat;
-    EXPECT_THROW(withHeadings(flat.spaceInformation(), flat.space(), {path.begin(), path.end()},
-                              Headings::fixed),
+    EXPECT_THROW(replaceHeadings(flat.spaceInformation(), flat.space(), {path.begin(), path.end()},
+                                 Headings::fixed),
                  std::invalid_argument);
 }
 

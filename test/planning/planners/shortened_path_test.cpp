@@ -35,8 +35,8 @@ class ShortenedPath : public testing::Test {
         return length;
     }
     std::vector<std::shared_ptr<ob::State>> with(unsigned changes) {
-        return shortened(si, problem.space(), {path.begin(), path.end()}, changes,
-                         ob::plannerNonTerminatingCondition());
+        return shortenPath(si, problem.space(), {path.begin(), path.end()}, changes,
+                           ob::plannerNonTerminatingCondition());
     }
 
     Problem problem;

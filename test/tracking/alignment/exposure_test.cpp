@@ -74,7 +74,7 @@ TEST(PoseEquations, TheStepOfTheExposureEndsInTheMinimumOfTheCost) {
     };
     const Exposure start{1.1, 0.01};
     const PoseEquations p = poseEquations(equationsAt(start), photometric, prior, start);
-    const Exposure best{start.gain + p.exposureRight[0], start.offset + p.exposureRight[1]};
+    const Exposure best{start.gain + p.exposureRhs[0], start.offset + p.exposureRhs[1]};
     EXPECT_GT(best.gain, 1.15) << "too easy";
     constexpr double kStep = 0.01;
     for (const Eigen::Vector2d& along : {Eigen::Vector2d(kStep, 0.), Eigen::Vector2d(0., kStep)}) {

@@ -7,8 +7,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "scene/texture.hpp"
 #include "photometry/opencv_image.hpp"
+#include "scene/texture.hpp"
 
 namespace photonav {
 namespace {

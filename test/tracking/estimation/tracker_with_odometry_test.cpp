@@ -157,10 +157,10 @@ TEST(TrackerWithOdometry, DoubtsItsOwnMapAfterALongLoss) {
     for (int i = 0; i < 16; ++i) {
         const TrackedFrame frame = own.see(floor, here);
         EXPECT_TRUE(frame.rejected);
-        EXPECT_FALSE(frame.isMapDoubted && i < 12) << "after " << i;
-        doubted += frame.isMapDoubted;
-        EXPECT_FALSE(dark.see(black).isMapDoubted);
-        EXPECT_FALSE(given.see(floor, here).isMapDoubted);
+        EXPECT_FALSE(frame.isMapInconsistent && i < 12) << "after " << i;
+        doubted += frame.isMapInconsistent;
+        EXPECT_FALSE(dark.see(black).isMapInconsistent);
+        EXPECT_FALSE(given.see(floor, here).isMapInconsistent);
     }
     EXPECT_EQ(doubted, 1);
     EXPECT_FALSE(own.tracker.loss().isLost());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exploration/own_map.hpp"
+#include "exploration/online_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,12 +25,12 @@ class MapOfABox : public testing::Test {
         MeshRenderer(std::move(scene)).render(camera, T_c_w, image);
     }
 
-    OwnMap fused() const {
-        OwnMap map(config);
+    OnlineMap fused() const {
+        OnlineMap map(config);
         map.fuse(image, camera, T_c_w, map.addPose({T_c_w, 1e-4 * Matrix6::Identity()}));
         return map;
     }
-    static bool isObstacle(const OwnMap& map, double x, double y, double z) {
+    static bool isObstacle(const OnlineMap& map, double x, double y, double z) {
         const auto* node = map.obstacles()->search(x, y, z);
         return node != nullptr && map.obstacles()->isNodeOccupied(*node);
     }
@@ -50,20 +50,20 @@ TEST(LooksAhead, UnlessTheCameraLooksNearlyDown) {
 
 /// A camera that looks ahead sees obstacles at the robot's own height.
 TEST_F(MapOfABox, PlacesBehindItAreObstaclesToACameraThatLooksDown) {
-    const OwnMap down = fused();
+    const OnlineMap down = fused();
     EXPECT_TRUE(isObstacle(down, 0.05, 0.35, 1.05));  // its side
     EXPECT_TRUE(isObstacle(down, 0.05, 0.55, 2.05));  // behind it
     EXPECT_FALSE(isObstacle(down, 0.05, -0.55, 2.05));
     EXPECT_FALSE(isObstacle(down, 0.05, 0.85, 2.05));  // farther away than twice the radius
     config.camera.mount = "front45";
-    const OwnMap ahead = fused();
+    const OnlineMap ahead = fused();
     EXPECT_TRUE(isObstacle(ahead, 0.05, 0.35, 1.05));
     EXPECT_FALSE(isObstacle(ahead, 0.05, 0.55, 2.05));
 }
 
 /// What a view of the map shows is gone, with its obstacles, and only that.
 TEST_F(MapOfABox, ForgetsWhatIsInView) {
-    OwnMap map = fused();
+    OnlineMap map = fused();
     const auto shownBy = [&](const Pose& pose) {
         View shown;
         VoxelRenderer(*map.cells(), UnknownPolicy::free).render(camera, pose, shown);
@@ -100,7 +100,7 @@ TEST_F(MapOfABox, FollowsWhatMoves) {
     View empty;
     MeshRenderer(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})))
         .render(camera, T_c_w, empty);
-    OwnMap map(config);
+    OnlineMap map(config);
     const int pose = map.addPose({T_c_w, 1e-4 * Matrix6::Identity()});
     const auto isOccupied = [&] { return isObstacle(map, 0.05, 0.35, 1.05); };
     for (int i = 0; i < 20; ++i) map.fuse(empty, camera, T_c_w, pose);
@@ -118,7 +118,7 @@ TEST_F(MapOfABox, FollowsWhatMoves) {
 TEST_F(MapOfABox, DoubtsWhatIsNotInViewAroundANewOne) {
     View empty;
     const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
-    OwnMap map(config);
+    OnlineMap map(config);
     const auto look = [&](double x) {
         const Pose there = test::cameraAt({x, 0., 2.}, test::kDown);
         floor.render(camera, there, empty);
@@ -146,12 +146,12 @@ TEST(DepthSigma, OfStereoIsThatOfDisparities) {
 }
 
 TEST_F(MapOfABox, IsSeenAboveSurfacesWithinRange) {
-    const OwnMap map = fused();
+    const OnlineMap map = fused();
     EXPECT_TRUE(map.isSeen({0., -0.5, 1.}));
     EXPECT_TRUE(map.isSeen({0., -0.5, 3.5}));
     EXPECT_FALSE(map.isSeen({0., -0.5, 9.}));
     EXPECT_FALSE(map.isSeen({3., 0., 1.}));
-    EXPECT_FALSE(OwnMap(config).isSeen({0., -0.5, 1.}));
+    EXPECT_FALSE(OnlineMap(config).isSeen({0., -0.5, 1.}));
 }
 
 /// Whose errors the map has are those of the keyframes whose surfaces it was made of.
@@ -160,7 +160,7 @@ TEST_F(MapOfABox, SurfacesOutOfRangeAreNotMapped) {
     const UncertainPose belief{T_c_w, 1e-4 * Matrix6::Identity()};
     EXPECT_NEAR(fused().errors()->relate(shown, camera, belief).views, 1., 1e-9);
     config.explore.range = 0.4;
-    const OwnMap map = fused();
+    const OnlineMap map = fused();
     EXPECT_EQ(map.errors()->relate(shown, camera, belief).views, 0.);
     EXPECT_FALSE(isObstacle(map, 0.05, -0.45, 0.05));
 }
@@ -171,7 +171,7 @@ TEST_F(MapOfABox, MeasuresTheInformationOfViewsByComparisons) {
     std::mt19937_64 random(1);
     View shown = image;
     shown.intensity = test::noisy(image.intensity, 0.02, random);
-    OwnMap map(config);
+    OnlineMap map(config);
     const InformationModel model = map.information(camera, config.photometric);
     const double before = model(shown).trace();
     map.compare(shown, test::noisy(image.intensity, 0.02, random), camera);
@@ -184,7 +184,7 @@ TEST_F(MapOfABox, MeasuresTheInformationOfViewsByComparisons) {
     for (const auto& [assumed, informs] : {std::pair(UnknownInformation::none, false),
                                            std::pair(UnknownInformation::predicted, true)}) {
         config.explore.unknownInformation = assumed;
-        OwnMap learning(config);
+        OnlineMap learning(config);
         learning.compare(shown, shown.intensity, camera);
         EXPECT_EQ(learning.information(camera, config.photometric)(unknown).trace() > 0., informs);
     }

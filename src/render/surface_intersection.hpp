@@ -20,7 +20,7 @@ struct PlaneView {
 };
 
 /// The intersections of rays with the surface in their cells.
-struct Meeting {
+struct Intersection {
     simd::Int met;      ///< mask: the ray ends in the cell, at the surface or at the cell's face
     simd::Float after;  ///< t of the intersection minus the present t
     simd::Int face;     ///< face that the plane's normal points to, or Rays::kNoPlane
@@ -54,8 +54,9 @@ inline constexpr float kPlaneRounding =
 /// The intersections of rays with a single plane.
 /// @param toExit t at which rays leave their cells, minus the present t
 /// @param back largest distance by which an intersection may lie before the present t
-[[gnu::always_inline]] inline Meeting meetPlane(const PlaneView& plane, const simd::Float& toExit,
-                                                const simd::Float& back) {
+[[gnu::always_inline]] inline Intersection intersectPlane(const PlaneView& plane,
+                                                          const simd::Float& toExit,
+                                                          const simd::Float& back) {
     const simd::Int facing = plane.rate < 0.F;
     const simd::Float after = plane.height / (facing ? -plane.rate : simd::splat(1.F));
     const simd::Int met = facing ? plane.heightAt(toExit) <= kPlaneRounding : plane.height <= 0.F;
@@ -64,15 +65,15 @@ inline constexpr float kPlaneRounding =
 
 /// The intersections of rays with several planes that together bound the solid in a cell.
 /// @param edges ShownSurfaces::edges
-/// @param toExit,back see meetPlane()
+/// @param toExit,back see intersectPlane()
 template <std::size_t N>
-Meeting meetPlanes(const std::array<PlaneView, N>& planes, const simd::Int& edges,
-                   const simd::Float& toExit, const simd::Float& back) {
+Intersection meetPlanes(const std::array<PlaneView, N>& planes, const simd::Int& edges,
+                        const simd::Float& toExit, const simd::Float& back) {
     constexpr float kTolerance = 1e-4F;
-    Meeting best{simd::splat(0), simd::splat(1e30F), simd::splat(Rays::kNoPlane)};
+    Intersection best{simd::splat(0), simd::splat(1e30F), simd::splat(Rays::kNoPlane)};
     simd::Int anyFacing = simd::splat(0), behindAny = simd::splat(0), behindAll = simd::splat(-1);
     for (std::size_t i = 0; i < N; ++i) {
-        Meeting one = meetPlane(planes[i], toExit, back);
+        Intersection one = intersectPlane(planes[i], toExit, back);
         const simd::Int facing = planes[i].exists & (one.face >= 0);
         simd::Int met = facing & one.met & (one.after < best.after);
         for (std::size_t j = 0; j < N; ++j) {

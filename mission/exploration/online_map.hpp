@@ -24,10 +24,10 @@ bool looksAhead(const Pose& T_b_c);
 double depthSigmaAtOneMetre(const Config& config);
 
 /// The map with its obstacles and a model of its errors, all made from the fused images.
-class OwnMap {
+class OnlineMap {
   public:
     /// @param config uses camera, section `explore`, bounds and robot.radius
-    explicit OwnMap(const Config& config);
+    explicit OnlineMap(const Config& config);
 
     /// Updates the estimate of the map's noise (MapNoise), and of the information expected of
     /// unknown space (UnseenInformation) if the config asks for it.

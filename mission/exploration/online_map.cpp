@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exploration/own_map.hpp"
+#include "exploration/online_map.hpp"
 
 #include <cmath>
 
@@ -37,7 +37,7 @@ double depthSigmaAtOneMetre(const Config& config) {
     return kDisparity / (config.camera.camera().fx() * explore.baseline);
 }
 
-OwnMap::OwnMap(const Config& config)
+OnlineMap::OnlineMap(const Config& config)
     : cells_(std::make_shared<TexturedOcTree>(config.explore.resolution)),
       obstacles_(config.explore.resolution, config.bounds, config.explore.unknown),
       doubted_(config.explore.resolution, config.explore.range),
@@ -53,12 +53,12 @@ OwnMap::OwnMap(const Config& config)
     cells_->setClampingThresMin(octomap::probability(-kHitsToOccupy * cells_->getProbHitLog()));
 }
 
-void OwnMap::compare(const View& shown, const ImageF& image, const Camera& camera) {
+void OnlineMap::compare(const View& shown, const ImageF& image, const Camera& camera) {
     noise_.observe(shown, image, camera);
     if (unseen_) unseen_->observe(shown, noise_.model(camera, photometric_)(shown));
 }
 
-MapChange OwnMap::fuse(const View& image, const Camera& camera, const Pose& T_c_w, int number) {
+MapChange OnlineMap::fuse(const View& image, const Camera& camera, const Pose& T_c_w, int number) {
     const ObstaclesInView seen = obstaclesIn(image.depth, camera, T_c_w, fusion_.maxRange);
     MapChange change = photonav::fuse(*cells_, image, camera, T_c_w, fusion_);
     errors_->addSurfaces(number, fusedDepth(image.depth, fusion_), camera);
@@ -73,12 +73,12 @@ MapChange OwnMap::fuse(const View& image, const Camera& camera, const Pose& T_c_
     return change;
 }
 
-ObstaclesInView OwnMap::obstaclesIn(const ImageF& depth, const Camera& camera, const Pose& T_c_w,
-                                    double distance) const {
+ObstaclesInView OnlineMap::obstaclesIn(const ImageF& depth, const Camera& camera, const Pose& T_c_w,
+                                       double distance) const {
     return {depth, camera, T_c_w, *cells_, {distance, precise_, lowest_, highest_}};
 }
 
-MapChange OwnMap::forget(const View& shown, const Camera& camera, const Pose& T_c_w) {
+MapChange OnlineMap::forget(const View& shown, const Camera& camera, const Pose& T_c_w) {
     MapChange change{.resolution = cells_->getResolution()};
     const Pose T_w_c = T_c_w.inverse();
     const auto forgetCellAt = [&](const Eigen::Vector3d& p_w) {
@@ -106,13 +106,13 @@ MapChange OwnMap::forget(const View& shown, const Camera& camera, const Pose& T_
     return change;
 }
 
-InformationModel OwnMap::information(const Camera& camera,
-                                     const PhotometricOptions& options) const {
+InformationModel OnlineMap::information(const Camera& camera,
+                                        const PhotometricOptions& options) const {
     const InformationModel seen = noise_.model(camera, options);
     return unseen_ ? unseen_->complete(seen) : seen;
 }
 
-bool OwnMap::isSeen(const Eigen::Vector3d& p_w) const {
+bool OnlineMap::isSeen(const Eigen::Vector3d& p_w) const {
     if (doubted_.contains(p_w)) return false;
     const double cell = cells_->getResolution();
     for (double below = 0.; below <= fusion_.maxRange; below += cell) {
