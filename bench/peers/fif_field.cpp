@@ -185,11 +185,11 @@ std::vector<act_map::voxblox::BlockIndex> blocksOf(const FifOptions& options) {
 
 }  // namespace
 
-std::vector<std::unique_ptr<FifField>> makeFifFields(const FifOptions& options, double halfFov,
+std::vector<std::unique_ptr<FifField>> makeFifFields(const FifOptions& options,
                                                      const std::string& gaussianProcess,
                                                      const ViewSource& views,
                                                      const std::vector<Landmark>& landmarks) {
-    act_map::setQuadPolyVisiblity({.half_fov_rad = halfFov});
+    act_map::setQuadPolyVisiblity({});
     act_map::setGPVisiblityFromFolder(gaussianProcess);
     std::vector<std::unique_ptr<FifField>> fields;
     fields.push_back(std::make_unique<FieldOf<act_map::GPInfoVoxel>>("FIF, GP", options));

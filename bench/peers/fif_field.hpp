@@ -60,9 +60,10 @@ class FifField {
 };
 
 /// Makes the fields and builds them from landmarks, with occlusion by the depth of our views.
-/// @param halfFov half of the angle of the visibility cone, for the quadratic model [rad]
+/// The quadratic model of visibility has the cone of FIF's configurations, 45 degrees about the
+/// axis: that of a narrower cone is negative beside the axis.
 /// @param gaussianProcess folder of the parameters of a visibility by a Gaussian process
-std::vector<std::unique_ptr<FifField>> makeFifFields(const FifOptions& options, double halfFov,
+std::vector<std::unique_ptr<FifField>> makeFifFields(const FifOptions& options,
                                                      const std::string& gaussianProcess,
                                                      const ViewSource& views,
                                                      const std::vector<Landmark>& landmarks);

@@ -102,7 +102,7 @@ inline double medianTrace(const HeadingInformation& informations) {
 }
 
 inline void printAgreementHeading(const Criterion& criterion) {
-    fmt::print("\n{:<40}{:>14}{:>14}{:>14}{:>18}\n", "best heading by " + criterion.name,
+    fmt::print("\n{:<56}{:>14}{:>14}{:>14}{:>18}\n", "best heading by " + criterion.name,
                "median angle", "within 20", "mean share", "10th percentile");
 }
 
@@ -124,7 +124,7 @@ inline void printAgreement(const std::string& name, const HeadingScores& ours,
         sum += shares.back();
     }
     const auto count = static_cast<double>(ours.size());
-    fmt::print("{:<40}{:>14.0f}{:>12.0f} %{:>14.2f}{:>18.2f}\n", name, quantile(angles, 0.5),
+    fmt::print("{:<56}{:>14.0f}{:>12.0f} %{:>14.2f}{:>18.2f}\n", name, quantile(angles, 0.5),
                100. * near / count, sum / count, quantile(shares, 0.1));
 }
 
