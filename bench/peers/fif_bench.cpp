@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kLandmarkCell = 0.05;       // corners within are one landmark [m]
 constexpr int kLandmarkViews = 3;            // that have to show a landmark
-constexpr std::size_t kMappingViews = 1000;  // in which landmarks are detected
+constexpr std::size_t kMappingViews = 4000;  // in which landmarks are detected
 constexpr std::size_t kQueries = 2000;       // whose time is measured
 /// Of the parameters that come with FIF: a cone of 40 degrees about the axis, nearly as far as the
 /// corners of our image.
@@ -341,9 +341,13 @@ void compareWithFif(const std::string& file, std::size_t count, std::uint32_t se
     options.voxel = setup.config.field.positionPitch;
     fmt::print("{}: {} landmarks, voxels of {} m, GP {}\n", file, landmarks.size(), options.voxel,
                gaussianProcess);
+    const double begun = processSeconds();
     const auto fields = makeFifFields(
         options, PHOTONAV_FIF_DIR "/act_map/params/fov_approximator_gp/" + gaussianProcess,
         setup.world.views(), landmarks);
+    double depthSeconds = processSeconds() - begun;
+    for (const auto& field : fields) depthSeconds -= field->buildSeconds();
+    fmt::print("depth of all voxels: {:.1f} s\n", depthSeconds);
     const auto positions = freePositions(setup, count, 1);
     printQueries(setup, fields, randomPoses(freePositions(setup, kQueries, 21), 22));
 

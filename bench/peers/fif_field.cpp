@@ -145,7 +145,6 @@ act_map::VisibilityCheckerPtr checkerOf(const FifOptions& options) {
     checker.max_dist = options.largestDistance;
     checker.use_view_filtering = true;
     checker.min_view_angle_cos = std::cos(options.largestViewAngle * kDegree);
-    if (!options.hasOcclusion) return std::make_shared<act_map::VisibilityChecker>(checker);
     act_map::DepthMapOptions depth;
     depth.depth_layer_opts_ = {options.voxel, static_cast<std::size_t>(options.voxelsPerSide)};
     depth.depth_voxel_step_deg_ = options.depthStep;
@@ -205,7 +204,7 @@ std::vector<std::unique_ptr<FifField>> makeFifFields(const FifOptions& options,
     }
     const act_map::VisibilityCheckerPtr checker = checkerOf(options);
     for (const act_map::voxblox::BlockIndex& index : blocksOf(options)) {
-        if (options.hasOcclusion) setDepthOfBlock(views, index, options, *checker->depthMapPtr());
+        setDepthOfBlock(views, index, options, *checker->depthMapPtr());
         for (const auto& field : fields) field->integrate({index, points, directions, checker});
     }
     return fields;

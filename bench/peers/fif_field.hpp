@@ -19,16 +19,16 @@ struct Landmark {
                                                                ///< cameras that observed it
 };
 
-/// FIF's options, by default as in its configuration for a warehouse.
+/// FIF's options, by default as in its configuration for a room (act_map_euroc.yaml); the pitch of
+/// the depth is that of its warehouse.
 struct FifOptions {
     Eigen::AlignedBox3d bounds;     ///< positions that are asked for, world frame [m]
     double voxel = 0.25;            ///< edge of a voxel [m]
     int voxelsPerSide = 5;          ///< of a block of voxels
     double depthStep = 2.;          ///< pitch of a depth voxel's directions [degrees]
     double leastDistance = 0.1;     ///< from a landmark [m]
-    double largestDistance = 30.;   ///< from a landmark [m]
+    double largestDistance = 7.;    ///< from a landmark [m]
     double largestViewAngle = 60.;  ///< from Landmark::viewDirection [degrees]
-    bool hasOcclusion = true;       ///< landmarks are tested against the depth of the voxel
 };
 
 /// One field: a model of visibility, and 6x6 information or its trace alone.
