@@ -210,6 +210,20 @@ Informations informationsOf(const Setup& setup,
     return all;
 }
 
+/// The factor by which FIF's information has the median trace of ours.
+double scaleOf(const Setup& setup, const HeadingInformation& ours, const HeadingInformation& fif) {
+    const double trace = medianTrace(fif);
+    if (trace > 0.) return medianTrace(ours) / trace;
+    throw InputError(setup.config.file, "scene.file", "most views have no landmark for FIF");
+}
+
+HeadingInformation scaled(HeadingInformation informations, double factor) {
+    for (AtPosition& at : informations) {
+        for (Matrix6& information : at) information *= factor;
+    }
+    return informations;
+}
+
 /// Scores of FIF's own queries.
 HeadingScores scoresOf(const Setup& setup, const std::vector<Eigen::Vector3d>& positions,
                        const std::function<double(const Pose& T_c_w)>& query) {
@@ -234,11 +248,8 @@ void printHeadings(const Setup& setup, const std::vector<std::unique_ptr<FifFiel
                        criterion);
         for (std::size_t i = 0; i < fields.size(); ++i) {
             if (!fields[i]->hasMatrix()) continue;
-            HeadingInformation scaled = all.fif[i];
-            for (AtPosition& at : scaled) {
-                for (Matrix6& information : at) information *= scales[i];
-            }
-            printAgreement(fields[i]->name(), ours, scoresOf(scaled, criterion), criterion);
+            printAgreement(fields[i]->name(), ours,
+                           scoresOf(scaled(all.fif[i], scales[i]), criterion), criterion);
             if (criterion.name == "trace") {
                 const auto own = [&](const Pose& T) { return fields[i]->trace(T); };
                 printAgreement(fields[i]->name() + ", its own trace", ours,
@@ -246,11 +257,6 @@ void printHeadings(const Setup& setup, const std::vector<std::unique_ptr<FifFiel
             }
         }
     }
-}
-
-/// The factor by which FIF's information has the median trace of ours.
-double scaleOf(const HeadingInformation& ours, const HeadingInformation& fif) {
-    return medianTrace(ours) / medianTrace(fif);
 }
 
 /// A plan by our planner on the information of a formula; its path is evaluated by our beliefs.
@@ -351,19 +357,20 @@ void compareWithFif(const std::string& file, std::size_t count, std::uint32_t se
     const auto positions = freePositions(setup, count, 1);
     printQueries(setup, fields, randomPoses(freePositions(setup, kQueries, 21), 22));
 
-    const Informations all = informationsOf(setup, fields, landmarks, positions);
+    Informations all = informationsOf(setup, fields, landmarks, positions);
     std::vector<double> scales;
     for (std::size_t i = 0; i < fields.size(); ++i) {
-        scales.push_back(fields[i]->hasMatrix() ? scaleOf(all.ours, all.fif[i]) : 0.);
+        scales.push_back(fields[i]->hasMatrix() ? scaleOf(setup, all.ours, all.fif[i]) : 0.);
         if (!fields[i]->hasMatrix()) continue;
         fmt::print(
             "{}: its information times {:.0f} has the median trace of ours; corners of 1 px "
             "would be {:.0f}\n",
             fields[i]->name(), scales[i], setup.camera.fx() * setup.camera.fy());
     }
+    all.landmarks = scaled(all.landmarks, scaleOf(setup, all.ours, all.landmarks));
     const Matrix6 prior = PlanningProblem(setup.config, setup.world).initialCovariance();
     printHeadings(setup, fields, positions, all, scales, prior);
-    printPlans(setup, fields, scales, seeds);
+    if (seeds > 0) printPlans(setup, fields, scales, seeds);
 }
 
 }  // namespace
