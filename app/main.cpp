@@ -151,6 +151,7 @@ int main(int argc, char** argv) {
     std::signal(SIGINT, onInterrupt);
     std::signal(SIGTERM, onInterrupt);
     std::signal(SIGALRM, onAlarm);
+    std::signal(SIGXFSZ, SIG_IGN);  // writing fails, and says so
     ompl::msg::noOutputHandler();
     const std::string command = argc > 1 ? argv[1] : "";
     const auto fail = [](int code, std::string_view reason) {

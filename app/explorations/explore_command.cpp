@@ -56,7 +56,9 @@ Config loadExploreConfig(const ExploreOptions& options, const std::string& file)
 
 FolderTransaction beginExploration(const ExploreOptions& options, const Config& config,
                                    const fs::path& folder) {
-    return beginRuns(options, folder, {config.sceneFile, config.mapFile});
+    const InputPaths inputs{config.sceneFile, config.mapFile};
+    if (!options.record.empty()) checkInputsApart("--record", options.record, inputs);
+    return beginRuns(options, folder, inputs);
 }
 
 void print(const ExploreOutcome& outcome) {

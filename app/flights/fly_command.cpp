@@ -144,8 +144,9 @@ FolderTransaction folderFor(const FlyOptions& options, const Config& config) {
     if (!plan.empty()) {  // named as the plan, not as "config"
         named.config = plan.parent_path().filename().string() + ".";
     }
-    return beginResult(named, "fly",
-                       {options.config, plan, config.sceneFile, config.mapFile, config.fly.map});
+    const InputPaths inputs{options.config, plan, config.sceneFile, config.mapFile, config.fly.map};
+    if (!options.record.empty()) checkInputsApart("--record", options.record, inputs);
+    return beginResult(named, "fly", inputs);
 }
 
 /// The config's own plan is the first one: what it is compared with is no success.

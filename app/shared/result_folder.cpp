@@ -13,14 +13,18 @@
 namespace photonav {
 namespace fs = std::filesystem;
 
-FolderTransaction beginResult(const fs::path& folder, const InputPaths& inputs,
-                              FolderTransaction::Unfinished unfinished) {
+void checkInputsApart(const std::string& option, const fs::path& folder, const InputPaths& inputs) {
     for (const fs::path& input : inputs) {
         if (input.empty() || !isInside(input, folder)) continue;
-        throw InputError("--out", folder.string(),
+        throw InputError(option, folder.string(),
                          fmt::format("is or contains {}, which this run reads; give another folder",
                                      input.string()));
     }
+}
+
+FolderTransaction beginResult(const fs::path& folder, const InputPaths& inputs,
+                              FolderTransaction::Unfinished unfinished) {
+    checkInputsApart("--out", folder, inputs);
     return FolderTransaction(folder, unfinished);
 }
 

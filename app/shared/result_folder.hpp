@@ -17,6 +17,11 @@ namespace photonav {
 /// Files and folders that a command reads; empty paths are ignored.
 using InputPaths = std::vector<std::filesystem::path>;
 
+/// @param option names the folder in the message
+/// @throws InputError if the folder is or contains an input
+void checkInputsApart(const std::string& option, const std::filesystem::path& folder,
+                      const InputPaths& inputs);
+
 /// Begins to write a result folder, which appears at its place with commitResult().
 /// @param inputs files and folders that the command reads
 /// @param unfinished fate of the working folder if the result is not committed

@@ -11,7 +11,8 @@ using nlohmann::json;
 
 double nonNegative(const json& line, const char* key) {
     const auto value = line.at(key).get<double>();
-    if (!(value >= 0.)) throw std::out_of_range(key);
+    constexpr double kMost = 1e12;  // more than any length, time or trace of a run
+    if (!(value >= 0. && value <= kMost)) throw std::out_of_range(key);
     return value;
 }
 

@@ -32,11 +32,13 @@ json SweepKind::save(const SweepRun& run, const std::filesystem::path& /*folder*
     return line;
 }
 
+constexpr double kMost = 1e12;  // of costs, lengths, traces, seconds
+
 SweepRun SweepKind::load(const json& line, const std::filesystem::path& /*folder*/) {
     const auto number = [&](const char* key) {
         if (line.at(key).is_null()) return kNone;
         const auto value = line.at(key).get<double>();
-        if (!(value >= 0.)) throw std::out_of_range(key);  // costs, lengths and traces
+        if (!(value >= 0. && value <= kMost)) throw std::out_of_range(key);
         return value;
     };
     SweepRun run{
@@ -52,7 +54,9 @@ SweepRun SweepKind::load(const json& line, const std::filesystem::path& /*folder
         {}};
     if (run.isSolved() != std::isfinite(run.cost)) throw std::out_of_range("cost");
     for (const json& p : line.at("path")) {
-        run.path.push_back({Eigen::Vector3d(p.at(0), p.at(1), p.at(2)), p.at(3).get<double>()});
+        const Eigen::Vector3d place(p.at(0), p.at(1), p.at(2));
+        if (!(place.norm() <= kMost)) throw std::out_of_range("path");
+        run.path.push_back({place, p.at(3).get<double>()});
     }
     return run;
 }

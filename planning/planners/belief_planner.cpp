@@ -80,17 +80,16 @@ ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& pt
     if (dynamic_cast<ob::GoalSampleableRegion*>(pdef_->getGoal().get()) == nullptr) {
         return ob::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
     }
-    if (!addStarts()) return ob::PlannerStatus::INVALID_START;
-    if (!sampler_) {
-        sampler_ = model_->space().sampler(growth_.seed);
-        rng_.setLocalSeed(growth_.seed);
-    }
-
     try {
+        if (!addStarts()) return ob::PlannerStatus::INVALID_START;
+        if (!sampler_) {
+            sampler_ = model_->space().sampler(growth_.seed);
+            rng_.setLocalSeed(growth_.seed);
+        }
         growUntil(ob::plannerOrTerminationCondition(
             ptc, ob::PlannerTerminationCondition(isInterrupted_)));
     } catch (const RenderingStopped&) {
-        if (best_.states.empty()) throw;
+        if (best_.states.empty() && !isInterrupted_()) throw;
     }
     countRewired();
     publishProgress();

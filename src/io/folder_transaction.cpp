@@ -15,6 +15,7 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "io/durable_file.hpp"
@@ -26,6 +27,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kFirstLine = "photonav files 1";
+constexpr std::string_view kReplaces = "replaces ";
 
 std::uint32_t checksumOf(const fs::path& file) {
     std::ifstream stream = openIfThere(file.string());
@@ -74,7 +76,12 @@ void synchroniseAll(const fs::path& folder) {
 void checkTarget(const fs::path& target, const fs::path& resolved) {
     std::error_code error;
     const fs::file_status status = fs::status(resolved, error);
-    if (status.type() == fs::file_type::not_found) return;
+    if (status.type() == fs::file_type::not_found) {
+        if (fs::is_symlink(fs::symlink_status(resolved, error))) {
+            refuse(target, "is a link to a folder that does not exist");
+        }
+        return;
+    }
     if (!fs::is_directory(status)) refuse(target, "is no folder");
     const fs::path here = fs::current_path(error);
     if (!error && resolved.lexically_relative(here) == ".") {
@@ -144,7 +151,14 @@ Manifest Manifest::read(const fs::path& folder) {
     const auto fail = [&] { throw InputError(file.string(), "", "is damaged"); };
     if (line != kFirstLine) fail();
     while (std::getline(stream, line)) {
-        std::istringstream fields = wordsOf(line);
+        const bool isReplaces = line.starts_with(kReplaces);
+        std::istringstream fields = wordsOf(isReplaces ? line.substr(kReplaces.size()) : line);
+        if (isReplaces) {
+            std::uint32_t replaced = 0;
+            if (!(fields >> std::hex >> replaced)) fail();
+            manifest.replaces_ = replaced;
+            continue;
+        }
         File entry{};
         std::string name;
         fields >> entry.size >> std::hex >> entry.checksum;
@@ -155,8 +169,15 @@ Manifest Manifest::read(const fs::path& folder) {
     return manifest;
 }
 
+void Manifest::setReplaced(const fs::path& folder) { replaces_ = checksumOf(folder / kFileName); }
+
+bool Manifest::isToReplace(const fs::path& folder) const {
+    return replaces_ == checksumOf(folder / kFileName);
+}
+
 std::string Manifest::text() const {
     std::string text = std::string(kFirstLine) + "\n";
+    if (replaces_) text += fmt::format("{}{:08x}\n", kReplaces, *replaces_);
     for (const File& file : files_) {
         text += fmt::format("{} {:08x} {}\n", file.size, file.checksum, file.name.string());
     }
@@ -209,8 +230,9 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
     checkTarget(target_, resolved_);
     checkWorkingFolder(working_);
     lock();
-    const bool isReplaced =
-        !Manifest::read(working_).empty();  // the process ended before it was removed
+    // The process ended after an exchange, before the earlier result was removed.
+    const Manifest left = Manifest::read(working_);
+    const bool isReplaced = !left.empty() && !left.isToReplace(resolved_);
     if (isReplaced || unfinished_ == Unfinished::removed) removeLeftovers();
     ++open_;
 }
@@ -268,7 +290,9 @@ FolderTransaction::~FolderTransaction() {
 }
 
 void FolderTransaction::commit() {
-    const std::string manifest = Manifest::of(working_).text();
+    Manifest files = Manifest::of(working_);
+    files.setReplaced(resolved_);
+    const std::string manifest = files.text();
     const auto length = static_cast<ssize_t>(manifest.size());
     if (ftruncate(lock_.get(), 0) != 0 ||
         pwrite(lock_.get(), manifest.data(), manifest.size(), 0) != length) {

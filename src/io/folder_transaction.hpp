@@ -28,6 +28,11 @@ class Manifest {
     /// @throws InputError when it is damaged
     static Manifest read(const std::filesystem::path& folder);
 
+    /// States which result this one is to replace: the one whose manifest a folder has now.
+    void setReplaced(const std::filesystem::path& folder);
+    /// Whether the folder still has the result of setReplaced(): the replacement did not happen.
+    bool isToReplace(const std::filesystem::path& folder) const;
+
     std::string text() const;
     bool empty() const { return files_.empty(); }
 
@@ -53,7 +58,8 @@ class Manifest {
     std::vector<File>::const_iterator placeOf(const std::filesystem::path& name) const;
     static File describe(const std::filesystem::path& folder, const std::filesystem::path& name);
 
-    std::vector<File> files_;  // sorted by name
+    std::vector<File> files_;                // sorted by name
+    std::optional<std::uint32_t> replaces_;  // CRC-32 of the manifest that was in place, 0: none
 };
 
 /// Owns the descriptor of an open file and closes it.

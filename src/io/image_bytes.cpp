@@ -78,6 +78,10 @@ std::optional<ImageSize> sizeOfJpeg(Bytes encoded) {
             ++at;
             continue;
         }
+        if (marker == 0x01 || (marker >= 0xD0 && marker <= 0xD8)) {  // without a length
+            at += 2;
+            continue;
+        }
         const bool isFrame =
             marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
         const auto twoBytes = [&](std::size_t i) {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <deque>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -51,12 +51,17 @@ class PlyHeader {
             std::istringstream words = wordsOf(line);
             std::string word;
             words >> word;
-            if (word == "format") readFormat(words);
-            if (word == "element") readElement(words);
-            if (word == "property") readProperty(words);
-            if (word != "end_header") continue;
-            if (format_.empty()) throw InputError(file_, "format", "missing");
-            return;
+            if (word == "format") {
+                readFormat(words);
+            } else if (word == "element") {
+                readElement(words);
+            } else if (word == "property") {
+                readProperty(words);
+            } else if (word == "end_header") {
+                return readEnd();
+            } else if (!word.empty() && word != "comment" && word != "obj_info") {
+                throw InputError(file_, "", fmt::format("'{}' in the header is not known", word));
+            }
         }
         throw InputError(file_, "end_header", "missing");
     }
@@ -72,6 +77,7 @@ class PlyHeader {
     }
 
     void readElement(std::istream& words) {
+        checkProperties();
         words >> element_;
         if (words >> count_ && count_ >= 0. && count_ == std::floor(count_)) return;
         throw InputError(file_, "element " + element_, "not a number of elements");
@@ -81,6 +87,7 @@ class PlyHeader {
     void readProperty(std::istream& words) {
         std::string type;
         words >> type;
+        hasProperties_ = true;
         if (type == "list") words >> type;
         if (binarySize(type) == 0) {
             throw InputError(file_, "element " + element_,
@@ -92,9 +99,23 @@ class PlyHeader {
                          fmt::format("{:.0f} of them do not fit into {:.0f} bytes", count_, size_));
     }
 
+    /// Elements without properties take no bytes, so that any number of them would fit.
+    void checkProperties() {
+        if (count_ > 0. && !hasProperties_) {
+            throw InputError(file_, "element " + element_, "has no properties");
+        }
+        hasProperties_ = false;
+    }
+
+    void readEnd() {
+        checkProperties();
+        if (format_.empty()) throw InputError(file_, "format", "missing");
+    }
+
     std::string file_;
     double size_;  // [bytes]
     double least_ = 0., count_ = 0.;
+    bool hasProperties_ = false;  // the present element
     std::string format_, element_;
 };
 
@@ -176,7 +197,68 @@ json parseStrictly(const std::string& file, const std::string& text) {
     return json::parse(text);
 }
 
+constexpr std::size_t kNoNode = std::numeric_limits<std::size_t>::max();
+
+/// Puts the nodes of a list of indices under a parent. As glTF demands, a node is listed once:
+/// assimp would copy a node as often as it is listed.
+void listNodes(const std::string& file, const std::string& key, const json& indices,
+               std::size_t own, std::vector<std::size_t>& parents) {
+    std::set<std::size_t> listed;
+    for (const auto& entry : indices) {
+        if (!entry.is_number_unsigned() || entry.get<std::size_t>() >= parents.size()) {
+            throw InputError(file, key, "no such node");
+        }
+        const auto child = entry.get<std::size_t>();
+        if (!listed.insert(child).second || parents[child] != kNoNode) {
+            throw InputError(file, key, fmt::format("node {} is listed twice", child));
+        }
+        if (own != kNoNode) parents[child] = own;
+    }
+}
+
 /// Assimp follows nodes by recursion, whatever their depth, and in circles.
+void checkNodes(const std::string& file, const json& root) {
+    if (!root.contains("nodes")) return;
+    const json& nodes = root["nodes"];
+    if (!nodes.is_array()) throw InputError(file, "nodes", "expected a list");
+    std::vector<std::size_t> parents(nodes.size(), kNoNode);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (!nodes[i].is_object() || !nodes[i].contains("children")) continue;
+        listNodes(file, fmt::format("nodes[{}].children", i), nodes[i]["children"], i, parents);
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        unsigned depth = 1;
+        for (std::size_t above = parents[i]; above != kNoNode; above = parents[above]) {
+            if (++depth <= kMostNodeDepth) continue;
+            throw InputError(file, "nodes",
+                             fmt::format("nested deeper than {}, or in a circle", kMostNodeDepth));
+        }
+    }
+    if (!root.contains("scenes") || !root["scenes"].is_array()) return;
+    for (const json& scene : root["scenes"]) {
+        if (!scene.is_object() || !scene.contains("nodes")) continue;
+        listNodes(file, "scenes", scene["nodes"], kNoNode, parents);
+    }
+}
+
+/// A pipe would never end.
+void checkUris(const std::string& file, const json& root) {
+    for (const char* list : {"buffers", "images"}) {
+        if (!root.contains(list) || !root[list].is_array()) continue;
+        for (const json& entry : root[list]) {
+            if (!entry.is_object() || !entry.contains("uri") || !entry["uri"].is_string()) continue;
+            const auto& uri = entry["uri"].get_ref<const std::string&>();
+            if (uri.starts_with("data:")) continue;
+            const fs::path named = fs::path(file).parent_path() / uri;
+            std::error_code error;
+            const fs::file_status status = fs::status(named, error);
+            if (fs::exists(status) && !fs::is_regular_file(status)) {
+                throw InputError(file, list, fmt::format("'{}' is no file", uri));
+            }
+        }
+    }
+}
+
 void checkGltf(const std::string& file, bool isBinary) {
     const json root = parseStrictly(file, gltfJson(file, isBinary));
     const json::json_pointer place("/asset/version");
@@ -184,31 +266,8 @@ void checkGltf(const std::string& file, bool isBinary) {
     if (!version.is_string() || !version.get_ref<const std::string&>().starts_with("2.")) {
         throw InputError(file, "asset.version", fmt::format("{} is not \"2.0\"", version.dump()));
     }
-    if (!root.contains("nodes")) return;
-    const json& nodes = root["nodes"];
-    if (!nodes.is_array()) throw InputError(file, "nodes", "expected a list");
-    std::vector<unsigned> depth(nodes.size(), 1);
-    std::deque<std::size_t> open;
-    for (std::size_t i = 0; i < nodes.size(); ++i) open.push_back(i);
-    while (!open.empty()) {
-        const std::size_t i = open.front();
-        open.pop_front();
-        if (!nodes[i].is_object() || !nodes[i].contains("children")) continue;
-        for (const auto& entry : nodes[i]["children"]) {
-            if (!entry.is_number_unsigned() || entry.get<std::size_t>() >= nodes.size()) {
-                throw InputError(file, fmt::format("nodes[{}].children", i), "no such node");
-            }
-            const auto child = entry.get<std::size_t>();
-            if (depth[child] > depth[i]) continue;
-            depth[child] = depth[i] + 1;
-            if (depth[child] > kMostNodeDepth) {
-                throw InputError(
-                    file, "nodes",
-                    fmt::format("nested deeper than {}, or in a circle", kMostNodeDepth));
-            }
-            open.push_back(child);
-        }
-    }
+    checkNodes(file, root);
+    checkUris(file, root);
 }
 
 }  // namespace

@@ -101,6 +101,11 @@ TEST_F(FlyCommand, FliesThePlanOfAResultFolder) {
     const Execution planned = photonav(
         fmt::format("plan {} {} --out {}", config("two_textures"), kQuickFlight, at("plan")));
     ASSERT_EQ(planned.exitCode, 0) << planned.output;
+    const Execution over =
+        photonav(fmt::format("fly {} --record {} --out {}", at("plan"), at("plan"), at("x")));
+    EXPECT_EQ(over.exitCode, 2);
+    EXPECT_NE(over.output.find("--record: " + at("plan") + ": is or contains"), std::string::npos)
+        << over.output;
     for (const std::string what : {"plan", "plan/result.json", "plan/path.tum"}) {
         const Execution run =
             photonav(fmt::format("fly {} --flights 1 --out {} "

@@ -178,6 +178,28 @@ TEST_F(FolderTransactionTest, WhatWasReplacedIsNotTakenForUnfinishedWork) {
     EXPECT_EQ(entries(target_), 2U);
 }
 
+TEST_F(FolderTransactionTest, UnfinishedWorkIsKeptThatWasAboutToReplaceTheFolder) {
+    commit(target_, "old.txt", "old");
+    inKilledProcess([&] {
+        FolderTransaction transaction(target_, Unfinished::kept);
+        write(transaction.path() / "runs.txt", "1");
+        write(target_ / "notes.txt", "mine");  // in the way, after the manifest was written
+        EXPECT_THROW(transaction.commit(), InputError);
+    });
+    fs::remove(target_ / "notes.txt");
+    FolderTransaction next(target_, Unfinished::kept);
+    EXPECT_TRUE(fs::exists(next.path() / "runs.txt"));
+    next.commit();
+    EXPECT_EQ(contentOf(target_ / "runs.txt"), "1");
+    EXPECT_FALSE(fs::exists(target_ / "old.txt"));
+}
+
+TEST_F(FolderTransactionTest, RefusesALinkToNowhereAtTheBeginning) {
+    fs::create_symlink("nowhere", target_);
+    EXPECT_NE(complaint(target_).find("is a link to a folder that does not exist"),
+              std::string::npos);
+}
+
 TEST_F(FolderTransactionTest, LinesOfAManifestNameNothingOutsideOfItsFolder) {
     const fs::path outside = temporary_.path() / "outside";
     write(outside / "notes.txt", "mine");

@@ -50,6 +50,10 @@ TEST(ImageBytes, SizesAreReadFromHeaders) {
         EXPECT_EQ(size->width, 50U) << extension;
         EXPECT_EQ(size->height, 40U) << extension;
     }
+    auto marked = encoded(".jpg");
+    marked.insert(marked.begin() + 2, {0xFF, 0x01, 0xFF, 0xD3});  // markers without a length
+    ASSERT_TRUE(declaredSize(marked));
+    EXPECT_EQ(declaredSize(marked)->width, 50U);
     const auto png = encoded(".png");
     EXPECT_FALSE(declaredSize(std::span(png).first(20)));
     EXPECT_FALSE(declaredSize({}));

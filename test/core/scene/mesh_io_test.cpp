@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
@@ -209,6 +210,13 @@ TEST(MeshIo, IndicesAndNodesAreNotTrusted) {
                                     "property quaternion x\nend_header\n");
     EXPECT_NE(complaint(typed).find("unknown type 'quaternion'"), std::string::npos);
 
+    const auto empty =
+        folder.write("empty.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\n");
+    EXPECT_EQ(complaint(empty), empty + ": element vertex: has no properties");
+    const auto unknown =
+        folder.write("unknown.ply", "ply\nformat ascii 1.0\nwords x\nend_header\n");
+    EXPECT_EQ(complaint(unknown), unknown + ": 'words' in the header is not known");
+
     std::string nodes = R"({"children": [1]})";
     for (int i = 1; i < 100000; ++i) nodes += fmt::format(", {{\"children\": [{}]}}", i + 1);
     const std::string scene = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes":
@@ -218,6 +226,16 @@ TEST(MeshIo, IndicesAndNodesAreNotTrusted) {
     const auto circle =
         folder.write("circle.gltf", scene + R"({"children": [1]}, {"children": [0]}]})");
     EXPECT_EQ(complaint(circle), circle + ": nodes: nested deeper than 500, or in a circle");
+    const auto shared = folder.write(
+        "shared.gltf", scene + R"({"children": [2]}, {"children": [2]}, {"children": []}]})");
+    EXPECT_EQ(complaint(shared), shared + ": nodes[1].children: node 2 is listed twice");
+    const auto twice = folder.write("twice.gltf", scene + R"({"children": [1, 1]}, {}]})");
+    EXPECT_EQ(complaint(twice), twice + ": nodes[0].children: node 1 is listed twice");
+    ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
+    const auto pipe = folder.write(
+        "pipe.gltf",
+        R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 1, "uri": "pipe"}]})");
+    EXPECT_EQ(complaint(pipe), pipe + ": buffers: 'pipe' is no file");
     const auto brackets = folder.write("brackets.gltf", std::string(200000, '['));
     EXPECT_EQ(complaint(brackets), brackets + ": JSON nested deeper than 200");
 }

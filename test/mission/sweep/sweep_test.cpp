@@ -232,6 +232,7 @@ TEST_F(SweepFiles, NumbersThatNoRunGivesAreRefused) {
                                         {"\"seed\":7", "\"seed\":4294967296"},
                                         {"\"seed\":7", "\"seed\":-1"},
                                         {"\"cost\":1.0", "\"cost\":-1.0"},
+                                        {"\"cost\":1.0", "\"cost\":1e300"},
                                         {"\"vertices\":100", "\"vertices\":1e30"},
                                         {"\"views\":40", "\"views\":0.5"}}) {
         std::string bad = good;

@@ -13,6 +13,21 @@ INSTANTIATE_TEST_SUITE_P(Planners, InterruptedViews,
                          testing::Values("pa_rrt_star", "rrbt", "belief_rrt_star"),
                          [](const auto& test) { return test.param; });
 
+/// OMPL's benchmark does not expect exceptions.
+TEST_P(InterruptedViews, EndASearchThatKnowsOfTheInterruption) {
+    bool isInterrupted = false;
+    int views = 0;
+    Problem problem;
+    problem.information = [&](const Pose& T_c_w) {
+        isInterrupted = ++views > 3;
+        if (isInterrupted) throw RenderingStopped();
+        return stripesThenTexture(T_c_w);
+    };
+    const auto planner = problem.planner(GetParam());
+    planner->endWhen([&] { return isInterrupted; });
+    EXPECT_EQ(grow(*planner, 150), ob::PlannerStatus::TIMEOUT);
+}
+
 /// At whatever view: a planner that has a path reports it, and can be used, cleared and destroyed.
 TEST_P(InterruptedViews, LeaveThePathThatWasFoundBefore) {
     int stops = 0, paths = 0;
