@@ -15,7 +15,7 @@ install(TARGETS photonav)
 foreach(root src planning tracking mission)
     file(GLOB_RECURSE _headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/${root} ${root}/*.hpp)
     list(FILTER _headers EXCLUDE REGEX
-        "/(yaml_reader|key_table|config_keys|recording_config|map_config|replay_config|simd|product_sums|keyframe_points|voxel_rays|opencv_image|surface_meeting)\\.hpp$")
+        "/(yaml_reader|key_table|config_keys|recording_config|map_config|replay_config|simd|product_sums|keyframe_points|voxel_rays|opencv_image|surface_intersection)\\.hpp$")
     foreach(header IN LISTS _headers)
         list(APPEND _public_headers ${root}/${header})
     endforeach()
