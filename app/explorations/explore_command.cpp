@@ -56,9 +56,7 @@ Config loadExploreConfig(const ExploreOptions& options, const std::string& file)
 
 FolderTransaction beginExploration(const ExploreOptions& options, const Config& config,
                                    const fs::path& folder) {
-    const InputPaths inputs{config.sceneFile, config.mapFile};
-    if (!options.record.empty()) checkInputsApart("--record", options.record, inputs);
-    return beginRuns(options, folder, inputs);
+    return beginRuns(options, folder, {config.sceneFile, config.mapFile});
 }
 
 void print(const ExploreOutcome& outcome) {
@@ -198,8 +196,9 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     }
     FolderTransaction folder =
         beginExploration(options, config, folderOf(options, TrialKind::kWords, name, shard));
-    FlightRecording recording(options.record, folder.target(), setup.truth.camera,
-                              setup.flight.tracker.map);
+    FlightRecording recording(options.record, folder.target(),
+                              {options.config, config.sceneFile, config.mapFile},
+                              setup.truth.camera, setup.flight.tracker.map);
     const JournalHeader header{name, toYaml(config), TrialKind::identity(config), shard};
     std::vector<ExplorationResult> earlier = runsSoFar<TrialKind>(options, folder, header);
     keepMapOf(items.front(), earlier);

@@ -18,10 +18,11 @@ void checkRecordFolder(const std::filesystem::path& folder) {
 }  // namespace
 
 FlightRecording::FlightRecording(const std::filesystem::path& folder,
-                                 const std::filesystem::path& result, const Camera& camera,
-                                 const AlignmentOptions& images)
+                                 const std::filesystem::path& result, const InputPaths& inputs,
+                                 const Camera& camera, const AlignmentOptions& images)
     : camera_(camera), informationScale_(images.photometric.scale), blur_(images.blur) {
     if (folder.empty()) return;
+    checkInputsApart("--record", folder, inputs);
     if (isInside(folder, result) || isInside(result, folder)) {
         throw InputError("--record", folder.string(),
                          "and the result's folder " + result.string() + " need to be apart");

@@ -8,6 +8,7 @@
 #include "flight/flight_recorder.hpp"
 #include "flight/flight_setup.hpp"
 #include "io/folder_transaction.hpp"
+#include "shared/result_folder.hpp"
 
 namespace photonav {
 
@@ -17,12 +18,13 @@ class FlightRecording {
   public:
     /// @param folder folder of the recording; empty: nothing is recorded
     /// @param result result folder of the command; neither folder may contain the other
+    /// @param inputs files and folders that the command reads
     /// @param camera camera of the flight
     /// @param images give blur and information scale of the images, for the recording's camera file
-    /// @throws InputError if the folder already holds a recording, or contains or is inside the
-    ///         result folder
+    /// @throws InputError if the folder already holds a recording, contains an input, or contains
+    ///         or is inside the result folder
     FlightRecording(const std::filesystem::path& folder, const std::filesystem::path& result,
-                    const Camera& camera, const AlignmentOptions& images);
+                    const InputPaths& inputs, const Camera& camera, const AlignmentOptions& images);
 
     /// A callback that adds an exposure; empty if nothing is recorded. It must not outlive the
     /// recording.

@@ -137,6 +137,10 @@ void printSummary(const std::vector<FlightSet>& sets) {
     if (!sets.empty()) printFailure(sets.front());
 }
 
+InputPaths inputsOf(const FlyOptions& options, const Config& config) {
+    return {options.config, config.fly.plan, config.sceneFile, config.mapFile, config.fly.map};
+}
+
 FolderTransaction folderFor(const FlyOptions& options, const Config& config) {
     const std::filesystem::path plan = config.fly.plan;
     const CommandOptions& common = options;
@@ -144,9 +148,7 @@ FolderTransaction folderFor(const FlyOptions& options, const Config& config) {
     if (!plan.empty()) {  // named as the plan, not as "config"
         named.config = plan.parent_path().filename().string() + ".";
     }
-    const InputPaths inputs{options.config, plan, config.sceneFile, config.mapFile, config.fly.map};
-    if (!options.record.empty()) checkInputsApart("--record", options.record, inputs);
-    return beginResult(named, "fly", inputs);
+    return beginResult(named, "fly", inputsOf(options, config));
 }
 
 /// The config's own plan is the first one: what it is compared with is no success.
@@ -169,8 +171,8 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     const FlightSetup setup = setUpFlight(problem);
     if (!options.calibration.empty()) readCalibration(options.calibration, setup.map);
     FolderTransaction folder = folderFor(options, config);
-    FlightRecording recording(options.record, folder.target(), setup.world.camera,
-                              setup.options.tracker.map);
+    FlightRecording recording(options.record, folder.target(), inputsOf(options, config),
+                              setup.world.camera, setup.options.tracker.map);
 
     std::vector<FlightSet> sets;
     std::vector<ReportFrame> frames;

@@ -9,17 +9,6 @@
 namespace photonav {
 using nlohmann::json;
 
-double nonNegative(const json& line, const char* key) {
-    const auto value = line.at(key).get<double>();
-    constexpr double kMost = 1e12;  // more than any length, time or trace of a run
-    if (!(value >= 0. && value <= kMost)) throw std::out_of_range(key);
-    return value;
-}
-
-double numberOrNone(const json& line, const char* key) {
-    return line.at(key).is_null() ? kNone : line.at(key).get<double>();
-}
-
 json untimedJson(const PlanUpdate& u) {
     return {{"time", u.time},
             {"vertices_invalidated", u.counts.verticesInvalidated},

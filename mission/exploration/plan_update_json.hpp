@@ -17,10 +17,4 @@ nlohmann::json lineOf(const PlanUpdate& update);
 /// The inverse of lineOf(). @throws std::exception for missing or impossible values
 PlanUpdate planUpdateFrom(const nlohmann::json& line);
 
-/// The value of a key, a number >= 0. @throws std::exception for other values
-double nonNegative(const nlohmann::json& line, const char* key);
-
-/// The value of a key, a number; NaN for null. @throws std::exception for other values
-double numberOrNone(const nlohmann::json& line, const char* key);
-
 }  // namespace photonav

@@ -9,6 +9,7 @@
 #include "exploration/plan_update_json.hpp"
 #include "geometry/constants.hpp"
 #include "map/octree_file.hpp"
+#include "result/json_values.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;

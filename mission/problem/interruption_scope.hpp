@@ -8,8 +8,8 @@ namespace photonav {
 
 inline const std::atomic<bool> kNotInterrupted{false};
 
-/// As long as this object exists, planners end and the rendering of large views throws
-/// RenderingStopped when a flag is set.
+/// As long as this object exists, the rendering of large views ends with RenderingStopped when a
+/// flag is set.
 class InterruptionScope {
   public:
     /// @param current pointer to the flag that rendering checks; restored at the end of the scope

@@ -124,18 +124,18 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
         if (onProgress) onProgress(now);
     };
     std::size_t next = kProgressInterval;
-    const auto showProgress = [&] {
+    const auto isDone = [&] {
         if (planner->vertices() >= next) {
             show(outcome.progress.emplace_back(progress()));
             next = planner->vertices() + kProgressInterval;
         } else if (watch.seconds() > shown + kShowInterval) {  // in the last search and descent
             show(progress());
         }
-        return false;
+        return interrupted.load();
     };
     {
         const InterruptionScope scope = interruptedBy(interrupted);
-        planner->solve(ob::PlannerTerminationCondition(showProgress));
+        planner->solve(ob::PlannerTerminationCondition(isDone));
     }
     show(outcome.progress.emplace_back(progress()));
 
@@ -176,7 +176,6 @@ std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(
     if (hasQuickViews()) search.inflation = kInflationByQuickViews;
     auto planner = photonav::makePlanner(name, si_, model, search, growth);
     if (hasQuickViews()) planner->setReferenceModel(evaluator_);
-    planner->endWhen([flag = interruption_] { return (*flag)->load(); });
     planner->setProblemDefinition(definition());
     planner->setup();
     std::erase_if(planners_, [](const auto& made) { return made.expired(); });

@@ -150,8 +150,8 @@ class PlanningProblem {
     /// @throws std::invalid_argument for another name
     std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
                                                std::optional<std::uint32_t> seed = {});
-    /// As long as the result exists, planners made here end when the flag is set, and rendering
-    /// large views for planners and evaluations throws RenderingStopped.
+    /// As long as the result exists, rendering large views for planners and evaluations ends with
+    /// RenderingStopped when the flag is set.
     [[nodiscard]] InterruptionScope interruptedBy(const std::atomic<bool>& interrupted) {
         return {*interruption_, interrupted};
     }

@@ -3,10 +3,22 @@
 
 #include <cmath>
 
+#include "geometry/constants.hpp"
+
 namespace photonav {
 
 nlohmann::json finiteOrNull(double value) {
     return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+
+double nonNegative(const nlohmann::json& line, const char* key) {
+    const auto value = line.at(key).get<double>();
+    if (!(value >= 0. && value <= kMostOfARun)) throw std::out_of_range(key);
+    return value;
+}
+
+double numberOrNone(const nlohmann::json& line, const char* key) {
+    return line.at(key).is_null() ? kNone : line.at(key).get<double>();
 }
 
 nlohmann::json orNull(const std::optional<double>& value) {

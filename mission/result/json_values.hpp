@@ -31,6 +31,16 @@ nlohmann::json triangleJson(const Matrix6& matrix);
 inline constexpr const char* kCovarianceFrame =
     "camera, left perturbation T_c_w = exp(xi) mean, order (rho, phi), upper triangle by rows";
 
+/// More than any cost, length, trace or time of a run.
+inline constexpr double kMostOfARun = 1e12;
+
+/// The value of a key, a number in [0, kMostOfARun].
+/// @throws std::exception for other values
+double nonNegative(const nlohmann::json& line, const char* key);
+
+/// The value of a key, a number; NaN for null. @throws std::exception for other values
+double numberOrNone(const nlohmann::json& line, const char* key);
+
 /// A non-negative integer of type Number. @throws std::exception for a value that is none or is too
 /// large for the type
 template <typename Number>

@@ -45,6 +45,7 @@ class Session {
           benchmark_(setup_, std::filesystem::path(config.file).stem().string()) {
         for (const std::string& name : config.sweep.planners) {
             planners_.push_back(plan_.makePlanner(name));
+            planners_.back()->endWhen([this] { return interrupted_.load(); });
             benchmark_.addPlanner(planners_.back());
         }
         const auto definition = planners_.front()->getProblemDefinition();

@@ -32,14 +32,9 @@ json SweepKind::save(const SweepRun& run, const std::filesystem::path& /*folder*
     return line;
 }
 
-constexpr double kMost = 1e12;  // of costs, lengths, traces, seconds
-
 SweepRun SweepKind::load(const json& line, const std::filesystem::path& /*folder*/) {
     const auto number = [&](const char* key) {
-        if (line.at(key).is_null()) return kNone;
-        const auto value = line.at(key).get<double>();
-        if (!(value >= 0. && value <= kMost)) throw std::out_of_range(key);
-        return value;
+        return line.at(key).is_null() ? kNone : nonNegative(line, key);
     };
     SweepRun run{
         {line.at("planner"), line.at("alpha"), wholeNumber<std::uint32_t>(line.at("seed"))},
@@ -55,7 +50,7 @@ SweepRun SweepKind::load(const json& line, const std::filesystem::path& /*folder
     if (run.isSolved() != std::isfinite(run.cost)) throw std::out_of_range("cost");
     for (const json& p : line.at("path")) {
         const Eigen::Vector3d place(p.at(0), p.at(1), p.at(2));
-        if (!(place.norm() <= kMost)) throw std::out_of_range("path");
+        if (!(place.norm() <= kMostOfARun)) throw std::out_of_range("path");
         run.path.push_back({place, p.at(3).get<double>()});
     }
     return run;

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "control/view_search.hpp"
 #include "geometry/se3.hpp"
 #include "geometry/segment.hpp"
 
@@ -78,8 +77,7 @@ double Route::allowedRate(const UncertainPose& belief, const Station& offset) co
     return std::clamp(2. - tolerances, 0., 1.);
 }
 
-Route::Reference Route::advance(const UncertainPose& belief, double dt,
-                                const std::function<bool(const Eigen::Vector3d& p_w)>& isFree) {
+Route::Reference Route::advance(const UncertainPose& belief, double dt, const IsFree& isFree) {
     const Pose T_w_b = (T_b_c_ * belief.mean).inverse();
     const auto offsetFrom = [&](const Station& station) {
         Station offset = stationOf(T_w_b) - station;
@@ -127,8 +125,7 @@ double Route::approachRate(const UncertainPose& belief) const {
 }
 
 /// @param offset_w of the belief from the path, kept on the way ahead
-double Route::freeRate(const Eigen::Vector3d& offset_w,
-                       const std::function<bool(const Eigen::Vector3d& p_w)>& isFree) const {
+double Route::freeRate(const Eigen::Vector3d& offset_w, const IsFree& isFree) const {
     double left = 0.;
     while (kApproach * left < 1. && isFree(path_.at(phase_ + left).station.head<3>() + offset_w)) {
         left += kLook;

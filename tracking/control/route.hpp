@@ -2,11 +2,11 @@
 // Progress along a plan, and the reference to fly next.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "control/smooth_path.hpp"
+#include "control/view_search.hpp"
 #include "geometry/uncertain_pose.hpp"
 
 namespace photonav {
@@ -53,8 +53,7 @@ class Route {
     /// Goes on for `dt` seconds, as far as the believed pose allows.
     /// @param isFree whether the body may fly to a position; the route slows down and stops before
     ///        positions where it may not. Empty: it may fly anywhere
-    Reference advance(const UncertainPose& belief, double dt,
-                      const std::function<bool(const Eigen::Vector3d& p_w)>& isFree = {});
+    Reference advance(const UncertainPose& belief, double dt, const IsFree& isFree = {});
     /// Call it when the robot left the route or stopped: the route goes on from standstill.
     void halt() { rate_ = 0.; }
 
@@ -83,8 +82,7 @@ class Route {
     double along(const Station& slope, const Station& offset) const;
     double allowedRate(const UncertainPose& belief, const Station& offset) const;
     double approachRate(const UncertainPose& belief) const;
-    double freeRate(const Eigen::Vector3d& offset_w,
-                    const std::function<bool(const Eigen::Vector3d& p_w)>& isFree) const;
+    double freeRate(const Eigen::Vector3d& offset_w, const IsFree& isFree) const;
     void passViews(const UncertainPose& belief);
 
     std::vector<PlannedView> plan_;
