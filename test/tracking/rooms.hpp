@@ -38,6 +38,14 @@ inline Scene floorOf(Texture texture) {
     return scene;
 }
 
+/// A white floor with a carpet of 2 x 2 m, whose nearest corner is at (0.6, 0.2).
+inline Scene carpetOnWhite() {
+    Scene scene = floorOf(uniformTexture(0.9F));
+    addPlane(scene, {0.6, 0.2, 0.01}, {2., 0., 0.}, {0., 2., 0.},
+             addTexture(scene, valueNoise({.size = {2., 2.}, .seed = 3})));
+    return scene;
+}
+
 /// A camera at (x, y, z) with its optical axis `belowHorizon`, looking along `yaw`.
 inline Pose cameraAt(const Eigen::Vector3d& position_w, double belowHorizon, double yaw = 0.) {
     Pose T_w_b = Pose::Identity();

@@ -222,12 +222,7 @@ TEST_F(FlightLoop, ALostRobotHoversBeforeAGapThatItMayMiss) {
 /// searches for it, toward a wall. When its images fail, the wall is within three standard
 /// deviations.
 TEST_F(FlightLoop, ALostRobotDoesNotSearchWhereItMayTouchAWall) {
-    Scene scene;
-    addPlane(scene, {-10., -10., 0.}, {20., 0., 0.}, {0., 20., 0.},
-             addTexture(scene, uniformTexture(0.9F)));
-    addPlane(scene, {0.6, 0.2, 0.01}, {2., 0., 0.}, {0., 2., 0.},
-             addTexture(scene, valueNoise({.size = {2., 2.}, .seed = 3})));
-    const auto carpet = std::make_shared<MeshRenderer>(scene);
+    const auto carpet = std::make_shared<MeshRenderer>(test::carpetOnWhite());
     std::vector<PlannedView> plan;
     for (int i = 0; i <= 20; ++i) {
         plan.push_back(straightTo(std::min(1., 0.1 * i)).back());

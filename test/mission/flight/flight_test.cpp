@@ -251,12 +251,7 @@ TEST_F(Flight, IsFoundAgainWhereTheEstimateIsWrong) {
 /// The plan turns where a carpet comes into view. A robot half a metre beside that place does not
 /// see the carpet. Its belief is wide enough to tell, and the pilot searches around the place.
 TEST_F(Flight, LooksAroundForAViewThatItMissed) {
-    Scene scene;
-    addPlane(scene, {-10., -10., 0.}, {20., 0., 0.}, {0., 20., 0.},
-             addTexture(scene, uniformTexture(0.9F)));
-    addPlane(scene, {0.6, 0.2, 0.01}, {2., 0., 0.}, {0., 2., 0.},
-             addTexture(scene, valueNoise({.size = {2., 2.}, .seed = 3})));
-    world.truth = world.map = std::make_shared<MeshRenderer>(scene);
+    world.truth = world.map = std::make_shared<MeshRenderer>(test::carpetOnWhite());
     Vector6 initial;
     initial << 1e-4, 0.25, 1e-4, 1e-5, 1e-5, 1e-5;
     const Matrix6 toCamera = adjoint(world.T_b_c.inverse());
