@@ -28,7 +28,7 @@ Config roomConfig() {
     return config;
 }
 
-/// A world that gets a box when told to.
+/// A world in which a box appears at some time.
 class BoxedWorld : public ViewSource {
   public:
     BoxedWorld(const Scene& scene, const Config& config)

@@ -12,11 +12,16 @@
 
 namespace photonav {
 
-/// The scene of the first argument, else a sample. One that cannot be read ends the program.
+/// The file of the first argument, else that of a sample.
+inline std::string sceneFile(int argc, char** argv, const std::string& sample) {
+    const bool isNamed = argc > 1 && !asksForCheck(argc, argv);
+    return isNamed ? argv[1] : PHOTONAV_SOURCE_DIR "/config/scenes/" + sample;
+}
+
+/// The scene in sceneFile(). One that cannot be read ends the program.
 inline Scene sceneArgument(int argc, char** argv, const std::string& sample) {
     try {
-        const bool isNamed = argc > 1 && !asksForCheck(argc, argv);
-        return loadScene(isNamed ? argv[1] : PHOTONAV_SOURCE_DIR "/config/scenes/" + sample);
+        return loadScene(sceneFile(argc, argv, sample));
     } catch (const InputError& error) {
         std::fprintf(stderr, "%s\n", error.what());
         std::exit(2);

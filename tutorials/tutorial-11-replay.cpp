@@ -5,13 +5,12 @@
 #include <numbers>
 #include <set>
 
-#include "dataset/sequence_tum.hpp"
-#include "estimation/tracker.hpp"
-#include "evaluation/evaluation.hpp"
 #include "exercises.hpp"
 #include "flight/flight_recorder.hpp"
 #include "plot/figure.hpp"
 #include "render/mesh_renderer.hpp"
+#include "replay/replay.hpp"
+#include "replay/replay_errors.hpp"
 #include "scene_argument.hpp"
 
 using namespace photonav;
@@ -45,73 +44,68 @@ void record(const ViewSource& room, const Camera& camera, const std::string& fol
     recorder.finish();
 }
 
-/// Beliefs of a tracker against the true poses.
-struct Result {
-    std::vector<PosePair> poses;
-    double nees = 0.;  ///< mean of the squared normalised errors, per degree of freedom
-    int evaluated = 0;
-    int lost = 0;
-    std::set<double> keyframes;  // timestamps
+//! [odometry]
+ReplayOptions odometry() {
+    ReplayOptions options;
+    options.dataset = "flight";
+    options.odometry = true;  // each image relative to an earlier one, with their depth
+    return options;
+}
+//! [odometry]
 
-    void add(const TrackedFrame& tracked, const RecordedFrame& frame, std::size_t i) {
-        lost += tracked.rejected ? 1 : 0;
-        if (tracked.keyframe) keyframes.insert(*tracked.keyframe);
-        if (tracked.rejected) return;
-        poses.push_back({i, frame.timestamp, tracked.T_c_w.mean.inverse(), frame.T_c_w.inverse()});
-        if (const auto squared = squaredNormalisedError(tracked.T_c_w, frame.T_c_w)) {
-            nees = (nees * evaluated + *squared / 6.) / (evaluated + 1);
-            ++evaluated;
-        }
-    }
+//! [localise]
+ReplayOptions localisation(const std::string& map) {
+    ReplayOptions options;
+    options.dataset = "flight";
+    options.mapFile = map;
+    options.sigma = kNoise;
+    options.startSigma = 0.05;  // of the first pose, per axis [m] and [rad]
+    return options;
+}
+//! [localise]
+
+//! [follow]
+struct Result {
+    ReplayRun run;
+    ReplayErrors errors;
 };
 
-//! [follow]
-Result follow(const Sequence& flight, Tracker tracker) {
-    Result result;
-    for (std::size_t i = 0; i < flight.frames.size(); ++i) {
-        const RecordedFrame frame = loadFrame(flight, i);
-        result.add(tracker.track(frame.view, frame.timestamp), frame, i);
-    }
-    return result;
+/// Estimates the pose of every image, and compares it with the true one.
+Result follow(const ReplayOptions& options) {
+    ReplayRun run = Replay(options).run();
+    ReplayErrors errors = evaluate(run);
+    return {std::move(run), std::move(errors)};
 }
 //! [follow]
-
-//! [odometry]
-Tracker odometry(const Sequence& flight) {
-    TrackerOptions options;
-    options.keyframes.emplace();  // earlier images, with their depth
-    const UncertainPose start{loadFrame(flight, 0).T_c_w, Matrix6::Zero()};
-    return {nullptr, flight.camera, start, options};
-}
-//! [odometry]
-
-//! [localise]
-Tracker localiser(const Sequence& flight, std::shared_ptr<const ViewSource> map) {
-    TrackerOptions options;
-    options.map.photometric.sigma = kNoise;
-    const UncertainPose start{loadFrame(flight, 0).T_c_w, 0.05 * 0.05 * Matrix6::Identity()};
-    return {std::move(map), flight.camera, start, options};
-}
-//! [localise]
 
 //! [print]
-void print(const char* name, const Result& result, bool align) {
-    const Pose T = align ? alignmentOf(result.poses) : Pose::Identity();
-    const ErrorSummary absolute = summarise(absoluteErrors(result.poses, T).translation);
-    const PoseErrors second = relativeErrors(result.poses, Spacing::seconds, 1.);
-    std::printf("%-10s %5zu  %4d  %9zu  %8.2f %6.2f  %8.2f %6.3f  %7.2f\n", name,
-                result.poses.size(), result.lost, result.keyframes.size(), 1e3 * absolute.rmse,
-                1e3 * absolute.max, 1e3 * summarise(second.translation).rmse,
-                summarise(second.rotation).rmse * 180. / std::numbers::pi, result.nees);
+void print(const char* name, const Result& result) {
+    std::set<double> keyframes;  // their time stamps
+    for (const ReplayedFrame& frame : result.run.frames) {
+        if (frame.tracked.keyframe) keyframes.insert(*frame.tracked.keyframe);
+    }
+    double nees = 0.;
+    int evaluated = 0;
+    for (const EvaluatedFrame& frame : result.errors.frames) {
+        if (!frame.normalised) continue;  // odometry's first image: its pose is given
+        nees += frame.normalised->pose;
+        ++evaluated;
+    }
+    const std::size_t found = result.errors.frames.size();
+    const ErrorSummary absolute = summarise(result.errors.absolute.translation);
+    std::printf("%-10s %5zu  %4zu  %9zu  %8.2f %6.2f  %8.2f %6.3f  %7.2f\n", name, found,
+                result.run.frames.size() - found, keyframes.size(), 1e3 * absolute.rmse,
+                1e3 * absolute.max, 1e3 * summarise(result.errors.perSecond.translation).rmse,
+                summarise(result.errors.perSecond.rotation).rmse * 180. / std::numbers::pi,
+                nees / evaluated);
 }
 //! [print]
 
 /// Distance from the truth over time, millimetres.
 Plot::Points errorCurve(const Result& result) {
     Plot::Points points;
-    const PoseErrors errors = absoluteErrors(result.poses);
-    for (std::size_t i = 0; i < result.poses.size(); ++i) {
-        points.emplace_back(result.poses[i].timestamp, 1e3 * errors.translation[i]);
+    for (const EvaluatedFrame& frame : result.errors.frames) {
+        points.emplace_back(frame.pair.timestamp, 1e3 * frame.positionError);
     }
     return points;
 }
@@ -126,38 +120,35 @@ void draw(const Result& odometry, const Result& inMap) {
     Figure{"Errors of a replay", {{plot}}}.save("replay.png");
 }
 
-/// Length of the way truly flown [m].
-double wayOf(const Result& result) {
-    double way = 0.;
-    for (std::size_t i = 1; i < result.poses.size(); ++i) {
-        way += (result.poses[i].T_w_c_truth.translation() -
-                result.poses[i - 1].T_w_c_truth.translation())
-                   .norm();
+/// Length of the path that was truly flown [m].
+double lengthOf(const ReplayErrors& errors) {
+    double length = 0.;
+    for (std::size_t i = 1; i < errors.frames.size(); ++i) {
+        length += (errors.frames[i].pair.T_w_c_truth.translation() -
+                   errors.frames[i - 1].pair.T_w_c_truth.translation())
+                      .norm();
     }
-    return way;
+    return length;
 }
 
-std::vector<Exercise> exercises(const Result& odometry) {
+std::vector<Exercise> exercises(const ReplayErrors& odometry) {
     return {
-        {[&] { return wayOf(odometry); }},
-        {[&] { return 100. * absoluteErrors(odometry.poses).translation.back() / wayOf(odometry); },
-         0.15}};
+        {[&] { return lengthOf(odometry); }},
+        {[&] { return 100. * odometry.frames.back().positionError / lengthOf(odometry); }, 0.15}};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const auto room = std::make_shared<MeshRenderer>(sceneArgument(argc, argv, "room.yaml"));
     const Camera camera = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
-    record(*room, camera, "flight");
-    const Sequence flight = readTumSequence("flight");
+    record(MeshRenderer(sceneArgument(argc, argv, "room.yaml")), camera, "flight");
 
-    const Result byOdometry = follow(flight, odometry(flight));
-    if (const auto code = checkAnswers(argc, argv, exercises(byOdometry))) return *code;
-    const Result inMap = follow(flight, localiser(flight, room));
+    const Result byOdometry = follow(odometry());
+    if (const auto code = checkAnswers(argc, argv, exercises(byOdometry.errors))) return *code;
+    const Result inMap = follow(localisation(sceneFile(argc, argv, "room.yaml")));
     std::puts("           found  lost  keyframes  absolute [mm]  in a second [mm, deg]  NEES / 6");
-    print("odometry", byOdometry, true);
-    print("map", inMap, false);
+    print("odometry", byOdometry);
+    print("map", inMap);
     draw(byOdometry, inMap);
     std::puts("wrote flight (also for photonav replay) and replay.png");
 }

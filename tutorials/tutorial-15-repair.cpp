@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map that changes: what a planner that is told of the change keeps, and what planning from
+// A map that changes: what a planner keeps when the map changes, and what planning from
 // scratch costs. A robot flies 6 m through a room and sees a box that its map did not have.
 #include <cstdio>
 
@@ -102,9 +102,9 @@ int main(int argc, char** argv) {
     ompl::base::ScopedState<> here(problem.spaceInformation());
     problem.space().setState(here.get(), {2.5, 2., 1.1}, 0.);
     planner->moveRoot(here.get(), planner->model().root(here.get()));
-    const double told = watch.seconds();
+    const double seconds = watch.seconds();
     Effort repaired = solve(*planner);
-    repaired.seconds += told;
+    repaired.seconds += seconds;
     //! [change]
     print("repaired after the change", repaired);
     const UpdateCounts& counts = planner->lastUpdate();

@@ -36,7 +36,8 @@ std::string row(const std::string& name, const std::string& description) {
     return line + wrapped(description, kColumn) + "\n";
 }
 
-/// CLI11 appends what is allowed: a set, or a range, of which a wrong value is told.
+/// CLI11 appends to the name of the type the values that are allowed: a set, which is shown, or a
+/// range, which only its error messages show.
 std::string typeOf(const CLI::Option& option) {
     const std::string name = option.get_type_name();
     if (const auto set = name.find(":{"); set != std::string::npos) return name.substr(set + 1);

@@ -13,7 +13,8 @@
 namespace photonav {
 namespace {
 
-void check(const FlightWorld& world) {
+void check(const std::vector<PlannedView>& plan, const FlightWorld& world) {
+    if (plan.size() < 2) throw std::invalid_argument("flight: a plan has at least two views");
     const auto require = [](bool isGiven, const char* what) {
         if (!isGiven) throw std::invalid_argument(std::string("flight: the world has no ") + what);
     };
@@ -146,13 +147,13 @@ void FlightEvaluator::finish(const Tracker& tracker) {
 FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
                  const FlightOptions& options, const std::function<bool()>& isStopped,
                  const OnExposure& onExposure) {
-    check(world);
-    Pilot pilot(plan, world.map, world.camera, world.T_b_c, options.pilot);
+    check(plan, world);
     const UncertainPose start = beliefAtStart(plan, world, options);
     SimulatedRobot robot(world.truth, world.camera, world.T_b_c,
                          drawStart(start, world.T_b_c, options.seed), noiseOf(world, options),
                          options.robot, options.seed);
     Tracker tracker = trackerOf(robot, world.map, start, options.tracker);
+    Pilot pilot = pilotOf(robot, plan, world.map, options.pilot);
     PlannedFlight flight(world, options, plan.back(), robot);
     const auto onStep = [&](const Observation&, const std::vector<TrackedFrame>& tracked) {
         flight.onStep(tracked, tracker, pilot);

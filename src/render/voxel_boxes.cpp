@@ -244,7 +244,7 @@ class Affected {
         return false;
     }
 
-    /// Mostly the first bricks tell: a box of bricks is not worth counting.
+    /// Mostly one of the first bricks decides: counting them all would take longer.
     bool isFree(const CellBox& cells) const {
         const CellBox bricks = bricksOf(cells);
         for (int z = bricks.low.z(); z < bricks.high.z(); ++z) {

@@ -78,11 +78,11 @@ TrackedFrame Tracker::track(const CameraFrame& image) {
     frame.time = image.time;
     predict(image.time);
     frame.predicted = belief_;
-    if (image.vertical) level(*image.vertical);
+    if (image.vertical) correctByVertical(*image.vertical);
     if (const auto match = find(view, stayed, frame)) {
-        take(view, *match, stayed, frame);
+        onMatched(view, *match, stayed, frame);
     } else {
-        miss(view, stayed, frame);
+        onRejected(view, stayed, frame);
     }
     frame.T_c_w = belief_;
     return frame;
@@ -100,7 +100,7 @@ void Tracker::predict(double time) {
 }
 
 /// The vertical of a camera turned by exp(phi^) is up_c + phi x up_c to first order.
-void Tracker::level(const MeasuredVertical& measured) {
+void Tracker::correctByVertical(const MeasuredVertical& measured) {
     const Eigen::Vector3d up_c = belief_.mean.linear().col(2);
     Eigen::Matrix<double, 3, 6> J = Eigen::Matrix<double, 3, 6>::Zero();
     J.rightCols<3>() = -hat(up_c);
@@ -230,7 +230,8 @@ std::optional<Tracker::Match> Tracker::findByKeyframes(const ImageF& image, cons
 }
 
 /// The belief after an image that was found.
-void Tracker::take(const View& view, const Match& match, const Pose& before, TrackedFrame& frame) {
+void Tracker::onMatched(const View& view, const Match& match, const Pose& before,
+                        TrackedFrame& frame) {
     frame.alignment = match.alignment;
     frame.keyframe = match.keyframe;
     belief_ = {match.T_c_w.mean, covarianceOf(match)};
@@ -253,7 +254,7 @@ void Tracker::take(const View& view, const Match& match, const Pose& before, Tra
 
 /// The belief after a rejected image. Without a map the first image that shows anything begins a
 /// chain of keyframes, at the start and, at the belief of then, after many rejected ones.
-void Tracker::miss(const View& view, const Pose& stayed, TrackedFrame& frame) {
+void Tracker::onRejected(const View& view, const Pose& stayed, TrackedFrame& frame) {
     frame.rejected = true;
     velocity_.forget();
     if (!hasOdometry_) {

@@ -95,7 +95,7 @@ class Tracker {
 
     TrackedFrame track(const CameraFrame& image);
     void predict(double time);
-    void level(const MeasuredVertical& measured);
+    void correctByVertical(const MeasuredVertical& measured);
     void relateToMap();
     UncertainPose priorInMap() const;
     Matrix6 covarianceOf(const Match& match);
@@ -107,8 +107,8 @@ class Tracker {
     bool isUnmapped(const TrackedFrame& frame) const;
     bool agrees(const Alignment& alignment, const AlignmentOptions& options) const;
     bool isResolvedBy(const Alignment& alignment, const UncertainPose& prior) const;
-    void take(const View& view, const Match& match, const Pose& before, TrackedFrame& frame);
-    void miss(const View& view, const Pose& stayed, TrackedFrame& frame);
+    void onMatched(const View& view, const Match& match, const Pose& before, TrackedFrame& frame);
+    void onRejected(const View& view, const Pose& stayed, TrackedFrame& frame);
     bool isMapInconsistent(const View& view) const;
     UncertainPose bounded(UncertainPose belief) const;
 
