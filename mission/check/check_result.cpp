@@ -25,6 +25,18 @@ std::string imageVerdict(const CheckedPlace& place) {
     }
 }
 
+std::string nameOf(TrajectoryFormat format) {
+    switch (format) {
+        case TrajectoryFormat::tum:
+            return "tum";
+        case TrajectoryFormat::kitti:
+            return "kitti";
+        case TrajectoryFormat::table:
+            return "table";
+    }
+    return {};
+}
+
 json jsonOf(const BestHeading& best) {
     return {{"yaw", best.yaw}, {"trace", best.trace}, {"own_trace", best.ownTrace}};
 }
@@ -149,21 +161,21 @@ json localisationJson(const CheckedTrajectory& checked) {
 
 json checkResult(const CheckOutcome& report) {
     const GivenTrajectory& given = report.trajectory;
-    json result = resultJson(
-        "check", {{"status", report.interrupted ? "interrupted" : "done"},
-                  {"seed", report.config.seed},
-                  {"trajectory",
-                   {{"file", report.file},
-                    {"format", given.format == TrajectoryFormat::cameraPoses ? "tum" : "table"},
-                    {"poses", given.poses.size()},
-                    {"has_heading", given.hasHeading},
-                    {"tilt_deg", report.tilt / kDegree}}},
-                  {"characteristic_length", report.config.belief.characteristicLength},
-                  {"collisions", jsonOf(report.obstruction.collisions)},
-                  {"out_of_bounds", jsonOf(report.obstruction.outside)},
-                  {"least_clearance_m", finiteOrNull(report.obstruction.leastClearance)},
-                  {"with_best_headings", turnedJson(report.turned)},
-                  {"flights", flightsJson(report.flights)}});
+    json result =
+        resultJson("check", {{"status", report.interrupted ? "interrupted" : "done"},
+                             {"seed", report.config.seed},
+                             {"trajectory",
+                              {{"file", report.file},
+                               {"format", nameOf(given.format)},
+                               {"poses", given.poses.size()},
+                               {"has_heading", given.hasHeading},
+                               {"tilt_deg", report.tilt / kDegree}}},
+                             {"characteristic_length", report.config.belief.characteristicLength},
+                             {"collisions", jsonOf(report.obstruction.collisions)},
+                             {"out_of_bounds", jsonOf(report.obstruction.outside)},
+                             {"least_clearance_m", finiteOrNull(report.obstruction.leastClearance)},
+                             {"with_best_headings", turnedJson(report.turned)},
+                             {"flights", flightsJson(report.flights)}});
     result.update(localisationJson(report.checked));
     return result;
 }

@@ -60,6 +60,12 @@ FirstLine firstLineOf(const std::string& file) {
     throw InputError(file, "", "no poses");
 }
 
+TrajectoryFormat formatOf(const FirstLine& first) {
+    if (!first.beginsWithNumber()) return TrajectoryFormat::table;
+    if (first.isOf(kTumColumns)) return TrajectoryFormat::tum;
+    return first.isOf(kKittiColumns) ? TrajectoryFormat::kitti : TrajectoryFormat::table;
+}
+
 std::optional<Column> columnNamed(const std::string& name) {
     static const std::array<std::vector<std::string>, kColumnCount> kNames{
         {{"t", "time", "timestamp"}, {"x"}, {"y"}, {"z"}, {"yaw", "heading"}}};
@@ -157,8 +163,9 @@ std::vector<double> headingsOf(const std::vector<Row>& rows, const GivenHeading&
     return headings;
 }
 
-GivenTrajectory readPoses(const std::string& file, const Pose& T_b_c, bool isKitti) {
-    GivenTrajectory trajectory{TrajectoryFormat::cameraPoses, true, {}};
+GivenTrajectory readPoses(const std::string& file, const Pose& T_b_c, TrajectoryFormat format) {
+    GivenTrajectory trajectory{format, true, {}};
+    const bool isKitti = format == TrajectoryFormat::kitti;
     for (const auto& [timestamp, T_w_c] :
          isKitti ? readKittiTrajectory(file) : readTrajectory(file)) {
         if (T_w_c.translation().cwiseAbs().maxCoeff() > kFarthestPose) {
@@ -206,10 +213,10 @@ GivenTrajectory readGivenTrajectory(const std::string& file, const Pose& T_b_c,
                                     const GivenHeading& heading) {
     return reading(file, [&] {
         const FirstLine first = firstLineOf(file);
-        const bool isKitti = first.isOf(kKittiColumns) && first.beginsWithNumber();
-        GivenTrajectory trajectory = isKitti || first.isOf(kTumColumns)
-                                         ? readPoses(file, T_b_c, isKitti)
-                                         : readPlaces(file, first, heading);
+        const TrajectoryFormat format = formatOf(first);
+        GivenTrajectory trajectory = format == TrajectoryFormat::table
+                                         ? readPlaces(file, first, heading)
+                                         : readPoses(file, T_b_c, format);
         check(trajectory, file);
         return trajectory;
     });

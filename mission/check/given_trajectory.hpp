@@ -16,8 +16,9 @@ struct GivenPose {
 };
 
 enum class TrajectoryFormat {
-    cameraPoses,  ///< T_w_c; TUM: `t tx ty tz qx qy qz qw`, KITTI: rows of the 3x4 matrix
-    table         ///< positions of the body, optionally with times and headings
+    tum,    ///< camera poses T_w_c: `t tx ty tz qx qy qz qw`
+    kitti,  ///< camera poses T_w_c, rows of the 3x4 matrix; no times
+    table   ///< positions of the body, optionally with times and headings
 };
 
 /// The heading for a table without headings [rad]; nothing: along the motion.
@@ -29,8 +30,8 @@ struct GivenTrajectory {
     std::vector<GivenPose> poses;  ///< at least two; times never decrease
 };
 
-/// Reads a trajectory. A file with eight columns without commas is a TUM file, one with twelve
-/// numbers per line without commas is a KITTI file, which has no times. Any other file is a table
+/// Reads a trajectory. A file with eight numbers per line without commas is a TUM file, one
+/// with twelve is a KITTI file, which has no times. Any other file is a table
 /// with the columns x, y, z and optionally t and yaw [m, s, rad], separated by blanks or commas. A
 /// first line may name the columns; other named columns are ignored. Without names the columns are
 /// x,y,z or t,x,y,z,yaw.

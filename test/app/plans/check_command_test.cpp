@@ -64,6 +64,8 @@ TEST_F(CheckCommand, ReadsTheTrajectoryThatItWrites) {
     ASSERT_EQ(check(folder_.file("first/path.tum") + rest).exitCode, 0);
     EXPECT_NEAR(result()["mean_trace"].get<double>(), before, 1e-4 * before);
     EXPECT_EQ(result()["trajectory"]["format"], "tum");
+    ASSERT_EQ(check(folder_.file("first/path.kitti") + rest).exitCode, 0);
+    EXPECT_EQ(result()["trajectory"]["format"], "kitti");
 }
 
 TEST_F(CheckCommand, WithoutAConfigTheWorldIsThatAroundTheTrajectory) {

@@ -35,7 +35,7 @@ TEST_F(GivenTrajectoryTest, CameraPosesBecomeBodyPoses) {
     const std::string file =
         folder_.write("path.tum", "# timestamp tx ty tz\n5 " + row + "5.5 0 0 0 0 0 0 1\n");
     const GivenTrajectory trajectory = readGivenTrajectory(file, T_b_c);
-    EXPECT_EQ(trajectory.format, TrajectoryFormat::cameraPoses);
+    EXPECT_EQ(trajectory.format, TrajectoryFormat::tum);
     EXPECT_TRUE(trajectory.hasHeading);
     ASSERT_EQ(trajectory.poses.size(), 2U);
     EXPECT_EQ(trajectory.poses[0].time, 5.);
@@ -44,7 +44,7 @@ TEST_F(GivenTrajectoryTest, CameraPosesBecomeBodyPoses) {
 
 TEST_F(GivenTrajectoryTest, TwelveNumbersAreThePoseOfACameraWithoutTime) {
     const GivenTrajectory trajectory = read("0 -1 0 1 1 0 0 2 0 0 1 3\n1 0 0 4 0 1 0 5 0 0 1 6\n");
-    EXPECT_EQ(trajectory.format, TrajectoryFormat::cameraPoses);
+    EXPECT_EQ(trajectory.format, TrajectoryFormat::kitti);
     ASSERT_EQ(trajectory.poses.size(), 2U);
     EXPECT_FALSE(trajectory.poses[0].time);
     EXPECT_EQ(trajectory.poses[0].T_w_b.translation(), Eigen::Vector3d(1., 2., 3.));
