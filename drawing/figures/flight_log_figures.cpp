@@ -16,7 +16,7 @@ constexpr Color kFlown{75, 85, 99};
 
 /// Moments with pictures, at about equal distances flown.
 std::vector<std::size_t> stagesOf(const FlightLog& log, std::size_t count) {
-    const double way = log.moments.back().way;
+    const double way = log.moments.back().length;
     std::vector<std::size_t> stages;
     for (std::size_t i = 0; i < count; ++i) {
         const double wanted = count > 1 ? way * static_cast<double>(i) / (count - 1.) : way;
@@ -25,7 +25,7 @@ std::vector<std::size_t> stagesOf(const FlightLog& log, std::size_t count) {
         for (std::size_t k = 0; k < log.moments.size(); ++k) {
             if (log.moments[k].pictures.empty()) continue;
             // Of moments at the same place the last one: the robot has waited.
-            const double away = std::abs(log.moments[k].way - wanted);
+            const double away = std::abs(log.moments[k].length - wanted);
             if (away <= nearest) best = k;
             nearest = std::min(nearest, away);
         }
@@ -55,7 +55,7 @@ Plot scenePanel(const FlightLog& log, const LoggedMoment& moment, TopView scene,
     scene.trees = {{"tree", kTreeColor, moment.pictures.tree}};
     scene.paths = {{"plan, " + log.planner, plannerColor(log.planner), moment.plan}};
     Plot plot = topViewPlot(scene, side);
-    plot.title = fmt::format("{:.1f} s, {:.1f} m flown", moment.update.time, moment.way);
+    plot.title = fmt::format("{:.1f} s, {:.1f} m flown", moment.update.time, moment.length);
     plot.curve(flownUntil(log, moment.update.time),
                {.color = kFlown, .width = 2.4, .name = "path flown", .halo = 1.2});
     const Eigen::Matrix2d covariance = moment.robot.positionCovariance.topLeftCorner<2, 2>();
@@ -210,7 +210,7 @@ Figure FilmScript::frame(double time, std::size_t moment) const {
         return plot;
     };
     Figure figure{.legend = Figure::Legend::none};
-    figure.title = fmt::format("{}, {:5.1f} s, {:4.1f} m flown", log_.planner, time, now.way);
+    figure.title = fmt::format("{}, {:5.1f} s, {:4.1f} m flown", log_.planner, time, now.length);
     Plot scene = scenePanel(log_, now, scene_, kFilmSide);
     scene.title = "Scene, tree, plan";
     figure.rows = {

@@ -26,7 +26,7 @@ struct CellChanges {
 
 /// True and believed position at an exposure.
 struct FlownPoint {
-    float time = 0.F, way = 0.F;  ///< time [s], length of the true path so far [m]
+    float time = 0.F, length = 0.F;  ///< time [s], length of the true path so far [m]
     Eigen::Vector3f believed = Eigen::Vector3f::Zero();  ///< camera centre, world frame [m]
     Eigen::Vector3f truth = Eigen::Vector3f::Zero();     ///< camera centre, world frame [m]
     float trace = 0.F;                                   ///< weightedTrace() of the belief [m^2]
@@ -59,7 +59,7 @@ inline constexpr std::uint8_t kNoInformation = 255;
 /// The state after an update of the plan.
 struct LoggedMoment {
     PlanUpdate update;
-    double way = 0.;                ///< length of the true path so far [m]
+    double length = 0.;             ///< length of the true path so far [m]
     PathPoint robot;                ///< the belief
     std::vector<FlownPoint> flown;  ///< exposures since the last moment, at least 0.1 s apart
     std::vector<PathPoint> plan;    ///< path from the robot to the goal; empty if there is none

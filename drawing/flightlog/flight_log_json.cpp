@@ -60,7 +60,7 @@ constexpr std::size_t kFlownValues = 10;
 json flownJson(const std::vector<FlownPoint>& flown) {
     std::vector<float> values;
     for (const FlownPoint& point : flown) {
-        values.insert(values.end(), {point.time, point.way});
+        values.insert(values.end(), {point.time, point.length});
         values.insert(values.end(), point.believed.data(), point.believed.data() + 3);
         values.insert(values.end(), point.truth.data(), point.truth.data() + 3);
         values.insert(values.end(), {point.trace, point.yaw});
@@ -140,13 +140,13 @@ std::vector<Edge> treeFrom(const json& text, const Eigen::AlignedBox3d& box) {
 LoggedMoment momentFrom(const json& content, const Eigen::AlignedBox3d& box) {
     LoggedMoment moment;
     moment.update = planUpdateFrom(content.at("update"));
-    moment.way = content.at("way");
+    moment.length = content.at("way");
     const json& robot = content.at("robot");
     moment.robot.T_w_c.matrix().topRows<3>() = matrixFrom<3, 4>(robot.at("T_w_c_rows"));
     moment.robot.position = moment.robot.T_w_c.translation();
     moment.robot.positionCovariance = matrixFrom<3, 3>(robot.at("position_covariance"));
     moment.robot.trace = moment.update.trace;
-    moment.robot.distance = moment.way;
+    moment.robot.distance = moment.length;
     moment.flown = flownFrom(content.at("flown"));
     moment.plan = planFrom(content.at("plan"));
     moment.cells.indices = arrayFrom<std::int16_t>(content.at("cells"), 3);
@@ -193,7 +193,7 @@ json headerJson(const FlightLog& log) {
 
 json momentJson(const FlightLog& log, const LoggedMoment& moment) {
     json content{{"update", lineOf(moment.update)},
-                 {"way", moment.way},
+                 {"way", moment.length},
                  {"robot",
                   {{"T_w_c_rows", listOf(moment.robot.T_w_c.matrix().topRows<3>())},
                    {"position_covariance", listOf(moment.robot.positionCovariance)}}},

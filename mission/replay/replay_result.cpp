@@ -91,7 +91,7 @@ json skippedJson(const Sequence& sequence, const ReplayRun& run) {
     for (const ReplayedFrame& frame : run.frames) {
         if (frame.status != FrameStatus::unreadable) continue;
         const std::string& file = sequence.frames[frame.index].colourFile;
-        std::string reason = frame.words;
+        std::string reason = frame.message;
         if (reason.starts_with(file + ": ")) reason.erase(0, file.size() + 2);
         list.push_back({{"file", file}, {"reason", reason}});
     }
@@ -122,7 +122,7 @@ std::string whyLostAtOnce(const ReplayRun& run, std::size_t lost) {
                      [](const ReplayedFrame& f) { return isLostFrame(f) && !f.isBlack; });
     std::string text = run.stopped.empty() ? "" : run.stopped + "; ";
     text += first == run.frames.begin() ? "first image: " : fmt::format("image {}: ", first->index);
-    text += first->words;
+    text += first->message;
     if (isShortOfOverlap(*first)) text += kOverlapHint;
     if (!run.odometry)
         text += "; check that start pose and map use the same world frame (--up, --start)";
@@ -179,7 +179,7 @@ std::string verdictOf(const ReplayRun& run) {
     if (isLostForGood(run) && lost > 0) {
         text += fmt::format(", and for good from {:.3f} s on", lostIntervals(run).back().first);
         const auto last = std::find_if(run.frames.rbegin(), run.frames.rend(), isLostFrame);
-        if (isShortOfOverlap(*last)) text += ": " + last->words + kOverlapHint;
+        if (isShortOfOverlap(*last)) text += ": " + last->message + kOverlapHint;
     }
     return text;
 }

@@ -32,7 +32,7 @@ std::optional<View> tryToLoad(const Recording& recording, ReplayedFrame& frame) 
     try {
         return recording.view(frame.index);
     } catch (const InputError& error) {
-        frame.words = error.what();
+        frame.message = error.what();
         return {};
     }
 }
@@ -63,10 +63,10 @@ void track(const ReplayTracker& tracker, View& view, ReplayedFrame& frame, Repla
     run.trackSeconds += frame.seconds;
     frame.status = frame.tracked.rejected ? FrameStatus::lost : FrameStatus::tracked;
     const Alignment& alignment = frame.tracked.alignment;
-    frame.words = frame.tracked.rejected && !isLost(alignment.verdict)
-                      ? fmt::format("lost: the view does not determine the pose ({})",
-                                    describe(alignment, tracker.trust))
-                      : describe(alignment, tracker.trust);
+    frame.message = frame.tracked.rejected && !isLost(alignment.verdict)
+                        ? fmt::format("lost: the view does not determine the pose ({})",
+                                      describe(alignment, tracker.trust))
+                        : describe(alignment, tracker.trust);
 }
 
 /// The frame tracked last beside its prediction; odometry predicts it from an earlier image.
@@ -84,7 +84,7 @@ ReplayStrip stripOf(const Recording& recording, const ReplayTracker& tracker, co
     const TrackedView seen{std::move(observed), frame.tracked};
     View predicted = tracker.predict(seen, keyframe);
     expose(predicted.intensity, frame.tracked.alignment.exposure);
-    return {frame.index, fmt::format("frame {}: {}", frame.index, frame.words), seen.view,
+    return {frame.index, fmt::format("frame {}: {}", frame.index, frame.message), seen.view,
             std::move(predicted)};
 }
 

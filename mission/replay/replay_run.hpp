@@ -27,7 +27,7 @@ struct ReplayedFrame {
     double seconds = 0.;            ///< wall-clock time of halving and tracking the image [s]
     double density = 0.;            ///< share of the pixels with depth, before halving
     bool isBlack = false;           ///< the image is black
-    std::string words;              ///< verdict on the alignment, or why the frame is unreadable
+    std::string message;            ///< verdict on the alignment, or why the frame is unreadable
 };
 
 /// The observed view of a frame, and the view that the model predicts at the estimated pose with

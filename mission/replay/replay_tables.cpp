@@ -51,7 +51,7 @@ std::string row(const ReplayedFrame& frame, const EvaluatedFrame* evaluated) {
     } else {
         line += ",,,,,";
     }
-    return line + "," + csvField(frame.words) + "\n";
+    return line + "," + csvField(frame.message) + "\n";
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST_F(ExploreWatch, TheLogHoldsTheFlight) {
     for (const LoggedMoment& moment : log.moments) flown += moment.flown.size();
     EXPECT_GT(flown, 10U);
     // The robot flies a little after the last image.
-    EXPECT_NEAR(log.rest.back().way, result["length"].get<double>(), 0.05);
+    EXPECT_NEAR(log.rest.back().length, result["length"].get<double>(), 0.05);
     EXPECT_FALSE(log.moments.front().pictures.observed.empty());
     EXPECT_FALSE(log.moments.front().pictures.tree.empty());
     EXPECT_GT(log.moments.front().cells.greys.size(), 50U);

@@ -36,7 +36,7 @@ inline LoggedMoment momentAt(int i) {
     moment.update.planSeconds = 0.05;
     moment.update.length = 3. - x;
     moment.update.cost = 4. - x;
-    moment.way = x;
+    moment.length = x;
     moment.robot = pointAt(x, 0.02);
     moment.update.trace = moment.robot.trace;
     for (int k = 0; k < 3; ++k) {
