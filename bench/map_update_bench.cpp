@@ -25,8 +25,7 @@ using namespace photonav;
 namespace {
 
 constexpr double kCell = 0.05;
-constexpr int kViews = 400;   // that a planner has rendered when a keyframe arrives
-constexpr int kRenewals = 8;  // of all those views along a walk; what is marked then is measured
+constexpr int kViews = 400;  // that a planner has rendered when a keyframe arrives
 
 struct World {
     const char* name;
@@ -136,16 +135,15 @@ void print(const char* what, const std::vector<double>& times) {
 
 /// Times of keyframes [first, last) of a route.
 struct Times {
-    std::vector<double> fuse, distance, snapshot, total;
-    std::vector<double> mark;  ///< while all views were as the map was
+    std::vector<double> fuse, distance, snapshot, mark, sum;
 
     void print(const char* name) const {
-        fmt::print(" {} ({} keyframes)\n", name, total.size());
+        fmt::print(" {} ({} keyframes)\n", name, sum.size());
         ::print("fuse", fuse);
         ::print("clearance", distance);
         ::print("snapshot", snapshot);
         ::print("marking", mark);
-        ::print("all but marking", total);
+        ::print("sum of all four", sum);
     }
 };
 
@@ -166,11 +164,6 @@ class PlannedViews {
                     .toRotationMatrix();
             poses_.push_back(T_w_b);
         }
-        renew();
-    }
-
-    void renew() {
-        entries_.clear();
         for (const Pose& pose : poses_) entries_.push_back(&field_.at(pose));
     }
 
@@ -178,8 +171,9 @@ class PlannedViews {
         field_.update(std::move(views), change);
     }
 
-    /// Renders again what was marked, and counts for how many that was in vain.
-    void countMarks() {
+    /// Renders again what was marked, so that all views are as the map is when the next keyframe
+    /// arrives, and counts for how many that was in vain.
+    void renew() {
         for (const InformationField::Entry* entry : entries_) {
             const Matrix6 before = entry->information;
             const bool isMarked = entry->isStale;
@@ -219,12 +213,10 @@ void run(const World& world, const Camera& camera, UnknownPolicy unknown) {
         times.fuse.push_back(milliseconds([&] { change = fuse(map, view, camera, poses[i]); }));
         times.distance.push_back(milliseconds([&] { distances.update(map, change); }));
         times.snapshot.push_back(milliseconds([&] { snapshots.update(map, change); }));
-        times.total.push_back(times.fuse.back() + times.distance.back() + times.snapshot.back());
-        const bool renew = i % (poses.size() / kRenewals) == 1;
-        if (renew) planned.renew();
-        const double mark = milliseconds([&] { planned.update(snapshots.current(), change); });
-        if (renew) times.mark.push_back(mark);
-        if (renew) planned.countMarks();
+        times.mark.push_back(milliseconds([&] { planned.update(snapshots.current(), change); }));
+        times.sum.push_back(times.fuse.back() + times.distance.back() + times.snapshot.back() +
+                            times.mark.back());
+        planned.renew();
         bricks += static_cast<double>(change.bricks().size()) / static_cast<double>(poses.size());
     }
     fmt::print("\n{}, {} x {} images, unknown cells {}; {:.0f} bricks change per keyframe\n",
@@ -232,13 +224,19 @@ void run(const World& world, const Camera& camera, UnknownPolicy unknown) {
                unknown == UnknownPolicy::free ? "free" : "occupied", bricks);
     forth.print("unknown space, first half");
     back.print("space seen before, second half");
-    const double distance = milliseconds([&] { DistanceMap(map, bounds, {}); });
     planned.printMarks();
+    const double distance = milliseconds([&] { DistanceMap(map, bounds, {}); });
     const double snapshot = milliseconds([&] { VoxelRenderer(map, unknown); });
+    const double views = milliseconds([&] { PlannedViews(world, camera, snapshots.current()); });
+    const auto ratio = [](double scratch, const std::vector<double>& update) {
+        return scratch / quantile(update, 0.5);
+    };
     fmt::print(
-        " from scratch: clearance {:.1f} ms, snapshot {:.1f} ms; following takes 1/{:.0f}\n",
-        distance, snapshot,
-        (distance + snapshot) / (quantile(back.distance, 0.5) + quantile(back.snapshot, 0.5)));
+        " from scratch: clearance {:.1f} ms, {:.0f} times the update's; snapshot {:.1f} ms, {:.0f} "
+        "times; all {} views {:.0f} ms\n with fusion {:.0f} ms, {:.0f} times the update's\n",
+        distance, ratio(distance, back.distance), snapshot, ratio(snapshot, back.snapshot), kViews,
+        views, quantile(back.fuse, 0.5) + distance + snapshot + views,
+        ratio(quantile(back.fuse, 0.5) + distance + snapshot + views, back.sum));
     std::fflush(stdout);
 }
 
