@@ -141,7 +141,7 @@ std::optional<Belief> BeliefModel::propagateNow(double limit, const Belief& beli
     const auto*& unused = motion.views[backward ? motion.steps : 0];
     if (unused != nullptr && unused->isStale) unused = nullptr;
     motion.epoch = field_->epoch();
-    return Belief{covariance, begin + price * charge};
+    return Belief{covariance, charge >= 0. ? begin + price * charge : kInfinity};
 }
 
 /// Covers fourth-order terms by 1 %.

@@ -96,6 +96,8 @@ class BeliefModel {
     /// propagate the covariance, add to the cost, update by the view at the end of the step. The
     /// information of this view is multiplied by (length of the step) / ds, so that a path gives
     /// the same information wherever its vertices are (CostRule::perVertex: not multiplied).
+    /// Costs never fall along a motion, or a tree could get a cycle: if a covariance is not
+    /// positive semi-definite, so that the cost would fall, it becomes infinite.
     Belief propagate(const Belief& belief, Motion& motion, bool backward = false) {
         return *propagateWithin(kInfinity, belief, motion, backward);
     }

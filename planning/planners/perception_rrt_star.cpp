@@ -50,16 +50,17 @@ std::vector<PerceptionRRTstar::Candidate> PerceptionRRTstar::candidatesOf(
 }
 
 /// Lines 6 to 24 of Algorithm 1. Candidates are sorted by a bound on their benefit, so the first
-/// that cannot improve ends the search.
+/// that cannot improve ends the search. A vertex has a parent even if its cost is not finite.
 void PerceptionRRTstar::chooseParent(Vertex& fresh, std::vector<Candidate>& candidates) {
     Branch& branch = at(fresh);
-    branch.belief.cost = kInfinity;
     for (Candidate& candidate : candidates) {
         const Belief& origin = belief(*candidate.vertex);
-        if (origin.cost + model_->lowerBound(candidate.motion.length) >= branch.belief.cost) break;
+        const bool hasParent = branch.parent != nullptr;
+        const double least = origin.cost + model_->lowerBound(candidate.motion.length);
+        if (hasParent && least >= branch.belief.cost) break;
         if (!isFree(candidate, fresh)) continue;
         const Belief arrival = propagate(origin, candidate.motion, false);
-        if (arrival.cost >= branch.belief.cost) continue;
+        if (hasParent && arrival.cost >= branch.belief.cost) continue;
         branch.belief = arrival;
         branch.parent = candidate.vertex;
         branch.motion = candidate.motion;

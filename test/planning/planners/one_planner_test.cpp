@@ -66,6 +66,20 @@ TEST(PerceptionRRTstar, TakesALongerPathForCertainty) {
     EXPECT_LT(aware->bestCost(), replayedCost(*shortest) + 1e-9);
 }
 
+/// Costs that fall along motions would make a vertex the child of its descendant.
+TEST(PlannersWithBeliefs, EndWhereTheCovarianceIsNotPositive) {
+    for (const std::string name : {"pa_rrt_star", "rrbt", "belief_rrt_star"}) {
+        Problem problem;
+        problem.information = [](const Pose&) -> Matrix6 { return Matrix6::Zero(); };
+        const auto planner = problem.planner(name);
+        ob::ScopedState<> start(planner->getSpaceInformation());
+        problem.space().setState(start.get(), problem.start, 0.);
+        planner->moveRoot(start.get(), {-1. * Matrix6::Identity(), 0.});
+        EXPECT_EQ(grow(*planner, 150), ob::PlannerStatus::TIMEOUT) << name;
+        EXPECT_EQ(planner->vertices(), 150U) << name;
+    }
+}
+
 TEST(BeliefRRTstar, CostsLessThanOneBeliefPerVertex) {
     double literal = 0.;
     double labels = 0.;
