@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "geometry/constants.hpp"
+#include "io/stopwatch.hpp"
 #include "planners/ompl_objective.hpp"
 #include "render/interruptible_views.hpp"
 
@@ -43,6 +44,7 @@ BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<
     : ob::Planner(si, name),
       model_(std::move(model)),
       growth_(growth),
+      clock_([watch = Stopwatch()] { return watch.seconds(); }),
       best_{kInfinity, {}},
       updated_(si, model_->space()),
       objective_(std::make_shared<OmplObjective>(si, model_)) {
@@ -108,7 +110,7 @@ void BeliefPlanner::growUntil(const ob::PlannerTerminationCondition& ptc) {
         }
         const double left = secondsLeft();
         finish(ptc);
-        isTimeLeft = deadline_ && !ptc && !isGrown() && vertices() > before &&
+        isTimeLeft = deadline_ < kInfinity && !ptc && !isGrown() && vertices() > before &&
                      secondsLeft() > kAnotherRound * (left - secondsLeft());
     }
 }
@@ -119,18 +121,12 @@ double BeliefPlanner::range() const {
 
 ob::PlannerStatus BeliefPlanner::solve(double seconds) {
     budget_ = std::clamp(seconds, 0., 1e9);
-    deadline_ = Clock::now() +
-                std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(budget_));
+    deadline_ = now() + budget_;
     const struct Reset {  // also after an exception
-        std::optional<Clock::time_point>& deadline;
-        ~Reset() { deadline.reset(); }
+        double& deadline;
+        ~Reset() { deadline = kInfinity; }
     } reset{deadline_};
     return solve(ob::PlannerTerminationCondition([this] { return secondsLeft() <= 0.; }));
-}
-
-double BeliefPlanner::secondsLeft() const {
-    if (!deadline_) return kInfinity;
-    return std::chrono::duration<double>(*deadline_ - Clock::now()).count();
 }
 
 bool BeliefPlanner::isGrown() const {
@@ -140,7 +136,8 @@ bool BeliefPlanner::isGrown() const {
 }
 
 bool BeliefPlanner::isTimeToFinish() const {
-    return deadline_ && secondsLeft() <= std::min(timeToFinish(), kMaxFinishShare * budget_);
+    return deadline_ < kInfinity &&
+           secondsLeft() <= std::min(timeToFinish(), kMaxFinishShare * budget_);
 }
 
 /// One sample, and a new vertex toward it.

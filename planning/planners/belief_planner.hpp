@@ -9,7 +9,6 @@
 #include <ompl/util/RandomNumbers.h>
 
 #include <atomic>
-#include <chrono>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -89,11 +88,15 @@ class BeliefPlanner : public ompl::base::Planner {
     /// for example OMPL's benchmark, does not know.
     void endWhen(std::function<bool()> isInterrupted) { isInterrupted_ = std::move(isInterrupted); }
 
+    /// Replaces the clock of solve(double), whose value only ever grows [s].
+    void setClock(std::function<double()> clock) { clock_ = std::move(clock); }
+
     /// Updates the planner after a change of the map. Clearance and information field must be
     /// updated first. Vertices and motions in collision are removed; motions that the change may
     /// have freed are checked again. The best path is kept only if it is still free; its cost is
     /// computed again with the views of the present map. It replaces all solutions of the problem
-    /// definition. The next solve() continues from the updated planner.
+    /// definition. The next solve() continues from the updated planner. After an exception of the
+    /// views, here or in moveRoot(), the next solve() begins anew, without vertices.
     void mapChanged(const MapChange& change);
 
     /// Plans from another state and belief from now on, for example while a path is flown. The
@@ -219,13 +222,16 @@ class BeliefPlanner : public ompl::base::Planner {
     /// Whether setReferenceModel() has set a second model.
     bool hasReferenceModel() const { return reference_ != nullptr; }
     /// The cost of a path from a root, by the model of setReferenceModel(), or by model() if there
-    /// is none.
-    double referenceCost(const std::vector<ompl::base::State*>& path);
+    /// is none. Nothing if the condition has ended it before.
+    std::optional<double> referenceCost(const std::vector<ompl::base::State*>& path,
+                                        const ompl::base::PlannerTerminationCondition& ptc);
     /// Replaces the best path by this one (start first), even if it costs more.
     void replaceBest(double cost, const std::vector<const ompl::base::State*>& path);
 
+    /// The time by the clock of solve(double) [s].
+    double now() const { return clock_(); }
     /// Time until the deadline of solve(double) [s]; infinite without one.
-    double secondsLeft() const;
+    double secondsLeft() const { return deadline_ - now(); }
 
     std::deque<Vertex> vertices_;  // removed ones have no state
     std::vector<Root> roots_;
@@ -233,7 +239,6 @@ class BeliefPlanner : public ompl::base::Planner {
     std::shared_ptr<BeliefModel> model_;
 
   private:
-    using Clock = std::chrono::steady_clock;
     struct Solution {
         double cost;
         std::vector<ompl::base::State*> states;
@@ -267,6 +272,8 @@ class BeliefPlanner : public ompl::base::Planner {
     bool isRoot(const Vertex& vertex) const;
     void joinRootToBest();
     void reevaluateBest();
+    void reportUpdate();
+    void orBeginAnew(const std::function<void()>& update);
     std::optional<double> costOf(const std::vector<ompl::base::State*>& path);
     const Root* rootAt(const ompl::base::State* state) const;
     void setStartOfProblem(const ompl::base::State* state);
@@ -277,13 +284,14 @@ class BeliefPlanner : public ompl::base::Planner {
     GrowthOptions growth_;
     std::shared_ptr<BeliefModel> reference_;  // null: model_
     std::function<bool()> isInterrupted_ = [] { return false; };
+    std::function<double()> clock_;  // [s]
     std::shared_ptr<ompl::NearestNeighbors<Vertex*>> neighbours_;
     ompl::base::StateSamplerPtr sampler_;
     ompl::RNG rng_;
     Solution best_;
     std::optional<Belief> movedRoot_;
-    std::optional<Clock::time_point> deadline_;
-    double budget_ = 0.;  // of the solve() that has a deadline [s]
+    double deadline_ = kInfinity;  // by the clock [s]
+    double budget_ = 0.;           // of the solve() that has a deadline [s]
     std::size_t iterations_ = 0;
     std::size_t iterationsAtChange_ = 0;      // of the map or the root, the last one
     std::vector<const Vertex*> goalSamples_;  // vertices that were sampled at a goal

@@ -14,14 +14,38 @@ void BeliefPlanner::mapChanged(const MapChange& change) {
     iterationsAtChange_ = iterations_;
     updated_.addChange(change);
     removeColliding(ChangedSpace(change, growth_.obstacleReach));
-    if (!movedRoot_) {  // the views from the starts may have changed
-        for (Root& root : roots_) root.belief = rootBelief(root.vertex->state);
-    }
-    reevaluateBest();
-    renewBeliefs();
+    orBeginAnew([&] {
+        if (!movedRoot_) {  // the views from the starts may have changed
+            for (Root& root : roots_) root.belief = rootBelief(root.vertex->state);
+        }
+        reevaluateBest();
+        renewBeliefs();
+    });
+    reportUpdate();
+}
+
+void BeliefPlanner::reportUpdate() {
     pdef_->clearSolutionPaths();
     if (!best_.states.empty()) addSolution();
     publishProgress();
+}
+
+/// An update that ends by an exception, for example because rendering was stopped, would leave
+/// beliefs of two maps in one tree: planning begins anew from the present root.
+void BeliefPlanner::orBeginAnew(const std::function<void()>& update) {
+    try {
+        update();
+    } catch (...) {
+        const std::optional<Belief> belief = movedRoot_;
+        clear();
+        pdef_->clearSolutionPaths();
+        if (belief) {
+            ob::ScopedState<> root(si_);
+            root = pdef_->getStartState(0);
+            moveRoot(root.get(), *belief);
+        }
+        throw;
+    }
 }
 
 /// Roots are kept even in collision: the robot is there, although it has no path.
@@ -98,12 +122,12 @@ void BeliefPlanner::moveRoot(const ob::State* state, const Belief& belief) {
     roots_ = {{root, belief}};
     movedRoot_ = belief;
     joinRootToBest();
-    reevaluateBest();
-    remove(replaceRoots(roots_.front(), others));
+    orBeginAnew([&] {
+        reevaluateBest();
+        remove(replaceRoots(roots_.front(), others));
+    });
     if (root->isGoal) offer(belief.cost, {root->state});
-    pdef_->clearSolutionPaths();
-    if (!best_.states.empty()) addSolution();
-    publishProgress();
+    reportUpdate();
 }
 
 void BeliefPlanner::setStartOfProblem(const ob::State* state) {
@@ -160,10 +184,12 @@ std::optional<double> BeliefPlanner::costOf(const std::vector<ob::State*>& path)
     return belief.cost;
 }
 
-double BeliefPlanner::referenceCost(const std::vector<ob::State*>& path) {
+std::optional<double> BeliefPlanner::referenceCost(const std::vector<ob::State*>& path,
+                                                   const ob::PlannerTerminationCondition& ptc) {
     BeliefModel& reference = reference_ ? *reference_ : *model_;
     Belief belief = rootAt(path.front())->belief;
     for (std::size_t i = 1; i < path.size(); ++i) {
+        if (ptc) return {};
         Motion motion = reference.motion(path[i - 1], path[i]);
         belief = reference.propagate(belief, motion);
     }

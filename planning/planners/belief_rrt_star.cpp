@@ -2,7 +2,6 @@
 #include "planners/belief_rrt_star.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "geometry/constants.hpp"
@@ -64,11 +63,12 @@ void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near,
     roadmap_.of(&fresh).front()->isFree = true;
     if (fresh.index < promising_.size()) promising_[fresh.index] = true;
     isSearchDue_ = true;
-    if (fresh.isGoal && bestCost() == kInfinity) offerCheckedPath(fresh);
+    if (fresh.isGoal && bestCost() == kInfinity) offerCheckedPath(fresh, ptc);
     const double growth = path_.empty() ? kSearchGrowthWithoutPath : kSearchGrowth;
     const double due = std::max<double>(kFirstSearch, growth * static_cast<double>(searched_));
     if (goals_.empty() || static_cast<double>(vertices()) < due) return;
     search(ptc);
+    if (isSearchDue_) return;  // it was stopped
     promising_.assign(vertices_.size(), false);
     for (const Label& label : settled_) promising_[label.vertex->index] = true;
     descend(ptc, static_cast<unsigned>(vertices()));
@@ -76,7 +76,8 @@ void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near,
 
 /// Stores a path to a goal over edges that are already checked, as a solution until the first
 /// search.
-void BeliefRRTstar::offerCheckedPath(const Vertex& goal) {
+void BeliefRRTstar::offerCheckedPath(const Vertex& goal,
+                                     const ob::PlannerTerminationCondition& ptc) {
     std::vector<Roadmap::Edge*> arrival(vertices_.size(), nullptr);
     std::vector<const Vertex*> reached{&goal};  // backward from the goal, breadth first
     const auto rootAt = [&](const Vertex* vertex) {
@@ -89,6 +90,7 @@ void BeliefRRTstar::offerCheckedPath(const Vertex& goal) {
             std::vector<const ob::State*> path{vertex->state};
             Belief belief = root->belief;
             while (vertex != &goal) {
+                if (ptc) return;
                 Roadmap::Edge& edge = *arrival[vertex->index];
                 belief = propagate(belief, edge.motion, vertex == edge.to);
                 vertex = edge.otherEnd(vertex);
@@ -129,7 +131,7 @@ void BeliefRRTstar::follow(const ob::PlannerTerminationCondition& ptc) {
     if (!path_.empty()) {
         const double kept = bestCost();
         descend(ptc, options_.shortcut);
-        compareWithKept();
+        compareWithKept(ptc);
         const bool wasInVain = bestCost() >= kept;
         gain_ = bestCost() / pathCost_ * (wasInVain ? kCaution : 1.);
     } else if (options_.shortcut > 0) {
@@ -145,10 +147,12 @@ void BeliefRRTstar::follow(const ob::PlannerTerminationCondition& ptc) {
 
 /// Returns to the path that an update has kept, unless the reference model as well finds the other
 /// one better.
-void BeliefRRTstar::compareWithKept() {
+void BeliefRRTstar::compareWithKept(const ob::PlannerTerminationCondition& ptc) {
     if (!kept_ || bestCost() == keptCost_) return;
     auto& kept = kept_->getStates();
-    if (referenceCost(bestPath()) <= (1. - options_.commitment) * referenceCost(kept)) return;
+    const auto before = referenceCost(kept, ptc);
+    const auto other = referenceCost(bestPath(), ptc);
+    if (before && other && *other <= (1. - options_.commitment) * *before) return;
     replaceBest(keptCost_, {kept.begin(), kept.end()});
 }
 
@@ -179,14 +183,14 @@ double BeliefRRTstar::timeToFinish() const {
 /// kept.
 void BeliefRRTstar::search(const ob::PlannerTerminationCondition& ptc) {
     if (ptc) return;
-    const auto start = std::chrono::steady_clock::now();
+    const double start = now();
     roadmap_.resize(vertices_.size());
     settled_.clear();
     labelsOf_.assign(vertices_.size(), {});
-    roadmap_.checkAll(*si_);
+    if (!roadmap_.checkAll(*si_, ptc)) return;
     std::vector<CostToGo::Start> starts;
     for (const Root& root : roots_) starts.push_back({root.vertex, root.belief.covariance});
-    toGo_.update(roadmap_, vertices_, goals_, *model_, starts, isWellObserved_);
+    if (!toGo_.update(roadmap_, vertices_, goals_, *model_, starts, isWellObserved_, ptc)) return;
 
     raise_ = isWellObserved_ ? 1. + options_.inflation * (overBase_ - 1.) : 1.;
 
@@ -218,8 +222,7 @@ void BeliefRRTstar::search(const ob::PlannerTerminationCondition& ptc) {
     }
     searched_ = vertices();
     isSearchDue_ = false;
-    searchSeconds_ =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    searchSeconds_ = now() - start;
 }
 
 void BeliefRRTstar::push(Open& open, Candidate candidate) const {
@@ -315,14 +318,13 @@ PathDescent BeliefRRTstar::descentAt(const std::vector<const ob::State*>& path,
 
 void BeliefRRTstar::descend(PathDescent& descent, const ob::PlannerTerminationCondition& ptc,
                             unsigned changes) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = now();
     const unsigned tried = descent.tried();
     const unsigned accepted = descent.accepted();
     descent.descend(ptc, changes);
     shortcutsTried_ += descent.tried() - tried;
     shortcutsTaken_ += descent.accepted() - accepted;
-    descentSeconds_ +=
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    descentSeconds_ += now() - start;
 }
 
 BeliefPlanner::Invalid BeliefRRTstar::invalidate(const ChangedSpace& changed,

@@ -100,7 +100,7 @@ class BeliefRRTstar : public BeliefPlanner {
     void renewBeliefs() override;
     std::vector<Vertex*> replaceRoots(const Root& root, const std::vector<Vertex*>& near) override;
 
-    void offerCheckedPath(const Vertex& goal);
+    void offerCheckedPath(const Vertex& goal, const ompl::base::PlannerTerminationCondition& ptc);
     void search(const ompl::base::PlannerTerminationCondition& ptc);
     void push(Open& open, Candidate candidate) const;
     void expand(int label, Open& open) const;
@@ -116,7 +116,7 @@ class BeliefRRTstar : public BeliefPlanner {
     PathDescent descentAt(const std::vector<const ompl::base::State*>& path,
                           double firstStep) const;
     void follow(const ompl::base::PlannerTerminationCondition& ptc);
-    void compareWithKept();
+    void compareWithKept(const ompl::base::PlannerTerminationCondition& ptc);
 
     SearchOptions options_;
     Roadmap roadmap_;

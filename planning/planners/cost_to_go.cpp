@@ -8,6 +8,7 @@
 #include "geometry/constants.hpp"
 
 namespace photonav {
+namespace ob = ompl::base;
 namespace {
 
 constexpr double kMinInformation = 1e-6;  // a coordinate known to 1 km is not observed [1/m^2]
@@ -45,18 +46,19 @@ void findDistances(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
 void CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                       const std::vector<Vertex*>& goals, BeliefModel& model) {
     findBaseCosts(roadmap, vertices, goals, model);
-    if (charge_ > 0.) findObserved(roadmap, vertices);
+    if (charge_ > 0.) findObserved(roadmap, vertices, ob::plannerNonTerminatingCondition());
 }
 
-void CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
+bool CostToGo::update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                       const std::vector<Vertex*>& goals, BeliefModel& model,
-                      const std::vector<Start>& starts, bool wellObserved) {
+                      const std::vector<Start>& starts, bool wellObserved,
+                      const ob::PlannerTerminationCondition& ptc) {
     findBaseCosts(roadmap, vertices, goals, model);
     const bool needsViews = std::any_of(starts.begin(), starts.end(), [&](const Start& start) {
         return reachesGoal(start) && (!wellObserved || isUncertain(start));
     });
     if (!needsViews) charge_ = 0.;
-    if (charge_ > 0.) findObserved(roadmap, vertices);
+    return charge_ == 0. || findObserved(roadmap, vertices, ptc);
 }
 
 void CostToGo::findBaseCosts(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
@@ -74,10 +76,12 @@ void CostToGo::findBaseCosts(const Roadmap& roadmap, const std::deque<Vertex>& v
                   [this](const auto& edge) { return baseCostOf(edge); });
 }
 
-void CostToGo::findObserved(const Roadmap& roadmap, const std::deque<Vertex>& vertices) {
+bool CostToGo::findObserved(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
+                            const ob::PlannerTerminationCondition& ptc) {
     observes_.clear();
     isEvaluated_.clear();
     for (const Vertex& vertex : vertices) {
+        if (ptc) return false;
         const bool isRemoved = vertex.state == nullptr;
         const Vertex* near = isRemoved ? nullptr : evaluatedNear(roadmap, vertex);
         isEvaluated_.push_back(!isRemoved && near == nullptr);
@@ -87,6 +91,7 @@ void CostToGo::findObserved(const Roadmap& roadmap, const std::deque<Vertex>& ve
             observes_.push_back(near == nullptr ? observedFrom(vertex) : observes_[near->index]);
     }
     for (int k = 0; k < kPositionAxes; ++k) findViews(roadmap, vertices, k);
+    return true;
 }
 
 /// Whether the uncertainty at the start may add much to the base cost.

@@ -46,9 +46,11 @@ class CostToGo {
     /// needs no views, if no goal can be reached from the starts, or if the uncertainty at the
     /// starts adds little and `wellObserved` is set.
     /// @param wellObserved whether the last path cost little more than its base cost
-    void update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
+    /// @return false if the condition has ended it before: there is no bound yet
+    bool update(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                 const std::vector<Vertex*>& goals, BeliefModel& model,
-                const std::vector<Start>& starts, bool wellObserved);
+                const std::vector<Start>& starts, bool wellObserved,
+                const ompl::base::PlannerTerminationCondition& ptc);
 
     /// Least sum of base costs from a vertex to a goal.
     double baseCost(const Vertex& vertex) const { return baseCost_[vertex.index]; }
@@ -78,7 +80,8 @@ class CostToGo {
     double baseCostOf(const Roadmap::Edge& edge) const;
     void findBaseCosts(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
                        const std::vector<Vertex*>& goals, BeliefModel& model);
-    void findObserved(const Roadmap& roadmap, const std::deque<Vertex>& vertices);
+    bool findObserved(const Roadmap& roadmap, const std::deque<Vertex>& vertices,
+                      const ompl::base::PlannerTerminationCondition& ptc);
     bool reachesGoal(const Start& start) const {
         return baseCost_[start.vertex->index] < kInfinity;
     }

@@ -46,10 +46,14 @@ std::size_t Roadmap::mapChanged(const ChangedSpace& changed, const FlightSpace& 
     return blocked;
 }
 
-void Roadmap::checkAll(const ompl::base::SpaceInformation& si) {
+bool Roadmap::checkAll(const ompl::base::SpaceInformation& si,
+                       const ompl::base::PlannerTerminationCondition& ptc) {
     for (Edge& edge : edges_) {
-        if (edge.from != nullptr) isFree(edge, si);
+        if (edge.from == nullptr || edge.isFree) continue;
+        if (ptc) return false;
+        isFree(edge, si);
     }
+    return true;
 }
 
 void Roadmap::clear() {

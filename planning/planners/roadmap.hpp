@@ -2,6 +2,8 @@
 // A graph over a planner's vertices: motions that can be flown in both directions.
 #pragma once
 
+#include <ompl/base/PlannerTerminationCondition.h>
+
 #include <deque>
 #include <optional>
 #include <vector>
@@ -35,7 +37,9 @@ class Roadmap {
     static bool isFree(Edge& edge, const ompl::base::SpaceInformation& si);
 
     /// Checks all edges that were not checked yet.
-    void checkAll(const ompl::base::SpaceInformation& si);
+    /// @return false if the condition has ended it before
+    bool checkAll(const ompl::base::SpaceInformation& si,
+                  const ompl::base::PlannerTerminationCondition& ptc);
 
     /// Updates the edges that pass through changed space: edges that were free are checked again,
     /// edges that were in collision are marked as not checked.

@@ -43,6 +43,85 @@ TEST(Anytime, ALongerBudgetIsNeverWorse) {
     }
 }
 
+/// A planner whose time is counted: a view takes a millisecond, a look at the clock 10 us.
+struct TimedPlanner {
+    explicit TimedPlanner(std::uint32_t seed) {
+        problem.growth.seed = seed;
+        problem.information = [this](const Pose& T_c_w) {
+            seconds += 1e-3;
+            return stripesThenTexture(T_c_w);
+        };
+        planner = beliefPlanner(problem);
+        planner->setClock([this] { return seconds += 1e-5; });
+    }
+
+    double seconds = 0.;
+    Problem problem;
+    std::shared_ptr<BeliefRRTstar> planner;
+};
+
+/// Nothing is left to do for a solve() that adds no vertices.
+TEST(Anytime, TheLastSearchAndItsDescentEndBeforeTheDeadline) {
+    for (const std::uint32_t seed : {1U, 2U, 3U}) {
+        for (const double budget : {4., 8.}) {
+            TimedPlanner timed(seed);
+            BeliefRRTstar& planner = *timed.planner;
+            planner.solve(budget);
+            EXPECT_LT(timed.seconds, budget + 0.01);
+            const unsigned tried = planner.shortcutsTried();
+            const double cost = planner.bestCost();
+            planner.params().setParam("max_vertices", std::to_string(planner.vertices()));
+            planner.solve(ob::plannerNonTerminatingCondition());
+            EXPECT_EQ(planner.shortcutsTried(), tried) << budget;
+            EXPECT_EQ(planner.bestCost(), cost) << budget;
+        }
+    }
+}
+
+/// Whatever it is doing, it ends the motion that it is working on, and no more. The next solve()
+/// does what is left.
+TEST(Anytime, EndsWithinAMotionOfTheCondition) {
+    constexpr std::size_t kOneMotion = 40;  // views or checks
+    std::size_t most = 1;
+    for (std::size_t limit = 50; limit < most || most == 1; limit += 1 + limit / 20) {
+        std::size_t work = 0;
+        Problem problem;
+        problem.information = [&](const Pose& T_c_w) {
+            ++work;
+            return stripesThenTexture(T_c_w);
+        };
+        problem.clearance = [&](const Eigen::Vector3d&) {
+            ++work;
+            return 1.;
+        };
+        const auto planner = beliefPlanner(problem);
+        planner->params().setParam("max_vertices", "150");
+        planner->params().setParam("shortcut", "100");
+        planner->solve(ob::PlannerTerminationCondition([&] { return work >= limit; }));
+        EXPECT_LT(work, limit + kOneMotion);
+        planner->solve(ob::plannerNonTerminatingCondition());
+        EXPECT_EQ(planner->vertices(), 150U);
+        EXPECT_LT(planner->bestCost(), 10.);
+        EXPECT_LT(auditTree(*planner).maxCostError, 1e-9);
+        most = std::max(most, work);
+    }
+}
+
+/// A search that was stopped has not found out which vertices are of use.
+TEST(Anytime, ASearchThatIsStoppedRejectsNoSamples) {
+    const auto whole = beliefPlanner(Problem{});
+    grow(*whole, 190);
+    const auto stopped = beliefPlanner(Problem{});
+    stopped->params().setParam("max_vertices", "190");
+    std::size_t looks = 0;
+    stopped->solve(ob::PlannerTerminationCondition(
+        [&] { return stopped->vertices() >= BeliefRRTstar::kFirstSearch && ++looks > 50; }));
+    EXPECT_EQ(stopped->vertices(), BeliefRRTstar::kFirstSearch);
+    stopped->solve(ob::plannerNonTerminatingCondition());
+    EXPECT_EQ(stopped->vertices(), 190U);
+    EXPECT_LT(stopped->iterations(), whole->iterations() * 5 / 4);
+}
+
 TEST(Anytime, DescendsWhileItGrows) {
     const auto planner = beliefPlanner(Problem{});
     const auto without = beliefPlanner(Problem{});

@@ -135,7 +135,7 @@ TEST(CostToGo, NeedsViewsOnlyWhereTheStartIsUncertain) {
     const auto boundFrom = [&](const Matrix6& atStart, bool wellObserved = true) {
         field.clear();
         grid.toGo.update(grid.roadmap, grid.vertices, {&grid.at(6, 18)}, *grid.model,
-                         {{&start, atStart}}, wellObserved);
+                         {{&start, atStart}}, wellObserved, ob::plannerNonTerminatingCondition());
         return grid.bound(start, atStart);
     };
     const double uncertain = boundFrom(covariance);
@@ -146,6 +146,28 @@ TEST(CostToGo, NeedsViewsOnlyWhereTheStartIsUncertain) {
     EXPECT_GT(certain, problem.belief.alpha * 8.);
     boundFrom(1e-3 * covariance, false);
     EXPECT_GT(field.views(), 100U);
+}
+
+/// What it has rendered when it is stopped is not rendered again.
+TEST(CostToGo, RendersNoMoreViewsOnceItIsStopped) {
+    const Problem problem;
+    Grid grid(problem);
+    InformationField& field = grid.model->field();
+    const auto updateUntil = [&](std::size_t views) {
+        return grid.toGo.update(
+            grid.roadmap, grid.vertices, {&grid.at(6, 18)}, *grid.model,
+            {{&grid.at(6, 2), problem.belief.initialCovariance}}, false,
+            ob::PlannerTerminationCondition([&, views] { return field.views() >= views; }));
+    };
+    field.clear();
+    EXPECT_FALSE(updateUntil(7));
+    EXPECT_EQ(field.views(), 7U);
+    EXPECT_TRUE(updateUntil(100000));
+    const std::size_t all = field.views();
+    EXPECT_GT(all, 100U);
+    field.clear();
+    EXPECT_TRUE(updateUntil(100000));
+    EXPECT_EQ(field.views(), all);
 }
 
 TEST(CostToGo, AssumesThatStaleViewsObserveEverything) {

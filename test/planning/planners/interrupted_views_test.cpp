@@ -2,7 +2,10 @@
 // Planners whose views are stopped while they are rendered.
 #include <gtest/gtest.h>
 
-#include "planning/fixture.hpp"
+#include <random>
+
+#include "planning/planners/changing_world.hpp"
+#include "planning/solution_checks.hpp"
 #include "render/interruptible_views.hpp"
 
 namespace photonav::test {
@@ -55,6 +58,54 @@ TEST_P(InterruptedViews, LeaveThePathThatWasFoundBefore) {
     }
     EXPECT_GT(stops, 3);
     EXPECT_GT(paths, 0);
+}
+
+/// At whatever view of an update: no belief of the map before it is left.
+TEST_P(InterruptedViews, LeaveNothingOfTheMapBeforeAnUpdate) {
+    for (const bool isMove : {false, true}) {
+        int stops = 0;
+        for (int last = 0;; last += 1 + last / 3) {
+            Problem problem = problemIn(SceneKind::overTexture);
+            ChangingWorld world(problem.bounds);
+            std::mt19937 random(1);
+            std::uniform_real_distribution<float> grey(0.F, 1.F);
+            const auto paint = [&] {
+                return world.paintFloor(kFloor, [&] { return grey(random); });
+            };
+            paint();
+            const Camera camera = makeCamera(24, 16, 1.2);
+            int left = std::numeric_limits<int>::max();
+            const auto field = std::make_shared<InformationField>(
+                world.freshViews(), camera,
+                [&, model = photometricModel(camera, {})](const View& view) {
+                    if (left-- == 0) throw RenderingStopped();
+                    return model(view);
+                },
+                problem.mount, InformationField::Options{});
+            const auto planner = problem.planner(
+                GetParam(), 5,
+                std::make_shared<BeliefModel>(problem.space(), field, problem.belief));
+            grow(*planner, 100);
+            const MapChange change = paint();
+            field->update(world.freshViews(), change);
+            if (isMove) planner->mapChanged(change);
+            ob::ScopedState<> root(planner->getSpaceInformation());
+            problem.space().setState(root.get(), {1.3, 1.2, 2.}, 0.);
+            left = last;
+            try {
+                if (isMove)
+                    planner->moveRoot(root.get(), Belief{1e-3 * Matrix6::Identity(), 0.});
+                else
+                    planner->mapChanged(change);
+                break;
+            } catch (const RenderingStopped&) {
+                ++stops;
+            }
+            EXPECT_EQ(grow(*planner, 100), ob::PlannerStatus::EXACT_SOLUTION);
+            expectBeliefsToReplay(*planner);
+        }
+        EXPECT_TRUE(isMove || stops > 1);  // a move may need no new view
+    }
 }
 
 }  // namespace

@@ -315,6 +315,27 @@ TEST(ChangedFloor, APathIsOnlyLeftForOneThatTheJudgeFindsBetter) {
     EXPECT_EQ(lengthAfterPainting(true, before), before);
 }
 
+TEST(ChangedFloor, AComparisonThatIsStoppedKeepsThePathAndIsMadeLater) {
+    ChangingFlight flight("belief_rrt_star", SceneKind::overTexture, 4);
+    flight.plan();
+    flight.plan();
+    BeliefPlanner& planner = flight.planner();
+    const double before = planner.getProblemDefinition()->getSolutionPath()->length();
+    const auto blind = std::make_shared<InformationField>(
+        InformationFormula{[](const Pose&) -> Matrix6 { return Matrix6::Zero(); }},
+        planner.model().field().mount(), InformationField::Options{});
+    planner.setReferenceModel(
+        std::make_shared<BeliefModel>(planner.model().space(), blind, planner.model().options()));
+    flight.paint({Eigen::Vector2d(4., 0.), Eigen::Vector2d(8., 5.)}, 0.8);
+    planner.solve(ob::PlannerTerminationCondition([&] { return blind->views() >= 5; }));
+    const std::size_t stopped = blind->views();
+    EXPECT_LT(stopped, 50U);  // a motion
+    EXPECT_EQ(planner.getProblemDefinition()->getSolutionPath()->length(), before);
+    flight.plan();
+    EXPECT_GT(blind->views(), stopped + 20);
+    EXPECT_EQ(planner.getProblemDefinition()->getSolutionPath()->length(), before);
+}
+
 TEST(ChangedFloor, BeliefRRTstarRendersOnlyTheViewsThatItsSearchAsksFor) {
     ChangingFlight flight("belief_rrt_star", SceneKind::overTexture, 5);
     flight.paint(kFloor, 0.8);

@@ -114,12 +114,15 @@ TEST(Roadmap, ChecksAllEdgesOnce) {
         return std::abs(p.x() - 5.6);
     };
     const auto si = counted.spaceInformation();
-    row.roadmap.checkAll(*si);
+    EXPECT_FALSE(row.roadmap.checkAll(*si, ob::PlannerTerminationCondition([] { return true; })));
+    EXPECT_EQ(checks, 0);
+    const auto never = ob::plannerNonTerminatingCondition();
+    EXPECT_TRUE(row.roadmap.checkAll(*si, never));
     EXPECT_TRUE(*row.roadmap.of(&row.vertices[0]).front()->isFree);
     EXPECT_FALSE(*row.roadmap.of(&row.vertices[2]).front()->isFree);
     const int once = checks;
     row.roadmap.removeEdgesOf(row.vertices[0]);
-    row.roadmap.checkAll(*si);
+    EXPECT_TRUE(row.roadmap.checkAll(*si, never));
     EXPECT_EQ(checks, once);
 }
 
