@@ -183,8 +183,9 @@ std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(
     return planner;
 }
 
+/// The change is kept until all have followed it: what an exception leaves out follows next time.
 void PlanningProblem::followMap() {
-    const MapChange change = std::exchange(*notFollowed_, {});
+    const MapChange& change = *notFollowed_;
     const auto views = interruptibleViews();
     if (hasQuickViews() && field_->size() > kMostExactViews) field_->forget();
     field_->update(views, change);
@@ -192,6 +193,7 @@ void PlanningProblem::followMap() {
     for (const auto& made : planners_) {
         if (const auto planner = made.lock()) planner->mapChanged(change);
     }
+    *notFollowed_ = {};
 }
 
 std::shared_ptr<const ViewSource> PlanningProblem::interruptibleViews() const {

@@ -10,6 +10,7 @@
 #include "io/error.hpp"
 #include "map/map_fusion.hpp"
 #include "planners/planner_table.hpp"
+#include "render/interruptible_views.hpp"
 #include "render/mesh_renderer.hpp"
 #include "temporary_folder.hpp"
 
@@ -186,6 +187,37 @@ TEST(PlanningProblem, FollowsAllChangesSinceItsLastCall) {
     ASSERT_TRUE(after.isSolved());
     EXPECT_GT(after.path->length, before + 0.2);
     EXPECT_GT(after.path->points.front().information.trace(), 0.);
+}
+
+/// A call that ends within a view is made up for by the next one, for all planners.
+TEST(PlanningProblem, FollowsAgainWhatWasInterrupted) {
+    const Config config = emptySpace();
+    const auto map = std::make_shared<TexturedOcTree>(0.1);
+    World world(map, config);
+    bool isStopped = false;
+    PlanningProblem problem(
+        config, world, {}, [&](const Camera& camera, const PhotometricOptions& options) {
+            return [&, model = photometricModel(camera, options)](const View& view) {
+                if (isStopped) throw RenderingStopped();
+                return model(view);
+            };
+        });
+    const auto first = problem.makePlanner("belief_rrt_star");
+    const auto second = problem.makePlanner("pa_rrt_star");
+    const double before = problem.solve(first).path->length;
+    problem.solve(second);
+
+    world.mapChanged(fuseWall(*map, config));
+    isStopped = true;
+    EXPECT_THROW(problem.followMap(), RenderingStopped);
+    isStopped = false;
+    problem.followMap();
+    for (const auto& planner : {first, second}) {
+        const PlanOutcome after = problem.solve(planner);
+        ASSERT_TRUE(after.isSolved());
+        EXPECT_GT(after.path->length, before + 0.2);
+        EXPECT_LT(after.audit.maxCostError, 1e-9);
+    }
 }
 
 TEST(PlanningProblem, EvaluatesPathsOfOtherPlanners) {
