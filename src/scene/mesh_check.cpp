@@ -18,6 +18,7 @@
 #include "io/image_bytes.hpp"
 #include "io/json_nesting.hpp"
 #include "io/reading.hpp"
+#include "scene/ply_check.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -25,99 +26,9 @@ using nlohmann::json;
 namespace {
 
 constexpr std::size_t kMostGltfDepth = 200;
-constexpr unsigned kMostNodeDepth = 500;  // of a node in a scene; real scenes have tens
-
-std::size_t binarySize(const std::string& type) {
-    if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
-    if (type == "short" || type == "ushort" || type == "int16" || type == "uint16") return 2;
-    if (type == "double" || type == "float64") return 8;
-    const bool isKnown = type == "int" || type == "uint" || type == "float" || type == "int32" ||
-                         type == "uint32" || type == "float32";
-    return isKnown ? 4 : 0;
-}
-
-/// What a PLY header says, line by line.
-class PlyHeader {
-  public:
-    explicit PlyHeader(const std::string& file)
-        : file_(file), size_(static_cast<double>(fs::file_size(file))) {}
-
-    void check() {
-        std::ifstream in = openToRead(file_);
-        std::string line;
-        std::getline(in, line);
-        if (line.substr(0, 3) != "ply") throw InputError(file_, "", "does not begin with 'ply'");
-        while (std::getline(in, line)) {
-            std::istringstream words = wordsOf(line);
-            std::string word;
-            words >> word;
-            if (word == "format") {
-                readFormat(words);
-            } else if (word == "element") {
-                readElement(words);
-            } else if (word == "property") {
-                readProperty(words);
-            } else if (word == "end_header") {
-                return readEnd();
-            } else if (!word.empty() && word != "comment" && word != "obj_info") {
-                throw InputError(file_, "", fmt::format("'{}' in the header is not known", word));
-            }
-        }
-        throw InputError(file_, "end_header", "missing");
-    }
-
-  private:
-    void readFormat(std::istream& words) {
-        words >> format_;
-        if (format_ == "ascii" || format_ == "binary_little_endian" ||
-            format_ == "binary_big_endian") {
-            return;
-        }
-        throw InputError(file_, "format", fmt::format("'{}' is not known", format_));
-    }
-
-    void readElement(std::istream& words) {
-        checkProperties();
-        words >> element_;
-        if (words >> count_ && count_ >= 0. && count_ == std::floor(count_)) return;
-        throw InputError(file_, "element " + element_, "not a number of elements");
-    }
-
-    /// The least that elements take: in text a digit and a blank each, of lists their length only.
-    void readProperty(std::istream& words) {
-        std::string type;
-        words >> type;
-        hasProperties_ = true;
-        if (type == "list") words >> type;
-        if (binarySize(type) == 0) {
-            throw InputError(file_, "element " + element_,
-                             fmt::format("property of unknown type '{}'", type));
-        }
-        least_ += count_ * (format_ == "ascii" ? 2. : static_cast<double>(binarySize(type)));
-        if (least_ <= size_ + 2.) return;
-        throw InputError(file_, "element " + element_,
-                         fmt::format("{:.0f} of them do not fit into {:.0f} bytes", count_, size_));
-    }
-
-    /// Elements without properties take no bytes, so that any number of them would fit.
-    void checkProperties() {
-        if (count_ > 0. && !hasProperties_) {
-            throw InputError(file_, "element " + element_, "has no properties");
-        }
-        hasProperties_ = false;
-    }
-
-    void readEnd() {
-        checkProperties();
-        if (format_.empty()) throw InputError(file_, "format", "missing");
-    }
-
-    std::string file_;
-    double size_;  // [bytes]
-    double least_ = 0., count_ = 0.;
-    bool hasProperties_ = false;  // the present element
-    std::string format_, element_;
-};
+constexpr unsigned kMostNodeDepth = 500;     // of a node in a scene; real scenes have tens
+constexpr std::size_t kMostParts = 100'000;  // nodes, materials, primitives: assimp copies each
+constexpr double kMostCorners = 3e7;         // of triangles, in all instances of all meshes
 
 void checkObj(const std::string& file) {
     std::ifstream in = openToRead(file);
@@ -241,6 +152,78 @@ void checkNodes(const std::string& file, const json& root) {
     }
 }
 
+/// An entry of a list at the top; null where there is none.
+const json& entryOf(const json& root, const char* list, const json& index) {
+    static const json none;
+    if (!root.contains(list) || !root[list].is_array() || !index.is_number_unsigned()) return none;
+    const auto i = index.get<std::size_t>();
+    return i < root[list].size() ? root[list][i] : none;
+}
+
+/// A member of an object; null where there is none.
+const json& memberOf(const json& object, const char* name) {
+    static const json none;
+    return object.is_object() && object.contains(name) ? object[name] : none;
+}
+
+/// What a small file can make of itself: meshes of many parts, many of them from the same numbers,
+/// and nodes that show the same mesh again and again.
+class GltfAmount {
+  public:
+    GltfAmount(const std::string& file, const json& root) : file_(file), root_(root) {}
+
+    void check() {
+        for (const char* list : {"nodes", "materials"}) {
+            if (memberOf(root_, list).size() > kMostParts) refuseParts(list);
+        }
+        for (const json& accessor : memberOf(root_, "accessors")) checkCorners(numberOf(accessor));
+        std::vector<double> corners;
+        for (const json& mesh : memberOf(root_, "meshes")) {
+            corners.push_back(cornersOf(mesh));
+            checkCorners(corners_ += corners.back());
+        }
+        for (const json& node : memberOf(root_, "nodes")) {
+            const json& mesh = memberOf(node, "mesh");
+            if (!mesh.is_number_unsigned() || mesh.get<std::size_t>() >= corners.size()) continue;
+            checkCorners(corners_ += corners[mesh.get<std::size_t>()]);
+        }
+    }
+
+  private:
+    static double numberOf(const json& accessor) {
+        const json& count = memberOf(accessor, "count");
+        return count.is_number() ? count.get<double>() : 0.;
+    }
+
+    double cornersOf(const json& mesh) {
+        double corners = 0.;
+        for (const json& primitive : memberOf(mesh, "primitives")) {
+            if (++primitives_ > kMostParts) refuseParts("primitives");
+            const json& position = memberOf(memberOf(primitive, "attributes"), "POSITION");
+            const json& indices = memberOf(primitive, "indices");
+            corners +=
+                numberOf(entryOf(root_, "accessors", indices.is_null() ? position : indices));
+        }
+        return corners;
+    }
+
+    void checkCorners(double corners) const {
+        if (corners <= kMostCorners) return;
+        throw InputError(
+            file_, "meshes",
+            fmt::format("more than {:g} corners of triangles in all instances", kMostCorners));
+    }
+
+    [[noreturn]] void refuseParts(const char* list) const {
+        throw InputError(file_, list, fmt::format("more than {}", kMostParts));
+    }
+
+    const std::string& file_;
+    const json& root_;
+    std::size_t primitives_ = 0;
+    double corners_ = 0.;
+};
+
 /// A pipe would never end.
 void checkUris(const std::string& file, const json& root) {
     for (const char* list : {"buffers", "images"}) {
@@ -267,6 +250,7 @@ void checkGltf(const std::string& file, bool isBinary) {
         throw InputError(file, "asset.version", fmt::format("{} is not \"2.0\"", version.dump()));
     }
     checkNodes(file, root);
+    GltfAmount(file, root).check();
     checkUris(file, root);
 }
 
@@ -289,7 +273,7 @@ MeshFormat meshFormatOf(const std::string& file) {
 void checkMeshFile(const std::string& file) {
     switch (const MeshFormat format = meshFormatOf(file)) {
         case MeshFormat::ply:
-            return PlyHeader(file).check();
+            return checkPly(file);
         case MeshFormat::obj:
             return checkObj(file);
         case MeshFormat::gltf:

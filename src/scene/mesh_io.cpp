@@ -7,6 +7,7 @@
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <fmt/format.h>
 
 #include <assimp/Importer.hpp>
 #include <cmath>
@@ -18,6 +19,7 @@
 #include <string_view>
 
 #include "io/error.hpp"
+#include "io/reading.hpp"
 #include "scene/mesh_check.hpp"
 
 /// Debian's assimp is built with assertions, which end the program where a file breaks what an
@@ -35,6 +37,8 @@ namespace photonav {
 namespace {
 
 using Rgb = std::array<double, 3>;
+
+constexpr double kMostMeshTexels = 5e8;  // of all materials, each of which has its own
 
 bool isGltf(const std::string& file) {
     const MeshFormat format = meshFormatOf(file);
@@ -233,6 +237,12 @@ class MeshReader {
         if (isNew) {
             Texture texture = name.empty() ? uniformTexture(greyOfLinear(factor))
                                            : Texture{readTexture(name, factor)};
+            texels_ += texture.image.getSize();
+            if (texels_ > kMostMeshTexels) {
+                throw InputError(
+                    file_, "texture",
+                    fmt::format("more than {:g} texels in all materials", kMostMeshTexels));
+            }
             entry->second = addTexture(scene_, std::move(texture));
         }
         return entry->second;
@@ -277,12 +287,11 @@ class MeshReader {
     Scene scene_;
     std::map<std::pair<unsigned, std::string>, std::uint32_t> textures_;
     std::size_t dropped_ = 0;
+    double texels_ = 0.;
     std::optional<std::uint32_t> ramp_;
 };
 
-}  // namespace
-
-Scene loadMesh(const std::string& file, const MeshOptions& options) {
+Scene readMesh(const std::string& file, const MeshOptions& options) {
     openToRead(file);
     if (std::filesystem::file_size(file) == 0) throw InputError(file, "", "the file is empty");
     checkMeshFile(file);
@@ -295,9 +304,16 @@ Scene loadMesh(const std::string& file, const MeshOptions& options) {
     if (input == nullptr || input->mRootNode == nullptr) {
         std::string reason = importer.GetErrorString();
         std::replace(reason.begin(), reason.end(), '\n', ' ');
+        if (reason == std::bad_alloc().what()) throw std::bad_alloc();
         throw InputError(file, "", reason.empty() ? "cannot read the mesh" : reason);
     }
     return MeshReader(file, options, *input, files).read();
+}
+
+}  // namespace
+
+Scene loadMesh(const std::string& file, const MeshOptions& options) {
+    return reading(file, [&] { return readMesh(file, options); });
 }
 
 }  // namespace photonav

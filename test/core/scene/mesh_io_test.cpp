@@ -283,11 +283,72 @@ TEST(MeshIo, AFaceWithoutCornersDoesNotEndTheProgram) {
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
         "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
         "0 0 0\n1 0 0\n0 1 0\n";
-    for (const char* face : {"0\n", "x\n"}) {
-        const auto file = folder.write("face.ply", head + face);
-        EXPECT_TRUE(complaint(file).starts_with(file + ": the file breaks a rule of its format"))
-            << complaint(file);
+    const auto file = folder.write("face.ply", head + "0\n");
+    EXPECT_TRUE(complaint(file).starts_with(file + ": the file breaks a rule of its format"))
+        << complaint(file);
+    const auto word = folder.write("word.ply", head + "x\n");
+    EXPECT_EQ(complaint(word), word + ": element face: number 0: a list has no length");
+}
+
+/// Assimp makes room for whatever a list claims, and goes on where a file ends.
+TEST(MeshIo, TheBodyOfAPlyFileHoldsWhatItsHeaderSays) {
+    const TemporaryFolder folder;
+    const auto plyOf = [](const std::string& format, const std::string& lengthType) {
+        return "ply\nformat " + format +
+               " 1.0\nelement vertex 3\nproperty uchar x\nproperty uchar y\nproperty uchar z\n"
+               "element face 1\nproperty list " +
+               lengthType + " uchar vertex_indices\nend_header\n";
+    };
+    const auto complaintOf = [&](const std::string& text) {
+        const auto file = folder.write("mesh.ply", text);
+        const std::string reason = complaint(file);
+        return reason.empty() ? reason : reason.substr(file.size() + 2);
+    };
+    const std::string text = plyOf("ascii", "uint") + "0 0 0\n1 0 0\n0 1 0\n";
+    EXPECT_EQ(complaintOf(text + "3 0 1 2"), "");
+    EXPECT_EQ(complaintOf(text + "3 0 1\n"), "element face: number 0: the file ends here");
+    EXPECT_EQ(complaintOf(text.substr(0, text.size() - 4)),
+              "element vertex: number 2: the file ends here");
+    const std::string vertices("\0\0\0\1\0\0\0\1\0", 9), corners("\0\1\2", 3);
+    for (const auto& [format, three, many] :
+         {std::tuple("binary_little_endian", std::string("\3\0\0\0", 4), "\xf0\xff\xff\xff"),
+          std::tuple("binary_big_endian", std::string("\0\0\0\3", 4), "\xff\xff\xff\xf0")}) {
+        const std::string binary = plyOf(format, "uint") + vertices;
+        EXPECT_EQ(complaintOf(binary + three + corners), "") << format;
+        EXPECT_EQ(complaintOf(binary + many + corners),
+                  "element face: number 0: 4294967280 values do not fit into the rest of the file");
+        EXPECT_EQ(complaintOf(binary + three.substr(0, 2)),
+                  "element face: number 0: the file ends here");
     }
+    EXPECT_EQ(complaintOf(plyOf("ascii", "float")),
+              "element face: a list cannot have a length of type 'float'");
+}
+
+/// A few bytes can ask for more than any memory holds.
+TEST(MeshIo, InstancesOfGltfHaveALimit) {
+    const TemporaryFolder folder;
+    const auto complaintOf = [&](const std::string& count, const std::string& primitives,
+                                 const std::string& nodes) {
+        const auto file = folder.write(
+            "mesh.gltf",
+            R"({"asset": {"version": "2.0"}, "accessors": [{"componentType": 5126, "type": "VEC3",)"
+            R"( "count": )" +
+                count + R"(}], "meshes": [{"primitives": [)" + primitives + R"(]}], "nodes": [)" +
+                nodes + "]}");
+        return complaint(file).substr(file.size() + 2);
+    };
+    const auto repeated = [](const std::string& entry, int times) {
+        std::string list = entry;
+        for (int i = 1; i < times; ++i) list += "," + entry;
+        return list;
+    };
+    const std::string primitive = R"({"attributes": {"POSITION": 0}})", node = R"({"mesh": 0})";
+    const std::string reason = "meshes: more than 3e+07 corners of triangles in all instances";
+    EXPECT_EQ(complaintOf("40000000", "", "{}"), reason);
+    EXPECT_EQ(complaintOf("1000000", repeated(primitive, 40), node), reason);
+    EXPECT_EQ(complaintOf("1000000", primitive, repeated(node, 40)), reason);
+    EXPECT_EQ(complaintOf("3", repeated("{}", 100001), node), "primitives: more than 100000");
+    EXPECT_EQ(complaintOf("3", primitive, repeated(node, 100001)), "nodes: more than 100000");
 }
 
 TEST(MeshIo, SomeDegenerateTrianglesAreDropped) {
