@@ -93,10 +93,14 @@ void checkTarget(const fs::path& target, const fs::path& resolved) {
         own.st_dev != parent.st_dev) {
         refuse(target, "is a mount point; give a folder in it");
     }
-    if (const auto file = Manifest::read(resolved).foreignFile(resolved)) {
-        refuse(target / *file,
-               "is not of an earlier result, or was changed since; give another folder");
+    const auto file = Manifest::read(resolved).foreignFile(resolved);
+    if (!file) return;
+    if (file->filename() == Manifest::kFileName) {
+        refuse(target / file->parent_path(),
+               "is a result within the one to replace; move it away, or give another folder");
     }
+    refuse(target / *file,
+           "is not of an earlier result, or was changed since; give another folder");
 }
 
 constexpr const char* kWorkingSuffix = ".unfinished";
@@ -301,8 +305,15 @@ void FolderTransaction::commit() {
     }
     synchroniseAll(working_);
     const Unfinished before = std::exchange(unfinished_, Unfinished::kept);
-    checkTarget(target_, resolved_);  // as it was at the beginning?
-    exchange();
+    try {
+        checkTarget(target_, resolved_);  // as it was at the beginning?
+        exchange();
+    } catch (const InputError& error) {
+        throw InputError(target_.string(), "",
+                         fmt::format("cannot be replaced: {}; the result is in {} until the next "
+                                     "run with this folder",
+                                     error.what(), working_.string()));
+    }
     unfinished_ = before;
     isOpen_ = false;
     synchronise(resolved_.parent_path(), target_);
@@ -311,10 +322,7 @@ void FolderTransaction::commit() {
 
 /// In one step where the file system can, else in two with the earlier folder aside.
 void FolderTransaction::exchange() {
-    const auto fail = [&](int reason) {
-        refuse(target_, fmt::format("cannot be replaced: {}; the result is in {}",
-                                    std::strerror(reason), working_.string()));
-    };
+    const auto fail = [&](int reason) { refuse(resolved_, std::strerror(reason)); };
     if (!fs::exists(resolved_)) {
         if (std::rename(working_.c_str(), resolved_.c_str()) != 0) fail(errno);
         return;

@@ -11,6 +11,7 @@
 #include <functional>
 
 #include "io/error.hpp"
+#include "reason_of.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {
@@ -18,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::contentOf;
+using test::reasonOf;
 using test::TemporaryFolder;
 using Unfinished = FolderTransaction::Unfinished;
 
@@ -94,6 +96,29 @@ TEST_F(FolderTransactionTest, KeepsTheResultWhenSomeoneWroteIntoTheFolderMeanwhi
     EXPECT_THROW(transaction.commit(), InputError);
     EXPECT_EQ(contentOf(target_ / "notes.txt"), "mine");
     EXPECT_EQ(contentOf(transaction.path() / "new.txt"), "new");
+}
+
+TEST_F(FolderTransactionTest, SaysWhereAResultIsThatCouldNotTakeItsPlace) {
+    FolderTransaction transaction(target_);
+    write(transaction.path() / "new.txt", "new");
+    write(target_ / "notes.txt", "mine");
+    const std::string reason = reasonOf([&] { transaction.commit(); });
+    for (const char* part : {"target/notes.txt: is not of an earlier result", "the result is in ",
+                             "target.unfinished until the next run"}) {
+        EXPECT_NE(reason.find(part), std::string::npos) << reason;
+    }
+}
+
+TEST_F(FolderTransactionTest, RefusesToReplaceAResultWithAnotherOneInIt) {
+    commit(target_, "old.txt", "old");
+    commit(target_ / "sub/inner", "inner.txt", "inner");
+    EXPECT_NE(complaint(target_).find("target/sub/inner: is a result within the one to replace"),
+              std::string::npos)
+        << complaint(target_);
+    EXPECT_EQ(contentOf(target_ / "sub/inner/inner.txt"), "inner");
+    EXPECT_EQ(complaint(target_ / "sub/inner"), "");
+    fs::rename(target_ / "sub/inner", temporary_.path() / "inner");
+    EXPECT_EQ(complaint(target_), "");
 }
 
 TEST_F(FolderTransactionTest, TakesUpWhatWasWrittenAgain) {
