@@ -117,7 +117,7 @@ struct Row {
 Row rowOf(const TextRow& row, const Columns& columns) {
     const auto number = [&](Column column) { return row.number(*columns[column]); };
     Row read;
-    if (columns[kTime]) read.time = number(kTime);
+    if (columns[kTime]) read.time = row.time(*columns[kTime]);
     if (columns[kYaw]) read.yaw = number(kYaw);
     read.position = {number(kX), number(kY), number(kZ)};
     if (read.position.cwiseAbs().maxCoeff() > kFarthestPose) {

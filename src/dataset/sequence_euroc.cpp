@@ -109,8 +109,7 @@ std::vector<StampedFile> readImageList(const fs::path& folder, StereoSequence& s
     auto list = parseInOrderOfTime<StampedFile>(
         readCsv(file, 2, &badRows),
         [&](const TextRow& row) {
-            return StampedFile{kNanosecond * row.number(0),
-                               (folder / "data" / row.text(1)).string()};
+            return StampedFile{row.time(0, kNanosecond), (folder / "data" / row.text(1)).string()};
         },
         Repeats::skipped, &badRows);
     for (const InputError& row : badRows) sequence.skipped.push_back({file, row.reason()});
@@ -148,8 +147,7 @@ Pose groundtruthFrame(const fs::path& folder, StereoSequence& sequence) {
 }
 
 StampedPose parseGroundtruth(const TextRow& row) {
-    return poseOfRow(row, kNanosecond * row.number(0),
-                     {row.number(1), row.number(2), row.number(3)},
+    return poseOfRow(row, row.time(0, kNanosecond), {row.number(1), row.number(2), row.number(3)},
                      {row.number(4), row.number(5), row.number(6), row.number(7)});
 }
 

@@ -45,7 +45,7 @@ std::vector<StampedFile> readFileList(const fs::path& folder, const std::string&
     return readList<StampedFile>(
         (folder / name).string(), 2,
         [&](const TextRow& row) {
-            return StampedFile{row.number(0), (folder / row.text(1)).string()};
+            return StampedFile{row.time(0), (folder / row.text(1)).string()};
         },
         forgiving, sequence);
 }
@@ -54,8 +54,8 @@ std::vector<Pair> readAssociation(const fs::path& folder, const std::string& nam
                                   Sequence& sequence) {
     return readList<Pair>((folder / name).string(), 4,
                           [&](const TextRow& row) {
-                              StampedFile colour{row.number(0), (folder / row.text(1)).string()};
-                              StampedFile depth{row.number(2), (folder / row.text(3)).string()};
+                              StampedFile colour{row.time(0), (folder / row.text(1)).string()};
+                              StampedFile depth{row.time(2), (folder / row.text(3)).string()};
                               if (row.text(1).starts_with("depth")) std::swap(colour, depth);
                               return Pair{colour.timestamp, colour.file, depth};
                           },

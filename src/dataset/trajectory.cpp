@@ -20,8 +20,8 @@ constexpr double kFarthestPosition = 1e8;  // [m]; more than twice around the ea
 
 StampedPose parsePose(const TextRow& row) {
     std::array<double, 8> v{};
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = row.number(i);
-    return poseOfRow(row, v[0], {v[1], v[2], v[3]}, {v[7], v[4], v[5], v[6]});
+    for (std::size_t i = 1; i < v.size(); ++i) v[i] = row.number(i);
+    return poseOfRow(row, row.time(0), {v[1], v[2], v[3]}, {v[7], v[4], v[5], v[6]});
 }
 
 }  // namespace

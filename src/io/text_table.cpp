@@ -21,6 +21,13 @@ double TextRow::number(std::size_t column) const {
     return *value;
 }
 
+double TextRow::time(std::size_t column, double unit) const {
+    constexpr double kFarthest = 1e10;
+    const double time = unit * number(column);
+    if (std::abs(time) <= kFarthest) return time;
+    fail(fmt::format("timestamp {:g} s is beyond {:g} s; is it in another unit?", time, kFarthest));
+}
+
 InputError TextRow::error(const std::string& reason) const {
     return {file_, fmt::format("line {}", line_), reason};
 }

@@ -21,6 +21,11 @@ class TextRow {
     /// @throws InputError unless the whole field is a finite number
     double number(std::size_t column) const;
 
+    /// A time stamp [s]. @param unit of the field [s]
+    /// @throws InputError unless it is a number within 1e10 s of zero (three centuries), beyond
+    ///         which differences lose their digits and at last overflow
+    double time(std::size_t column, double unit = 1.) const;
+
     /// "FILE: line N: reason"
     InputError error(const std::string& reason) const;
     /// @throws InputError error(reason)

@@ -59,6 +59,18 @@ TEST(Trajectory, OfKittiHasRowsOfTheMatrixAndNoTimes) {
     expectInputError([&] { readKittiTrajectory(folder.write("c", "\n")); }, {"no poses"});
 }
 
+TEST(Trajectory, TimesThatCannotBeAreNamed) {
+    const test::TemporaryFolder folder;
+    for (const auto& [time, reason] :
+         {std::pair("nan", "'nan' is not a finite number"), std::pair("-inf", "not a finite"),
+          std::pair("1e308", "timestamp 1e+308 s is beyond 1e+10 s"),
+          std::pair("-1e15", "timestamp -1e+15 s is beyond 1e+10 s")}) {
+        const std::string file = folder.write(
+            "trajectory.txt", "1 0 0 1 0 0 0 1\n" + std::string(time) + " 0 0 1 0 0 0 1\n");
+        expectInputError([&] { readTrajectory(file); }, {"trajectory.txt", "line 2", reason});
+    }
+}
+
 TEST(Trajectory, PosesAreInterpolatedAcrossShortGapsOnly) {
     const Trajectory trajectory = {
         {1., pose({0., 0., 0.}, 0.)}, {1.1, pose({1., 2., 0.}, 0.4)}, {2., pose({5., 5., 5.}, 1.)}};
