@@ -10,6 +10,7 @@
 #include "io/error.hpp"
 #include "io/number.hpp"
 #include "io/stopwatch.hpp"
+#include "render/interruptible_views.hpp"
 #include "result/json_values.hpp"
 #include "shared/place_option.hpp"
 #include "shared/result_folder.hpp"
@@ -49,7 +50,8 @@ int runServo(const ServoOptions& options, const std::atomic<bool>& interrupted) 
     const World world(config);
     FolderTransaction folder = beginResult(options, "servo", {config.sceneFile, config.mapFile});
     // At half the size: a quarter of the work, and it converges from twice as far.
-    const ServoGoal goal{world.views(), halved(config.camera.camera()), config.camera.T_b_c(),
+    const InterruptibleViews views(world.sharedViews(), [&] { return interrupted.load(); });
+    const ServoGoal goal{views, halved(config.camera.camera()), config.camera.T_b_c(),
                          bodyAt(place), config.photometric};
     ProgressLine line(options.quiet);
     const ServoStudy result = studyServo(goal, study, interrupted, [&](double share) {

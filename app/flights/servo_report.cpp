@@ -5,9 +5,11 @@
 
 #include <cmath>
 
+#include "alignment/image_pyramid.hpp"
 #include "dataset/image_file.hpp"
 #include "figures/servo_figures.hpp"
 #include "geometry/constants.hpp"
+#include "recording/halved_view.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 
@@ -74,9 +76,10 @@ void writeServoReport(const fs::path& folder, const ServoReport& report,
                         : "Photometric servoing at the goal: where it converges, and how fast.";
     page.start = page.goal = report.goal.T_w_b.translation();
     page.tables = {servoSummary(report), modesTable(report.study), basinTable(report.study)};
+    Camera camera = report.config.camera.camera();
+    for (int i = halvingsToShow(camera.width); i > 0; --i) camera = halved(camera);
     View view;
-    report.goal.views.render(report.config.camera.camera(),
-                             (report.goal.T_w_b * report.goal.T_b_c).inverse(), view);
+    report.goal.views.render(camera, (report.goal.T_w_b * report.goal.T_b_c).inverse(), view);
     writeResultFolder(
         folder, page,
         {{"basin.png",

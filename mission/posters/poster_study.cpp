@@ -83,7 +83,8 @@ std::optional<PosterSet> studySet(const PosterProblem& problem, const PosterIndi
     PosterSet set{.posters = posters};
     try {
         if (problem.options.hasPath) studyPath(world, problem, before, interrupted, set);
-        const ServoGoal goal{world.views(), halved(camera), config.camera.T_b_c(), problem.T_w_goal,
+        const InterruptibleViews views(world.sharedViews(), [&] { return interrupted.load(); });
+        const ServoGoal goal{views, halved(camera), config.camera.T_b_c(), problem.T_w_goal,
                              config.photometric};
         set.servo = studyServo(goal, problem.options.servo, interrupted, [](double) {});
     } catch (const RenderingStopped&) {

@@ -13,6 +13,7 @@
 #include "geometry/gaussian.hpp"
 #include "geometry/se3.hpp"
 #include "render/area_sensor.hpp"
+#include "render/interruptible_views.hpp"
 #include "simulation/camera_noise.hpp"
 
 namespace photonav {
@@ -62,8 +63,9 @@ struct Simulation {
     ImageNoise noise;
     LevenbergServo servo;
     double depth;
+    const std::atomic<bool>& interrupted;
 
-    Simulation(const ServoGoal& at, const ServoStudyOptions& o)
+    Simulation(const ServoGoal& at, const ServoStudyOptions& o, const std::atomic<bool>& flag)
         : goal(at),
           options(o),
           body(bodyFreedom(o.hasTilt)),
@@ -73,7 +75,8 @@ struct Simulation {
           // The body moves by exp(V dt) on the right of T_w_b: T_c_w by -Ad(T_c_b) V on its left.
           servo(photographed(sensor, at.camera, T_goal), at.camera,
                 -adjoint(Pose(at.T_b_c.inverse())) * body, {at.photometric, o.gain, o.damping}),
-          depth(medianDepth(servo.goal())) {}
+          depth(medianDepth(servo.goal())),
+          interrupted(flag) {}
 
     Pose displaced(const Eigen::VectorXd& q) const {
         return expSE3(Vector6(servo.freedom() * q)) * T_goal;
@@ -85,7 +88,9 @@ struct Simulation {
     }
 
     /// One image and the motion it commands. @param random null: without noise
+    /// @throws RenderingStopped when the study is interrupted
     void step(Pose& T_c_w, View& view, Random* random) const {
+        if (interrupted) throw RenderingStopped();
         photograph(sensor, goal.camera, T_c_w, view);
         if (random) noise(view.intensity, *random);
         const Eigen::VectorXd q = servo.velocity(view.intensity) / options.rate;
@@ -180,6 +185,7 @@ Eigen::VectorXd randomOffset(double distance, double angle, bool hasTilt, Random
 }
 
 /// Seconds until it is at the goal and stays there; negative: it does not come.
+/// @throws RenderingStopped as Simulation::step() does
 double trial(const Simulation& simulation, const Eigen::VectorXd& offset, Random& random) {
     constexpr int kStays = 5;  // images
     const ServoStudyOptions& options = simulation.options;
@@ -209,12 +215,35 @@ void setInterval(BasinCell& cell) {
     cell.high = std::min(1., middle + half);
 }
 
+/// All trials from one distance and angle, or those that ended before an interruption.
+/// @param number of the cell
+BasinCell basinCell(const Simulation& simulation, double distance, double angle,
+                    std::size_t number) {
+    const ServoStudyOptions& options = simulation.options;
+    BasinCell cell{distance, angle};
+    std::vector<double> seconds;
+    try {
+        for (; cell.trials < options.trials; ++cell.trials) {
+            Random random = randomOf(options.seed, number, cell.trials);
+            const Eigen::VectorXd offset =
+                randomOffset(distance, angle * kDegree, options.hasTilt, random);
+            const double needed = trial(simulation, offset, random);
+            if (needed >= 0.) seconds.push_back(needed);
+        }
+    } catch (const RenderingStopped&) {  // the trials so far are whole
+    }
+    cell.converged = static_cast<int>(seconds.size());
+    cell.seconds = median(seconds, 0.);
+    if (cell.trials > 0) setInterval(cell);
+    return cell;
+}
+
 }  // namespace
 
 ServoStudy studyServo(const ServoGoal& goal, const ServoStudyOptions& options,
                       const std::atomic<bool>& interrupted,
                       const std::function<void(double)>& progress) {
-    const Simulation simulation(goal, options);
+    const Simulation simulation(goal, options, interrupted);
     ServoStudy study;
     study.depth = simulation.depth;
     study.condition = conditionOf(simulation);
@@ -223,22 +252,8 @@ ServoStudy studyServo(const ServoGoal& goal, const ServoStudyOptions& options,
     const double all = static_cast<double>(options.distances.size() * options.angles.size());
     for (const double angle : options.angles) {
         for (const double distance : options.distances) {
-            BasinCell cell{distance, angle};
-            std::vector<double> seconds;
-            while (cell.trials < options.trials && !interrupted) {
-                Random random = randomOf(options.seed, study.basin.size(), cell.trials);
-                const double needed =
-                    trial(simulation,
-                          randomOffset(distance, angle * kDegree, options.hasTilt, random), random);
-                ++cell.trials;
-                if (needed >= 0.) seconds.push_back(needed);
-            }
-            cell.converged = static_cast<int>(seconds.size());
-            cell.seconds = median(seconds, 0.);
-            if (cell.trials > 0) {
-                setInterval(cell);
-                study.basin.push_back(cell);
-            }
+            const BasinCell cell = basinCell(simulation, distance, angle, study.basin.size());
+            if (cell.trials > 0) study.basin.push_back(cell);
             progress(static_cast<double>(study.basin.size()) / all);
         }
     }

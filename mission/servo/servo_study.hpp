@@ -78,8 +78,10 @@ inline constexpr double kServoAngle = 0.01;     // [rad]
 
 /// Linearises the servo at the goal and simulates trials from many starts. Images have independent
 /// noise with the sigma of ServoGoal::photometric. Starts lie in random directions that depend on
-/// the seed, not on the goal. Collisions are not modelled.
+/// the seed, not on the goal. Collisions are not modelled. An interruption drops the trial in
+/// progress.
 /// @param progress called after each cell of the basin with the share done, in (0, 1]
+/// @throws RenderingStopped when interrupted before the first trial
 ServoStudy studyServo(const ServoGoal& goal, const ServoStudyOptions& options,
                       const std::atomic<bool>& interrupted,
                       const std::function<void(double share)>& progress);

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <limits>
 #include <random>
 
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 #include "render/area_sensor.hpp"
+#include "render/interruptible_views.hpp"
 #include "render/mesh_renderer.hpp"
 #include "scene/scene.hpp"
 #include "simulation/camera_noise.hpp"
@@ -98,6 +100,40 @@ TEST(ServoStudy, NamesTheDirectionThatIsOpen) {
     EXPECT_GT(blind.condition, 1e6);
     EXPECT_EQ(blind.openDirections(), 1U);
     EXPECT_EQ(blind.positionSigma, kInfinity);
+}
+
+/// Views of which one sets a flag.
+struct InterruptingViews : ViewSource {
+    const ViewSource& views;
+    int last;
+    mutable int rendered = 0;
+    mutable std::atomic<bool> interrupted = false;
+
+    InterruptingViews(const ViewSource& of, int number) : views(of), last(number) {}
+    void render(const Camera& camera, const Pose& T_c_w, View& view) const override {
+        interrupted = ++rendered >= last;
+        views.render(camera, T_c_w, view);
+    }
+};
+
+TEST(ServoStudy, EndsWithinATrial) {
+    const MeshRenderer floor = floorOf(valueNoise({.size = {20., 20.}, .seed = 3}));
+    const auto studied = [&](const InterruptingViews& views) {
+        const ServoGoal over = goalOver(floor);
+        const ServoGoal goal{views, over.camera, over.T_b_c, over.T_w_b};
+        return studyServo(goal, {.distances = {0.05}, .angles = {0., 1.}, .trials = 2},
+                          views.interrupted, [](double) {});
+    };
+    const InterruptingViews all(floor, std::numeric_limits<int>::max());
+    EXPECT_EQ(studied(all).trials(), 4);
+    const InterruptingViews most(floor, all.rendered - 1);
+    const ServoStudy cut = studied(most);
+    EXPECT_TRUE(cut.interrupted);
+    EXPECT_EQ(cut.trials(), 3);
+    EXPECT_EQ(most.rendered, all.rendered - 1);
+    const InterruptingViews few(floor, 2);
+    EXPECT_THROW(studied(few), RenderingStopped);
+    EXPECT_EQ(few.rendered, 2);
 }
 
 TEST(ServoMode, IsSaidInWords) {
