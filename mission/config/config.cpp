@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "config/config.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "config/config_keys.hpp"
@@ -66,6 +68,18 @@ void checkSource(YamlMap& root) {
     }
 }
 
+/// Figures cannot draw every shape.
+void checkShape(const YamlMap& root, const CameraConfig& camera) {
+    constexpr unsigned kLongestShape = 16;
+    if (camera.height <= kLongestShape * camera.width &&
+        camera.width <= kLongestShape * camera.height) {
+        return;
+    }
+    root.fail("camera.height", fmt::format("views of {} x {} pixels: one side is more than {} "
+                                           "times as long as the other",
+                                           camera.width, camera.height, kLongestShape));
+}
+
 Config configOf(const YAML::Node& node, const std::string& file,
                 const std::vector<std::string>& overrides) {
     Config config;
@@ -75,6 +89,7 @@ Config configOf(const YAML::Node& node, const std::string& file,
     YamlMap root(file, node);
     checkSource(root);
     keys.read(root);
+    checkShape(root, config.camera);
     return config;
 }
 

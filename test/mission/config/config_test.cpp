@@ -47,6 +47,14 @@ TEST(Config, EveryShippedConfigLoads) {
     }
 }
 
+TEST(Config, ViewsThatNoFigureCanShowAreRefused) {
+    const std::string reason = "camera.height: views of 32 x 8192 pixels: one side is more than 16";
+    EXPECT_NE(complaint({"camera.width=32", "camera.height=8192"}).find(reason), std::string::npos);
+    EXPECT_NE(complaint({"camera.width=8192", "camera.height=32"}).find("camera.height"),
+              std::string::npos);
+    EXPECT_EQ(complaint({"camera.width=512", "camera.height=32"}), "");
+}
+
 TEST(Config, WrittenConfigReadsBackTheSame) {
     const Config config =
         loadConfig(kTwoTextures, {"planner.alpha=0.35", "camera.mount=front45",
