@@ -54,6 +54,20 @@ FolderTransaction beginRuns(const ManyRunsOptions& options, const fs::path& fold
     return beginResult(folder, inputs, FolderTransaction::Unfinished::kept);
 }
 
+void sayNothingToResume(const ManyRunsOptions& options, const FolderTransaction& folder,
+                        const RunWords& words) {
+    const std::string target = folder.target().string();
+    if (!Manifest::read(target).empty()) {
+        throw InputError("--resume", target,
+                         fmt::format("holds a result, but not {} to go on with; give another "
+                                     "folder (--out)",
+                                     words.aWhole));
+    }
+    if (options.quiet) return;
+    fmt::print(stderr, "photonav: --resume: {}: nothing there yet; {} begins anew\n", target,
+               words.theWhole);
+}
+
 void RemainingTime::count(const std::string& planner, double seconds, double wall) {
     --open_[planner];
     auto& [sum, runs] = taken_[planner];

@@ -76,9 +76,15 @@ class RemainingTime {
 /// A duration [s] as text: "90 s", "12 min", "3.5 h".
 std::string durationText(double seconds);
 
+/// Says that --resume begins anew, unless --quiet is given.
+/// @throws InputError where there is a result, of another command
+void sayNothingToResume(const ManyRunsOptions& options, const FolderTransaction& folder,
+                        const RunWords& words);
+
 /// The journal of earlier runs: from the working folder of a killed program or, with --resume, from
-/// the result folder; nothing if there is none.
-/// @throws InputError if a killed program left runs, and --resume is not given
+/// the result folder. Nothing if there is neither, which --resume says on standard error.
+/// @throws InputError if a killed program left runs, and --resume is not given; for --resume where
+///         the result is another command's
 template <typename Kind>
 std::optional<Journal<Kind>> earlierRuns(const ManyRunsOptions& options,
                                          const FolderTransaction& folder) {
@@ -95,8 +101,10 @@ std::optional<Journal<Kind>> earlierRuns(const ManyRunsOptions& options,
                                      "remove that folder",
                                      journal.runs().size(), Kind::kWords.run, Kind::kWords.aWhole));
     }
-    if (!options.resume || !hasRuns(folder.target())) return {};
-    return Runs::read(folder.target());
+    if (!options.resume) return {};
+    if (hasRuns(folder.target())) return Runs::read(folder.target());
+    sayNothingToResume(options, folder, Kind::kWords);
+    return {};
 }
 
 /// Checks that the runs of an earlier journal can be kept: they must have the same shard and depend

@@ -211,8 +211,21 @@ TEST_F(SweepCommand, AKilledSweepResumesWhereItWas) {
     EXPECT_FALSE(fs::exists(folder_ / "out.unfinished"));
     EXPECT_EQ(runs("out"), whole);
     EXPECT_TRUE(test::contentOf(folder_ / "out/runs.jsonl").starts_with(kept));  // not run again
-    ASSERT_EQ(sweep("fresh", "--resume").exitCode, 0);  // nothing there: from the start
+    const Execution fresh = sweep("fresh", "--resume");  // nothing there: from the start
+    ASSERT_EQ(fresh.exitCode, 0);
+    EXPECT_NE(fresh.output.find("fresh: nothing there yet; the sweep begins anew"),
+              std::string::npos)
+        << fresh.output;
     EXPECT_EQ(runs("fresh"), whole);
+}
+
+TEST_F(SweepCommand, AResultOfAnotherCommandIsNotResumed) {
+    const std::string info =
+        fmt::format("info {} --cells 2 --quiet --out {}", config("two_textures"), at("out"));
+    ASSERT_EQ(photonav(info).exitCode, 0);
+    const std::string kept = test::contentOf(folder_ / "out/result.json");
+    expectBadInput(sweep("out", "--resume"), "out: holds a result, but not a sweep to go on with");
+    EXPECT_EQ(test::contentOf(folder_ / "out/result.json"), kept);
 }
 
 TEST_F(SweepCommand, AResumedSweepMustBeTheSame) {
