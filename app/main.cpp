@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // photonav: signals, errors and exit codes. The commands are in *_command_line.cpp of each folder.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <ompl/util/Console.h>
 #include <unistd.h>
@@ -13,6 +14,7 @@
 
 #include "io/error.hpp"
 #include "io/folder_transaction.hpp"
+#include "io/image_decoder.hpp"
 #include "io/stopwatch.hpp"
 #include "io/yaml_reader.hpp"
 #include "render/interruptible_views.hpp"
@@ -25,8 +27,9 @@ using namespace photonav;
 std::atomic<bool> interrupted{false};
 std::atomic<double> interruptedAt{0.};
 volatile std::sig_atomic_t interruptedBy = 0;
-std::atomic<bool> hasOwnFiles{false};  // of a command that writes no result folder
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
+std::atomic<OnInterrupt> reaction{OnInterrupt::finish};  // of the present command
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<double>::is_always_lock_free &&
+              std::atomic<OnInterrupt>::is_always_lock_free);
 const Stopwatch running;
 
 constexpr double kSameInterrupt = 0.2;  // [s]
@@ -35,9 +38,12 @@ constexpr double kSameInterrupt = 0.2;  // [s]
 int exitCodeOf(int signal) { return 128 + signal; }
 static_assert(kInterrupted == 128 + SIGINT);
 
+/// Standard error, also while it is closed to decoders of images.
+const int standardError = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+
 /// Writes without a lock or a buffer, as a signal handler must.
 void say(std::string_view text) {
-    static_cast<void>(!write(STDERR_FILENO, text.data(), text.size()));
+    static_cast<void>(!write(standardError, text.data(), text.size()));
 }
 
 /// The first Ctrl-C, or SIGTERM as Slurm and systemd send it, lets the command finish its files, or
@@ -53,7 +59,8 @@ void onInterrupt(int signal) {
     }
     interruptedBy = signal;
     interrupted = true;
-    if (!hasOwnFiles && !FolderTransaction::isAnyOpen()) {
+    const bool hasResults = reaction == OnInterrupt::finishAlways || FolderTransaction::isAnyOpen();
+    if (reaction == OnInterrupt::endAtOnce || !hasResults) {
         say("photonav: interrupted before there was any result\n");
         std::_Exit(exitCodeOf(signal));
     }
@@ -132,11 +139,7 @@ int run(int argc, char** argv) {
     }
     for (const Command& command : commands) {
         if (!command.parser->parsed()) continue;
-        hasOwnFiles = command.onInterrupt == OnInterrupt::finishAlways;
-        if (command.onInterrupt == OnInterrupt::endAtOnce) {
-            std::signal(SIGINT, SIG_DFL);
-            std::signal(SIGTERM, SIG_DFL);
-        }
+        reaction = command.onInterrupt;
         const int code = command.run();
         if (code != kInterrupted) return code;
         fmt::print(stderr, "photonav: interrupted; what was done until then is kept\n");
@@ -148,11 +151,13 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    constexpr const char* kNoOutput = "standard output cannot be written";
     std::signal(SIGINT, onInterrupt);
     std::signal(SIGTERM, onInterrupt);
     std::signal(SIGALRM, onAlarm);
     std::signal(SIGXFSZ, SIG_IGN);  // writing fails, and says so
     ompl::msg::noOutputHandler();
+    quietDecoders = true;
     const std::string command = argc > 1 ? argv[1] : "";
     const auto fail = [](int code, std::string_view reason) {
         fmt::print(stderr, "photonav: {}\n", oneLine(reason));
@@ -161,7 +166,7 @@ int main(int argc, char** argv) {
     try {
         const int code = run(argc, argv);
         if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-        return fail(kNoAnswer, "standard output cannot be written");
+        return fail(kNoAnswer, kNoOutput);
     } catch (const InputError& error) {
         return fail(kBadInput, error.what());
     } catch (const std::filesystem::filesystem_error& error) {
@@ -171,6 +176,7 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return fail(kNoAnswer, command + ": needs more memory than there is");
     } catch (const std::exception& error) {
+        if (std::ferror(stdout) != 0) return fail(kNoAnswer, kNoOutput);
         return fail(kNoAnswer, command + ": " + error.what());
     }
 }

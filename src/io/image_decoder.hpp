@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <opencv2/core/mat.hpp>
@@ -9,6 +10,10 @@
 #include "io/image_bytes.hpp"
 
 namespace photonav {
+
+/// Whether nothing gets to standard error while an image is decoded. libpng, libjpeg and OpenCV
+/// write there what is wrong with an image, without its name. For programs that say it themselves.
+inline std::atomic<bool> quietDecoders{false};
 
 /// Decodes an image whose size is wanted: PNG, JPEG, BMP, PGM or PPM.
 /// @param flags   those of cv::imdecode

@@ -42,5 +42,16 @@ TEST_F(InfoCommand, DrawsHeatMapsAndContributions) {
     EXPECT_EQ(rows.size(), 12U);
 }
 
+/// A view of this size takes seconds.
+TEST_F(InfoCommand, EndsAtOnceAndSaysSo) {
+    const Execution run =
+        execute(fmt::format("timeout --preserve-status -s TERM 1 {} info {} --set camera.width=8192"
+                            " --set camera.height=8192 --out {}",
+                            PHOTONAV_BINARY, config("two_textures"), folder_.string()));
+    EXPECT_EQ(run.exitCode, 143);
+    EXPECT_EQ(run.output, "photonav: interrupted before there was any result\n");
+    EXPECT_FALSE(fs::exists(folder_));
+}
+
 }  // namespace
 }  // namespace photonav

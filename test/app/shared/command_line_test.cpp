@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 namespace photonav {
 namespace {
 
+namespace fs = std::filesystem;
 
 class CommandLine : public CommandTest {};
 
@@ -50,10 +52,22 @@ TEST_F(CommandLine, AFolderThatCannotBeWrittenIsRefusedBeforeWork) {
 }
 
 TEST_F(CommandLine, OutputThatCannotBeWrittenIsNoSuccess) {
-    const Execution run =
-        execute(std::string("{ ") + PHOTONAV_BINARY + " --version > /dev/full; }");
-    EXPECT_EQ(run.exitCode, 1);
-    EXPECT_EQ(run.output, "photonav: standard output cannot be written\n");
+    for (const char* arguments : {"--version", "keys"}) {  // little, and more than a buffer holds
+        const Execution run =
+            execute(fmt::format("{{ {} {} > /dev/full; }}", PHOTONAV_BINARY, arguments));
+        EXPECT_EQ(run.exitCode, 1);
+        EXPECT_EQ(run.output, "photonav: standard output cannot be written\n");
+    }
+}
+
+TEST_F(CommandLine, ADamagedTextureIsSaidInOneLine) {
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "a.pgm") << "P5\n64 64\n255\ncut short";
+    std::ofstream(folder_ / "a.mtl") << "newmtl a\nmap_Kd a.pgm\n";
+    std::ofstream(folder_ / "a.obj")
+        << "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 9 0 0\nv 0 9 0\nvt 0 0\n"
+           "f 1/1 2/1 3/1\n";
+    expectBadInput(plan("--set scene.file=" + (folder_ / "a.obj").string()), "a.pgm: ");
 }
 
 TEST_F(CommandLine, HelpHasExamplesAndPages) {
