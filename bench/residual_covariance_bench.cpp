@@ -3,7 +3,7 @@
 // average over their area, with noise, with a lens, with another light) are localised in a mesh and
 // in maps of cells, and aligned to images with depth, with one set of defaults. A table of
 // docs/experiments/tracking.md. Usage: residual_covariance_bench [alignments per row [largest
-// width]]
+// width [smallest cell]]]
 #include <fmt/format.h>
 
 #include <cstdlib>
