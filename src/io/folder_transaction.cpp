@@ -122,6 +122,24 @@ void checkWorkingFolder(const fs::path& working) {
     }
 }
 
+/// Writes the manifest of a working folder into its file, which is open. @returns whether it is
+/// whole
+bool writeInto(int descriptor, const Manifest& files) {
+    const std::string text = files.text();
+    return ftruncate(descriptor, 0) == 0 &&
+           pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
+}
+
+/// The manifest of work that is kept has its first line from the beginning. That of other work is
+/// empty until it lists all files.
+void checkLeftNoWork(const fs::path& working, const Manifest& left) {
+    const bool isWork = left.empty() && fs::file_size(working / Manifest::kFileName) > 0;
+    if (!isWork || namesIn(working).empty()) return;
+    refuse(working,
+           "holds the work of a command that was killed; go on with that command's --resume, "
+           "remove that folder, or give another one");
+}
+
 }  // namespace
 
 void FileDescriptor::reset(int number) {
@@ -237,7 +255,12 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
     // The process ended after an exchange, before the earlier result was removed.
     const Manifest left = Manifest::read(working_);
     const bool isReplaced = !left.empty() && !left.isToReplace(resolved_);
+    if (unfinished_ == Unfinished::removed) checkLeftNoWork(working_, left);
     if (isReplaced || unfinished_ == Unfinished::removed) removeLeftovers();
+    const bool isNewWork = unfinished_ == Unfinished::kept && left.empty();
+    if (isNewWork && !writeInto(lock_.get(), left)) {  // on a full disk: what comes next says so
+        static_cast<void>(!ftruncate(lock_.get(), 0));
+    }
     ++open_;
 }
 
@@ -296,10 +319,7 @@ FolderTransaction::~FolderTransaction() {
 void FolderTransaction::commit() {
     Manifest files = Manifest::of(working_);
     files.setReplaced(resolved_);
-    const std::string manifest = files.text();
-    const auto length = static_cast<ssize_t>(manifest.size());
-    if (ftruncate(lock_.get(), 0) != 0 ||
-        pwrite(lock_.get(), manifest.data(), manifest.size(), 0) != length) {
+    if (!writeInto(lock_.get(), files)) {
         throw InputError((working_ / Manifest::kFileName).string(), "",
                          std::string("cannot be written: ") + std::strerror(errno));
     }

@@ -219,6 +219,20 @@ TEST_F(FolderTransactionTest, UnfinishedWorkIsKeptThatWasAboutToReplaceTheFolder
     EXPECT_FALSE(fs::exists(target_ / "old.txt"));
 }
 
+TEST_F(FolderTransactionTest, KeptWorkIsNotRemovedByWhoKeepsNone) {
+    inKilledProcess([&] {
+        const FolderTransaction transaction(target_, Unfinished::kept);
+        write(transaction.path() / "runs.txt", "1");
+    });
+    EXPECT_NE(complaint(target_).find("target.unfinished: holds the work of a command"),
+              std::string::npos)
+        << complaint(target_);
+    FolderTransaction next(target_, Unfinished::kept);
+    EXPECT_EQ(contentOf(next.path() / "runs.txt"), "1");
+    next.commit();
+    EXPECT_EQ(complaint(target_), "");
+}
+
 TEST_F(FolderTransactionTest, RefusesALinkToNowhereAtTheBeginning) {
     fs::create_symlink("nowhere", target_);
     EXPECT_NE(complaint(target_).find("is a link to a folder that does not exist"),
