@@ -5,6 +5,7 @@
 #include <yaml-cpp/eventhandler.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -62,6 +63,16 @@ void requireOneDocument(const std::string& file, std::istream& text) {
     throw InputError(file, "", "holds several documents ('---'); only one is read");
 }
 
+/// Whether one of the first bytes is zero.
+bool isBinary(std::istream& stream) {
+    std::array<char, 1024> start{};
+    stream.read(start.data(), start.size());
+    const std::string_view text(start.data(), static_cast<std::size_t>(stream.gcount()));
+    stream.clear();
+    stream.seekg(0);
+    return text.find('\0') != std::string_view::npos;
+}
+
 /// Those of the dotted paths that end with a key.
 std::vector<std::string> pathsOf(const std::string& key, const std::vector<std::string>& paths) {
     std::vector<std::string> found;
@@ -88,6 +99,7 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& c
 
 YAML::Node loadYaml(const std::string& file) {
     std::ifstream stream = openToRead(file);
+    if (isBinary(stream)) throw InputError(file, "", "is no text in UTF-8: it has zero bytes");
     try {
         requireOneDocument(file, stream);
         stream.clear();

@@ -56,6 +56,7 @@ Header readHeader(std::istream& stream, const std::string& file) {
         if (key == "res") words >> header.resolution;
     }
     if (!stream) throw InputError(file, "", "cut short inside its header");
+    if (header.resolution == 0.) throw InputError(file, "res", "missing, or no number");
     if (!(header.resolution >= kFinestCell && header.resolution <= kCoarsestCell)) {
         throw InputError(file, "res",
                          fmt::format("{} m is not the size of a cell: {} to {} m",

@@ -21,7 +21,15 @@ std::string saidAbout(std::string_view bytes) {
 TEST(YamlFile, WhatCannotStartAValueIsRefusedAndNotReadWithoutEnd) {
     EXPECT_EQ(saidAbout(",1,2\n"), "a.yaml: line 1: is not YAML");
     EXPECT_EQ(saidAbout("\n\n, a: 1\n"), "a.yaml: line 3: is not YAML");
-    EXPECT_EQ(saidAbout(std::string_view("\0,\0\0# a\n: b", 12)), "a.yaml: line 1: is not YAML");
+}
+
+TEST(YamlFile, BinaryFilesAreRefusedAsSuch) {
+    EXPECT_EQ(saidAbout(std::string_view("\0,\0\0# a\n: b", 12)),
+              "a.yaml: is no text in UTF-8: it has zero bytes");
+    EXPECT_EQ(saidAbout(std::string_view("\x7f"
+                                         "ELF\2\1\1\0\0",
+                                         9)),
+              "a.yaml: is no text in UTF-8: it has zero bytes");
 }
 
 TEST(YamlFile, SecondDocumentsAreRefused) {
