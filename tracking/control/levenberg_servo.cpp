@@ -16,6 +16,7 @@ LevenbergServo::LevenbergServo(View goal, const Camera& camera, Eigen::MatrixXd 
     }
     rows_.resize(freedom_.cols(), goal_.intensity.getSize());
     for (unsigned v = 0; v < camera.height; ++v) {
+        if (options.onRow) options.onRow();
         for (unsigned u = 0; u < camera.width; ++u) {
             rows_.col(v * camera.width + u) =
                 freedom_.transpose() * pixelJacobian(goal_, camera, u, v, options.photometric);

@@ -2,6 +2,8 @@
 // Photometric servoing by the law of Levenberg and Marquardt, and how it converges.
 #pragma once
 
+#include <functional>
+
 #include "photometry/photometric.hpp"
 
 namespace photonav {
@@ -10,6 +12,9 @@ struct LevenbergServoOptions {
     PhotometricOptions photometric = {};
     double gain = 1.;       ///< of the error's exponential decrease [1/s]
     double damping = 0.01;  ///< mu; 0: Gauss-Newton
+    /// Called before each row of the goal's image, which takes seconds if it is large; may throw to
+    /// end that.
+    std::function<void()> onRow = {};
 };
 
 /// The law of Collewet and Marchand (2011) with the interaction matrix at the goal,
