@@ -84,7 +84,8 @@ class FileDescriptor {
 class FolderTransaction {
   public:
     /// What happens to a working folder that was not committed, or that a killed process left
-    /// behind. `kept` is for work that can be resumed: the next transaction finds it again.
+    /// behind. `kept` is for work that can be resumed: the next transaction finds it again, and one
+    /// of the other kind refuses to remove it.
     enum class Unfinished { removed, kept };
 
     /// @param target need not exist; a link to a folder stays a link
