@@ -77,7 +77,8 @@ void FlightLogger::add(const ExplorationMoment& moment) {
     LoggedMoment logged;
     logged.update = moment.soFar.updates.back();
     logged.length = moment.soFar.flown;
-    logged.robot = makePathPoint(moment.T_c_w, logged.update.trace, logged.length, logged.update.cost);
+    logged.robot =
+        makePathPoint(moment.T_c_w, logged.update.trace, logged.length, logged.update.cost);
     logged.flown = flownSince(moment.soFar.samples, false);
     logged.plan = drawnPlan(moment.planner);
     logged.cells = cells_.update(*moment.map.cells(), moment.change);

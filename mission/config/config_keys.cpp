@@ -155,7 +155,8 @@ void addCamera(KeyTable& keys, Config& c) {
                   },
               .value = [&c] { return YAML::Node(c.camera.mount); }});
     keys.count({"width", "pixels", "width of the predicted views"}, c.camera.width, {16., 8192.});
-    keys.count({"height", "pixels", "height of the predicted views"}, c.camera.height, {16., 8192.});
+    keys.count({"height", "pixels", "height of the predicted views"}, c.camera.height,
+               {16., 8192.});
     keys.number({"hfov", "degrees", "horizontal field of view"}, c.camera.hfov, {1., 170.});
     keys.number({"blur", "pixels",
                  "standard deviation of the point spread of the images; 0.2887: pixels "
