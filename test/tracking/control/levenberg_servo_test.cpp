@@ -9,7 +9,7 @@
 namespace photonav {
 namespace {
 
-constexpr LevenbergServoOptions kOptions{.gain = 2., .damping = 0.1};
+const LevenbergServoOptions kOptions{.gain = 2., .damping = 0.1};
 
 /// A camera that looks down on a floor from 2 m, and its servo of the scene's twist.
 struct OverFloor {
