@@ -15,7 +15,7 @@ set(folders_src_dataset io geometry photometry bag)
 set(folders_src_evaluation geometry)
 set(folders_planning_space geometry map)
 set(folders_planning_belief geometry photometry map space)
-set(folders_planning_planners geometry map render space belief)
+set(folders_planning_planners io geometry map render space belief)
 set(folders_tracking_alignment geometry photometry render)
 set(folders_tracking_depth geometry photometry dataset evaluation)
 set(folders_tracking_estimation geometry photometry map dataset alignment)
@@ -50,7 +50,7 @@ set(folders_drawing_interchange io bag dataset result shapes flightlog)
 set(folders_app_live io)
 set(folders_app_report io dataset problem plot shapes figures)
 set(folders_app_shared io result config runs report)
-set(folders_app_flights io geometry dataset planners alignment result config problem servo recording replay
+set(folders_app_flights io geometry render dataset planners alignment result config problem servo recording replay
     flight check posters flightlog figures report shared)
 set(folders_app_explorations io map dataset result config flight exploration flightlog figures live report
     shared flights)
