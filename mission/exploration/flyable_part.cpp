@@ -104,7 +104,6 @@ FlyablePart flyablePart(const std::vector<BeliefPoint>& path, const SpaceAhead& 
     FlyablePart way;
     const std::vector<PlannedView> plan = plannedViews(path);
     const double whole = path.back().length;
-    way.isBlocked = obstacle.length <= whole;
     const double seen = unseen.length - space.radius;
     const double free = obstacle.length - space.radius;
     const bool isToLook = space.canLook && seen < std::min(space.hidden + kStep, free);

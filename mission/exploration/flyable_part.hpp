@@ -25,7 +25,6 @@ struct SpaceAhead {
 struct FlyablePart {
     std::vector<PlannedView> plan;  ///< at least two views; equal poses: the robot hovers
     bool isWhole = false;           ///< the part is the whole path
-    bool isBlocked = false;         ///< an obstacle is on the path: the path is out of date
     bool isStopped = false;         ///< the obstacle is right ahead: the robot hovers
     bool isBlind = false;           ///< the part leads into space that could not be observed before
 };

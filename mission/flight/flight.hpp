@@ -116,13 +116,14 @@ class FlightEvaluator {
     FlightResult result_;
 };
 
-/// Called for every exposure, for recordings. @param depth true
+/// Called for every exposure, for recordings.
 using OnExposure = std::function<void(const Exposed& exposed)>;
 
 /// Flies a plan with flyLoop() until it ends. Everything random follows from options.seed.
 /// @param plan at least two views
+/// @param isStopped asked after every step; when it returns true, the flight ends as
+///        FlightEnd::stopped
 /// @throws std::invalid_argument for a shorter plan, or a world without truth, map or clearance
-/// @param isStopped asked now and then
 FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
                  const FlightOptions& options, const std::function<bool()>& isStopped = {},
                  const OnExposure& onExposure = {});

@@ -46,7 +46,7 @@ class InformationField {
     /// A field of information over a map.
     /// @param views renders the map; kept until update() replaces it
     /// @param T_b_c camera mount
-    /// @throws std::invalid_argument unless both pitches and the turns are positive
+    /// @throws std::invalid_argument unless both pitches and `updatesUntilStale` are positive
     InformationField(std::shared_ptr<const ViewSource> views, const Camera& camera,
                      const InformationModel& model, const Pose& T_b_c, const Options& options);
     /// A field of penalties, whose views give no information about the pose.
@@ -59,7 +59,7 @@ class InformationField {
     InformationField(const PenaltyFormula& formula, const Pose& T_b_c, const Options& options);
 
     /// The information of the view from the cell of T_w_b in the map as it is now, or as it was
-    /// less than `turns` updates ago. The reference stays valid until forget() or clear(); update()
+    /// less than `updatesUntilStale` updates ago. The reference stays valid until forget() or clear(); update()
     /// may make the entry stale.
     const Entry& at(const Pose& T_w_b);
 
@@ -71,7 +71,7 @@ class InformationField {
     const Entry& current(const Entry& entry);
 
     /// Updates the field after a change of the map. From now on views are rendered from `views`,
-    /// and entries whose view may depend on the change become stale (see Options::turns). All other
+    /// and entries whose view may depend on the change become stale (see Options::updatesUntilStale). All other
     /// entries equal newly evaluated ones bit by bit, except for changes of grey values below the
     /// tolerance of MapChange::texture. Takes about 1 us per entry in view of a change of 600
     /// bricks (map_update_bench): for 1000 entries as long as a few views.

@@ -76,7 +76,6 @@ void BeliefPlanner::setup() {
     }
 }
 
-/// RRT* in one page; compare the paper's Algorithm 1.
 ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& ptc) {
     checkValidity();
     if (dynamic_cast<ob::GoalSampleableRegion*>(pdef_->getGoal().get()) == nullptr) {
@@ -98,6 +97,7 @@ ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& pt
     return report();
 }
 
+/// RRT* in one page, with grow(); compare the paper's Algorithm 1.
 void BeliefPlanner::growUntil(const ob::PlannerTerminationCondition& ptc) {
     begin(ptc);
     ob::ScopedState<> goalOrSample(si_);

@@ -60,6 +60,22 @@ struct TimedPlanner {
     std::shared_ptr<BeliefRRTstar> planner;
 };
 
+/// Except for what the last descents differ by: they begin at different paths.
+TEST(Anytime, ALongerTimeIsNeverWorse) {
+    constexpr double kDescents = 1.002;
+    for (const std::uint32_t seed : {1U, 2U, 3U}) {
+        double last = kInfinity;
+        for (const double budget : {0.25, 0.5, 1., 2., 4., 8.}) {
+            const TimedPlanner timed(seed);
+            timed.planner->solve(budget);
+            EXPECT_LE(timed.planner->bestCost(), kDescents * last)
+                << budget << " s, seed " << seed;
+            last = timed.planner->bestCost();
+        }
+        EXPECT_LT(last, 10.);
+    }
+}
+
 /// Nothing is left to do for a solve() that adds no vertices.
 TEST(Anytime, TheLastSearchAndItsDescentEndBeforeTheDeadline) {
     for (const std::uint32_t seed : {1U, 2U, 3U}) {
