@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/rgbd/depth.hpp>
@@ -22,25 +21,13 @@
 #include "map/map_fusion.hpp"
 #include "render/mesh_renderer.hpp"
 #include "render/voxel_renderer.hpp"
+#include "statistics.hpp"
 #include "thread_time.hpp"
 #include "tracking_scenes.hpp"
 
 using namespace photonav;
 
 namespace {
-
-double milliseconds(const std::function<void()>& call) {
-    const double start = threadTime();
-    call();
-    return threadTime() - start;
-}
-
-double quantile(std::vector<double> values, double q) {
-    if (values.empty()) return 0.;
-    const auto nth = values.begin() + std::ptrdiff_t(q * double(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), nth, values.end());
-    return *nth;
-}
 
 /// Errors and times of one method over many alignments.
 struct Score {

@@ -20,6 +20,7 @@
 #include "render/mesh_renderer.hpp"
 #include "simulation/camera_noise.hpp"
 #include "simulation/simulated_camera.hpp"
+#include "statistics.hpp"
 #include "thread_time.hpp"
 #include "tracking_scenes.hpp"
 
@@ -32,13 +33,6 @@ constexpr double kStep = 0.02;      // on its circle of 2 m radius: 4 cm [rad]
 constexpr double kBaseline = 0.11;  // EuRoC's [m]
 constexpr double kCell = 0.05;      // of the maps [m]
 const FusionOptions kFusion{.maxRange = 5.};
-
-double quantile(std::vector<float>& values, double q) {
-    if (values.empty()) return 0.;
-    const auto at = values.begin() + std::ptrdiff_t(q * double(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
 
 vpImage<unsigned char> bytes(const ImageF& image) {
     vpImage<unsigned char> result(image.getHeight(), image.getWidth());

@@ -13,11 +13,13 @@
 #include <vector>
 
 #include "belief/information_field.hpp"
+#include "image_noise.hpp"
 #include "map/distance_map.hpp"
 #include "map/map_fusion.hpp"
 #include "render/mesh_renderer.hpp"
 #include "render/voxel_snapshots.hpp"
 #include "scene/scene.hpp"
+#include "statistics.hpp"
 #include "thread_time.hpp"
 
 using namespace photonav;
@@ -106,26 +108,8 @@ View noisyView(const MeshRenderer& scene, const Camera& camera, const Pose& T_c_
     View view;
     scene.render(camera, T_c_w, view);
     std::mt19937 random(seed);
-    std::normal_distribution<float> noise(0.F, 1.F);
-    for (unsigned i = 0; i < view.depth.getSize(); ++i) {
-        float& z = view.depth.bitmap[i];
-        view.intensity.bitmap[i] =
-            std::clamp(view.intensity.bitmap[i] + 0.02F * noise(random), 0.F, 1.F);
-        if (z > 0.F) z += 0.002F * z * z * noise(random);
-    }
+    addNoise(view, random);
     return view;
-}
-
-/// Processor time, so that other programs on the machine matter little.
-double milliseconds(const auto& work) {
-    const double begin = threadTime();
-    work();
-    return threadTime() - begin;
-}
-
-double quantile(std::vector<double> values, double q) {
-    std::sort(values.begin(), values.end());
-    return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
 }
 
 void print(const char* what, const std::vector<double>& times) {

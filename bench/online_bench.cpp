@@ -12,9 +12,11 @@
 
 #include <random>
 
+#include "image_noise.hpp"
 #include "map/map_fusion.hpp"
 #include "problem/planning_problem.hpp"
 #include "render/mesh_renderer.hpp"
+#include "statistics.hpp"
 #include "thread_time.hpp"
 
 using namespace photonav;
@@ -25,33 +27,16 @@ namespace {
 constexpr double kStep = 0.5;          // flown between keyframes [m]
 constexpr int kBetweenScratches = 10;  // keyframes
 
-double milliseconds(const auto& work) {
-    const double begin = threadTime();
-    work();
-    return threadTime() - begin;
-}
-
-double quantile(std::vector<double> values, double q) {
-    if (values.empty()) return 0.;
-    std::sort(values.begin(), values.end());
-    return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
-}
-
-class Eye {
+/// The robot's RGB-D camera, simulated in the true scene.
+class SimulatedRgbd {
   public:
-    Eye(const MeshRenderer& scene, const Config& config)
+    SimulatedRgbd(const MeshRenderer& scene, const Config& config)
         : scene_(scene), camera_(config.camera.camera()), T_b_c_(config.camera.T_b_c()) {}
 
-    View look(const Pose& T_w_b, bool isNoisy) {
+    View render(const Pose& T_w_b, bool isNoisy) {
         View view;
         scene_.render(camera_, poseOf(T_w_b), view);
-        std::normal_distribution<float> noise(0.F, isNoisy ? 1.F : 0.F);
-        for (unsigned i = 0; i < view.depth.getSize(); ++i) {
-            float& z = view.depth.bitmap[i];
-            float& grey = view.intensity.bitmap[i];
-            grey = std::clamp(grey + 0.02F * noise(random_), 0.F, 1.F);
-            if (z > 0.F) z += 0.002F * z * z * noise(random_);
-        }
+        addNoise(view, random_, isNoisy ? 1.F : 0.F);
         return view;
     }
     MapChange fuseInto(TexturedOcTree& map, const View& view, const Pose& T_w_b) const {
@@ -68,7 +53,7 @@ class Eye {
 };
 
 /// All of the labyrinth as the robot would map it: views all over it, in six directions.
-void exploreAll(TexturedOcTree& map, Eye& eye, const World& truth) {
+void exploreAll(TexturedOcTree& map, SimulatedRgbd& camera, const World& truth) {
     for (double x = 0.7; x < 26.5; x += 1.5) {
         for (double y = 0.7; y < 9.5; y += 1.5) {
             const Eigen::Vector3d p_w(x, y, 1.3);
@@ -79,7 +64,7 @@ void exploreAll(TexturedOcTree& map, Eye& eye, const World& truth) {
                 T_w_b.linear() =
                     Eigen::AngleAxisd(std::numbers::pi / 3 * i, Eigen::Vector3d::UnitZ())
                         .toRotationMatrix();
-                eye.fuseInto(map, eye.look(T_w_b, false), T_w_b);
+                camera.fuseInto(map, camera.render(T_w_b, false), T_w_b);
             }
         }
     }
@@ -119,12 +104,12 @@ class Flight {
         : config_(config),
           truth_(config),
           scene_(*truth_.scene()),
-          eye_(scene_, config),
+          camera_(scene_, config),
           map_(std::make_shared<TexturedOcTree>(0.05)),
           name_(planner) {
-        if (isKnown) exploreAll(*map_, eye_, truth_);
+        if (isKnown) exploreAll(*map_, camera_, truth_);
         position_.translation() = config.start.position;
-        eye_.fuseInto(*map_, eye_.look(position_, true), position_);
+        camera_.fuseInto(*map_, camera_.render(position_, true), position_);
         world_.emplace(std::shared_ptr<const TexturedOcTree>(map_), config);
         problem_.emplace(config, *world_);
     }
@@ -140,12 +125,13 @@ class Flight {
     /// Along the present path, one keyframe.
     void fly(Times& times) {
         advance();
-        const View view = eye_.look(position_, true);
+        const View view = camera_.render(position_, true);
         const InformationField& field = planner_->model().field();
         const double markedBefore = double(field.marked());
         const double viewsBefore = double(field.views() + problem_->evaluator().field().views());
         MapChange change;
-        times.fuse.push_back(milliseconds([&] { change = eye_.fuseInto(*map_, view, position_); }));
+        times.fuse.push_back(
+            milliseconds([&] { change = camera_.fuseInto(*map_, view, position_); }));
         times.world.push_back(milliseconds([&] { world_->mapChanged(change); }));
         times.views.push_back(milliseconds([&] { problem_->followMap(); }));
         times.check.push_back(times.fuse.back() + times.world.back() + times.views.back());
@@ -258,7 +244,7 @@ class Flight {
     Config config_;
     World truth_;
     MeshRenderer scene_;
-    Eye eye_;
+    SimulatedRgbd camera_;
     std::shared_ptr<TexturedOcTree> map_;
     std::string name_;
     std::optional<World> world_;

@@ -18,6 +18,7 @@
 #include "map/map_fusion.hpp"
 #include "render/mesh_renderer.hpp"
 #include "render/voxel_renderer.hpp"
+#include "statistics.hpp"
 #include "thread_time.hpp"
 #include "tracking_scenes.hpp"
 
@@ -74,13 +75,6 @@ MadeMap makeMap(const MeshRenderer& mesh, const World& world, double resolution,
     }
     made.fuse /= frames;
     return made;
-}
-
-double quantile(std::vector<double> values, double q) {
-    if (values.empty()) return std::nan("");
-    const auto nth = values.begin() + std::ptrdiff_t(q * double(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), nth, values.end());
-    return *nth;
 }
 
 /// Errors of depth [mm].

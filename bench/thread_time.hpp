@@ -12,3 +12,10 @@ inline double threadTime() {
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
+
+/// Processor time that `work` takes on this thread [ms].
+double milliseconds(const auto& work) {
+    const double begin = threadTime();
+    work();
+    return threadTime() - begin;
+}

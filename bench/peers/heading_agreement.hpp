@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "../statistics.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/uncertain_pose.hpp"
 
@@ -84,13 +85,6 @@ inline HeadingScores randomScores(std::size_t positions) {
         for (double& score : at) score = uniform(random);
     }
     return scores;
-}
-
-inline double quantile(std::vector<double> values, double share) {
-    const auto nth = values.begin() +
-                     static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), nth, values.end());
-    return *nth;
 }
 
 inline double medianTrace(const HeadingInformation& informations) {
