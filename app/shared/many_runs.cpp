@@ -54,8 +54,8 @@ FolderTransaction beginRuns(const ManyRunsOptions& options, const fs::path& fold
     return beginResult(folder, inputs, FolderTransaction::Unfinished::kept);
 }
 
-void sayNothingToResume(const ManyRunsOptions& options, const FolderTransaction& folder,
-                        const RunWords& words) {
+void reportNewBegin(const ManyRunsOptions& options, const FolderTransaction& folder,
+                    const RunWords& words) {
     const std::string target = folder.target().string();
     if (!Manifest::read(target).empty()) {
         throw InputError("--resume", target,

@@ -76,10 +76,10 @@ class RemainingTime {
 /// A duration [s] as text: "90 s", "12 min", "3.5 h".
 std::string durationText(double seconds);
 
-/// Says that --resume begins anew, unless --quiet is given.
+/// Prints that --resume finds no earlier runs and begins anew, unless --quiet is given.
 /// @throws InputError where there is a result, of another command
-void sayNothingToResume(const ManyRunsOptions& options, const FolderTransaction& folder,
-                        const RunWords& words);
+void reportNewBegin(const ManyRunsOptions& options, const FolderTransaction& folder,
+                    const RunWords& words);
 
 /// The journal of earlier runs: from the working folder of a killed program or, with --resume, from
 /// the result folder. Nothing if there is neither, which --resume says on standard error.
@@ -103,7 +103,7 @@ std::optional<Journal<Kind>> earlierRuns(const ManyRunsOptions& options,
     }
     if (!options.resume) return {};
     if (hasRuns(folder.target())) return Runs::read(folder.target());
-    sayNothingToResume(options, folder, Kind::kWords);
+    reportNewBegin(options, folder, Kind::kWords);
     return {};
 }
 

@@ -13,19 +13,26 @@
 namespace photonav {
 namespace {
 
-constexpr double kHidden = 0.3;  // around the robot, that such a camera does not see [m]
-constexpr int kMostInVain = 6;   // updates in a row without a way, before there is none
-constexpr int kBlindInVain = 1;  // steps into what was not seen that showed nothing either, before
-                                 // there is no way
-constexpr double kMostStopped = 10.;  // before an obstacle in view that the map does not get,
-                                      // before there is no way [s]
-constexpr double kMostAtGoal = 30.;   // around the goal without an arrival, before the flight ends
-                                      // as certain as it is [s]
-constexpr double kAroundGoal = 2.;    // [m]
-constexpr double kWait = 1.;  // before an update without a keyframe, while nothing moves [s]
+/// Radius around the robot that a camera that looks ahead does not observe [m].
+constexpr double kHidden = 0.3;
+/// Number of updates in a row without a flyable plan after which the flight ends; for one camera
+/// also the limit of steps, see kBlindInVain.
+constexpr int kMostInVain = 6;
+/// Number of steps in a row into unobserved space that may leave the map unchanged; then the robot
+/// hovers.
+constexpr int kBlindInVain = 1;
+/// Longest stop before an obstacle in view that does not enter the map; then the flight ends [s].
+constexpr double kMostStopped = 10.;
+/// Longest time around the goal without an arrival; then the flight ends with its belief [s].
+constexpr double kMostAtGoal = 30.;
+/// Distance to the goal that counts as around it [m].
+constexpr double kAroundGoal = 2.;
+/// Time without an update, while the plan is only a part of the way, after which the next image
+/// becomes a keyframe [s].
+constexpr double kWait = 1.;
 
-/// Flown from the exposure of an image that shows an obstacle until the robot stands, at full speed
-/// and if the image after it is missing.
+/// Distance flown at full speed from the exposure of an image that shows an obstacle until the
+/// robot stands, if the next image is missing.
 double stoppingDistance(const ExplorerOptions& options) {
     const MotionLimits& limits = options.pilot.route.limits;
     const double seconds = options.imageAge + options.pilot.route.responseTime;

@@ -20,12 +20,13 @@ Tracker trackerOf(const Robot& robot, std::shared_ptr<const ViewSource> map,
 Pilot pilotOf(const Robot& robot, std::vector<PlannedView> plan,
               std::shared_ptr<const ViewSource> map, const PilotOptions& options = {});
 
-/// Called after every step, with what was measured in it and the images of that as they were
-/// tracked. @return whether to fly on
+/// Called after every step, with its measurements and the tracking results of its images.
+/// @return whether to fly on
 using OnFlightStep =
     std::function<bool(const Observation& observation, const std::vector<TrackedFrame>& tracked)>;
 
-/// robot -> tracker -> pilot -> robot, until `onStep` ends the flight. The first step only looks.
+/// robot -> tracker -> pilot -> robot, until `onStep` ends the flight. The first step takes images
+/// without a motion.
 /// @param timeStep between commands [s]
 /// @throws std::invalid_argument for a time step that is not positive
 void flyLoop(Robot& robot, Tracker& tracker, Pilot& pilot, double timeStep,

@@ -19,7 +19,7 @@ std::vector<PlannedView> plannedViews(std::span<const BeliefPoint> path);
 struct FlightSetup {
     FlightWorld world;
     FlightOptions options;
-    MapKind map = MapKind::mesh;  ///< that is tracked in; the world itself counts as a mesh
+    MapKind map = MapKind::mesh;  ///< of the tracking map; mesh if that is the world itself
 };
 
 /// World and options of flights under the conditions that the config of the problem describes, its
@@ -35,15 +35,17 @@ FlightSetup setUpFlight(const PlanningProblem& problem);
 
 /// Options of flights under the conditions of a config, without those that depend on a world: start
 /// and space for searches.
-/// @param map what images are compared with; @param cellSize of a map of cells [m]
+/// @param map kind of the map to which images are aligned
+/// @param cellSize edge of the cells of that map [m]; 0 for a mesh
 FlightOptions flightOptions(const Config& config, MapKind map, double cellSize);
 
 /// How images are aligned under the conditions of the section `fly`: covariances follow from their
 /// residuals.
-/// @param map what images are compared with; @param cellSize of a map of cells [m]
+/// @param map kind of the map to which images are aligned
+/// @param cellSize edge of the cells of that map [m]; 0 for a mesh
 AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellSize);
 
-/// Distance to the goal of a flight that arrived [m].
+/// Largest distance to the goal at which a flight has arrived [m].
 double arrivalTolerance(const Config& config);
 
 /// Sets scale and least sigmas of alignments as calibrated. The factor is divided by the number of

@@ -57,9 +57,9 @@ void countEnds(std::span<const FlightResult> flights, FlightSummary& s) {
     s.photometricAfter = median(after, FlightSummary::kNone);
 }
 
-/// Errors against what was predicted and believed, over all exposures.
-void judgeExposures(std::span<const FlightResult> flights, std::span<const PlannedView> plan,
-                    FlightSummary& s) {
+/// RMS position error, RMS predicted and believed sigmas, and mean NEES over all exposures.
+void summariseExposures(std::span<const FlightResult> flights, std::span<const PlannedView> plan,
+                        FlightSummary& s) {
     double error = 0., predicted = 0., believed = 0., within = 0., n = 0.;
     std::vector<double> nees;
     for (const FlightResult& flight : flights) {
@@ -126,7 +126,7 @@ FlightSummary summarise(std::span<const FlightResult> flights, std::span<const P
     s.flights = flights.size();
     if (flights.empty()) return s;
     countEnds(flights, s);
-    judgeExposures(flights, plan, s);
+    summariseExposures(flights, plan, s);
     std::vector<double> nees, atGoal;
     for (const FlightResult& flight : flights) {
         if (const double x = neesPerDof(flight); !std::isnan(x)) nees.push_back(x);

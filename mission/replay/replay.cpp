@@ -59,8 +59,9 @@ void applyCalibration(std::optional<MapKind> map, ReplayOptions& options) {
         options.leastSigmaRotation.value_or(calibration.leastSigmaRotation);
 }
 
-/// What points up in the recording that a map was made of, as it is noted beside the map. A floor
-/// fitted to another part of it would turn the recording against the map.
+/// The upward direction (--up) with which a map was made, read from the config.yaml beside it. The
+/// floor is not fitted again: the result would differ, and rotate the recording relative to the
+/// map.
 std::string upOfMap(const std::string& mapFile) {
     if (const auto map = optionsOfMap(mapFile)) return map->up;
     const auto config = fs::path(mapFile).parent_path() / "config.yaml";

@@ -29,7 +29,7 @@ struct PlannerEntry {
 /// RRBT keeps all beliefs: 19 thousand on 300 vertices of the stripes, 138 thousand on 1000.
 constexpr unsigned kMostOfRrbt = 400;
 
-/// All that is written of a planner outside of its class. The first one is the default.
+/// Names, traits and constructors of all planners. The first planner is the default.
 constexpr std::array kPlanners{
     PlannerEntry{{"belief_rrt_star", true, {222, 79, 12}},
                  [](const ob::SpaceInformationPtr& si, const Model& model,

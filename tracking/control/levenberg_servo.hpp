@@ -19,18 +19,18 @@ struct LevenbergServoOptions {
 
 /// The law of Collewet and Marchand (2011) with the interaction matrix at the goal,
 ///     q' = gain (H + mu diag H)^-1 L^T (I - I*),   H = L^T L,
-/// for velocities q' of some degrees of freedom. Of q = q(goal) + dq it makes, to first order,
-/// dq' = -gain (H + mu diag H)^-1 H dq.
+/// for velocities q' of some degrees of freedom. To first order, the error dq = q - q(goal) then
+/// follows dq' = -gain (H + mu diag H)^-1 H dq.
 class LevenbergServo {
   public:
-    /// @param goal its view, as the camera there sees it
+    /// @param goal the view of the camera at the goal
     /// @param freedom 6 x n: the twist of T_c_w on its left that each velocity makes,
     ///        T_c_w' = exp(freedom q' dt) T_c_w
     /// @throws std::invalid_argument unless there are 1 to 6 columns
     LevenbergServo(View goal, const Camera& camera, Eigen::MatrixXd freedom,
                    const LevenbergServoOptions& options);
 
-    /// Velocities q'; zero where the goal's view says nothing.
+    /// Velocities q'; zero in directions that the goal's view does not determine.
     Eigen::VectorXd velocity(const ImageF& observed) const;
 
     const Eigen::MatrixXd& freedom() const { return freedom_; }
@@ -38,7 +38,8 @@ class LevenbergServo {
     /// H, scaled to the information of one image.
     const Eigen::MatrixXd& information() const { return information_; }
 
-    /// Directions that converge each at a rate of its own, the slowest first.
+    /// Directions of the error that converge independently, each at its own rate; the slowest
+    /// first.
     struct Modes {
         Eigen::VectorXd rates;       ///< [1/s]; 0: never
         Eigen::MatrixXd directions;  ///< column by column, in q, of any length

@@ -5,7 +5,7 @@
 
 namespace photonav {
 
-/// What a MAV near hover can do.
+/// Limits of velocity and acceleration of a MAV near hover.
 struct MotionLimits {
     double maxSpeed = 1.;            ///< [m/s]
     double maxYawRate = 1.;          ///< [rad/s]

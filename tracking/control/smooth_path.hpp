@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plan as a MAV can fly it without stopping: a curve close to it, and how fast.
+// A smooth curve close to the legs of a plan, and the speed along it within the limits of a MAV.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where to look for what a planned view did not show.
+// Searches a nearby view that reduces the uncertainty of the pose, after the planned view did not.
 #pragma once
 
 #include <functional>
@@ -16,10 +16,10 @@ namespace photonav {
 /// @param covariance of T_c_w, camera frame
 double widestSigma(const Matrix6& covariance);
 
-/// Whether a position may be taken.
+/// Whether the body may be at a position: free of collision.
 using IsFree = std::function<bool(const Eigen::Vector3d& p_w)>;
 
-/// Whether the straight line between two places is free, asked every 5 cm.
+/// Whether the straight line between two positions is free, checked every 5 cm.
 bool isLineFree(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w, const IsFree& isFree);
 
 /// Views that would narrow a belief, wherever in it the camera truly is.

@@ -10,8 +10,8 @@
 namespace photonav {
 
 /// Pose-based visual servoing (vpServo; features: translation and theta-u of the current in the
-/// wanted camera frame) with the four velocities that a MAV near hover has: what only tilting could
-/// correct stays as it is.
+/// wanted camera frame) with the four velocities of a MAV near hover. Roll and pitch are not
+/// controlled, so their errors remain.
 class WaypointServo {
   public:
     /// @param T_b_c camera mount

@@ -68,7 +68,7 @@ TEST_F(BagCommands, MapTheRoomThatTheFolderShows) {
     EXPECT_EQ(again.depthScale, 1.);
 }
 
-TEST_F(BagCommands, AreToldInOneLineWhatABagLacks) {
+TEST_F(BagCommands, RefuseABagWithoutNeededTopicsInOneLine) {
     test::writeBag(bag_, tum_, {.depthTopic = ""});
     Execution outcome = photonav("replay " + bag_ + " --odometry --out " + folder_.file("out"));
     EXPECT_EQ(outcome.exitCode, kBadInput);

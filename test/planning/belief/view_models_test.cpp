@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values(StateKind::position, StateKind::positionYaw, StateKind::se3),
                      testing::Values(CostRule::integral, CostRule::perVertex)));
 
-TEST_P(EveryKindOfPenalty, FlownEqualsReplayed) {
+TEST_P(EveryKindOfPenalty, PropagationEqualsReplay) {
     Problem problem;
     problem.bounds = box({0, 0, 1}, {10, 10, 3});
     std::tie(problem.kind, problem.belief.cost) = GetParam();

@@ -289,7 +289,7 @@ TEST(ChangedFloor, VerticesWhoseInformationChangedAreRewired) {
 }
 
 /// The new texture is worth a detour to the planner's views, not to the reference model.
-TEST(ChangedFloor, APathIsOnlyLeftForOneThatTheJudgeFindsBetter) {
+TEST(ChangedFloor, ReplacesAPathOnlyByOneOfLowerReferenceCost) {
     const auto lengthAfterPainting = [](bool isJudged, double& before) {
         ChangingFlight flight("belief_rrt_star", SceneKind::overTexture, 4);
         flight.plan();

@@ -194,7 +194,7 @@ TEST_P(MapOfFewImages, OfAUniformSurfaceIsDegenerate) {
     EXPECT_LT(result.nees, 2.);
 }
 
-TEST_P(MapOfFewImages, OfFaintTextureIsHonest) {
+TEST_P(MapOfFewImages, OfFaintTextureIsConsistent) {
     const Texture faint = valueNoise({.size = {20., 20.},
                                       .cells = {0.5, 0.2},
                                       .amplitudes = {0.01, 0.008},
