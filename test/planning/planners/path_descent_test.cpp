@@ -12,10 +12,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A descent on a problem from a path through these points.
+/// A descent on a problem from a path through these points, until the options or a condition on the
+/// number of tried changes stop it.
 struct Descended {
     Descended(const Problem& problem, const std::vector<Vector3d>& points,
-              const DescentOptions& options = {})
+              const DescentOptions& options = {},
+              unsigned stopAfter = std::numeric_limits<unsigned>::max())
         : si(problem.spaceInformation()), model(problem.model()), descent(si, model, options) {
         std::vector<ob::ScopedState<>> states;
         std::vector<const ob::State*> path;
@@ -26,7 +28,8 @@ struct Descended {
         for (const auto& state : states) path.push_back(state.get());
         descent.begin(path);
         before = descent.cost();
-        descent.descend(ob::plannerNonTerminatingCondition());
+        descent.descend(
+            ob::PlannerTerminationCondition([&] { return descent.tried() >= stopAfter; }));
     }
 
     double length() const {
@@ -196,9 +199,22 @@ TEST(PathDescent, DoublesAShiftOfALegThatHelped) {
     }
 }
 
-TEST(PathDescent, StopsWhenAsked) {
+TEST(PathDescent, StopsByItsConditionAndContinues) {
     const Problem problem;
-    Descended result(problem, kDetour, {.moves = 0});
+    Descended result(problem, kDetour, {.moves = 500}, 40);
+    EXPECT_GE(result.descent.tried(), 40U);
+    EXPECT_LT(result.descent.tried(), 50U);
+    const double cost = result.descent.cost();
+    EXPECT_LE(cost, result.before);
+    EXPECT_NEAR(cost, result.model->evaluate(result.descent.path()).back().cost, 1e-10);
+    result.descent.descend(ob::plannerNonTerminatingCondition());
+    EXPECT_GE(result.descent.tried(), 500U);
+    EXPECT_LT(result.descent.cost(), cost);
+}
+
+TEST(PathDescent, TriesNothingIfTheConditionHoldsAtOnce) {
+    const Problem problem;
+    const Descended result(problem, kDetour, {}, 0);
     EXPECT_EQ(result.descent.tried(), 0U);
     EXPECT_DOUBLE_EQ(result.descent.cost(), result.before);
 }
