@@ -31,7 +31,8 @@ void addInfoOptions(CLI::App& parser, InfoOptions& options) {
     parser
         .add_option("--height", options.height,
                     "height of the heat map [m] (default: the height of the start)")
-        ->check(CLI::Range(-1e5, 1e5));
+        ->check(CLI::Range(-1e5, 1e5))
+        ->check(isANumber());
     parser.add_option("--at", options.at,
                       "x,y,z[,yaw] of the robot for the single view (default: the start)");
     parser
@@ -61,7 +62,8 @@ void addCheckOptions(CLI::App& parser, CheckCommandOptions& options) {
     parser
         .add_option("--max-sigma", options.check.maxSigma,
                     "standard deviation of the position above which the camera counts as lost [m]")
-        ->check(CLI::Range(1e-6, 1e5));
+        ->check(CLI::Range(1e-6, 1e5))
+        ->check(isANumber());
     addNumber(parser, "--flights", options.flights,
               "number of simulated flights along the trajectory", 0U, 1000000U);
     addJobs(parser, options.jobs);

@@ -4,11 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <cmath>
 #include <functional>
 #include <set>
 #include <string>
 
 #include "config/key_table.hpp"
+#include "io/number.hpp"
 #include "shared/command_io.hpp"
 #include "shared/many_runs.hpp"
 
@@ -75,12 +77,22 @@ void addQuiet(CLI::App& parser, bool& quiet);
 /// The format of the help texts: at most 80 columns.
 std::shared_ptr<CLI::FormatterBase> helpFormat();
 
+/// Refuses "nan", which CLI::Range lets pass.
+inline CLI::Validator isANumber() {
+    const auto check = [](const std::string& text) -> std::string {
+        const auto number = numberIn(text);
+        return number && std::isnan(*number) ? text + " is not a number" : std::string();
+    };
+    return {check, ""};
+}
+
 /// Adds an option for a number from `least` to `most`. The value of `number` is the default.
 template <typename Number>
 void addNumber(CLI::App& parser, const std::string& name, Number& number,
                const std::string& description, Number least, Number most) {
     parser.add_option(name, number, description)
         ->check(CLI::Range(least, most))
+        ->check(isANumber())
         ->capture_default_str();
 }
 

@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <fstream>
+#include <string_view>
+
 #include "config/config_keys.hpp"
 #include "interchange/result_export.hpp"
 #include "io/atomic_file.hpp"
@@ -86,11 +89,25 @@ void addExportOptions(CLI::App& parser, ExportOptions& options) {
     parser.add_flag("--quiet", options.quiet, "print nothing");
 }
 
+/// Only an earlier export is replaced, never a file of a result or of the user.
+void checkExportTarget(const fs::path& file) {
+    if (fs::exists(file.parent_path() / Manifest::kFileName)) {
+        throw InputError("--out", file.string(), "is inside a result folder");
+    }
+    constexpr std::string_view kMagic = "\x89MCAP0\r\n";
+    std::string begin(kMagic.size(), '\0');
+    if (!fs::is_regular_file(file)) return;
+    std::ifstream(file, std::ios::binary).read(begin.data(), std::ssize(begin));
+    if (begin == kMagic) return;
+    throw InputError("--out", file.string(), "exists, and is no MCAP file; give another name");
+}
+
 int exportResult(const ExportOptions& options, const std::atomic<bool>& /*interrupted*/) {
     fs::path folder = options.folder.lexically_normal();
     if (!folder.has_filename()) folder = folder.parent_path();  // without a closing slash
-    const McapExport result = exportMcap(folder, readReportOf(folder));
     const std::string file = options.out.empty() ? folder.string() + ".mcap" : options.out.string();
+    checkExportTarget(file);
+    const McapExport result = exportMcap(folder, readReportOf(folder));
     writeFileAtomically(file, result.content);
     if (!options.quiet) {
         fmt::print("{}: {} messages over {:.1f} s, {:.1f} MB\n", file, result.messages,

@@ -59,8 +59,8 @@ class InformationField {
     InformationField(const PenaltyFormula& formula, const Pose& T_b_c, const Options& options);
 
     /// The information of the view from the cell of T_w_b in the map as it is now, or as it was
-    /// less than `updatesUntilStale` updates ago. The reference stays valid until forget() or clear(); update()
-    /// may make the entry stale.
+    /// less than `updatesUntilStale` updates ago. The reference stays valid until forget() or
+    /// clear(); update() may make the entry stale.
     const Entry& at(const Pose& T_w_b);
 
     /// As at(), but a stale entry is returned without being evaluated again.
@@ -71,10 +71,11 @@ class InformationField {
     const Entry& current(const Entry& entry);
 
     /// Updates the field after a change of the map. From now on views are rendered from `views`,
-    /// and entries whose view may depend on the change become stale (see Options::updatesUntilStale). All other
-    /// entries equal newly evaluated ones bit by bit, except for changes of grey values below the
-    /// tolerance of MapChange::texture. Takes about 1 us per entry in view of a change of 600
-    /// bricks (map_update_bench): for 1000 entries as long as a few views.
+    /// and entries whose view may depend on the change become stale (see
+    /// Options::updatesUntilStale). All other entries equal newly evaluated ones bit by bit, except
+    /// for changes of grey values below the tolerance of MapChange::texture. Takes about 1 us per
+    /// entry in view of a change of 600 bricks (map_update_bench): for 1000 entries as long as a
+    /// few views.
     ///
     /// Assumes that cameras are inside the map's bounding box, or that the unknown space between
     /// camera and box is free.

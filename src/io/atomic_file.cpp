@@ -54,10 +54,20 @@ class TemporaryFile {
 
 using Write = std::function<void(std::ostream&)>;
 
+/// The file that is to be replaced. A link stays, and what it leads to is replaced.
+std::filesystem::path targetOf(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (!exists(status)) return file;
+    if (!is_regular_file(status)) fail(file, "it is not a regular file");
+    return std::filesystem::is_symlink(file) ? std::filesystem::canonical(file) : file;
+}
+
 /// @param onWritten called before the temporary file is renamed
 void writeAndRename(const std::filesystem::path& file, const Write& write,
                     const std::function<void(const std::filesystem::path&)>& onWritten) {
-    const TemporaryFile temporary(file);
+    const std::filesystem::path target = targetOf(file);
+    const TemporaryFile temporary(target);
     errno = 0;
     std::ofstream stream(temporary.path(), std::ios::binary);
     stream.imbue(std::locale::classic());  // a point in numbers, and no other separator
@@ -67,7 +77,7 @@ void writeAndRename(const std::filesystem::path& file, const Write& write,
     onWritten(temporary.path());
 
     std::error_code error;
-    std::filesystem::rename(temporary.path(), file, error);
+    std::filesystem::rename(temporary.path(), target, error);
     if (error) fail(file, error.message());
 }
 

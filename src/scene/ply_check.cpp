@@ -30,15 +30,16 @@ std::size_t binarySize(const std::string& type) {
     return isKnown ? 4 : 0;
 }
 
-/// Of a list's length, which is no fraction.
-std::size_t lengthSize(const std::string& type) {
-    const bool isFraction = type.starts_with("float") || type.starts_with("double");
-    return isFraction ? 0 : binarySize(type);
+bool isInteger(const std::string& type) {
+    return !type.starts_with("float") && !type.starts_with("double");
 }
+
+std::size_t lengthSize(const std::string& type) { return isInteger(type) ? binarySize(type) : 0; }
 
 struct PlyProperty {
     std::size_t size = 0;        // [bytes]
     std::size_t lengthSize = 0;  // of a list's length [bytes]; 0: no list
+    bool isInteger = false;
 };
 
 struct PlyElement {
@@ -62,7 +63,8 @@ class PlyBody {
         element_ = &element;
         for (row_ = 0; row_ < element.count; ++row_) {
             for (const PlyProperty& property : element.properties) {
-                skip(property.lengthSize > 0 ? length(property.lengthSize) : 1., property.size);
+                skip(property.lengthSize > 0 ? length(property.lengthSize) : 1., property.size,
+                     property.isInteger);
             }
         }
     }
@@ -75,7 +77,7 @@ class PlyBody {
     }
 
     /// In text, a value takes a digit at least, and a blank before the next one.
-    void skip(double values, std::size_t size) {
+    void skip(double values, std::size_t size, bool isInteger) {
         const double left = static_cast<double>(rest_.size());
         if (isAscii_ ? 2. * values - 1. > left : values * static_cast<double>(size) > left) {
             fail(fmt::format("{:.0f} values do not fit into the rest of the file", values));
@@ -84,7 +86,16 @@ class PlyBody {
         if (!isAscii_) {
             take(count * size);
         } else {
-            for (std::size_t i = 0; i < count; ++i) word();
+            for (std::size_t i = 0; i < count; ++i) number(isInteger);
+        }
+    }
+
+    void number(bool isInteger) {
+        const std::string_view text = word();
+        const auto number = numberIn(text);
+        if (!number) fail(fmt::format("'{}' is not a number", text));
+        if (isInteger && *number != std::floor(*number)) {
+            fail(fmt::format("'{}' is not an integer", text));
         }
     }
 
@@ -182,7 +193,7 @@ class PlyHeader {
         std::string type, lengthType;
         words >> type;
         if (type == "list") words >> lengthType >> type;
-        const PlyProperty property{binarySize(type), lengthSize(lengthType)};
+        const PlyProperty property{binarySize(type), lengthSize(lengthType), isInteger(type)};
         if (property.size == 0) fail(fmt::format("property of unknown type '{}'", type));
         if (!lengthType.empty() && property.lengthSize == 0) {
             fail(fmt::format("a list cannot have a length of type '{}'", lengthType));

@@ -40,6 +40,10 @@ TEST_F(CommandLine, BadInputIsOneLineAndExitCodeTwo) {
         expectBadInput(photonav(std::string(command) + " x.yaml --seed 0"), "photonav: --seed: ");
     }
     expectBadInput(photonav("plan --bar"), "--bar: no such option");
+    for (const char* arguments : {"check x.tum --max-sigma nan", "servo x.yaml --gain nan",
+                                  "servo x.yaml --duration -nan", "info x.yaml --height nan"}) {
+        expectBadInput(photonav(arguments), "nan is not a number");
+    }
     expectBadInput(plan("--audits"), "--audits: no such option, did you mean '--audit'?");
     expectBadInput(photonav("keys planner.kap"), "did you mean 'planner.kappa'?");
     expectBadInput(photonav("report " + folder_.string()), "not a result folder of photonav");

@@ -83,5 +83,21 @@ TEST(ResultExport, OfWhatIsNoResultIsRefused) {
     EXPECT_FALSE(test::fs::exists(folder.path().string() + ".mcap"));
 }
 
+TEST(ResultExport, ReplacesAnEarlierExportOnly) {
+    const test::TemporaryFolder folder;
+    const std::string out = folder.file("info");
+    photonav("info " + config("two_textures") + " --cells 2 --quiet --out " + out);
+    const std::string user = folder.write("notes.txt", "the user's");
+    const std::string report = test::contentOf(out + "/report.json");
+    for (const std::string& file : {user, out + "/report.json", out + "/new.mcap"}) {
+        const Execution run = photonav("export " + out + " --out " + file);
+        EXPECT_EQ(run.exitCode, 2) << run.output;
+        EXPECT_TRUE(run.output.starts_with("photonav: --out: " + file)) << run.output;
+    }
+    EXPECT_EQ(test::contentOf(user), "the user's");
+    EXPECT_EQ(test::contentOf(out + "/report.json"), report);
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(photonav("export " + out).exitCode, 0);
+}
+
 }  // namespace
 }  // namespace photonav

@@ -2,6 +2,7 @@
 #include "io/atomic_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -45,6 +46,24 @@ TEST_F(AtomicFile, ReplacesAFileAndLeavesNothingElse) {
     writeFileAtomically(folder_ / "a", "new");
     EXPECT_EQ(contentOf(folder_ / "a"), "new");
     EXPECT_EQ(names(), std::vector<std::string>{"a"});
+}
+
+TEST_F(AtomicFile, FollowsALinkAndKeepsIt) {
+    writeFileAtomically(folder_ / "a", "old");
+    fs::create_symlink("a", folder_ / "link");
+    writeFileAtomically(folder_ / "link", "new");
+    EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+    EXPECT_EQ(contentOf(folder_ / "a"), "new");
+}
+
+TEST_F(AtomicFile, ReplacesNeitherPipesNorFolders) {
+    ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+    fs::create_directory(folder_ / "folder");
+    for (const char* name : {"pipe", "folder"}) {
+        EXPECT_THROW(writeFileAtomically(folder_ / name, "new"), InputError) << name;
+    }
+    EXPECT_TRUE(fs::is_fifo(folder_ / "pipe"));
+    EXPECT_EQ(names().size(), 2U);
 }
 
 TEST_F(AtomicFile, AWriterThatThrowsLeavesTheOlderFileWhole) {

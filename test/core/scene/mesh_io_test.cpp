@@ -307,6 +307,8 @@ TEST(MeshIo, TheBodyOfAPlyFileHoldsWhatItsHeaderSays) {
     const std::string text = plyOf("ascii", "uint") + "0 0 0\n1 0 0\n0 1 0\n";
     EXPECT_EQ(complaintOf(text + "3 0 1 2"), "");
     EXPECT_EQ(complaintOf(text + "3 0 1\n"), "element face: number 0: the file ends here");
+    EXPECT_EQ(complaintOf(text + "3 0 1,5 2\n"), "element face: number 0: '1,5' is not a number");
+    EXPECT_EQ(complaintOf(text + "3 0 1.5 2\n"), "element face: number 0: '1.5' is not an integer");
     EXPECT_EQ(complaintOf(text.substr(0, text.size() - 4)),
               "element vertex: number 2: the file ends here");
     const std::string vertices("\0\0\0\1\0\0\0\1\0", 9), corners("\0\1\2", 3);

@@ -68,8 +68,7 @@ TEST(Anytime, ALongerTimeIsNeverWorse) {
         for (const double budget : {0.25, 0.5, 1., 2., 4., 8.}) {
             const TimedPlanner timed(seed);
             timed.planner->solve(budget);
-            EXPECT_LE(timed.planner->bestCost(), kDescents * last)
-                << budget << " s, seed " << seed;
+            EXPECT_LE(timed.planner->bestCost(), kDescents * last) << budget << " s, seed " << seed;
             last = timed.planner->bestCost();
         }
         EXPECT_LT(last, 10.);
