@@ -28,17 +28,14 @@ void addInfoOptions(CLI::App& parser, InfoOptions& options) {
     addCommon(parser, options);
     parser.get_option("config")->description(
         "YAML file of the planning problem; or a map (.ot, .bt), to see what it holds");
-    parser
-        .add_option("--height", options.height,
-                    "height of the heat map [m] (default: the height of the start)")
-        ->check(CLI::Range(-1e5, 1e5))
-        ->check(isANumber());
+    limit(parser.add_option("--height", options.height,
+                            "height of the heat map [m] (default: the height of the start)"),
+          -1e5, 1e5);
     parser.add_option("--at", options.at,
                       "x,y,z[,yaw] of the robot for the single view (default: the start)");
-    parser
-        .add_option("--cells", options.cells,
-                    "cells along the longer side of the heat map (default: 100)")
-        ->check(CLI::Range(1, 2000));
+    limit(parser.add_option("--cells", options.cells,
+                            "cells along the longer side of the heat map (default: 100)"),
+          1, 2000);
 }
 
 void addCheckOptions(CLI::App& parser, CheckCommandOptions& options) {
@@ -59,11 +56,10 @@ void addCheckOptions(CLI::App& parser, CheckCommandOptions& options) {
         ->capture_default_str();
     addNumber(parser, "--headings", options.check.headings,
               "number of headings to compare at every place; 0: none", 0, 720);
-    parser
-        .add_option("--max-sigma", options.check.maxSigma,
-                    "standard deviation of the position above which the camera counts as lost [m]")
-        ->check(CLI::Range(1e-6, 1e5))
-        ->check(isANumber());
+    limit(parser.add_option(
+              "--max-sigma", options.check.maxSigma,
+              "standard deviation of the position above which the camera counts as lost [m]"),
+          1e-6, 1e5);
     addNumber(parser, "--flights", options.flights,
               "number of simulated flights along the trajectory", 0U, 1000000U);
     addJobs(parser, options.jobs);

@@ -79,7 +79,7 @@ CLI::Option* addValue(CLI::App& parser, std::vector<std::string>& overrides,
 }
 
 void addSeed(CLI::App& parser, std::vector<std::string>& overrides, const std::string& what) {
-    addValue(parser, overrides, "--seed", "seed", what)->check(CLI::Range(1U, 4294967295U));
+    limit(addValue(parser, overrides, "--seed", "seed", what), 1U, 4294967295U);
 }
 
 void addPlanners(CLI::App& parser, std::vector<std::string>& overrides, const std::string& key,

@@ -77,23 +77,21 @@ void addQuiet(CLI::App& parser, bool& quiet);
 /// The format of the help texts: at most 80 columns.
 std::shared_ptr<CLI::FormatterBase> helpFormat();
 
-/// Refuses "nan", which CLI::Range lets pass.
-inline CLI::Validator isANumber() {
-    const auto check = [](const std::string& text) -> std::string {
+/// Allows the numbers from `least` to `most`. CLI::Range alone lets "nan" pass.
+template <typename Number>
+CLI::Option* limit(CLI::Option* option, Number least, Number most) {
+    const auto refuseNan = [](const std::string& text) -> std::string {
         const auto number = numberIn(text);
         return number && std::isnan(*number) ? text + " is not a number" : std::string();
     };
-    return {check, ""};
+    return option->check(CLI::Range(least, most))->check(refuseNan);
 }
 
 /// Adds an option for a number from `least` to `most`. The value of `number` is the default.
 template <typename Number>
 void addNumber(CLI::App& parser, const std::string& name, Number& number,
                const std::string& description, Number least, Number most) {
-    parser.add_option(name, number, description)
-        ->check(CLI::Range(least, most))
-        ->check(isANumber())
-        ->capture_default_str();
+    limit(parser.add_option(name, number, description), least, most)->capture_default_str();
 }
 
 /// Adds --set, which appends to `overrides`. Other options that override keys are inserted before,

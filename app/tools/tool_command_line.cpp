@@ -2,9 +2,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <fstream>
-#include <string_view>
-
+#include "bag/mcap_writer.hpp"
 #include "config/config_keys.hpp"
 #include "interchange/result_export.hpp"
 #include "io/atomic_file.hpp"
@@ -94,11 +92,7 @@ void checkExportTarget(const fs::path& file) {
     if (fs::exists(file.parent_path() / Manifest::kFileName)) {
         throw InputError("--out", file.string(), "is inside a result folder");
     }
-    constexpr std::string_view kMagic = "\x89MCAP0\r\n";
-    std::string begin(kMagic.size(), '\0');
-    if (!fs::is_regular_file(file)) return;
-    std::ifstream(file, std::ios::binary).read(begin.data(), std::ssize(begin));
-    if (begin == kMagic) return;
+    if (!fs::is_regular_file(file) || McapWriter::isMcap(file.string())) return;
     throw InputError("--out", file.string(), "exists, and is no MCAP file; give another name");
 }
 

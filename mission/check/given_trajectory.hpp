@@ -30,11 +30,10 @@ struct GivenTrajectory {
     std::vector<GivenPose> poses;  ///< at least two; times never decrease
 };
 
-/// Reads a trajectory. A file with eight numbers per line without commas is a TUM file, one
-/// with twelve is a KITTI file, which has no times. Any other file is a table
-/// with the columns x, y, z and optionally t and yaw [m, s, rad], separated by blanks or commas. A
-/// first line may name the columns; other named columns are ignored. Without names the columns are
-/// x,y,z or t,x,y,z,yaw.
+/// Reads a trajectory. A file with eight numbers per line without commas is a TUM file, one with
+/// twelve is a KITTI file, which has no times. Any other file is a table with the columns x, y, z
+/// and optionally t and yaw [m, s, rad], separated by blanks or commas. A first line may name the
+/// columns; other named columns are ignored. Without names the columns are x,y,z or t,x,y,z,yaw.
 /// @param T_b_c camera mount, with which camera poses are converted into body poses
 /// @param heading heading of the body for a table without headings; nothing: the horizontal
 ///        direction of motion (during vertical motion the previous heading)

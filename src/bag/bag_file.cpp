@@ -8,6 +8,7 @@
 
 #include "bag/byte_reader.hpp"
 #include "bag/chunk_compression.hpp"
+#include "bag/file_magic.hpp"
 #include "io/reading.hpp"
 
 namespace photonav {
@@ -60,11 +61,7 @@ double timeOf(const Fields& fields) {
 
 }  // namespace
 
-bool BagFile::isBag(const std::string& file) {
-    if (!std::filesystem::is_regular_file(file)) return false;
-    std::string start(kMagic.size(), ' ');
-    return openToRead(file).read(start.data(), std::ptrdiff_t(start.size())) && start == kMagic;
-}
+bool BagFile::isBag(const std::string& file) { return beginsWith(file, kMagic); }
 
 BagFile::BagFile(const std::string& file) : file_(file), stream_(openToRead(file)) {
     reading(file, [&] {

@@ -9,6 +9,8 @@
 #include <concepts>
 #include <stdexcept>
 
+#include "bag/file_magic.hpp"
+
 namespace photonav {
 namespace {
 
@@ -73,6 +75,8 @@ std::string tableOf(const std::map<Key, std::uint64_t>& table) {
 }
 
 }  // namespace
+
+bool McapWriter::isMcap(const std::string& file) { return beginsWith(file, kMcapMagic); }
 
 McapWriter::ChannelId McapWriter::addChannel(const std::string& topic,
                                              const std::string& schemaName,

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -27,10 +26,7 @@ class CommandTest : public testing::Test {
     }
 
     void expectBadInput(const Execution& run, const std::string& reason) const {
-        EXPECT_EQ(run.exitCode, 2) << run.output;
-        EXPECT_NE(run.output.find(reason), std::string::npos) << run.output;
-        EXPECT_TRUE(run.output.starts_with("photonav: ")) << run.output;
-        EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+        photonav::expectBadInput(run, reason);
         EXPECT_FALSE(std::filesystem::exists(folder_ / "result.json"));
     }
 

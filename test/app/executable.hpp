@@ -3,7 +3,9 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string>
@@ -28,6 +30,14 @@ inline Execution execute(const std::string& shellCommand) {
 
 inline Execution photonav(const std::string& arguments) {
     return execute(fmt::format("{} {}", PHOTONAV_BINARY, arguments));
+}
+
+/// A message of one line that holds the reason, and exit code 2.
+inline void expectBadInput(const Execution& run, const std::string& reason) {
+    EXPECT_EQ(run.exitCode, 2) << run.output;
+    EXPECT_NE(run.output.find(reason), std::string::npos) << run.output;
+    EXPECT_TRUE(run.output.starts_with("photonav: ")) << run.output;
+    EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
 }
 
 /// File of an example config.

@@ -47,13 +47,6 @@ class SweepCommand : public testing::Test {
         return runs;
     }
 
-    static void expectBadInput(const Execution& run, const std::string& reason) {
-        EXPECT_EQ(run.exitCode, 2) << run.output;
-        EXPECT_NE(run.output.find(reason), std::string::npos) << run.output;
-        EXPECT_TRUE(run.output.starts_with("photonav: ")) << run.output;
-        EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
-    }
-
     /// Leaves the first `count` runs of a finished sweep, and half of the next.
     /// @return the lines left whole
     std::string cutAfter(const std::string& name, int count) const {

@@ -83,13 +83,6 @@ class ExploreCommand : public testing::Test {
         fs::remove_all(folder_ / name);
     }
 
-    static void expectBadInput(const Execution& run, const std::string& reason) {
-        EXPECT_EQ(run.exitCode, 2) << run.output;
-        EXPECT_NE(run.output.find(reason), std::string::npos) << run.output;
-        EXPECT_TRUE(run.output.starts_with("photonav: ")) << run.output;
-        EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
-    }
-
     test::TemporaryFolder temporary_;
     fs::path folder_ = temporary_.path();
 };
