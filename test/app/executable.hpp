@@ -28,6 +28,21 @@ inline Execution execute(const std::string& shellCommand) {
     return run;
 }
 
+/// A shell condition: the process $! has become photonav and catches SIGINT, which is bit 1 of
+/// these. On a busy machine that takes seconds, and until then a signal is ignored or ends it at
+/// once.
+constexpr const char* kCatchesSignals =
+    "grep -q photonav /proc/$!/comm && "
+    "[ $((0x$(sed -n 's/^SigCgt:[[:space:]]*//p' /proc/$!/status) & 2)) -ne 0 ]";
+
+/// Runs a shell command and sends it a signal when a shell condition holds, a while later if asked.
+inline Execution interrupt(const std::string& shellCommand, const std::string& condition,
+                           double secondsLater = 0., const std::string& signal = "INT") {
+    return execute(
+        fmt::format("{{ {} & until {}; do sleep 0.02; done; sleep {}; kill -{} $!; wait $!; }}",
+                    shellCommand, condition, secondsLater, signal));
+}
+
 inline Execution photonav(const std::string& arguments) {
     return execute(fmt::format("{} {}", PHOTONAV_BINARY, arguments));
 }

@@ -251,11 +251,11 @@ TEST_F(SweepCommand, AResumedSweepMayAskForOtherRuns) {
 
 TEST_F(SweepCommand, CtrlCKeepsTheRunsDone) {
     // Interrupted as soon as the header and two runs are there.
-    const Execution run = execute(fmt::format(
-        "{{ {} sweep {} --set planner.vertices=150 --alpha 0.5 --runs 1000000 --planners rrt_star"
-        " --out {} --quiet & until [ $(cat {}.unfinished/runs.jsonl 2>/dev/null | wc -l) -gt 2 ];"
-        " do sleep 0.05; done; kill -INT $!; wait $!; }}",
-        PHOTONAV_BINARY, config("two_textures"), at("out"), at("out")));
+    const Execution run = interrupt(
+        fmt::format("{} sweep {} --set planner.vertices=150 --alpha 0.5 --runs 1000000"
+                    " --planners rrt_star --quiet --out {}",
+                    PHOTONAV_BINARY, config("two_textures"), at("out")),
+        fmt::format("[ $(cat {}.unfinished/runs.jsonl 2>/dev/null | wc -l) -gt 2 ]", at("out")));
     EXPECT_EQ(run.exitCode, 130) << run.output;
     const json r = result("out");
     EXPECT_EQ(r["status"], "interrupted");

@@ -239,10 +239,9 @@ TEST_F(ExploreCommand, CtrlCKeepsTheFlightsThatEnded) {
     const std::string common = fmt::format("explore {} {} --planners rrt_star --time-limit 2",
                                            config("two_textures"), kQuickExploration);
     // Interrupted as soon as the header and two flights are there.
-    const Execution run = execute(fmt::format(
-        "{{ {} {} --trials 1000000 --out {} & until [ $(cat {}.unfinished/trials.jsonl 2>/dev/null"
-        " | wc -l) -gt 2 ]; do sleep 0.05; done; kill -INT $!; wait $!; }}",
-        PHOTONAV_BINARY, common, at("out"), at("out")));
+    const Execution run = interrupt(
+        fmt::format("{} {} --trials 1000000 --out {}", PHOTONAV_BINARY, common, at("out")),
+        fmt::format("[ $(cat {}.unfinished/trials.jsonl 2>/dev/null | wc -l) -gt 2 ]", at("out")));
     EXPECT_EQ(run.exitCode, 130) << run.output;
     EXPECT_NE(run.output.find(" of 1000000 flights ended and are kept"), std::string::npos)
         << run.output;
@@ -258,10 +257,10 @@ TEST_F(ExploreCommand, CtrlCKeepsTheFlightsThatEnded) {
 }
 
 TEST_F(ExploreCommand, AFirstFlightThatIsInterruptedIsReportedNotKept) {
-    const Execution run = execute(fmt::format(
-        "{{ {} explore {} {} --set goal=[2,9,2] --planners rrt_star --out {} & until [ -s "
-        "{}.unfinished/trials.jsonl ]; do sleep 0.02; done; kill -INT $!; wait $!; }}",
-        PHOTONAV_BINARY, config("two_textures"), kQuickExploration, at("out"), at("out")));
+    const Execution run = interrupt(
+        fmt::format("{} explore {} {} --set goal=[2,9,2] --planners rrt_star --out {}",
+                    PHOTONAV_BINARY, config("two_textures"), kQuickExploration, at("out")),
+        fmt::format("[ -s {}.unfinished/trials.jsonl ]", at("out")));
     EXPECT_EQ(run.exitCode, 130) << run.output;
     EXPECT_EQ(result("out")["trials"][0]["end"], "stopped");
     EXPECT_EQ(result("out")["flights_ended"], 0);

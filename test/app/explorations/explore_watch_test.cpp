@@ -116,10 +116,9 @@ TEST_F(ExploreWatch, AServedFlightIsTheSameToTheBit) {
 }
 
 TEST_F(ExploreWatch, CtrlCEndsTheServerWithABrowserThatListens) {
-    const Execution run = execute(fmt::format(
-        "{{ {} {} --serve 0 & until [ -s {}.unfinished/trials.jsonl ]; do sleep 0.02; done; "
-        "kill -INT $!; wait $!; }}",
-        PHOTONAV_BINARY, commandFor("out", "--set goal=[2,9,2]"), at("out")));
+    const Execution run = interrupt(
+        fmt::format("{} {} --serve 0", PHOTONAV_BINARY, commandFor("out", "--set goal=[2,9,2]")),
+        fmt::format("[ -s {}.unfinished/trials.jsonl ]", at("out")));
     EXPECT_EQ(run.exitCode, 130) << run.output;
     EXPECT_EQ(log("out").end, "stopped");
     EXPECT_TRUE(fs::exists(folder_ / "out/report.html"));

@@ -177,11 +177,10 @@ TEST_F(FlyCommand, TheConfigOfAFlownPlanFliesThatPlan) {
 TEST_F(FlyCommand, WhatWasNeverFlownHasNoErrors) {
     // Interrupted among the first of many flights: those of the second planner never begin. (While
     // it still plans, there would be no result.)
-    const Execution run = execute(
-        fmt::format("{{ {} fly {} {} --flights 1000 --quiet --out {} & until [ -d {}.unfinished ]; "
-                    "do sleep 0.02; done;"
-                    " sleep 1; kill -INT $!; wait $!; }}",
-                    PHOTONAV_BINARY, config("two_textures"), kQuickFlight, at("out"), at("out")));
+    const Execution run =
+        interrupt(fmt::format("{} fly {} {} --flights 1000 --quiet --out {}", PHOTONAV_BINARY,
+                              config("two_textures"), kQuickFlight, at("out")),
+                  fmt::format("[ -d {}.unfinished ]", at("out")), 1.);
     EXPECT_EQ(run.exitCode, 130) << run.output;
     const json r = result("out");
     EXPECT_EQ(r["status"], "interrupted");

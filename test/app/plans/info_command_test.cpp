@@ -44,10 +44,10 @@ TEST_F(InfoCommand, DrawsHeatMapsAndContributions) {
 
 /// A view of this size takes seconds.
 TEST_F(InfoCommand, EndsAtOnceAndSaysSo) {
-    const Execution run =
-        execute(fmt::format("timeout --preserve-status -s TERM 1 {} info {} --set camera.width=8192"
-                            " --set camera.height=8192 --out {}",
-                            PHOTONAV_BINARY, config("two_textures"), folder_.string()));
+    const Execution run = interrupt(
+        fmt::format("{} info {} --set camera.width=8192 --set camera.height=8192 --out {}",
+                    PHOTONAV_BINARY, config("two_textures"), folder_.string()),
+        kCatchesSignals, 0.3, "TERM");
     EXPECT_EQ(run.exitCode, 143);
     EXPECT_EQ(run.output, "photonav: interrupted before there was any result\n");
     EXPECT_FALSE(fs::exists(folder_));

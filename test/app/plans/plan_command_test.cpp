@@ -8,7 +8,6 @@
 #include <string>
 
 #include "app/command_test.hpp"
-#include "io/stopwatch.hpp"
 #include "tum_dataset.hpp"
 
 namespace photonav {
@@ -121,12 +120,12 @@ TEST_F(PlanCommand, AStartInsideAnObstacleIsRefused) {
 }
 
 TEST_F(PlanCommand, CtrlCKeepsTheBestPathSoFar) {
-    const std::string command = "timeout -s INT 3 " + std::string(PHOTONAV_BINARY) + " plan " +
-                                config("two_textures") + " --set planner.vertices=1000000" +
-                                " --set planner.view_pitch=0.5 --out " + folder_.string() +
-                                " >/dev/null 2>&1";
-    const int status = std::system((command + "; exit $?").c_str());  // NOLINT(cert-env33-c)
-    EXPECT_EQ(WEXITSTATUS(status), 124);  // timeout's own: it sent the signal
+    const std::string command = fmt::format(
+        "{} plan {} --set planner.vertices=1000000 --set planner.view_pitch=0.5 --quiet --out {}",
+        PHOTONAV_BINARY, config("two_textures"), folder_.string());
+    for (double seconds = 2.; seconds < 100. && !fs::exists(folder_); seconds *= 3.) {
+        EXPECT_EQ(interrupt(command, kCatchesSignals, seconds).exitCode, 130);
+    }
     EXPECT_EQ(result()["status"], "interrupted");
     EXPECT_FALSE(result()["path"].empty());
 }
@@ -138,22 +137,12 @@ TEST_F(PlanCommand, CtrlCBeforeThereIsAResultEndsAtOnce) {
     std::ofstream(scene)
         << "textures: [{name: a, type: noise, size: [99, 99], cells: [9, 8, 7, 6]}]\n"
            "planes: [{corner: [0, 0, 0], u: [9, 0, 0], v: [0, 9, 0], texture: a}]\n";
-    const Stopwatch watch;
-    const std::string command = std::string(PHOTONAV_BINARY) + " plan " + config("two_textures") +
-                                " --set scene.file=" + scene.string() + " --out " +
-                                (folder_ / "out").string() + " 2> " + (folder_ / "said").string();
-    // SIGINT is bit 1 of the signals caught: a busy machine may take a second to come so far. On
-    // a very busy one the signal was lost once: it is sent again, which a program that has ended
-    // does not notice.
-    const std::string interrupt =
-        " & until [ $((0x$(sed -n 's/^SigCgt:[[:space:]]*//p' /proc/$!/status) & 2)) -ne 0 ]; "
-        "do sleep 0.05; done; for i in 1 2 3; do sleep 0.3; kill -INT $! 2>/dev/null; done; wait "
-        "$!";
-    const int status = std::system((command + interrupt).c_str());  // NOLINT(cert-env33-c)
-    EXPECT_EQ(WEXITSTATUS(status), 130);
-    EXPECT_LT(watch.seconds(), 20.);
-    EXPECT_EQ(test::contentOf(folder_ / "said"),
-              "photonav: interrupted before there was any result\n");
+    const Execution run =
+        interrupt(fmt::format("{} plan {} --set scene.file={} --out {}", PHOTONAV_BINARY,
+                              config("two_textures"), scene.string(), (folder_ / "out").string()),
+                  kCatchesSignals, 0.3);
+    EXPECT_EQ(run.exitCode, 130);
+    EXPECT_EQ(run.output, "photonav: interrupted before there was any result\n");
     EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
