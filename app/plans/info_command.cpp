@@ -6,6 +6,7 @@
 #include "dataset/image_file.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
+#include "geometry/eigensystem.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "report/problem_report.hpp"
@@ -41,7 +42,6 @@ struct Grids {
 json resultOf(const Place& place, const Matrix6& Lambda, const Grids& grids) {
     const Eigen::ArrayXXd& information = grids.information;
     const Eigen::AlignedBox2d& area = grids.area;
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Lambda, Eigen::EigenvaluesOnly);
     json rows = json::array();
     for (int j = 0; j < information.cols(); ++j) {
         json row = json::array();
@@ -55,7 +55,7 @@ json resultOf(const Place& place, const Matrix6& Lambda, const Grids& grids) {
                          {"information_frame", "camera, order (rho, phi), upper triangle by rows"},
                          {"information", triangleJson(Lambda)},
                          {"information_trace", Lambda.trace()},
-                         {"min_eigenvalue", std::max(0., eigen.eigenvalues()[0])}}},
+                         {"min_eigenvalue", std::max(0., eigensystem(Lambda).values[0])}}},
                        {"grid",
                         {{"quantity", "trace of the Fisher information of one view"},
                          {"height", grids.height},

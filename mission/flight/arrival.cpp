@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "geometry/eigensystem.hpp"
 #include "geometry/se3.hpp"
 
 namespace photonav {
@@ -50,13 +51,13 @@ std::optional<double> squaredCorrection(const UncertainPose& prior,
     const auto L = factor.matrixL();
     const Matrix6 half = L.solve(prior.covariance - posterior.covariance);
     const Matrix6 reduction = L.solve(Matrix6(half.transpose()));
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(reduction);
+    const auto [shares, directions] = eigensystem(reduction);
     const Vector6 e = L.solve(deviation(posterior.mean, prior.mean));
-    const Vector6 along = solver.eigenvectors().transpose() * e;
+    const Vector6 along = directions.transpose() * e;
     double sum = 0.;
     int degrees = 0;
     for (int i = 0; i < 6; ++i) {
-        const double share = solver.eigenvalues()[i];
+        const double share = shares[i];
         if (!(share > kLeastReduction)) continue;
         sum += along[i] * along[i] / share;
         ++degrees;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "problem/plan_result.hpp"
 
+#include "geometry/eigensystem.hpp"
 #include "geometry/se3.hpp"
 #include "problem/advantage.hpp"
 #include "result/json_values.hpp"
@@ -14,7 +15,6 @@ const char* spaceName(StateKind kind) {
 }
 
 json jsonOf(const BeliefPoint& point) {
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(point.information, Eigen::EigenvaluesOnly);
     return {{"position", vectorJson(point.T_w_b.translation())},
             {"yaw", yawOf(point.T_w_b)},
             {"waypoint", point.isWaypoint},
@@ -25,7 +25,7 @@ json jsonOf(const BeliefPoint& point) {
             {"cost", point.cost},
             {"covariance", triangleJson(point.covariance)},
             {"information_trace", point.information.trace()},
-            {"min_eigenvalue", std::max(0., eigen.eigenvalues()[0])}};
+            {"min_eigenvalue", std::max(0., eigensystem(point.information).values[0])}};
 }
 
 json jsonOf(const EvaluatedPath& path) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "belief/information_field.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
 
+#include "geometry/eigensystem.hpp"
 #include "geometry/se3.hpp"
 
 namespace photonav {
@@ -24,11 +24,11 @@ Matrix6 withoutNegative(const Matrix6& information) {
     const auto sqrtOr1 = [](double x) { return x == 0. ? 1. : std::sqrt(std::abs(x)); };
     const Vector6 unit = information.diagonal().unaryExpr(sqrtOr1);
     const Vector6 inverse = unit.cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(inverse.asDiagonal() * information *
-                                                        inverse.asDiagonal());
-    if (solver.eigenvalues()[0] >= -kNegligible) return information;
-    const Matrix6 V = unit.asDiagonal() * solver.eigenvectors();
-    const Matrix6 positive = V * solver.eigenvalues().cwiseMax(0.).asDiagonal() * V.transpose();
+    const auto [values, vectors] =
+        eigensystem(inverse.asDiagonal() * information * inverse.asDiagonal());
+    if (values[0] >= -kNegligible) return information;
+    const Matrix6 V = unit.asDiagonal() * vectors;
+    const Matrix6 positive = V * values.cwiseMax(0.).asDiagonal() * V.transpose();
     return 0.5 * (positive + positive.transpose());
 }
 

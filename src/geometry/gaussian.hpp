@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "geometry/eigensystem.hpp"
 #include "geometry/types.hpp"
 
 namespace photonav {
@@ -14,8 +15,8 @@ namespace photonav {
 /// A square root of a covariance: a matrix A with A A^T = covariance. The covariance may be
 /// singular.
 inline Matrix6 rootOf(const Matrix6& covariance) {
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(covariance);
-    return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
+    const auto [variances, axes] = eigensystem(covariance);
+    return axes * variances.cwiseMax(0.).cwiseSqrt().asDiagonal();
 }
 
 /// The largest standard deviation in any direction: the square root of the largest eigenvalue of a

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "alignment/residual_covariance.hpp"
+#include "geometry/eigensystem.hpp"
 
 namespace photonav {
 
@@ -60,10 +61,10 @@ PoseEquations poseEquations(const NormalEquations& equations, const PhotometricO
 Spectrum spectrum(const Matrix6& information, double meanDepth) {
     Spectrum s;
     s.unit << Eigen::Vector3d::Constant(meanDepth), Eigen::Vector3d::Ones();
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(s.unit.asDiagonal() * information *
-                                                        s.unit.asDiagonal());
-    s.values = solver.eigenvalues();
-    s.directions = solver.eigenvectors();
+    const auto [values, vectors] =
+        eigensystem(s.unit.asDiagonal() * information * s.unit.asDiagonal());
+    s.values = values;
+    s.directions = vectors;
     return s;
 }
 

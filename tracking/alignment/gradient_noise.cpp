@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "alignment/gradient_noise.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include "geometry/eigensystem.hpp"
 
 namespace photonav {
 namespace {
@@ -33,12 +34,10 @@ Matrix8 GradientNoise::subtractFrom(NormalEquations& e, const Eigen::Vector2d& n
     const Matrix6 perPoint =
         (variance(notShared.x()) * ofX_ + variance(notShared.y()) * ofY_) / points_;
     const Matrix6 noise = e.AtA(7, 7) * (unit.asDiagonal() * perPoint * unit.asDiagonal());
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(e.AtA.topLeftCorner<6, 6>(),
-                                                                   noise);
-    const Matrix6& V = solver.eigenvectors();
+    const auto [ratios, V] = eigensystem(e.AtA.topLeftCorner<6, 6>(), noise);
     const double error = (V.transpose() * noise * V - Matrix6::Identity()).norm();
     if (!(error < kMostError)) return Matrix8::Identity();
-    const Vector6 kept = 1. - solver.eigenvalues().array().max(1.).inverse();
+    const Vector6 kept = 1. - ratios.array().max(1.).inverse();
     Matrix8 D = Matrix8::Identity();
     D.topLeftCorner<6, 6>() = V * kept.asDiagonal() * V.transpose() * noise;
     e.AtA = D.transpose() * e.AtA * D;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "alignment/measured_slope.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/eigensystem.hpp"
 #include "geometry/se3.hpp"
 
 namespace photonav {
@@ -34,9 +34,9 @@ Directions directionsOf(const NormalEquations& here, const std::optional<Matrix6
     // A prior may have directions without variance: a negligible variance makes it invertible.
     if (prior) P = *prior + 1e-10 * P;
     const Matrix6 L = P.llt().matrixL();
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(L.transpose() * JtJ * L);
-    along.information = solver.eigenvalues();
-    along.sigmas = L * solver.eigenvectors();
+    const auto [values, vectors] = eigensystem(L.transpose() * JtJ * L);
+    along.information = values;
+    along.sigmas = L * vectors;
     for (int i = 0; i < 6; ++i) {
         if (along.isRelevant(i)) along.sigmas.col(i) /= std::sqrt(along.information[i]);
     }

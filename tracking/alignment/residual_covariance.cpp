@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "alignment/residual_covariance.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "geometry/eigensystem.hpp"
 #include "geometry/se3.hpp"
 
 namespace photonav {
@@ -41,13 +41,12 @@ struct Observed {
         }
         const Matrix6 pose = E.transpose() * H * E;
         const Vector6 unit = pose.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
-        const Eigen::SelfAdjointEigenSolver<Matrix6> solver(unit.asDiagonal() * pose *
-                                                            unit.asDiagonal());
-        const auto missing = (solver.eigenvalues().array() < kOpen).count();
-        V = unit.asDiagonal() * solver.eigenvectors().rightCols(6 - missing);
-        solve = solver.eigenvalues().tail(6 - missing).cwiseInverse().asDiagonal() * V.transpose();
+        const auto [values, vectors] = eigensystem(unit.asDiagonal() * pose * unit.asDiagonal());
+        const auto missing = (values.array() < kOpen).count();
+        V = unit.asDiagonal() * vectors.rightCols(6 - missing);
+        solve = values.tail(6 - missing).cwiseInverse().asDiagonal() * V.transpose();
         toY = solve * pose;
-        open = (unit.asDiagonal() * solver.eigenvectors().leftCols(missing)).colwise().normalized();
+        open = (unit.asDiagonal() * vectors.leftCols(missing)).colwise().normalized();
     }
 };
 
@@ -190,9 +189,9 @@ Matrix6 ofScale(double share, const Pose& motion) {
 
 template <class Choose>
 Matrix6 combined(const Matrix6& a, const Matrix6& b, const Choose& choose) {
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(a, b);
-    const Matrix6 axes = b * solver.eigenvectors();  // b = axes axes^T, a = axes diag axes^T
-    const Vector6 variances = solver.eigenvalues().unaryExpr(choose);
+    const auto [ratios, vectors] = eigensystem(a, b);
+    const Matrix6 axes = b * vectors;  // b = axes axes^T, a = axes diag axes^T
+    const Vector6 variances = ratios.unaryExpr(choose);
     return axes * variances.asDiagonal() * axes.transpose();
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "alignment/search_grid.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "geometry/eigensystem.hpp"
 
 namespace photonav {
 namespace {
@@ -27,10 +28,9 @@ ImageMotion imageMotionOf(const Matrix6& covariance, const Camera& camera, doubl
     Vector6 pixels;
     pixels << camera.fx() / depth, camera.fy() / depth, side / depth, camera.fy(), camera.fx(),
         side;
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(pixels.asDiagonal() * covariance *
-                                                        pixels.asDiagonal());
-    return {pixels.cwiseInverse().asDiagonal() * solver.eigenvectors(),
-            solver.eigenvalues().cwiseMax(0.).cwiseSqrt()};
+    const auto [variances, axes] =
+        eigensystem(pixels.asDiagonal() * covariance * pixels.asDiagonal());
+    return {pixels.cwiseInverse().asDiagonal() * axes, variances.cwiseMax(0.).cwiseSqrt()};
 }
 
 std::vector<Vector6> placesWithin(const Vector6& sigmas) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "alignment/shared_gradients.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include "geometry/eigensystem.hpp"
 
 namespace photonav {
 namespace {
@@ -56,10 +57,8 @@ Matrix6 sharedSlope(const std::vector<GradientTile>& tiles) {
         model += motion.squared(tile.model + kNoGradient * Eigen::Matrix2d::Identity());
         shared += motion.squared(tile.shared);
     }
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(shared, model);
-    const Matrix6& V = solver.eigenvectors();  // V^T model V = 1
+    auto [kappa, V] = eigensystem(shared, model);
     if (tiles.empty() || !V.allFinite()) return Matrix6::Zero();
-    Vector6 kappa = solver.eigenvalues();
     for (int i = 0; i < 6; ++i) {
         kappa[i] = certainly(kappa[i], scatterAlong(V.col(i), tiles, kappa[i]));
     }

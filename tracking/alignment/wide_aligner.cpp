@@ -8,6 +8,8 @@
 #include "alignment/image_pyramid.hpp"
 #include "alignment/repeated_texture.hpp"
 #include "alignment/search_grid.hpp"
+#include "geometry/eigensystem.hpp"
+#include "geometry/gaussian.hpp"
 #include "geometry/se3.hpp"
 
 namespace photonav {
@@ -67,7 +69,8 @@ double misfit(const ImageF& observed, const View& predicted, double weight,
 /// Largest eigenvalue of the prior's covariance times Lambda. Below one, the image informs less
 /// than the prior in all directions.
 double informationRatio(const Alignment& a, const UncertainPose& prior) {
-    return (prior.covariance * a.information).eigenvalues().real().maxCoeff();
+    const Matrix6 root = rootOf(prior.covariance);
+    return eigensystem(root.transpose() * a.information * root).values[5];
 }
 
 Camera quartered(const Camera& camera) { return halved(halved(camera)); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimation/loss_of_tracking.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "geometry/eigensystem.hpp"
 
 namespace photonav {
 namespace {
@@ -14,8 +14,7 @@ constexpr double kInformed = 0.5;
 /// Eigenvalues of A relative to B, ascending.
 Vector6 relativeEigenvalues(const Matrix6& A, Matrix6 B) {
     B.diagonal().array() += 1e-18;  // directions known exactly
-    return Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6>(A, B, Eigen::EigenvaluesOnly)
-        .eigenvalues();
+    return eigensystem(A, B).values;
 }
 
 }  // namespace

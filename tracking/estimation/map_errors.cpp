@@ -6,6 +6,7 @@
 
 #include "alignment/residual_covariance.hpp"
 #include "geometry/constants.hpp"
+#include "geometry/eigensystem.hpp"
 #include "geometry/se3.hpp"
 #include "map/map_change.hpp"
 #include "photometry/photometric.hpp"
@@ -27,9 +28,8 @@ Matrix6 symmetric(const Matrix6& A) { return 0.5 * (A + A.transpose()); }
 
 /// Differences of covariances may lose definiteness by rounding.
 Matrix6 nonNegative(const Matrix6& A) {
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(symmetric(A));
-    return solver.eigenvectors() * solver.eigenvalues().cwiseMax(1e-14).asDiagonal() *
-           solver.eigenvectors().transpose();
+    const auto [values, vectors] = eigensystem(symmetric(A));
+    return vectors * values.cwiseMax(1e-14).asDiagonal() * vectors.transpose();
 }
 
 }  // namespace
