@@ -11,6 +11,7 @@
 
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "io/number.hpp"
 #include "io/reading.hpp"
 
 namespace photonav {
@@ -35,6 +36,15 @@ struct Header {
     int version = 1;
 };
 
+/// The number that makes up the rest of a header's line.
+template <typename Number>
+Number headerNumber(std::istream& rest, const std::string& file, const std::string& key) {
+    std::string text;
+    std::getline(rest >> std::ws, text);
+    if (const auto number = numberIn<Number>(text)) return *number;
+    throw InputError(file, key, "'" + text + "' is not a " + (key == "size" ? "count" : "number"));
+}
+
 Header readHeader(std::istream& stream, const std::string& file) {
     Header header;
     std::string line;
@@ -45,18 +55,18 @@ Header readHeader(std::istream& stream, const std::string& file) {
     }
     while (std::getline(stream, line) && line != "data") {
         if (line.starts_with(kVersionLine)) {
-            wordsOf(line.substr(kVersionLine.size())) >> header.version;
+            header.version = numberIn<int>(line.substr(kVersionLine.size())).value_or(0);
             continue;
         }
         std::istringstream words = wordsOf(line);
         std::string key;
         words >> key;
         if (key == "id") words >> header.id;
-        if (key == "size") words >> header.nodes;
-        if (key == "res") words >> header.resolution;
+        if (key == "size") header.nodes = headerNumber<std::size_t>(words, file, key);
+        if (key == "res") header.resolution = headerNumber<double>(words, file, key);
     }
     if (!stream) throw InputError(file, "", "cut short inside its header");
-    if (header.resolution == 0.) throw InputError(file, "res", "missing, or no number");
+    if (header.resolution == 0.) throw InputError(file, "res", "missing, or zero");
     if (!(header.resolution >= kFinestCell && header.resolution <= kCoarsestCell)) {
         throw InputError(file, "res",
                          fmt::format("{} m is not the size of a cell: {} to {} m",

@@ -136,8 +136,10 @@ TEST_F(MapFile, HasAVersionAndOldFilesLoad) {
         std::ofstream(file("changed.ot"), std::ios::binary)
             << content.replace(content.find(line), line.size(), other);
     };
-    withLine(now, "# photonav map, version 3\n");
-    EXPECT_NE(complaint("changed.ot").find("version: unknown"), std::string::npos);
+    for (const char* version : {"3", "0", "2x", ""}) {
+        withLine(now, "# photonav map, version " + std::string(version) + "\n");
+        EXPECT_NE(complaint("changed.ot").find("version: unknown"), std::string::npos) << version;
+    }
     withLine(now, "");
     EXPECT_NE(complaint("changed.ot").find("unknown contents"), std::string::npos);
 
@@ -218,8 +220,12 @@ TEST_F(MapFile, HeadersThatCannotBeAreRefusedBeforeTheirNodesAreRead) {
             << std::string(5, '\xFF');
         return complaint("map.ot");
     };
-    for (const char* resolution : {"1e-300", "1e300", "1e-5", "1000", "nan", "-1", "0", "x"}) {
+    for (const char* resolution : {"1e-300", "1e300", "1e-5", "1000", "nan", "-1", "0", "x",
+                                   "0.05x", "0.05 x", "0,05", ""}) {
         EXPECT_NE(ofHeader("1", resolution).find("map.ot: res: "), std::string::npos) << resolution;
+    }
+    for (const char* size : {"1e9", "1.0", "-1", "1x", "1 1", "18446744073709551616", ""}) {
+        EXPECT_NE(ofHeader(size, "0.1").find("map.ot: size: "), std::string::npos) << size;
     }
     // The children of a node that the header does not have are not made.
     std::ofstream(file("more.ot"), std::ios::binary)
