@@ -116,7 +116,7 @@ Config loadConfig(const std::string& file, const std::vector<std::string>& overr
 
 Config parseConfig(const std::string& text, const std::string& name,
                    const std::vector<std::string>& overrides) {
-    return reading(name, [&] { return configOf(YAML::Load(text), name, overrides); });
+    return reading(name, [&] { return configOf(parseYaml(text, name), name, overrides); });
 }
 
 std::string toYaml(const Config& config) {

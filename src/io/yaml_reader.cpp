@@ -5,9 +5,10 @@
 #include <yaml-cpp/eventhandler.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <sstream>
 
 #include "io/number.hpp"
 #include "io/reading.hpp"
@@ -50,9 +51,10 @@ struct DocumentStarts final : YAML::EventHandler {
 
 /// Refuses a second document. yaml-cpp finds one document after another, without end, where a text
 /// goes on with what cannot start a value, such as a comma: so at most two are asked for.
-void requireOneDocument(const std::string& file, std::istream& text) {
+void requireOneDocument(const std::string& file, const std::string& text) {
     DocumentStarts starts;
-    YAML::Parser parser(text);
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
     while (starts.marks.size() < 2 && parser.HandleNextDocument(starts)) {
     }
     if (starts.marks.size() < 2) return;
@@ -61,16 +63,6 @@ void requireOneDocument(const std::string& file, std::istream& text) {
         throw InputError(file, fmt::format("line {}", first.line + 1), "is not YAML");
     }
     throw InputError(file, "", "holds several documents ('---'); only one is read");
-}
-
-/// Whether one of the first bytes is zero.
-bool isBinary(std::istream& stream) {
-    std::array<char, 1024> start{};
-    stream.read(start.data(), start.size());
-    const std::string_view text(start.data(), static_cast<std::size_t>(stream.gcount()));
-    stream.clear();
-    stream.seekg(0);
-    return text.find('\0') != std::string_view::npos;
 }
 
 /// Those of the dotted paths that end with a key.
@@ -99,16 +91,20 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& c
 
 YAML::Node loadYaml(const std::string& file) {
     std::ifstream stream = openToRead(file);
-    if (isBinary(stream)) throw InputError(file, "", "is no text in UTF-8: it has zero bytes");
+    return parseYaml({std::istreambuf_iterator<char>(stream), {}}, file);
+}
+
+YAML::Node parseYaml(const std::string& text, const std::string& name) {
+    if (text.find('\0') != std::string::npos) {
+        throw InputError(name, "", "is no text in UTF-8: it has zero bytes");
+    }
     try {
-        requireOneDocument(file, stream);
-        stream.clear();
-        stream.seekg(0);
-        return YAML::Load(stream);
+        requireOneDocument(name, text);
+        return YAML::Load(text);
     } catch (const YAML::ParserException& error) {
-        throw InputError(file, fmt::format("line {}", error.mark.line + 1), error.msg);
+        throw InputError(name, fmt::format("line {}", error.mark.line + 1), error.msg);
     } catch (const YAML::Exception& error) {
-        throw InputError(file, "", error.msg);
+        throw InputError(name, "", error.msg);
     }
 }
 

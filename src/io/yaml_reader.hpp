@@ -24,6 +24,9 @@ std::string numberText(double value);
 /// Loads a YAML file. @throws InputError when it is missing or does not parse.
 YAML::Node loadYaml(const std::string& file);
 
+/// As loadYaml(), for a text. @param name file name that stands for the text in messages
+YAML::Node parseYaml(const std::string& text, const std::string& name);
+
 /// Sets a value from a node as yaml-cpp does. Numbers are read with a decimal point in every
 /// locale, which yaml-cpp does not do. @throws YAML::Exception
 template <typename T>
@@ -52,6 +55,7 @@ class YamlMap {
     void read(const std::string& key, T& value) {
         known_.insert(key);
         if (!has(key)) return;
+        if (node_[key].IsNull()) fail(key, "has no value");  // for yaml-cpp the word "null"
         try {
             setFrom(node_[key], value);
         } catch (const YAML::Exception&) {

@@ -32,6 +32,24 @@ TEST(YamlFile, BinaryFilesAreRefusedAsSuch) {
               "a.yaml: is no text in UTF-8: it has zero bytes");
 }
 
+TEST(YamlFile, AZeroByteFarFromTheBeginningIsRefused) {
+    for (const std::size_t length : {10U, 2000U, 200000U}) {
+        const std::string text = "a: 1\n# " + std::string(length, 'x') + "\nb: 2" + '\0';
+        EXPECT_EQ(saidAbout(text + "\nc: 3\n"), "a.yaml: is no text in UTF-8: it has zero bytes");
+    }
+}
+
+TEST(YamlFile, AKeyWithoutValueIsNotTheWordNull) {
+    const TemporaryFolder folder;
+    for (const char* none : {"", " ~", " null"}) {
+        const std::string file = folder.write("a.yaml", "file:" + std::string(none) + "\n");
+        std::string value = "default";
+        YamlMap map(file, loadYaml(file));
+        EXPECT_EQ(reasonOf([&] { map.read("file", value); }), file + ": file: has no value");
+        EXPECT_EQ(value, "default");
+    }
+}
+
 TEST(YamlFile, SecondDocumentsAreRefused) {
     EXPECT_EQ(saidAbout("a: 1\n---\nb: 2\n"),
               "a.yaml: holds several documents ('---'); only one is read");
