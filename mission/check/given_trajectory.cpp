@@ -49,7 +49,7 @@ struct FirstLine {
 };
 
 FirstLine firstLineOf(const std::string& file) {
-    std::ifstream in = openToRead(file);
+    std::ifstream in = openText(file);
     for (std::string line; std::getline(in, line);) {
         const std::size_t begin = line.find_first_not_of(" \t\r");
         if (begin == std::string::npos || line[begin] == '#') continue;

@@ -14,6 +14,7 @@
 #include "io/error.hpp"
 #include "io/number.hpp"
 #include "io/reading.hpp"
+#include "io/text_table.hpp"
 #include "space/flight_space.hpp"
 
 namespace photonav {
@@ -31,7 +32,7 @@ long keyOf(double alpha) { return std::lround(alpha * 1e6); }
 template <typename Row>
 std::vector<std::string> readCsv(const fs::path& file, const std::string& header,
                                  std::size_t columns, Row row) {
-    std::ifstream stream = openToRead(file.string());
+    std::ifstream stream = openText(file.string());
     std::vector<std::string> notes;
     std::string line;
     while (std::getline(stream, line) && line.starts_with('#')) notes.push_back(line);

@@ -11,7 +11,7 @@
 #include "geometry/constants.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
-#include "io/reading.hpp"
+#include "io/text_table.hpp"
 #include "planners/planner_traits.hpp"
 #include "result/json_values.hpp"
 
@@ -58,7 +58,7 @@ Statistic statisticOf(const std::vector<double>& values) {
 }
 
 ReferenceCosts::ReferenceCosts(const std::string& file) {
-    std::ifstream stream = openToRead(file);
+    std::ifstream stream = openText(file);
     std::string line;
     int number = 1;
     while (std::getline(stream, line) && line.starts_with('#')) ++number;

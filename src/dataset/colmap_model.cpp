@@ -33,7 +33,7 @@ std::optional<fs::path> modelIn(const fs::path& folder) {
 
 /// Lines with their fields at blanks, but for comments. Blank lines have no fields.
 std::vector<std::pair<std::size_t, TextRow>> linesOf(const std::string& file) {
-    std::ifstream in = openToRead(file);
+    std::ifstream in = openText(file);
     std::vector<std::pair<std::size_t, TextRow>> lines;
     int number = 0;
     for (std::string line; std::getline(in, line);) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -63,7 +64,7 @@ std::vector<std::string> splitAtCommas(std::string_view text) {
 template <class Split>
 std::vector<TextRow> readRows(const std::string& file, const Split& split, std::size_t least,
                               std::size_t most, std::vector<InputError>* badRows) {
-    std::ifstream in = openToRead(file);
+    std::ifstream in = openText(file);
     std::vector<TextRow> rows;
     std::string text;
     for (int line = 1; std::getline(in, text); ++line) {
@@ -82,6 +83,18 @@ std::vector<TextRow> readRows(const std::string& file, const Split& split, std::
 }
 
 }  // namespace
+
+std::ifstream openText(const std::string& file) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    std::ifstream stream = openToRead(file);
+    std::array<char, kMark.size()> start{};
+    stream.read(start.data(), start.size());
+    if (!stream || std::string_view(start.data(), start.size()) != kMark) {
+        stream.clear();
+        stream.seekg(0);
+    }
+    return stream;
+}
 
 std::vector<TextRow> readTable(const std::string& file, std::size_t columns,
                                std::vector<InputError>* badRows) {

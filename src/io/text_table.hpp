@@ -3,6 +3,7 @@
 // commas, as EuRoC's.
 #pragma once
 
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,10 @@ class TextRow {
     int line_;
     std::vector<std::string> fields_;
 };
+
+/// Opens a text file for reading as openToRead() does. A byte order mark at its beginning, as
+/// editors of Windows write it, is skipped.
+std::ifstream openText(const std::string& file);
 
 /// All rows of a file, without blank lines and lines that start with '#'.
 /// @throws InputError for a missing file, and for a row that does not have `columns` fields; if

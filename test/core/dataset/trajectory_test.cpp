@@ -59,6 +59,14 @@ TEST(Trajectory, OfKittiHasRowsOfTheMatrixAndNoTimes) {
     expectInputError([&] { readKittiTrajectory(folder.write("c", "\n")); }, {"no poses"});
 }
 
+TEST(Trajectory, MayBeginWithAByteOrderMark) {
+    const test::TemporaryFolder folder;
+    const std::string text =
+        "\xEF\xBB\xBF"
+        "1 0 0 4 0 1 0 5 0 0 1 6\n";
+    EXPECT_EQ(readKittiTrajectory(folder.write("a", text)).size(), 1U);
+}
+
 TEST(Trajectory, TimesThatCannotBeAreNamed) {
     const test::TemporaryFolder folder;
     for (const auto& [time, reason] :

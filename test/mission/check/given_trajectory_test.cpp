@@ -89,6 +89,17 @@ TEST_F(GivenTrajectoryTest, WithoutHeadingsTheRobotLooksWhereItFlies) {
     }
 }
 
+TEST_F(GivenTrajectoryTest, MayBeginWithAByteOrderMark) {
+    const std::string mark = "\xEF\xBB\xBF";
+    for (const char* rows : {"0 1 2 3 0\n1 2 2 3 0\n", "x,y,z\n1,2,3\n2,2,3\n",
+                             "1 1 2 3 0 0 0 1\n2 2 2 3 0 0 0 1\n"}) {
+        const GivenTrajectory with = read(mark + rows), without = read(rows);
+        EXPECT_EQ(with.format, without.format);
+        ASSERT_EQ(with.poses.size(), without.poses.size());
+        EXPECT_TRUE(with.poses[0].T_w_b.isApprox(without.poses[0].T_w_b, 0.));
+    }
+}
+
 TEST_F(GivenTrajectoryTest, BadRowsAreNamed) {
     EXPECT_NE(reasonFor("0,1,2,3\n1,1,2,4\n").find("line 1: four columns"), std::string::npos);
     EXPECT_NE(reasonFor("0,1,2,3,0\n-1,1,2,4,0\n").find("line 2: time -1 after 0"),
