@@ -41,11 +41,16 @@ std::uint32_t checksumOf(const fs::path& file) {
     return static_cast<std::uint32_t>(sum);
 }
 
-/// Files and links of a folder and its subfolders, relative, sorted, the manifest left out.
+bool isFolder(const fs::directory_entry& entry) {
+    return !entry.is_symlink() && entry.is_directory();
+}
+
+/// Files, links and empty folders of a folder and its subfolders, relative, sorted, the manifest
+/// left out.
 std::vector<fs::path> namesIn(const fs::path& folder) {
     std::vector<fs::path> names;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        if (!entry.is_symlink() && entry.is_directory()) continue;
+        if (isFolder(entry) && !fs::is_empty(entry)) continue;
         const fs::path name = entry.path().lexically_relative(folder);
         if (name != Manifest::kFileName) names.push_back(name);
     }
@@ -53,10 +58,18 @@ std::vector<fs::path> namesIn(const fs::path& folder) {
     return names;
 }
 
+/// Whether there are files beside the manifest.
+bool hasFiles(const fs::path& folder) {
+    const fs::recursive_directory_iterator entries(folder);
+    return std::any_of(begin(entries), end(entries), [&](const auto& entry) {
+        return !isFolder(entry) && entry.path() != folder / Manifest::kFileName;
+    });
+}
+
 void removeEmptyFolders(const fs::path& folder) {
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-        if (!entry.is_symlink() && entry.is_directory()) removeEmptyFolders(entry.path());
+        if (isFolder(entry)) removeEmptyFolders(entry.path());
     }
     fs::remove(folder, ignored);  // fails unless it is empty
 }
@@ -110,15 +123,20 @@ fs::path workingFolderOf(const fs::path& resolved) { return resolved.string() + 
 
 /// What stands in the way of writing beside a folder: anything but a working folder, in which the
 /// lock is the first file and the last one.
-void checkWorkingFolder(const fs::path& working) {
+void checkWorkingFolder(const fs::path& target, const fs::path& working) {
     std::error_code error;
+    // As of the longest path that is made before there are results.
+    const fs::path lock = working / Manifest::kFileName;
+    if (fs::symlink_status(lock, error).type() == fs::file_type::none) {
+        refuse(target, error.message());
+    }
     const fs::file_status status = fs::symlink_status(working, error);
     if (status.type() == fs::file_type::not_found) return;
     const char* reason = "is in the way of a result that is being written; rename or remove it";
     if (!fs::is_directory(status)) refuse(working, reason);
-    if (fs::exists(working / Manifest::kFileName, error)) return;
+    if (fs::exists(lock, error)) return;
     for (const auto& entry : fs::recursive_directory_iterator(working, error)) {
-        if (entry.is_symlink() || !entry.is_directory()) refuse(working, reason);
+        if (!isFolder(entry)) refuse(working, reason);
     }
 }
 
@@ -134,7 +152,7 @@ bool writeInto(int descriptor, const Manifest& files) {
 /// empty until it lists all files.
 void checkLeftNoWork(const fs::path& working, const Manifest& left) {
     const bool isWork = left.empty() && fs::file_size(working / Manifest::kFileName) > 0;
-    if (!isWork || namesIn(working).empty()) return;
+    if (!isWork || !hasFiles(working)) return;
     refuse(working,
            "holds the work of a command that was killed; go on with that command's --resume, "
            "remove that folder, or give another one");
@@ -148,7 +166,9 @@ void FileDescriptor::reset(int number) {
 }
 
 fs::path resolvedFolder(const fs::path& path) {
-    const fs::path whole = fs::weakly_canonical(fs::absolute(path) / "");
+    std::error_code error;
+    const fs::path whole = fs::weakly_canonical(fs::absolute(path) / "", error);
+    if (error) refuse(path, error.message());
     return whole.has_filename() ? whole : whole.parent_path();
 }
 
@@ -213,10 +233,20 @@ std::vector<Manifest::File>::const_iterator Manifest::placeOf(const fs::path& na
 
 std::optional<fs::path> Manifest::foreignFile(const fs::path& folder) const {
     for (const fs::path& name : namesIn(folder)) {
-        const auto listed = placeOf(name);
-        if (listed == files_.end() || *listed != describe(folder, name)) return name;
+        if (!lists(folder, name)) return name;
     }
     return {};
+}
+
+/// A folder in which listed files were is listed, too.
+bool Manifest::lists(const fs::path& folder, const fs::path& name) const {
+    const auto listed = placeOf(name);
+    if (listed == files_.end()) return false;
+    if (*listed == describe(folder, name)) return true;
+    const auto [end, rest] =
+        std::mismatch(name.begin(), name.end(), listed->name.begin(), listed->name.end());
+    return end == name.end() && rest != listed->name.end() &&
+           fs::is_directory(fs::symlink_status(folder / name));
 }
 
 void Manifest::renew(const fs::path& folder, const fs::path& name) {
@@ -250,7 +280,7 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
                fmt::format("ends in {}, as folders do that are being written", kWorkingSuffix));
     }
     checkTarget(target_, resolved_);
-    checkWorkingFolder(working_);
+    checkWorkingFolder(target_, working_);
     lock();
     // The process ended after an exchange, before the earlier result was removed.
     const Manifest left = Manifest::read(working_);
@@ -309,7 +339,7 @@ FolderTransaction::~FolderTransaction() {
     --open_;
     if (!isOpen_) return;
     try {
-        if (unfinished_ == Unfinished::removed || namesIn(working_).empty()) {
+        if (unfinished_ == Unfinished::removed || !hasFiles(working_)) {
             fs::remove_all(working_);
         }
     } catch (const std::exception&) {  // the next one at this place removes it

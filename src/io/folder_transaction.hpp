@@ -12,11 +12,12 @@ namespace photonav {
 
 /// The file or folder that a path leads to, absolute, links followed, without a closing slash; it
 /// and its last parents need not exist.
+/// @throws InputError for a path that the system refuses, such as one that is too long
 std::filesystem::path resolvedFolder(const std::filesystem::path& path);
 
-/// The list of files that this program wrote into a folder. It is stored there as `.photonav`, one
-/// line per file with size, checksum and name. Files that are not listed, or were changed since,
-/// belong to the user.
+/// The list of files and empty folders that this program wrote into a folder. It is stored there as
+/// `.photonav`, one line per file with size, checksum and name. What is not listed, or was changed
+/// since, belongs to the user.
 class Manifest {
   public:
     static constexpr const char* kFileName = ".photonav";
@@ -36,7 +37,8 @@ class Manifest {
     std::string text() const;
     bool empty() const { return files_.empty(); }
 
-    /// A file of the folder that is not listed or was changed since; nothing when all are listed.
+    /// A file or an empty folder that is not listed or was changed since; nothing when all are
+    /// listed.
     std::optional<std::filesystem::path> foreignFile(const std::filesystem::path& folder) const;
 
     /// Removes the listed files of the folder. Links are not followed, and files outside of the
@@ -54,6 +56,7 @@ class Manifest {
         std::uint32_t checksum;      // CRC-32
         bool operator==(const File&) const = default;
     };
+    bool lists(const std::filesystem::path& folder, const std::filesystem::path& name) const;
     /// Position of the first file whose name is not before this one in the sorted list.
     std::vector<File>::const_iterator placeOf(const std::filesystem::path& name) const;
     static File describe(const std::filesystem::path& folder, const std::filesystem::path& name);

@@ -88,6 +88,42 @@ TEST_F(FolderTransactionTest, RefusesFilesThatItDidNotWrite) {
     EXPECT_NE(complaint(target_), "");
 }
 
+TEST_F(FolderTransactionTest, RefusesEmptyFoldersThatItDidNotMake) {
+    const auto isRefused = [&] {
+        return complaint(target_).find("target/mine: is not of an earlier result") !=
+               std::string::npos;
+    };
+    fs::create_directories(target_ / "mine");
+    EXPECT_TRUE(isRefused()) << complaint(target_);
+    fs::remove(target_ / "mine");
+    {
+        FolderTransaction transaction(target_);
+        write(transaction.path() / "images/1.png", "1");
+        fs::create_directory(transaction.path() / "none");
+        transaction.commit();
+    }
+    fs::create_directory(target_ / "mine");
+    EXPECT_TRUE(isRefused()) << complaint(target_);
+    fs::remove(target_ / "mine");
+    fs::remove(target_ / "images/1.png");  // its folder is still one of the result
+    EXPECT_EQ(complaint(target_), "");
+    commit(target_, "new.txt", "new");
+    EXPECT_EQ(entries(target_), 2U);
+    EXPECT_EQ(entries(temporary_.path()), 1U);
+}
+
+TEST_F(FolderTransactionTest, PathsThatAreTooLongAreNamedAndNothingIsMade) {
+    for (const std::size_t length : {250U, 300U}) {  // with .unfinished, and as it is
+        const fs::path folder = temporary_.path() / std::string(length, 'a');
+        EXPECT_TRUE(complaint(folder).starts_with(folder.string())) << complaint(folder);
+        EXPECT_TRUE(complaint(folder).ends_with(": File name too long")) << complaint(folder);
+    }
+    std::string deep = temporary_.path().string();
+    while (deep.size() < 4078) deep += "/a";
+    EXPECT_TRUE(complaint(deep).ends_with(": File name too long")) << complaint(deep);
+    EXPECT_EQ(entries(temporary_.path()), 0U);
+}
+
 TEST_F(FolderTransactionTest, KeepsTheResultWhenSomeoneWroteIntoTheFolderMeanwhile) {
     commit(target_, "old.txt", "old");
     FolderTransaction transaction(target_);
@@ -118,6 +154,7 @@ TEST_F(FolderTransactionTest, RefusesToReplaceAResultWithAnotherOneInIt) {
     EXPECT_EQ(contentOf(target_ / "sub/inner/inner.txt"), "inner");
     EXPECT_EQ(complaint(target_ / "sub/inner"), "");
     fs::rename(target_ / "sub/inner", temporary_.path() / "inner");
+    fs::remove(target_ / "sub");
     EXPECT_EQ(complaint(target_), "");
 }
 
