@@ -42,6 +42,7 @@ void addCompareOptions(CLI::App& parser, CompareOptions& options) {
               "number of seeds per method, from the config's seed on", 1U, 10000U);
     parser.add_option("--out", options.out, "result folder")
         ->type_name("DIR")
+        ->check(notEmpty())
         ->capture_default_str();
     addQuiet(parser, options.quiet);
 }
@@ -70,7 +71,8 @@ void addReferenceOptions(CLI::App& parser, ReferenceOptions& options) {
     parser
         .add_option("--file", options.file,
                     "file of the table (default: reference/<config>.csv beside the config)")
-        ->type_name("FILE");
+        ->type_name("FILE")
+        ->check(notEmpty());
     parser.add_flag("--from-scratch", options.fromScratch,
                     "do not start from the paths of the table");
     addQuiet(parser, options.quiet);

@@ -11,15 +11,6 @@
 namespace photonav {
 namespace {
 
-const CLI::Validator& notEmpty() {
-    static const CLI::Validator validator(
-        [](const std::string& text) {
-            return std::string(text.empty() ? "must not be empty" : "");
-        },
-        "");
-    return validator;
-}
-
 /// The list that somebody typed, with or without its brackets, as help and files write it.
 std::string asList(const std::string& typed) {
     return typed.starts_with("[") ? typed : "[" + typed + "]";
@@ -38,6 +29,15 @@ std::string complaintAbout(const ConfigKey& key, const std::string& text) {
 }
 
 }  // namespace
+
+const CLI::Validator& notEmpty() {
+    static const CLI::Validator validator(
+        [](const std::string& text) {
+            return std::string(text.empty() ? "must not be empty" : "");
+        },
+        "");
+    return validator;
+}
 
 void addOutput(CLI::App& parser, const OutputOptions& output, const std::string& defaultFolder) {
     parser
@@ -110,7 +110,8 @@ void addManyRuns(CLI::App& parser, ManyRunsOptions& options, const RunWords& wor
 
 void addRecord(CLI::App& parser, std::filesystem::path& folder) {
     parser.add_option("--record", folder, "write the first flight as a TUM RGB-D recording")
-        ->type_name("DIR");
+        ->type_name("DIR")
+        ->check(notEmpty());
 }
 
 std::string optionOf(const ConfigKey& key) {

@@ -67,6 +67,9 @@ Commands toolCommands(CLI::App& app, const Invocation& invocation);
 /// all commands that `app` has when the command runs.
 Command completionCommand(CLI::App& app);
 
+/// Refuses an option's empty text, which would stand for its default.
+const CLI::Validator& notEmpty();
+
 /// Adds --out, --quiet and --json.
 /// @param defaultFolder default of --out, for the help text
 void addOutput(CLI::App& parser, const OutputOptions& output, const std::string& defaultFolder);

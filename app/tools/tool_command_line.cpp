@@ -83,7 +83,9 @@ struct ExportOptions {
 
 void addExportOptions(CLI::App& parser, ExportOptions& options) {
     parser.add_option("folder", options.folder, "result folder")->required();
-    parser.add_option("--out", options.out, "the file (default: <folder>.mcap)")->type_name("FILE");
+    parser.add_option("--out", options.out, "the file (default: <folder>.mcap)")
+        ->type_name("FILE")
+        ->check(notEmpty());
     parser.add_flag("--quiet", options.quiet, "print nothing");
 }
 

@@ -94,6 +94,9 @@ TEST(ResultExport, ReplacesAnEarlierExportOnly) {
         EXPECT_EQ(run.exitCode, 2) << run.output;
         EXPECT_TRUE(run.output.starts_with("photonav: --out: " + file)) << run.output;
     }
+    const Execution empty = photonav("export " + out + " --out ''");
+    EXPECT_EQ(empty.exitCode, 2) << empty.output;
+    EXPECT_EQ(empty.output.find("photonav: --out: must not be empty"), 0U) << empty.output;
     EXPECT_EQ(test::contentOf(user), "the user's");
     EXPECT_EQ(test::contentOf(out + "/report.json"), report);
     for (int i = 0; i < 2; ++i) EXPECT_EQ(photonav("export " + out).exitCode, 0);
