@@ -13,13 +13,6 @@ namespace photonav {
 namespace fs = std::filesystem;
 namespace {
 
-/// The config, with what was typed in place of its values.
-Config loadSweepConfig(const ManyRunsOptions& options, const std::string& file) {
-    Config config = loadConfig(file, options.overrides);
-    checkSeeds(config, config.sweep.runs);
-    return config;
-}
-
 std::string nameOf(const std::string& file) { return fs::path(file).stem().string(); }
 
 /// The last step of every sweep: sort, report, print.
@@ -61,7 +54,8 @@ FolderTransaction beginSweep(const ManyRunsOptions& options, const Config& confi
 
 int sweepAll(const ManyRunsOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
-    const Config config = loadSweepConfig(options, options.config);
+    const Config config = loadConfig(options.config, options.overrides);
+    checkSeeds(config, config.sweep.runs);
     const ReferenceCosts reference = referenceOf(config);
     const Shard shard = shardOf(options);
     const World world(config);
@@ -86,9 +80,8 @@ int sweepAll(const ManyRunsOptions& options, const std::atomic<bool>& interrupte
             journal.append(run);
             const double wall = running.seconds();
             rest.count(run.item.planner, run.seconds, wall);
-            line.show(fmt::format("{} of {} runs, {} alpha {} seed {} done{}", ++done, items.size(),
-                                  run.item.planner, run.item.alpha, run.item.seed,
-                                  rest.text(wall)));
+            line.show(fmt::format("{} of {} runs, {} done{}", ++done, items.size(),
+                                  nameOf(run.item), rest.text(wall)));
         });
     }
     const bool stopped = interrupted && !journal.missing(items).empty();
@@ -103,9 +96,9 @@ int mergeSweep(const ManyRunsOptions& options) {
     JournalHeader header = shards.front().header();
     const fs::path target = folderOf(options, SweepKind::kWords, header.name, {});
     checkIsNoShard(options, target);
-    const Config config = configOfShards(
-        options, header, shards.front().file(),
-        [&](const std::string& file) { return loadSweepConfig(options, file); }, sweepIdentity);
+    const Config config =
+        configOfShards(options, header, shards.front().file(), SweepKind::identity);
+    checkSeeds(config, config.sweep.runs);
     const ReferenceCosts reference = referenceOf(config);
     const World world(config);
     const Config planned = withKappa(config, world);

@@ -49,11 +49,6 @@ bool hasArrived(const std::vector<ExplorationResult>& flights) {
     return false;
 }
 
-/// The config, with what was typed in place of its values.
-Config loadExploreConfig(const ExploreOptions& options, const std::string& file) {
-    return loadConfig(file, options.overrides);
-}
-
 FolderTransaction beginExploration(const ExploreOptions& options, const Config& config,
                                    const fs::path& folder) {
     return beginRuns(options, folder, {config.sceneFile, config.mapFile});
@@ -183,7 +178,7 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     const Stopwatch stopwatch;
     const auto address =
         options.serve.empty() ? std::optional<ServerAddress>{} : parseServerAddress(options.serve);
-    const Config config = loadExploreConfig(options, options.config);
+    const Config config = loadConfig(options.config, options.overrides);
     const Shard shard = shardOf(options);
     const std::vector<TrialItem> items = itemsOfShard(shard, config);
     const World world(config);
@@ -245,10 +240,8 @@ int mergeExplorations(const ExploreOptions& options, const std::atomic<bool>& in
     JournalHeader header = shards.front().header();
     const fs::path target = folderOf(options, TrialKind::kWords, header.name, {});
     checkIsNoShard(options, target);
-    const Config config = configOfShards(
-        options, header, shards.front().file(),
-        [&](const std::string& file) { return loadExploreConfig(options, file); },
-        TrialKind::identity);
+    const Config config =
+        configOfShards(options, header, shards.front().file(), TrialKind::identity);
     const auto items = trialItems(config);
     std::vector<ExplorationResult> flights = gather(options, shards, items);
     keepMapOf(items.front(), flights);

@@ -1,30 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shared/many_runs.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
-
-#include "io/atomic_file.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
-namespace {
-
-/// The config that the shards keep. Nothing is written to the result's folder yet.
-Config keptConfig(const JournalHeader& header,
-                  const std::function<Config(const std::string& file)>& load) {
-    const fs::path copy =
-        fs::temp_directory_path() / fmt::format("photonav_merge_{}.yaml", getpid());
-    writeFileAtomically(copy, header.config);
-    const std::unique_ptr<const fs::path, void (*)(const fs::path*)> removed(
-        &copy, [](const fs::path* file) { fs::remove(*file); });
-    return load(copy.string());
-}
-
-}  // namespace
 
 bool isMerge(const ManyRunsOptions& options, const RunWords& words) {
     if (!options.merge.empty()) {
@@ -165,10 +146,10 @@ void checkIsNoShard(const ManyRunsOptions& options, const fs::path& target) {
 
 Config configOfShards(const ManyRunsOptions& options, const JournalHeader& header,
                       const fs::path& journal,
-                      const std::function<Config(const std::string& file)>& load,
                       const std::function<Identity(const Config&)>& identity) {
-    Config config = options.config.empty() ? keptConfig(header, load) : load(options.config);
-    if (options.config.empty()) config.file = journal.string();
+    Config config = options.config.empty()
+                        ? parseConfig(header.config, journal.string(), options.overrides)
+                        : loadConfig(options.config, options.overrides);
     const std::string changed = difference(header.identity, identity(config));
     if (changed.empty()) return config;
     throw InputError("--merge", options.merge.front(), changed + ", as in " + config.file);

@@ -142,8 +142,27 @@ void checkIsNotWritten(const std::string& folder);
 void checkMakeOneWhole(const std::vector<std::string>& folders,
                        const std::vector<JournalHeader>& shards);
 
+/// Checks that runs which several shards have are the same.
+/// @throws InputError naming the run and the journals whose results differ
+template <typename Kind>
+void checkAgree(const std::vector<Journal<Kind>>& shards) {
+    std::map<typename Kind::Item, std::pair<const typename Kind::Run*, std::string>> known;
+    for (const Journal<Kind>& shard : shards) {
+        for (const auto& run : shard.runs()) {
+            const std::string file = shard.file().string();
+            const auto [first, isNew] = known.try_emplace(Kind::itemOf(run), &run, file);
+            const auto& [other, otherFile] = first->second;
+            if (isNew || Kind::reproducible(*other) == Kind::reproducible(run)) continue;
+            throw InputError(
+                "--merge", file,
+                fmt::format("{}: has another result in {}", nameOf(first->first), otherFile));
+        }
+    }
+}
+
 /// Reads the journals of the shards to merge.
-/// @throws InputError as checkIsNotWritten(), Journal::read() and checkMakeOneWhole() do
+/// @throws InputError as checkIsNotWritten(), Journal::read(), checkMakeOneWhole() and
+///         checkAgree() do
 template <typename Kind>
 std::vector<Journal<Kind>> readShards(const std::vector<std::string>& folders) {
     std::vector<Journal<Kind>> shards;
@@ -153,6 +172,7 @@ std::vector<Journal<Kind>> readShards(const std::vector<std::string>& folders) {
         headers.push_back(shards.emplace_back(Journal<Kind>::read(folder)).header());
     }
     checkMakeOneWhole(folders, headers);
+    checkAgree(shards);
     return shards;
 }
 
@@ -164,12 +184,10 @@ void checkIsNoShard(const ManyRunsOptions& options, const std::filesystem::path&
 /// header.
 /// @param header header of a shard's journal
 /// @param journal file of this journal
-/// @param load reads a config from a file, with the overrides of the options
 /// @param identity everything on which the results of the runs depend
 /// @throws InputError if the config differs from the config of the shards
 Config configOfShards(const ManyRunsOptions& options, const JournalHeader& header,
                       const std::filesystem::path& journal,
-                      const std::function<Config(const std::string& file)>& load,
                       const std::function<Identity(const Config&)>& identity);
 
 /// All runs of the shards, in the order of `items`.

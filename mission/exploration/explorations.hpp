@@ -17,6 +17,8 @@ struct TrialItem {
     auto operator<=>(const TrialItem&) const = default;
 };
 inline TrialItem itemOf(const ExplorationResult& flight) { return {flight.planner, flight.seed}; }
+/// "rrt_star seed 3"
+std::string nameOf(const TrialItem& item);
 
 /// The planners that a config compares: explore.planners, or planner.name if that list is empty.
 std::vector<std::string> plannersOf(const Config& config);

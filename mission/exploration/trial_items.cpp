@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The list of flights, apart from what flies them: journals are read without that.
+#include <fmt/format.h>
+
 #include "exploration/explorations.hpp"
 #include "runs/work_items.hpp"
 
 namespace photonav {
+
+std::string nameOf(const TrialItem& item) {
+    return fmt::format("{} seed {}", item.planner, item.seed);
+}
 
 std::vector<std::string> plannersOf(const Config& config) {
     const std::vector<std::string>& planners = config.explore.planners;

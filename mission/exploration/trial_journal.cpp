@@ -101,8 +101,9 @@ Identity TrialKind::runIdentity(const Identity& exploration) {
     return without({"seed", "explore.trials", "explore.planners"}, exploration);
 }
 
-json TrialKind::save(const ExplorationResult& flight, const fs::path& folder) {
-    if (flight.map) saveTexturedOcTree(*flight.map, folder / kMapFile);
+json TrialKind::reproducible(const ExplorationResult& flight) {
+    json updates = json::array();
+    for (const PlanUpdate& update : flight.updates) updates.push_back(untimedJson(update));
     return {{"planner", flight.planner},
             {"seed", flight.seed},
             {"end", nameOf(flight.end)},
@@ -118,10 +119,17 @@ json TrialKind::save(const ExplorationResult& flight, const fs::path& folder) {
             {"rejected_images", flight.rejectedImages},
             {"keyframes", flight.keyframes},
             {"blind_steps", flight.blindSteps},
-            {"wall_s", flight.wallSeconds},
-            {"has_map", flight.map != nullptr},
             {"samples", linesOf(flight.samples)},
-            {"updates", linesOf(flight.updates)}};
+            {"updates", std::move(updates)}};
+}
+
+json TrialKind::save(const ExplorationResult& flight, const fs::path& folder) {
+    if (flight.map) saveTexturedOcTree(*flight.map, folder / kMapFile);
+    json line = reproducible(flight);
+    line["wall_s"] = flight.wallSeconds;
+    line["has_map"] = flight.map != nullptr;
+    line["updates"] = linesOf(flight.updates);
+    return line;
 }
 
 ExplorationResult TrialKind::load(const json& line, const fs::path& folder) {

@@ -28,6 +28,7 @@ struct TrialKind {
     /// If the map file is missing, the flight has no map.
     /// @throws std::exception for missing or impossible values; InputError for a damaged map
     static Run load(const nlohmann::json& line, const std::filesystem::path& folder);
+    static nlohmann::json reproducible(const Run& flight);
 };
 
 using TrialJournal = Journal<TrialKind>;

@@ -2,8 +2,10 @@
 // A journal of finished runs, in memory and in a file.
 #pragma once
 
+#include <map>
 #include <set>
 
+#include "io/error.hpp"
 #include "result/json_values.hpp"
 #include "runs/journal_file.hpp"
 
@@ -20,6 +22,9 @@ namespace photonav {
 ///     runIdentity(identity)  the same without the keys that choose the runs
 ///     save(run, folder)      a run as JSON; may write other files into the journal's folder
 ///     load(line, folder)     the inverse of save()
+///     reproducible(run)      a run as JSON, without what differs when it is repeated
+///
+/// and nameOf(item) is the name of an item in messages.
 template <typename Kind>
 class Journal {
   public:
@@ -43,14 +48,21 @@ class Journal {
 
     /// Reads the file in a folder. An incomplete last line and a second run of the same item are
     /// ignored.
-    /// @throws InputError if the file is missing or no journal of this kind, and for impossible
-    ///         values
+    /// @throws InputError if the file is missing or no journal of this kind, for impossible values,
+    ///         and for two runs of the same item with different results
     static Journal read(const std::filesystem::path& folder) {
         Journal journal(folder);
-        std::set<Item> known;
+        std::map<Item, std::size_t> known;
         journal.header_ = journal.file_.read([&](const nlohmann::json& line) {
             Run run = Kind::load(line, folder);
-            if (known.insert(Kind::itemOf(run)).second) journal.runs_.push_back(std::move(run));
+            const auto [first, isNew] = known.try_emplace(Kind::itemOf(run), journal.runs_.size());
+            if (isNew) {
+                journal.runs_.push_back(std::move(run));
+            } else if (Kind::reproducible(run) !=
+                       Kind::reproducible(journal.runs_[first->second])) {
+                throw InputError(journal.file().string(), nameOf(first->first),
+                                 "is there twice, with different results");
+            }
         });
         return journal;
     }

@@ -32,6 +32,12 @@ json SweepKind::save(const SweepRun& run, const std::filesystem::path& /*folder*
     return line;
 }
 
+json SweepKind::reproducible(const SweepRun& run) {
+    json line = save(run, {});
+    line.erase("seconds");
+    return line;
+}
+
 SweepRun SweepKind::load(const json& line, const std::filesystem::path& /*folder*/) {
     const auto number = [&](const char* key) {
         return line.at(key).is_null() ? kNone : nonNegative(line, key);

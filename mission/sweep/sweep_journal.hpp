@@ -37,6 +37,7 @@ struct SweepKind {
     static nlohmann::json save(const Run& run, const std::filesystem::path& folder);
     /// @throws std::exception for values that no run can have
     static Run load(const nlohmann::json& line, const std::filesystem::path& folder);
+    static nlohmann::json reproducible(const Run& run);
 };
 
 using SweepJournal = Journal<SweepKind>;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sweep/sweep_plan.hpp"
 
+#include <fmt/format.h>
+
 namespace photonav {
 namespace {
 
@@ -16,6 +18,10 @@ const std::set<std::string> kIrrelevant{"planner.name",
                                         "explore."};
 
 }  // namespace
+
+std::string nameOf(const SweepItem& item) {
+    return fmt::format("{} alpha {} seed {}", item.planner, item.alpha, item.seed);
+}
 
 std::vector<SweepItem> sweepItems(const Config& config) {
     std::vector<SweepItem> items;

@@ -20,6 +20,9 @@ struct SweepItem {
     auto operator<=>(const SweepItem&) const = default;
 };
 
+/// "rrt_star alpha 0.5 seed 3"
+std::string nameOf(const SweepItem& item);
+
 /// All runs of a config's sweep: ordered by planner, then alpha, then seed, each in the order of
 /// the config.
 std::vector<SweepItem> sweepItems(const Config& config);

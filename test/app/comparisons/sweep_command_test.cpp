@@ -195,6 +195,44 @@ TEST_F(SweepCommand, ShardsThatDoNotMatchAreRefused) {
     EXPECT_EQ(test::contentOf(folder_ / "m/runs.jsonl"), before);
 }
 
+TEST_F(SweepCommand, ShardsWithAnotherResultOfTheSameRunAreRefused) {
+    const std::string quick =
+        " --set planner.vertices=150 --alpha 0.5 --runs 2 --planners rrt_star ";
+    ASSERT_EQ(sweep("a", "--shard 1/2", quick).exitCode, 0);
+    ASSERT_EQ(sweep("b", "--shard 2/2", quick).exitCode, 0);
+    const std::string a = test::contentOf(folder_ / "a/runs.jsonl");
+    const std::string b = test::contentOf(folder_ / "b/runs.jsonl");
+    const auto merge = [&](const std::string& more) {
+        std::ofstream(folder_ / "b/runs.jsonl") << b << more;
+        return photonav(fmt::format("sweep --merge {} {} --out {}", at("a"), at("b"), at("m")));
+    };
+    json run = json::parse(a.substr(a.find('\n') + 1));
+    run["seconds"] = 1e3;
+    EXPECT_EQ(merge(run.dump() + "\n").exitCode, 0);
+    fs::remove_all(folder_ / "m");
+    run["length"] = 1.;
+    expectBadInput(merge(run.dump() + "\n"),
+                   fmt::format("photonav: --merge: {}/runs.jsonl: rrt_star alpha 0.5 seed 1: has "
+                               "another result in {}/runs.jsonl\n",
+                               at("b"), at("a")));
+    EXPECT_FALSE(fs::exists(folder_ / "m"));
+}
+
+TEST_F(SweepCommand, TheConfigOfShardsIsReadFromTheirJournal) {
+    ASSERT_EQ(sweep("a", "").exitCode, 0);
+    std::string journal = test::contentOf(folder_ / "a/runs.jsonl");
+    const std::string good = "vertices: 120", bad = "vertices: -12";
+    ASSERT_NE(journal.find(good), std::string::npos);
+    const std::string merge = fmt::format("--merge {} --out {}", at("a"), at("m"));
+    EXPECT_EQ(execute(fmt::format("TMPDIR=/nowhere {} sweep {}", PHOTONAV_BINARY, merge)).exitCode,
+              0);
+    fs::remove_all(folder_ / "m");
+    std::ofstream(folder_ / "a/runs.jsonl") << journal.replace(journal.find(good), 13, bad);
+    const Execution run = photonav("sweep " + merge);
+    expectBadInput(run, fmt::format("photonav: {}/runs.jsonl: planner.vertices: ", at("a")));
+    EXPECT_FALSE(fs::exists(folder_ / "m"));
+}
+
 TEST_F(SweepCommand, AKilledSweepResumesWhereItWas) {
     ASSERT_EQ(sweep("out", "").exitCode, 0);
     const json whole = runs("out");

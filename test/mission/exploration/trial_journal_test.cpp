@@ -104,6 +104,21 @@ TEST_F(TrialFiles, GiveBackWhatWasWritten) {
     EXPECT_EQ(journal.missing({first_, second_}), std::vector{second_});
 }
 
+TEST_F(TrialFiles, AFlightThatIsThereTwiceMustBeTheSame) {
+    ExplorationResult flight = makeFlight(first_);
+    TrialJournal journal = create({flight});
+    flight.wallSeconds = 20.;
+    flight.updates[0].planSeconds = 5.;
+    flight.map = makeMap();
+    journal.append(flight);
+    EXPECT_EQ(read().runs().size(), 1U);
+    flight.updates[0].length = 2.5;
+    journal.append(flight);
+    EXPECT_EQ(
+        test::reasonOf([&] { read(); }),
+        file().string() + ": rrt_star/forward seed 3: is there twice, with different results");
+}
+
 TEST_F(TrialFiles, ACutLineIsDropped) {
     create({makeFlight(first_)}).append(makeFlight(second_));
     fs::resize_file(file(), fs::file_size(file()) - 20);

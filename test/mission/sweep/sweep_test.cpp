@@ -223,6 +223,19 @@ TEST_F(SweepFiles, ACutLineIsDroppedAndWrittenOver) {
               std::string::npos);
 }
 
+TEST_F(SweepFiles, ARunThatIsThereTwiceMustBeTheSame) {
+    SweepRun run = makeRun({"rrt_star", 0.5, 7}, 1., 2., 3.);
+    SweepJournal journal = SweepJournal::create(folder_, {"name", "", {}, {}}, {run});
+    run.seconds *= 2.;
+    journal.append(run);
+    EXPECT_EQ(SweepJournal::read(folder_).runs().size(), 1U);
+    run.length = 2.5;
+    journal.append(run);
+    const std::string file = (folder_ / SweepJournal::kFileName).string();
+    EXPECT_EQ(test::reasonOf([&] { SweepJournal::read(folder_); }),
+              file + ": rrt_star alpha 0.5 seed 7: is there twice, with different results");
+}
+
 TEST_F(SweepFiles, NumbersThatNoRunGivesAreRefused) {
     SweepJournal::create(folder_, {"name", "", {}, {}},
                          {makeRun({"rrt_star", 0.5, 7}, 1., 2., 3.)});
