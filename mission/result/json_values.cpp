@@ -6,6 +6,22 @@
 #include "geometry/constants.hpp"
 
 namespace photonav {
+namespace {
+
+/// Adds the places of numbers that are not finite, as JSON pointers, each with its reason.
+void findNotFinite(const nlohmann::json& value, const std::string& place, nlohmann::json& found) {
+    if (value.is_number_float() && !std::isfinite(value.get<double>())) {
+        found[place] = std::isnan(value.get<double>()) ? "not a number" : "infinite";
+    }
+    if (!value.is_structured()) return;
+    for (const auto& [key, part] : value.items()) findNotFinite(part, place + "/" + key, found);
+}
+
+std::string indentedText(const nlohmann::json& value) {
+    return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
 
 nlohmann::json finiteOrNull(double value) {
     return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
@@ -26,7 +42,12 @@ nlohmann::json orNull(const std::optional<double>& value) {
 }
 
 std::string jsonText(const nlohmann::json& value) {
-    return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    nlohmann::json notFinite = nlohmann::json::object();
+    findNotFinite(value, "", notFinite);
+    if (notFinite.empty()) return indentedText(value);
+    nlohmann::json whole = value;
+    whole["not_finite"] = std::move(notFinite);
+    return indentedText(whole);
 }
 
 std::string jsonLine(const nlohmann::json& value) {

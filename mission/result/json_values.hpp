@@ -54,7 +54,8 @@ Number wholeNumber(const nlohmann::json& value) {
 }
 
 /// The text of a result file, one value per line. Bytes that are not UTF-8 (in a file name, for
-/// example) are replaced: they cause no error.
+/// example) are replaced: they cause no error. Numbers that are not finite become null; the member
+/// `not_finite` gives the place and the reason of each.
 std::string jsonText(const nlohmann::json& value);
 
 /// As jsonText(), on one line.
