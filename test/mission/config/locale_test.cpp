@@ -4,10 +4,13 @@
 
 #include <locale>
 
+#include "check/given_trajectory.hpp"
 #include "config/config.hpp"
+#include "dataset/trajectory.hpp"
 #include "io/folder_transaction.hpp"
 #include "map/octree_file.hpp"
 #include "map/point_cloud.hpp"
+#include "result/json_values.hpp"
 #include "scene/scene.hpp"
 #include "temporary_folder.hpp"
 
@@ -75,6 +78,26 @@ TEST(Locale, MapsCloudsAndManifests) {
         transaction.commit();
     }
     EXPECT_NE(contentOf(target / ".photonav").find("\n5000 "), std::string::npos);
+}
+
+TEST(Locale, TrajectoriesAndResults) {
+    const TemporaryFolder folder;
+    const Trajectory trajectory{{1305031102.5, Pose::Identity()},
+                                {1305031103.5, Pose(Eigen::Translation3d(1234.5, 0.25, -0.125))}};
+    const nlohmann::json result{{"length", 1234.5}, {"vertices", 12345}};
+    const std::string text = jsonText(result), file = folder.file("path.tum");
+    writeTrajectory(file, trajectory);
+    const std::string written = contentOf(file);
+    const GermanLocale german;
+    EXPECT_EQ(jsonText(result), text);
+    writeTrajectory(file, trajectory);
+    EXPECT_EQ(contentOf(file), written);
+    const Trajectory read = readTrajectory(file);
+    ASSERT_EQ(read.size(), 2U);
+    EXPECT_EQ(read[1].T_w_c.translation(), Eigen::Vector3d(1234.5, 0.25, -0.125));
+    const auto table = folder.write("given.csv", "x,y,z\n1234.5,2,3\n2,2.25,3\n");
+    EXPECT_EQ(readGivenTrajectory(table, Pose::Identity()).poses[0].T_w_b.translation().x(),
+              1234.5);
 }
 
 }  // namespace
