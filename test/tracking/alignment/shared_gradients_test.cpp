@@ -13,14 +13,14 @@ namespace {
 
 constexpr double kSigma = 0.02;
 
-const Camera& camera() {
+const Camera& tileCamera() {
     static const Camera small = makeCamera(188, 120, 1.2);
     return small;
 }
 
 View viewOf(const ViewSource& source, const Pose& T_c_w) {
     View view;
-    source.render(camera(), T_c_w, view);
+    source.render(tileCamera(), T_c_w, view);
     return view;
 }
 
@@ -29,7 +29,7 @@ struct Compared {
     Matrix6 information, slope;
 
     Compared(const View& model, const ImageF& observed, const Exposure& exposure = {}) {
-        ViewComparison compare(camera(), {});
+        ViewComparison compare(tileCamera(), {});
         information = compare(model, observed, exposure, {}).AtA.topLeftCorner<6, 6>();
         slope = compare.sharedSlope(exposure);
     }
@@ -56,7 +56,7 @@ const Pose kInRoom = test::cameraAt({2., 3., 1.5}, 0.5);
 
 View blank() {
     View view = viewOf(test::room(), kInRoom);
-    view.intensity = ImageF(camera().height, camera().width, 0.5F);
+    view.intensity = ImageF(tileCamera().height, tileCamera().width, 0.5F);
     return view;
 }
 
@@ -111,16 +111,16 @@ TEST(SharedGradients, NoiseBesideTextureIsNoTexture) {
     std::mt19937_64 random(1);
     View model = viewOf(MeshRenderer(test::floorOf(uniformTexture(0.5))),
                         test::cameraAt({0., 0., 2.}, test::kDown));
-    const unsigned half = camera().width / 2;
-    for (unsigned v = 0; v < camera().height; ++v) {
+    const unsigned half = tileCamera().width / 2;
+    for (unsigned v = 0; v < tileCamera().height; ++v) {
         for (unsigned u = 0; u < half; ++u) {
             model.intensity[v][u] = 0.5F + 0.3F * std::sin(0.4F * static_cast<float>(u));
         }
     }
     const ImageF observed = test::noisy(model.intensity, kSigma, random);
     const ImageF strong = test::noisy(model.intensity, 0.04, random);
-    for (unsigned v = 0; v < camera().height; ++v) {
-        for (unsigned u = half; u < camera().width; ++u) model.intensity[v][u] = strong[v][u];
+    for (unsigned v = 0; v < tileCamera().height; ++v) {
+        for (unsigned u = half; u < tileCamera().width; ++u) model.intensity[v][u] = strong[v][u];
     }
     const Compared compared(model, observed);
     EXPECT_GT(compared.leftAlong(Vector6::Unit(0)), 0.8);
@@ -149,7 +149,7 @@ class MapOfFewImages : public ::testing::TestWithParam<int> {
             const UncertainPose prior{expSE3(sigmas_.cwiseProduct(gauss())) * truth,
                                       sigmas_.cwiseAbs2().asDiagonal()};
             const ImageF image = test::noisy(viewOf(world, truth).intensity, kSigma, random_);
-            const Alignment a = DenseAligner(views, camera(), options).align(image, prior);
+            const Alignment a = DenseAligner(views, tileCamera(), options).align(image, prior);
             const Vector6 e = test::errorOf(a, truth);
             result.nees += e.dot(a.covariance.ldlt().solve(e)) / (6. * kMaps);
             result.open += double(a.openDirections.size()) / kMaps;
@@ -169,7 +169,7 @@ class MapOfFewImages : public ::testing::TestWithParam<int> {
         TexturedOcTree map(0.05);
         for (int k = 0; k < GetParam(); ++k) {
             const Pose T_c_w = expSE3(drawn(1.)) * near;
-            fuse(map, withNoise(viewOf(world, T_c_w), kSigma, random_), camera(), T_c_w);
+            fuse(map, withNoise(viewOf(world, T_c_w), kSigma, random_), tileCamera(), T_c_w);
         }
         return map;
     }
