@@ -32,11 +32,14 @@ auto reading(const std::string& file, const Read& read) {
 
 /// Opens a file for reading; the stream is not open if the file is missing. Read errors throw
 /// std::ios::failure, because by default a stream would only end early.
-/// @throws InputError for folders, pipes and devices (some of them never end), and for a file
-///         without permission to read
+/// @throws InputError for folders, pipes and devices (some of them never end), for a file without
+///         permission to read, and for a path that cannot be followed
 inline std::ifstream openIfThere(const std::string& file) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
+    if (!std::filesystem::status_known(status)) {
+        throw InputError(file, "", "cannot be opened: " + error.message());
+    }
     const bool isThere = std::filesystem::exists(status);
     if (isThere && !std::filesystem::is_regular_file(status)) {
         throw InputError(file, "", "not a file");

@@ -124,6 +124,21 @@ TEST_F(FolderTransactionTest, PathsThatAreTooLongAreNamedAndNothingIsMade) {
     EXPECT_EQ(entries(temporary_.path()), 0U);
 }
 
+TEST_F(FolderTransactionTest, NamesFoldersBesideWhichNothingMayBeWritten) {
+    if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+    commit(target_, "old.txt", "old");
+    for (const fs::perms allowed : {fs::perms(0555), fs::perms(0)}) {
+        fs::permissions(temporary_.path(), allowed);
+        for (const fs::path& folder : {target_, temporary_.path() / "new/one"}) {
+            EXPECT_TRUE(complaint(folder).starts_with(folder.string() + ": "));
+            EXPECT_TRUE(complaint(folder).ends_with("Permission denied")) << complaint(folder);
+        }
+    }
+    fs::permissions(temporary_.path(), fs::perms(0755));
+    EXPECT_EQ(contentOf(target_ / "old.txt"), "old");
+    EXPECT_EQ(entries(temporary_.path()), 1U);
+}
+
 TEST_F(FolderTransactionTest, KeepsTheResultWhenSomeoneWroteIntoTheFolderMeanwhile) {
     commit(target_, "old.txt", "old");
     FolderTransaction transaction(target_);

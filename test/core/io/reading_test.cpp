@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <vector>
 
@@ -36,6 +37,28 @@ TEST(Reading, OpensFilesOnly) {
     EXPECT_EQ(test::messageOf<InputError>([&] { openToRead(missing); }),
               missing + ": no such file");
     EXPECT_TRUE(openToRead(folder.write("there", "")).is_open());
+}
+
+TEST(Reading, SaysWhyAFileCannotBeFound) {
+    const std::string file = "/tmp/" + std::string(300, 'a');
+    EXPECT_EQ(test::messageOf<InputError>([&] { openToRead(file); }),
+              file + ": cannot be opened: File name too long");
+}
+
+TEST(Reading, NamesFilesThatMayNotBeRead) {
+    if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
+    const test::TemporaryFolder folder;
+    const auto expectRefused = [](const std::string& file) {
+        EXPECT_EQ(test::messageOf<InputError>([&] { openToRead(file); }),
+                  file + ": cannot be opened: Permission denied");
+    };
+    const std::string file = folder.write("a.txt", "1 2\n");
+    ASSERT_EQ(chmod(file.c_str(), 0), 0);
+    expectRefused(file);
+    const std::string closed = folder.file("closed");
+    ASSERT_EQ(mkdir(closed.c_str(), 0), 0);
+    expectRefused(closed + "/a.txt");
+    chmod(closed.c_str(), 0700);  // so that it can be removed
 }
 
 }  // namespace
