@@ -38,22 +38,6 @@ std::vector<T> arrayFrom(const json& text, std::size_t group) {
     return values;
 }
 
-template <typename Derived>
-json listOf(const Eigen::MatrixBase<Derived>& matrix) {
-    json list = json::array();
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i)
-        for (Eigen::Index j = 0; j < matrix.cols(); ++j) list.push_back(matrix(i, j));
-    return list;
-}
-
-template <int rows, int columns>
-Eigen::Matrix<double, rows, columns> matrixFrom(const json& list) {
-    if (list.size() != std::size_t{rows * columns}) throw std::invalid_argument("size of a list");
-    Eigen::Matrix<double, rows, columns> matrix;
-    for (int i = 0; i < rows * columns; ++i) matrix(i / columns, i % columns) = list.at(i);
-    return matrix;
-}
-
 // A point of the way: time, way, believed and true place, trace, heading.
 constexpr std::size_t kFlownValues = 10;
 
@@ -185,9 +169,9 @@ json headerJson(const FlightLog& log) {
     return {{"planner", log.planner},
             {"color", hexColor(plannerColor(log.planner))},
             {"seed", log.seed},
-            {"box", {listOf(log.box.min()), listOf(log.box.max())}},
-            {"scene", {listOf(log.scene.min()), listOf(log.scene.max())}},
-            {"area", {listOf(log.area.min()), listOf(log.area.max())}},
+            {"box", {matrixJson(log.box.min()), matrixJson(log.box.max())}},
+            {"scene", {matrixJson(log.scene.min()), matrixJson(log.scene.max())}},
+            {"area", {matrixJson(log.area.min()), matrixJson(log.area.max())}},
             {"cell", log.cell}};
 }
 
@@ -195,8 +179,8 @@ json momentJson(const FlightLog& log, const LoggedMoment& moment) {
     json content{{"update", lineOf(moment.update)},
                  {"way", moment.length},
                  {"robot",
-                  {{"T_w_c_rows", listOf(moment.robot.T_w_c.matrix().topRows<3>())},
-                   {"position_covariance", listOf(moment.robot.positionCovariance)}}},
+                  {{"T_w_c_rows", matrixJson(moment.robot.T_w_c.matrix().topRows<3>())},
+                   {"position_covariance", matrixJson(moment.robot.positionCovariance)}}},
                  {"flown", flownJson(moment.flown)},
                  {"plan", planJson(moment.plan)},
                  {"cells", arrayText(moment.cells.indices)},

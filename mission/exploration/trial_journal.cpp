@@ -24,27 +24,7 @@ void require(bool holds, const char* what) {
 
 int countOf(const json& line, const char* key) { return wholeNumber<int>(line.at(key)); }
 
-/// Row by row.
-template <int rows, int columns>
-json valuesOf(const Eigen::Matrix<double, rows, columns>& matrix) {
-    json values = json::array();
-    for (int i = 0; i < rows; ++i) {
-        for (int j = 0; j < columns; ++j) values.push_back(matrix(i, j));
-    }
-    return values;
-}
-
-template <int rows, int columns>
-Eigen::Matrix<double, rows, columns> matrixFrom(const json& values) {
-    require(values.size() == std::size_t{rows * columns}, "size");
-    Eigen::Matrix<double, rows, columns> matrix;
-    for (int i = 0; i < rows; ++i) {
-        for (int j = 0; j < columns; ++j) matrix(i, j) = values.at(i * columns + j).get<double>();
-    }
-    return matrix;
-}
-
-json valuesOf(const Pose& pose) { return valuesOf<3, 4>(pose.matrix().topRows<3>()); }
+json rowsOf(const Pose& pose) { return matrixJson(pose.matrix().topRows<3>()); }
 
 Pose poseFrom(const json& values) {
     constexpr double kTolerance = 1e-6;
@@ -58,9 +38,9 @@ Pose poseFrom(const json& values) {
 json lineOf(const FlightSample& sample) {
     return {{"time", sample.time},
             {"distance", sample.distance},
-            {"T_c_w", valuesOf(sample.T_c_w)},
-            {"believed_T_c_w", valuesOf(sample.belief.mean)},
-            {"covariance", valuesOf<6, 6>(sample.belief.covariance)}};
+            {"T_c_w", rowsOf(sample.T_c_w)},
+            {"believed_T_c_w", rowsOf(sample.belief.mean)},
+            {"covariance", matrixJson(sample.belief.covariance)}};
 }
 
 FlightSample sampleFrom(const json& line) {
@@ -87,23 +67,8 @@ json linesOf(const std::vector<Element>& elements) {
     return lines;
 }
 
-}  // namespace
-
-Identity TrialKind::identity(const Config& config) {
-    Identity identity =
-        without({"planner.name", "planner.compare_with_rrt_star", "map.made_by", "sweep."},
-                identityOf(config));
-    identity["explore.planners"] = fmt::format("[{}]", fmt::join(plannersOf(config), ", "));
-    return identity;
-}
-
-Identity TrialKind::runIdentity(const Identity& exploration) {
-    return without({"seed", "explore.trials", "explore.planners"}, exploration);
-}
-
-json TrialKind::reproducible(const ExplorationResult& flight) {
-    json updates = json::array();
-    for (const PlanUpdate& update : flight.updates) updates.push_back(untimedJson(update));
+/// A flight but for what its journal's folder and the machine's speed decide.
+json lineOf(const ExplorationResult& flight, json updates) {
     return {{"planner", flight.planner},
             {"seed", flight.seed},
             {"end", nameOf(flight.end)},
@@ -123,13 +88,32 @@ json TrialKind::reproducible(const ExplorationResult& flight) {
             {"updates", std::move(updates)}};
 }
 
+}  // namespace
+
+Identity TrialKind::identity(const Config& config) {
+    Identity identity =
+        without({"planner.name", "planner.compare_with_rrt_star", "map.made_by", "sweep."},
+                identityOf(config));
+    identity["explore.planners"] = fmt::format("[{}]", fmt::join(plannersOf(config), ", "));
+    return identity;
+}
+
+Identity TrialKind::runIdentity(const Identity& exploration) {
+    return without({"seed", "explore.trials", "explore.planners"}, exploration);
+}
+
 json TrialKind::save(const ExplorationResult& flight, const fs::path& folder) {
     if (flight.map) saveTexturedOcTree(*flight.map, folder / kMapFile);
-    json line = reproducible(flight);
+    json line = lineOf(flight, linesOf(flight.updates));
     line["wall_s"] = flight.wallSeconds;
     line["has_map"] = flight.map != nullptr;
-    line["updates"] = linesOf(flight.updates);
     return line;
+}
+
+json TrialKind::reproducible(const ExplorationResult& flight) {
+    json updates = json::array();
+    for (const PlanUpdate& update : flight.updates) updates.push_back(untimedJson(update));
+    return lineOf(flight, std::move(updates));
 }
 
 ExplorationResult TrialKind::load(const json& line, const fs::path& folder) {

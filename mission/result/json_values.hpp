@@ -24,6 +24,25 @@ nlohmann::json resultJson(const std::string& command, nlohmann::json content);
 /// [x, y, z].
 nlohmann::json vectorJson(const Eigen::Vector3d& v);
 
+/// The coefficients of a matrix, row by row.
+template <typename Derived>
+nlohmann::json matrixJson(const Eigen::MatrixBase<Derived>& matrix) {
+    nlohmann::json values = nlohmann::json::array();
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+        for (Eigen::Index j = 0; j < matrix.cols(); ++j) values.push_back(matrix(i, j));
+    }
+    return values;
+}
+
+/// The inverse of matrixJson(). @throws std::exception for another number of values
+template <int rows, int columns>
+Eigen::Matrix<double, rows, columns> matrixFrom(const nlohmann::json& values) {
+    if (values.size() != std::size_t{rows * columns}) throw std::out_of_range("size");
+    Eigen::Matrix<double, rows, columns> matrix;
+    for (int i = 0; i < rows * columns; ++i) matrix(i / columns, i % columns) = values.at(i);
+    return matrix;
+}
+
 /// The upper triangle of a symmetric matrix, row by row (21 numbers).
 nlohmann::json triangleJson(const Matrix6& matrix);
 

@@ -46,8 +46,7 @@ class Journal {
         return journal;
     }
 
-    /// Reads the file in a folder. An incomplete last line and a second run of the same item are
-    /// ignored.
+    /// Reads the file in a folder. An incomplete last line and a repeated run are ignored.
     /// @throws InputError if the file is missing or no journal of this kind, for impossible values,
     ///         and for two runs of the same item with different results
     static Journal read(const std::filesystem::path& folder) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/command_test.hpp"
+#include "io/stopwatch.hpp"
 #include "tum_dataset.hpp"
 
 namespace photonav {
@@ -137,11 +138,13 @@ TEST_F(PlanCommand, CtrlCBeforeThereIsAResultEndsAtOnce) {
     std::ofstream(scene)
         << "textures: [{name: a, type: noise, size: [99, 99], cells: [9, 8, 7, 6]}]\n"
            "planes: [{corner: [0, 0, 0], u: [9, 0, 0], v: [0, 9, 0], texture: a}]\n";
+    const Stopwatch watch;
     const Execution run =
         interrupt(fmt::format("{} plan {} --set scene.file={} --out {}", PHOTONAV_BINARY,
                               config("two_textures"), scene.string(), (folder_ / "out").string()),
                   kCatchesSignals, 0.3);
     EXPECT_EQ(run.exitCode, 130);
+    EXPECT_LT(watch.seconds(), 20.);
     EXPECT_EQ(run.output, "photonav: interrupted before there was any result\n");
     EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
