@@ -84,6 +84,16 @@ constexpr const char* kWorkingSuffix = ".unfinished";
 /// Beside a folder.
 fs::path workingFolderOf(const fs::path& resolved) { return resolved.string() + kWorkingSuffix; }
 
+/// Where a result is during an exchange in two steps: no result can have this name.
+fs::path asideOf(const fs::path& resolved) { return workingFolderOf(workingFolderOf(resolved)); }
+
+/// Removes what a manifest lists; other files stay.
+void removeResult(const fs::path& folder) {
+    Manifest::read(folder).removeFiles(folder);
+    fs::remove(folder / Manifest::kFileName);
+    removeEmptyFolders(folder);
+}
+
 /// What stands in the way of writing beside a folder: anything but a working folder, in which the
 /// lock is the first file and the last one.
 void checkWorkingFolder(const fs::path& target, const fs::path& working) {
@@ -147,11 +157,13 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
     checkTarget(target_, resolved_);
     checkWorkingFolder(target_, working_);
     lock();
+    endExchange();
     // The process ended after an exchange, before the earlier result was removed.
-    const Manifest left = Manifest::read(working_);
-    const bool isReplaced = !left.empty() && !left.isToReplace(resolved_);
+    Manifest left = Manifest::read(working_);
+    const bool isReplaced = !left.empty() && Manifest::read(resolved_).hasReplaced(working_);
     if (unfinished_ == Unfinished::removed) checkLeftNoWork(working_, left);
     if (isReplaced || unfinished_ == Unfinished::removed) removeLeftovers();
+    if (isReplaced) left = {};
     const bool isNewWork = unfinished_ == Unfinished::kept && left.empty();
     if (isNewWork && !writeInto(lock_.get(), left)) {  // on a full disk: what comes next says so
         static_cast<void>(!ftruncate(lock_.get(), 0));
@@ -191,6 +203,21 @@ void FolderTransaction::lock() {
             locked.st_ino == there.st_ino && locked.st_dev == there.st_dev) {
             return;
         }
+    }
+}
+
+/// The process ended within an exchange in two steps: before the second, the earlier result is put
+/// back; after it, removed.
+void FolderTransaction::endExchange() const {
+    const fs::path aside = asideOf(resolved_);
+    try {
+        if (Manifest::read(aside).empty()) return;
+        if (!fs::exists(fs::symlink_status(resolved_))) {
+            if (Manifest::read(working_).hasReplaced(aside)) fs::rename(aside, resolved_);
+        } else if (Manifest::read(resolved_).hasReplaced(aside)) {
+            removeResult(aside);
+        }
+    } catch (const std::exception&) {  // it stays where it is
     }
 }
 
@@ -246,7 +273,7 @@ void FolderTransaction::exchange() {
         return;
     }
     if (errno != EINVAL && errno != ENOSYS) fail(errno);
-    const std::string aside = resolved_.string() + ".replaced";
+    const fs::path aside = asideOf(resolved_);
     if (std::rename(resolved_.c_str(), aside.c_str()) != 0) fail(errno);
     if (std::rename(working_.c_str(), resolved_.c_str()) != 0) {
         const int reason = errno;
@@ -259,10 +286,7 @@ void FolderTransaction::exchange() {
 /// The folder that was the target is now where the working folder was.
 void FolderTransaction::removeReplaced() const {
     try {
-        if (!fs::exists(working_)) return;
-        Manifest::read(working_).removeFiles(working_);
-        fs::remove(working_ / Manifest::kFileName);
-        removeEmptyFolders(working_);
+        if (fs::exists(working_)) removeResult(working_);
     } catch (const std::exception&) {  // the new one is in place; the next one removes this
     }
 }

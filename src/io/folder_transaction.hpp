@@ -68,6 +68,7 @@ class FolderTransaction {
 
   private:
     void lock();
+    void endExchange() const;
     void removeLeftovers() const;
     void exchange();
     void removeReplaced() const;

@@ -89,7 +89,7 @@ Manifest Manifest::read(const fs::path& folder) {
 
 void Manifest::setReplaced(const fs::path& folder) { replaces_ = checksumOf(folder / kFileName); }
 
-bool Manifest::isToReplace(const fs::path& folder) const {
+bool Manifest::hasReplaced(const fs::path& folder) const {
     return replaces_ == checksumOf(folder / kFileName);
 }
 

@@ -26,8 +26,8 @@ class Manifest {
 
     /// States which result this one is to replace: the one whose manifest a folder has now.
     void setReplaced(const std::filesystem::path& folder);
-    /// Whether the folder still has the result of setReplaced(): the replacement did not happen.
-    bool isToReplace(const std::filesystem::path& folder) const;
+    /// Whether the folder has the result of setReplaced(): this one has taken its place.
+    bool hasReplaced(const std::filesystem::path& folder) const;
 
     std::string text() const;
     bool empty() const { return files_.empty(); }

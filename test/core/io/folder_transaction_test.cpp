@@ -271,6 +271,70 @@ TEST_F(FolderTransactionTest, UnfinishedWorkIsKeptThatWasAboutToReplaceTheFolder
     EXPECT_FALSE(fs::exists(target_ / "old.txt"));
 }
 
+TEST_F(FolderTransactionTest, UnfinishedWorkIsKeptWhereTheFolderInTheWayWasMoved) {
+    commit(target_, "old.txt", "old");
+    inKilledProcess([&] {
+        FolderTransaction transaction(target_, Unfinished::kept);
+        write(transaction.path() / "runs.txt", "1");
+        write(target_ / "notes.txt", "mine");
+        EXPECT_THROW(transaction.commit(), InputError);
+    });
+    fs::rename(target_, temporary_.path() / "elsewhere");
+    FolderTransaction next(target_, Unfinished::kept);
+    EXPECT_TRUE(fs::exists(next.path() / "runs.txt"));
+}
+
+TEST_F(FolderTransactionTest, WorkThatFollowsAReplacedResultIsKept) {
+    commit(target_, "old.txt", "old");
+    const fs::path copy = temporary_.path() / "copy";
+    fs::copy(target_, copy, fs::copy_options::recursive);
+    commit(target_, "new.txt", "new");
+    // As if killed between the exchange and the removal of the folder that was replaced.
+    fs::rename(copy, target_.string() + ".unfinished");
+    inKilledProcess([&] {
+        const FolderTransaction transaction(target_, Unfinished::kept);
+        EXPECT_FALSE(fs::exists(transaction.path() / "old.txt"));
+        write(transaction.path() / "runs.txt", "1");
+    });
+    const FolderTransaction next(target_, Unfinished::kept);
+    EXPECT_TRUE(fs::exists(next.path() / "runs.txt"));
+}
+
+// Where the file system cannot exchange two folders in one step: as if killed between the steps.
+TEST_F(FolderTransactionTest, AnExchangeInTwoStepsLosesNothing) {
+    const fs::path unfinished = target_.string() + ".unfinished";
+    const fs::path aside = unfinished.string() + ".unfinished";
+    commit(target_, "old.txt", "old");
+    fs::copy(target_, aside, fs::copy_options::recursive);
+    commit(target_, "new.txt", "new");
+    fs::rename(target_, unfinished);
+    {
+        const FolderTransaction next(target_, Unfinished::kept);
+        EXPECT_EQ(contentOf(target_ / "old.txt"), "old");
+        EXPECT_EQ(contentOf(next.path() / "new.txt"), "new");
+        EXPECT_FALSE(fs::exists(aside));
+    }
+    fs::remove_all(unfinished);
+
+    fs::copy(target_, aside, fs::copy_options::recursive);
+    commit(target_, "new.txt", "new");
+    EXPECT_TRUE(fs::exists(aside)) << "not what the result before has replaced";
+    EXPECT_EQ(complaint(target_), "");
+    EXPECT_FALSE(fs::exists(aside));
+    EXPECT_EQ(contentOf(target_ / "new.txt"), "new");
+}
+
+TEST_F(FolderTransactionTest, ACopyOfAResultIsTheUsers) {
+    commit(target_, "old.txt", "old");
+    const fs::path copy = target_.string() + ".replaced";
+    fs::copy(target_, copy, fs::copy_options::recursive);
+    commit(target_, "new.txt", "new");
+    commit(target_, "newer.txt", "newer");
+    fs::remove_all(target_);
+    commit(target_, "newest.txt", "newest");
+    EXPECT_EQ(contentOf(copy / "old.txt"), "old");
+}
+
 TEST_F(FolderTransactionTest, KeptWorkIsNotRemovedByWhoKeepsNone) {
     inKilledProcess([&] {
         const FolderTransaction transaction(target_, Unfinished::kept);
