@@ -37,7 +37,8 @@ std::vector<FlightSet> planAll(const Config& config, PlanningProblem& problem, P
         if (outcome.path) add(std::move(*outcome.path));
     };
     if (!config.fly.plan.empty()) {
-        add(readPlannedPath(config.fly.plan, problem, interrupted));
+        const PlannedPath path = readPlannedPath(config.fly.plan, config);
+        add(problem.evaluate(path.planner, path.waypoints, interrupted));
     } else {
         solve(config.planner);
     }
@@ -108,7 +109,7 @@ void printFailure(const FlightSet& set) {
 }
 
 void printSummary(const std::vector<FlightSet>& sets) {
-    if (sets.empty()) fmt::print("no path found\n");
+    if (sets.empty()) fmt::print("no path to fly\n");
     if (!sets.empty()) {
         fmt::print(
             "{:<16} {:>10} {:>7} {:>9} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12} {:>10} {:>10}\n",

@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMargin = 1.;              // of bounds around a trajectory [m]
+constexpr double kMostSteps = 1e6;          // of a trajectory
 constexpr double kMostTilt = 5. * kDegree;  // of a body that the simulated robot can follow
 
 GivenHeading headingOf(const std::string& text) {
@@ -108,6 +109,16 @@ FlightSet flightsAlong(const CheckOutcome& report, const CheckCommandOptions& op
     return set;
 }
 
+/// Every place is kept, with its covariance.
+void checkSteps(const CheckCommandOptions& options, const GivenTrajectory& trajectory,
+                const Config& config) {
+    const double steps = stepsOf(trajectory, config);
+    if (steps <= kMostSteps) return;
+    throw InputError(options.trajectory, "",
+                     fmt::format("{:.3g} steps of planner.ds = {} m; at most {}", steps,
+                                 config.belief.ds, kMostSteps));
+}
+
 FolderTransaction folderFor(const CheckCommandOptions& options, const Config& config) {
     const fs::path folder =
         options.out.empty()
@@ -131,11 +142,12 @@ int runCheck(const CheckCommandOptions& options, const std::atomic<bool>& interr
                         .file = options.trajectory,
                         .tilt = tiltOf(trajectory)};
     checkTilt(options, report.tilt);
+    checkSteps(options, trajectory, config);
     FolderTransaction folder = folderFor(options, config);
 
     {
         ProgressLine line(options.quiet);
-        report.obstruction = obstructionOf(trajectory, config, report.world);
+        report.obstruction = obstructionOf(trajectory, config, report.world, interrupted);
         report.checked = checkLocalisation(
             trajectory, config, report.world, options.check, interrupted,
             [&](double share) { line.show(fmt::format("{:.0f} % checked", 100. * share)); });

@@ -18,6 +18,7 @@ namespace photonav {
 namespace {
 
 constexpr double kFarthestPose = 1e5;  // of positions, as of the bounds of a config [m]
+constexpr double kLongest = 1e5;       // of trajectories [m]
 constexpr std::size_t kTumColumns = 8, kKittiColumns = 12;
 constexpr double kLeastSlope = 1e-3;  // a steeper motion has no direction from above
 
@@ -129,6 +130,7 @@ Row rowOf(const TextRow& row, const Columns& columns) {
 std::vector<Row> readRows(const std::string& file, const FirstLine& first) {
     const std::vector<TextRow> table =
         first.hasCommas ? readCsv(file, first.fields) : readTable(file, first.fields);
+    if (table.empty()) throw InputError(file, "", "no poses");
     const auto named = columnsNamedBy(table.front(), first.fields);
     const Columns columns = named ? *named : columnsOf(table.front(), first.fields);
     std::vector<Row> rows;
@@ -205,6 +207,10 @@ void check(const GivenTrajectory& trajectory, const std::string& file) {
         return pose.T_w_b.matrix() == poses.front().T_w_b.matrix();
     });
     if (isStill) throw InputError(file, "", "all poses are the same");
+    const double length = lengthOf(trajectory);
+    if (length > kLongest) {
+        throw InputError(file, "", fmt::format("{:.3g} m long; at most {} m", length, kLongest));
+    }
 }
 
 }  // namespace
@@ -220,6 +226,15 @@ GivenTrajectory readGivenTrajectory(const std::string& file, const Pose& T_b_c,
         check(trajectory, file);
         return trajectory;
     });
+}
+
+double lengthOf(const GivenTrajectory& trajectory) {
+    const std::vector<GivenPose>& poses = trajectory.poses;
+    double length = 0.;
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+        length += (poses[i].T_w_b.translation() - poses[i - 1].T_w_b.translation()).norm();
+    }
+    return length;
 }
 
 Eigen::AlignedBox3d boxAround(const GivenTrajectory& trajectory) {

@@ -39,9 +39,13 @@ struct GivenTrajectory {
 ///        direction of motion (during vertical motion the previous heading)
 /// @throws InputError naming file, line and reason: for a value that is not a finite number, a
 ///         position beyond 100 km, a quaternion whose norm is not within 0.1 of 1, a decreasing
-///         time, four columns without names, fewer than two poses, or poses that are all the same
+///         time, four columns without names, fewer than two poses, poses that are all the same, or
+///         a length beyond 100 km
 GivenTrajectory readGivenTrajectory(const std::string& file, const Pose& T_b_c,
                                     const GivenHeading& heading = {});
+
+/// The length of the straight motions between the positions [m].
+double lengthOf(const GivenTrajectory& trajectory);
 
 /// The bounding box of the positions, world frame [m].
 Eigen::AlignedBox3d boxAround(const GivenTrajectory& trajectory);

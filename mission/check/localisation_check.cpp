@@ -256,6 +256,15 @@ const CheckedPlace& CheckedTrajectory::worst() const {
                              });
 }
 
+double stepsOf(const GivenTrajectory& trajectory, const Config& config) {
+    const std::vector<GivenPose>& poses = trajectory.poses;
+    double way = 0.;
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+        way += wayBetween(poses[i - 1].T_w_b, poses[i].T_w_b, config.rotationWeight).second;
+    }
+    return way / config.belief.ds;
+}
+
 CheckedTrajectory checkLocalisation(const GivenTrajectory& trajectory, const Config& config,
                                     const World& world, const CheckOptions& options,
                                     const std::atomic<bool>& interrupted,

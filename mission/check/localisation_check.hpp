@@ -77,6 +77,10 @@ struct CheckedTrajectory {
     const CheckedPlace& worst() const;
 };
 
+/// The way along a trajectory in steps of planner.ds, with turns counted: about as many places are
+/// looked at by checkLocalisation().
+double stepsOf(const GivenTrajectory& trajectory, const Config& config);
+
 /// Propagates the initial belief of the config along a trajectory, with an image every planner.ds.
 /// Images are evaluated as by the tracker of a flight (flightAlignment(), LossOptions):
 ///

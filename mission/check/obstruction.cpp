@@ -29,7 +29,7 @@ class Stretches {
 }  // namespace
 
 Obstruction obstructionOf(const GivenTrajectory& trajectory, const Config& config,
-                          const World& world) {
+                          const World& world, const std::atomic<bool>& interrupted) {
     Obstruction found{.leastClearance = kInfinity};
     Stretches collisions, outside;
     const auto see = [&](const Eigen::Vector3d& p_w, double length) {
@@ -45,7 +45,7 @@ Obstruction obstructionOf(const GivenTrajectory& trajectory, const Config& confi
     for (const GivenPose& pose : trajectory.poses) {
         const Eigen::Vector3d way = pose.T_w_b.translation() - last;
         const int steps = static_cast<int>(std::ceil(way.norm() / kLookEvery));
-        for (int k = 1; k <= steps; ++k) {
+        for (int k = 1; k <= steps && !interrupted; ++k) {
             const double share = static_cast<double>(k) / steps;
             see(last + share * way, length + share * way.norm());
         }

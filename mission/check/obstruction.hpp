@@ -6,6 +6,7 @@
 
 #include "check/given_trajectory.hpp"
 #include "config/config.hpp"
+#include "problem/interruption_scope.hpp"
 #include "problem/world.hpp"
 
 namespace photonav {
@@ -24,7 +25,9 @@ struct Obstruction {
 };
 
 /// Checks the poses and the straight motions between them, every 2 cm.
+/// @param interrupted when it is set, the rest of the trajectory is left out
 Obstruction obstructionOf(const GivenTrajectory& trajectory, const Config& config,
-                          const World& world);
+                          const World& world,
+                          const std::atomic<bool>& interrupted = kNotInterrupted);
 
 }  // namespace photonav

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "problem/planned_path.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -14,6 +16,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
+constexpr double kMostSteps = 1e5;
+constexpr double kMostTurns = 1e3;  // [rad]
+
 Place placeFrom(const json& point) {
     const auto& p = point.at("position");
     Place place{{p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>()},
@@ -22,6 +27,39 @@ Place placeFrom(const json& point) {
         throw std::runtime_error("not finite");
     }
     return place;
+}
+
+std::string textAt(const json& result, const char* key, const std::string& otherwise) {
+    const auto value = result.find(key);
+    return value != result.end() && value->is_string() ? value->get<std::string>() : otherwise;
+}
+
+/// A plan is within the bounds of its config. All of its steps are kept, with their beliefs.
+void checkPlaces(const std::vector<Place>& waypoints, const std::string& file,
+                 const Config& config) {
+    constexpr double kRounding = 1e-6;  // [m]
+    const auto fail = [&](const std::string& reason) { throw InputError(file, "path", reason); };
+    const Eigen::AlignedBox3d bounds(config.bounds.min().array() - kRounding,
+                                     config.bounds.max().array() + kRounding);
+    double steps = 0.;
+    for (std::size_t i = 0; i < waypoints.size(); ++i) {
+        const auto& p_w = waypoints[i].position;
+        if (!bounds.contains(p_w)) {
+            fail(fmt::format("({}, {}, {}) is out of the bounds of its config", p_w.x(), p_w.y(),
+                             p_w.z()));
+        }
+        if (std::abs(*waypoints[i].yaw) > kMostTurns) {
+            fail(fmt::format("a heading of {} rad", *waypoints[i].yaw));
+        }
+        if (i == 0) continue;
+        const double turn = std::abs(*waypoints[i].yaw - *waypoints[i - 1].yaw);
+        const double way = (p_w - waypoints[i - 1].position).norm() + config.rotationWeight * turn;
+        steps += std::max(1., way / config.belief.ds);
+    }
+    if (steps > kMostSteps) {
+        fail(fmt::format("{:.3g} steps of planner.ds = {} m; at most {}", steps, config.belief.ds,
+                         kMostSteps));
+    }
 }
 
 }  // namespace
@@ -44,8 +82,7 @@ PlanSource findPlan(const std::string& argument) {
     return {config.string(), result};
 }
 
-EvaluatedPath readPlannedPath(const fs::path& resultFile, PlanningProblem& problem,
-                              const std::atomic<bool>& interrupted) {
+PlannedPath readPlannedPath(const fs::path& resultFile, const Config& config) {
     std::ifstream stream = openToRead(resultFile.string());
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (nestingDepth(text) > kMostJsonDepth) {
@@ -53,10 +90,11 @@ EvaluatedPath readPlannedPath(const fs::path& resultFile, PlanningProblem& probl
     }
     const json result = json::parse(text, nullptr, false);
     if (!result.is_object()) throw InputError(resultFile.string(), "", "not a JSON object");
-    if (result.value("command", "") != "plan") {
+    if (textAt(result, "command", "") != "plan") {
         throw InputError(resultFile.string(), "command", "not a result of photonav plan");
     }
-    std::vector<Place> waypoints;
+    PlannedPath path{textAt(result, "planner", "plan"), {}};
+    std::vector<Place>& waypoints = path.waypoints;
     try {
         for (const json& point : result.at("path")) {
             if (point.at("waypoint").get<bool>()) waypoints.push_back(placeFrom(point));
@@ -65,7 +103,8 @@ EvaluatedPath readPlannedPath(const fs::path& resultFile, PlanningProblem& probl
         throw InputError(resultFile.string(), "path", "not as photonav plan writes it");
     }
     if (waypoints.size() < 2) throw InputError(resultFile.string(), "path", "no path was found");
-    return problem.evaluate(result.value("planner", "plan"), waypoints, interrupted);
+    checkPlaces(waypoints, resultFile.string(), config);
+    return path;
 }
 
 }  // namespace photonav

@@ -3,9 +3,10 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <string>
+#include <vector>
 
-#include "problem/planning_problem.hpp"
+#include "config/config.hpp"
 
 namespace photonav {
 
@@ -19,10 +20,15 @@ struct PlanSource {
 /// @throws InputError for a folder that has no plan
 PlanSource findPlan(const std::string& argument);
 
-/// Reads the waypoints of a result.json and evaluates the path in a problem.
-/// @throws InputError naming file and key for a result of another command or without a path
-/// @throws RenderingStopped when it is interrupted inside a large view
-EvaluatedPath readPlannedPath(const std::filesystem::path& resultFile, PlanningProblem& problem,
-                              const std::atomic<bool>& interrupted = kNotInterrupted);
+struct PlannedPath {
+    std::string planner;
+    std::vector<Place> waypoints;  ///< at least two, with headings
+};
+
+/// Reads the waypoints of a result.json.
+/// @param config that of the plan
+/// @throws InputError naming file and key for a result of another command, one without a path, a
+///         waypoint out of the config's bounds, or a path of more than 1e5 steps of planner.ds
+PlannedPath readPlannedPath(const std::filesystem::path& resultFile, const Config& config);
 
 }  // namespace photonav

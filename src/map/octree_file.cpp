@@ -175,8 +175,11 @@ void readTextured(NodeReader& reader, Node& node, int version) {
         if ((observed >> f & 1U) == 0) continue;
         node.faces[f] = {reader.read<float>(), reader.read<float>()};
         const FaceTexture& face = node.faces[f];
-        if (!(face.mean >= 0.F && face.mean <= 1.F) || !(face.weight > 0.F)) {
+        if (!(face.mean >= 0.F && face.mean <= 1.F)) {
             reader.fail("damaged: the grey value of a face is not in [0, 1]");
+        }
+        if (!(face.weight > 0.F && std::isfinite(face.weight))) {
+            reader.fail("damaged: the weight of a face is not a positive number");
         }
     }
     if ((observed >> 6U) == 0) return;

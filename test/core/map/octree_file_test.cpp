@@ -212,6 +212,16 @@ TEST_F(MapFile, DamagedOrForeignFilesAreNamed) {
     EXPECT_NE(complaint("deep.ot").find("below the cells"), std::string::npos);
 }
 
+TEST_F(MapFile, WeightsOfFacesAreNumbers) {
+    TexturedOcTree map(0.1);
+    map.updateNode(octomap::point3d(0.F, 0.F, 0.F), true)->faces[kTop] = {
+        0.5F, std::numeric_limits<float>::infinity()};
+    saveTexturedOcTree(map, file("heavy.ot"));
+    EXPECT_NE(complaint("heavy.ot").find("the weight of a face is not a positive number"),
+              std::string::npos)
+        << complaint("heavy.ot");
+}
+
 TEST_F(MapFile, HeadersThatCannotBeAreRefusedBeforeTheirNodesAreRead) {
     const auto ofHeader = [&](const std::string& size, const std::string& resolution) {
         std::ofstream(file("map.ot"), std::ios::binary)

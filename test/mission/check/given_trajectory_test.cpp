@@ -42,6 +42,20 @@ TEST_F(GivenTrajectoryTest, CameraPosesBecomeBodyPoses) {
     EXPECT_TRUE(trajectory.poses[0].T_w_b.isApprox(T_w_b, 1e-9));
 }
 
+TEST_F(GivenTrajectoryTest, AFileOfBlankRowsHasNoPoses) {
+    for (const char* text : {",", " ,\n", ",\n,\n", "\v"}) {
+        EXPECT_NE(reasonFor(text).find("given.txt: no poses"), std::string::npos)
+            << text << ": " << reasonFor(text);
+    }
+}
+
+TEST_F(GivenTrajectoryTest, IsNotLongerThanAnyFlight) {
+    EXPECT_NE(reasonFor("-9e4,0,0\n9e4,0,0\n").find("1.8e+05 m long; at most 100000 m"),
+              std::string::npos)
+        << reasonFor("-9e4,0,0\n9e4,0,0\n");
+    EXPECT_EQ(lengthOf(read("0,0,0\n0,3,4\n0,3,5\n")), 6.);
+}
+
 TEST_F(GivenTrajectoryTest, TwelveNumbersAreThePoseOfACameraWithoutTime) {
     const GivenTrajectory trajectory = read("0 -1 0 1 1 0 0 2 0 0 1 3\n1 0 0 4 0 1 0 5 0 0 1 6\n");
     EXPECT_EQ(trajectory.format, TrajectoryFormat::kitti);
