@@ -9,6 +9,7 @@
 #include "figures/sweep_figures.hpp"
 #include "geometry/constants.hpp"
 #include "io/atomic_file.hpp"
+#include "render/interruptible_views.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 
@@ -26,13 +27,20 @@ constexpr const char* kBlank = "-";  // in the table
 
 /// The cheapest path of the first planner for every alpha with its beliefs, coloured from dark
 /// (alpha 0) to bright (1). Runs keep headings alone: in se3 the beliefs are those of level flight.
+/// Without them if the sweep was interrupted and its views are large.
 std::vector<DrawnPath> pathsByAlpha(const Config& config, const World& world,
-                                    const std::vector<SweepRun>& runs) {
+                                    const SweepOutcome& outcome) {
+    const std::atomic<bool> interrupted = outcome.interrupted;
     std::vector<DrawnPath> paths;
     PlanningProblem problem(config, world);  // whose views all share
-    for (const auto& [alpha, run] : cheapestRuns(config.sweep.planners.front(), runs)) {
-        const EvaluatedPath path = PlanningProblem(problem, alpha).evaluate("", run->path);
-        paths.push_back(drawnPath(path, config.camera.T_b_c()));
+    for (const auto& [alpha, run] : cheapestRuns(config.sweep.planners.front(), outcome.runs)) {
+        try {
+            const EvaluatedPath path =
+                PlanningProblem(problem, alpha).evaluate("", run->path, interrupted);
+            paths.push_back(drawnPath(path, config.camera.T_b_c()));
+        } catch (const RenderingStopped&) {
+            return {};
+        }
         paths.back().name = fmt::format("alpha {}", alpha);
         paths.back().color = viridis(0.94 * alpha);
     }
@@ -121,7 +129,7 @@ void writeSweepReport(const fs::path& folder, const Config& config, const World&
                     config.vertices, counted(config.sweep.planners.size(), "planner"),
                     counted(config.sweep.alphas.size(), "value", " of alpha"),
                     counted(config.sweep.runs, "seed"));
-    report.paths = pathsByAlpha(config, world, outcome.runs);
+    report.paths = pathsByAlpha(config, world, outcome);
 
     writeSweepTables(folder, result, reference);
     writeFileAtomically(folder / "sweep.png", sweepFigure(outcome.name, cells).png());

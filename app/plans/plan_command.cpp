@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <set>
 
 #include "io/error.hpp"
@@ -24,7 +25,12 @@ void printSummary(const PlanOutcome& outcome, const std::optional<EvaluatedPath>
         fmt::print("{:<16} {:>8.2f} m {:>12.3g} {:>12.3g} {:>10.4g}\n", path.planner, path.length,
                    path.meanTrace, path.goalTrace, path.cost);
     };
-    if (!outcome.path) fmt::print("no path found with {} vertices\n", outcome.vertices);
+    const bool isFound = !outcome.progress.empty() && std::isfinite(outcome.progress.back().cost);
+    if (!outcome.path && isFound) {
+        fmt::print("interrupted before the path was evaluated\n");
+    } else if (!outcome.path) {
+        fmt::print("no path found with {} vertices\n", outcome.vertices);
+    }
     if (outcome.path && !outcome.isSolved()) fmt::print("failed: the cost is not finite\n");
     if (outcome.path || baseline) {
         fmt::print("{:<16} {:>10} {:>12} {:>12} {:>10}\n", "planner", "length", "mean trace",

@@ -57,7 +57,8 @@ std::optional<EvaluatedPath> PlanningProblem::descend(const std::vector<Pose>& w
 
 EvaluatedPath PlanningProblem::evaluate(const BeliefPlanner& planner) {
     const auto& path = planner.bestPath();
-    return evaluate(planner.getName(), std::vector<const ob::State*>(path.begin(), path.end()));
+    return evaluate(planner.getName(), std::vector<const ob::State*>(path.begin(), path.end()),
+                    planner.movedRoot());
 }
 
 EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
@@ -83,14 +84,16 @@ EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
 }
 
 EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
-                                        const std::vector<const ob::State*>& path) {
+                                        const std::vector<const ob::State*>& path,
+                                        const std::optional<Belief>& root) {
     EvaluatedPath evaluated;
     evaluated.planner = planner;
-    evaluated.points = evaluator().evaluate(path);
+    evaluated.points = evaluator().evaluate(path, root);
     const double integral = chargeOf(evaluated.points, CostRule::integral);
     const BeliefPoint& goal = evaluated.points.back();
     evaluated.cost = goal.cost;
-    if (goal.cost > 0.) evaluated.lengthShare = config_.belief.alpha * goal.distance / goal.cost;
+    const double added = goal.cost - evaluated.points.front().cost;
+    if (added > 0.) evaluated.lengthShare = config_.belief.alpha * goal.distance / added;
     evaluated.length = goal.length;
     evaluated.meanTrace = goal.distance > 0. ? integral / goal.distance : goal.trace;
     evaluated.goalTrace = goal.trace;

@@ -149,15 +149,24 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
     outcome.viewSeconds = model.field().seconds();
     outcome.beliefSeconds = model.seconds();
     outcome.tree = drawnEdges(*planner);
-    outcome.audit = auditTree(*planner);
-    const auto& path = planner->bestPath();
-    if (!path.empty()) {
-        outcome.path = evaluate(*planner);
-        outcome.plannerCost = planner->bestCost();
-        const double replayed = planner->model().evaluate({path.begin(), path.end()}).back().cost;
-        includePath(outcome.audit, outcome.plannerCost, replayed);
+    const InterruptionScope scope = interruptedBy(interrupted);
+    try {
+        judge(*planner, outcome);
+    } catch (const RenderingStopped&) {  // views that the planner has not rendered
+        outcome.path.reset();
     }
     return outcome;
+}
+
+/// Checks the tree, and evaluates the path.
+void PlanningProblem::judge(const BeliefPlanner& planner, PlanOutcome& outcome) {
+    outcome.audit = auditTree(planner);
+    const auto& path = planner.bestPath();
+    if (path.empty()) return;
+    outcome.path = evaluate(planner);
+    outcome.plannerCost = planner.bestCost();
+    const auto replayed = planner.model().evaluate({path.begin(), path.end()}, planner.movedRoot());
+    includePath(outcome.audit, outcome.plannerCost, replayed.back().cost);
 }
 
 std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& name,

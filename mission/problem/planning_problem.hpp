@@ -47,9 +47,10 @@ using TreeSegment = std::array<Eigen::Vector3f, 2>;  ///< end points of an edge,
 
 /// Result and effort of planning.
 struct PlanOutcome {
-    std::optional<EvaluatedPath> path;  ///< none: the goal was not reached
-    double plannerCost = 0.;            ///< cost of the path by the planner's own model [m]
-    double alpha = 0.;                  ///< alpha with which the planner searched
+    /// None: the goal was not reached, or the path's evaluation was interrupted in a large view.
+    std::optional<EvaluatedPath> path;
+    double plannerCost = 0.;  ///< cost of the path by the planner's own model [m]
+    double alpha = 0.;        ///< alpha with which the planner searched
     /// Vertices of the tree or roadmap, samples drawn, views rendered, views taken from the cache,
     /// and steps at which compounding of fourth order was replaced by second order.
     std::size_t vertices = 0, iterations = 0, views = 0, cacheHits = 0, fallbacks = 0;
@@ -165,7 +166,8 @@ class PlanningProblem {
     const World& world() const { return world_; }
     /// The belief model by which paths are evaluated.
     BeliefModel& evaluator();
-    /// Evaluates the solution of a planner. The planner must have one.
+    /// Evaluates the solution of a planner, from the belief that moveRoot() has set, if it has. The
+    /// planner must have a solution.
     EvaluatedPath evaluate(const BeliefPlanner& planner);
     /// Evaluates a path of any OMPL planner.
     EvaluatedPath evaluate(const std::string& planner, ompl::geometric::PathGeometric& path);
@@ -187,8 +189,11 @@ class PlanningProblem {
     bool hasQuickViews() const;
     std::shared_ptr<const ViewSource> interruptibleViews() const;
     std::shared_ptr<BeliefModel> plannersModel();
+    void judge(const BeliefPlanner& planner, PlanOutcome& outcome);
+    /// @param root belief at the first state; none: that of the config
     EvaluatedPath evaluate(const std::string& planner,
-                           const std::vector<const ompl::base::State*>& path);
+                           const std::vector<const ompl::base::State*>& path,
+                           const std::optional<Belief>& root = {});
 
     Config config_;  // kappa may be automatic until it is first needed
     const World& world_;

@@ -3,26 +3,42 @@
 
 #include <set>
 
+#include "render/interruptible_views.hpp"
+
 namespace photonav {
 namespace ob = ompl::base;
+
+namespace {
+
+void grow(BeliefPlanner& planner, PlanningProblem& problem, const std::atomic<bool>& interrupted,
+          TreeStage& stage) {
+    const InterruptionScope scope = problem.interruptedBy(interrupted);
+    planner.solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+    stage.vertices = planner.vertices();
+    stage.tree = drawnEdges(planner);
+    if (planner.bestPath().empty()) return;
+    for (const ob::State* state : planner.bestPath()) {
+        stage.path.push_back(planner.model().space().position(state));
+    }
+    stage.cost = problem.evaluate(planner).cost;
+}
+
+}  // namespace
 
 TreeEvolution growInStages(PlanningProblem& problem, const std::string& name,
                            const std::vector<std::size_t>& vertices,
                            const std::atomic<bool>& interrupted) {
     const auto planner = problem.makePlanner(name);
-    const FlightSpace& space = planner->model().space();
     TreeEvolution evolution{planner->getName(), {}};
     for (const std::size_t stop : vertices) {
         planner->params().setParam("max_vertices", std::to_string(stop));
-        planner->solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
         TreeStage& stage = evolution.stages.emplace_back();
-        stage.vertices = planner->vertices();
-        stage.tree = drawnEdges(*planner);
-        if (planner->bestPath().empty()) continue;
-        for (const ob::State* state : planner->bestPath()) {
-            stage.path.push_back(space.position(state));
+        try {
+            grow(*planner, problem, interrupted, stage);
+        } catch (const RenderingStopped&) {
+            evolution.stages.pop_back();
+            break;
         }
-        stage.cost = problem.evaluate(*planner).cost;
     }
     return evolution;
 }

@@ -11,6 +11,7 @@
 #include "geometry/constants.hpp"
 #include "io/number.hpp"
 #include "problem/planning_problem.hpp"
+#include "render/interruptible_views.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
@@ -112,6 +113,7 @@ class Session {
                      toNumber(properties.at("time REAL")),
                      plan_.statusOf(noPath),
                      {}};
+        if (hasPath) setPath(run, evaluated(ours));
         properties["seed INTEGER"] = std::to_string(run.item.seed);
         properties["vertices INTEGER"] = std::to_string(run.vertices);
         properties["views INTEGER"] = std::to_string(run.views);
@@ -121,15 +123,21 @@ class Session {
         }
         samples_.push_back(sample);
         if (hasPath) {
-            const EvaluatedPath path = plan_.evaluate(ours);
-            setPath(run, path);
             run.status = "done";
-            properties["cost REAL"] = fmt::format("{}", path.cost);
-            properties["path length REAL"] = fmt::format("{}", path.length);
-            properties["mean trace REAL"] = fmt::format("{}", path.meanTrace);
-            properties["trace at goal REAL"] = fmt::format("{}", path.goalTrace);
+            properties["cost REAL"] = fmt::format("{}", run.cost);
+            properties["path length REAL"] = fmt::format("{}", run.length);
+            properties["mean trace REAL"] = fmt::format("{}", run.meanTrace);
+            properties["trace at goal REAL"] = fmt::format("{}", run.goalTrace);
         }
         outcome_.runs.push_back(run);
+    }
+
+    EvaluatedPath evaluated(const BeliefPlanner& planner) {
+        try {
+            return plan_.evaluate(planner);
+        } catch (const RenderingStopped&) {
+            throw Interrupted();
+        }
     }
 
     void addLastSamples() {

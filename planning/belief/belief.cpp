@@ -200,7 +200,8 @@ Pose BeliefModel::cameraPose(const Motion& motion, int k) const {
            field_->mount();
 }
 
-std::vector<BeliefPoint> BeliefModel::evaluate(const std::vector<const ob::State*>& path) {
+std::vector<BeliefPoint> BeliefModel::evaluate(const std::vector<const ob::State*>& path,
+                                               const std::optional<Belief>& root) {
     std::vector<BeliefPoint> points;
     if (path.empty()) return points;
     BeliefPoint start{.T_w_b = space_.bodyPose(path.front()),
@@ -208,7 +209,13 @@ std::vector<BeliefPoint> BeliefModel::evaluate(const std::vector<const ob::State
                       .traceBefore = trace(initialCamera_),
                       .isWaypoint = true};
     start.information = informationAt(start.T_w_b);
-    if (options_.viewAtStart) start.covariance = updated(initialCamera_, start.information);
+    if (root) {
+        start.covariance = cameraCovariance(path.front(), *root);
+        start.traceBefore = trace(start.covariance);
+        start.cost = root->cost;
+    } else if (options_.viewAtStart) {
+        start.covariance = updated(initialCamera_, start.information);
+    }
     start.trace = trace(start.covariance);
     points.push_back(start);
     for (std::size_t i = 1; i < path.size(); ++i) evaluateMotion(path[i - 1], path[i], points);

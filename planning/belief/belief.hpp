@@ -117,10 +117,11 @@ class BeliefModel {
         return lowerBound(motion.length) + leastCharge(motion);
     }
 
-    /// The belief at every step of a path that begins with the initial covariance. A slow and
-    /// independent implementation (compound() in the camera frame, Eigen's LU, its own poses and
-    /// costs) to check propagate().
-    std::vector<BeliefPoint> evaluate(const std::vector<const ompl::base::State*>& path);
+    /// The belief at every step of a path. A slow and independent implementation (compound() in the
+    /// camera frame, Eigen's LU, its own poses and costs) to check propagate().
+    /// @param root belief at the first state; none: the initial covariance, and the view from there
+    std::vector<BeliefPoint> evaluate(const std::vector<const ompl::base::State*>& path,
+                                      const std::optional<Belief>& root = {});
 
     /// One motion of evaluate(): appends its steps to `points`.
     /// @param points the last one is the belief at the beginning of the motion

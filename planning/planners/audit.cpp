@@ -17,15 +17,6 @@ Audit auditTree(const BeliefPlanner& planner) {
     std::vector<BeliefPoint> replayed;
     replayed.reserve(nodes.size());
     Audit audit;
-    const auto rootPoint = [&](const TreeNode& node) {
-        BeliefPoint point = model.evaluate({node.state}).front();
-        if (const auto& root = planner.movedRoot()) {
-            point.covariance = model.cameraCovariance(node.state, *root);
-            point.trace = weightedTrace(root->covariance, model.options().characteristicLength);
-            point.cost = root->cost;
-        }
-        return point;
-    };
     for (const TreeNode& node : nodes) {
         if (!node.covariance) {  // a planner without beliefs: its cost is the path flown
             BeliefPoint point{};
@@ -36,7 +27,7 @@ Audit auditTree(const BeliefPlanner& planner) {
             }
             replayed.push_back(point);
         } else if (node.parent < 0) {
-            replayed.push_back(rootPoint(node));
+            replayed.push_back(model.evaluate({node.state}, planner.movedRoot()).front());
         } else {
             std::vector<BeliefPoint> way{replayed[node.parent]};
             model.evaluateMotion(nodes[node.parent].state, node.state, way);

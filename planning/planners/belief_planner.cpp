@@ -151,10 +151,10 @@ void BeliefPlanner::grow(ob::State* target, const ob::PlannerTerminationConditio
     failures_ = 0;
     Vertex& fresh = *extension->fresh;
     const bool isReached = isGoalSample && si_->distance(fresh.state, target) == 0.;
-    if (isReached) goalSamples_.push_back(&fresh);
     fresh.isGoal = isReached || pdef_->getGoal()->isSatisfied(fresh.state);
     if (fresh.isGoal) goals_.push_back(&fresh);
     connect(fresh, near(fresh, extension->nearest), ptc);
+    if (isReached) goalSamples_.push_back(&fresh);  // unless a view has thrown: then once more
     neighbours_->add(&fresh);
     if (++update_.verticesAdded == update_.verticesInvalidated) updated_.clear();
 }

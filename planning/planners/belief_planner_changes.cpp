@@ -143,12 +143,17 @@ void BeliefPlanner::joinRootToBest() {
     if (states.size() < 2) return;
     const FlightSpace& space = model_->space();
     const ob::State* root = roots_.front().vertex->state;
+    const Eigen::Vector3d here = space.position(root);
     const auto at = [&](std::size_t i) { return space.position(states[i]); };
+    constexpr double kSame = 1e-9;  // [m]
     std::size_t next = 1;
     double least = kInfinity;
     for (std::size_t i = 1; i < states.size(); ++i) {
-        const double distance = distanceToSegment(space.position(root), at(i - 1), at(i));
-        if (distance > least) continue;
+        const double distance = distanceToSegment(here, at(i - 1), at(i));
+        // Of two legs that meet at the root, the second; but not a way back along the way out.
+        const bool isAtNextLeg = i == next + 1 && distance <= least + kSame &&
+                                 (here - at(i - 1)).norm() <= distance + kSame;
+        if (distance >= least - kSame && !isAtNextLeg) continue;
         least = distance;
         next = i;
     }

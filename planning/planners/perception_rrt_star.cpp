@@ -53,18 +53,22 @@ std::vector<PerceptionRRTstar::Candidate> PerceptionRRTstar::candidatesOf(
 /// that cannot improve ends the search. A vertex has a parent even if its cost is not finite.
 void PerceptionRRTstar::chooseParent(Vertex& fresh, std::vector<Candidate>& candidates) {
     Branch& branch = at(fresh);
+    branch.belief.cost = kInfinity;  // if a view throws, the vertex stays outside of the tree
+    Belief reached;
+    const Candidate* best = nullptr;
     for (Candidate& candidate : candidates) {
-        const Belief& origin = belief(*candidate.vertex);
-        const bool hasParent = branch.parent != nullptr;
+        const Belief& origin = at(*candidate.vertex).belief;
         const double least = origin.cost + model_->lowerBound(candidate.motion.length);
-        if (hasParent && least >= branch.belief.cost) break;
+        if (best != nullptr && least >= reached.cost) break;
         if (!isFree(candidate, fresh)) continue;
         const Belief arrival = propagate(origin, candidate.motion, false);
-        if (hasParent && arrival.cost >= branch.belief.cost) continue;
-        branch.belief = arrival;
-        branch.parent = candidate.vertex;
-        branch.motion = candidate.motion;
+        if (best != nullptr && arrival.cost >= reached.cost) continue;
+        reached = arrival;
+        best = &candidate;
     }
+    branch.belief = reached;
+    branch.parent = best->vertex;
+    branch.motion = best->motion;
     at(*branch.parent).children.push_back(&fresh);
 }
 
@@ -82,29 +86,28 @@ void PerceptionRRTstar::rewire(Vertex& fresh, std::vector<Candidate>& candidates
         if (!isFree(candidate, fresh)) continue;
         const Belief arrival = propagate(origin.belief, candidate.motion, true);
         if (arrival.cost >= branch.belief.cost) continue;
+        updateSubtree(vertex, arrival);
         std::erase(at(*branch.parent).children, &vertex);
         branch.parent = &fresh;
         branch.motion = std::move(candidate.motion);
         branch.backward = true;
-        branch.belief = arrival;
         origin.children.push_back(&vertex);
-        updateSubtree(vertex);
     }
 }
 
-/// Brings the beliefs of all descendants up to date. Their cost can rise: a cheaper way to a vertex
-/// may arrive there with a poorer covariance.
-void PerceptionRRTstar::updateSubtree(const Vertex& root) {
-    std::vector<const Vertex*> open{&root};
-    while (!open.empty()) {
-        const Branch& parent = at(*open.back());
-        open.pop_back();
-        for (const Vertex* vertex : parent.children) {
+/// Gives a vertex a belief and brings those of all descendants up to date. Their cost can rise: a
+/// cheaper way to a vertex may arrive there with a poorer covariance. If a view throws, all beliefs
+/// stay as they were.
+void PerceptionRRTstar::updateSubtree(const Vertex& root, const Belief& belief) {
+    std::vector<std::pair<Branch*, Belief>> subtree{{&at(root), belief}};
+    for (std::size_t i = 0; i < subtree.size(); ++i) {
+        const auto [parent, arrival] = subtree[i];
+        for (const Vertex* vertex : parent->children) {
             Branch& child = at(*vertex);
-            child.belief = propagate(parent.belief, child.motion, child.backward);
-            open.push_back(vertex);
+            subtree.emplace_back(&child, propagate(arrival, child.motion, child.backward));
         }
     }
+    for (const auto& [branch, updated] : subtree) branch->belief = updated;
 }
 
 void PerceptionRRTstar::offerBestGoal() {
@@ -182,10 +185,7 @@ void PerceptionRRTstar::renewBeliefs() {
             informed_.push_back(&vertex);
         }
     }
-    for (const Root& root : roots_) {
-        at(*root.vertex).belief = root.belief;
-        updateSubtree(*root.vertex);
-    }
+    for (const Root& root : roots_) updateSubtree(*root.vertex, root.belief);
     offerBestGoal();
 }
 
@@ -198,12 +198,13 @@ bool PerceptionRRTstar::hasStaleViews(const Motion& motion) const {
 void PerceptionRRTstar::finish(const ompl::base::PlannerTerminationCondition& ptc) {
     while (!informed_.empty() && !ptc) {
         Vertex* const vertex = informed_.back();
+        if (vertex != nullptr && at(*vertex).parent != nullptr) {
+            std::vector<Vertex*> others = near(*vertex, at(*vertex).parent);
+            std::erase(others, vertex);
+            auto candidates = candidatesOf(*vertex, others);
+            rewire(*vertex, candidates);
+        }
         informed_.pop_back();
-        if (vertex == nullptr || at(*vertex).parent == nullptr) continue;
-        std::vector<Vertex*> others = near(*vertex, at(*vertex).parent);
-        std::erase(others, vertex);
-        auto candidates = candidatesOf(*vertex, others);
-        rewire(*vertex, candidates);
     }
     offerBestGoal();
 }
@@ -215,8 +216,7 @@ std::vector<Vertex*> PerceptionRRTstar::replaceRoots(const Root& root,
     tree_.resize(vertices_.size());
     auto candidates = candidatesOf(vertex, near);
     if (near.empty() || attach(vertex, candidates)) reverseWayTo(vertex);
-    at(vertex).belief = root.belief;
-    updateSubtree(vertex);
+    updateSubtree(vertex, root.belief);
     std::erase_if(candidates, [&](const Candidate& c) { return at(*c.vertex).parent == nullptr; });
     rewire(vertex, candidates);
     offerBestGoal();

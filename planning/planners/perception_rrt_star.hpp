@@ -60,7 +60,7 @@ class PerceptionRRTstar : public BeliefPlanner {
     std::vector<Vertex*> unreached(const Vertex& root);
     void chooseParent(Vertex& fresh, std::vector<Candidate>& candidates);
     void rewire(Vertex& fresh, std::vector<Candidate>& candidates);
-    void updateSubtree(const Vertex& root);
+    void updateSubtree(const Vertex& root, const Belief& belief);
     bool hasStaleViews(const Motion& motion) const;
     void offerBestGoal();
     bool isFree(Candidate& candidate, const Vertex& fresh) const;

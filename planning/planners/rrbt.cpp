@@ -48,10 +48,19 @@ void RRBT::propagateQueue(const ob::PlannerTerminationCondition& ptc) {
         std::pop_heap(queue_.begin(), queue_.end(), costsMore);
         Node& node = *queue_.back();
         queue_.pop_back();
-        for (Roadmap::Edge* edge : roadmap_.of(node.vertex)) {
-            if (node.isRemoved) break;
-            if (Roadmap::isFree(*edge, *si_)) propagateOver(node, *edge);
+        try {
+            propagateFrom(node);
+        } catch (...) {  // a view: the rest of its edges follows in the next solve()
+            enqueue(node);
+            throw;
         }
+    }
+}
+
+void RRBT::propagateFrom(Node& node) {
+    for (Roadmap::Edge* edge : roadmap_.of(node.vertex)) {
+        if (node.isRemoved) break;
+        if (Roadmap::isFree(*edge, *si_)) propagateOver(node, *edge);
     }
 }
 

@@ -59,6 +59,7 @@ class RRBT : public BeliefPlanner {
     std::vector<Vertex*> replaceRoots(const Root& root, const std::vector<Vertex*>& near) override;
 
     void propagateQueue(const ompl::base::PlannerTerminationCondition& ptc);
+    void propagateFrom(Node& node);
     void propagateOver(Node& node, Roadmap::Edge& edge);
     void appendBelief(Vertex& vertex, Node& parent, const Belief& belief);
     bool isAtLeastAsGood(const Belief& a, const Belief& b, double epsilon) const;

@@ -28,5 +28,20 @@ TEST(InterruptionScope, EndsLargeViewsWhileItIsThere) {
     EXPECT_GT(problem.informationAt(T_w_b).trace(), 0.);
 }
 
+/// The views along a path of rrt_star are rendered by nobody before.
+TEST(Interruption, EndsTheEvaluationOfAPath) {
+    const Config config = loadConfig(PHOTONAV_SOURCE_DIR "/config/two_textures.yaml",
+                                     {"camera.width=2000", "camera.height=1100",
+                                      "planner.vertices=200", "planner.view_at_start=false"});
+    const World world(config);
+    PlanningProblem problem(config, world);
+    std::atomic<bool> interrupted = false;
+    const PlanOutcome outcome = problem.solve(
+        "rrt_star", interrupted,
+        [&](const PlanProgress& progress) { interrupted = progress.vertices >= config.vertices; });
+    EXPECT_TRUE(std::isfinite(outcome.progress.back().cost));
+    EXPECT_FALSE(outcome.path);
+}
+
 }  // namespace
 }  // namespace photonav

@@ -37,6 +37,24 @@ TEST(PlanningProblem, AnotherTradeOffSharesTheViews) {
     EXPECT_LT(shared.views - before.views, fresh.views);
 }
 
+TEST(PlanningProblem, PathsBeginWithTheBeliefOfAMovedRoot) {
+    const Config config = smallProblem(0.1);
+    const World world(config);
+    PlanningProblem problem(config, world);
+    for (const char* name : {"belief_rrt_star", "rrt_star"}) {
+        const auto planner = problem.makePlanner(name);
+        ompl::base::ScopedState<> here(problem.spaceInformation());
+        problem.space().setState(here.get(), {5., 2., 2.}, 0.);
+        const Belief belief{1e-3 * Matrix6::Identity(), 1.5};
+        planner->moveRoot(here.get(), belief);
+        const PlanOutcome outcome = problem.solve(planner);
+        ASSERT_TRUE(outcome.path) << name;
+        EXPECT_LT(outcome.audit.maxCostError, 1e-9) << name;
+        EXPECT_EQ(outcome.path->points.front().cost, 1.5) << name;
+        EXPECT_NEAR(outcome.path->points.front().covariance.trace(), 6e-3, 1e-9) << name;
+    }
+}
+
 TEST(PlanningProblem, PathsAreEvaluatedByWaypointsToo) {
     const Config config = smallProblem(0.5);
     const World world(config);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Planners whose views are stopped while they are rendered.
 #include <gtest/gtest.h>
+#include <ompl/base/goals/GoalStates.h>
 
 #include <random>
 
@@ -58,6 +59,44 @@ TEST_P(InterruptedViews, LeaveThePathThatWasFoundBefore) {
     }
     EXPECT_GT(stops, 3);
     EXPECT_GT(paths, 0);
+}
+
+/// Goals of a problem, in a row.
+void setGoals(BeliefPlanner& planner, const Problem& problem, const std::vector<double>& xs) {
+    const auto goals = std::make_shared<ob::GoalStates>(planner.getSpaceInformation());
+    ob::ScopedState<> goal(planner.getSpaceInformation());
+    for (const double x : xs) {
+        problem.space().setState(goal.get(), {x, 9., 2.}, 0.);
+        goals->addState(goal);
+    }
+    planner.getProblemDefinition()->setGoal(goals);
+}
+
+/// At whatever view: a search that goes on where it was has whole beliefs, and no goal without one.
+TEST_P(InterruptedViews, SearchesGoOnWhereTheyWereStopped) {
+    for (const std::vector<double>& goals : {std::vector{3.}, std::vector{3., 5., 7.}}) {
+        int stops = 0;
+        for (int last = 0;; last += 1 + last / 5) {
+            int views = 0;
+            Problem problem;
+            problem.information = [&](const Pose& T_c_w) {
+                if (views++ == last) throw RenderingStopped();
+                return stripesThenTexture(T_c_w);
+            };
+            const auto planner = problem.planner(GetParam());
+            setGoals(*planner, problem, goals);
+            try {
+                grow(*planner, 150);
+            } catch (const RenderingStopped&) {
+            }
+            if (views <= last) break;
+            ++stops;
+            EXPECT_EQ(grow(*planner, 180), ob::PlannerStatus::EXACT_SOLUTION) << last;
+            EXPECT_GT(planner->bestPath().size(), 1U) << last;
+            expectBeliefsToReplay(*planner);
+        }
+        EXPECT_GT(stops, 10);
+    }
 }
 
 /// At whatever view of an update: no belief of the map before it is left.

@@ -67,6 +67,14 @@ class ChangingFlight {
         follow(world_.fill(wall, true));
     }
 
+    /// A wall appears around a place, or vanishes.
+    void wallAround(const Vector3d& p_w, bool isThere) {
+        const Vector3d half(0.3, 0.3, 4.);
+        follow(world_.fill({p_w - half, p_w + half}, isThere));
+    }
+    const Vector3d& position() const { return position_; }
+    const Vector3d& goal() const { return problem_.goal; }
+
     /// Gives a part of the floor random grey values.
     void paint(const Eigen::AlignedBox2d& area, double contrast) {
         follow(world_.paintFloor(
@@ -158,16 +166,7 @@ class ChangingFlight {
     /// With an information field of its own.
     double replayedCost(const std::vector<ob::State*>& states) const {
         const auto model = makeModel(makeField());
-        std::vector<BeliefPoint> points = model->evaluate({states.front()});
-        if (root_) {
-            points.front().covariance = model->cameraCovariance(states.front(), *root_);
-            points.front().trace =
-                weightedTrace(root_->covariance, problem_.belief.characteristicLength);
-        }
-        for (std::size_t i = 1; i < states.size(); ++i) {
-            model->evaluateMotion(states[i - 1], states[i], points);
-        }
-        return points.back().cost;
+        return model->evaluate({states.begin(), states.end()}, root_).back().cost;
     }
 
     Problem problem_;
@@ -216,6 +215,29 @@ TEST_P(ChangingMap, PathsAreValidAndAuditedAfterAnySequenceOfChanges) {
     }
     EXPECT_GT(paths, 20) << "of 30";
     EXPECT_GT(kept, 10) << "of 30";
+}
+
+TEST_P(ChangingMap, APathIsFoundAgainWhenGoalAndRobotAreFreeAgain) {
+    ChangingFlight flight(std::get<0>(GetParam()), std::get<1>(GetParam()), 1);
+    flight.plan();
+    ASSERT_TRUE(flight.hasPath());
+    for (const bool isGoal : {true, false, true}) {
+        SCOPED_TRACE(isGoal ? "goal" : "robot");
+        const Vector3d place = isGoal ? flight.goal() : flight.position();
+        flight.wallAround(place, true);
+        EXPECT_FALSE(flight.hasPath());
+        flight.check();
+        flight.plan();
+        EXPECT_FALSE(flight.hasPath());
+        flight.check();
+        flight.wallAround(place, false);
+        flight.check();
+        flight.plan();
+        EXPECT_TRUE(flight.hasPath());
+        flight.check();
+        flight.move();
+        flight.check();
+    }
 }
 
 /// By how much the cost of a plan that follows random changes exceeds that of plans from scratch,

@@ -260,6 +260,29 @@ TEST_P(EveryPlanner, AStartInCollisionIsAnInvalidStart) {
     EXPECT_EQ(grow(*planner, 100), ob::PlannerStatus::INVALID_START);
 }
 
+/// Along a line, first away from the goal to texture and then back over the same places.
+TEST(BeliefRRTstar, KeepsTheDetourOfARobotOnItsWayOut) {
+    Problem problem;
+    problem.bounds = box({0., 1., 2.}, {10., 1., 2.});
+    problem.start = {5., 1., 2.};
+    problem.goal = {1., 1., 2.};
+    problem.belief.initialCovariance = 0.2 * Matrix6::Identity();
+    const auto planner = problem.planner("belief_rrt_star");
+    EXPECT_EQ(grow(*planner, 100), ob::PlannerStatus::EXACT_SOLUTION);
+    const auto farthest = [&] {
+        double x = 0.;
+        for (const ob::State* state : planner->bestPath()) {
+            x = std::max(x, problem.space().position(state).x());
+        }
+        return x;
+    };
+    ASSERT_GT(farthest(), 6.);
+    ob::ScopedState<> ahead(planner->getSpaceInformation());
+    problem.space().setState(ahead.get(), {5.4, 1., 2.}, 0.);
+    planner->moveRoot(ahead.get(), {problem.belief.initialCovariance, 0.});
+    EXPECT_GT(farthest(), 6.);
+}
+
 /// The limit on samples is to end the search for a path that does not exist, not a long flight.
 TEST_P(EveryPlanner, GrowsAgainAfterAChange) {
     const Problem problem;
