@@ -118,8 +118,8 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
 /// @return what this changed in the tree
 UpdateCounts OnlinePlanner::planFrom(const ob::State* state, const Belief& belief,
                                      const std::atomic<bool>& interrupted) {
-    if (kind_.replanning == Replanning::never && !plan_.empty()) {
-        plan_ = restOf(plan_, state);
+    if (kind_.replanning == Replanning::never && hasPlanned_) {
+        if (!plan_.empty()) plan_ = restOf(plan_, state);
         return {};
     }
     const bool isNew = kind_.replanning == Replanning::scratch;
@@ -130,6 +130,7 @@ UpdateCounts OnlinePlanner::planFrom(const ob::State* state, const Belief& belie
         solveFrom(state, belief, interrupted);
     }
     plan_ = solution(interrupted);
+    hasPlanned_ = hasPlanned_ || !plan_.empty();
     return planner_->lastUpdate();
 }
 

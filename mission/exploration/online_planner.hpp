@@ -71,6 +71,7 @@ class OnlinePlanner {
     std::uint32_t seed_;
     std::shared_ptr<BeliefPlanner> planner_;
     States plan_;  // empty if no path was found
+    bool hasPlanned_ = false;
     std::vector<BeliefPoint> path_;
 };
 

@@ -64,12 +64,9 @@ PhotometricServo Pilot::servoToGoal() const {
 ViewSearch Pilot::searchInMap() const { return {map_, camera_, T_b_c_, options_.photometric}; }
 
 void Pilot::setPlan(std::vector<PlannedView> plan) {
-    route_ = Route(std::move(plan), T_b_c_, options_.route, command_);
+    followRoute(Route(std::move(plan), T_b_c_, options_.route, command_));
     goalServo_ = servoToGoal();
-    endSearch();
-    leaveImage();
-    atGoalSince_.reset();
-    hasMissedGoal_ = hasServoedOnImage_ = false;
+    hasServoedOnImage_ = false;
 }
 
 void Pilot::setMap(std::shared_ptr<const ViewSource> map) {
@@ -216,8 +213,16 @@ void Pilot::continueSearch(const Tracker& tracker, double time) {
 }
 
 void Pilot::rejoinPlan(const UncertainPose& belief) {
-    route_ = route_.rejoined(bodyOf(belief.mean));
+    followRoute(route_.rejoined(bodyOf(belief.mean)));
+}
+
+/// The goal is to be reached, whatever was before.
+void Pilot::followRoute(Route route) {
+    route_ = std::move(route);
     endSearch();
+    leaveImage();
+    atGoalSince_.reset();
+    hasMissedGoal_ = false;
 }
 
 void Pilot::endSearch() {

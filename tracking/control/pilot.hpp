@@ -87,6 +87,7 @@ class Pilot {
     void continueSearch(const Tracker& tracker, double time);
     void endSearch();
     void rejoinPlan(const UncertainPose& belief);
+    void followRoute(Route route);
     std::optional<Pose> nearestView(const UncertainPose& belief) const;
     IsFree untouchedBy(const UncertainPose& belief) const;
     bool isSearchSafe(const UncertainPose& belief) const;

@@ -109,6 +109,8 @@ TEST_F(OnlinePlannerTest, APlanMadeOnceEndsAtAnObstacle) {
     updateAt(repaired, {0.5, 0., 1.}, change);
     EXPECT_TRUE(once.path().empty());
     EXPECT_FALSE(repaired.path().empty());
+    updateAt(once, {0.5, 0., 1.});
+    EXPECT_TRUE(once.path().empty()) << "it does not plan again";
 }
 
 TEST_F(OnlinePlannerTest, FromScratchKeepsNothing) {

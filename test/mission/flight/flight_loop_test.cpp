@@ -193,6 +193,26 @@ TEST_F(FlightLoop, FliesBackOnTheWayItCameAndOnAlongThePlan) {
     EXPECT_LT((robot.T_w_b.translation() - Eigen::Vector3d(1.5, 1., 2.)).norm(), 0.05);
 }
 
+/// Images fail before the goal, and tracking is lost at the goal: the way back is no arrival.
+TEST_F(FlightLoop, FliesToItsGoalAgainAfterALossThere) {
+    flown.photometricGoal = false;
+    pilot.emplace(pilotOf(robot, straightTo(1.6), floor, flown));
+    bool wasAtGoal = false, isBack = false;
+    double time = 0.;
+    flyLoop(robot, *tracker, *pilot, 0.1, [&](const Observation& observation, const auto&) {
+        time = observation.time;
+        const double x = robot.T_w_b.translation().x();
+        wasAtGoal = wasAtGoal || (tracker->loss().isLost() && x > 1.5);
+        isBack = isBack || (tracker->loss().isLost() && x < 1.1);
+        robot.isBlind = x > 1. && !isBack;
+        return time < 60. && !pilot->hasArrived(*tracker, time);
+    });
+    EXPECT_TRUE(wasAtGoal);
+    EXPECT_TRUE(isBack);
+    EXPECT_LT(time, 40.);
+    EXPECT_NEAR(robot.T_w_b.translation().x(), 1.6, 0.05);
+}
+
 /// Images fail 3 m before a gap of 60 cm and come again after 10 s. By then the body may touch the
 /// sides of the gap, by the errors of odometry.
 TEST_F(FlightLoop, ALostRobotHoversBeforeAGapThatItMayMiss) {
