@@ -137,7 +137,8 @@ std::string describe(const Alignment& alignment, const TrustOptions& options = {
 inline constexpr double kExposureSigma = 0.3;
 
 /// Normal equations of the camera pose alone, with the exposure eliminated: Fisher information and
-/// right side b = J^T r / sigma^2. The step by the image alone solves information * xi = b.
+/// right side b = A^T r / sigma^2 with A = -gain J (NormalEquations). The step by the image alone
+/// solves information * xi = b.
 struct PoseEquations {
     Matrix6 information = Matrix6::Zero();
     Vector6 rhs = Vector6::Zero();

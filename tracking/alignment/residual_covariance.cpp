@@ -10,6 +10,7 @@ namespace photonav {
 namespace {
 
 using Eigen::MatrixXd;
+using Root = Eigen::Matrix<double, 8, Eigen::Dynamic, 0, 8, 6>;
 
 /// Least eigenvalue of H, its diagonal scaled to ones, that sums in single precision can tell from
 /// zero.
@@ -26,6 +27,8 @@ struct Observed {
     MatrixXd V;                                   ///< columns: directions observed
     MatrixXd solve;                               ///< H^-1: b -> y, for b of size 6
     MatrixXd toY;                                 ///< y of x, for x = V y
+    Root root;                                    ///< L: L L^T is the inverse of H
+    Eigen::VectorXd scale;                        ///< y = diag(scale) L^T b, for b of size 8
     MatrixXd open;                             ///< columns: directions not observed, of unit length
     Matrix8 scatterOfPrior = Matrix8::Zero();  ///< the exposure is as wrong as its prior says
 
@@ -46,19 +49,34 @@ struct Observed {
         V = unit.asDiagonal() * vectors.rightCols(6 - missing);
         solve = values.tail(6 - missing).cwiseInverse().asDiagonal() * V.transpose();
         toY = solve * pose;
+        scale = values.tail(6 - missing).cwiseSqrt().cwiseInverse();
+        root = E * V * scale.asDiagonal();
         open = (unit.asDiagonal() * vectors.leftCols(missing)).colwise().normalized();
     }
 };
 
-/// Columns: s_b.
-MatrixXd scoresOf(const std::vector<ImageBlock>& blocks, const Matrix8& inverse, const Vector8& x) {
-    MatrixXd scores(8, blocks.size());
+/// Columns: H^-1 s_b with s_b = (1 - A_b H^-1)^-1 (g_b - A_b x), in y: how much it changes
+/// without a block. With H^-1 = L L^T it is L (1 - L^T A_b L)^-1 L^T (...), which is symmetric and
+/// smaller.
+MatrixXd changesWithout(const std::vector<ImageBlock>& blocks, const Observed& seen,
+                        const Vector8& x) {
+    using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+    const Eigen::Index size = seen.root.cols();
+    MatrixXd changes(size, static_cast<Eigen::Index>(blocks.size()));
     for (std::size_t b = 0; b < blocks.size(); ++b) {
-        const Matrix8 without = Matrix8::Identity() - blocks[b].AtA * inverse;
-        scores.col(static_cast<Eigen::Index>(b)) =
-            without.partialPivLu().solve(blocks[b].Atr - blocks[b].AtA * x);
+        const Root weighted = blocks[b].AtA.lazyProduct(seen.root);
+        const Small share = seen.root.transpose().lazyProduct(weighted);
+        const Small rest = (1. + kOpen) * Small::Identity(size, size) - share;
+        const Vector8 gradient = blocks[b].Atr - blocks[b].AtA * x;
+        const Eigen::VectorXd seenGradient = seen.root.transpose() * gradient;
+        const Eigen::LLT<Small> cholesky(rest);
+        // A block with nearly all of the information, summed in single precision, is not definite.
+        const bool isDefinite = cholesky.info() == Eigen::Success;
+        changes.col(static_cast<Eigen::Index>(b)) = seen.scale.cwiseProduct(
+            isDefinite ? Eigen::VectorXd(cholesky.solve(seenGradient))
+                       : Eigen::VectorXd(rest.partialPivLu().solve(seenGradient)));
     }
-    return scores;
+    return changes;
 }
 
 /// Covariance of what has been drawn as often as there are columns. Estimated from few, it is too
@@ -84,16 +102,23 @@ Matrix8 scatterOfField(const std::vector<ImageBlock>& blocks, const Eigen::Array
     if (blocks.empty()) return Matrix8::Zero();     // no pixel is compared
     const double length = kFieldLength * size.x();  // [blocks]
     const Eigen::Array2i nodes = (size.cast<double>() / length).ceil().cast<int>() + 3;
+    const auto bumps = [&](int axis) {  // of a node (row) at a block (column)
+        return MatrixXd::NullaryExpr(
+                   nodes[axis], size[axis],
+                   [&](auto node, auto block) {
+                       return std::exp(-std::pow((block + 0.5) / length + 1. - node, 2));
+                   })
+            .eval();
+    };
+    const MatrixXd bumpsX = bumps(0), bumpsY = bumps(1);
     std::vector<Vector8> pull(std::size_t(nodes.prod()), Vector8::Zero());
     for (const ImageBlock& block : blocks) {
-        const Eigen::Array2d at = (block.index.cast<double>() + 0.5) / length + 1.;
         const Vector8 h = effect(block);
         for (int j = 0; j < nodes.y(); ++j) {
-            const double byRow = std::exp(-std::pow(at.y() - j, 2));
+            const double byRow = bumpsY(j, block.index.y());
             if (byRow < 1e-3) continue;
             for (int i = 0; i < nodes.x(); ++i) {
-                const double bump = byRow * std::exp(-std::pow(at.x() - i, 2));
-                pull[std::size_t(j) * nodes.x() + i] += bump * h;
+                pull[std::size_t(j) * nodes.x() + i] += byRow * bumpsX(i, block.index.x()) * h;
             }
         }
     }
@@ -212,8 +237,7 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
     MeasuredInformation result;
     result.repeating = kOpenSigma * kOpenSigma * seen.open * seen.open.transpose();
     if (seen.V.cols() == 0) return result;
-    const Matrix8 inverse = seen.E * seen.V * seen.solve * seen.E.transpose();
-    const Vector8 x = inverse * gradient;
+    const Vector8 x = seen.root * (seen.root.transpose() * gradient);
 
     const auto covariance = [&](const Matrix8& scatter) -> MatrixXd {  // of y
         return seen.solve * (seen.E.transpose() * scatter * seen.E) * seen.solve.transpose();
@@ -225,9 +249,8 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
                    scatterByBlur(blocks, light.size(), errors.blur) +
                    scatterBySurface(blocks, errors.surface)) +
         seen.toY * ofScale(errors.depthScale, toModel) * seen.toY.transpose();
-    const MatrixXd whole =
-        repeating + covarianceOf(seen.solve * seen.E.transpose() * scoresOf(blocks, inverse, x)) +
-        covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * H);
+    const MatrixXd whole = repeating + covarianceOf(changesWithout(blocks, seen, x)) +
+                           covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * H);
     if (!whole.allFinite()) return result;
     result.repeating += seen.V * repeating * seen.V.transpose();
     PoseEquations& equations = result.equations;
