@@ -73,6 +73,7 @@ MipTexture::MipTexture(const ImageF& image) {
         return;
     }
     append(image);
+    findUniformTiles();
     ImageF level = image;
     while (level.getWidth() > 1 || level.getHeight() > 1) {
         level = halved(level);
@@ -94,6 +95,50 @@ void MipTexture::append(const ImageF& image) {
         out = std::transform(row, row + width, out, stored);
         *out++ = stored(row[0]);
     }
+}
+
+/// Sums over rectangles follow from sums over all tiles to the left and above.
+void MipTexture::findUniformTiles() {
+    const Level& base = levels_[0];
+    tiles_ = (Eigen::Array2i(int(base.width), int(base.height)) + kTile - 1) / kTile;
+    rough_.assign(std::size_t((tiles_ + 1).prod()), 0);
+    for (int y = 0; y < tiles_.y(); ++y) {
+        for (int x = 0; x < tiles_.x(); ++x) {
+            const bool isRough = !isUniform(x, y);
+            hasUniformTiles_ = hasUniformTiles_ || !isRough;
+            rough(x + 1, y + 1) = rough(x + 1, y) + rough(x, y + 1) - rough(x, y) + int{isRough};
+        }
+    }
+}
+
+/// With the column and the row that follow: uniform tiles beside each other are equal.
+bool MipTexture::isUniform(int tileX, int tileY) const {
+    const Level& base = levels_[0];
+    const int right = std::min(kTile * (tileX + 1), int(base.width));
+    const int bottom = std::min(kTile * (tileY + 1), int(base.height));
+    const std::uint16_t first = texels(0)[kTile * tileY * base.pitch + kTile * tileX];
+    for (int v = kTile * tileY; v <= bottom; ++v) {
+        const std::uint16_t* row = texels(0) + std::ptrdiff_t{v} * base.pitch;
+        const bool isSame = std::all_of(row + kTile * tileX, row + right + 1,
+                                        [first](std::uint16_t texel) { return texel == first; });
+        if (!isSame) return false;
+    }
+    return true;
+}
+
+std::optional<std::uint16_t> MipTexture::uniformWithin(const Eigen::Array2d& low,
+                                                       const Eigen::Array2d& high) const {
+    const Eigen::Array2d size(levels_[0].width, levels_[0].height);
+    if (!((high - low) < size).all()) return {};
+    const Eigen::Array2d repetition = (low / size).floor() * size;
+    const Eigen::Array2i first = ((low - repetition) / kTile).cast<int>().min(tiles_ - 1);
+    const Eigen::Array2i last = ((high - repetition) / kTile).cast<int>();
+    if ((high - repetition >= size).any()) return {};
+    const Eigen::Array2i end = last + 1;
+    const int count = rough(end.x(), end.y()) - rough(first.x(), end.y()) -
+                      rough(end.x(), first.y()) + rough(first.x(), first.y());
+    if (count != 0) return {};
+    return texels(0)[kTile * first.y() * levels_[0].pitch + kTile * first.x()];
 }
 
 }  // namespace photonav

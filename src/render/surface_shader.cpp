@@ -44,6 +44,7 @@ struct Surface {
     Affine u, v;              ///< (texel coordinate - its value at the camera) / depth [1/m]
     float footprint;          ///< texels^2 per pixel, times depth^3
     const MipTexture* texture;
+    Eigen::Array2d texelAtCamera;  ///< texel coordinate at the camera
     /// Per pyramid level: scale of texel coordinates, and the texel coordinate at the camera split
     /// into a whole and a fractional part, so that nothing is lost far from the texture's origin.
     struct Level {
@@ -126,7 +127,10 @@ void setUp(Surface& surface, const Triangle& triangle, const MipTexture& texture
     surface.footprint = static_cast<float>(
         kFootprint * std::abs(normal.dot(uGradient.cross(vGradient)) / distance) /
         (camera.fx() * camera.fy()));
-    setLevels(surface, texel(0) - Eigen::Vector2d(uGradient.dot(p[0]), vGradient.dot(p[0])));
+    const Eigen::Vector2d texelAtCamera =
+        texel(0) - Eigen::Vector2d(uGradient.dot(p[0]), vGradient.dot(p[0]));
+    surface.texelAtCamera = texelAtCamera.array();
+    setLevels(surface, texelAtCamera);
 }
 
 /// Cache of the surfaces seen so far in this view; a triangle replaces an older one in the same
@@ -238,11 +242,36 @@ struct PixelRow {
     }
 };
 
+/// The grey value of pixels [begin, end) of row y if their lookups find no other one. The texel
+/// coordinates along a row are between those at its ends, and so are the levels.
+std::optional<float> uniformGrey(const Surface& surface, unsigned begin, unsigned end, float y) {
+    const MipTexture& texture = *surface.texture;
+    if (texture.uniform() || surface.edgeOn) return texture.uniform();
+    if (!texture.hasUniformTiles()) return {};
+    double farthest = 0.;
+    Eigen::AlignedBox2d box;
+    for (const unsigned x : {begin, end - 1}) {
+        const auto at = [&](const Affine& f) { return double{f.a} * x + double{f.b} * y + f.c; };
+        const double w =
+            std::clamp<double>(at(surface.inverseDepth), surface.farthest, surface.nearest);
+        box.extend(
+            (surface.texelAtCamera + Eigen::Array2d(at(surface.u), at(surface.v)) / w).matrix());
+        farthest = std::max(farthest, 1. / w);
+    }
+    // Texels of the coarser level are up to 2^(level + 1) wide; one and a half of them matter.
+    const double finest = std::sqrt(surface.footprint * farthest * farthest * farthest);
+    const double margin = 4. * std::max(1., finest) + 2.;
+    const auto texel =
+        texture.uniformWithin(box.min().array() - margin, box.max().array() + margin);
+    if (!texel) return {};
+    return static_cast<float>(*texel) * (1.F / MipTexture::kOne);
+}
+
 /// Pixels [begin, end) of row y, which all show the same surface.
-void shadeRun(const Surface& surface, unsigned begin, unsigned end, unsigned width, unsigned row,
-              const PixelRow& pixels) {
+void shadePart(const Surface& surface, unsigned begin, unsigned end, unsigned width, unsigned row,
+               const PixelRow& pixels) {
     const auto y = static_cast<float>(row);
-    const auto uniform = surface.texture->uniform();
+    const auto uniform = uniformGrey(surface, begin, end, y);
     for (unsigned x = begin; x < end; x += kWidth) {
         if (surface.edgeOn) {
             pixels.store(x, width, Float{}, Float{});
@@ -259,6 +288,15 @@ void shadeRun(const Surface& surface, unsigned begin, unsigned end, unsigned wid
         const Float v = surface.v(column, y) * z;
         const unsigned active = simd::kAllLanes >> (kWidth - std::min<unsigned>(kWidth, end - x));
         pixels.store(x, width, z, trilinear(surface, z, u, v, active));
+    }
+}
+
+/// The same for a run of any length. Parts are short enough to be within a uniform area.
+void shadeRun(const Surface& surface, unsigned begin, unsigned end, unsigned width, unsigned row,
+              const PixelRow& pixels) {
+    constexpr unsigned kPart = 64;
+    for (; begin < end; begin += kPart) {
+        shadePart(surface, begin, std::min(end, begin + kPart), width, row, pixels);
     }
 }
 

@@ -8,6 +8,9 @@
 #include <random>
 #include <thread>
 
+#include "geometry/constants.hpp"
+#include "render/mip_texture.hpp"
+
 namespace photonav {
 namespace {
 
@@ -257,6 +260,81 @@ TEST(MeshRenderer, TheSamePoseGivesTheSameBitsInAnyThread) {
     for (const View& view : views) {
         EXPECT_EQ(test::pixels(view.intensity), test::pixels(expected.intensity));
         EXPECT_EQ(test::pixels(view.depth), test::pixels(expected.depth));
+    }
+}
+
+/// A white floor with a noisy area.
+Texture whiteWithNoise(unsigned size) {
+    Texture texture;
+    texture.image = ImageF(size, size, 0.9F);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> grey(0.F, 1.F);
+    for (unsigned v = size / 3; v < size / 2; ++v) {
+        for (unsigned u = size / 4; u < size / 2; ++u) texture.image[v][u] = grey(random);
+    }
+    return texture;
+}
+
+TEST(MipTexture, KnowsWhereItIsUniform) {
+    constexpr unsigned kSize = 150;
+    const ImageF image = whiteWithNoise(kSize).image;
+    const MipTexture texture(image);
+    EXPECT_TRUE(texture.hasUniformTiles());
+    EXPECT_FALSE(texture.uniform());
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> place(-500., 500.), width(0., 60.);
+    int uniform = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Eigen::Array2d low(place(random), place(random));
+        const Eigen::Array2d high = low + Eigen::Array2d(width(random), width(random));
+        const auto texel = texture.uniformWithin(low, high);
+        if (!texel) continue;
+        ++uniform;
+        EXPECT_EQ(*texel, std::lrint(0.9F * MipTexture::kOne));
+        for (double v = std::floor(low.y()); v <= high.y(); ++v) {
+            for (double u = std::floor(low.x()); u <= high.x(); ++u) {
+                const auto column = static_cast<unsigned>(u - kSize * std::floor(u / kSize));
+                const auto row = static_cast<unsigned>(v - kSize * std::floor(v / kSize));
+                ASSERT_EQ(image[row][column], 0.9F) << u << ", " << v;
+            }
+        }
+    }
+    EXPECT_GT(uniform, 3000);
+    EXPECT_FALSE(texture.uniformWithin({-kInfinity, 0.}, {kInfinity, 1.}));
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(texture.uniformWithin({none, 0.}, {none, 1.}));
+    EXPECT_FALSE(MipTexture(valueNoise({.size = {1., 1.}, .seed = 3}).image).hasUniformTiles());
+}
+
+/// A texture that is uniform nowhere, by the least grey value that is stored, looks the same.
+TEST(MeshRenderer, UniformPartsOfATextureAreNoShortCut) {
+    const auto floorOf = [](const Texture& texture) {
+        Scene scene;
+        const auto index = addTexture(scene, texture);
+        addPlane(scene, {-4., -4., 0.}, {16., 0., 0.}, {0., 16., 0.}, index);
+        return scene;
+    };
+    Texture plain = whiteWithNoise(1000);
+    plain.size = {16., 16.};
+    Texture marked = plain;
+    for (unsigned v = 0; v < 1000; v += 8) {
+        for (unsigned u = 0; u < 1000; u += 8) marked.image[v][u] += 2.F / MipTexture::kOne;
+    }
+    const MeshRenderer fast(floorOf(plain)), slow(floorOf(marked));
+    const Camera camera = makeCamera(188, 120, 1.2);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> place(0., 8.), height(0.2, 3.), angle(-3., 3.);
+    View a, b;
+    for (int i = 0; i < 200; ++i) {
+        const Pose T_c_w = lookingFrom({place(random), place(random), height(random)},
+                                       angle(random), 0.15 + 0.45 * std::abs(angle(random)));
+        fast.render(camera, T_c_w, a);
+        slow.render(camera, T_c_w, b);
+        for (unsigned k = 0; k < a.depth.getSize(); ++k) {
+            ASSERT_EQ(a.depth.bitmap[k], b.depth.bitmap[k]);
+            ASSERT_NEAR(a.intensity.bitmap[k], b.intensity.bitmap[k], 3.F / MipTexture::kOne)
+                << "view " << i << ", pixel " << k;
+        }
     }
 }
 
