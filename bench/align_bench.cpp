@@ -89,18 +89,23 @@ struct Method {
     double nees = 0.;  ///< sum, per degree of freedom
 };
 
-std::vector<Method> keyframeMethods() {
+/// @param depthError relative, of the scale and registration of depth
+std::vector<Method> keyframeMethods(double depthError) {
     std::vector<Method> methods;
     for (const int finest : {0, 1, 2}) {
         KeyframeOptions options;
         options.finest = finest;
         if (finest == 0) options.minGradient = 0.02;
         options.alignment.levels = 4 - finest;
+        options.alignment.modelErrors.depthScale = depthError;
         const char* size = finest == 0 ? "640x480" : finest == 1 ? "320x240" : "160x120";
         methods.push_back({fmt::format("keyframe, {}", size), options, {}});
     }
     return methods;
 }
+
+/// Error of depth that nothing is known about, as replays assume.
+constexpr double kUnregistered = 0.1;
 
 void compareOnPairs(const std::string& folder, std::size_t step) {
     TumOptions tum;
@@ -111,7 +116,7 @@ void compareOnPairs(const std::string& folder, std::size_t step) {
     const cv::Mat K = (cv::Mat_<double>(3, 3) << sequence.camera.fx(), 0., sequence.camera.cx(), 0.,
                        sequence.camera.fy(), sequence.camera.cy(), 0., 0., 1.);
     const auto peer = cv::rgbd::RgbdOdometry::create(K);
-    std::vector<Method> methods = keyframeMethods();
+    std::vector<Method> methods = keyframeMethods(sequence.depthError.value_or(kUnregistered));
     Score opencv, still;
     RecordedFrame first = loadFrame(sequence, 0);
     for (std::size_t i = step; i < sequence.frames.size(); i += step) {
