@@ -208,7 +208,7 @@ void readKappa(YamlMap& map, double& kappa) {
 /// What the planner optimises.
 void addObjective(KeyTable& keys, Config& c) {
     keys.beginSection("planner");
-    keys.choice({"name", "", "[planners](planner.md)"}, c.planner, plannerNames());
+    keys.choice({"name", "", "[planners](concepts/planning.md)"}, c.planner, plannerNames());
     keys.choice({"information", "", "the information model of a view"}, c.viewModel.name,
                 viewModelNames());
     keys.number({"alpha", "", "1: the shortest path, 0: the most certain one"}, c.belief.alpha,

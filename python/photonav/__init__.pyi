@@ -155,7 +155,7 @@ class Problem:
     def initial_covariance(self) -> Array:
         """Of T_c_w at the start before any view, camera frame."""
     def kappa(self) -> float:
-        """Of the cost [1/m]; chosen when it is needed first where the config says auto."""
+        """Of the cost [1/m^2]; chosen when it is needed first where the config says auto."""
     def clearance(self, position: ArrayLike) -> float:
         """Distance to the nearest obstacle [m]."""
     def information_at(self, position: ArrayLike, yaw: float = 0.0) -> Array:

@@ -207,7 +207,7 @@ void bindPlanning(py::module_& module) {
                     return self.problem.kappa(interrupted);
                 });
             },
-            "Of the cost [1/m]; chosen when it is needed first where the config says auto.")
+            "Of the cost [1/m^2]; chosen when it is needed first where the config says auto.")
         .def(
             "clearance",
             [](const Problem& self, const Array& position) {
