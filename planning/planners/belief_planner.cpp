@@ -167,10 +167,20 @@ void BeliefPlanner::publishProgress() {
 }
 
 bool BeliefPlanner::addStarts() {
+    unsigned seen = pis_.getSeenStartStatesCount();
     while (const ob::State* start = pis_.nextStart()) {
+        Belief belief;
+        try {
+            belief = rootBelief(start);
+        } catch (...) {  // a view: the next solve() takes this start again
+            pis_.restart();
+            while (pis_.getSeenStartStatesCount() < seen) pis_.nextStart();
+            throw;
+        }
+        seen = pis_.getSeenStartStatesCount();
         Vertex& root = addVertex(start);
         root.isGoal = pdef_->getGoal()->isSatisfied(start);
-        roots_.push_back({&root, rootBelief(start)});
+        roots_.push_back({&root, belief});
         addRoot(roots_.back());
         neighbours_->add(&root);
         if (root.isGoal) offer(0., {root.state});
