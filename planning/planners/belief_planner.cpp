@@ -20,6 +20,7 @@ namespace {
 constexpr double kExploration = 0.2;     // share of the samples that are accepted anywhere
 constexpr int kMostFailures = 500;       // in a row: the updated space cannot be reached
 constexpr double kMaxFinishShare = 0.5;  // largest share of the time limit for finish()
+constexpr int kGoalReserve = 20;         // vertices beyond the largest number, to reach a goal
 constexpr double kAnotherRound = 2.;     // times as long as finish() took must be left to grow on
 
 /// OMPL's nearest-neighbour tree seeds its choice of pivots by the clock, and the order of vertices
@@ -101,6 +102,7 @@ ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& pt
 void BeliefPlanner::growUntil(const ob::PlannerTerminationCondition& ptc) {
     begin(ptc);
     ob::ScopedState<> goalOrSample(si_);
+    growToGoal(goalOrSample.get(), ptc);
     for (bool isTimeLeft = true; isTimeLeft;) {
         const std::size_t before = vertices();
         while (!ptc && !isGrown() && !isTimeToFinish()) {
@@ -140,9 +142,28 @@ bool BeliefPlanner::isTimeToFinish() const {
            secondsLeft() <= std::min(timeToFinish(), kMaxFinishShare * budget_);
 }
 
+/// A graph that has its largest number of vertices but no goal, which was not free before: some
+/// more vertices toward it.
+void BeliefPlanner::growToGoal(ob::State* goal, const ob::PlannerTerminationCondition& ptc) {
+    const auto& region = *pdef_->getGoal()->as<ob::GoalSampleableRegion>();
+    const std::size_t full = growth_.maxVertices;
+    for (int i = 0; i < kGoalReserve && goals_.empty() && region.canSample() && !ptc; ++i) {
+        if (full == 0 || vertices() < full || vertices() >= full + kGoalReserve) return;
+        region.sampleGoal(goal);
+        if (!si_->isValid(goal)) continue;
+        ++iterations_;
+        growToward(goal, true, ptc);
+    }
+}
+
 /// One sample, and a new vertex toward it.
 void BeliefPlanner::grow(ob::State* target, const ob::PlannerTerminationCondition& ptc) {
     const bool isGoalSample = sample(target);
+    growToward(target, isGoalSample, ptc);
+}
+
+void BeliefPlanner::growToward(const ob::State* target, bool isGoalSample,
+                               const ob::PlannerTerminationCondition& ptc) {
     const auto extension = extend(target);
     if (!extension) {
         if (++failures_ > kMostFailures) updated_.clear();

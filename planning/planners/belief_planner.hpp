@@ -31,7 +31,8 @@ struct GrowthOptions {
     double goalBias = 0.05;     ///< share of samples at goals, until every goal state is a vertex
     double rewireFactor = 1.1;  ///< factor on the connection radius of Karaman and Frazzoli 2011
     std::uint32_t seed = 1;     ///< seed of the samples
-    /// Largest number of vertices. Growth ends when it is reached; 0: no limit.
+    /// Largest number of vertices. Growth ends when it is reached; 0: no limit. A graph without a
+    /// goal, which may have become free, gets up to 20 more.
     unsigned maxVertices = 0;
     /// Largest number of samples since the map or the root last changed; 0: no limit.
     std::size_t maxIterations = 0;
@@ -258,7 +259,10 @@ class BeliefPlanner : public ompl::base::Planner {
     bool isTimeToFinish() const;
     double range() const;
     void growUntil(const ompl::base::PlannerTerminationCondition& ptc);
+    void growToGoal(ompl::base::State* goal, const ompl::base::PlannerTerminationCondition& ptc);
     void grow(ompl::base::State* target, const ompl::base::PlannerTerminationCondition& ptc);
+    void growToward(const ompl::base::State* target, bool isGoalSample,
+                    const ompl::base::PlannerTerminationCondition& ptc);
     bool sample(ompl::base::State* state);
     std::optional<Extension> extend(const ompl::base::State* target);
     double connectionRadius() const;
