@@ -57,7 +57,7 @@ void PerceptionRRTstar::chooseParent(Vertex& fresh, std::vector<Candidate>& cand
     Belief reached;
     const Candidate* best = nullptr;
     for (Candidate& candidate : candidates) {
-        const Belief& origin = at(*candidate.vertex).belief;
+        const Belief& origin = belief(*candidate.vertex);
         const double least = origin.cost + model_->lowerBound(candidate.motion.length);
         if (best != nullptr && least >= reached.cost) break;
         if (!isFree(candidate, fresh)) continue;

@@ -17,6 +17,14 @@ INSTANTIATE_TEST_SUITE_P(Planners, InterruptedViews,
                          testing::Values("pa_rrt_star", "rrbt", "belief_rrt_star"),
                          [](const auto& test) { return test.param; });
 
+/// Counts the views, and stops at one of them.
+InformationFormula stoppedAt(int last, int& views) {
+    return [last, &views](const Pose& T_c_w) {
+        if (views++ == last) throw RenderingStopped();
+        return stripesThenTexture(T_c_w);
+    };
+}
+
 /// OMPL's benchmark does not expect exceptions.
 TEST_P(InterruptedViews, EndASearchThatKnowsOfTheInterruption) {
     bool isInterrupted = false;
@@ -38,10 +46,7 @@ TEST_P(InterruptedViews, LeaveThePathThatWasFoundBefore) {
     for (int last = 0;; last += 1 + last / 3) {
         int views = 0;
         Problem problem;
-        problem.information = [&](const Pose& T_c_w) {
-            if (views++ == last) throw RenderingStopped();
-            return stripesThenTexture(T_c_w);
-        };
+        problem.information = stoppedAt(last, views);
         const auto planner = problem.planner(GetParam());
         try {
             const bool isSolved = grow(*planner, 150) == ob::PlannerStatus::EXACT_SOLUTION;
@@ -79,10 +84,7 @@ TEST_P(InterruptedViews, SearchesGoOnWhereTheyWereStopped) {
         for (int last = 0;; last += 1 + last / 3) {
             int views = 0;
             Problem problem;
-            problem.information = [&](const Pose& T_c_w) {
-                if (views++ == last) throw RenderingStopped();
-                return stripesThenTexture(T_c_w);
-            };
+            problem.information = stoppedAt(last, views);
             const auto planner = problem.planner(GetParam());
             setGoals(*planner, problem, goals);
             try {
