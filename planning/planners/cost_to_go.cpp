@@ -12,6 +12,7 @@ namespace ob = ompl::base;
 namespace {
 
 constexpr double kMinInformation = 1e-6;  // a coordinate known to 1 km is not observed [1/m^2]
+constexpr double kRounding = 1e-9;        // of the best observed axis: rounding of grey levels
 constexpr double kSafety = 0.99;          // factor on the charge
 constexpr double kLittleCharge = 0.05;    // of the base cost: not worth a view from every vertex
 
@@ -120,8 +121,10 @@ const Vertex* CostToGo::evaluatedNear(const Roadmap& roadmap, const Vertex& vert
 CostToGo::Observed CostToGo::observedFrom(const Vertex& vertex) const {
     const auto& view = model_->field().atAnyEpoch(model_->space().bodyPose(vertex.state));
     if (view.isStale) return {true, true, true};
+    const auto information = view.information.diagonal().head<kPositionAxes>();
+    const double least = std::max(kMinInformation, kRounding * information.maxCoeff());
     Observed observed{};
-    for (int k = 0; k < kPositionAxes; ++k) observed[k] = view.information(k, k) > kMinInformation;
+    for (int k = 0; k < kPositionAxes; ++k) observed[k] = information[k] > least;
     return observed;
 }
 

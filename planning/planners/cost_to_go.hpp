@@ -26,8 +26,10 @@ namespace photonav {
 /// The views along a motion are not known before they are rendered. They are assumed to observe an
 /// axis only if the view at one of the two ends does. The bound can therefore be too high where a
 /// texture lies between two vertices and is visible from neither; this error vanishes as motions
-/// get shorter. A stale view is assumed to observe all axes. Fourth-order terms and information
-/// below the threshold are covered by reducing the second part by 1 %.
+/// get shorter. A stale view is assumed to observe all axes. An axis counts as not observed if the
+/// view has less than 1e-9 of the information about it that it has about the axis it observes best:
+/// images are of single precision, and their rounding alone makes 3e-11 of it. Fourth-order terms
+/// and most of this information are covered by reducing the second part by 1 %.
 class CostToGo {
   public:
     /// A vertex at which a search begins, and its covariance as in Belief.

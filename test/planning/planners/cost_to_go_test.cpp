@@ -126,6 +126,25 @@ TEST(CostToGo, ChargesUncertaintyUntilTheFirstInformativeView) {
                 0.02 * charge);
 }
 
+/// Images are of single precision: over stripes, rounding alone gives 3e-11 of the information
+/// about the axis that they show for the axis that they do not show.
+TEST(CostToGo, RoundingOfImagesObservesNoAxis) {
+    const auto boundWith = [](double share) {
+        Problem problem;
+        problem.information = [share](const Pose& T_c_w) {
+            Matrix6 information = Matrix6::Zero();  // axes of the world
+            information(0, 0) = 1e8;
+            information(1, 1) = share * 1e8;
+            return inRotatedAxes(information, T_c_w.linear());
+        };
+        Grid grid(problem);
+        return grid.bound(grid.at(6, 2), problem.belief.initialCovariance);
+    };
+    const double unobserved = boundWith(0.);
+    EXPECT_DOUBLE_EQ(boundWith(3e-11), unobserved);
+    EXPECT_LT(boundWith(1e-5), 0.9 * unobserved);
+}
+
 TEST(CostToGo, NeedsViewsOnlyWhereTheStartIsUncertain) {
     const Problem problem;
     Grid grid(problem);
