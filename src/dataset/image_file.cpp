@@ -10,6 +10,7 @@
 
 #include "io/error.hpp"
 #include "io/image_decoder.hpp"
+#include "io/reading.hpp"
 #include "photometry/opencv_image.hpp"
 
 namespace photonav {
@@ -43,15 +44,18 @@ vpImage<Value> copied(const cv::Mat& image) {
 
 vpImage<unsigned char> readGrey8(const std::string& file, const Camera& camera,
                                  const std::string& source) {
-    return copied<unsigned char>(
-        readImage(file, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION, camera, source));
+    constexpr int kFlags = cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION;
+    return reading(file,
+                   [&] { return copied<unsigned char>(readImage(file, kFlags, camera, source)); });
 }
 
 vpImage<std::uint16_t> readDepth16(const std::string& file, const Camera& camera,
                                    const std::string& source) {
-    const cv::Mat image = readImage(file, cv::IMREAD_UNCHANGED, camera, source);
-    if (image.type() != CV_16UC1) throw InputError(file, "", "expected one channel of 16 bits");
-    return copied<std::uint16_t>(image);
+    return reading(file, [&] {
+        const cv::Mat image = readImage(file, cv::IMREAD_UNCHANGED, camera, source);
+        if (image.type() != CV_16UC1) throw InputError(file, "", "expected one channel of 16 bits");
+        return copied<std::uint16_t>(image);
+    });
 }
 
 std::string greyPng(const ImageF& image, unsigned maxSide) {

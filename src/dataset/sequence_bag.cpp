@@ -170,9 +170,7 @@ std::shared_ptr<const LensCorrection> setCamera(const BagContents& contents,
     return camera.lens;
 }
 
-}  // namespace
-
-BagSequence readBagSequence(const std::string& file, const BagOptions& options) {
+BagSequence sequenceOf(const std::string& file, const BagOptions& options) {
     constexpr double kMillimetres = 1000.;
     const auto bag = std::make_shared<BagFile>(file);
     const BagContents contents = contentsOf(*bag);
@@ -195,6 +193,12 @@ BagSequence readBagSequence(const std::string& file, const BagOptions& options) 
     result.view =
         FrameLoader{bag, frames, sequence, images.isCompressed(), depths.isCompressed(), lens};
     return result;
+}
+
+}  // namespace
+
+BagSequence readBagSequence(const std::string& file, const BagOptions& options) {
+    return reading(file, [&] { return sequenceOf(file, options); });
 }
 
 }  // namespace photonav

@@ -12,14 +12,19 @@
 #include <new>
 #include <opencv2/imgcodecs.hpp>
 
+#include "bag_of_recording.hpp"
 #include "check/given_trajectory.hpp"
 #include "config/config.hpp"
+#include "dataset/colmap_model.hpp"
+#include "dataset/image_file.hpp"
+#include "dataset/sequence_bag.hpp"
 #include "dataset/sequence_tum.hpp"
 #include "euroc_dataset.hpp"
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "map/octree_file.hpp"
 #include "map/point_cloud.hpp"
+#include "posters/poster.hpp"
 #include "replay/calibration_file.hpp"
 #include "scene/scene.hpp"
 #include "shared/result_folder.hpp"
@@ -120,6 +125,11 @@ TEST(FailingAllocations, OfReadersOfProblems) {
     expectAllOrOneLine(config, [&] { return loadConfig(config, {}).sweep.alphas.size(); });
     const std::string obj = folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     expectAllOrOneLine(obj, [&] { return loadScene(obj).triangles.size(); });
+    const std::string posters =
+        folder.write("posters.yaml",
+                     "candidates: [{name: a, textures: [{name: t}], "
+                     "planes: [{corner: [0, 0, 1], u: [1, 0, 0], v: [0, 1, 0], texture: t}]}]\n");
+    expectAllOrOneLine(posters, [&] { return readPosters(posters).size(); });
 }
 
 TEST(FailingAllocations, OfReadersOfMaps) {
@@ -159,6 +169,27 @@ TEST(FailingAllocations, OfReadersOfRecordings) {
     const std::string euroc = folder.file("euroc");
     test::WallDataset().write(euroc);
     expectAllOrOneLine(euroc, [&] { return readEurocSequence(euroc).frames.size(); });
+    const std::string bag = folder.file("flight.bag");
+    test::writeBag(bag, tum);
+    expectAllOrOneLine(bag, [&] {
+        const BagSequence sequence = readBagSequence(bag, {.depthScale = 5000.});
+        return sequence.sequence.frames.size() + sequence.view(0).intensity.getSize();
+    });
+    const std::string colmap = folder.file("colmap");
+    fs::create_directory(colmap);
+    writeColmapModel(colmap, makeCamera(188, 120, 1.2),
+                     {{"0.png", Pose::Identity()}, {"1.png", Pose::Identity()}});
+    expectAllOrOneLine(colmap, [&] { return readColmapSequence(colmap).frames.size(); });
+}
+
+TEST(FailingAllocations, OfReadersOfImages) {
+    const TemporaryFolder folder;
+    const Camera camera = makeCamera(8, 6, 1.2);
+    const std::string grey = folder.file("grey.png"), depth = folder.file("depth.png");
+    cv::imwrite(grey, cv::Mat(6, 8, CV_8U, cv::Scalar(7)));
+    cv::imwrite(depth, cv::Mat(6, 8, CV_16U, cv::Scalar(7)));
+    expectAllOrOneLine(grey, [&] { return readGrey8(grey, camera, "camera").getSize(); });
+    expectAllOrOneLine(depth, [&] { return readDepth16(depth, camera, "camera").getSize(); });
 }
 
 TEST(FailingAllocations, OfReadersOfTrajectories) {
