@@ -48,6 +48,12 @@ void addKeys(KeyTable& keys, FlyConfig& c) {
     keys.count({"flights", "", "flights per planner"}, c.flights, {1., 1e6});
     keys.number({"speed", "m/s", "largest speed"}, c.speed, {0.01, 100.});
     addImages(keys, c);
+    keys.number({"lag", "s", "time constant of the velocity's response to commands"}, c.lag,
+                {0., 10.});
+    keys.number({"drift", "m/s",
+                 "standard deviation, per axis, of a velocity that the commands do not remove, "
+                 "such as by wind"},
+                c.drift, {0., 10.});
     keys.number({"odometry", "", "true odometry variance divided by the assumed one"}, c.odometry,
                 {0., 1e6});
     keys.number({"body_radius", "m",

@@ -21,10 +21,12 @@ struct FlyConfig {
     Eigen::Vector2d blackout = Eigen::Vector2d::Zero();
     std::string camera = "assumed";  ///< image noise: "assumed" as by the planner, or "real" as of
                                      ///< a real camera
-    double odometry = 1.;            ///< true odometry variance divided by the assumed one
-    double bodyRadius = 0.;          ///< radius of the body in collisions [m]; 0: half of
-                                     ///< robot.radius
-    bool photometricGoal = true;     ///< at the end, servo on the image of the goal
+    double lag = 0.25;               ///< time constant of the velocity's response [s]
+    double drift = 0.;       ///< standard deviation, per axis, of a velocity not commanded [m/s]
+    double odometry = 1.;    ///< true odometry variance divided by the assumed one
+    double bodyRadius = 0.;  ///< radius of the body in collisions [m]; 0: half of
+                             ///< robot.radius
+    bool photometricGoal = true;  ///< at the end, servo on the image of the goal
     std::string map;  ///< octree, mesh or scene file to track in, absolute path; empty: the true
                       ///< world
     std::optional<double> scale;       ///< factor on the information of an alignment; none: 1

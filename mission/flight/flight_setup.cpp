@@ -16,6 +16,8 @@ SimulatedRobotOptions robotOptions(const Config& config) {
     robot.body.odometryNoise = config.belief.motionNoise;
     robot.body.rotationWeight = config.rotationWeight;
     robot.body.odometryFactor = fly.odometry;
+    robot.body.lag = fly.lag;
+    robot.body.drift = fly.drift;
     robot.camera.period = fly.rate > 0. ? 1. / fly.rate : config.belief.ds / fly.speed;
     robot.camera.latency = fly.latency;
     robot.camera.dropRate = fly.drop;
