@@ -197,7 +197,7 @@ InformationField::Cell InformationField::cellOf(const Pose& T_w_b) const {
     Cell cell{};
     // Boundaries are shifted off round numbers: a pose like 0.25 m must not change cells with the
     // last bit of how it was computed.
-    const auto round = [](double x) { return static_cast<std::int32_t>(std::lround(x + 1e-7)); };
+    const auto round = [](double x) { return static_cast<std::int64_t>(std::llround(x + 1e-7)); };
     for (int i = 0; i < 3; ++i) cell[i] = round(T_w_b.translation()[i] / options_.positionPitch);
     if (!T_w_b.linear().isIdentity(0.)) {
         const Eigen::AngleAxisd rotation(T_w_b.linear());
@@ -219,8 +219,8 @@ Pose InformationField::cameraPose(const Cell& cell) const {
 
 std::size_t InformationField::CellHash::operator()(const Cell& cell) const {
     std::uint64_t hash = 0;
-    for (const std::int32_t component : cell) {
-        hash = (hash ^ static_cast<std::uint32_t>(component)) * 0x9E3779B97F4A7C15ULL;
+    for (const std::int64_t component : cell) {
+        hash = (hash ^ static_cast<std::uint64_t>(component)) * 0x9E3779B97F4A7C15ULL;
         hash ^= hash >> 29;
     }
     return hash;

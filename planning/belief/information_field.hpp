@@ -101,7 +101,7 @@ class InformationField {
     void clear();   ///< removes all entries and resets the counters
 
   private:
-    using Cell = std::array<std::int32_t, 6>;
+    using Cell = std::array<std::int64_t, 6>;
     struct CellHash {
         std::size_t operator()(const Cell& cell) const;
     };

@@ -132,7 +132,7 @@ ob::PlannerStatus BeliefPlanner::solve(double seconds) {
 }
 
 bool BeliefPlanner::isGrown() const {
-    return (growth_.maxVertices > 0 && vertices() >= growth_.maxVertices) ||
+    return (growth_.maxVertices > 0 && samples() >= growth_.maxVertices) ||
            (growth_.maxIterations > 0 &&
             iterations_ - iterationsAtChange_ >= growth_.maxIterations);
 }
@@ -148,7 +148,7 @@ void BeliefPlanner::growToGoal(ob::State* goal, const ob::PlannerTerminationCond
     const auto& region = *pdef_->getGoal()->as<ob::GoalSampleableRegion>();
     const std::size_t full = growth_.maxVertices;
     for (int i = 0; i < kGoalReserve && goals_.empty() && region.canSample() && !ptc; ++i) {
-        if (full == 0 || vertices() < full || vertices() >= full + kGoalReserve) return;
+        if (full == 0 || samples() < full || samples() >= full + kGoalReserve) return;
         region.sampleGoal(goal);
         if (!si_->isValid(goal)) continue;
         ++iterations_;
@@ -286,13 +286,18 @@ void BeliefPlanner::release(Vertex& vertex) {
 
 void BeliefPlanner::remove(const std::vector<Vertex*>& vertices) {
     update_.verticesInvalidated += vertices.size();
+    for (const Vertex* vertex : vertices) updated_.addRemoved(vertex->state);
+    erase(vertices);
+}
+
+void BeliefPlanner::erase(const std::vector<Vertex*>& vertices) {
     forgetParents(vertices);
     for (Vertex* vertex : vertices) {
-        updated_.addRemoved(vertex->state);
         removeEdgesOf(*vertex);
         neighbours_->remove(vertex);
         std::erase(goals_, vertex);
         std::erase(goalSamples_, vertex);
+        std::erase(movedRoots_, vertex);
         release(*vertex);
     }
 }
@@ -334,6 +339,7 @@ void BeliefPlanner::clear() {
     if (neighbours_) neighbours_->clear();
     iterations_ = iterationsAtChange_ = 0;
     goalSamples_.clear();
+    movedRoots_.clear();
     unused_.clear();
     updated_.clear();
     update_ = {};

@@ -117,6 +117,8 @@ class BeliefPlanner : public ompl::base::Planner {
     void getPlannerData(ompl::base::PlannerData& data) const override;
 
     std::size_t vertices() const { return vertices_.size() - unused_.size(); }  ///< number of them
+    /// Number of the vertices that GrowthOptions::maxVertices limits: not those of moveRoot().
+    std::size_t samples() const { return vertices() - movedRoots_.size(); }
     std::size_t iterations() const { return iterations_; }  ///< number of samples so far
     double bestCost() const { return best_.cost; }          ///< infinite until the goal is reached
     /// The best path so far, from a root to a goal; empty if there is none. The planner owns the
@@ -204,6 +206,9 @@ class BeliefPlanner : public ompl::base::Planner {
     virtual std::vector<Vertex*> replaceRoots(const Root& root,
                                               const std::vector<Vertex*>& near) = 0;
 
+    /// Whether other vertices are reached only by way of a former root.
+    virtual bool isNeeded(const Vertex& formerRoot) = 0;
+
     /// The belief at the other end of a motion.
     virtual Belief propagate(const Belief& belief, Motion& motion, bool backward) {
         return model_->propagate(belief, motion, backward);
@@ -274,6 +279,8 @@ class BeliefPlanner : public ompl::base::Planner {
     void forgetParents(const std::vector<Vertex*>& removed);
     void countRewired();
     bool isRoot(const Vertex& vertex) const;
+    void removeFormerRoots();
+    void erase(const std::vector<Vertex*>& vertices);
     void joinRootToBest();
     void reevaluateBest();
     void reportUpdate();
@@ -299,6 +306,7 @@ class BeliefPlanner : public ompl::base::Planner {
     std::size_t iterations_ = 0;
     std::size_t iterationsAtChange_ = 0;      // of the map or the root, the last one
     std::vector<const Vertex*> goalSamples_;  // vertices that were sampled at a goal
+    std::vector<Vertex*> movedRoots_;         // added by moveRoot(): they are no samples
     std::vector<Vertex*> unused_;             // removed, to be used again
     UpdatedSpace updated_;                    // until it is grown again
     int failures_ = 0;                        // samples in a row that added no vertex

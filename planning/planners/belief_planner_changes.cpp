@@ -114,6 +114,7 @@ void BeliefPlanner::moveRoot(const ob::State* state, const Belief& belief) {
         if (root != nullptr) others = near(probe, root);
         root = &addVertex(state);
         neighbours_->add(root);
+        movedRoots_.push_back(root);
     }
     root->isGoal = pdef_->getGoal()->isSatisfied(state);
     if (root->isGoal && std::find(goals_.begin(), goals_.end(), root) == goals_.end()) {
@@ -125,9 +126,18 @@ void BeliefPlanner::moveRoot(const ob::State* state, const Belief& belief) {
     orBeginAnew([&] {
         reevaluateBest();
         remove(replaceRoots(roots_.front(), others));
+        removeFormerRoots();
     });
     if (root->isGoal) offer(belief.cost, {root->state});
     reportUpdate();
+}
+
+/// A robot that hovers would fill the graph with them.
+void BeliefPlanner::removeFormerRoots() {
+    const std::vector<Vertex*> former = movedRoots_;
+    for (Vertex* vertex : former) {
+        if (!isRoot(*vertex) && !isNeeded(*vertex)) erase({vertex});
+    }
 }
 
 void BeliefPlanner::setStartOfProblem(const ob::State* state) {

@@ -99,6 +99,9 @@ class BeliefRRTstar : public BeliefPlanner {
     void removeEdgesOf(const Vertex& vertex) override { roadmap_.removeEdgesOf(vertex); }
     void renewBeliefs() override;
     std::vector<Vertex*> replaceRoots(const Root& root, const std::vector<Vertex*>& near) override;
+    bool isNeeded(const Vertex& formerRoot) override {
+        return !roadmap_.isReplacedBy(*roots_.front().vertex, formerRoot, *si_);
+    }
 
     void offerCheckedPath(const Vertex& goal, const ompl::base::PlannerTerminationCondition& ptc);
     void search(const ompl::base::PlannerTerminationCondition& ptc);

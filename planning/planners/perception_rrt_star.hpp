@@ -51,6 +51,7 @@ class PerceptionRRTstar : public BeliefPlanner {
     SampleShares sampleShares() const override { return {.removed = 1.}; }
     void finish(const ompl::base::PlannerTerminationCondition& ptc) override;
     std::vector<Vertex*> replaceRoots(const Root& root, const std::vector<Vertex*>& near) override;
+    bool isNeeded(const Vertex& formerRoot) override { return !at(formerRoot).children.empty(); }
     Belief propagate(const Belief& belief, Motion& motion, bool backward) override;
 
     std::vector<Candidate> candidatesOf(const Vertex& vertex, const std::vector<Vertex*>& near);

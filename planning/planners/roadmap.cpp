@@ -46,6 +46,19 @@ std::size_t Roadmap::mapChanged(const ChangedSpace& changed, const FlightSpace& 
     return blocked;
 }
 
+bool Roadmap::isReplacedBy(const Vertex& other, const Vertex& vertex,
+                           const ompl::base::SpaceInformation& si) const {
+    const auto leadsTo = [&](const Vertex* end) {
+        return std::any_of(of(&other).begin(), of(&other).end(), [&](Edge* edge) {
+            return edge->otherEnd(&other) == end && isFree(*edge, si);
+        });
+    };
+    return std::all_of(of(&vertex).begin(), of(&vertex).end(), [&](const Edge* edge) {
+        const Vertex* end = edge->otherEnd(&vertex);
+        return end == &other || edge->isFree == false || leadsTo(end);
+    });
+}
+
 bool Roadmap::checkAll(const ompl::base::SpaceInformation& si,
                        const ompl::base::PlannerTerminationCondition& ptc) {
     for (Edge& edge : edges_) {

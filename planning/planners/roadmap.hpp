@@ -36,6 +36,10 @@ class Roadmap {
     /// Whether an edge is free; checks it for collision when called for the first time.
     static bool isFree(Edge& edge, const ompl::base::SpaceInformation& si);
 
+    /// Whether free edges of another vertex lead to all that this one leads to.
+    bool isReplacedBy(const Vertex& other, const Vertex& vertex,
+                      const ompl::base::SpaceInformation& si) const;
+
     /// Checks all edges that were not checked yet.
     /// @return false if the condition has ended it before
     bool checkAll(const ompl::base::SpaceInformation& si,

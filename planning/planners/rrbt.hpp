@@ -57,6 +57,9 @@ class RRBT : public BeliefPlanner {
     void removeEdgesOf(const Vertex& vertex) override { roadmap_.removeEdgesOf(vertex); }
     void renewBeliefs() override;
     std::vector<Vertex*> replaceRoots(const Root& root, const std::vector<Vertex*>& near) override;
+    bool isNeeded(const Vertex& formerRoot) override {
+        return !roadmap_.isReplacedBy(*roots_.front().vertex, formerRoot, *si_);
+    }
 
     void propagateQueue(const ompl::base::PlannerTerminationCondition& ptc);
     void propagateFrom(Node& node);

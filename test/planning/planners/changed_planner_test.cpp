@@ -63,6 +63,28 @@ TEST_P(ChangedPlanner, CountsWhatAnUpdateChanges) {
     EXPECT_LT(planner.lastUpdate().verticesRewired, left);
 }
 
+/// The places where a robot has been are no samples: they do not fill a graph of limited size.
+TEST_P(ChangedPlanner, GrowsAgainAfterManyMovesOfItsRoot) {
+    PlannerBetweenWalls problem(GetParam());
+    BeliefPlanner& planner = *problem.planner;
+    ob::ScopedState<> place(planner.getSpaceInformation());
+    problem.problem.space().setState(place.get(), problem.problem.start, 0.);
+    const Belief belief = planner.model().root(place.get());
+    for (int i = 0; i < 60; ++i) {  // hovers, and drifts a little
+        const Vector3d drift(0.02 * (i % 5), 0.02 * (i % 7), 0.);
+        problem.problem.space().setState(place.get(), problem.problem.start + drift, 0.);
+        planner.moveRoot(place.get(), belief);
+        grow(planner, 200);
+    }
+    EXPECT_EQ(planner.samples(), 200U);
+    EXPECT_LT(planner.vertices(), 230U);
+    planner.mapChanged(problem.world.fill({Vector3d(2., 3., 0.), Vector3d(6., 6., 4.)}, true));
+    EXPECT_GT(planner.lastUpdate().verticesInvalidated, 15U);
+    grow(planner, 200);
+    EXPECT_EQ(planner.samples(), 200U);
+    EXPECT_GE(planner.lastUpdate().verticesAdded, planner.lastUpdate().verticesInvalidated);
+}
+
 /// The positions of a planner's vertices that have a belief.
 std::vector<Vector3d> positionsOf(const BeliefPlanner& planner) {
     std::vector<Vector3d> positions;
