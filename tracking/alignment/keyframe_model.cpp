@@ -7,23 +7,8 @@
 
 #include "alignment/image_pyramid.hpp"
 #include "alignment/keyframe_points.hpp"
-#include "geometry/se3.hpp"
 
 namespace photonav {
-
-namespace {
-
-/// The same equations for a perturbation on the left: exp(eta^) T = T exp(xi^), eta = Ad(T) xi.
-template <class Equations>
-Equations onTheLeft(Equations e, const Pose& T) {
-    Matrix8 M = Matrix8::Identity();
-    M.topLeftCorner<6, 6>() = adjoint(T.inverse());
-    e.AtA = M.transpose() * e.AtA * M;
-    e.Atr = M.transpose() * e.Atr;
-    return e;
-}
-
-}  // namespace
 
 KeyframeOptions::KeyframeOptions() {
     alignment.measureCovariance = true;
@@ -46,6 +31,7 @@ class KeyframeModel::Points : public Comparison {
         View coarse;
         Camera c = camera;
         const int end = options.finest + std::max(1, options.alignment.levels);
+        levels_.reserve(std::size_t(end));
         for (int l = 0; l < end; ++l) {
             if (l >= options.finest && std::min(c.width, c.height) < kMinSide) break;
             if (l >= options.finest) levels_.emplace_back(*fine, c, options);
@@ -82,16 +68,12 @@ class KeyframeModel::Points : public Comparison {
     NormalEquations compare(std::size_t level, const Pose& T_c_w, const Exposure& exposure,
                             const Loss& loss) override {
         last_ = level;
-        const Pose T_c_k = T_c_w * T_k_w_.inverse();
-        return onTheLeft(levels_[level].compare(observed_[level], T_c_k, exposure, loss), T_c_k);
+        return levels_[level].compare(observed_[level], sinceModel(T_c_w), exposure, loss);
     }
 
     std::vector<ImageBlock> blocks(std::size_t level, const Pose& T_c_w, const Exposure& exposure,
                                    const Loss& loss) override {
-        const Pose T_c_k = sinceModel(T_c_w);
-        auto blocks = levels_[level].blocks(observed_[level], T_c_k, exposure, loss);
-        for (ImageBlock& block : blocks) block = onTheLeft(block, T_c_k);
-        return blocks;
+        return levels_[level].blocks(observed_[level], sinceModel(T_c_w), exposure, loss);
     }
 
     Pose sinceModel(const Pose& T_c_w) const override { return T_c_w * T_k_w_.inverse(); }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "alignment/product_sums.hpp"
+#include "geometry/se3.hpp"
 #include "photometry/simd.hpp"
 
 namespace photonav {
@@ -75,6 +76,19 @@ void halveRows(const float* a, const float* b, float* out, unsigned width, const
         out[u] = merge(simd::splat(a[from]), simd::splat(a[from + 1]), simd::splat(b[from]),
                        simd::splat(b[from + 1]))[0];
     }
+}
+
+/// The equations for xi' with xi = P xi'.
+template <class Equations>
+void substitute(Equations& e, const Matrix6& P) {
+    // Products of this size are slower by the general algorithm, which packs its factors.
+    const Matrix6 half = e.AtA.template topLeftCorner<6, 6>().lazyProduct(P);
+    const Eigen::Matrix<double, 6, 2> mixed =
+        P.transpose().lazyProduct(e.AtA.template topRightCorner<6, 2>());
+    e.AtA.template topLeftCorner<6, 6>() = P.transpose().lazyProduct(half);
+    e.AtA.template topRightCorner<6, 2>() = mixed;
+    e.AtA.template bottomLeftCorner<2, 6>() = mixed.transpose();
+    e.Atr.template head<6>() = P.transpose().lazyProduct(e.Atr.template head<6>()).eval();
 }
 
 /// Inverse depths of a keyframe, row by row.
@@ -202,9 +216,10 @@ void PointSet::finish() {
     double sum = 0.;
     for (std::size_t i = 0; i < size_; ++i) sum += w_[i];
     meanInverseDepth_ = size_ > 0 ? sum / static_cast<double>(size_) : 0.;
-    for (auto* field : {&x_, &y_, &w_, &intensity_, &gx_, &gy_}) field->resize(padded);
-    std::fill(x_.begin() + static_cast<std::ptrdiff_t>(size_), x_.end(), 1e6F);
-    std::fill(w_.begin() + static_cast<std::ptrdiff_t>(size_), w_.end(), 0.F);
+    for (auto* field : {&x_, &y_, &w_, &intensity_, &gx_, &gy_}) {
+        field->resize(size_);  // append() has left a pixel beyond
+        field->resize(padded, field == &x_ ? 1e6F : 0.F);
+    }
     for (std::size_t i = 0; i < size_; i += kNoiseEvery) noise_.add(x_[i], y_[i], w_[i]);
 }
 
@@ -311,8 +326,11 @@ NormalEquations PointSet::compare(const ImageF& observed, const Pose& T_c_k,
     const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
     NormalEquations equations = sums.result(unit);
     equations.meanInverseDepth = meanInverseDepth_;
-    withoutNoise_ = noise_.subtractFrom(equations, {simd::sum(noiseX), simd::sum(noiseY)},
-                                        maxNoise_, unit.head<6>());
+    const Matrix8 withoutNoise = noise_.subtractFrom(
+        equations, {simd::sum(noiseX), simd::sum(noiseY)}, maxNoise_, unit.head<6>());
+    const Matrix6 onTheRight = adjoint(T_c_k.inverse());
+    substitute(equations, onTheRight);
+    ofPoints_ = withoutNoise.topLeftCorner<6, 6>() * onTheRight;
     return equations;
 }
 
@@ -320,11 +338,14 @@ std::vector<ImageBlock> PointSet::blocks(const ImageF& observed, const Pose& T_c
                                          const Exposure& exposure, const Loss& loss) const {
     const Projection project(*this, observed, T_c_k, exposure);
     const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
+    const std::size_t side = ImageBlock::side(camera_);
+    ProductSums<> sums(loss, side * side / kWidth + 1);
     std::vector<ImageBlock> blocks;
+    blocks.reserve(blockIndex_.size());
     for (std::size_t block = 0; block + 1 < blockBegin_.size(); ++block) {
         const std::size_t begin = blockBegin_[block], end = blockBegin_[block + 1];
         if (begin == end) continue;
-        ProductSums<> sums(loss, (end - begin) / kWidth + 1);
+        sums.restart();
         sums.beginRow();
         for (std::size_t k = begin; k < end; k += kWidth) {
             const auto p = project(k);
@@ -334,9 +355,10 @@ std::vector<ImageBlock> PointSet::blocks(const ImageF& observed, const Pose& T_c
         const NormalEquations e = sums.result(unit);
         if (e.count < 1.) continue;
         ImageBlock& added = blocks.emplace_back();
-        added.AtA = withoutNoise_.transpose() * e.AtA * withoutNoise_;
-        added.Atr = withoutNoise_.transpose() * e.Atr;
+        added.AtA = e.AtA;
+        added.Atr = e.Atr;
         added.index = blockIndex_[block];
+        substitute(added, ofPoints_);
     }
     return blocks;
 }

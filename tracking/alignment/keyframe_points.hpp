@@ -25,7 +25,7 @@ class PointSet {
     PointSet(const View& view, const Camera& camera, const KeyframeOptions& options);
 
     /// Compares every point with `observed`, an image of the same camera, at its projection
-    /// (bilinear). xi of the equations is the right perturbation of T_c_k: T_c_k = T_mean exp(xi^).
+    /// (bilinear). xi of the equations is the left perturbation of T_c_k: T_c_k = exp(xi^) T_mean.
     /// The noise of the keyframe has gradients too; their contribution to AtA is subtracted
     /// (GradientNoise).
     /// @param T_c_k transforms from the keyframe to the camera
@@ -59,7 +59,9 @@ class PointSet {
     std::vector<float> x_, y_, w_, intensity_, gx_, gy_;
     std::vector<std::size_t> blockBegin_;  ///< first point of each ImageBlock; the end at the back
     std::vector<Eigen::Array2i> blockIndex_;
-    Matrix8 withoutNoise_ = Matrix8::Identity();  ///< of GradientNoise, last comparison
+    /// From the perturbation of the last comparison to that of its sums: what GradientNoise leaves
+    /// of them, on the right.
+    Matrix6 ofPoints_ = Matrix6::Identity();
     std::vector<float> residualSample_;
 };
 

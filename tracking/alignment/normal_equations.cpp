@@ -134,7 +134,7 @@ ViewComparison::ViewComparison(const Camera& camera, const PhotometricOptions& p
     }
     const std::size_t vectors = (camera.width - 2 + kWidth - 1) / kWidth;
     pitch_ = vectors * kWidth + 2;
-    const std::size_t size = pitch_ * camera.height;
+    const std::size_t size = pitch_ * camera.height + kWidth;  // blocks read beyond the last row
     intensity_.assign(size, 0.F);
     inverseDepth_.assign(size, kNoSurface);
     observed_.assign(size, 0.F);
@@ -216,18 +216,21 @@ std::vector<ImageBlock> ViewComparison::blocks(const Exposure& exposure, const L
     const Vector8 unit = columnUnits(exposure.gain, camera_.fx());
     const auto gain = static_cast<float>(exposure.gain);
     const Kernel kernel(camera_);
+    ProductSums<true> sums(loss, std::size_t(side) * ((side + kWidth - 1) / kWidth));
     std::vector<ImageBlock> blocks;
+    blocks.reserve(std::size_t(ImageBlock::numberIn(camera_).prod()));
     for (unsigned top = 1; top + 1 < camera_.height; top += side) {
         const unsigned bottom = std::min(top + side, camera_.height - 1);
         for (unsigned left = 1; left + 1 < camera_.width; left += side) {
             const unsigned right = std::min(left + side, camera_.width - 1);
-            ProductSums<true> sums(loss, std::size_t(side) * side / kWidth);
+            sums.restart();
             sums.beginRow();
             for (unsigned v = top; v < bottom; ++v) {
                 for (unsigned u = left; u < right; u += kWidth) {
                     const std::size_t i = v * pitch_ + u;
                     const Float r = at(residual_, i);
-                    const Int used = r < kUnused;
+                    const Int inBlock = simd::ramp() < static_cast<float>(right - u);
+                    const Int used = (r < kUnused) & inBlock;
                     const Gradient g = gradientAt(intensity_, i, pitch_, kernel.aspect, used);
                     sums.add(kernel.columns(u, v, g, at(inverseDepth_, i), at(intensity_, i)), r,
                              used, gain * changeByBlur(intensity_, i, pitch_));

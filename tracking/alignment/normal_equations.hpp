@@ -76,6 +76,10 @@ struct ImageBlock {
     static unsigned side(const Camera& camera) {
         return 8 * std::max(1U, (camera.width + 96) / 192);
     }
+    /// Columns and rows of blocks. The outermost pixels of the image are in none.
+    static Eigen::Array2i numberIn(const Camera& camera) {
+        return Eigen::Array2i(camera.width - 3, camera.height - 3) / int(side(camera)) + 1;
+    }
 
     Matrix8 AtA = Matrix8::Zero();
     Vector8 Atr = Vector8::Zero();

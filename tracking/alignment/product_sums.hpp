@@ -41,6 +41,12 @@ class ProductSums {
         row_.reserve(vectors);
     }
 
+    /// Begins other sums after a result(), in the same memory.
+    void restart() {
+        sums_ = {};
+        plainSums_ = {};
+    }
+
     void beginRow() { row_.clear(); }
 
     /// Adds the pixels of one vector to the present row.

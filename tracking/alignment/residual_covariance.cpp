@@ -55,12 +55,13 @@ struct Observed {
     }
 };
 
-/// Columns: H^-1 s_b with s_b = (1 - A_b H^-1)^-1 (g_b - A_b x), in y: how much it changes
-/// without a block. With H^-1 = L L^T it is L (1 - L^T A_b L)^-1 L^T (...), which is symmetric and
-/// smaller.
+/// Columns: H^-1 s_b with s_b = (1 - A_b H^-1)^-1 (g_b - A_b x), in y / Observed::scale, in which H
+/// is the identity: how much it changes without a block. With H^-1 = L L^T it is
+/// L (1 - L^T A_b L)^-1 L^T (...), which is symmetric and smaller.
 MatrixXd changesWithout(const std::vector<ImageBlock>& blocks, const Observed& seen,
                         const Vector8& x) {
     using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+    using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;  // not on the heap
     const Eigen::Index size = seen.root.cols();
     MatrixXd changes(size, static_cast<Eigen::Index>(blocks.size()));
     for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -68,27 +69,32 @@ MatrixXd changesWithout(const std::vector<ImageBlock>& blocks, const Observed& s
         const Small share = seen.root.transpose().lazyProduct(weighted);
         const Small rest = (1. + kOpen) * Small::Identity(size, size) - share;
         const Vector8 gradient = blocks[b].Atr - blocks[b].AtA * x;
-        const Eigen::VectorXd seenGradient = seen.root.transpose() * gradient;
+        const Few seenGradient = seen.root.transpose().lazyProduct(gradient);
         const Eigen::LLT<Small> cholesky(rest);
         // A block with nearly all of the information, summed in single precision, is not definite.
         const bool isDefinite = cholesky.info() == Eigen::Success;
-        changes.col(static_cast<Eigen::Index>(b)) = seen.scale.cwiseProduct(
-            isDefinite ? Eigen::VectorXd(cholesky.solve(seenGradient))
-                       : Eigen::VectorXd(rest.partialPivLu().solve(seenGradient)));
+        changes.col(static_cast<Eigen::Index>(b)) =
+            isDefinite ? Few(cholesky.solve(seenGradient))
+                       : Few(rest.partialPivLu().solve(seenGradient));
     }
     return changes;
 }
 
 /// Covariance of what has been drawn as often as there are columns. Estimated from few, it is too
 /// small for as many dimensions as often as too large, and its inverse is too large in the mean:
-/// by n / (n - d - 1), with the number n of columns that count.
+/// by n / (n - d - 1), with the number n of columns that count. Below n = 2 (d + 1), where this
+/// diverges, it is filled up with a covariance of the same mean that is equal in all directions.
+/// @param draws in coordinates in which they are expected to scatter equally in all directions
 MatrixXd covarianceOf(const MatrixXd& draws) {
     const MatrixXd covariance = draws * draws.transpose();
     const auto d = static_cast<double>(draws.rows());
-    const MatrixXd solved = covariance.ldlt().solve(draws);
-    const double squares = draws.cwiseProduct(solved).colwise().sum().squaredNorm();
-    const double n = d * d / squares;
-    return n / std::max(n - d - 1., 1.) * covariance;
+    const MatrixXd equal = covariance.trace() / d * MatrixXd::Identity(draws.rows(), draws.rows());
+    const MatrixXd solved = (covariance + kOpen * equal).ldlt().solve(draws);
+    const auto shares = draws.cwiseProduct(solved).colwise().sum().eval();
+    if (!(shares.sum() > 0.)) return covariance;  // an exact fit
+    const double n = shares.sum() * shares.sum() / shares.squaredNorm();
+    const double lack = (d + 1.) / n;
+    return 1. / std::max(1. - lack, 0.5) * covariance + std::max(2. * lack - 1., 0.) * equal;
 }
 
 /// Scatter of Atr by a field over the image that varies slowly: sum_ab k_ab h_a h_b^T with k_ab the
@@ -99,7 +105,7 @@ MatrixXd covarianceOf(const MatrixXd& draws) {
 template <class Effect>
 Matrix8 scatterOfField(const std::vector<ImageBlock>& blocks, const Eigen::Array2i& size,
                        double variance, const Effect& effect) {
-    if (blocks.empty()) return Matrix8::Zero();     // no pixel is compared
+    if (variance == 0.) return Matrix8::Zero();
     const double length = kFieldLength * size.x();  // [blocks]
     const Eigen::Array2i nodes = (size.cast<double>() / length).ceil().cast<int>() + 3;
     const auto bumps = [&](int axis) {  // of a node (row) at a block (column)
@@ -131,8 +137,9 @@ Matrix8 scatterOfField(const std::vector<ImageBlock>& blocks, const Eigen::Array
 class Light {
   public:
     /// @param x the step to the minimum of the image alone
-    Light(const std::vector<ImageBlock>& blocks, const Vector8& x) : blocks_(blocks) {
-        for (const ImageBlock& block : blocks) size_ = size_.max(block.index + 1);
+    /// @param size of the image [blocks]
+    Light(const std::vector<ImageBlock>& blocks, const Eigen::Array2i& size, const Vector8& x)
+        : blocks_(blocks), size_(size) {
         std::vector<const ImageBlock*> at(std::size_t(size_.prod()), nullptr);
         for (const ImageBlock& block : blocks) at[number(block.index)] = &block;
         double product = 0., weight = 0.;
@@ -155,8 +162,6 @@ class Light {
                               [](const ImageBlock& block) -> Vector8 { return block.AtA.col(6); });
     }
 
-    const Eigen::Array2i& size() const { return size_; }
-
   private:
     std::size_t number(const Eigen::Array2i& index) const {
         return std::size_t(index.y()) * size_.x() + index.x();
@@ -167,7 +172,7 @@ class Light {
     }
 
     const std::vector<ImageBlock>& blocks_;
-    Eigen::Array2i size_ = Eigen::Array2i::Zero();  // blocks
+    Eigen::Array2i size_;
     double variance_ = 0.;
 };
 
@@ -198,6 +203,7 @@ Matrix8 scatterByBlur(const std::vector<ImageBlock>& blocks, const Eigen::Array2
 
 /// All surfaces displaced along their normals by the same distance.
 Matrix8 scatterBySurface(const std::vector<ImageBlock>& blocks, double sigma) {
+    if (sigma == 0.) return Matrix8::Zero();
     Vector8 sum = Vector8::Zero();
     for (const ImageBlock& block : blocks) sum += block.AtA.leftCols<3>() * block.normal;
     return sigma * sigma * sum * sum.transpose();
@@ -242,15 +248,18 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
     const auto covariance = [&](const Matrix8& scatter) -> MatrixXd {  // of y
         return seen.solve * (seen.E.transpose() * scatter * seen.E) * seen.solve.transpose();
     };
-    const Light light(blocks, x);
+    const Eigen::Array2i size = ImageBlock::numberIn(camera);
+    const Light light(blocks, size, x);
     const MatrixXd repeating =
-        covariance(light.scatter() +
-                   scatterByDisplacement(blocks, light.size(), camera, errors.displacement) +
-                   scatterByBlur(blocks, light.size(), errors.blur) +
-                   scatterBySurface(blocks, errors.surface)) +
+        covariance(
+            light.scatter() + scatterByDisplacement(blocks, size, camera, errors.displacement) +
+            scatterByBlur(blocks, size, errors.blur) + scatterBySurface(blocks, errors.surface)) +
         seen.toY * ofScale(errors.depthScale, toModel) * seen.toY.transpose();
-    const MatrixXd whole = repeating + covarianceOf(changesWithout(blocks, seen, x)) +
-                           covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * H);
+    const MatrixXd scatter = seen.scale.asDiagonal() *
+                             covarianceOf(changesWithout(blocks, seen, x)) *
+                             seen.scale.asDiagonal();
+    const MatrixXd whole =
+        repeating + scatter + covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * H);
     if (!whole.allFinite()) return result;
     result.repeating += seen.V * repeating * seen.V.transpose();
     PoseEquations& equations = result.equations;

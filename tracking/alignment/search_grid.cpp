@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "alignment/search_grid.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "geometry/eigensystem.hpp"
@@ -15,8 +14,14 @@ constexpr double kMaxPlaces = 4e3;  // views compared; the spacing grows beyond
 /// Between points of a grid in the box around an ellipsoid, which has no more than kMaxPlaces
 /// [pixels].
 double spacingWithin(const Vector6& sigmas) {
-    const double volume = (2. * kReach * sigmas / kSearchSpacing).cwiseMax(1.).prod();
-    return kSearchSpacing * std::cbrt(std::max(1., volume / kMaxPlaces));
+    double spacing = kSearchSpacing;
+    for (int axis = 0; axis < 6; ++axis) {  // of those wider than the spacing, one less each time
+        const auto places = (2. * kReach / spacing * sigmas.array()).max(1.).eval();
+        const auto wide = (places > 1.).count();
+        const double excess = places.prod() / kMaxPlaces;
+        if (excess > 1.) spacing *= std::pow(excess, 1. / static_cast<double>(wide));
+    }
+    return spacing;
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "geometry/constants.hpp"
 #include "tracking/rooms.hpp"
 
@@ -127,6 +129,31 @@ TEST(KeyframeModel, NoiseIsNoTexture) {
     EXPECT_LT(b.openDirections.size(), 6U) << describe(b);
     const Vector6 e = errorOf(b, moved);
     EXPECT_LT(squaredDistance(e, b.covariance), 30.) << e.transpose();
+}
+
+/// In a simulator without noise, projections of a camera that has not moved can be exact: residuals
+/// of zero inform, too.
+TEST(KeyframeModel, AnExactFitIsInformative) {
+    const Camera camera{256, 256, vpCameraParameters(128., 128., 127.5, 127.5)};
+    View view;
+    test::room().render(camera, kFirst, view);
+    KeyframeModel keyframe(view, camera);
+    const Alignment a = keyframe.align(view.intensity, Pose::Identity());
+    ASSERT_EQ(a.residual.rms, 0.);
+    EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
+}
+
+/// What is left of the last pixel must not count where points are padded to whole vectors.
+TEST(KeyframeModel, ABrokenPixelHasNoEffect) {
+    View view = roomView(kFirst);
+    const ImageF image = view.intensity;
+    view.intensity[238][318] = std::numeric_limits<float>::quiet_NaN();
+    KeyframeOptions options;
+    options.finest = 0;
+    KeyframeModel keyframe(view, wideCamera(), kFirst, options);
+    const Alignment a = keyframe.align(image, kFirst);
+    EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
+    EXPECT_LT(errorOf(a, kFirst).norm(), 1e-3);
 }
 
 TEST(KeyframeModel, ReportsThatItIsLost) {

@@ -183,6 +183,50 @@ TEST(ResidualCovariance, BlocksAddUp) {
     expectSum(points.blocks(image, moved, exposure, loss), ofPoints);
 }
 
+/// How far a displacement of the content reaches is a matter of the image, not of the part in use:
+/// a block without a pixel changes nothing.
+TEST(ResidualCovariance, AnUnusedHalfOfTheImageLeavesTheFieldsAsTheyAre) {
+    const Camera camera = makeCamera(188, 120, 1.2);
+    const View view = test::photographed(room(), camera, cameraAt({1.6, 3., 1.6}, kOblique, 0.1));
+    std::mt19937_64 random(3);
+    ViewComparison compare(camera, {});
+    compare(view, test::noisy(view.intensity, 0.02, random), {}, {});
+    std::vector<ImageBlock> blocks = compare.blocks({}, {});
+    std::erase_if(blocks, [](const ImageBlock& block) { return (block.index > 8).any(); });
+    const auto repeating = [&] {
+        return measuredInformation(blocks, {}, {}, {}, camera, Pose::Identity()).repeating;
+    };
+    const Matrix6 withoutCorner = repeating();
+    blocks.emplace_back().index = {23, 14};
+    EXPECT_LT((repeating() - withoutCorner).norm(), 1e-6 * withoutCorner.norm());
+}
+
+/// A poster of 20 cm on white: the residuals of its few blocks span less than six dimensions.
+TEST(ResidualCovariance, FewBlocksDoNotMakeItSingular) {
+    const Camera camera = makeCamera(94, 60, 1.2);
+    const Pose truth = cameraAt({0., 0., 1.5}, kDown, 0.1);
+    AlignmentOptions options = forPhotographs();
+    options.trust.minOverlap = 0.;
+    for (const double corner : {-0.1, 0.}) {
+        Scene scene = test::floorOf(uniformTexture(0.9F));
+        const auto poster = addTexture(
+            scene, valueNoise({.size = {0.2, 0.2}, .amplitudes = {0.2, 0.2, 0.1}, .seed = 3}));
+        addPlane(scene, {corner, corner, 0.01}, {0.2, 0., 0.}, {0., 0.2, 0.}, poster);
+        const MeshRenderer world(std::move(scene));
+        DenseAligner aligner(world, camera, options);
+        const ImageF image = test::photographed(world, camera, truth).intensity;
+        std::mt19937_64 random(7);
+        double nees = 0.;
+        for (int i = 0; i < 20; ++i) {
+            const UncertainPose prior{truth, 0.01 * Matrix6::Identity()};
+            const Alignment a = aligner.align(test::noisy(image, 0.03, random), prior);
+            const Vector6 xi = test::errorOf(a, truth);
+            nees += xi.dot(a.covariance.ldlt().solve(xi)) / (6. * 20.);
+        }
+        EXPECT_LT(nees, 2.) << corner;
+    }
+}
+
 TEST(ResidualCovariance, RepeatingErrorsDoNotAverageOut) {
     std::mt19937_64 random(5);
     std::normal_distribution<double> normal;

@@ -283,9 +283,23 @@ TEST(WideAligner, TheSearchIsCoarserWhereThePriorIsTooWide) {
     EXPECT_EQ(spacing(0.5), 8.);
     // (6 sigmas / 8 pixels)^2 views are 4000 at sigma = 84.3 pixels, 1.26 m at this depth
     const double metre = camera.fx() / 2.;
-    EXPECT_NEAR(spacing(2. * 84.327 / metre), 8. * std::cbrt(4.), 1e-3);
-    EXPECT_LT(spacing(2.2), kWidestSearchSpacing);
-    EXPECT_GT(spacing(2.5), kWidestSearchSpacing);
+    EXPECT_NEAR(spacing(2. * 84.327 / metre), 2. * 8., 1e-3);
+    EXPECT_LT(spacing(1.8), kWidestSearchSpacing);
+    EXPECT_GT(spacing(2.), kWidestSearchSpacing);
+}
+
+/// Whichever number of axes is wide: the search takes as long.
+TEST(WideAligner, TheSearchComparesALimitedNumberOfViews) {
+    for (int axes = 1; axes <= 6; ++axes) {
+        for (const double sigma : {100., 1000., 1e4}) {
+            Vector6 sigmas = Vector6::Constant(1e-3);
+            sigmas.head(axes).setConstant(sigma);
+            EXPECT_LE(placesWithin(sigmas).size(), 4200U) << axes << " axes, " << sigma;
+            sigmas[0] = 10.;  // an axis that the coarser grid leaves out
+            EXPECT_LE(placesWithin(sigmas).size(), 4200U) << axes << " axes, " << sigma;
+        }
+    }
+    EXPECT_GT(placesWithin(Vector6::Unit(0) * 1e4).size(), 3800U);
 }
 
 }  // namespace
