@@ -44,7 +44,8 @@ BeliefRRTstar::BeliefRRTstar(const ob::SpaceInformationPtr& si, std::shared_ptr<
                                [this] { return std::to_string(shortcutsTaken_); });
 }
 
-/// A roadmap that has changed is searched before it grows, unless there is a path still.
+/// A roadmap that has changed is searched before it grows, unless there is a path still. So is one
+/// whose last search was stopped: without a descent its path would seldom be an improvement.
 void BeliefRRTstar::begin(const ob::PlannerTerminationCondition& ptc) {
     keptCost_ = isFollowing_ ? bestCost() : kInfinity;
     kept_.reset();
@@ -52,7 +53,10 @@ void BeliefRRTstar::begin(const ob::PlannerTerminationCondition& ptc) {
         kept_.emplace(si_);
         for (const ob::State* state : bestPath()) kept_->append(state);
     }
-    if (isSearchDue_ && !isFollowing_ && !goals_.empty()) search(ptc);
+    if (!isSearchDue_ || isFollowing_ || goals_.empty()) return;
+    search(ptc);
+    if (isSearchDue_) return;  // it was stopped
+    descend(ptc, std::min(options_.shortcut, static_cast<unsigned>(vertices())));
 }
 
 void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near,

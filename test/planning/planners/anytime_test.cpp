@@ -43,6 +43,22 @@ TEST(Anytime, ALongerBudgetIsNeverWorse) {
     }
 }
 
+/// A search that a condition has stopped is made up for at the next solve(), with its descent.
+TEST(Anytime, GoesOnImprovingWhenItIsStoppedAgainAndAgain) {
+    for (const std::uint32_t seed : {1U, 2U, 3U}) {
+        Problem problem;
+        problem.growth.seed = seed;
+        const auto planner = beliefPlanner(problem);
+        unsigned before = 0, descents = 0;
+        for (std::size_t budget = 400; budget <= 2400; budget += 400) {
+            solveFor(*planner, budget);
+            descents += planner->shortcutsTried() > before ? 1 : 0;
+            before = planner->shortcutsTried();
+        }
+        EXPECT_GE(descents, 4U) << seed;
+    }
+}
+
 /// A planner whose time is counted: a view takes a millisecond, a look at the clock 10 us.
 struct TimedPlanner {
     explicit TimedPlanner(std::uint32_t seed) {

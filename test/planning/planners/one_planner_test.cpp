@@ -76,7 +76,7 @@ TEST(PlannersWithBeliefs, EndWhereTheCovarianceIsNotPositive) {
         problem.space().setState(start.get(), problem.start, 0.);
         planner->moveRoot(start.get(), {-1. * Matrix6::Identity(), 0.});
         EXPECT_EQ(grow(*planner, 150), ob::PlannerStatus::TIMEOUT) << name;
-        EXPECT_EQ(planner->vertices(), 150U) << name;
+        EXPECT_EQ(planner->samples(), 150U) << name;
     }
 }
 
