@@ -64,15 +64,20 @@ void print(const ExploreOutcome& outcome) {
     }
 }
 
-/// @throws InputError where the first flight has no log
+/// A film that was interrupted is not kept.
 void film(const ExploreOptions& options, const ExplorationSetup& setup, const World& world,
-          const fs::path& folder, const ExploreOutcome& outcome,
-          const std::atomic<bool>& interrupted) {
-    if (!outcome.log || outcome.log->moments.empty()) return;
+          const fs::path& folder, ExploreOutcome& outcome, const std::atomic<bool>& interrupted) {
+    if (!outcome.log || outcome.log->moments.empty()) {
+        fmt::print(stderr, "photonav: warning: no film: the first flight has no log\n");
+        return;
+    }
     ProgressLine line(options.quiet);
     writeFilm(folder / "film.webm", *outcome.log, viewFromAbove(setup.config, world, {}),
               interrupted,
               [&](double share) { line.show(fmt::format("film: {:.0f} %", 100. * share)); });
+    if (!interrupted) return;
+    fs::remove(folder / "film.webm");
+    outcome.interrupted = true;
 }
 
 /// The last step of every exploration: report, film, print.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "exploration/exploration.hpp"
+#include "exploration/online_map.hpp"
 #include "io/error.hpp"
 
 namespace photonav {
@@ -20,6 +23,9 @@ DepthSensor depthSensorOf(ExploreSensor sensor) {
 }
 
 void checkHeadings(const Config& config) {
+    if (config.space == StateKind::se3) {
+        throw InputError(config.file, "space", "se3: a robot that explores flies level");
+    }
     for (const std::string& name : config.explore.planners) {
         if (explorePlanner(name).headings && config.space != StateKind::positionYaw) {
             throw InputError(config.file, "explore.planners",
@@ -36,6 +42,27 @@ ExplorerOptions explorerOf(const Config& config, const FlightOptions& flight) {
             .timeStep = flight.timeStep,
             .imageAge = 2. * camera.period + camera.latency,
             .bodyRadius = flight.bodyRadius};
+}
+
+/// A map of its own that the robot cannot make is refused before it takes off.
+void checkMap(const Config& config) {
+    constexpr double kCells = 32768.;  // of an octree, to each side of the origin
+    constexpr double kAround = 20.;    // what is seen beyond the bounds [m]
+    const double farthest = std::max(config.bounds.min().cwiseAbs().maxCoeff(),
+                                     config.bounds.max().cwiseAbs().maxCoeff());
+    const double resolution = config.explore.resolution;
+    if (farthest + kAround > kCells * resolution) {
+        throw InputError(config.file, "explore.resolution",
+                         fmt::format("{} m: a map of such cells ends {:.0f} m from the origin, the "
+                                     "bounds at {:.0f} m",
+                                     resolution, kCells * resolution, farthest));
+    }
+    try {
+        const OnlineMap map(config);
+        const World world(map.cells(), map.obstacles(), config);
+    } catch (const std::invalid_argument& error) {  // too large a grid for these bounds
+        throw InputError(config.file, "explore.resolution", error.what());
+    }
 }
 
 FlightOptions flightOf(const Config& config) {
@@ -62,6 +89,7 @@ ExplorationSetup setUpExploration(const PlanningProblem& problem) {
             fmt::format("in collision: clearance {:.3f} m, robot.radius {} m",
                         problem.world().clearance(config.start.position), config.robotRadius));
     }
+    checkMap(config);
     ExplorationSetup setup{config, setUpFlight(problem).world, flightOf(config)};
     SimulatedCameraOptions& camera = setup.flight.robot.camera;
     camera.depth = depthSensorOf(config.explore.sensor);

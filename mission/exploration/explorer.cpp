@@ -18,6 +18,8 @@ constexpr double kHidden = 0.3;
 /// Number of updates in a row without a flyable plan after which the flight ends; for one camera
 /// also the limit of steps, see kBlindInVain.
 constexpr int kMostInVain = 6;
+/// Least time without a flyable plan after which the flight ends, at whatever rate images come [s].
+constexpr double kLeastInVain = 2.;
 /// Number of steps in a row into unobserved space that may leave the map unchanged; then the robot
 /// hovers.
 constexpr int kBlindInVain = 1;
@@ -164,13 +166,14 @@ void Explorer::onImage(const TrackedFrame& tracked, const View& image) {
     stopIfInterrupted();
     if (!change && isStopped) change.emplace();  // plan without a new map
     if (!change) return;
-    updatePlan(tracked.T_c_w, *change, watch.seconds());
+    updatePlan(*change, watch.seconds());
     if (on_.moment) on_.moment({planner_, map_, *change, tracked.T_c_w, image, shown});
 }
 
-/// Plans from here on in a map that has changed.
+/// Plans from where the robot is by now, in a map that has changed.
 /// @param change the space of the body is added
-void Explorer::updatePlan(const UncertainPose& T_c_w, MapChange& change, double fuseSeconds) {
+void Explorer::updatePlan(MapChange& change, double fuseSeconds) {
+    const UncertainPose& T_c_w = tracker_.belief();
     PlanUpdate update;
     update.time = time_;
     Stopwatch watch;
@@ -196,6 +199,7 @@ void Explorer::flyOn(const UncertainPose& T_c_w) {
     FlyablePart way = flyablePart(path, space_);
     if (way.isBlind && !mayStepBlindly()) return hover(T_c_w);
     withoutWay_ = 0;
+    withoutWaySince_.reset();
     if (!way.isStopped) stoppedSince_.reset();
     if (way.isStopped && !stoppedSince_) stoppedSince_ = time_;
     blindInVain_ += way.isBlind;
@@ -212,6 +216,7 @@ bool Explorer::mayStepBlindly() const {
 
 void Explorer::hover(const UncertainPose& T_c_w) {
     ++withoutWay_;
+    if (!withoutWaySince_) withoutWaySince_ = time_;
     isWhole_ = false;
     pilot_.setPlan(stayingAt(T_c_w, T_b_c_));
 }
@@ -249,7 +254,9 @@ bool Explorer::hasEnded() {
     if (tracker_.loss().isLost() && pilot_.hasGivenUp(tracker_, time_)) {
         return endAs(FlightEnd::lost, "tracking was lost and not regained");
     }
-    if (withoutWay_ >= kMostInVain) return endAs(FlightEnd::noWay, reasonForNoWay());
+    if (withoutWay_ >= kMostInVain && time_ - *withoutWaySince_ >= kLeastInVain) {
+        return endAs(FlightEnd::noWay, reasonForNoWay());
+    }
     if (stoppedSince_ && time_ - *stoppedSince_ > kMostStopped) {
         return endAs(FlightEnd::noWay, "an obstacle in view that is not in the map");
     }

@@ -100,7 +100,7 @@ class Explorer {
   private:
     void stopIfInterrupted() const;
     void onImage(const TrackedFrame& tracked, const View& image);
-    void updatePlan(const UncertainPose& T_c_w, MapChange& change, double fuseSeconds);
+    void updatePlan(MapChange& change, double fuseSeconds);
     void flyOn(const UncertainPose& T_c_w);
     bool mayStepBlindly() const;
     void hover(const UncertainPose& T_c_w);
@@ -133,10 +133,11 @@ class Explorer {
     double time_ = 0.;        // [s]
     bool isWhole_ = false;    // the part of the plan being flown leads to the goal
     int withoutWay_ = 0;      // updates in a row without a path
-    std::optional<double> stoppedSince_;  // time of the stop before an obstacle in view [s]
-    int blindInVain_ = 0;                 // blind steps since the map last grew
-    double lastUpdate_ = 0.;              // time of the last update [s]
-    std::optional<double> atGoalSince_;   // time of reaching the goal, if still near it [s]
+    std::optional<double> withoutWaySince_;  // [s]
+    std::optional<double> stoppedSince_;     // time of the stop before an obstacle in view [s]
+    int blindInVain_ = 0;                    // blind steps since the map last grew
+    double lastUpdate_ = 0.;                 // time of the last update [s]
+    std::optional<double> atGoalSince_;      // time of reaching the goal, if still near it [s]
     Corrections corrections_;
     ExplorationRecord record_;
     std::optional<FlightEnd> end_;

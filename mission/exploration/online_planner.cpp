@@ -59,6 +59,17 @@ OnlinePlanner::OnlinePlanner(const Config& config, const OnlineMap& map, const E
       seed_(seed),
       planner_(problem_.makePlanner(kind.name, seed)) {}
 
+/// Whether a robot that is too near to obstacles comes no nearer on the way: not through a wall.
+bool OnlinePlanner::isWayOut(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const {
+    constexpr double kStep = 0.02, kRounding = 1e-3;  // [m]
+    const int steps = static_cast<int>((to_w - from_w).norm() / kStep) + 1;
+    const double least = std::min(clearance(from_w), config_.robotRadius) - kRounding;
+    for (int i = 1; i < steps; ++i) {
+        if (clearance(from_w + (to_w - from_w) * i / steps) < least) return false;
+    }
+    return true;
+}
+
 /// The nearest place around that leaves room for the robot; nothing within a metre.
 std::optional<Eigen::Vector3d> OnlinePlanner::flyableNear(const Eigen::Vector3d& p_w) const {
     constexpr double kStep = 0.05, kFarthest = 1.;  // [m]
@@ -72,7 +83,9 @@ std::optional<Eigen::Vector3d> OnlinePlanner::flyableNear(const Eigen::Vector3d&
                 const double angle = 2. * std::numbers::pi * i / kDirections;
                 const Eigen::Vector3d place =
                     inside + radius * Eigen::Vector3d(std::cos(angle), std::sin(angle), rise);
-                if (bounds.contains(place) && problem_.isFlyable(place)) return place;
+                if (bounds.contains(place) && problem_.isFlyable(place) && isWayOut(p_w, place)) {
+                    return place;
+                }
             }
         }
     }
@@ -124,14 +137,21 @@ UpdateCounts OnlinePlanner::planFrom(const ob::State* state, const Belief& belie
     }
     const bool isNew = kind_.replanning == Replanning::scratch;
     if (isNew) planner_ = problem_.makePlanner(kind_.name, seed_);
+    UpdateCounts dropped;
     if (!solveFrom(state, belief, interrupted) && !isNew && !interrupted) {
         // What is left of a tree may be full without the goal: another one begins here.
+        dropped = planner_->lastUpdate();
+        dropped.verticesInvalidated += planner_->vertices();
         planner_ = problem_.makePlanner(kind_.name, ++seed_);
         solveFrom(state, belief, interrupted);
     }
     plan_ = solution(interrupted);
     hasPlanned_ = hasPlanned_ || !plan_.empty();
-    return planner_->lastUpdate();
+    UpdateCounts counts = planner_->lastUpdate();
+    counts.verticesInvalidated += dropped.verticesInvalidated;
+    counts.edgesInvalidated += dropped.edgesInvalidated;
+    counts.verticesAdded += dropped.verticesAdded;
+    return counts;
 }
 
 /// @return whether there is a way to the goal
@@ -182,22 +202,34 @@ OnlinePlanner::States OnlinePlanner::restOf(const States& plan, const ob::State*
     return rest;
 }
 
-/// Beliefs along the plan. A view of the map that the robot made itself never makes its pose
-/// better than the map is, of which the belief here is a bound.
-void OnlinePlanner::evaluatePath(const Pose& T_w_b, const Matrix6& covariance) {
-    BeliefModel& model = problem_.evaluator();
+/// The plan, begun with a covariance at the robot's pose.
+std::vector<BeliefPoint> OnlinePlanner::pathFrom(const Pose& T_w_b, const Matrix6& covariance) {
     BeliefPoint here{.T_w_b = T_w_b, .covariance = covariance, .isWaypoint = true};
     here.traceBefore = here.trace = weightedTrace(covariance, config_.belief.characteristicLength);
-    path_.push_back(here);
-    path_.push_back(here);
-    path_.back().T_w_b = problem_.space().bodyPose(plan_.front().get());
-    path_.back().length = path_.back().distance =
-        (path_.back().T_w_b.translation() - T_w_b.translation()).norm();
+    std::vector<BeliefPoint> path(2, here);
+    path.back().T_w_b = problem_.space().bodyPose(plan_.front().get());
+    path.back().length = path.back().distance =
+        (path.back().T_w_b.translation() - T_w_b.translation()).norm();
     for (std::size_t i = 1; i < plan_.size(); ++i) {
-        model.evaluateMotion(plan_[i - 1].get(), plan_[i].get(), path_);
+        problem_.evaluator().evaluateMotion(plan_[i - 1].get(), plan_[i].get(), path);
     }
+    return path;
+}
+
+/// Beliefs along the plan. A view of the map that the robot made itself never makes its pose
+/// better than the map is, of which the belief here is a bound. The cost is that by which the
+/// planner chose: relative to the map.
+void OnlinePlanner::evaluatePath(const Pose& T_w_b, const Matrix6& covariance) {
+    path_ = pathFrom(T_w_b, covariance);
+    const std::vector<BeliefPoint> inMap = pathFrom(T_w_b, config_.belief.initialCovariance);
     const Matrix6 tiny = 1e-12 * Matrix6::Identity();
-    for (BeliefPoint& point : path_) point.covariance = larger(point.covariance + tiny, covariance);
+    for (std::size_t i = 0; i < path_.size(); ++i) {
+        BeliefPoint& point = path_[i];
+        point.cost = inMap[i].cost;
+        point.covariance = larger(point.covariance + tiny, covariance);
+        point.trace = weightedTrace(point.covariance, config_.belief.characteristicLength);
+        point.traceBefore = std::max(point.traceBefore, point.trace);
+    }
 }
 
 }  // namespace photonav

@@ -15,7 +15,9 @@ struct PlanUpdate {
     std::size_t viewsMarked = 0, viewsRendered = 0;  ///< cached views: outdated, rendered
     double fuseSeconds = 0., clearanceSeconds = 0.;  ///< wall-clock time [s]
     double viewSeconds = 0., planSeconds = 0.;  ///< wall-clock time [s]; planning includes views
-    double cost = 0.;    ///< cost of the path from the robot to the goal [m]; NaN: no path
+    /// Cost of the path from the robot to the goal, of a robot that knows its place in the map as
+    /// explore.initial says [m]; NaN: no path.
+    double cost = 0.;
     double length = 0.;  ///< length of the path from the robot to the goal [m]; NaN: no path
     double trace = 0.;   ///< weightedTrace() of the robot's present belief [m^2]
 };
@@ -55,6 +57,7 @@ class OnlinePlanner {
   private:
     using States = std::vector<std::shared_ptr<ompl::base::State>>;
 
+    bool isWayOut(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const;
     std::optional<Eigen::Vector3d> flyableNear(const Eigen::Vector3d& p_w) const;
     UpdateCounts planFrom(const ompl::base::State* state, const Belief& belief,
                           const std::atomic<bool>& interrupted);
@@ -62,6 +65,7 @@ class OnlinePlanner {
                    const std::atomic<bool>& interrupted);
     States solution(const std::atomic<bool>& interrupted) const;
     States restOf(const States& plan, const ompl::base::State* state) const;
+    std::vector<BeliefPoint> pathFrom(const Pose& T_w_b, const Matrix6& covariance);
     void evaluatePath(const Pose& T_w_b, const Matrix6& covariance);
 
     Config config_;
