@@ -40,16 +40,21 @@ TEST_F(RoomToExplore, ArrivesAroundABoxFoundOnTheWay) {
 }
 
 /// Depth by a second camera, or by the motion of the only one, is found where there is texture.
+/// With one of eight seeds stereo sees an obstacle at the goal, where there is none.
 TEST_F(RoomToExplore, CamerasWithoutDepthMapItAsWell) {
     config.goal.position.x() = 3.5;
     for (const ExploreSensor sensor : {ExploreSensor::stereo, ExploreSensor::monocular}) {
         config.explore.sensor = sensor;
-        // With one of eight seeds stereo sees an obstacle where there is none, at the goal.
-        const ExplorationResult flight = flown(test::roomToExplore(), 2);
-        EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
-        EXPECT_GT(flight.keyframes, 2);
-        EXPECT_GT(flight.map->size(), 500U);
-        EXPECT_GT(flight.leastClearance, 0.125);
+        int arrived = 0, keyframes = 0;
+        for (const std::uint32_t seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
+            const ExplorationResult flight = flown(test::roomToExplore(), seed);
+            arrived += flight.end == FlightEnd::arrived ? 1 : 0;
+            keyframes += flight.keyframes;
+            EXPECT_GT(flight.map->size(), 500U);
+            EXPECT_GT(flight.leastClearance, 0.125);
+        }
+        EXPECT_GE(arrived, 4);
+        EXPECT_GT(keyframes, 12);
     }
 }
 
