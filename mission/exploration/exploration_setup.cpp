@@ -46,16 +46,16 @@ ExplorerOptions explorerOf(const Config& config, const FlightOptions& flight) {
 
 /// A map of its own that the robot cannot make is refused before it takes off.
 void checkMap(const Config& config) {
-    constexpr double kCells = 32768.;  // of an octree, to each side of the origin
-    constexpr double kAround = 20.;    // what is seen beyond the bounds [m]
+    constexpr double kOctreeCells = 32768.;  // of an octree, to each side of the origin
+    constexpr double kSeenBeyond = 20.;      // what is seen beyond the bounds [m]
     const double farthest = std::max(config.bounds.min().cwiseAbs().maxCoeff(),
                                      config.bounds.max().cwiseAbs().maxCoeff());
     const double resolution = config.explore.resolution;
-    if (farthest + kAround > kCells * resolution) {
+    if (farthest + kSeenBeyond > kOctreeCells * resolution) {
         throw InputError(config.file, "explore.resolution",
                          fmt::format("{} m: a map of such cells ends {:.0f} m from the origin, the "
                                      "bounds at {:.0f} m",
-                                     resolution, kCells * resolution, farthest));
+                                     resolution, kOctreeCells * resolution, farthest));
     }
     try {
         const OnlineMap map(config);
