@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "exploration/exploration.hpp"
 #include "exploration/online_map.hpp"
 #include "io/error.hpp"
+#include "map/textured_octree.hpp"
 
 namespace photonav {
 namespace {
@@ -46,16 +48,16 @@ ExplorerOptions explorerOf(const Config& config, const FlightOptions& flight) {
 
 /// A map of its own that the robot cannot make is refused before it takes off.
 void checkMap(const Config& config) {
-    constexpr double kOctreeCells = 32768.;  // of an octree, to each side of the origin
-    constexpr double kSeenBeyond = 20.;      // what is seen beyond the bounds [m]
+    constexpr double kSeenBeyond = 20.;  // what is seen beyond the bounds [m]
     const double farthest = std::max(config.bounds.min().cwiseAbs().maxCoeff(),
                                      config.bounds.max().cwiseAbs().maxCoeff());
     const double resolution = config.explore.resolution;
-    if (farthest + kSeenBeyond > kOctreeCells * resolution) {
+    const double reach = kKeyOfZero * resolution;
+    if (farthest + kSeenBeyond > reach) {
         throw InputError(config.file, "explore.resolution",
                          fmt::format("{} m: a map of such cells ends {:.0f} m from the origin, the "
                                      "bounds at {:.0f} m",
-                                     resolution, kOctreeCells * resolution, farthest));
+                                     resolution, reach, farthest));
     }
     try {
         const OnlineMap map(config);

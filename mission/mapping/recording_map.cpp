@@ -13,6 +13,7 @@
 #include "evaluation/averages.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
+#include "map/textured_octree.hpp"
 
 namespace photonav {
 namespace {
@@ -41,7 +42,7 @@ void checkOptions(const MapOptions& options) {
 /// is the cells that are too small.
 void checkPosition(const MapOptions& options, const RecordedFrame& frame) {
     const double farthest = frame.T_c_w.inverse().translation().cwiseAbs().maxCoeff();
-    const double reach = 32768. * options.resolution;
+    const double reach = kKeyOfZero * options.resolution;
     constexpr double kNear = 100.;
     if (farthest <= std::max(reach, kNear)) return;
     throw InputError(
