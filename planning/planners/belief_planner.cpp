@@ -82,6 +82,7 @@ ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& pt
     if (dynamic_cast<ob::GoalSampleableRegion*>(pdef_->getGoal().get()) == nullptr) {
         return ob::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
     }
+    dropBlocked();
     try {
         if (!addStarts()) return ob::PlannerStatus::INVALID_START;
         if (!sampler_) {
@@ -356,6 +357,7 @@ void BeliefPlanner::freeMemory() {
     }
     si_->freeStates(best_.states);
     best_.states.clear();
+    dropBlocked();
 }
 
 void BeliefPlanner::getPlannerData(ob::PlannerData& data) const {

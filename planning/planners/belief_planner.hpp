@@ -283,6 +283,7 @@ class BeliefPlanner : public ompl::base::Planner {
     void erase(const std::vector<Vertex*>& vertices);
     void joinRootToBest();
     void reevaluateBest();
+    void dropBlocked();
     void reportUpdate();
     void orBeginAnew(const std::function<void()>& update);
     std::optional<double> costOf(const std::vector<ompl::base::State*>& path);
@@ -300,6 +301,8 @@ class BeliefPlanner : public ompl::base::Planner {
     ompl::base::StateSamplerPtr sampler_;
     ompl::RNG rng_;
     Solution best_;
+    /// A best path that a change blocked: what is left of it after moveRoot() may be free.
+    std::vector<ompl::base::State*> blocked_;
     std::optional<Belief> movedRoot_;
     double deadline_ = kInfinity;  // by the clock [s]
     double budget_ = 0.;           // of the solve() that has a deadline [s]

@@ -122,6 +122,7 @@ void BeliefPlanner::moveRoot(const ob::State* state, const Belief& belief) {
     }
     roots_ = {{root, belief}};
     movedRoot_ = belief;
+    if (best_.states.empty()) std::swap(best_.states, blocked_);
     joinRootToBest();
     orBeginAnew([&] {
         reevaluateBest();
@@ -174,15 +175,21 @@ void BeliefPlanner::joinRootToBest() {
     states.insert(states.begin(), si_->cloneState(root));
 }
 
-/// Drops the best path unless it is free from a root on, else computes its present cost.
+/// Sets the best path aside unless it is free from a root on, else computes its present cost.
 void BeliefPlanner::reevaluateBest() {
     if (best_.states.empty()) return;
     if (const auto cost = costOf(best_.states)) {
         best_.cost = *cost;
         return;
     }
-    si_->freeStates(best_.states);
+    dropBlocked();
+    blocked_ = std::move(best_.states);
     best_ = {kInfinity, {}};
+}
+
+void BeliefPlanner::dropBlocked() {
+    si_->freeStates(blocked_);
+    blocked_.clear();
 }
 
 std::optional<double> BeliefPlanner::costOf(const std::vector<ob::State*>& path) {

@@ -28,12 +28,11 @@ bool KeyframeChain::begin(const View& view, const UncertainPose& T_k_w, double t
     return true;
 }
 
-std::optional<Alignment> KeyframeChain::alignToLastTracked(const ImageF& image,
-                                                           const UncertainPose& prior) {
-    if (!lastTracked_) return {};
+bool KeyframeChain::keepLastTracked() {
+    if (!lastTracked_) return false;
     remember(keyframeOf(lastTracked_->view, lastTracked_->T_c_w, lastTracked_->time));
     lastTracked_.reset();
-    return align(image, prior);
+    return true;
 }
 
 std::optional<Alignment> KeyframeChain::relocalize(const ImageF& image, double maxUnexplained) {
@@ -55,14 +54,15 @@ UncertainPose KeyframeChain::beliefOf(const Alignment& alignment) const {
     return belief;
 }
 
-void KeyframeChain::add(const View& view, const UncertainPose& T_c_w, double time, double overlap,
+bool KeyframeChain::add(const View& view, const UncertainPose& T_c_w, double time, double overlap,
                         double meanDepth) {
-    if (isFar(T_c_w.mean, overlap, meanDepth)) {
-        remember(keyframeOf(view, T_c_w, time));
-        lastTracked_.reset();
-    } else {
+    if (!isFar(T_c_w.mean, overlap, meanDepth)) {
         lastTracked_ = {view, T_c_w, time};
+        return false;
     }
+    remember(keyframeOf(view, T_c_w, time));
+    lastTracked_.reset();
+    return true;
 }
 
 KeyframeChain::Keyframe KeyframeChain::keyframeOf(const View& view, const UncertainPose& T_k_w,

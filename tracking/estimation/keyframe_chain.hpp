@@ -41,9 +41,9 @@ class KeyframeChain {
     Alignment align(const ImageF& image, const UncertainPose& prior) {
         return keyframes_.back().model.align(image, prior);
     }
-    /// Makes the image tracked last the latest keyframe and aligns to it; returns nothing if that
-    /// image is a keyframe already.
-    std::optional<Alignment> alignToLastTracked(const ImageF& image, const UncertainPose& prior);
+    /// Makes the image tracked last the latest keyframe.
+    /// @return false if that image is a keyframe already, or forgotten
+    bool keepLastTracked();
     /// Aligns an image without a prior to the stored keyframes, newest first, until one explains
     /// it. This keyframe becomes the latest one. Returns nothing if none explains the image.
     /// @param maxUnexplained largest share of the variance, see TrustOptions
@@ -55,7 +55,8 @@ class KeyframeChain {
     /// Adds a tracked image: it becomes a keyframe if it is too far from the latest one.
     /// @param overlap share of the latest keyframe's points in view
     /// @param meanDepth of the view [m]
-    void add(const View& view, const UncertainPose& T_c_w, double time, double overlap,
+    /// @return whether it became the latest keyframe
+    bool add(const View& view, const UncertainPose& T_c_w, double time, double overlap,
              double meanDepth);
     /// Called after a rejected image: the image tracked last does not become a keyframe any more.
     void forgetLastTracked() { lastTracked_.reset(); }

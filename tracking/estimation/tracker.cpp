@@ -95,7 +95,9 @@ void Tracker::predict(double time) {
                                      : velocity_.predict(imageTime_ ? time - *imageTime_ : 0.);
     imageTime_ = time;
     belief_ = compound(motion, belief_);
-    sinceTracked_ = compound(motion, {Pose::Identity(), sinceTracked_}).covariance;
+    for (Matrix6* since : {&sinceTracked_, &sinceKeyframe_}) {
+        *since = compound(motion, {Pose::Identity(), *since}).covariance;
+    }
     if (options_.mapErrors) options_.mapErrors->propagate(motion.mean);
 }
 
@@ -205,28 +207,39 @@ std::optional<Tracker::Match> Tracker::findInNeighbourhood(const ImageF& image) 
 std::optional<Tracker::Match> Tracker::findByKeyframes(const ImageF& image, const Pose& stayed,
                                                        TrackedFrame& frame) {
     const AlignmentOptions& options = keyframes_->options().keyframe.alignment;
-    const auto match = [&](const std::optional<Alignment>& alignment) -> std::optional<Match> {
-        if (!alignment || !agrees(*alignment, options)) return {};
-        if (loss_.isLost() && alignment->verdict != Verdict::converged &&
-            !resolvesLoss(Matrix6::Zero(), sinceTracked_, alignment->covariance)) {
+    /// @param before covariance relative to the keyframe at the image tracked last
+    const auto match = [&](const Alignment& alignment,
+                           const Matrix6& before) -> std::optional<Match> {
+        if (!agrees(alignment, options)) return {};
+        if (loss_.isLost() && alignment.verdict != Verdict::converged &&
+            !resolvesLoss(before, before + sinceTracked_, alignment.covariance)) {
             return {};
         }
-        return Match{*alignment, keyframes_->beliefOf(*alignment), keyframes_->latestTime(), false};
+        return Match{alignment, keyframes_->beliefOf(alignment), keyframes_->latestTime(), false};
     };
-    const UncertainPose moved{belief_.mean, sinceTracked_};
-    const UncertainPose still{hasOdometry_ ? belief_.mean : stayed, sinceTracked_};
-    const Alignment first = keyframes_->align(image, moved);
+    const auto align = [&](const Pose& likely) {
+        return keyframes_->align(image, {likely, sinceKeyframe_});
+    };
+    const Matrix6 before = sinceKeyframe_ - sinceTracked_;
+    const Pose& likely = hasOdometry_ ? belief_.mean : stayed;
+    const Alignment first = align(belief_.mean);
     if (!map_) {
         frame.alignment = first;
         frame.keyframe = keyframes_->latestTime();
     }
-    if (auto found = match(first)) return found;
+    if (auto found = match(first, before)) return found;
     if (!hasOdometry_) {
-        if (auto found = match(keyframes_->align(image, still))) return found;
+        if (auto found = match(align(likely), before)) return found;
     }
-    if (auto found = match(keyframes_->alignToLastTracked(image, still))) return found;
+    if (keyframes_->keepLastTracked()) {
+        sinceKeyframe_ = sinceTracked_;
+        if (auto found = match(align(likely), Matrix6::Zero())) return found;
+    }
     const double share = options_.loss.maxUnexplainedShare;
-    return match(keyframes_->relocalize(image, share * options.trust.maxUnexplained));
+    const auto relocalized = keyframes_->relocalize(image, share * options.trust.maxUnexplained);
+    if (!relocalized) return {};
+    sinceKeyframe_ = relocalized->covariance;
+    return match(*relocalized, Matrix6::Zero());
 }
 
 /// The belief after an image that was found.
@@ -245,10 +258,12 @@ void Tracker::onMatched(const View& view, const Match& match, const Pose& before
     loss_.onTracked(now_);
     if (!keyframes_ || view.depth.getSize() == 0) return;
     if (keyframes_->isEmpty()) {
-        keyframes_->begin(view, belief_, frame.time);
+        if (keyframes_->begin(view, belief_, frame.time)) sinceKeyframe_.setZero();
     } else {
         const double overlap = match.keyframe ? match.alignment.overlap : 1.;
-        keyframes_->add(view, belief_, frame.time, overlap, match.alignment.meanDepth);
+        const bool isNext =
+            keyframes_->add(view, belief_, frame.time, overlap, match.alignment.meanDepth);
+        if (isNext) sinceKeyframe_.setZero();
     }
 }
 
@@ -273,6 +288,7 @@ void Tracker::onRejected(const View& view, const Pose& stayed, TrackedFrame& fra
     trackedTime_ = frame.time;
     trackedCovariance_ = belief_.covariance;
     sinceTracked_.setZero();
+    sinceKeyframe_.setZero();
     loss_.onTracked(now_);
     if (!isFirst) return;
     frame.rejected = false;

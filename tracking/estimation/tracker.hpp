@@ -125,9 +125,12 @@ class Tracker {
     Pose T_certain_w_;
     Matrix6 trackedCovariance_;               ///< of the belief at the image tracked last
     Matrix6 sinceTracked_ = Matrix6::Zero();  ///< covariance of the motion since then
-    std::optional<double> trackedTime_;       ///< and its time [s]
-    std::optional<double> imageTime_;         ///< of the last image [s]
-    double now_ = 0.;                         ///< [s]
+    /// Covariance of the motion since the latest keyframe. It is not reduced by the images on the
+    /// way: along directions that they do not show, the error grows until the next keyframe.
+    Matrix6 sinceKeyframe_ = Matrix6::Zero();
+    std::optional<double> trackedTime_;  ///< of the image tracked last [s]
+    std::optional<double> imageTime_;    ///< of the last image [s]
+    double now_ = 0.;                    ///< [s]
     bool hasOdometry_ = false;
 };
 

@@ -85,6 +85,35 @@ TEST_P(ChangedPlanner, GrowsAgainAfterManyMovesOfItsRoot) {
     EXPECT_GE(planner.lastUpdate().verticesAdded, planner.lastUpdate().verticesInvalidated);
 }
 
+/// A wall on the part of the best path that the robot has flown leaves the rest as it is, told
+/// before the root has moved or after; one ahead of it does not.
+TEST_P(ChangedPlanner, AWallBehindTheRobotDoesNotBlockItsWay) {
+    for (const bool isBehind : {true, false}) {
+        PlannerBetweenWalls problem(GetParam());
+        BeliefPlanner& planner = *problem.planner;
+        const FlightSpace& space = planner.model().space();
+        const auto& path = planner.bestPath();
+        const std::size_t middle = path.size() / 2;
+        ASSERT_GE(middle, 1U);
+        const Vector3d end = space.position(path.back());
+        const Vector3d here =
+            0.5 * (space.position(path[middle - 1]) + space.position(path[middle]));
+        const Vector3d wall = isBehind ? space.position(path.front()) : end;
+        ASSERT_GT((wall - here).norm(), 1.);
+        const Vector3d half(0.2, 0.2, 2.);
+        planner.mapChanged(problem.world.fill({wall - half, wall + half}, true));
+        EXPECT_TRUE(planner.bestPath().empty());
+        ob::ScopedState<> root(planner.getSpaceInformation());
+        space.setState(root.get(), here, 0.);
+        planner.moveRoot(root.get(), planner.model().root(root.get()));
+        ASSERT_EQ(planner.bestPath().empty(), !isBehind);
+        if (!isBehind) continue;
+        EXPECT_EQ(space.position(planner.bestPath().front()), here);
+        EXPECT_EQ(space.position(planner.bestPath().back()), end);
+        EXPECT_TRUE(planner.getProblemDefinition()->hasExactSolution());
+    }
+}
+
 /// The positions of a planner's vertices that have a belief.
 std::vector<Vector3d> positionsOf(const BeliefPlanner& planner) {
     std::vector<Vector3d> positions;

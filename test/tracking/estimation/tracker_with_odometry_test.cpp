@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "estimation/tracker.hpp"
 #include "tracking/rooms.hpp"
 
@@ -211,6 +213,46 @@ TEST(TrackerWithOdometry, StripesEndNoLossAlongThem) {
     EXPECT_FALSE(frame.rejected) << describe(frame.alignment);
     EXPECT_LT((frame.T_c_w.mean.inverse().translation() - moved.inverse().translation()).norm(),
               0.02);
+}
+
+/// Along bars, which no image shows, the errors of all steps since a keyframe add up, as they do
+/// without images. Steps are forgotten neither at an image nor at the next keyframe.
+TEST(TrackerWithOdometry, OdometryAddsUpAlongWhatKeyframesDoNotShow) {
+    const MeshRenderer bars(test::floorOf(stripes({.width = 2.5, .softEdge = 0.05})));
+    const Pose here = cameraAt({0.05, 0., 2.}, test::kDown);
+    const Eigen::Vector3d along_c = here.linear().col(1), across_c = here.linear().col(0);
+    TrackerOptions options;
+    options.keyframes.emplace();
+    options.keyframes->keyframe.alignment.exposure.emplace();
+    Tracker tracker(nullptr, hoverCamera(), {here, 1e-12 * Matrix6::Identity()}, options);
+    std::mt19937_64 random(1);
+    View view;
+    constexpr int kImages = 12;
+    Matrix6 noise = 1e-8 * Matrix6::Identity();
+    noise.topLeftCorner<3, 3>() = 1e-4 * Eigen::Matrix3d::Identity();
+    UncertainPose byOdometry{here, Matrix6::Zero()};
+    std::set<double> keyframes;
+    for (int i = 0; i <= kImages; ++i) {
+        Pose step = Pose::Identity();
+        if (i > 0) step.translation() = 0.06 * along_c;
+        const UncertainPose T_next_now{step, (i > 0 ? 1. : 0.) * noise};
+        byOdometry = compound(T_next_now, byOdometry);
+        bars.render(hoverCamera(), byOdometry.mean, view);
+        view.intensity = test::noisy(view.intensity, 0.02, random);
+        const TrackedFrame frame = tracker.update({i + 1., T_next_now, {{i + 1., view}}}).front();
+        ASSERT_FALSE(frame.rejected) << i << ": " << describe(frame.alignment);
+        keyframes.insert(frame.keyframe.value());
+    }
+    EXPECT_GT(keyframes.size(), 1U);
+    EXPECT_LT(keyframes.size(), kImages / 2U);  // several images for each
+    const auto variance = [](const Matrix6& covariance, const Eigen::Vector3d& axis) {
+        return axis.dot(covariance.topLeftCorner<3, 3>() * axis);
+    };
+    const Matrix6& covariance = tracker.beliefAtLastImage().covariance;
+    const double along = variance(byOdometry.covariance, along_c);
+    EXPECT_GT(variance(covariance, along_c), 0.5 * along);
+    EXPECT_LT(variance(covariance, along_c), 1.01 * along);
+    EXPECT_LT(variance(covariance, across_c), 0.2 * variance(byOdometry.covariance, across_c));
 }
 
 }  // namespace
