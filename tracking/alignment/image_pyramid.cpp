@@ -37,28 +37,33 @@ cv::Mat smoothed(const cv::Mat& image, double sigma) {
     return smooth;
 }
 
-}  // namespace
+/// The largest variance of a kernel of three pixels without negative weights [pixels^2].
+constexpr double kWidestKernel = 0.5;
 
-Camera halved(const Camera& camera) {
-    const auto centre = [](double c) { return 0.5 * (c + 0.5) - 0.5; };
-    return {camera.width / 2, camera.height / 2,
-            vpCameraParameters(0.5 * camera.fx(), 0.5 * camera.fy(), centre(camera.cx()),
-                               centre(camera.cy()))};
+/// A variance as a sum of equal ones, each of a kernel of three pixels.
+std::vector<double> widenings(double variance) {
+    if (!(variance > 0.)) return {};
+    const double times = std::ceil(variance / kWidestKernel);
+    return std::vector<double>(static_cast<std::size_t>(times), variance / times);
 }
 
-double noiseAfterWidening(double variance, double scale) {
-    const double added = std::clamp(variance, 0., 0.5);
-    const double side = 0.5 * added, middle = 1. - added;
-    const double ofWhite = middle * middle + 2. * side * side;  // both axes
-    const double smoothed = 1. / (4. * std::numbers::pi * scale);
-    return std::max(ofWhite, std::sqrt(smoothed / (smoothed + added)));
+/// Convolved with the kernel (side, 1 - 2 side, side).
+std::vector<double> convolved(const std::vector<double>& kernel, double side) {
+    std::vector<double> result(kernel.size() + 2, 0.);
+    for (std::size_t i = 0; i < kernel.size(); ++i) {
+        result[i] += side * kernel[i];
+        result[i + 1] += (1. - 2. * side) * kernel[i];
+        result[i + 2] += side * kernel[i];
+    }
+    return result;
 }
 
-ImageF widened(const ImageF& image, double variance) {
-    const auto side = static_cast<float>(0.5 * std::clamp(variance, 0., 0.5));
+/// @param variance not above kWidestKernel
+ImageF widenedOnce(const ImageF& image, double variance) {
+    const auto side = static_cast<float>(0.5 * variance);
     const float middle = 1.F - 2.F * side;
     const unsigned width = image.getWidth(), height = image.getHeight();
-    if (side == 0.F || width < 2) return image;
+    if (width < 2) return image;
     ImageF result(height, width);
     std::vector<float> column(width);
     for (unsigned v = 0; v < height; ++v) {
@@ -75,6 +80,31 @@ ImageF widened(const ImageF& image, double variance) {
         out[0] = (1.F - side) * column[0] + side * column[1];
         out[width - 1] = (1.F - side) * column[width - 1] + side * column[width - 2];
     }
+    return result;
+}
+
+}  // namespace
+
+Camera halved(const Camera& camera) {
+    const auto centre = [](double c) { return 0.5 * (c + 0.5) - 0.5; };
+    return {camera.width / 2, camera.height / 2,
+            vpCameraParameters(0.5 * camera.fx(), 0.5 * camera.fy(), centre(camera.cx()),
+                               centre(camera.cy()))};
+}
+
+double noiseAfterWidening(double variance, double scale) {
+    const double added = std::max(variance, 0.);
+    std::vector<double> kernel{1.};  // along one axis
+    for (const double once : widenings(added)) kernel = convolved(kernel, 0.5 * once);
+    double ofWhite = 0.;  // both axes
+    for (const double weight : kernel) ofWhite += weight * weight;
+    const double smoothed = 1. / (4. * std::numbers::pi * scale);
+    return std::max(ofWhite, std::sqrt(smoothed / (smoothed + added)));
+}
+
+ImageF widened(const ImageF& image, double variance) {
+    ImageF result = image;
+    for (const double once : widenings(variance)) result = widenedOnce(result, once);
     return result;
 }
 

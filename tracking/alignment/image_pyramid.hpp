@@ -20,8 +20,9 @@ Camera halved(const Camera& camera);
 /// and about the area of a pixel by the interpolation of textures (measured against AreaSensor).
 inline constexpr double kRenderedBlur = 0.7638;
 
-/// Widens the point spread of an image by a kernel of 3 x 3 pixels; borders repeat.
-/// @param variance of the additional spread [pixels^2], limited to [0, 0.5]
+/// Widens the point spread of an image by kernels of 3 x 3 pixels, as many as it takes; borders
+/// repeat.
+/// @param variance of the additional spread [pixels^2]; the image stays as it is below 0
 ImageF widened(const ImageF& image, double variance);
 
 /// Standard deviation of noise after widened(), divided by that before. Correlated noise is reduced

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include <opencv2/imgproc.hpp>
 
@@ -44,6 +45,34 @@ TEST(ImagePyramid, BlurAfterHalvingIsThatOfTheHalvedImage) {
         EXPECT_NEAR(spreadOf(half), blurAfterHalving(sigma), 1e-3) << sigma;
     }
     EXPECT_NEAR(blurAfterHalving(kRenderedBlur), kRenderedBlur, 1e-4);
+}
+
+/// Wide point spreads, too: of a camera that is out of focus.
+TEST(ImagePyramid, WidensByTheVarianceAskedFor) {
+    constexpr int kSize = 41;
+    ImageF point(kSize, kSize, 0.F);
+    point[kSize / 2][kSize / 2] = 1.F;
+    std::mt19937_64 random(1);
+    std::normal_distribution<float> normal;
+    ImageF noise(400, 400);
+    for (unsigned i = 0; i < noise.getSize(); ++i) noise.bitmap[i] = normal(random);
+    const double before = cv::norm(asMat(noise));
+    for (const double variance : {-1., 0., 0.3, 0.5, 0.7, 3.4}) {
+        const ImageF spread = widened(point, variance);
+        double sum = 0., squares = 0.;
+        for (int v = 0; v < kSize; ++v) {
+            for (int u = 0; u < kSize; ++u) {
+                sum += spread[v][u];
+                squares += spread[v][u] * std::pow(u - kSize / 2, 2);
+            }
+        }
+        EXPECT_NEAR(sum, 1., 1e-5) << variance;
+        EXPECT_NEAR(squares, std::max(variance, 0.), 1e-5) << variance;
+        constexpr double kWhite = 1e9;
+        EXPECT_NEAR(noiseAfterWidening(variance, kWhite),
+                    cv::norm(asMat(widened(noise, variance))) / before, 0.01)
+            << variance;
+    }
 }
 
 /// Cells of any size, also when the camera nearly touches the surface.
