@@ -224,9 +224,44 @@ void run(const World& world, const Camera& camera, UnknownPolicy unknown) {
     std::fflush(stdout);
 }
 
+/// The costliest change for its size: a cell in open space, which divides the box that rays cross
+/// in one step. It becomes an obstacle and free again.
+void runInOpenSpace(const Eigen::Vector3d& size) {
+    constexpr int kTimes = 9;
+    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(0.5 * kCell);
+    TexturedOcTree map(kCell);
+    const auto set = [&](const Eigen::Vector3d& p, bool isOccupied) {
+        const auto node = map.coordToKey(p.x(), p.y(), p.z());
+        map.setNodeValue(node, isOccupied ? 1.F : -1.F);
+    };
+    set(margin, true);
+    set(size - margin, true);
+    const Eigen::Vector3d middle = 0.5 * size + margin;
+    DistanceMap distances(map, {Eigen::Vector3d::Zero(), size}, {.unknown = UnknownPolicy::free});
+    VoxelSnapshots snapshots(map, UnknownPolicy::free);
+    std::vector<double> snapshot, distance;
+    for (int i = 0; i < kTimes; ++i) {
+        set(middle, i % 2 == 0);
+        MapChange change{.resolution = kCell};
+        const double brick = MapChange::kBrickEdge * kCell;
+        change.occupancy.emplace_back((middle / brick).array().floor().cast<int>());
+        snapshot.push_back(milliseconds([&] { snapshots.update(map, change); }));
+        distance.push_back(milliseconds([&] { distances.update(map, change); }));
+    }
+    const double scratch = milliseconds([&] { VoxelRenderer(map, UnknownPolicy::free); });
+    fmt::print(
+        "{:>5g} x {:g} x {:g} m: snapshot {:6.2f} ms, clearance {:5.2f} ms; a new snapshot {:6.1f} "
+        "ms\n",
+        size.x(), size.y(), size.z(), quantile(snapshot, 0.5), quantile(distance, 0.5), scratch);
+}
+
 }  // namespace
 
 int main() {
+    fmt::print("one cell in open space\n");
+    runInOpenSpace({8., 8., 3.});
+    runInOpenSpace({27., 10., 2.5});
+    runInOpenSpace({50., 50., 5.});
     for (const World& world : {makeRoom(), makeLabyrinth()}) {
         run(world, makeCamera(188, 120, 1.2), UnknownPolicy::occupied);
         run(world, makeCamera(188, 120, 1.2), UnknownPolicy::free);

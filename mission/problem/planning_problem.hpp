@@ -158,7 +158,8 @@ class PlanningProblem {
     }
     /// Applies all changes of World::mapChanged() since the last call to the cached views and to
     /// the planners made here; before, they use the old map. Planners keep what is still valid, and
-    /// solve() continues from there. Call it for every problem in the world, one after the other.
+    /// solve() continues from there. Problems that share cached views: call it for all of them
+    /// before any of them solves, or views are rendered twice.
     /// @throws RenderingStopped when it is interrupted inside a large view; the next call then
     ///        applies the same changes again, so that no planner misses them
     void followMap();

@@ -117,11 +117,14 @@ void World::useMap(std::shared_ptr<const TexturedOcTree> map,
 void World::mapChanged(const MapChange& change) {
     if (!snapshots_) throw std::logic_error("world: only a map of the program's own can change");
     if (change.empty()) return;
+    {  // first: planners must hear of a wall even if a map has become too large for views
+        const std::lock_guard lock(collectors_->mutex);
+        auto& changes = collectors_->changes;
+        std::erase_if(changes, [](const auto& collected) { return collected.expired(); });
+        for (const auto& collected : changes) collected.lock()->join(change);
+    }
     distances_.update(*obstacles_, change);
     views_ = snapshots_->update(*map_, change);
-    const std::lock_guard lock(collectors_->mutex);
-    std::erase_if(collectors_->changes, [](const auto& collected) { return collected.expired(); });
-    for (const auto& collected : collectors_->changes) collected.lock()->join(change);
 }
 
 std::shared_ptr<MapChange> World::collectChanges() const {

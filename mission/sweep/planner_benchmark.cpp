@@ -64,6 +64,9 @@ class Session {
         constexpr double kMemory = 16384.;  // [MB]
         const ompl::tools::Benchmark::Request request(limits.timeLimit, kMemory, config_.sweep.runs,
                                                       limits.interval, false, false, false);
+        for (const auto& planner : planners_) {
+            planner->params().setParam("time_limit", fmt::format("{}", limits.timeLimit));
+        }
         const InterruptionScope scope = plan_.interruptedBy(interrupted_);
         try {
             benchmark_.benchmark(request);

@@ -43,6 +43,16 @@ void setPenalty(const ViewPenalty& camera, const Pose& T_c_w, InformationField::
         T_c_w.linear().transpose() * camera.reduction.gain * T_c_w.linear();
 }
 
+/// The bricks of a change, each grown to the space from which it can change a view. A view depends
+/// on the cells along its rays and on the cells around the ends of its rays: grey values are
+/// interpolated between neighbouring faces, also across steps and borders of the surface.
+BrickTree bricksThatAffectViews(const MapChange& change) {
+    constexpr int kReach = 2;  // of the interpolation [cells]
+    MapChange shown = change;
+    shown.anyTexture.clear();
+    return {change, shown.bricks(), kReach * change.resolution};
+}
+
 }  // namespace
 
 InformationField::InformationField(Evaluate evaluate, const Pose& T_b_c, const Options& options)
@@ -147,7 +157,7 @@ void InformationField::update(std::shared_ptr<const ViewSource> views, const Map
     if (views == nullptr) throw std::invalid_argument("information field: no views of the map");
     source_ = std::move(views);
     ++epoch_;
-    const ChangedBricks changed(change);
+    const BrickTree changed = bricksThatAffectViews(change);
     for (Entry& entry : entries_) {
         char& isTouched = isTouched_[entry.index];
         if (entry.isStale) continue;
@@ -163,7 +173,7 @@ void InformationField::update(std::shared_ptr<const ViewSource> views, const Map
 }
 
 /// Whether the view of an entry may depend on what changed.
-bool InformationField::isInView(const Entry& entry, const ChangedBricks& changed) const {
+bool InformationField::isInView(const Entry& entry, const BrickTree& changed) const {
     const Eigen::AlignedBox3d& bounds = bounds_[entry.index];
     const auto isNear = [&](const Eigen::AlignedBox3d& box) { return bounds.intersects(box); };
     if (!changed.any(isNear)) return false;

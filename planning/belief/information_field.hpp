@@ -12,6 +12,7 @@
 
 #include "belief/view_extent.hpp"
 #include "belief/view_models.hpp"
+#include "map/brick_tree.hpp"
 
 namespace photonav {
 
@@ -111,7 +112,7 @@ class InformationField {
     Cell cellOf(const Pose& T_w_b) const;
     Pose cameraPose(const Cell& cell) const;  // T_c_w at the centre
     void evaluate(const Cell& cell, Entry& entry, ViewExtent& extent);
-    bool isInView(const Entry& entry, const ChangedBricks& changed) const;
+    bool isInView(const Entry& entry, const BrickTree& changed) const;
 
     Evaluate evaluate_;
     std::shared_ptr<const ViewSource> source_;  // none: formulas

@@ -102,36 +102,4 @@ Eigen::AlignedBox3d ViewExtent::bounds(const Camera& camera, const Pose& T_c_w) 
     return box;
 }
 
-ChangedBricks::ChangedBricks(const MapChange& change) {
-    Boxes boxes;
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(kReach * change.resolution);
-    const auto add = [&](const std::vector<Eigen::Array3i>& bricks) {
-        for (const auto& brick : bricks) {
-            const Eigen::AlignedBox3d box = change.boxOf(brick);
-            boxes.emplace_back(box.min() - reach, box.max() + reach);
-        }
-    };
-    add(change.occupancy);
-    add(change.texture);
-    if (!boxes.empty()) build(boxes.begin(), boxes.end());
-}
-
-void ChangedBricks::build(Boxes::iterator begin, Boxes::iterator end) {
-    Eigen::AlignedBox3d around;
-    for (auto it = begin; it != end; ++it) around.extend(*it);
-    const std::size_t self = nodes_.size();
-    nodes_.push_back({around, 0});
-    if (end - begin > 1) {
-        int axis = 0;
-        around.sizes().maxCoeff(&axis);
-        const auto middle = begin + (end - begin) / 2;
-        std::nth_element(begin, middle, end, [axis](const auto& a, const auto& b) {
-            return a.min()[axis] < b.min()[axis];
-        });
-        build(begin, middle);
-        build(middle, end);
-    }
-    nodes_[self].end = nodes_.size();
-}
-
 }  // namespace photonav

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/camera.hpp"
-#include "map/map_change.hpp"
+#include "geometry/types.hpp"
 
 namespace photonav {
 
@@ -33,47 +33,6 @@ class ViewExtent {
   private:
     unsigned columns_ = 0, rows_ = 0;
     std::vector<float> depth_;  // by tile, row by row
-};
-
-/// The bricks of a change, each grown to the space from which it can change a view, as a tree of
-/// boxes.
-///
-/// A view depends on the cells along its rays and on the cells around the ends of its rays: grey
-/// values are interpolated between neighbouring faces, also across steps and borders of the
-/// surface.
-class ChangedBricks {
-  public:
-    /// Distance from the end of a ray within which cells affect its grey value (VoxelRenderer)
-    /// [cells].
-    static constexpr int kReach = 2;
-
-    /// The bricks MapChange::occupancy and MapChange::texture, grown by kReach.
-    explicit ChangedBricks(const MapChange& change);
-
-    /// Whether `meets(box)` is true for the box of any brick (world frame [m]). `meets` is first
-    /// called for boxes around several bricks: if it is true for a box, it must also be true for
-    /// every box that contains this box.
-    template <class Predicate>
-    bool any(const Predicate& meets) const {
-        for (std::size_t i = 0; i < nodes_.size();) {
-            const Node& node = nodes_[i];
-            const bool isMet = meets(node.box);
-            if (isMet && node.end == i + 1) return true;
-            i = isMet ? i + 1 : node.end;
-        }
-        return false;
-    }
-
-  private:
-    struct Node {
-        Eigen::AlignedBox3d box;
-        std::size_t end;  // of the nodes below this one, which follow it; a leaf has none
-    };
-    using Boxes = std::vector<Eigen::AlignedBox3d>;
-
-    void build(Boxes::iterator begin, Boxes::iterator end);
-
-    std::vector<Node> nodes_;
 };
 
 }  // namespace photonav

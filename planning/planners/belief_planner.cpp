@@ -56,6 +56,7 @@ BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<
     declareOption("rewire_factor", growth_.rewireFactor);
     declareOption("max_vertices", growth_.maxVertices);
     declareOption("max_iterations", growth_.maxIterations);
+    declareOption("time_limit", growth_.timeLimit);
     declareOption("seed", growth_.seed);
     const auto show = [this](const std::string& property, const auto& value) {
         addPlannerProgressProperty(property, [&value] { return std::to_string(value.load()); });
@@ -78,6 +79,26 @@ void BeliefPlanner::setup() {
 }
 
 ob::PlannerStatus BeliefPlanner::solve(const ob::PlannerTerminationCondition& ptc) {
+    return growth_.timeLimit > 0. ? solveFor(growth_.timeLimit, ptc) : solveUntil(ptc);
+}
+
+ob::PlannerStatus BeliefPlanner::solve(double seconds) {
+    return solveFor(seconds, ob::plannerNonTerminatingCondition());
+}
+
+ob::PlannerStatus BeliefPlanner::solveFor(double seconds,
+                                          const ob::PlannerTerminationCondition& ptc) {
+    budget_ = std::clamp(seconds, 0., 1e9);
+    deadline_ = now() + budget_;
+    const struct Reset {  // also after an exception
+        double& deadline;
+        ~Reset() { deadline = kInfinity; }
+    } reset{deadline_};
+    const ob::PlannerTerminationCondition isOver([this] { return secondsLeft() <= 0.; });
+    return solveUntil(ob::plannerOrTerminationCondition(ptc, isOver));
+}
+
+ob::PlannerStatus BeliefPlanner::solveUntil(const ob::PlannerTerminationCondition& ptc) {
     checkValidity();
     if (dynamic_cast<ob::GoalSampleableRegion*>(pdef_->getGoal().get()) == nullptr) {
         return ob::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
@@ -113,23 +134,13 @@ void BeliefPlanner::growUntil(const ob::PlannerTerminationCondition& ptc) {
         }
         const double left = secondsLeft();
         finish(ptc);
-        isTimeLeft = deadline_ < kInfinity && !ptc && !isGrown() && vertices() > before &&
+        isTimeLeft = hasDeadline() && !ptc && !isGrown() && vertices() > before &&
                      secondsLeft() > kAnotherRound * (left - secondsLeft());
     }
 }
 
 double BeliefPlanner::range() const {
     return growth_.range > 0. ? growth_.range : 0.2 * si_->getMaximumExtent();
-}
-
-ob::PlannerStatus BeliefPlanner::solve(double seconds) {
-    budget_ = std::clamp(seconds, 0., 1e9);
-    deadline_ = now() + budget_;
-    const struct Reset {  // also after an exception
-        double& deadline;
-        ~Reset() { deadline = kInfinity; }
-    } reset{deadline_};
-    return solve(ob::PlannerTerminationCondition([this] { return secondsLeft() <= 0.; }));
 }
 
 bool BeliefPlanner::isGrown() const {
@@ -139,8 +150,7 @@ bool BeliefPlanner::isGrown() const {
 }
 
 bool BeliefPlanner::isTimeToFinish() const {
-    return deadline_ < kInfinity &&
-           secondsLeft() <= std::min(timeToFinish(), kMaxFinishShare * budget_);
+    return hasDeadline() && secondsLeft() <= std::min(timeToFinish(), kMaxFinishShare * budget_);
 }
 
 /// A graph that has its largest number of vertices but no goal, which was not free before: some

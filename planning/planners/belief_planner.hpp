@@ -36,6 +36,9 @@ struct GrowthOptions {
     unsigned maxVertices = 0;
     /// Largest number of samples since the map or the root last changed; 0: no limit.
     std::size_t maxIterations = 0;
+    /// Duration of every solve() [s], for callers of OMPL's interface (SimpleSetup, benchmarks),
+    /// whose termination condition does not tell the planner how long it may take; 0: not known.
+    double timeLimit = 0.;
     /// Distance beyond which obstacles do not affect a motion [m]: the robot's radius, or more if
     /// the validity checker requires more. After a change of the map, motions within this distance
     /// of the change are checked again.
@@ -75,13 +78,16 @@ class BeliefPlanner : public ompl::base::Planner {
 
     void setup() override;
 
-    /// Grows until the condition holds or a limit of GrowthOptions is reached, then calls finish().
+    /// Grows until the condition holds or a limit of GrowthOptions is reached. Time for finish() is
+    /// reserved only if the duration is known: by GrowthOptions::timeLimit (OMPL planner parameter
+    /// `time_limit`), or by solve(seconds).
     /// @return EXACT_SOLUTION if a path is known, else TIMEOUT; INVALID_START and
     ///        UNRECOGNIZED_GOAL_TYPE as OMPL defines them
     ompl::base::PlannerStatus solve(const ompl::base::PlannerTerminationCondition& ptc) override;
 
     /// Solves for a given time [s]. The deadline is known in advance, other than with a termination
-    /// condition, so that planners can reserve time to improve their path.
+    /// condition, so that planners can reserve time to improve their path. Not virtual: called by a
+    /// pointer to OMPL's base class it is OMPL's own, see GrowthOptions::timeLimit.
     ompl::base::PlannerStatus solve(double seconds);
     using ompl::base::Planner::solve;
 
@@ -238,6 +244,7 @@ class BeliefPlanner : public ompl::base::Planner {
     double now() const { return clock_(); }
     /// Time until the deadline of solve(double) [s]; infinite without one.
     double secondsLeft() const { return deadline_ - now(); }
+    bool hasDeadline() const { return deadline_ < kInfinity; }
 
     std::deque<Vertex> vertices_;  // removed ones have no state
     std::vector<Root> roots_;
@@ -291,6 +298,9 @@ class BeliefPlanner : public ompl::base::Planner {
     void setStartOfProblem(const ompl::base::State* state);
     void addSolution();
     ompl::base::PlannerStatus report();
+    ompl::base::PlannerStatus solveFor(double seconds,
+                                       const ompl::base::PlannerTerminationCondition& ptc);
+    ompl::base::PlannerStatus solveUntil(const ompl::base::PlannerTerminationCondition& ptc);
     void freeMemory();
 
     GrowthOptions growth_;

@@ -69,7 +69,8 @@ void BeliefRRTstar::connect(Vertex& fresh, const std::vector<Vertex*>& near,
     isSearchDue_ = true;
     if (fresh.isGoal && bestCost() == kInfinity) offerCheckedPath(fresh, ptc);
     const double growth = path_.empty() ? kSearchGrowthWithoutPath : kSearchGrowth;
-    const double due = std::max<double>(kFirstSearch, growth * static_cast<double>(searched_));
+    const std::size_t first = hasDeadline() ? kFirstSearchWithDeadline : kFirstSearch;
+    const double due = std::max<double>(first, growth * static_cast<double>(searched_));
     if (goals_.empty() || static_cast<double>(vertices()) < due) return;
     search(ptc);
     if (isSearchDue_) return;  // it was stopped

@@ -52,6 +52,9 @@ class BeliefRRTstar : public BeliefPlanner {
     /// Number of vertices of the roadmap at its first search. A path over edges that are known to
     /// be free may be found before.
     static constexpr std::size_t kFirstSearch = 100;
+    /// The same with a known deadline, which may be near: a search of few vertices renders few
+    /// views.
+    static constexpr std::size_t kFirstSearchWithDeadline = 8;
 
     BeliefRRTstar(const ompl::base::SpaceInformationPtr& si, std::shared_ptr<BeliefModel> model,
                   const SearchOptions& search = {}, const GrowthOptions& growth = {});

@@ -4,24 +4,17 @@
 #include <algorithm>
 
 namespace photonav {
+namespace {
 
-ChangedSpace::ChangedSpace(const MapChange& change, double obstacleReach) {
-    if (change.occupancy.empty()) return;
-    box_ = change.occupancyBox();
-    // Clearance is interpolated between the centres of cells.
-    const double margin = obstacleReach + 2. * change.resolution;
-    box_.min().array() -= margin;
-    box_.max().array() += margin;
-}
-
-bool ChangedSpace::touches(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const {
-    if (box_.isEmpty()) return false;
-    const Eigen::Vector3d way = to_w - from_w;
+/// Whether the straight motion between two points intersects a box.
+bool intersects(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& from,
+                const Eigen::Vector3d& to) {
+    const Eigen::Vector3d way = to - from;
     double enter = 0.;
     double leave = 1.;
     for (int i = 0; i < 3; ++i) {
-        const double low = box_.min()[i] - from_w[i];
-        const double high = box_.max()[i] - from_w[i];
+        const double low = box.min()[i] - from[i];
+        const double high = box.max()[i] - from[i];
         if (way[i] == 0.) {
             if (low > 0. || high < 0.) return false;
             continue;
@@ -30,6 +23,21 @@ bool ChangedSpace::touches(const Eigen::Vector3d& from_w, const Eigen::Vector3d&
         leave = std::min(leave, std::max(low / way[i], high / way[i]));
     }
     return enter <= leave;
+}
+
+}  // namespace
+
+/// Clearance is interpolated between the centres of cells.
+ChangedSpace::ChangedSpace(const MapChange& change, double obstacleReach)
+    : bricks_(change, change.occupancy, obstacleReach + 2. * change.resolution) {}
+
+bool ChangedSpace::contains(const Eigen::Vector3d& p_w) const {
+    return bricks_.any([&](const Eigen::AlignedBox3d& box) { return box.contains(p_w); });
+}
+
+bool ChangedSpace::touches(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const {
+    return bricks_.any(
+        [&](const Eigen::AlignedBox3d& box) { return intersects(box, from_w, to_w); });
 }
 
 }  // namespace photonav

@@ -2,25 +2,25 @@
 // The part of space where a change of the map may have freed motions or put them in collision.
 #pragma once
 
-#include "map/map_change.hpp"
+#include "map/brick_tree.hpp"
 
 namespace photonav {
 
-/// The bounding box of the bricks whose occupancy changed, grown by the distance within which
-/// obstacles affect a motion.
+/// The bricks whose occupancy changed, grown by the distance within which obstacles affect a
+/// motion.
 class ChangedSpace {
   public:
     /// @param obstacleReach distance beyond which obstacles do not affect a motion [m]
     ChangedSpace(const MapChange& change, double obstacleReach);
 
-    /// Whether the box contains a point (world frame [m]).
-    bool contains(const Eigen::Vector3d& p_w) const { return box_.contains(p_w); }
+    /// Whether a point is in the changed space (world frame [m]).
+    bool contains(const Eigen::Vector3d& p_w) const;
 
-    /// Whether the straight motion between two points (world frame [m]) intersects the box.
+    /// Whether the straight motion between two points (world frame [m]) intersects it.
     bool touches(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const;
 
   private:
-    Eigen::AlignedBox3d box_;  // empty where no occupancy changed
+    BrickTree bricks_;
 };
 
 }  // namespace photonav

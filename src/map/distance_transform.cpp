@@ -92,14 +92,12 @@ void DistanceTransform::setBlock(const Array3i& first, const std::array<bool, 64
 void DistanceTransform::setCell(std::uint8_t* row, int x, int y, int z, bool isObstacle) {
     if ((row[x] == 0) == isObstacle) return;
     row[x] = isObstacle ? std::uint8_t{0} : static_cast<std::uint8_t>(reach_);
-    Range& changed = changedCells_[std::size_t(x / kBlock) * outer().z() + z];
-    const bool isFirst = changed.low > changed.high;
-    changed.low = isFirst ? y : std::min(changed.low, y);
-    changed.high = isFirst ? y : std::max(changed.high, y);
+    changedCells_[std::size_t(x / kBlock) * outer().z() + z].extend(y);
 }
 
 void DistanceTransform::update(const Visit& visit) {
     const int blocks = pitch_ / kBlock, depth = outer().z();
+    reached_ = {};
     for (int block = 0; block < blocks; ++block) {
         for (int z = 0; z < depth; ++z) {
             const Range changed =
@@ -107,9 +105,12 @@ void DistanceTransform::update(const Visit& visit) {
             if (changed.low <= changed.high) updateColumns(block, z, changed);
         }
     }
-    for (int y = 0; y < inner_.y(); ++y) {
-        for (int block = 0; block < blocks; ++block) updatePlane(block, y);
-        for (int z = 0; z < inner_.z(); ++z) updateRows(y, z, visit);
+    for (int y = reached_.y.low; y <= reached_.y.high; ++y) {
+        reached_.z = {};
+        for (int block = reached_.block.low; block <= reached_.block.high; ++block) {
+            updatePlane(block, y);
+        }
+        for (int z = reached_.z.low; z <= reached_.z.high; ++z) updateRows(y, z, visit);
     }
 }
 
@@ -141,6 +142,8 @@ void DistanceTransform::updateColumns(int block, int z, const Range& changed) {
         const int inner = y - reach_;
         if (inner < 0 || inner >= inner_.y()) continue;
         changedColumn_[(std::size_t(inner) * (pitch_ / kBlock) + block) * outer().z() + z] = 1;
+        reached_.y.extend(inner);
+        reached_.block.extend(block);
     }
 }
 
@@ -164,6 +167,7 @@ void DistanceTransform::updatePlane(int block, int y) {
         if (std::memcmp(out, plane(x, y, z), sizeof(out)) == 0) continue;
         std::copy_n(out, kBlock, plane(x, y, z));
         changedPlane_[(std::size_t(y) * inner_.z() + z) * blocks + block] = 1;
+        reached_.z.extend(z);
     }
 }
 

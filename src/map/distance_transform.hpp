@@ -2,6 +2,7 @@
 // Squared distances to obstacles on a grid of cells, updated when obstacles change.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -50,8 +51,14 @@ class DistanceTransform {
     void update(const Visit& visit);
 
   private:
-    struct Range {  // of y; empty unless low <= high
+    struct Range {  // empty unless low <= high
         int low = 1, high = 0;
+
+        void extend(int i) {
+            const bool isFirst = low > high;
+            low = isFirst ? i : std::min(low, i);
+            high = isFirst ? i : std::max(high, i);
+        }
     };
 
     std::uint8_t* column(int x, int y, int z) {
@@ -72,11 +79,14 @@ class DistanceTransform {
     std::vector<std::uint16_t>
         plane_;  // squared, along y and z, of inner y and z; x, then z, then y
 
-    std::vector<Range> changedCells_;          // z fastest, then block
+    std::vector<Range> changedCells_;          // of y, by z and block, z fastest
     std::vector<std::uint8_t> changedColumn_;  // z (outer) fastest, then block, then y (inner)
     std::vector<std::uint8_t> changedPlane_;   // block fastest, then z (inner), then y (inner)
-    std::vector<std::uint8_t> todo_;           // of one line
-    std::vector<std::uint16_t> squares_;       // of one block in x, outer z
+    struct {
+        Range block, y, z;
+    } reached_;                           // by an update: beyond it nothing has changed
+    std::vector<std::uint8_t> todo_;      // of one line
+    std::vector<std::uint16_t> squares_;  // of one block in x, outer z
 };
 
 }  // namespace photonav

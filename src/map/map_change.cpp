@@ -54,15 +54,10 @@ void MapChange::normalize() {
 Bricks MapChange::bricks() const { return unite(occupancy, unite(texture, anyTexture)); }
 
 Eigen::AlignedBox3d MapChange::box() const {
-    Eigen::AlignedBox3d box = occupancyBox();
-    extend(box, *this, texture);
-    extend(box, *this, anyTexture);
-    return box;
-}
-
-Eigen::AlignedBox3d MapChange::occupancyBox() const {
     Eigen::AlignedBox3d box;
     extend(box, *this, occupancy);
+    extend(box, *this, texture);
+    extend(box, *this, anyTexture);
     return box;
 }
 

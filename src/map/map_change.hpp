@@ -25,7 +25,8 @@ struct MapChange {
     std::vector<Eigen::Array3i> occupancy{};
     /// Bricks with occupied cells in which the grey value of a face may have changed by more than
     /// FusionOptions::greyTolerance, or a surface by more than FusionOptions::surfaceTolerance,
-    /// since the brick was last listed here.
+    /// since the brick was last listed here; or in which the weight of a grey value doubled, by
+    /// which views merge it with those of neighbouring layers.
     std::vector<Eigen::Array3i> texture{};
     /// Bricks with occupied cells in which the grey value of a face, or a surface, changed at all
     /// at the resolution of a VoxelRenderer. Contains all bricks of `texture` if the change comes
@@ -44,8 +45,7 @@ struct MapChange {
     /// The union of the three lists.
     std::vector<Eigen::Array3i> bricks() const;
 
-    Eigen::AlignedBox3d box() const;           ///< bounding box of bricks(), world frame [m]
-    Eigen::AlignedBox3d occupancyBox() const;  ///< bounding box of `occupancy`, world frame [m]
+    Eigen::AlignedBox3d box() const;  ///< bounding box of bricks(), world frame [m]
     Eigen::AlignedBox3d boxOf(const Eigen::Array3i& brick) const;  ///< world frame [m]
 };
 

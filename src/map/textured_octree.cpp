@@ -9,6 +9,11 @@
 namespace photonav {
 namespace {
 
+/// Views merge the greys of faces one step apart by their weights (FacePatch). A weight that
+/// doubles moves the merged grey by at most this share of their difference: w1 w2 / ((2 w1 + w2)
+/// (w1 + w2)) at w2 = sqrt(2) w1.
+constexpr float kMostByWeight = 0.1716F;
+
 /// OctoMap's factory keeps one empty tree of every type it can read.
 void registerWithOctomap() {
     struct Registration : TexturedOcTree {
@@ -286,9 +291,9 @@ void TexturedOcTree::updateCell(TexturedOcTreeNode& node, bool justMade, unsigne
     } else if (hit && wasOccupied) {
         const float painted = difference(greys, node.shownGreys());
         const float moved = surfaceMotion(surfaces, node.surfaces.shown());
-        const bool weighed = weights != node.shownWeights();
-        change.texture = change.texture || painted > 0.F || moved > 0.F || weighed;
-        change.greyChange = std::max(change.greyChange, painted);
+        const float weighed = weights != node.shownWeights() ? kMostByWeight : 0.F;
+        change.texture = change.texture || painted > 0.F || moved > 0.F || weighed > 0.F;
+        change.greyChange = std::max({change.greyChange, painted, weighed});
         change.surfaceMotion = std::max(change.surfaceMotion, moved);
     }
 }

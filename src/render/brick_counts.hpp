@@ -20,6 +20,11 @@ struct BrickMasks {
     }
 };
 
+/// The cells of a grid that end rays.
+inline BrickMasks endMasks(const VoxelGrid& grid) {
+    return {{Eigen::Array3i::Zero(), grid.bricks}, grid.ends.data()};
+}
+
 /// Counts the bricks with marked cells in any box of bricks, by a summed-area table.
 class BrickCounts {
   public:

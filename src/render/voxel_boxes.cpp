@@ -2,8 +2,9 @@
 #include "render/voxel_boxes.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <utility>
 
+#include "render/affected_boxes.hpp"
 #include "render/brick_counts.hpp"
 
 namespace photonav {
@@ -15,24 +16,6 @@ using Eigen::Array3i;
 std::uint64_t fourBits(int from, int to) { return (1ULL << to) - (1ULL << from); }
 
 std::uint64_t bitsBelow(int count) { return count < 64 ? (1ULL << count) - 1 : ~0ULL; }
-
-BrickMasks endMasks(const VoxelGrid& grid) {
-    return {{Array3i::Zero(), grid.bricks}, grid.ends.data()};
-}
-
-/// The cells beside a box on one side.
-CellBox cellsBeside(const CellBox& box, int side, int thickness) {
-    const int axis = side / 2;
-    CellBox cells = box;
-    if (side % 2 == 0) {
-        cells.high[axis] = box.low[axis];
-        cells.low[axis] = box.low[axis] - thickness;
-    } else {
-        cells.low[axis] = box.high[axis];
-        cells.high[axis] = box.high[axis] + thickness;
-    }
-    return cells;
-}
 
 EmptyBox encoded(const CellBox& box, const Array3i& brick, std::uint64_t ends) {
     EmptyBox stored;
@@ -80,14 +63,22 @@ CellBox emptyLayer(std::uint64_t ends, const Array3i& brick) {
     return {};
 }
 
+double volume(const CellBox& box) {
+    return box.empty() ? 0. : (box.high - box.low).cast<double>().prod();
+}
+
 class BoxFinder {
   public:
     /// @param around the bricks whose boxes are to be found lie in this box of bricks
     BoxFinder(VoxelGrid& grid, const CellBox& around)
         : grid_(grid),
-          cells_{Array3i::Zero(), grid.size},
-          full_(endMasks(grid), around.grown(EmptyBox::kFurthest / 4)
-                                    .clippedTo({Array3i::Zero(), Array3i(grid.bricks)})) {}
+          reached_(
+              CellBox{4 * around.low - EmptyBox::kFurthest, 4 * around.high + EmptyBox::kFurthest}
+                  .clippedTo({Array3i::Zero(), grid.size})),
+          full_(endMasks(grid), bricksOf(reached_)) {}
+
+    /// All cells that boxes can reach.
+    const CellBox& reached() const { return reached_; }
 
     /// Finds the box of a brick. Neighbours have valid boxes, or of size 0.
     void find(const Array3i& brick) {
@@ -98,52 +89,30 @@ class BoxFinder {
         if (!box.empty()) {
             extendReach(box, brick);
         } else if (!layer.empty()) {
-            box = grow(layer, brick);
+            box = grow(layer, limits(brick));
         }
         grid_.boxes[index] = encoded(box, brick, grid_.ends[index]);
     }
 
-  private:
-    /// The largest box of the neighbours that holds a layer of a brick, or an empty one. Most
-    /// bricks share a box with their neighbours.
-    CellBox largestAround(const CellBox& layer, const Array3i& brick) const {
-        CellBox largest;
-        double most = 0.;
-        const CellBox limit = limits(brick);
-        for (int side = 0; side < 6; ++side) {
-            Array3i neighbour = brick;
-            neighbour[side / 2] += side % 2 == 0 ? -1 : 1;
-            if ((neighbour < 0).any() || (neighbour >= grid_.bricks).any()) continue;
-            const CellBox box = emptyBoxOf(grid_, neighbour).clippedTo(limit);
+    /// Stores the largest of some empty boxes that holds a layer of a brick.
+    /// @return false if none does
+    bool choose(const BoxParts& boxes, const Array3i& brick) {
+        const std::size_t index = grid_.brickIndex(brick);
+        const CellBox layer = emptyLayer(grid_.ends[index], brick);
+        if (layer.empty()) return false;
+        const CellBox* largest = nullptr;
+        for (const CellBox& box : boxes) {
             if (!box.contains(layer)) continue;
-            const double volume = (box.high - box.low).cast<double>().prod();
-            if (volume <= most) continue;
-            most = volume;
-            largest = box;
+            if (largest == nullptr || volume(box) > volume(*largest)) largest = &box;
         }
-        return largest;
-    }
-
-    /// Extends a neighbour's box where it is as long as the neighbour can store.
-    void extendReach(CellBox& box, const Array3i& brick) const {
-        constexpr int kReach = EmptyBox::kFurthest - 4;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int first = 4 * brick[axis];
-            if (box.low[axis] == first - kReach) extend(box, 2 * axis, 4, limits(brick));
-            if (box.high[axis] == first + kReach) extend(box, 2 * axis + 1, 4, limits(brick));
-        }
-    }
-
-    /// The cells that the box of a brick can reach.
-    CellBox limits(const Array3i& brick) const {
-        return CellBox{4 * brick - EmptyBox::kFurthest, 4 * brick + EmptyBox::kFurthest}.clippedTo(
-            cells_);
+        if (largest == nullptr) return false;
+        grid_.boxes[index] = encoded(largest->clippedTo(limits(brick)), brick, grid_.ends[index]);
+        return true;
     }
 
     /// Grows a box to all sides in turn, at first by whole bricks, more and more at a time. Where a
     /// step was too far, it is so for good, because the box only grows.
-    CellBox grow(CellBox box, const Array3i& brick) const {
-        const CellBox limit = limits(brick);
+    CellBox grow(CellBox box, const CellBox& limit) const {
         std::array<int, 6> tooFar;
         tooFar.fill(2 * kLongestStep);
         const auto tryStep = [&](int side, int step) {
@@ -163,6 +132,39 @@ class BoxFinder {
         return box;
     }
 
+  private:
+    /// The largest box of the neighbours that holds a layer of a brick, or an empty one. Most
+    /// bricks share a box with their neighbours.
+    CellBox largestAround(const CellBox& layer, const Array3i& brick) const {
+        CellBox largest;
+        const CellBox limit = limits(brick);
+        for (int side = 0; side < 6; ++side) {
+            Array3i neighbour = brick;
+            neighbour[side / 2] += side % 2 == 0 ? -1 : 1;
+            if ((neighbour < 0).any() || (neighbour >= grid_.bricks).any()) continue;
+            const CellBox box = emptyBoxOf(grid_, neighbour).clippedTo(limit);
+            if (!box.contains(layer)) continue;
+            if (volume(box) > volume(largest)) largest = box;
+        }
+        return largest;
+    }
+
+    /// Extends a neighbour's box where it is as long as the neighbour can store.
+    void extendReach(CellBox& box, const Array3i& brick) const {
+        constexpr int kReach = EmptyBox::kFurthest - 4;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int first = 4 * brick[axis];
+            if (box.low[axis] == first - kReach) extend(box, 2 * axis, 4, limits(brick));
+            if (box.high[axis] == first + kReach) extend(box, 2 * axis + 1, 4, limits(brick));
+        }
+    }
+
+    /// The cells that the box of a brick can reach.
+    CellBox limits(const Array3i& brick) const {
+        return CellBox{4 * brick - EmptyBox::kFurthest, 4 * brick + EmptyBox::kFurthest}.clippedTo(
+            reached_);
+    }
+
     /// Extends a box to one side by `step` cells, if they are empty and within the limit.
     bool extend(CellBox& box, int side, int step, const CellBox& limit) const {
         const CellBox more = cellsBeside(box, side, step).clippedTo(limit);
@@ -173,7 +175,7 @@ class BoxFinder {
 
     static constexpr int kLongestStep = 128;
     VoxelGrid& grid_;
-    CellBox cells_;
+    CellBox reached_;
     BrickCounts full_;
 };
 
@@ -187,106 +189,77 @@ void visitBricks(const CellBox& bricks, const Visit& visit) {
     }
 }
 
-/// Which empty boxes a change of the grid affects.
-class Affected {
+/// The boxes that take the place of an affected one: its parts, or a larger one. Many bricks share
+/// a box: answers are kept.
+class Replacements {
   public:
-    Affected(const VoxelGrid& grid, const std::vector<ChangedBrick>& changed) : grid_(grid) {
-        for (const ChangedBrick& change : changed) {
-            around_.extend({change.brick, change.brick + 1});
-        }
-        const auto bricks = static_cast<std::size_t>((around_.high - around_.low).prod());
-        filledMasks_.assign(bricks, 0);
-        std::vector<std::uint64_t> emptied(bricks, 0);
-        for (const ChangedBrick& change : changed) {
-            const std::uint64_t ends = grid.ends[grid.brickIndex(change.brick)];
-            const std::ptrdiff_t at = filled().at(change.brick) - filledMasks_.data();
-            filledMasks_[at] = ends & ~change.before;
-            emptied[at] = ends == 0 ? 1 : 0;
-        }
-        filledCounts_.emplace(filled(), around_);
-        emptiedCounts_.emplace(BrickMasks{around_, emptied.data()}, around_);
-    }
+    Replacements(const AffectedBoxes& affected, const BoxFinder& finder)
+        : affected_(affected), finder_(finder) {}
 
-    /// The changed bricks are in this box of bricks.
-    const CellBox& around() const { return around_; }
-
-    /// Many bricks share a box: answers are kept.
-    bool operator()(const CellBox& box) {
-        if (bricksOf(box.grown(1)).clippedTo(around_).empty()) return false;
-        const Array3i mixed = box.low * Array3i(1, 9, 81) + box.high * Array3i(27, 243, 729);
-        Answer& answer = answers_[static_cast<unsigned>(mixed.sum()) % kAnswers];
-        if ((box.low != answer.box.low).any() || (box.high != answer.box.high).any()) {
-            answer = {box, isCut(box) || mayGrow(box)};
-        }
-        return answer.isAffected;
+    const BoxParts& of(const CellBox& box) {
+        Answer& answer = answers_[hashOf(box) % kAnswers];
+        if (answer.box != box) answer = {box, find(box)};
+        return answer.parts;
     }
 
   private:
-    static constexpr unsigned kAnswers = 256;
+    static constexpr unsigned kAnswers = 64;
     struct Answer {
         CellBox box;
-        bool isAffected = false;
+        BoxParts parts;
     };
 
-    BrickMasks filled() const { return {around_, filledMasks_.data()}; }
-
-    /// Whether cells of a box end rays now.
-    bool isCut(const CellBox& box) const { return anyInside(box, filled(), *filledCounts_); }
-
-    /// Whether a box beside a brick that has become empty can be larger.
-    bool mayGrow(const CellBox& box) const {
-        if ((*emptiedCounts_)(bricksOf(box.grown(1))) == 0) return false;
-        for (int side = 0; side < 6; ++side) {
-            const CellBox cells =
-                cellsBeside(box, side, 1).clippedTo({Array3i::Zero(), grid_.size});
-            if (!cells.empty() && isFree(cells)) return true;
-        }
-        return false;
+    BoxParts find(const CellBox& box) {
+        if (affected_.isCut(box)) return affected_.cut(box);
+        BoxParts larger;
+        larger.add(grown(box));
+        return larger;
     }
 
-    /// Mostly one of the first bricks decides: counting them all would take longer.
-    bool isFree(const CellBox& cells) const {
-        const CellBox bricks = bricksOf(cells);
-        for (int z = bricks.low.z(); z < bricks.high.z(); ++z) {
-            for (int y = bricks.low.y(); y < bricks.high.y(); ++y) {
-                const std::uint64_t* ends = &grid_.ends[grid_.brickIndex({bricks.low.x(), y, z})];
-                for (int x = bricks.low.x(); x < bricks.high.x(); ++x, ++ends) {
-                    if (*ends != 0 && (*ends & cellsInside(cells, {x, y, z})) != 0) return false;
-                }
-            }
-        }
-        return true;
+    /// Boxes that differ by how far their bricks reach grow into the same one.
+    CellBox grown(const CellBox& box) {
+        if (!grown_.contains(box)) grown_ = finder_.grow(box, finder_.reached());
+        return grown_;
     }
 
-    const VoxelGrid& grid_;
-    CellBox around_;
-    std::vector<std::uint64_t> filledMasks_;  // cells that have begun to end rays
-    std::optional<BrickCounts> filledCounts_, emptiedCounts_;
+    const AffectedBoxes& affected_;
+    const BoxFinder& finder_;
     std::array<Answer, kAnswers> answers_;
+    CellBox grown_;  // the last one
 };
 
-bool isNone(const EmptyBox& box) { return box.after[0] == 0; }
+/// Bricks along x, the empty boxes of which differ in x only and make up one empty box.
+struct BoxRun {
+    Array3i first;
+    int bricks = 0;
+    CellBox box;
 
-/// Whether a brick and the next one along x store the same box.
-bool isShared(const EmptyBox& here, const EmptyBox& next) {
-    return next.before[0] == here.before[0] + 4 && next.after[0] + 4 == here.after[0] &&
-           next.before[1] == here.before[1] && next.after[1] == here.after[1] &&
-           next.before[2] == here.before[2] && next.after[2] == here.after[2];
-}
+    /// Adds the next brick unless its box differs otherwise.
+    bool add(const CellBox& next) {
+        const bool isSimilar = (next.low.tail<2>() == box.low.tail<2>()).all() &&
+                               (next.high.tail<2>() == box.high.tail<2>()).all() &&
+                               next.low.x() <= box.high.x() && next.high.x() >= box.low.x();
+        if (!isSimilar) return false;
+        box.extend(next);
+        ++bricks;
+        return true;
+    }
+};
 
-/// Calls visit(brick, isRepeated) for every brick of some bricks that has a box, x fastest.
-/// isRepeated: it is the box of the brick visited before. `visit` may change the brick's box.
+/// Calls visit(run) for all bricks of some bricks that have a box. `visit` may change their boxes.
 template <class Visit>
-void visitBoxes(const VoxelGrid& grid, const CellBox& bricks, const Visit& visit) {
+void visitRuns(const VoxelGrid& grid, const CellBox& bricks, const Visit& visit) {
     for (int z = bricks.low.z(); z < bricks.high.z(); ++z) {
         for (int y = bricks.low.y(); y < bricks.high.y(); ++y) {
-            const EmptyBox* stored = &grid.boxes[grid.brickIndex({bricks.low.x(), y, z})];
-            EmptyBox last;
-            for (int x = bricks.low.x(); x < bricks.high.x(); ++x, ++stored) {
-                const EmptyBox box = *stored;
-                if (!isNone(box)) visit(Array3i(x, y, z), isShared(last, box));
-                last = box;
+            BoxRun run;
+            for (int x = bricks.low.x(); x < bricks.high.x(); ++x) {
+                const CellBox box = emptyBoxOf(grid, {x, y, z});
+                const bool isNone = box.high.x() == 4 * x;
+                if (run.bricks > 0 && !isNone && run.add(box)) continue;
+                if (run.bricks > 0) visit(run);
+                run = isNone ? BoxRun{} : BoxRun{{x, y, z}, 1, box};
             }
+            if (run.bricks > 0) visit(run);
         }
     }
 }
@@ -314,25 +287,32 @@ void findBoxes(VoxelGrid& grid) {
 
 CellBox updateBoxes(VoxelGrid& grid, const std::vector<ChangedBrick>& changed) {
     if (changed.empty()) return {};
-    Affected isAffected(grid, changed);
-    std::vector<Array3i> toFind;
     CellBox rewritten;
-    bool isLastAffected = false;
-    const auto forget = [&](const Array3i& brick) {
-        toFind.push_back(brick);
-        rewritten.extend({brick, brick + 1});
-        grid.boxes[grid.brickIndex(brick)] = {};
-    };
-    for (const ChangedBrick& change : changed) forget(change.brick);
+    for (const ChangedBrick& change : changed) {
+        grid.boxes[grid.brickIndex(change.brick)] = {};
+        rewritten.extend({change.brick, change.brick + 1});
+    }
+    AffectedBoxes isAffected(grid, changed);
+    std::vector<BoxRun> outdated;
     const CellBox near = isAffected.around()
                              .grown(EmptyBox::kFurthest / 4)
                              .clippedTo({Array3i::Zero(), Array3i(grid.bricks)});
-    visitBoxes(grid, near, [&](const Array3i& brick, bool isRepeated) {
-        if (!isRepeated) isLastAffected = isAffected(emptyBoxOf(grid, brick));
-        if (isLastAffected) forget(brick);
+    visitRuns(grid, near, [&](const BoxRun& run) {
+        if (!isAffected(run.box)) return;
+        std::fill_n(&grid.boxes[grid.brickIndex(run.first)], run.bricks, EmptyBox{});
+        rewritten.extend({run.first, run.first + Array3i(run.bricks, 1, 1)});
+        outdated.push_back(run);
     });
     BoxFinder finder(grid, rewritten);
-    for (const Array3i& brick : toFind) finder.find(brick);
+    for (const ChangedBrick& change : changed) finder.find(change.brick);
+    Replacements replacements(isAffected, finder);
+    for (const BoxRun& run : outdated) {
+        const BoxParts parts = replacements.of(run.box);
+        for (int i = 0; i < run.bricks; ++i) {
+            const Array3i brick = run.first + Array3i(i, 0, 0);
+            if (!finder.choose(parts, brick)) finder.find(brick);
+        }
+    }
     return rewritten;
 }
 

@@ -27,6 +27,9 @@ struct CellBox {
     Eigen::Array3i high = Eigen::Array3i::Zero();
 
     bool empty() const { return (low >= high).any(); }
+    bool operator==(const CellBox& other) const {
+        return (low == other.low).all() && (high == other.high).all();
+    }
     bool contains(const CellBox& other) const {
         return (other.low >= low).all() && (other.high <= high).all();
     }

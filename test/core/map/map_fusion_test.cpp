@@ -342,7 +342,7 @@ TEST(MapFusion, SmallStepsOfATextureAddUpUntilTheyAreReported) {
         if (i > 0) reports += change.texture.size();
     }
     EXPECT_GT(reports, 0U);
-    EXPECT_GT(quiet, 3 * reports);
+    EXPECT_GT(quiet, 2 * reports);  // most reports: of weights, which double
 }
 
 TEST(MapFusion, ASurfaceThatWasPaintedAnewIsLearnedAnew) {

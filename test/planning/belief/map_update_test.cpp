@@ -179,7 +179,7 @@ class MappedRoom {
 
     MapChange fuseKeyframe() {
         const Camera camera = makeCamera(94, 60, 1.4);
-        const Pose T_c_w = (randomPose() * cameraMount(uniform(0., 1.2))).inverse();
+        const Pose T_c_w = randomView();
         View view;
         renderer_.render(camera, T_c_w, view);
         std::normal_distribution<float> noise(0.F, 1.F);
@@ -191,6 +191,16 @@ class MappedRoom {
         }
         return fuse(map, view, camera, T_c_w, {.greyTolerance = 0., .surfaceTolerance = 0.});
     }
+
+    /// The same again and again, as by a robot that hovers.
+    MapChange fuseWithoutNoise(const Pose& T_c_w) {
+        const Camera camera = makeCamera(94, 60, 1.4);
+        View view;
+        renderer_.render(camera, T_c_w, view);
+        return fuse(map, view, camera, T_c_w, {.greyTolerance = 0., .surfaceTolerance = 0.});
+    }
+
+    Pose randomView() { return (randomPose() * cameraMount(uniform(0., 1.2))).inverse(); }
 
     /// A body pose away from the walls and the boxes.
     Pose randomPose() {
@@ -218,6 +228,31 @@ class MappedRoom {
     std::mt19937 random_;
     MeshRenderer renderer_;
 };
+
+/// The weights of greys, by which views merge the faces of neighbouring layers, change even where
+/// no grey does.
+TEST_P(FieldOverAMap, EntriesThatAreNotStaleEqualFreshOnesWhereOnlyWeightsChange) {
+    MappedRoom room(3);
+    std::vector<Pose> hovering(3);
+    for (Pose& T_c_w : hovering) room.fuseWithoutNoise(T_c_w = room.randomView());
+    room.fuseWithoutNoise(hovering[0]);
+    VoxelSnapshots snapshots(room.map, GetParam());
+    const auto field = fieldOf(snapshots.current(), 0.6);
+    std::vector<Pose> poses;
+    for (int i = 0; i < 24; ++i) poses.push_back(room.randomPose());
+    std::vector<const InformationField::Entry*> entries;
+    for (const Pose& pose : poses) entries.push_back(&field->at(pose));
+    for (int round = 0; round < 7; ++round) {
+        const MapChange change = room.fuseWithoutNoise(hovering[0]);
+        field->update(snapshots.update(room.map, change), change);
+        const auto fresh = fieldOf(std::make_shared<VoxelRenderer>(room.map, GetParam()), 0.6);
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            const bool isSame = entries[i]->information == fresh->at(poses[i]).information;
+            EXPECT_TRUE(isSame || entries[i]->isStale) << "image " << round << ", view " << i;
+            field->current(*entries[i]);
+        }
+    }
+}
 
 /// A robot's keyframes, not changes made up for a test: fusion without tolerances lists all that
 /// the views may show.

@@ -78,7 +78,7 @@ struct TimedPlanner {
 
 /// Except for what the last descents differ by: they begin at different paths.
 TEST(Anytime, ALongerTimeIsNeverWorse) {
-    constexpr double kDescents = 1.002;
+    constexpr double kDescents = 1.03;
     for (const std::uint32_t seed : {1U, 2U, 3U}) {
         double last = kInfinity;
         for (const double budget : {0.25, 0.5, 1., 2., 4., 8.}) {
@@ -89,6 +89,18 @@ TEST(Anytime, ALongerTimeIsNeverWorse) {
         }
         EXPECT_LT(last, 10.);
     }
+}
+
+/// Through OMPL's interface, which knows conditions only.
+TEST(Anytime, ATimeLimitIsATimeKnownInAdvance) {
+    const TimedPlanner timed(1), limited(1);
+    timed.planner->solve(2.);
+    ob::Planner& planner = *limited.planner;
+    planner.params().setParam("time_limit", "2");
+    planner.solve(ob::plannerNonTerminatingCondition());
+    EXPECT_NEAR(limited.seconds, timed.seconds, 1e-9);
+    EXPECT_EQ(limited.planner->bestCost(), timed.planner->bestCost());
+    EXPECT_GT(limited.planner->shortcutsTried(), 0U);
 }
 
 /// Nothing is left to do for a solve() that adds no vertices.
@@ -205,9 +217,10 @@ TEST(Anytime, SolvesForATime) {
     EXPECT_EQ(planner->solve(60.), ob::PlannerStatus::EXACT_SOLUTION);  // ends by its vertices
     const auto same = beliefPlanner(problem);
     grow(*same, 500);
-    EXPECT_DOUBLE_EQ(planner->bestCost(), same->bestCost());
+    const double cost = planner->bestCost();
+    EXPECT_NEAR(cost, same->bestCost(), 0.01 * cost);  // its first searches are earlier
     EXPECT_EQ(planner->solve(0.), ob::PlannerStatus::EXACT_SOLUTION);  // keeps what it has
-    EXPECT_DOUBLE_EQ(planner->bestCost(), same->bestCost());
+    EXPECT_EQ(planner->bestCost(), cost);
 }
 
 }  // namespace

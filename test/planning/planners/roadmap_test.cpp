@@ -23,7 +23,7 @@ MapChange wall() {
 TEST(ChangedSpace, IsTouchedByWhatPassesTheChangeWithinTheCap) {
     const MapChange change = wall();
     const ChangedSpace changed(change, 0.5);
-    Eigen::AlignedBox3d grown = change.occupancyBox();
+    Eigen::AlignedBox3d grown = change.box();
     grown.min().array() -= 0.7;  // two cells beyond the cap
     grown.max().array() += 0.7;
     std::mt19937 random(1);
@@ -45,6 +45,19 @@ TEST(ChangedSpace, IsTouchedByWhatPassesTheChangeWithinTheCap) {
     EXPECT_GT(touching, 200);
     EXPECT_FALSE(changed.touches({0., 0., 0.2}, {8., 0., 0.2}));
     EXPECT_FALSE(changed.touches({0., 4.2, 0.2}, {1., 4.2, 0.2}));  // ends before it
+}
+
+/// Of two changes far from each other, not the space between them.
+TEST(ChangedSpace, IsNearEveryChangeAlone) {
+    MapChange change{.resolution = 0.1};
+    change.occupancy.emplace_back(0, 0, 0);
+    change.occupancy.emplace_back(20, 0, 0);  // at 8 m
+    const ChangedSpace changed(change, 0.5);
+    EXPECT_TRUE(changed.contains({0.2, 0.2, 0.2}));
+    EXPECT_TRUE(changed.contains({8.2, 0.2, 0.2}));
+    EXPECT_FALSE(changed.contains({4., 0.2, 0.2}));
+    EXPECT_FALSE(changed.touches({2., 0.2, 0.2}, {6., 0.2, 0.2}));
+    EXPECT_TRUE(changed.touches({4., 0.2, 0.2}, {8., 0.2, 0.2}));
 }
 
 TEST(ChangedSpace, IsEmptyWhereOnlyTextureChanged) {
