@@ -290,7 +290,7 @@ void table(const Place& place, int count, unsigned widest, double smallest) {
     }
     everyWidth([&](unsigned width) { odometry(place, width, count); });
     if (!place.isFlight) return;
-    everyWidth([&](unsigned width) { chains(place, width, std::max(5, count / 4)); });
+    everyWidth([&](unsigned width) { chains(place, width, count); });
 }
 
 }  // namespace
