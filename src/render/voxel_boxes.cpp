@@ -230,7 +230,7 @@ class Replacements {
 
 /// Bricks along x, the empty boxes of which differ in x only and make up one empty box.
 struct BoxRun {
-    Array3i first;
+    Array3i first = Array3i::Zero();
     int bricks = 0;
     CellBox box;
 
