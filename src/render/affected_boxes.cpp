@@ -92,7 +92,8 @@ CellBox AffectedBoxes::filledCellsIn(const CellBox& box) const {
         };
         const int low = bricks.low[axis], high = bricks.high[axis];
         int first = low, last = high;
-        for (int step = std::bit_floor(unsigned(high - low)); step > 0; step /= 2) {
+        const auto most = std::bit_floor(static_cast<unsigned>(high - low));
+        for (int step = static_cast<int>(most); step > 0; step /= 2) {
             if (first + step <= high && isEmptyUpTo(low, first + step)) first += step;
             if (last - step >= low && isEmptyUpTo(last - step, high)) last -= step;
         }
