@@ -48,9 +48,8 @@ void setPenalty(const ViewPenalty& camera, const Pose& T_c_w, InformationField::
 /// interpolated between neighbouring faces, also across steps and borders of the surface.
 BrickTree bricksThatAffectViews(const MapChange& change) {
     constexpr int kReach = 2;  // of the interpolation [cells]
-    MapChange shown = change;
-    shown.anyTexture.clear();
-    return {change, shown.bricks(), kReach * change.resolution};
+    const MapChange shown{change.resolution, change.occupancy, change.texture};
+    return {shown, shown.bricks(), kReach * change.resolution};
 }
 
 }  // namespace

@@ -4,22 +4,7 @@
 #include <bit>
 
 namespace photonav {
-namespace {
-
 using Eigen::Array3i;
-
-/// The bounding box of some cells of a brick, by their mask.
-CellBox boundsOf(std::uint64_t cells, const Array3i& brick) {
-    CellBox bounds;
-    for (; cells != 0; cells &= cells - 1) {
-        const int bit = std::countr_zero(cells);
-        const Array3i cell = 4 * brick + Array3i(bit & 3, bit >> 2 & 3, bit >> 4);
-        bounds.extend({cell, cell + 1});
-    }
-    return bounds;
-}
-
-}  // namespace
 
 unsigned hashOf(const CellBox& box) {
     const Array3i mixed = box.low * Array3i(1, 9, 81) + box.high * Array3i(27, 243, 729);

@@ -2,7 +2,7 @@
 #include "render/voxel_boxes.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <bit>
 
 #include "render/affected_boxes.hpp"
 #include "render/brick_counts.hpp"
@@ -275,6 +275,16 @@ std::uint64_t cellsInside(const CellBox& box, const Array3i& brick) {
     const std::uint64_t x = fourBits(low.x(), high.x()) * 0x1111111111111111ULL;
     const std::uint64_t y = fourBits(4 * low.y(), 4 * high.y()) * 0x0001000100010001ULL;
     return x & y & bitsBelow(16 * high.z()) & ~bitsBelow(16 * low.z());
+}
+
+CellBox boundsOf(std::uint64_t cells, const Array3i& brick) {
+    CellBox bounds;
+    for (; cells != 0; cells &= cells - 1) {
+        const int bit = std::countr_zero(cells);
+        const Array3i cell = 4 * brick + Array3i(bit & 3, bit >> 2 & 3, bit >> 4);
+        bounds.extend({cell, cell + 1});
+    }
+    return bounds;
 }
 
 void findBoxes(VoxelGrid& grid) {

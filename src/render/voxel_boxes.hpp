@@ -9,13 +9,11 @@
 namespace photonav {
 
 /// The empty box that is stored with a brick, in cells of the grid.
-inline CellBox decoded(const EmptyBox& box, const Eigen::Array3i& brick) {
+inline CellBox emptyBoxOf(const VoxelGrid& grid, const Eigen::Array3i& brick) {
+    const EmptyBox& box = grid.boxes[grid.brickIndex(brick)];
     const Eigen::Array3i first = 4 * brick;
     return {first + 3 - Eigen::Array3i(box.before[0], box.before[1], box.before[2]),
             first + Eigen::Array3i(box.after[0], box.after[1], box.after[2])};
-}
-inline CellBox emptyBoxOf(const VoxelGrid& grid, const Eigen::Array3i& brick) {
-    return decoded(grid.boxes[grid.brickIndex(brick)], brick);
 }
 
 /// Finds all boxes of a grid.

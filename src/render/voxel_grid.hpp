@@ -103,6 +103,9 @@ inline CellBox cellsOf(const Eigen::Array3i& brick) { return {4 * brick, 4 * bri
 /// Mask of the cells of a brick that lie in a box, bit x + 4 y + 16 z.
 std::uint64_t cellsInside(const CellBox& box, const Eigen::Array3i& brick);
 
+/// The bounding box of some cells of a brick, by their mask.
+CellBox boundsOf(std::uint64_t cells, const Eigen::Array3i& brick);
+
 /// The bricks that contain cells of a box.
 inline CellBox bricksOf(const CellBox& box) {
     const auto quarter = [](int i) { return i >> 2; };

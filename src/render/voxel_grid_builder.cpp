@@ -2,7 +2,6 @@
 #include "render/voxel_grid_builder.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <stdexcept>
 #include <utility>
 
@@ -20,14 +19,8 @@ using Eigen::Array3i;
 CellBox extendedBox(const TexturedOcTree& map, const MapChange& change, const VoxelGrid& grid) {
     CellBox box{grid.box.low + grid.first, grid.box.high + grid.first};
     for (const Array3i& brick : change.occupancy) {
-        const CellBox cells = cellsOf(brick);
-        if ((cells.low >= box.low).all() && (cells.high <= box.high).all()) continue;
-        std::uint64_t present = readBrick(map, brick).present;
-        for (; present != 0; present &= present - 1) {
-            const int bit = std::countr_zero(present);
-            const Array3i cell = cells.low + Array3i(bit & 3, bit >> 2 & 3, bit >> 4);
-            box.extend({cell, cell + 1});
-        }
+        if (box.contains(cellsOf(brick))) continue;
+        box.extend(boundsOf(readBrick(map, brick).present, brick));
     }
     return box;
 }

@@ -103,8 +103,10 @@ double noiseAfterWidening(double variance, double scale) {
 }
 
 ImageF widened(const ImageF& image, double variance) {
-    ImageF result = image;
-    for (const double once : widenings(variance)) result = widenedOnce(result, once);
+    const std::vector<double> steps = widenings(variance);
+    if (steps.empty()) return image;
+    ImageF result = widenedOnce(image, steps.front());
+    for (std::size_t i = 1; i < steps.size(); ++i) result = widenedOnce(result, steps[i]);
     return result;
 }
 

@@ -6,12 +6,10 @@
 #include <cstdio>
 #include <random>
 
-#include "map/map_fusion.hpp"
+#include "planning/belief/fields.hpp"
 #include "planning/fixture.hpp"
 #include "planning/planners/changing_world.hpp"
-#include "render/mesh_renderer.hpp"
 #include "render/voxel_renderer.hpp"
-#include "render/voxel_snapshots.hpp"
 
 namespace photonav::test {
 namespace {
@@ -106,14 +104,6 @@ class ChangingRoom {
     std::mt19937 random_;
 };
 
-std::shared_ptr<InformationField> fieldOf(const std::shared_ptr<const ViewSource>& views,
-                                          double belowHorizon) {
-    const Camera camera = makeCamera(94, 60, 1.2);
-    return std::make_shared<InformationField>(views, camera, photometricModel(camera, {}),
-                                              cameraMount(belowHorizon),
-                                              InformationField::Options{.positionPitch = 1e-3});
-}
-
 struct Marks {
     std::size_t stale = 0;     ///< entries that an update marked
     std::size_t needless = 0;  ///< of them, those that are as before
@@ -126,8 +116,7 @@ void follow(UnknownPolicy unknown, double belowHorizon, Marks& marks) {
     std::vector<Pose> poses;
     for (int i = 0; i < 60; ++i) poses.push_back(room.freePose());
     const auto field = fieldOf(std::make_shared<VoxelRenderer>(room.map, unknown), belowHorizon);
-    std::vector<const InformationField::Entry*> entries;
-    for (const Pose& pose : poses) entries.push_back(&field->at(pose));
+    const Entries entries = entriesAt(poses, *field);
     for (int round = 0; round < 30; ++round) {
         MapChange change = room.change();
         if (round % 3 == 0) change.join(room.change());
@@ -170,116 +159,6 @@ TEST_P(FieldOverAMap, EntriesThatAreNotStaleEqualFreshOnes) {
                 100. * share, 100. * needless);
     EXPECT_LT(share, 0.15);
     EXPECT_LT(needless, 0.6);  // bricks are as large as a change here, and grow by two cells
-}
-
-/// A room with two boxes, mapped by keyframes of a camera with noise at random poses.
-class MappedRoom {
-  public:
-    explicit MappedRoom(unsigned seed) : map(kCell), random_(seed), renderer_(scene()) {}
-
-    MapChange fuseKeyframe() {
-        const Camera camera = makeCamera(94, 60, 1.4);
-        const Pose T_c_w = randomView();
-        View view;
-        renderer_.render(camera, T_c_w, view);
-        std::normal_distribution<float> noise(0.F, 1.F);
-        for (unsigned i = 0; i < view.depth.getSize(); ++i) {
-            float& z = view.depth.bitmap[i];
-            float& grey = view.intensity.bitmap[i];
-            grey = std::clamp(grey + 0.02F * noise(random_), 0.F, 1.F);
-            if (z > 0.F) z += 0.002F * z * z * noise(random_);
-        }
-        return fuse(map, view, camera, T_c_w, {.greyTolerance = 0., .surfaceTolerance = 0.});
-    }
-
-    /// The same again and again, as by a robot that hovers.
-    MapChange fuseWithoutNoise(const Pose& T_c_w) {
-        const Camera camera = makeCamera(94, 60, 1.4);
-        View view;
-        renderer_.render(camera, T_c_w, view);
-        return fuse(map, view, camera, T_c_w, {.greyTolerance = 0., .surfaceTolerance = 0.});
-    }
-
-    Pose randomView() { return (randomPose() * cameraMount(uniform(0., 1.2))).inverse(); }
-
-    /// A body pose away from the walls and the boxes.
-    Pose randomPose() {
-        Pose T_w_b = Pose::Identity();
-        T_w_b.translation() << uniform(0.4, 3.6), uniform(0.4, 2.6), uniform(1., 1.6);
-        T_w_b.linear() = Eigen::AngleAxisd(uniform(0., 6.28), Vector3d::UnitZ()).toRotationMatrix();
-        return T_w_b;
-    }
-
-    TexturedOcTree map;
-
-  private:
-    static Scene scene() {
-        Scene room;
-        const auto texture = addTexture(room, valueNoise({}));
-        addBox(room, {0., 0., 0.}, {4., 3., 2.}, texture);
-        addBox(room, {1., 1., 0.}, {1.5, 1.6, 0.8}, texture);
-        addBox(room, {2.6, 0.9, 0.}, {2.8, 2.4, 0.6}, texture);
-        return room;
-    }
-    double uniform(double low, double high) {
-        return std::uniform_real_distribution<>(low, high)(random_);
-    }
-
-    std::mt19937 random_;
-    MeshRenderer renderer_;
-};
-
-/// The weights of greys, by which views merge the faces of neighbouring layers, change even where
-/// no grey does.
-TEST_P(FieldOverAMap, EntriesThatAreNotStaleEqualFreshOnesWhereOnlyWeightsChange) {
-    MappedRoom room(3);
-    std::vector<Pose> hovering(3);
-    for (Pose& T_c_w : hovering) room.fuseWithoutNoise(T_c_w = room.randomView());
-    room.fuseWithoutNoise(hovering[0]);
-    VoxelSnapshots snapshots(room.map, GetParam());
-    const auto field = fieldOf(snapshots.current(), 0.6);
-    std::vector<Pose> poses;
-    for (int i = 0; i < 24; ++i) poses.push_back(room.randomPose());
-    std::vector<const InformationField::Entry*> entries;
-    for (const Pose& pose : poses) entries.push_back(&field->at(pose));
-    for (int round = 0; round < 7; ++round) {
-        const MapChange change = room.fuseWithoutNoise(hovering[0]);
-        field->update(snapshots.update(room.map, change), change);
-        const auto fresh = fieldOf(std::make_shared<VoxelRenderer>(room.map, GetParam()), 0.6);
-        for (std::size_t i = 0; i < poses.size(); ++i) {
-            const bool isSame = entries[i]->information == fresh->at(poses[i]).information;
-            EXPECT_TRUE(isSame || entries[i]->isStale) << "image " << round << ", view " << i;
-            field->current(*entries[i]);
-        }
-    }
-}
-
-/// A robot's keyframes, not changes made up for a test: fusion without tolerances lists all that
-/// the views may show.
-TEST_P(FieldOverAMap, EntriesThatAreNotStaleEqualFreshOnesAfterFusion) {
-    MappedRoom room(3);
-    for (int i = 0; i < 30; ++i) room.fuseKeyframe();
-    VoxelSnapshots snapshots(room.map, GetParam());
-    const auto field = fieldOf(snapshots.current(), 0.6);
-    std::vector<Pose> poses;
-    for (int i = 0; i < 40; ++i) poses.push_back(room.randomPose());
-    std::vector<const InformationField::Entry*> entries;
-    for (const Pose& pose : poses) entries.push_back(&field->at(pose));
-    std::size_t kept = 0, changed = 0;
-    for (int round = 0; round < 20; ++round) {
-        const MapChange change = room.fuseKeyframe();
-        field->update(snapshots.update(room.map, change), change);
-        const auto fresh = fieldOf(std::make_shared<VoxelRenderer>(room.map, GetParam()), 0.6);
-        for (std::size_t i = 0; i < poses.size(); ++i) {
-            const bool isSame = entries[i]->information == fresh->at(poses[i]).information;
-            EXPECT_TRUE(isSame || entries[i]->isStale) << "keyframe " << round << ", view " << i;
-            kept += entries[i]->isStale ? 0 : 1;
-            changed += isSame ? 0 : 1;
-            ASSERT_EQ(field->current(*entries[i]).information, fresh->at(poses[i]).information);
-        }
-    }
-    EXPECT_GT(kept, 100U);
-    EXPECT_GT(changed, 100U);
 }
 
 /// A motion that was given up, and one that was flown the other way before, see the map as it is.
@@ -395,8 +274,7 @@ TEST(FieldUpdate, GreyValuesJustOutsideTheImageCount) {
     int touched = 0;
     for (int brick = -reach / 4; brick < reach / 4; ++brick) {  // a column of bricks at a time
         const auto field = fieldOf(views(), 0.);
-        std::vector<const InformationField::Entry*> entries;
-        for (const Pose& pose : poses) entries.push_back(&field->at(pose));
+        const Entries entries = entriesAt(poses, *field);
         MapChange change;
         change.resolution = kCell;
         for (int z = -reach; z < reach; ++z) {

@@ -89,28 +89,32 @@ TEST_P(ChangedPlanner, GrowsAgainAfterManyMovesOfItsRoot) {
 /// before the root has moved or after; one ahead of it does not.
 TEST_P(ChangedPlanner, AWallBehindTheRobotDoesNotBlockItsWay) {
     for (const bool isBehind : {true, false}) {
-        PlannerBetweenWalls problem(GetParam());
-        BeliefPlanner& planner = *problem.planner;
-        const FlightSpace& space = planner.model().space();
-        const auto& path = planner.bestPath();
-        const std::size_t middle = path.size() / 2;
-        ASSERT_GE(middle, 1U);
-        const Vector3d end = space.position(path.back());
-        const Vector3d here =
-            0.5 * (space.position(path[middle - 1]) + space.position(path[middle]));
-        const Vector3d wall = isBehind ? space.position(path.front()) : end;
-        ASSERT_GT((wall - here).norm(), 1.);
-        const Vector3d half(0.2, 0.2, 2.);
-        planner.mapChanged(problem.world.fill({wall - half, wall + half}, true));
-        EXPECT_TRUE(planner.bestPath().empty());
-        ob::ScopedState<> root(planner.getSpaceInformation());
-        space.setState(root.get(), here, 0.);
-        planner.moveRoot(root.get(), planner.model().root(root.get()));
-        ASSERT_EQ(planner.bestPath().empty(), !isBehind);
-        if (!isBehind) continue;
-        EXPECT_EQ(space.position(planner.bestPath().front()), here);
-        EXPECT_EQ(space.position(planner.bestPath().back()), end);
-        EXPECT_TRUE(planner.getProblemDefinition()->hasExactSolution());
+        for (const bool isMovedFirst : {false, true}) {
+            PlannerBetweenWalls problem(GetParam());
+            BeliefPlanner& planner = *problem.planner;
+            const FlightSpace& space = planner.model().space();
+            const auto& path = planner.bestPath();
+            const std::size_t middle = path.size() / 2;
+            ASSERT_GE(middle, 1U);
+            const Vector3d end = space.position(path.back());
+            const Vector3d here =
+                0.5 * (space.position(path[middle - 1]) + space.position(path[middle]));
+            const Vector3d wall = isBehind ? space.position(path.front()) : end;
+            ASSERT_GT((wall - here).norm(), 1.);
+            const Vector3d half(0.2, 0.2, 2.);
+            ob::ScopedState<> root(planner.getSpaceInformation());
+            space.setState(root.get(), here, 0.);
+            const Belief belief = planner.model().root(root.get());
+            if (isMovedFirst) planner.moveRoot(root.get(), belief);
+            planner.mapChanged(problem.world.fill({wall - half, wall + half}, true));
+            EXPECT_EQ(planner.bestPath().empty(), !isMovedFirst || !isBehind);
+            if (!isMovedFirst) planner.moveRoot(root.get(), belief);
+            ASSERT_EQ(planner.bestPath().empty(), !isBehind);
+            if (!isBehind) continue;
+            EXPECT_EQ(space.position(planner.bestPath().front()), here);
+            EXPECT_EQ(space.position(planner.bestPath().back()), end);
+            EXPECT_TRUE(planner.getProblemDefinition()->hasExactSolution());
+        }
     }
 }
 
