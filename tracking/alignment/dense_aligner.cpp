@@ -47,9 +47,9 @@ class DenseAligner::RenderedModel : public Comparison {
     /// The pose is as uncertain as this from now on.
     void setPrior(const UncertainPose& prior) {
         const Level& coarsest = levels_.back();
-        model_.render(coarsest.camera, prior.mean, predicted_);
+        model_.render(coarsest.camera, prior.mean, displaced_);
         for (Level& level : levels_) {
-            level.margin = holeMargin(prior.covariance, level.camera, meanDepth(predicted_));
+            level.margin = holeMargin(prior.covariance, level.camera, meanDepth(displaced_));
         }
     }
 
@@ -65,6 +65,7 @@ class DenseAligner::RenderedModel : public Comparison {
     NormalEquations compare(std::size_t level, const Pose& T_c_w, const Exposure& exposure,
                             const Loss& loss) override {
         last_ = level;
+        lastPose_ = T_c_w;
         Level& at = levels_[level];
         render(at, T_c_w, predicted_);
         return withUnknownBlur(level, at.compare(predicted_, at.observed, exposure, loss));
@@ -83,12 +84,21 @@ class DenseAligner::RenderedModel : public Comparison {
     AgainstPrediction predictionAsImage(std::size_t level, const Pose& T_image_w) override {
         return [this, level, T_image_w, isRendered = false](const Pose& T_c_w) mutable {
             Level& at = levels_[level];
-            if (!isRendered) render(at, T_image_w, asImage_);
-            isRendered = true;
-            const bool isHere = T_c_w.matrix() == T_image_w.matrix();
-            if (!isHere) render(at, T_c_w, predicted_);
+            const auto isSame = [&T_image_w](const Pose& T) {
+                return T.matrix() == T_image_w.matrix();
+            };
+            if (!isRendered) {
+                if (last_ == level && isSame(lastPose_)) {
+                    asImage_ = predicted_;
+                } else {
+                    render(at, T_image_w, asImage_);
+                }
+                isRendered = true;
+            }
+            const bool isHere = isSame(T_c_w);
+            if (!isHere) render(at, T_c_w, displaced_);
             return withUnknownBlur(
-                level, at.comparePredictions(isHere ? asImage_ : predicted_, asImage_.intensity,
+                level, at.comparePredictions(isHere ? asImage_ : displaced_, asImage_.intensity,
                                              Exposure{}, Loss{}));
         };
     }
@@ -127,8 +137,9 @@ class DenseAligner::RenderedModel : public Comparison {
     AlignmentOptions options_;
     const ViewSource& model_;
     std::vector<Level> levels_;
-    std::size_t last_ = 0;  ///< level compared last
-    View predicted_, asImage_;
+    std::size_t last_ = 0;              ///< level compared last
+    Pose lastPose_ = Pose::Identity();  ///< of predicted_
+    View predicted_, asImage_, displaced_;
 };
 
 DenseAligner::DenseAligner(const ViewSource& model, const Camera& camera,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace photonav {
 namespace {
@@ -10,17 +11,24 @@ namespace {
 constexpr double kUncertain = 3.;     // standard deviations
 constexpr double kConverging = 0.03;  // where an alignment converges from [image widths]
 
-/// Along a row or column of `count` pixels, `step` from one to the next.
-void widen(float* depth, int count, std::ptrdiff_t step, int margin) {
-    const auto pass = [=](float* first, std::ptrdiff_t forward) {
-        int sinceHole = margin;  // or more
-        for (int i = 0; i < count; ++i, first += forward) {
-            sinceHole = *first > 0.F ? sinceHole + 1 : 0;
-            if (sinceHole <= margin) *first = 0.F;
-        }
-    };
-    pass(depth, step);
-    pass(depth + (count - 1) * step, -step);
+using Mask = std::vector<unsigned char>;
+
+/// Marks the holes of a row. @return whether there are any
+bool markHoles(const float* depth, std::size_t count, unsigned char* holes) {
+    unsigned char any = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        holes[i] = depth[i] > 0.F ? 0 : 1;
+        any |= holes[i];
+    }
+    return any != 0;
+}
+
+void mark(const unsigned char* other, std::size_t count, unsigned char* marked) {
+    for (std::size_t i = 0; i < count; ++i) marked[i] |= other[i];
+}
+
+void eraseMarked(const Mask& marked, float* depth) {
+    for (std::size_t i = 0; i < marked.size(); ++i) depth[i] = marked[i] != 0 ? 0.F : depth[i];
 }
 
 /// Standard deviation of the motion of the content at the image's side [pixels].
@@ -61,10 +69,25 @@ HoleMargin holeMargin(const Matrix6& covariance, const Camera& camera, double de
 
 void widenHoles(View& view, const HoleMargin& margin) {
     if (margin.columns == 0 && margin.rows == 0) return;
-    const int width = static_cast<int>(view.depth.getWidth());
-    const int height = static_cast<int>(view.depth.getHeight());
-    for (int v = 0; v < height; ++v) widen(view.depth[v], width, 1, margin.columns);
-    for (int u = 0; u < width; ++u) widen(view.depth.bitmap + u, height, width, margin.rows);
+    const unsigned height = view.depth.getHeight();
+    const std::size_t width = view.depth.getWidth();
+    const std::size_t columns = std::size_t(margin.columns), rows = std::size_t(margin.rows);
+    Mask holes(width + 2 * columns, 0);  // of one row; none beyond the image
+    Mask alongRows((height + 2 * rows) * width, 0);
+    bool any = false;
+    for (unsigned v = 0; v < height; ++v) {
+        if (!markHoles(view.depth[v], width, &holes[columns])) continue;
+        any = true;
+        for (std::size_t shift = 0; shift <= 2 * columns; ++shift) {
+            mark(&holes[shift], width, &alongRows[(v + rows) * width]);
+        }
+    }
+    if (!any) return;
+    Mask marked(width * height, 0);
+    for (std::size_t shift = 0; shift <= 2 * rows; ++shift) {
+        mark(&alongRows[shift * width], marked.size(), marked.data());
+    }
+    eraseMarked(marked, view.depth.bitmap);
 }
 
 }  // namespace photonav
