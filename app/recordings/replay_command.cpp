@@ -4,6 +4,8 @@
 #include "io/atomic_file.hpp"
 #include "io/stopwatch.hpp"
 #include "recordings/replay_report.hpp"
+#include "render/area_sensor.hpp"
+#include "replay/blur_estimate.hpp"
 #include "replay/calibration_file.hpp"
 #include "replay/replay.hpp"
 #include "replay/replay_calibration.hpp"
@@ -22,7 +24,8 @@ using nlohmann::json;
 
 /// Fits a calibration, and writes it if there is enough to fit it to. @returns its entry of
 /// result.json
-json calibrateReplay(const fs::path& folder, const ReplayRun& run, MapKind map) {
+json calibrateReplay(const fs::path& folder, const ReplayRun& run, const Replay& replay) {
+    const MapKind map = replay.map().kind;
     const bool leastSigmaOnly = !run.odometry && map != MapKind::mesh;
     const auto calibration = calibrationOf(run, leastSigmaOnly);
     if (!calibration) return nullptr;
@@ -31,8 +34,19 @@ json calibrateReplay(const fs::path& folder, const ReplayRun& run, MapKind map) 
     return {{"scale", calibration->scale},
             {"least_sigma", {calibration->leastSigma, calibration->leastSigmaRotation}},
             {"correlation_time", calibration->correlationTime},
+            {"depth_error", orNull(depthErrorOf(run, replay.depthError().relative))},
             {"nees_before", calibration->neesBefore},
             {"nees_after", calibration->neesAfter}};
+}
+
+/// Point spreads in pixels of the recording.
+json blurJson(const std::optional<BlurEstimate>& estimate, double assumed) {
+    json blur{{"assumed", assumed}, {"estimated", nullptr}};
+    if (!estimate) return blur;
+    blur["estimated"] = estimate->blur;
+    blur["variance_sigma"] = estimate->sigma;
+    blur["contradicts"] = estimate->contradicts(assumed);
+    return blur;
 }
 
 /// Everything the replay depended on, with the values in use.
@@ -47,7 +61,7 @@ std::string configOf(const ReplayCommandOptions& options, const Replay& replay) 
 KeyTable keysOf(ReplayCommandOptions& options) {
     KeyTable keys;
     addKeys(keys, static_cast<ReplayOptions&>(options));
-    keys.flag({"calibrate", "", "also fit scale and least sigmas to the errors"},
+    keys.flag({"calibrate", "", "also fit scale, least sigmas and depth error to the errors"},
               options.calibrate);
     return keys;
 }
@@ -77,7 +91,10 @@ ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bo
                       {"load_images_s", run.loadSeconds},
                       {"track_s", run.trackSeconds}};
     if (options.calibrate) {
-        result["calibration"] = calibrateReplay(folder.path(), run, replay.map().kind);
+        result["calibration"] = calibrateReplay(folder.path(), run, replay);
+    }
+    if (!run.odometry && replay.map().kind == MapKind::mesh) {
+        result["blur"] = blurJson(estimateBlur(run), sequence.blur.value_or(kAreaBlur));
     }
     report.summary = replaySummary(result);
     writeReplayTables(folder.path(), run, errors);

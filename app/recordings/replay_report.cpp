@@ -47,7 +47,17 @@ std::string calibrationText(const json& c) {
         c["nees_after"].get<double>());
     const auto alike = c["correlation_time"].get<double>();
     if (alike > 1.) text += fmt::format("; errors correlated over {:.3g} images", alike);
-    return text + ")";
+    text += ")";
+    if (!c["depth_error"].is_number()) return text;
+    return text +
+           fmt::format("; or depth_error: {:.3g} in camera.yaml", c["depth_error"].get<double>());
+}
+
+std::string blurText(const json& blur) {
+    const std::string assumed = fmt::format("{:.2f} pixels assumed", blur["assumed"].get<double>());
+    if (!blur["estimated"].is_number()) return assumed;
+    return fmt::format("{}, {:.2f} by the images{}", assumed, blur["estimated"].get<double>(),
+                       blur["contradicts"].get<bool>() ? ": give `blur` in camera.yaml" : "");
 }
 
 DrawnPath estimatedPath(const ReplayRun& run) {
@@ -199,6 +209,9 @@ ReportTable replaySummary(const json& result) {
     if (result["dataset"]["depth_error"] != 0.) {
         table.rows.emplace_back("error of depth that repeats from image to image",
                                 depthErrorText(result["dataset"]));
+    }
+    if (result.contains("blur")) {
+        table.rows.emplace_back("point spread of the images", blurText(result["blur"]));
     }
     table.rows.emplace_back(
         isStereo ? "tracking; with reading images and stereo" : "tracking; with reading images",

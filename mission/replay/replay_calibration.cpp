@@ -14,6 +14,7 @@ std::vector<AlignmentError> alignmentErrors(const ReplayRun& run) {
             alignment.information.diagonal().minCoeff() <= 0.) {
             continue;
         }
+        Pose sinceKeyframe = Pose::Identity();
         Pose truth = *frame.truth_c_w;
         Pose estimate = frame.tracked.T_c_w.mean;
         if (run.odometry) {
@@ -21,8 +22,10 @@ std::vector<AlignmentError> alignmentErrors(const ReplayRun& run) {
             if (!keyframe.truth_c_w) continue;
             truth = truth * keyframe.truth_c_w->inverse();
             estimate = estimate * keyframe.tracked.T_c_w.mean.inverse();
+            sinceKeyframe = estimate;
         }
-        errors.push_back({deviation(truth, estimate), alignment.information / run.scale});
+        errors.push_back(
+            {deviation(truth, estimate), alignment.information / run.scale, sinceKeyframe});
     }
     return errors;
 }
@@ -31,6 +34,12 @@ std::optional<Calibration> calibrationOf(const ReplayRun& run, bool leastSigmaOn
     const auto errors = alignmentErrors(run);
     if (errors.size() < kLeastForCalibration) return {};
     return leastSigmaOnly ? calibrateLeastSigma(errors, run.scale) : calibrate(errors);
+}
+
+std::optional<double> depthErrorOf(const ReplayRun& run, double counted) {
+    const auto errors = alignmentErrors(run);
+    if (!run.odometry || errors.size() < kLeastForCalibration) return {};
+    return calibrateDepthError(errors, counted);
 }
 
 }  // namespace photonav

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Calibrates the covariances of alignments, by scale and least sigmas, from a replay with ground
-// truth.
+// Calibrates the covariances of alignments, by scale and least sigmas, and the error of depth, from
+// a replay with ground truth.
 #pragma once
 
 #include <optional>
@@ -21,5 +21,10 @@ std::vector<AlignmentError> alignmentErrors(const ReplayRun& run);
 /// @param leastSigmaOnly true: only the least sigmas are estimated, and the scale of the run is
 ///        kept, as is right for maps of cells (calibrateLeastSigma())
 std::optional<Calibration> calibrationOf(const ReplayRun& run, bool leastSigmaOnly);
+
+/// The depth error by these errors, see calibrateDepthError(); nothing in a map, and if there are
+/// fewer than kLeastForCalibration.
+/// @param counted Replay::depthError()
+std::optional<double> depthErrorOf(const ReplayRun& run, double counted);
 
 }  // namespace photonav

@@ -134,6 +134,8 @@ ReplayRun replay(const Recording& recording, const ReplayTracker& tracker,
     ReplayRun run;
     run.odometry = tracker.odometry;
     run.scale = tracker.scale;
+    run.halvings = tracker.halvings;
+    run.blur = tracker.blur;
     Counts counts;
     while (run.frames.size() < recording.sequence.frames.size()) {
         try {

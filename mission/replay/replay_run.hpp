@@ -42,6 +42,8 @@ struct ReplayStrip {
 struct ReplayRun {
     bool odometry = false;  ///< tracked without a map
     double scale = 1.;      ///< factor on the information of the alignments
+    int halvings = 0;       ///< see ReplayTracker
+    double blur = 0.;       ///< see ReplayTracker [pixels]
     std::vector<ReplayedFrame> frames;
     std::vector<ReplayStrip> strips;          ///< about forty frames, evenly spread
     std::optional<std::size_t> alignedFrame;  ///< index of the frame at which alignToTruth() made

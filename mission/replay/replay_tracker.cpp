@@ -82,6 +82,7 @@ ReplayTracker mapTracker(const std::shared_ptr<const ViewSource>& map, const Cam
         options.map.blur = blurAfterHalving(options.map.blur);
         ++tracker.halvings;
     }
+    tracker.blur = options.map.blur;
     const auto localizer = std::make_shared<Tracker>(map, tracker.camera, start, options);
     tracker.hasGivenUp = [=] { return localizer->loss().isStartWrong(); };
     tracker.track = [=](const View& view, double timestamp) {

@@ -30,6 +30,7 @@ struct ReplayTracker {
     TrustOptions trust;     ///< thresholds of its alignments, for describe()
     Camera camera;          ///< intrinsics of the views for track()
     int halvings = 0;       ///< number of halvings from recorded views to views for track()
+    double blur = 0.;       ///< assumed point spread of views for track() [pixels]; maps only
     /// Whether to give up, because no image could be aligned near the start; empty: never.
     std::function<bool()> hasGivenUp;
 };

@@ -28,6 +28,14 @@ ResidualStatistics statisticsOf(const NormalEquations& e, const Exposure& exposu
     return s;
 }
 
+/// The pose has little influence: gradients and Laplacian are hardly correlated.
+void estimateBlur(const NormalEquations& e, const PhotometricOptions& photometric, Alignment& a) {
+    if (!(e.byBlur.btb > 0.) || e.count < 1.) return;
+    const double noise = std::max(photometric.sigma * photometric.sigma, e.sumSquares / e.count);
+    a.blur = e.byBlur.btr / e.byBlur.btb;
+    a.blurSigma = std::sqrt(noise / photometric.scale / e.byBlur.btb);
+}
+
 /// Axes that lie most in the space spanned by the first `count` columns: pivots of the projector.
 std::vector<std::string> axesOf(const Matrix6& directions, int count) {
     Matrix6 projector = directions.leftCols(count) * directions.leftCols(count).transpose();
@@ -72,6 +80,7 @@ void conclude(Alignment& a, const LastIterate& last, const AlignmentOptions& opt
     a.overlap = last.equations.count / static_cast<double>(last.pixels);
     a.residual = statisticsOf(last.equations, a.exposure);
     a.residual.finer = last.finer;
+    estimateBlur(last.equations, options.photometric, a);
     const double meanInverseDepth = last.equations.meanInverseDepth;
     a.meanDepth = meanInverseDepth > 0. ? 1. / meanInverseDepth : 1.;
     a.information = last.image.equations.information;

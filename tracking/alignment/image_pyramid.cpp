@@ -147,4 +147,6 @@ ImageF halvedAsRendered(const ImageF& image) {
 
 double blurAfterHalving(double blur) { return 0.5 * std::sqrt(blur * blur + kBinomialVariance); }
 
+double blurVarianceBeforeHalving(double variance) { return 4. * variance - kBinomialVariance; }
+
 }  // namespace photonav

@@ -48,5 +48,9 @@ ImageF halvedAsRendered(const ImageF& image);
 /// kRenderedBlur stays kRenderedBlur.
 /// @param blur point spread of the large image, standard deviation [pixels of the large image]
 double blurAfterHalving(double blur);
+/// The inverse, for variances: point spread before halvedAsRendered() [pixels^2 of the large
+/// image]. Negative for an image sharper than one can be after halving.
+/// @param variance point spread of the small image [pixels^2 of the small image]
+double blurVarianceBeforeHalving(double variance);
 
 }  // namespace photonav

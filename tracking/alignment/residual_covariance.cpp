@@ -209,15 +209,6 @@ Matrix8 scatterBySurface(const std::vector<ImageBlock>& blocks, double sigma) {
     return sigma * sigma * sum * sum.transpose();
 }
 
-/// Of a translation and a rotation that are wrong by a share of them.
-Matrix6 ofScale(double share, const Pose& motion) {
-    const Vector6 xi = logSE3(motion);
-    Vector6 variance;
-    variance << Eigen::Vector3d::Constant(xi.head<3>().squaredNorm()),
-        Eigen::Vector3d::Constant(xi.tail<3>().squaredNorm());
-    return (share * share * variance).asDiagonal();
-}
-
 template <class Choose>
 Matrix6 combined(const Matrix6& a, const Matrix6& b, const Choose& choose) {
     const auto [ratios, vectors] = eigensystem(a, b);
@@ -227,6 +218,14 @@ Matrix6 combined(const Matrix6& a, const Matrix6& b, const Choose& choose) {
 }
 
 }  // namespace
+
+Matrix6 covarianceByScale(double share, const Pose& motion) {
+    const Vector6 xi = logSE3(motion);
+    Vector6 variance;
+    variance << Eigen::Vector3d::Constant(xi.head<3>().squaredNorm()),
+        Eigen::Vector3d::Constant(xi.tail<3>().squaredNorm());
+    return (share * share * variance).asDiagonal();
+}
 
 MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
                                         const PhotometricOptions& photometric,
@@ -254,7 +253,7 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
         covariance(
             light.scatter() + scatterByDisplacement(blocks, size, camera, errors.displacement) +
             scatterByBlur(blocks, size, errors.blur) + scatterBySurface(blocks, errors.surface)) +
-        seen.toY * ofScale(errors.depthScale, toModel) * seen.toY.transpose();
+        seen.toY * covarianceByScale(errors.depthScale, toModel) * seen.toY.transpose();
     const MatrixXd scatter = seen.scale.asDiagonal() *
                              covarianceOf(changesWithout(blocks, seen, x)) *
                              seen.scale.asDiagonal();

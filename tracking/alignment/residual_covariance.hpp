@@ -25,6 +25,10 @@ struct ModelErrors {
     double depthScale = 0.;  ///< relative error of a depth sensor's scale and registration
 };
 
+/// Covariance of a motion whose translation and rotation are wrong by a share of their lengths, in
+/// any direction (ModelErrors::depthScale).
+Matrix6 covarianceByScale(double share, const Pose& motion);
+
 /// The information of an image about the pose: left perturbation, camera frame.
 struct MeasuredInformation {
     PoseEquations

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "alignment/residual_covariance.hpp"
 #include "geometry/constants.hpp"
 
 namespace photonav {
@@ -17,17 +18,28 @@ Matrix6 covarianceOf(const AlignmentError& error, double scale, double leastSigm
 }
 
 /// Mean of -2 log likelihood per degree of freedom, without the constant.
-double misfit(std::span<const AlignmentError> errors, double scale, double translation,
-              double rotation) {
+/// @param covariance of an error
+template <class Covariance>
+double misfit(std::span<const AlignmentError> errors, const Covariance& covariance) {
     double sum = 0.;
     for (const AlignmentError& e : errors) {
-        const Matrix6 covariance = covarianceOf(e, scale, translation, rotation);
-        const Eigen::LLT<Matrix6> factor(covariance);
+        const Eigen::LLT<Matrix6> factor(covariance(e));
         if (factor.info() != Eigen::Success) return kInfinity;
         const Matrix6 L = factor.matrixL();
         sum += factor.matrixL().solve(e.xi).squaredNorm() + 2. * L.diagonal().array().log().sum();
     }
     return sum / (6. * static_cast<double>(errors.size()));
+}
+
+double misfit(std::span<const AlignmentError> errors, double scale, double translation,
+              double rotation) {
+    return misfit(errors, [=](const AlignmentError& e) {
+        return covarianceOf(e, scale, translation, rotation);
+    });
+}
+
+void requireEnough(std::span<const AlignmentError> errors) {
+    if (errors.size() < 20) throw std::invalid_argument("calibrate: fewer than 20 alignments");
 }
 
 /// 1 + 2 sum of the autocorrelation, summed until it is no longer positive: the number of images
@@ -99,7 +111,7 @@ double neesPerDof(std::span<const AlignmentError> errors, double scale, double l
 }
 
 Calibration calibrate(std::span<const AlignmentError> errors) {
-    if (errors.size() < 20) throw std::invalid_argument("calibrate: fewer than 20 alignments");
+    requireEnough(errors);
     Calibration result;
     result.neesBefore = neesPerDof(errors);
     // Without least sigmas the most likely scale is the one that makes the NEES one.
@@ -120,7 +132,7 @@ Calibration calibrate(std::span<const AlignmentError> errors) {
 }
 
 Calibration calibrateLeastSigma(std::span<const AlignmentError> errors, double scale) {
-    if (errors.size() < 20) throw std::invalid_argument("calibrate: fewer than 20 alignments");
+    requireEnough(errors);
     std::array<double, 3> withLeastSigmas = startOf(errors, scale);
     descend(errors, withLeastSigmas, 1, 3);
     Calibration result{scale, withLeastSigmas[1], withLeastSigmas[2]};
@@ -129,9 +141,22 @@ Calibration calibrateLeastSigma(std::span<const AlignmentError> errors, double s
     return result;
 }
 
-/// By how much rendered views of textures, with texels from 0.15 to 3 pixels wide, are sharper than
-/// AreaSensor's with the point spread added: 0.04 to 0.11, root mean square over poses [pixels^2].
-constexpr double kBlurError = 0.1;
+double calibrateDepthError(std::span<const AlignmentError> errors, double counted) {
+    requireEnough(errors);
+    constexpr double kLeast = 1e-3, kStep = 1.05;
+    double best = 0., least = kInfinity;
+    for (double share = 0.; share <= 1.; share = std::max(kLeast, kStep * share)) {
+        const double m = misfit(errors, [&](const AlignmentError& e) -> Matrix6 {
+            const Matrix6 without =
+                e.information.inverse() - covarianceByScale(counted, e.sinceKeyframe);
+            return without + covarianceByScale(share, e.sinceKeyframe) +
+                   1e-14 * Matrix6::Identity();  // rounding of the difference
+        });
+        if (m < least) best = share;
+        least = std::min(least, m);
+    }
+    return best;
+}
 
 AlignmentOptions photographOptions(double blur) {
     AlignmentOptions options;

@@ -14,6 +14,7 @@ namespace photonav {
 struct AlignmentError {
     Vector6 xi = Vector6::Zero();           ///< deviation() of the true pose from the estimate
     Matrix6 information = Matrix6::Zero();  ///< of the image, with scale 1; of full rank
+    Pose sinceKeyframe = Pose::Identity();  ///< T_c_k, for alignments to a keyframe
 };
 
 /// NEES per degree of freedom, mean over the samples: 1 if covariances are consistent, larger if
@@ -48,6 +49,17 @@ Calibration calibrate(std::span<const AlignmentError> errors);
 /// several images.
 /// @throws std::invalid_argument below 20 samples
 Calibration calibrateLeastSigma(std::span<const AlignmentError> errors, double scale);
+
+/// The relative error of depth (ModelErrors::depthScale) of maximum likelihood, for alignments to
+/// keyframes: what depth gets wrong shows as an error in proportion to the motion.
+/// @param counted the relative error that the information of `errors` contains
+/// @return in [0, 1]
+/// @throws std::invalid_argument below 20 samples
+double calibrateDepthError(std::span<const AlignmentError> errors, double counted);
+
+/// By how much rendered views of textures, with texels from 0.15 to 3 pixels wide, are sharper than
+/// AreaSensor's with the point spread added: 0.04 to 0.11, root mean square over poses [pixels^2].
+inline constexpr double kBlurError = 0.1;
 
 /// Options for images that were not rendered from the model: covariances follow from the residuals.
 /// @param blur point spread of the images, standard deviation [pixels]

@@ -5,6 +5,8 @@
 #include "map/octree_file.hpp"
 #include "mapping/recording_map.hpp"
 #include "mission/replay/replay_fixture.hpp"
+#include "render/area_sensor.hpp"
+#include "replay/blur_estimate.hpp"
 
 namespace photonav {
 namespace {
@@ -37,6 +39,19 @@ TEST_F(ReplayInMap, LocalisesInAScene) {
     EXPECT_EQ(result["tracked"], 12);
     EXPECT_EQ(result["ate_alignment"], "none");
     EXPECT_LT(result["ate_rmse_m"].get<double>(), 2e-3);
+}
+
+/// The images of the flight are rendered, and so blurrier than those of a sensor in focus.
+TEST_F(ReplayInMap, InAMeshShowsThePointSpreadOfTheImages) {
+    useMap();
+    run();
+    const auto blur = estimateBlur(replayed);
+    ASSERT_TRUE(blur);
+    EXPECT_NEAR(blur->variance, kRenderedBlur * kRenderedBlur, 2. * blur->sigma);
+    EXPECT_TRUE(blur->contradicts(kAreaBlur)) << blur->blur;
+    EXPECT_FALSE(blur->contradicts(kRenderedBlur)) << blur->blur;
+    replayed.frames.resize(4);
+    EXPECT_FALSE(estimateBlur(replayed)) << "too few images";
 }
 
 TEST_F(ReplayInMap, LocalisesInTheMapOfItsOwnFirstHalf) {

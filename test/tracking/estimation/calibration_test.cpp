@@ -5,6 +5,9 @@
 
 #include <random>
 
+#include "alignment/residual_covariance.hpp"
+#include "geometry/se3.hpp"
+
 namespace photonav {
 namespace {
 
@@ -28,6 +31,32 @@ std::vector<AlignmentError> sampled(double scale, double leastSigma, double leas
         errors.push_back(e);
     }
     return errors;
+}
+
+/// Errors of motions of some decimetres, of which depth gets a share wrong; the information counts
+/// another share.
+std::vector<AlignmentError> withDepthError(double share, double counted, int count) {
+    std::mt19937_64 random(2);
+    std::normal_distribution<double> normal;
+    std::vector<AlignmentError> errors = sampled(1., 0., 0., count);
+    for (AlignmentError& e : errors) {
+        Vector6 motion, z;
+        for (int i = 0; i < 6; ++i) motion[i] = (i < 3 ? 0.3 : 0.1) * normal(random);
+        for (double& component : z) component = normal(random);
+        e.sinceKeyframe = expSE3(motion);
+        e.xi += covarianceByScale(share, e.sinceKeyframe).cwiseSqrt() * z;
+        e.information =
+            (e.information.inverse() + covarianceByScale(counted, e.sinceKeyframe)).inverse();
+    }
+    return errors;
+}
+
+TEST(Calibration, FindsTheErrorOfDepth) {
+    for (const double counted : {0., 0.03, 0.1}) {
+        EXPECT_NEAR(calibrateDepthError(withDepthError(0.05, counted, 200), counted), 0.05, 0.005);
+        EXPECT_LT(calibrateDepthError(withDepthError(0., counted, 200), counted), 0.005);
+    }
+    EXPECT_THROW(calibrateDepthError({}, 0.), std::invalid_argument);
 }
 
 TEST(Calibration, LeavesConsistentErrorsAlone) {
