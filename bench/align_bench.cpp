@@ -18,6 +18,7 @@
 #include "dataset/sequence_tum.hpp"
 #include "estimation/calibration.hpp"
 #include "geometry/se3.hpp"
+#include "image_noise.hpp"
 #include "map/map_fusion.hpp"
 #include "render/mesh_renderer.hpp"
 #include "render/voxel_renderer.hpp"
@@ -180,7 +181,6 @@ void track(const std::string& name, const MeshRenderer& world, const ViewSource&
     const Camera camera = trackingCamera();
     DenseAligner aligner(model, camera, options);
     std::mt19937_64 random(1);
-    std::normal_distribution<double> normal;
     Vector6 sigmas;
     sigmas << Eigen::Vector3d::Constant(0.02), Eigen::Vector3d::Constant(0.017);
     Score score;
@@ -189,14 +189,11 @@ void track(const std::string& name, const MeshRenderer& world, const ViewSource&
     for (const Pose& truth : poses) {
         View view;
         world.render(camera, truth, view);
-        for (unsigned i = 0; i < view.intensity.getSize(); ++i) {
-            view.intensity.bitmap[i] += static_cast<float>(0.02 * normal(random));
-        }
-        Vector6 xi;
-        for (int i = 0; i < 6; ++i) xi[i] = sigmas[i] * normal(random);
-        const UncertainPose prior{expSE3(xi) * truth, sigmas.cwiseAbs2().asDiagonal()};
+        const ImageF image = independentNoise(view.intensity, random);
+        const UncertainPose prior{expSE3(randomTwist(sigmas, random)) * truth,
+                                  sigmas.cwiseAbs2().asDiagonal()};
         Alignment a;
-        const double ms = milliseconds([&] { a = aligner.align(view.intensity, prior); });
+        const double ms = milliseconds([&] { a = aligner.align(image, prior); });
         score.add(a.T_c_w, truth, ms);
         score.failed += isLost(a.verdict) ? 1 : 0;
         iterations += a.iterations / double(poses.size());

@@ -9,6 +9,7 @@
 
 #include "alignment/dense_aligner.hpp"
 #include "geometry/se3.hpp"
+#include "image_noise.hpp"
 #include "render/mesh_renderer.hpp"
 #include "tracking_scenes.hpp"
 
@@ -36,19 +37,16 @@ Outcome align(const MeshRenderer& world, double belowHorizon, double metres, dou
     DenseAligner aligner(world, camera);
     Random random(1);
     std::uniform_real_distribution<double> around(0., 2. * std::numbers::pi);
-    std::normal_distribution<float> noise(0.F, 0.02F);
     Outcome outcome;
     View view;
     for (int i = 0; i < trials; ++i) {
         const Pose truth = onCircle(around(random), belowHorizon);
         world.render(camera, truth, view);
-        for (unsigned k = 0; k < view.intensity.getSize(); ++k) {
-            view.intensity.bitmap[k] += noise(random);
-        }
+        const ImageF image = independentNoise(view.intensity, random);
         Vector6 xi;
         xi.head<3>() = metres * randomDirection(random);
         xi.tail<3>() = degrees * std::numbers::pi / 180. * randomDirection(random);
-        const Alignment a = aligner.align(view.intensity, expSE3(xi) * truth);
+        const Alignment a = aligner.align(image, expSE3(xi) * truth);
         const Vector6 error = logSE3(truth * a.T_c_w.inverse());
         const bool right = error.head<3>().norm() < 0.01 && error.tail<3>().norm() < 0.005;
         outcome.right += right && !isLost(a.verdict) ? 1 : 0;

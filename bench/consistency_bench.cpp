@@ -13,6 +13,7 @@
 #include "estimation/calibration.hpp"
 #include "estimation/tracker.hpp"
 #include "geometry/se3.hpp"
+#include "image_noise.hpp"
 #include "map/map_fusion.hpp"
 #include "render/mesh_renderer.hpp"
 #include "render/voxel_renderer.hpp"
@@ -26,13 +27,6 @@ namespace {
 using Random = std::mt19937_64;
 using Picture = std::function<ImageF(const ImageF&, Random&)>;
 
-ImageF independentNoise(const ImageF& ideal, Random& random) {
-    std::normal_distribution<float> noise(0.F, 0.02F);
-    ImageF image = ideal;
-    for (unsigned i = 0; i < image.getSize(); ++i) image.bitmap[i] += noise(random);
-    return image;
-}
-
 /// Exposure changes from image to image.
 Picture realCamera(double vignetting) {
     return [vignetting](const ImageF& ideal, Random& random) {
@@ -42,13 +36,6 @@ Picture realCamera(double vignetting) {
         options.exposure.gain = gain(random);
         return takePicture(ideal, options, random);
     };
-}
-
-Vector6 draw(const Vector6& sigmas, Random& random) {
-    std::normal_distribution<double> normal;
-    Vector6 xi;
-    for (int i = 0; i < 6; ++i) xi[i] = sigmas[i] * normal(random);
-    return xi;
 }
 
 Vector6 startSigmas() {
@@ -75,7 +62,8 @@ std::vector<AlignmentError> errorsOf(const ViewSource& world, const ViewSource& 
         const Pose truth = randomPose(random);
         world.render(camera, truth, view);
         const ImageF image = picture(view.intensity, random);
-        const Alignment a = aligner.align(image, expSE3(draw(startSigmas(), random)) * truth);
+        const Alignment a =
+            aligner.align(image, expSE3(randomTwist(startSigmas(), random)) * truth);
         if (isLost(a.verdict) && ++lost < count) continue;
         errors.push_back({logSE3(truth * a.T_c_w.inverse()), a.information});
     }
@@ -131,7 +119,7 @@ void keyframeRow(const std::string& name, const ViewSource& world, int finest, i
     int lost = 0;
     while (static_cast<int>(errors.size()) < count) {
         const Pose T_k_w = randomPose(random);
-        const Pose truth = expSE3(draw(startSigmas(), random)) * T_k_w;
+        const Pose truth = expSE3(randomTwist(startSigmas(), random)) * T_k_w;
         world.render(camera, T_k_w, first);
         world.render(camera, truth, second);
         first.intensity = independentNoise(first.intensity, random);
@@ -158,14 +146,15 @@ void flights(const std::string& name, const ViewSource& world, const ViewSource&
         const double begin = 0.1 * flight;
         Pose truth = onCircle(begin, 0.9);
         Tracker tracker({std::shared_ptr<void>(), &model}, camera,
-                        {expSE3(draw(sigmas, random)) * truth, Q}, {.map = options});
+                        {expSE3(randomTwist(sigmas, random)) * truth, Q}, {.map = options});
         for (int i = 1; i <= 10; ++i, ++images) {
             const Pose next = onCircle(begin + 0.03 * i, 0.9);
             const Pose T_next_now = next * truth.inverse();
             truth = next;
             Observation observation;
             observation.time = i;
-            observation.T_next_now = UncertainPose{expSE3(draw(sigmas, random)) * T_next_now, Q};
+            observation.T_next_now =
+                UncertainPose{expSE3(randomTwist(sigmas, random)) * T_next_now, Q};
             world.render(camera, truth, view);
             observation.frames.push_back({observation.time, {picture(view.intensity, random), {}}});
             lost += tracker.update(observation).front().rejected ? 1 : 0;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "belief/information_field.hpp"
+#include "geometry/se3.hpp"
 #include "image_noise.hpp"
 #include "map/distance_map.hpp"
 #include "map/map_fusion.hpp"
@@ -91,14 +92,10 @@ std::vector<Pose> posesOf(const World& world) {
         const double yaw = std::atan2(leg.y(), leg.x());
         for (double s = 0.; s < leg.norm(); s += 0.25) {
             const Eigen::Vector2d at = route[i - 1] + s * leg.normalized();
-            Pose T_w_b = Pose::Identity();
-            T_w_b.translation() =
-                Eigen::Vector3d(at.x() + 0.2 * uniform(random), at.y() + 0.2 * uniform(random),
-                                1.2 + 0.3 * uniform(random));
-            T_w_b.linear() =
-                Eigen::AngleAxisd(yaw + 0.6 * uniform(random), Eigen::Vector3d::UnitZ())
-                    .toRotationMatrix();
-            poses.push_back((T_w_b * cameraMount(0.4 + 0.3 * uniform(random))).inverse());
+            const Eigen::Vector3d p_w(at.x() + 0.2 * uniform(random),
+                                      at.y() + 0.2 * uniform(random), 1.2 + 0.3 * uniform(random));
+            const double heading = yaw + 0.6 * uniform(random);
+            poses.push_back(lookFrom(p_w, 0.4 + 0.3 * uniform(random), heading));
         }
     }
     return poses;
@@ -139,14 +136,9 @@ class PlannedViews {
         std::mt19937 random(2);
         std::uniform_real_distribution<double> uniform(0., 1.);
         for (int i = 0; i < kViews; ++i) {
-            Pose T_w_b = Pose::Identity();
-            for (int a = 0; a < 3; ++a) {
-                T_w_b.translation()[a] = 0.3 + uniform(random) * (world.size[a] - 0.6);
-            }
-            T_w_b.linear() =
-                Eigen::AngleAxisd(2. * std::numbers::pi * uniform(random), Eigen::Vector3d::UnitZ())
-                    .toRotationMatrix();
-            poses_.push_back(T_w_b);
+            Eigen::Vector3d p_w;
+            for (int a = 0; a < 3; ++a) p_w[a] = 0.3 + uniform(random) * (world.size[a] - 0.6);
+            poses_.push_back(levelPose(p_w, 2. * std::numbers::pi * uniform(random)));
         }
         for (const Pose& pose : poses_) entries_.push_back(&field_.at(pose));
     }

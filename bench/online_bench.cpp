@@ -12,6 +12,7 @@
 
 #include <random>
 
+#include "geometry/se3.hpp"
 #include "image_noise.hpp"
 #include "map/map_fusion.hpp"
 #include "problem/planning_problem.hpp"
@@ -59,11 +60,7 @@ void exploreAll(TexturedOcTree& map, SimulatedRgbd& camera, const World& truth) 
             const Eigen::Vector3d p_w(x, y, 1.3);
             if (truth.clearance(p_w) < 0.25) continue;
             for (int i = 0; i < 6; ++i) {
-                Pose T_w_b = Pose::Identity();
-                T_w_b.translation() = p_w;
-                T_w_b.linear() =
-                    Eigen::AngleAxisd(std::numbers::pi / 3 * i, Eigen::Vector3d::UnitZ())
-                        .toRotationMatrix();
+                const Pose T_w_b = levelPose(p_w, std::numbers::pi / 3 * i);
                 camera.fuseInto(map, camera.render(T_w_b, false), T_w_b);
             }
         }

@@ -19,6 +19,7 @@
 #include "estimation/calibration.hpp"
 #include "estimation/keyframe_chain.hpp"
 #include "geometry/se3.hpp"
+#include "image_noise.hpp"
 #include "map/map_fusion.hpp"
 #include "problem/tracking_map.hpp"
 #include "render/area_sensor.hpp"
@@ -37,13 +38,6 @@ using Picture = std::function<ImageF(const ImageF&, Random&)>;
 
 Camera cameraOf(unsigned width) {
     return makeCamera(width, width == 640 ? 480 : 120 * width / 188, 70. * std::numbers::pi / 180.);
-}
-
-ImageF independentNoise(const ImageF& ideal, Random& random) {
-    std::normal_distribution<float> noise(0.F, 0.02F);
-    ImageF image = ideal;
-    for (unsigned i = 0; i < image.getSize(); ++i) image.bitmap[i] += noise(random);
-    return image;
 }
 
 /// A light from the side, that the model does not have.
@@ -77,10 +71,7 @@ Vector6 priorSigmas() {
 }
 
 Pose wrongBy(const Vector6& sigmas, const Pose& truth, Random& random) {
-    std::normal_distribution<double> normal;
-    Vector6 xi;
-    for (int i = 0; i < 6; ++i) xi[i] = sigmas[i] * normal(random);
-    return expSE3(xi) * truth;
+    return expSE3(randomTwist(sigmas, random)) * truth;
 }
 
 /// What is seen, and from where.

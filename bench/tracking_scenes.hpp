@@ -37,11 +37,8 @@ inline Scene texturedFloor() {
 
 /// On a circle of 2 m radius about the hall's centre, 1.7 m high, looking ahead and inward.
 inline Pose onCircle(double angle, double belowHorizon) {
-    Pose T_w_b = Pose::Identity();
-    T_w_b.translation() =
-        Eigen::Vector3d(4. + 2. * std::cos(angle), 4. + 2. * std::sin(angle), 1.7);
-    T_w_b.linear() = Eigen::AngleAxisd(angle + 2., Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    return (T_w_b * cameraMount(belowHorizon)).inverse();
+    return lookFrom({4. + 2. * std::cos(angle), 4. + 2. * std::sin(angle), 1.7}, belowHorizon,
+                    angle + 2.);
 }
 
 }  // namespace photonav

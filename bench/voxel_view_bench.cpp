@@ -149,19 +149,11 @@ void compareViews(const char* name, const TexturedOcTree& map, const octomap::Oc
         plain / ours, trace);
 }
 
-/// A pose in the room with the given angle of the optical axis below the horizon.
-Pose lookFrom(double x, double y, double z, double belowHorizon, double yaw) {
-    Pose T_w_b = Pose::Identity();
-    T_w_b.translation() = Eigen::Vector3d(x, y, z);
-    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    return (T_w_b * cameraMount(belowHorizon)).inverse();
-}
-
 std::vector<Pose> posesAt(double belowHorizon) {
     std::vector<Pose> poses;
     for (int i = 0; i < 8; ++i) {
         poses.push_back(
-            lookFrom(4. + 1.6 * i, 3. + 1.9 * (i * 5 % 8), 2.05, belowHorizon, 0.7 * i));
+            lookFrom({4. + 1.6 * i, 3. + 1.9 * (i * 5 % 8), 2.05}, belowHorizon, 0.7 * i));
     }
     return poses;
 }
@@ -171,7 +163,7 @@ void timeFusion(const VoxelRenderer& renderer, double resolution) {
     TexturedOcTree map(resolution);
     double total = 0., slowest = 0.;
     for (int i = 0; i < 30; ++i) {
-        const Pose T_c_w = lookFrom(5. + 0.02 * i, 5., 1.5, 0.5, 0.02 * i);
+        const Pose T_c_w = lookFrom({5. + 0.02 * i, 5., 1.5}, 0.5, 0.02 * i);
         View view;
         renderer.render(camera, T_c_w, view);
         const double time = minTime(1, [&] { fuse(map, view, camera, T_c_w); });
@@ -236,7 +228,7 @@ int main() {
                minTime(5, [&] { VoxelRenderer(map, UnknownPolicy::free); }));
     View view;
     const Camera camera = makeCamera(188, 120, 1.2);
-    renderer.render(camera, lookFrom(5., 5., 2., 1., 0.), view);
+    renderer.render(camera, lookFrom({5., 5., 2.}, 1.), view);
     fmt::print("point spread alone: {:.4f} ms\n", minTime(100, [&] { applyPointSpread(view); }));
     for (const double cell : {0.05, 0.025}) timeFusion(renderer, cell);
     for (const double cell : {0.05, 0.025}) printInformation(cell);

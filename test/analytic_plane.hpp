@@ -60,12 +60,4 @@ struct AnalyticPlane {
 /// The paper's camera at a quarter of its size.
 inline Camera defaultCamera() { return makeCamera(188, 120, 70. * std::numbers::pi / 180.); }
 
-/// Camera pose from its position and the angle of its optical axis below the horizon.
-inline Pose lookFrom(const Eigen::Vector3d& position_w, double belowHorizon, double yaw = 0.) {
-    Pose T_w_b = Pose::Identity();
-    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    T_w_b.translation() = position_w;
-    return (T_w_b * cameraMount(belowHorizon)).inverse();
-}
-
 }  // namespace photonav

@@ -2,6 +2,7 @@
 // A flight over textured ground, recorded in the TUM layout, and the scene it was flown in.
 #pragma once
 
+#include "geometry/se3.hpp"
 #include "render/mesh_renderer.hpp"
 #include "scene/scene.hpp"
 #include "tum_dataset.hpp"
@@ -38,10 +39,7 @@ struct FlightDataset {
     }
 
     Pose T_w_c(int i) const {
-        Pose T_w_b = Pose::Identity();
-        T_w_b.translation() = Eigen::Vector3d(-0.5 + speed * i, 0.005 * i, 1.4);
-        T_w_b.rotate(Eigen::AngleAxisd(0.01 * i, Eigen::Vector3d::UnitZ()));
-        return T_w_b * cameraMount(0.9);
+        return levelPose({-0.5 + speed * i, 0.005 * i, 1.4}, 0.01 * i) * cameraMount(0.9);
     }
 
     static double time(int i) { return 50. + 0.1 * i; }

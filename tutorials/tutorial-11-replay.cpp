@@ -7,6 +7,7 @@
 
 #include "exercises.hpp"
 #include "flight/flight_recorder.hpp"
+#include "geometry/se3.hpp"
 #include "plot/figure.hpp"
 #include "render/mesh_renderer.hpp"
 #include "replay/replay.hpp"
@@ -23,10 +24,8 @@ constexpr double kNoise = 0.01;  // of the recorded grey values
 /// A round about the low table in config/scenes/room.yaml, looking at it and the carpet below.
 Pose flight(int i) {
     const double angle = 2. * std::numbers::pi * i / kFrames;
-    Pose T_w_b = Pose::Identity();
-    T_w_b.translation() << 2.4 + 1.2 * std::cos(angle), 6.1 + 1.2 * std::sin(angle), 1.5;
-    T_w_b.rotate(Eigen::AngleAxisd(angle + 0.8 * std::numbers::pi, Eigen::Vector3d::UnitZ()));
-    return T_w_b * cameraMount(0.9);
+    const Eigen::Vector3d p_w(2.4 + 1.2 * std::cos(angle), 6.1 + 1.2 * std::sin(angle), 1.5);
+    return levelPose(p_w, angle + 0.8 * std::numbers::pi) * cameraMount(0.9);
 }
 
 /// A recording in the layout of the TUM RGB-D benchmark: images, depth, true poses.

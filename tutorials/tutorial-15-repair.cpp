@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "exercises.hpp"
+#include "geometry/se3.hpp"
 #include "io/stopwatch.hpp"
 #include "long_room.hpp"
 #include "map/map_fusion.hpp"
@@ -33,9 +34,7 @@ Config flightThrough() {
 /// What the robot's camera sees becomes part of its map.
 MapChange look(TexturedOcTree& map, const MeshRenderer& scene, const Config& config, double x,
                double yaw) {
-    Pose T_w_b = Pose::Identity();
-    T_w_b.translation() = Eigen::Vector3d(x, 2., 1.1);
-    T_w_b.rotate(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
+    const Pose T_w_b = levelPose({x, 2., 1.1}, yaw);
     const Pose T_c_w = (T_w_b * config.camera.T_b_c()).inverse();
     View view;
     scene.render(config.camera.camera(), T_c_w, view);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shared/place_option.hpp"
 
+#include "geometry/se3.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
 
@@ -23,12 +24,6 @@ Place placeOf(const std::optional<std::string>& at, const Place& otherwise, cons
     return place;
 }
 
-Pose bodyAt(const Place& place) {
-    Pose T_w_b = Pose::Identity();
-    T_w_b.linear() =
-        Eigen::AngleAxisd(place.yaw.value_or(0.), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    T_w_b.translation() = place.position;
-    return T_w_b;
-}
+Pose bodyAt(const Place& place) { return levelPose(place.position, place.yaw.value_or(0.)); }
 
 }  // namespace photonav

@@ -45,7 +45,7 @@ struct Setup {
           corners(featureReprojectionModel(camera, config.viewModel.features)) {}
 
     Pose cameraPose(const Eigen::Vector3d& p_w, double yaw) const {
-        return (bodyPose(p_w, yaw) * T_b_c).inverse();
+        return (levelPose(p_w, yaw) * T_b_c).inverse();
     }
 };
 
@@ -69,7 +69,7 @@ std::vector<Pose> randomPoses(const std::vector<Eigen::Vector3d>& positions, std
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> yaw(-std::numbers::pi, std::numbers::pi);
     std::vector<Pose> poses;
-    for (const Eigen::Vector3d& p_w : positions) poses.push_back(bodyPose(p_w, yaw(random)));
+    for (const Eigen::Vector3d& p_w : positions) poses.push_back(levelPose(p_w, yaw(random)));
     return poses;
 }
 

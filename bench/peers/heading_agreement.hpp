@@ -25,13 +25,6 @@ constexpr int kHeadings = 72;
 
 inline double headingOf(int k) { return 2. * std::numbers::pi * k / kHeadings; }
 
-inline Pose bodyPose(const Eigen::Vector3d& p_w, double yaw) {
-    Pose T_w_b = Pose::Identity();
-    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    T_w_b.translation() = p_w;
-    return T_w_b;
-}
-
 using AtPosition = std::array<Matrix6, kHeadings>;  ///< camera frame, by heading
 using HeadingInformation = std::vector<AtPosition>;
 using HeadingScores = std::vector<std::array<double, kHeadings>>;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "geometry/constants.hpp"
+#include "geometry/se3.hpp"
 
 namespace photonav {
 namespace {
@@ -63,8 +64,7 @@ Eigen::ArrayXXd viewGrid(PlanningProblem& problem, const Eigen::AlignedBox2d& ar
     const int ny = std::max(1, static_cast<int>(std::lround(area.sizes().y() / step)));
     Eigen::ArrayXXd values =
         Eigen::ArrayXXd::Constant(nx, ny, std::numeric_limits<double>::quiet_NaN());
-    Pose T_w_b = Pose::Identity();
-    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    Pose T_w_b = levelPose(Eigen::Vector3d::Zero(), yaw);
     for (int i = 0; i < nx; ++i) {
         for (int j = 0; j < ny; ++j) {
             T_w_b.translation() << area.min().x() + (i + 0.5) * area.sizes().x() / nx,

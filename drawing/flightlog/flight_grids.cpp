@@ -94,8 +94,8 @@ vpImage<unsigned char> informationGrid(const ExplorationMoment& moment, const Se
     const auto views = moment.planner.views();
     const Pose T_b_c = config.camera.T_b_c();
     Pose T_w_b = bodyOf(moment);
-    const double height = T_w_b.translation().z(), yaw = yawOf(T_w_b);
-    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const double height = T_w_b.translation().z();
+    T_w_b = levelPose(T_w_b.translation(), yawOf(T_w_b));
     View view;
     const double pixel = area.sizes().maxCoeff() / kInformationPixels;
     return gridOver(area, pixel, [&](const Eigen::Vector2d& p_w) -> unsigned char {

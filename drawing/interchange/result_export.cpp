@@ -9,6 +9,7 @@
 #include "bag/mcap_writer.hpp"
 #include "dataset/trajectory.hpp"
 #include "flightlog/flight_log.hpp"
+#include "geometry/se3.hpp"
 #include "interchange/drawn_result.hpp"
 #include "io/error.hpp"
 #include "io/reading.hpp"
@@ -133,12 +134,8 @@ class GrowingCells {
 
 void addFlown(const std::vector<FlownPoint>& flown, Topics& topics) {
     for (const FlownPoint& point : flown) {
-        Pose believed = Pose::Identity(), truth = Pose::Identity();
-        believed.linear() =
-            Eigen::AngleAxisd(point.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-        truth.linear() = believed.linear();
-        believed.translation() = point.believed.cast<double>();
-        truth.translation() = point.truth.cast<double>();
+        const Pose believed = levelPose(point.believed.cast<double>(), point.yaw);
+        const Pose truth = levelPose(point.truth.cast<double>(), point.yaw);
         topics.pose("/flight/believed", point.time, believed);
         topics.pose("/flight/true", point.time, truth);
     }

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "dataset/trajectory.hpp"
+#include "geometry/se3.hpp"
 #include "io/number.hpp"
 #include "io/reading.hpp"
 #include "io/text_table.hpp"
@@ -189,11 +190,7 @@ GivenTrajectory readPlaces(const std::string& file, const FirstLine& first,
     trajectory.hasHeading = !rows.empty() && rows.front().yaw.has_value();
     const std::vector<double> headings = headingsOf(rows, heading);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        GivenPose pose{rows[i].time, Pose::Identity()};
-        pose.T_w_b.translation() = rows[i].position;
-        pose.T_w_b.linear() =
-            Eigen::AngleAxisd(headings[i], Eigen::Vector3d::UnitZ()).toRotationMatrix();
-        trajectory.poses.push_back(pose);
+        trajectory.poses.push_back({rows[i].time, levelPose(rows[i].position, headings[i])});
     }
     return trajectory;
 }

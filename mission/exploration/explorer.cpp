@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "geometry/se3.hpp"
 #include "io/stopwatch.hpp"
 #include "render/interruptible_views.hpp"
 
@@ -87,9 +88,7 @@ const Config& checked(const Config& config, const Robot& robot) {
 UncertainPose beliefAtTakeOff(const Config& config) {
     const Place& start = config.start;
     const Pose T_b_c = config.camera.T_b_c();
-    Pose T_w_b = Pose::Identity();
-    T_w_b.translation() = start.position;
-    T_w_b.rotate(Eigen::AngleAxisd(start.yaw.value_or(0.), Eigen::Vector3d::UnitZ()));
+    const Pose T_w_b = levelPose(start.position, start.yaw.value_or(0.));
     return {(T_w_b * T_b_c).inverse(),
             inOtherFrame(config.explore.initialCovariance, T_b_c.inverse())};
 }

@@ -88,13 +88,10 @@ void ReferenceTable::readFiles() {
                                .waypoints = {}};
     });
     readCsv(pathsFile(), kPathColumns, 5, [&](const std::vector<std::string>& f) {
-        Pose T_w_b = Pose::Identity();
-        T_w_b.translation() = Eigen::Vector3d(toNumber(f[1]), toNumber(f[2]), toNumber(f[3]));
-        T_w_b.linear() =
-            Eigen::AngleAxisd(toNumber(f[4]), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+        const Eigen::Vector3d p_w(toNumber(f[1]), toNumber(f[2]), toNumber(f[3]));
         // A path that came to the disk alone, before its row could be written, is none.
         const auto row = rows_.find(keyOf(toNumber(f[0])));
-        if (row != rows_.end()) row->second.waypoints.push_back(T_w_b);
+        if (row != rows_.end()) row->second.waypoints.push_back(levelPose(p_w, toNumber(f[4])));
     });
 }
 

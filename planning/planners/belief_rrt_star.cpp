@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "geometry/constants.hpp"
-#include "planners/loewner_order.hpp"
+#include "geometry/loewner_order.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "planners/loewner_order.hpp"
+#include "geometry/loewner_order.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;

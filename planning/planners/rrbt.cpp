@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "planners/loewner_order.hpp"
+#include "geometry/loewner_order.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;

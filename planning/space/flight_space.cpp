@@ -44,10 +44,6 @@ ob::StateSpacePtr makeSpace(StateKind kind, const Eigen::AlignedBox3d& box, doub
     return space;
 }
 
-Eigen::Matrix3d headingRotation(double yaw) {
-    return Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-}
-
 /// One of OMPL's samplers with a generator of its own seed.
 template <typename Sampler>
 class Seeded : public Sampler {
@@ -135,7 +131,7 @@ FlightSpace::FlightSpace(StateKind kind, const Eigen::AlignedBox3d& bounds, doub
     : kind_(kind),
       bounds_(bounds),
       rotationWeight_(rotationWeight),
-      fixedRotation_(headingRotation(fixedHeading)) {
+      fixedRotation_(levelPose(Eigen::Vector3d::Zero(), fixedHeading).linear()) {
     if (bounds.isEmpty()) throw std::invalid_argument("flight space: empty bounds");
     if (!(rotationWeight >= 0.)) throw std::invalid_argument("flight space: negative weight");
     space_ = makeSpace(kind, bounds, rotationWeight);
@@ -166,8 +162,9 @@ Pose FlightSpace::bodyPose(const ob::State* state) const {
     if (kind_ == StateKind::positionYaw) {
         const double yaw =
             state->as<ob::CompoundState>()->as<ob::SO2StateSpace::StateType>(1)->value;
-        T_w_b.linear() = headingRotation(yaw);
-    } else if (kind_ == StateKind::se3) {
+        return levelPose(T_w_b.translation(), yaw);
+    }
+    if (kind_ == StateKind::se3) {
         const auto& q = state->as<ob::SE3StateSpace::StateType>()->rotation();
         T_w_b.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
     }

@@ -17,10 +17,7 @@ Array cameraPose(const Array& position, double yaw, const py::object& mount) {
         throw py::value_error(
             "mount: expected down, front45, forward or degrees below the horizon");
     }
-    Pose T_w_b = Pose::Identity();
-    T_w_b.translation() = vectorOf(position, 3, "position");
-    T_w_b.rotate(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
-    return arrayOf((T_w_b * cameraMount(*degrees * kDegree)).inverse());
+    return arrayOf(lookFrom(vectorOf(position, 3, "position"), *degrees * kDegree, yaw));
 }
 
 Matrix6 covarianceOf(const Array& array, const char* name) {

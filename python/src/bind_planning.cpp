@@ -39,13 +39,6 @@ std::unique_ptr<Problem> makeProblem(const py::object& config,
         [&](const std::atomic<bool>&) { return std::make_unique<Problem>(loaded); });
 }
 
-Pose bodyAt(const Array& position, double yaw) {
-    Pose T_w_b = Pose::Identity();
-    T_w_b.translation() = vectorOf(position, 3, "position");
-    T_w_b.rotate(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
-    return T_w_b;
-}
-
 std::vector<Place> placesOf(const Array& path) {
     if (path.ndim() != 2 || (path.shape(1) != 3 && path.shape(1) != 4) || path.shape(0) < 1) {
         throw py::value_error("path: expected an array of shape (N, 3) or (N, 4)");
@@ -217,7 +210,8 @@ void bindPlanning(py::module_& module) {
         .def(
             "information_at",
             [](Problem& self, const Array& position, double yaw) -> Matrix6 {
-                return self.problem.informationAt(bodyAt(position, yaw));
+                return self.problem.informationAt(
+                    levelPose(vectorOf(position, 3, "position"), yaw));
             },
             "position"_a, "yaw"_a = 0.,
             "Of the view from a place, as planners count it (cached by cells), camera frame.")

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "geometry/se3.hpp"
+
 namespace photonav {
 
 Camera makeCamera(unsigned width, unsigned height, double horizontalFov) {
@@ -34,6 +36,10 @@ Pose cameraMount(double belowHorizon) {
     T_b_c.linear().col(1) = Eigen::Vector3d(-s, 0., -c);  // image down
     T_b_c.linear().col(2) = Eigen::Vector3d(c, 0., -s);   // optical axis
     return T_b_c;
+}
+
+Pose lookFrom(const Eigen::Vector3d& p_w, double belowHorizon, double yaw) {
+    return (levelPose(p_w, yaw) * cameraMount(belowHorizon)).inverse();
 }
 
 }  // namespace photonav

@@ -55,4 +55,9 @@ Camera scaled(const Camera& camera, double factor);
 ///        the 45-degree front camera, pi/2 looks straight down with the image's top toward body x.
 Pose cameraMount(double belowHorizon);
 
+/// Camera pose T_c_w on a level body at p_w.
+/// @param belowHorizon angle of the optical axis below the horizon [rad], see cameraMount()
+/// @param yaw heading about the world's z axis [rad]
+Pose lookFrom(const Eigen::Vector3d& p_w, double belowHorizon, double yaw = 0.);
+
 }  // namespace photonav

@@ -147,6 +147,13 @@ Pose interpolate(const Pose& a, const Pose& b, double s) {
     return pose;
 }
 
+Pose levelPose(const Eigen::Vector3d& p_w, double yaw) {
+    Pose T_w_b = Pose::Identity();
+    T_w_b.translation() = p_w;
+    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    return T_w_b;
+}
+
 double yawOf(const Pose& T_w_b) { return std::atan2(T_w_b(1, 0), T_w_b(0, 0)); }
 
 Matrix6 adjoint(const Pose& T) {

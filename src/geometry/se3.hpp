@@ -20,6 +20,10 @@ Vector6 logSE3(const Pose& T);
 /// straight line, the orientation along the shortest rotation.
 Pose interpolate(const Pose& a, const Pose& b, double s);
 
+/// Pose T_w_b of a level body (x forward, z up).
+/// @param yaw heading about the world's z axis [rad]
+Pose levelPose(const Eigen::Vector3d& p_w, double yaw);
+
 /// Heading of a body about the world's z axis [rad].
 double yawOf(const Pose& T_w_b);
 

@@ -46,20 +46,12 @@ inline Scene carpetOnWhite() {
     return scene;
 }
 
-/// A camera at (x, y, z) with its optical axis `belowHorizon`, looking along `yaw`.
-inline Pose cameraAt(const Eigen::Vector3d& position_w, double belowHorizon, double yaw = 0.) {
-    Pose T_w_b = Pose::Identity();
-    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    T_w_b.translation() = position_w;
-    return (T_w_b * cameraMount(belowHorizon)).inverse();
-}
-
 /// Above bars along world y, turned a little against them; y is hardly known.
 inline UncertainPose aboveBars(double turned) {
     Vector6 sigmas;
     sigmas << 0.02, 0.5, 0.05, 0.005, 0.005, 0.01;
     constexpr double kDownward = std::numbers::pi / 2.;
-    return {cameraAt({0.13, 0.2, 2.}, kDownward, kDownward + turned),
+    return {lookFrom({0.13, 0.2, 2.}, kDownward, kDownward + turned),
             sigmas.cwiseAbs2().asDiagonal()};
 }
 

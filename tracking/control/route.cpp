@@ -23,12 +23,7 @@ Station stationOf(const Pose& T_w_b) {
     return station;
 }
 
-Pose poseOf(const Station& station) {
-    Pose T_w_b = Pose::Identity();
-    T_w_b.translation() = station.head<3>();
-    T_w_b.linear() = Eigen::AngleAxisd(station[3], Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    return T_w_b;
-}
+Pose poseOf(const Station& station) { return levelPose(station.head<3>(), station[3]); }
 
 SmoothPath pathOf(const std::vector<PlannedView>& plan, const RouteOptions& options) {
     if (plan.size() < 2) throw std::invalid_argument("flight: a plan has at least two views");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimation/loss_of_tracking.hpp"
 
-#include "geometry/eigensystem.hpp"
+#include "geometry/loewner_order.hpp"
 
 namespace photonav {
 namespace {
@@ -11,18 +11,16 @@ constexpr double kLeft = 0.5;
 /// Share of the prior's variance that an image must leave in one direction at most, to inform.
 constexpr double kInformed = 0.5;
 
-/// Eigenvalues of A relative to B, ascending.
-Vector6 relativeEigenvalues(const Matrix6& A, Matrix6 B) {
-    B.diagonal().array() += 1e-18;  // directions known exactly
-    return eigensystem(A, B).values;
-}
+/// So that directions that are known exactly are comparable [m^2 or rad^2].
+constexpr double kSlack = 1e-18;
 
 }  // namespace
 
 bool resolvesLoss(const Matrix6& before, const Matrix6& prior, const Matrix6& after) {
+    const Matrix6 slack = kSlack * Matrix6::Identity();
     const Matrix6 allowed = 2. * before + kLeft * (prior - before);
-    return relativeEigenvalues(after, allowed)[5] <= 1. &&
-           relativeEigenvalues(after, prior)[0] <= kInformed;
+    const bool hasInformed = !isLoewnerLess(kInformed * (prior + slack), after);
+    return hasInformed && isLoewnerLess(after, allowed + slack);
 }
 
 void LossOfTracking::onTracked(double time) {

@@ -5,21 +5,14 @@
 
 #include <random>
 
+#include "geometry/se3.hpp"
 #include "tum_dataset.hpp"
 
 namespace photonav {
 namespace {
 
-using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 using test::expectInputError;
-
-Pose pose(const Vector3d& t, double yaw) {
-    Pose T = Pose::Identity();
-    T.translation() = t;
-    T.linear() = AngleAxisd(yaw, Vector3d::UnitZ()).toRotationMatrix();
-    return T;
-}
 
 TEST(Trajectory, SurvivesAFile) {
     const test::TemporaryFolder folder;
@@ -47,7 +40,7 @@ TEST(Trajectory, OfKittiHasRowsOfTheMatrixAndNoTimes) {
         folder.write("00.txt", "0 -1 0 1  1 0 0 2  0 0 1 3\n\n1 0 0 4 0 1 0 5 0 0 1 6\n");
     const Trajectory read = readKittiTrajectory(file);
     ASSERT_EQ(read.size(), 2U);
-    EXPECT_TRUE(read[0].T_w_c.isApprox(pose({1., 2., 3.}, EIGEN_PI / 2.), 1e-12));
+    EXPECT_TRUE(read[0].T_w_c.isApprox(levelPose({1., 2., 3.}, EIGEN_PI / 2.), 1e-12));
     EXPECT_EQ(read[1].timestamp, 1.);
     const std::string copy = (folder.path() / "copy.txt").string();
     writeKittiTrajectory(copy, read);
@@ -80,11 +73,12 @@ TEST(Trajectory, TimesThatCannotBeAreNamed) {
 }
 
 TEST(Trajectory, PosesAreInterpolatedAcrossShortGapsOnly) {
-    const Trajectory trajectory = {
-        {1., pose({0., 0., 0.}, 0.)}, {1.1, pose({1., 2., 0.}, 0.4)}, {2., pose({5., 5., 5.}, 1.)}};
+    const Trajectory trajectory = {{1., levelPose({0., 0., 0.}, 0.)},
+                                   {1.1, levelPose({1., 2., 0.}, 0.4)},
+                                   {2., levelPose({5., 5., 5.}, 1.)}};
     const auto between = poseAt(trajectory, 1.025, 0.02, 0.1 + 1e-9);
     ASSERT_TRUE(between);
-    EXPECT_TRUE(between->isApprox(pose({0.25, 0.5, 0.}, 0.1), 1e-9));
+    EXPECT_TRUE(between->isApprox(levelPose({0.25, 0.5, 0.}, 0.1), 1e-9));
     EXPECT_TRUE(poseAt(trajectory, 1.1, 0., 0.)->isApprox(trajectory[1].T_w_c));
     EXPECT_TRUE(poseAt(trajectory, 1.115, 0.02, 0.2)->isApprox(trajectory[1].T_w_c));
     EXPECT_TRUE(poseAt(trajectory, 1.985, 0.02, 0.2)->isApprox(trajectory[2].T_w_c));
@@ -96,7 +90,8 @@ TEST(Trajectory, PosesAreInterpolatedAcrossShortGapsOnly) {
 }
 
 TEST(Trajectory, EqualTimestampsAreNoDivisionByZero) {
-    const Trajectory trajectory = {{1., pose({1., 0., 0.}, 0.)}, {1., pose({2., 0., 0.}, 0.)}};
+    const Trajectory trajectory = {{1., levelPose({1., 0., 0.}, 0.)},
+                                   {1., levelPose({2., 0., 0.}, 0.)}};
     EXPECT_TRUE(poseAt(trajectory, 1., 0.02, 0.1)->matrix().allFinite());
 }
 

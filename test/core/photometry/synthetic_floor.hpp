@@ -21,10 +21,7 @@ inline double carpet(double x, double y) {
 
 /// A camera at (x, y, height) with the given angle below the horizon, looking along `yaw`.
 inline Pose lookDown(double x, double y, double height, double belowHorizon, double yaw = 0.) {
-    Pose T_w_b = Pose::Identity();
-    T_w_b.translation() = Eigen::Vector3d(x, y, height);
-    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    return (T_w_b * cameraMount(belowHorizon)).inverse();
+    return lookFrom({x, y, height}, belowHorizon, yaw);
 }
 
 /// The plane z = height over |x|, |y| < extent; each pixel is the mean of 2 x 2 rays.

@@ -14,12 +14,6 @@
 namespace photonav {
 namespace {
 
-Pose lookingFrom(const Eigen::Vector3d& position, double yaw, double belowHorizon) {
-    Pose T_w_b(Eigen::Translation3d{position});
-    T_w_b.rotate(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
-    return (T_w_b * cameraMount(belowHorizon)).inverse();
-}
-
 /// A room of 6 x 6 m with boxes, a few of them small.
 Scene clutter(int boxes) {
     Scene scene;
@@ -92,7 +86,7 @@ TEST(MeshRenderer, DepthAgreesWithTryingEveryTriangle) {
         for (const double belowHorizon : {std::numbers::pi / 2., std::numbers::pi / 4., 0.1}) {
             for (const double yaw : {0.3, 2., 4.}) {
                 compared += compareWithBruteForce(scene, renderer, camera,
-                                                  lookingFrom({3., 2.7, 2.2}, yaw, belowHorizon));
+                                                  lookFrom({3., 2.7, 2.2}, belowHorizon, yaw));
             }
         }
         EXPECT_GT(compared, 9 * static_cast<int>(camera.width * camera.height) * 97 / 100);
@@ -120,7 +114,7 @@ TEST(MeshRenderer, NoPixelSlipsBetweenNeighbours) {
     for (const unsigned width : {61U, 13U}) {
         for (const double x : {0., 0.1, 1.}) {
             const Camera camera = makeCamera(width, width, 1.2);
-            renderer.render(camera, lookingFrom({x, 0., 2.}, 0., std::numbers::pi / 2.), view);
+            renderer.render(camera, lookFrom({x, 0., 2.}, std::numbers::pi / 2.), view);
             for (unsigned i = 0; i < view.depth.getSize(); ++i) {
                 ASSERT_NEAR(view.depth.bitmap[i], 2., 1e-5) << i;
             }
@@ -134,8 +128,7 @@ TEST(MeshRenderer, NoSurfaceIsDepthZero) {
              addTexture(scene, uniformTexture(0.5)));
     const MeshRenderer renderer(scene);
     View view;
-    renderer.render(makeCamera(40, 30, 1.), lookingFrom({0.5, 0.5, 1.}, 0., -std::numbers::pi / 2.),
-                    view);
+    renderer.render(makeCamera(40, 30, 1.), lookFrom({0.5, 0.5, 1.}, -std::numbers::pi / 2.), view);
     EXPECT_EQ(test::pixels(view.depth), std::vector<float>(1200, 0.F));
     EXPECT_EQ(test::pixels(view.intensity), std::vector<float>(1200, 0.F));
 }
@@ -149,7 +142,7 @@ TEST(MeshRenderer, UniformSurfacesAreUniformToTheBit) {
     addPlane(scene, {0., 0., 0.}, {20., 0., 0.}, {0., 20., 0.}, half);
     const MeshRenderer renderer(scene);
     View view;
-    renderer.render(makeCamera(188, 120, 1.2), lookingFrom({5., 10., 2.}, 0.3, 1.4), view);
+    renderer.render(makeCamera(188, 120, 1.2), lookFrom({5., 10., 2.}, 1.4, 0.3), view);
     for (unsigned i = 0; i < view.intensity.getSize(); ++i) {
         ASSERT_EQ(view.intensity.bitmap[i], view.intensity.bitmap[0]);
     }
@@ -211,10 +204,10 @@ TEST(MeshRenderer, FineTextureIsIntegratedOverPixels) {
     const Texture fine = valueNoise({.size = {5., 5.}, .cells = {0.1, 0.03}, .seed = 2});
     for (const double height : {0.5, 1., 1.5, 3.}) {
         const auto down = compareWithSupersampling(
-            fine, lookingFrom({20.3, 20.1, height}, 0.4, std::numbers::pi / 2.));
+            fine, lookFrom({20.3, 20.1, height}, std::numbers::pi / 2., 0.4));
         EXPECT_LT(down.error, 0.08 * down.contrast) << height << " m, contrast " << down.contrast;
         const auto oblique = compareWithSupersampling(
-            fine, lookingFrom({20.3, 20.1, height}, 0.4, std::numbers::pi / 4.));
+            fine, lookFrom({20.3, 20.1, height}, std::numbers::pi / 4., 0.4));
         EXPECT_LT(oblique.error, 0.15 * oblique.contrast)
             << height << " m, contrast " << oblique.contrast;
     }
@@ -228,10 +221,10 @@ TEST(MeshRenderer, LevelsOfDetailChangeWithoutSteps) {
     const MeshRenderer renderer(scene);
     const Camera camera = makeCamera(47, 30, 70. * std::numbers::pi / 180.);
     View before, view;
-    renderer.render(camera, lookingFrom({20.3, 20.1, 0.5}, 0., std::numbers::pi / 4.), before);
+    renderer.render(camera, lookFrom({20.3, 20.1, 0.5}, std::numbers::pi / 4.), before);
     float largest = 0.F;
     for (double height = 0.5; height < 4.; height *= 1.0002) {
-        renderer.render(camera, lookingFrom({20.3, 20.1, height}, 0., std::numbers::pi / 4.), view);
+        renderer.render(camera, lookFrom({20.3, 20.1, height}, std::numbers::pi / 4.), view);
         for (unsigned i = 0; i < view.intensity.getSize(); ++i) {
             largest =
                 std::max(largest, std::abs(view.intensity.bitmap[i] - before.intensity.bitmap[i]));
@@ -244,7 +237,7 @@ TEST(MeshRenderer, LevelsOfDetailChangeWithoutSteps) {
 TEST(MeshRenderer, TheSamePoseGivesTheSameBitsInAnyThread) {
     const MeshRenderer renderer(clutter(20));
     const Camera camera = makeCamera(94, 60, 1.2);
-    const Pose T_c_w = lookingFrom({3., 2.7, 2.2}, 0.3, std::numbers::pi / 4.);
+    const Pose T_c_w = lookFrom({3., 2.7, 2.2}, std::numbers::pi / 4., 0.3);
     View expected;
     renderer.render(camera, T_c_w, expected);
     std::vector<View> views(4);
@@ -252,7 +245,7 @@ TEST(MeshRenderer, TheSamePoseGivesTheSameBitsInAnyThread) {
     for (std::size_t i = 0; i < views.size(); ++i) {
         threads.emplace_back([&, i] {
             View other;
-            renderer.render(camera, lookingFrom({2., 2., 1.}, 0.1 * i, 0.5), other);
+            renderer.render(camera, lookFrom({2., 2., 1.}, 0.5, 0.1 * i), other);
             renderer.render(camera, T_c_w, views[i]);
         });
     }
@@ -326,8 +319,8 @@ TEST(MeshRenderer, UniformPartsOfATextureAreNoShortCut) {
     std::uniform_real_distribution<double> place(0., 8.), height(0.2, 3.), angle(-3., 3.);
     View a, b;
     for (int i = 0; i < 200; ++i) {
-        const Pose T_c_w = lookingFrom({place(random), place(random), height(random)},
-                                       angle(random), 0.15 + 0.45 * std::abs(angle(random)));
+        const Pose T_c_w = lookFrom({place(random), place(random), height(random)},
+                                    0.15 + 0.45 * std::abs(angle(random)), angle(random));
         fast.render(camera, T_c_w, a);
         slow.render(camera, T_c_w, b);
         for (unsigned k = 0; k < a.depth.getSize(); ++k) {

@@ -260,9 +260,7 @@ TEST(ShippedScenes, TheFlatIsClosedAroundTheCamera) {
     const Camera camera = makeCamera(188, 120, 70. * std::numbers::pi / 180.);
     View view;
     for (const double yaw : {0., 1.5, 3., 4.5}) {
-        Pose T_w_b(Eigen::Translation3d(4.6, 1., 1.5));
-        T_w_b.rotate(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
-        renderer.render(camera, (T_w_b * cameraMount(0.4)).inverse(), view);
+        renderer.render(camera, lookFrom({4.6, 1., 1.5}, 0.4, yaw), view);
         float least = 0.F;
         float most = 0.F;
         view.depth.getMinMaxValue(least, most);

@@ -27,9 +27,7 @@ class GivenTrajectoryTest : public testing::Test {
 
 TEST_F(GivenTrajectoryTest, CameraPosesBecomeBodyPoses) {
     const Pose T_b_c = cameraMount(45. * kDegree);
-    Pose T_w_b = Pose::Identity();
-    T_w_b.translation() << 1., 2., 3.;
-    T_w_b.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()));
+    const Pose T_w_b = levelPose({1., 2., 3.}, 0.7);
     const Eigen::Quaterniond q((T_w_b * T_b_c).linear());
     const std::string row = fmt::format("1 2 3 {} {} {} {}\n", q.x(), q.y(), q.z(), q.w());
     const std::string file =

@@ -16,8 +16,7 @@ GivenTrajectory through(const std::vector<Eigen::Vector4d>& places) {
     GivenTrajectory trajectory{TrajectoryFormat::table, true, {}};
     for (const Eigen::Vector4d& place : places) {
         GivenPose pose;
-        pose.T_w_b.translation() = place.head<3>();
-        pose.T_w_b.rotate(Eigen::AngleAxisd(place[3], Eigen::Vector3d::UnitZ()));
+        pose.T_w_b = levelPose(place.head<3>(), place[3]);
         trajectory.poses.push_back(pose);
     }
     return trajectory;

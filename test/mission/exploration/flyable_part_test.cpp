@@ -15,8 +15,7 @@ std::vector<BeliefPoint> straightPath(double yaw) {
     std::vector<BeliefPoint> path;
     for (int i = 0; i <= 8; ++i) {
         BeliefPoint point;
-        point.T_w_b.translation() << 0.5 * i, 0., 1.;
-        point.T_w_b.linear() = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()).toRotationMatrix();
+        point.T_w_b = levelPose({0.5 * i, 0., 1.}, yaw);
         point.length = point.distance = 0.5 * i;
         path.push_back(point);
     }

@@ -14,7 +14,7 @@ constexpr double kSigma = 0.02;
 struct NoisyFloor {
     explicit NoisyFloor(const Texture& texture) {
         MeshRenderer(test::floorOf(texture))
-            .render(camera, test::cameraAt({0., 0., 2.}, test::kDown), map);
+            .render(camera, lookFrom({0., 0., 2.}, test::kDown), map);
         std::mt19937_64 random(1);
         image = test::noisy(map.intensity, kSigma, random);
         map.intensity = test::noisy(map.intensity, kSigma, random);

@@ -71,7 +71,7 @@ TEST(ObstacleMap, NewWallsGoOnThroughForgottenCells) {
     EXPECT_FALSE(isObstacle(0.75));
     // A camera level with them sees a surface behind, then.
     const Camera camera = makeCamera(94, 60, 1.2);
-    const Pose T_c_w = test::cameraAt({-1., 0.05, 0.6}, 0.);
+    const Pose T_c_w = lookFrom({-1., 0.05, 0.6}, 0.);
     ImageF depth(camera.height, camera.width, 1.F);
     EXPECT_TRUE(obstacles.remember(column.map, depth, camera, T_c_w).empty());
     depth = 2.F;
@@ -120,7 +120,7 @@ class HiddenPlaces : public testing::Test {
     }
 
     Camera camera = makeCamera(94, 60, 1.2);
-    Pose T_c_w = test::cameraAt({0., 0., 2.}, test::kDown);
+    Pose T_c_w = lookFrom({0., 0., 2.}, test::kDown);
     View image;
     TexturedOcTree map{kCell};
     ObstacleMap obstacles{

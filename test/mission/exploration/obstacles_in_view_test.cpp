@@ -20,7 +20,7 @@ class EmptyFloor : public testing::Test {
     }
 
     static Scene floor() { return test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})); }
-    static Pose at(double x) { return test::cameraAt({x, 0., 1.2}, test::kOblique); }
+    static Pose at(double x) { return lookFrom({x, 0., 1.2}, test::kOblique); }
     View render(Scene scene, double x) const {
         View view;
         MeshRenderer(std::move(scene)).render(camera, at(x), view);

@@ -37,7 +37,7 @@ class MapOfABox : public testing::Test {
 
     Config config;
     Camera camera = makeCamera(94, 60, 1.2);
-    Pose T_c_w = test::cameraAt({0., 0., 2.}, test::kDown);
+    Pose T_c_w = lookFrom({0., 0., 2.}, test::kDown);
     View image;
 };
 
@@ -74,13 +74,13 @@ TEST_F(MapOfABox, ForgetsWhatIsInView) {
         return std::count_if(shown.depth.bitmap, shown.depth.bitmap + shown.depth.getSize(),
                              [](float z) { return z > 0.F; });
     };
-    const Pose aside = test::cameraAt({0., -1.5, 2.}, test::kDown);
+    const Pose aside = lookFrom({0., -1.5, 2.}, test::kDown);
     const auto before = surfaces(T_c_w), asideBefore = surfaces(aside);
     const auto isFloorObstacle = [&](double x, double y) {
         return isObstacle(map, x, y, 0.05) || isObstacle(map, x, y, -0.05);
     };
     ASSERT_TRUE(isFloorObstacle(-0.55, 0.05));
-    const Pose low = test::cameraAt({0.05, 0.35, 2.}, test::kDown);
+    const Pose low = lookFrom({0.05, 0.35, 2.}, test::kDown);
     const MapChange change = map.forget(shownBy(low), camera, low);
     EXPECT_FALSE(isFloorObstacle(-0.55, 0.05));
     EXPECT_LT(surfaces(T_c_w), before / 2);
@@ -120,7 +120,7 @@ TEST_F(MapOfABox, DoubtsWhatIsNotInViewAroundANewOne) {
     const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
     OnlineMap map(config);
     const auto look = [&](double x) {
-        const Pose there = test::cameraAt({x, 0., 2.}, test::kDown);
+        const Pose there = lookFrom({x, 0., 2.}, test::kDown);
         floor.render(camera, there, empty);
         map.fuse(empty, camera, there, map.addPose({there, 1e-4 * Matrix6::Identity()}));
     };

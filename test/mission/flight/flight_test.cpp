@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/se3.hpp"
 #include "tracking/rooms.hpp"
 
 namespace photonav {
@@ -28,9 +29,7 @@ class Flight : public ::testing::Test {
         options.initialCovariance = toCamera * Matrix6(initial.asDiagonal()) * toCamera.transpose();
         for (int i = 0; i <= 10; ++i) {
             PlannedView view;
-            view.T_w_b.translation() << 0.2 * i, 0., 2.;
-            view.T_w_b.linear() =
-                Eigen::AngleAxisd(0.05 * i, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+            view.T_w_b = levelPose({0.2 * i, 0., 2.}, 0.05 * i);
             view.distance = 0.2 * i;
             view.isWaypoint = i == 0 || i == 5 || i == 10;
             plan.push_back(view);

@@ -33,7 +33,7 @@ class UnregisteredDepth : public testing::Test {
         std::string rgb, depth;
         for (int i = 0; i < kFrames; ++i) {
             const Pose T_c_w =
-                cameraAt({1.5, 1.2 + 0.2 * i, 1.6 + 0.05 * (i % 3)}, 0.5, 0.1 * i - 0.4);
+                lookFrom({1.5, 1.2 + 0.2 * i, 1.6 + 0.05 * (i % 3)}, 0.5, 0.1 * i - 0.4);
             writeImages(i, T_c_w);
             rgb += fmt::format("{} rgb/{}.png\n", 0.1 * i, i);
             depth += fmt::format("{} depth/{}.png\n", 0.1 * i, i);

@@ -9,7 +9,6 @@
 namespace photonav {
 namespace {
 
-using test::cameraAt;
 using test::kDown;
 
 TEST(SimulatedMav, FollowsCommandsWithALag) {
@@ -40,7 +39,7 @@ TEST(SimulatedMav, ItsOdometryHasTheStatedCovariance) {
 
 TEST(SimulatedCamera, MeasuresTheVerticalAsExactlyAsItSays) {
     const MeshRenderer floor(test::floorOf(valueNoise({.seed = 3})));
-    const Pose T_c_w = cameraAt({0., 0., 2.}, test::kOblique);
+    const Pose T_c_w = lookFrom({0., 0., 2.}, test::kOblique);
     SimulatedCamera camera(floor, makeCamera(8, 8, 1.), {}, {.verticalSigma = 0.02, .period = 0.1},
                            1);
     const Eigen::Vector3d up_c = T_c_w.linear().col(2);
@@ -61,7 +60,7 @@ TEST(SimulatedCamera, MeasuresTheVerticalAsExactlyAsItSays) {
 
 TEST(SimulatedCamera, DeliversLateDropsAndGoesBlack) {
     const MeshRenderer floor(test::floorOf(valueNoise({.seed = 3})));
-    const Pose T_c_w = cameraAt({0., 0., 2.}, kDown);
+    const Pose T_c_w = lookFrom({0., 0., 2.}, kDown);
     const SimulatedCameraOptions options{.period = 0.1,
                                          .latency = 0.25,
                                          .dropRate = 0.25,
@@ -149,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(Sensors, RobotWithDepth,
 TEST(SimulatedCamera, StereoWorksAtTheLeastHeightOfACamera) {
     const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
     SimulatedCamera camera(floor, makeCamera(94, 8, 1.2), {}, {.depth = DepthSensor::stereo}, 1);
-    ASSERT_TRUE(camera.expose(0., cameraAt({0., 0., 2.}, kDown)));
+    ASSERT_TRUE(camera.expose(0., lookFrom({0., 0., 2.}, kDown)));
     const auto frame = camera.receive(0.);
     ASSERT_TRUE(frame);
     EXPECT_EQ(frame->view.depth.getHeight(), 8U);
@@ -163,7 +162,7 @@ TEST(SimulatedCamera, StereoFindsNothingOnABlankFloor) {
                                          .pairNoise = assumedNoise({.sigma = 0.02})};
     SimulatedCamera camera(floor, makeCamera(188, 120, 1.2),
                            assumedNoise({.sigma = 0.02, .scale = 0.08}), options, 1);
-    ASSERT_TRUE(camera.expose(0., cameraAt({0., 0., 2.}, kDown)));
+    ASSERT_TRUE(camera.expose(0., lookFrom({0., 0., 2.}, kDown)));
     const auto frame = camera.receive(0.);
     ASSERT_TRUE(frame);
     const ImageF& depth = frame->view.depth;

@@ -4,17 +4,13 @@
 #include <limits>
 #include <random>
 
+#include "geometry/se3.hpp"
 #include "planning/fixture.hpp"
 
 namespace photonav::test {
 namespace {
 
-Pose bodyAt(double x, double y, double yaw = 0.) {
-    Pose T_w_b = Pose::Identity();
-    T_w_b.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    T_w_b.translation() << x, y, 2.;
-    return T_w_b;
-}
+Pose bodyAt(double x, double y, double yaw = 0.) { return levelPose({x, y, 2.}, yaw); }
 
 Matrix6 growsAlongX(const Pose& T_c_w) {
     return (1. + T_c_w.inverse().translation().x()) * Matrix6::Identity();

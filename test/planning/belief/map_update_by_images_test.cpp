@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "geometry/se3.hpp"
 #include "map/map_fusion.hpp"
 #include "planning/belief/fields.hpp"
 #include "render/mesh_renderer.hpp"
@@ -38,11 +39,8 @@ class MappedRoom {
 
     /// A body pose away from the walls and the boxes.
     Pose randomPose() {
-        Pose T_w_b = Pose::Identity();
-        T_w_b.translation() << uniform(0.4, 3.6), uniform(0.4, 2.6), uniform(1., 1.6);
-        T_w_b.linear() =
-            Eigen::AngleAxisd(uniform(0., 6.28), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-        return T_w_b;
+        const Eigen::Vector3d p_w{uniform(0.4, 3.6), uniform(0.4, 2.6), uniform(1., 1.6)};
+        return levelPose(p_w, uniform(0., 6.28));
     }
 
     TexturedOcTree map;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <random>
 
+#include "geometry/se3.hpp"
 #include "planning/belief/fields.hpp"
 #include "planning/fixture.hpp"
 #include "planning/planners/changing_world.hpp"
@@ -76,10 +77,8 @@ class ChangingRoom {
         do {
             for (int i = 0; i < 3; ++i) cell[i] = static_cast<int>(dice() * kSize[i]);
         } while (isOccupied(cell));
-        Pose T_w_b = Pose::Identity();
-        T_w_b.translation() = kCell * (cell.cast<double>().matrix() + Vector3d::Constant(0.5));
-        T_w_b.linear() = Eigen::AngleAxisd(6.28 * dice(), Vector3d::UnitZ()).toRotationMatrix();
-        return T_w_b;
+        return levelPose(kCell * (cell.cast<double>().matrix() + Vector3d::Constant(0.5)),
+                         6.28 * dice());
     }
 
     TexturedOcTree map;

@@ -9,7 +9,6 @@ namespace photonav {
 namespace {
 
 using test::camera;
-using test::cameraAt;
 using test::errorOf;
 using test::kDown;
 using test::kOblique;
@@ -48,7 +47,7 @@ TEST(DenseAligner, CovarianceIsThePlannersInverse) {
 
 TEST(DenseAligner, PriorDecidesWhereTheImageDoesNotInform) {
     const MeshRenderer white(test::floorOf(uniformTexture(0.9)));
-    const Pose truth = cameraAt({0., 0., 2.}, kDown);
+    const Pose truth = lookFrom({0., 0., 2.}, kDown);
     DenseAligner aligner(white, camera());
     UncertainPose prior{truth, 1e-4 * Matrix6::Identity()};
     const Alignment a = aligner.align(observe(white, truth, 0.02), prior);
@@ -60,7 +59,7 @@ TEST(DenseAligner, PriorDecidesWhereTheImageDoesNotInform) {
 
 TEST(DenseAligner, NamesTheDirectionsThatStripesLeaveOpen) {
     const MeshRenderer bars(test::floorOf(stripes({.width = 0.3})));
-    const Pose truth = cameraAt({0., 0., 2.}, kDown);  // image x along world -y, y along -x
+    const Pose truth = lookFrom({0., 0., 2.}, kDown);  // image x along world -y, y along -x
     DenseAligner aligner(bars, camera());
     const Pose start = expSE3(0.01 * Vector6::Unit(1)) * truth;
     const Alignment a = aligner.align(observe(bars, truth, 0.01), start);
@@ -74,7 +73,7 @@ TEST(DenseAligner, NamesTheDirectionsThatStripesLeaveOpen) {
 
 TEST(DenseAligner, OpenDirectionsStayWhereTheyWere) {
     const MeshRenderer white(test::floorOf(uniformTexture(0.9)));
-    const Pose truth = cameraAt({0., 0., 2.}, kDown);
+    const Pose truth = lookFrom({0., 0., 2.}, kDown);
     DenseAligner aligner(white, camera());
     const Alignment a = aligner.align(observe(white, truth, 0.02), truth);
     EXPECT_LT(errorOf(a, truth).norm(), 1e-12);
@@ -132,7 +131,7 @@ TEST(DenseAligner, FaintTextureStillCounts) {
     addPlane(scene, {-10., 0., 0.}, {20., 0., 0.}, {0., 10., 0.}, faint);
     const MeshRenderer floor(std::move(scene));
     UncertainPose prior;
-    prior.mean = cameraAt({0.13, 0., 2.}, kDown, kDown + 0.03);
+    prior.mean = lookFrom({0.13, 0., 2.}, kDown, kDown + 0.03);
     Vector6 sigmas;
     sigmas << 0.05, 0.5, 0.05, 0.005, 0.005, 0.01;
     prior.covariance = sigmas.cwiseAbs2().asDiagonal();
@@ -161,7 +160,7 @@ TEST(DenseAligner, FaintTextureStillCounts) {
 
 /// Half a metre along a known line stays along that line when the heading is corrected.
 TEST(Alignment, PositionsOfAPriorKeepToTheMap) {
-    const Pose T_prior_w = cameraAt({1., 2., 1.5}, kDown);
+    const Pose T_prior_w = lookFrom({1., 2., 1.5}, kDown);
     const Vector6 turn = (Vector6() << 0., 0., 0., 0., 0., 0.2).finished();
     const Pose T_c_w = expSE3(turn) * T_prior_w;
     const auto lineIn = [](const Pose& T) { return Eigen::Vector3d(T.linear().col(1)); };
@@ -208,11 +207,11 @@ TEST(DenseAligner, ReportsThatItIsLost) {
     // Looking away from everything.
     const MeshRenderer patch(test::floorOf(valueNoise()));
     DenseAligner overFloor(patch, camera());
-    const Alignment sky = overFloor.align(image, cameraAt({0., 0., 1.}, -kOblique));
+    const Alignment sky = overFloor.align(image, lookFrom({0., 0., 1.}, -kOblique));
     EXPECT_EQ(sky.verdict, Verdict::lostOverlap);
     EXPECT_EQ(describe(sky), "lost: overlap 0.00 below 0.20");
     // A picture of another place, and a black one.
-    const ImageF elsewhere = observe(room(), cameraAt({4.5, 1., 1.2}, 0.2, 2.5), 0.02);
+    const ImageF elsewhere = observe(room(), lookFrom({4.5, 1., 1.2}, 0.2, 2.5), 0.02);
     EXPECT_TRUE(isLost(aligner.align(elsewhere, kPose).verdict));
     const ImageF black(camera().height, camera().width, 0.F);
     EXPECT_TRUE(isLost(aligner.align(black, kPose).verdict));
@@ -224,7 +223,7 @@ TEST(DenseAligner, ReportsThatItIsLost) {
 
 TEST(DenseAligner, IsLostInTheDarkOverWhite) {
     const MeshRenderer white(test::floorOf(uniformTexture(0.9)));
-    const Pose truth = cameraAt({0., 0., 2.}, kDown);
+    const Pose truth = lookFrom({0., 0., 2.}, kDown);
     DenseAligner aligner(white, camera());
     const ImageF black(aligner.camera().height, aligner.camera().width, 0.F);
     EXPECT_EQ(aligner.align(black, {truth, 1e-2 * Matrix6::Identity()}).verdict,
@@ -275,7 +274,7 @@ TEST(DenseAligner, CovarianceIsConsistentOnTexture) {
     double sum = 0.;
     const int n = 60;
     for (int i = 0; i < n; ++i) {
-        const Pose truth = cameraAt({1.5 + 0.01 * i, 2. + 0.03 * i, 1.5}, kOblique, 0.05 * i);
+        const Pose truth = lookFrom({1.5 + 0.01 * i, 2. + 0.03 * i, 1.5}, kOblique, 0.05 * i);
         const ImageF image = observe(room(), truth, 0.02, 100 + i, small);
         const Pose start = expSE3(test::randomTwist(0.02, 0.01, random)) * truth;
         const Alignment a = aligner.align(image, start);

@@ -9,7 +9,6 @@
 namespace photonav {
 namespace {
 
-using test::cameraAt;
 using test::kDown;
 
 TEST(HoleMargin, IsABoxAroundEveryHole) {
@@ -48,13 +47,13 @@ TEST(HoleMargin, AJointThatIsNotWhereItWasThoughtIsNoContradiction) {
     const MeshRenderer floor(scene);
     const Camera camera = makeCamera(188, 120, 1.2);
     View seen;
-    floor.render(camera, cameraAt({0.05, 0., 2.}, kDown), seen);
+    floor.render(camera, lookFrom({0.05, 0., 2.}, kDown), seen);
     std::mt19937_64 random{1};
     const ImageF image = test::noisy(seen.intensity, 0.02, random);
     AlignmentOptions options;
     options.photometric = {.sigma = 0.02, .scale = 0.08};
     DenseAligner aligner(floor, camera, options);
-    UncertainPose prior{cameraAt({0., 0., 2.}, kDown), 1e-8 * Matrix6::Identity()};
+    UncertainPose prior{lookFrom({0., 0., 2.}, kDown), 1e-8 * Matrix6::Identity()};
     EXPECT_TRUE(isLost(aligner.align(image, prior).verdict)) << "too easy";
     prior.covariance.topLeftCorner<3, 3>() = 0.03 * 0.03 * Eigen::Matrix3d::Identity();
     const Alignment a = aligner.align(image, prior);

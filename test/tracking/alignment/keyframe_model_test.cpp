@@ -11,7 +11,6 @@
 namespace photonav {
 namespace {
 
-using test::cameraAt;
 using test::errorOf;
 
 const Camera& wideCamera() {
@@ -27,7 +26,7 @@ View roomView(const Pose& T_c_w, double sigma = 0., std::uint64_t seed = 1) {
     return view;
 }
 
-const Pose kFirst = cameraAt({1.6, 3., 1.6}, 0.6, 0.1);
+const Pose kFirst = lookFrom({1.6, 3., 1.6}, 0.6, 0.1);
 
 TEST(KeyframeModel, FindsTheMotion) {
     std::mt19937_64 random(1);
@@ -51,7 +50,7 @@ TEST(KeyframeModel, LeavesOutDepthThatBends) {
     for (unsigned v = 60; v < 180; ++v) {  // half the image: every other column is too far
         for (unsigned u = 0; u < 320; u += 2) view.depth[v][u] *= 1.024F;
     }
-    const Pose truth = cameraAt({1.7, 3.05, 1.6}, 0.6, 0.1);
+    const Pose truth = lookFrom({1.7, 3.05, 1.6}, 0.6, 0.1);
     const auto distance = [&](double maxBend) {
         KeyframeOptions options;
         options.finest = 0;
@@ -116,7 +115,7 @@ View floorView(const Texture& texture, const Pose& T_c_w, std::uint64_t seed) {
 
 /// The noise of a keyframe has gradients as texture has, and there are many pixels.
 TEST(KeyframeModel, NoiseIsNoTexture) {
-    const Pose above = cameraAt({0., 0., 1.5}, test::kDown);
+    const Pose above = lookFrom({0., 0., 1.5}, test::kDown);
     KeyframeModel grey(floorView(uniformTexture(0.5), above, 1), wideCamera(), above);
     const Alignment a = grey.align(floorView(uniformTexture(0.5), above, 2).intensity, above);
     EXPECT_EQ(a.openDirections.size(), 6U) << describe(a);
@@ -160,7 +159,7 @@ TEST(KeyframeModel, ReportsThatItIsLost) {
     KeyframeModel keyframe(roomView(kFirst), wideCamera(), kFirst);
     EXPECT_TRUE(isLost(
         keyframe.align(ImageF(wideCamera().height, wideCamera().width, 0.F), kFirst).verdict));
-    const View elsewhere = roomView(cameraAt({4.5, 1., 1.2}, 0.2, 2.5), 0.01);
+    const View elsewhere = roomView(lookFrom({4.5, 1., 1.2}, 0.2, 2.5), 0.01);
     EXPECT_TRUE(isLost(keyframe.align(elsewhere.intensity, kFirst).verdict));
     View blind = roomView(kFirst);
     blind.depth = ImageF(wideCamera().height, wideCamera().width, 0.F);

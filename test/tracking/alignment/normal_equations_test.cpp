@@ -12,8 +12,6 @@
 namespace photonav {
 namespace {
 
-using test::cameraAt;
-
 const Camera& tinyCamera() {
     static const Camera small = makeCamera(94, 61, 1.2);
     return small;
@@ -25,7 +23,7 @@ View viewAt(const Pose& T_c_w) {
     return view;
 }
 
-const Pose kViewpoint = cameraAt({2., 3., 1.5}, 0.5);
+const Pose kViewpoint = lookFrom({2., 3., 1.5}, 0.5);
 
 double relative(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
     return (a - b).norm() / b.norm();

@@ -11,7 +11,6 @@
 namespace photonav {
 namespace {
 
-using test::cameraAt;
 using test::kDown;
 using test::kOblique;
 
@@ -29,7 +28,7 @@ UncertainPose afterOdometry(const Pose& T_c_w) {
 /// Twists of a camera with its prior's standard deviations divided by `narrower`, x to the right.
 std::vector<Vector6> repetitionsAbove(Texture texture, double narrower = 0.5) {
     const MeshRenderer floor(test::floorOf(std::move(texture)));
-    UncertainPose prior = afterOdometry(cameraAt({0.2, -0.2, 2.}, kDown, kDown));
+    UncertainPose prior = afterOdometry(lookFrom({0.2, -0.2, 2.}, kDown, kDown));
     prior.covariance /= narrower * narrower;
     View view;
     floor.render(kCamera, prior.mean, view);
@@ -87,7 +86,7 @@ TEST(RepeatedTexture, ABookFartherIsNotAccepted) {
         options.photometric = {.sigma = kNoise, .scale = kScale};
         DenseAligner once(world, kCamera, options);
         WideAligner aligner(world, kCamera, options);
-        const UncertainPose prior = afterOdometry(cameraAt({0.2, -0.2, 1.1}, kOblique, 0.1));
+        const UncertainPose prior = afterOdometry(lookFrom({0.2, -0.2, 1.1}, kOblique, 0.1));
         const Matrix6 root = rootOf(prior.covariance);
         std::mt19937_64 random{1};
         int wrongOnce = 0, wrong = 0, found = 0;

@@ -14,7 +14,6 @@
 namespace photonav {
 namespace {
 
-using test::cameraAt;
 using test::kDown;
 using test::kOblique;
 using test::room;
@@ -35,7 +34,7 @@ double neesWith(const AlignmentOptions& options, const Disturbance& disturb, con
     constexpr int kCount = 50;
     double sum = 0.;
     for (int i = 0; i < kCount; ++i) {
-        const Pose truth = cameraAt({1.5 + 0.01 * i, 2. + 0.03 * i, 1.5}, kOblique, 0.05 * i);
+        const Pose truth = lookFrom({1.5 + 0.01 * i, 2. + 0.03 * i, 1.5}, kOblique, 0.05 * i);
         ImageF image = test::photographed(room(), camera, truth).intensity;
         disturb(image, random);
         const Pose start = expSE3(test::randomTwist(0.02, 0.01, random)) * truth;
@@ -92,7 +91,7 @@ TEST(ResidualCovariance, DistortionOfTheLensRepeats) {
         double sum = 0.;
         constexpr int kCount = 20;
         for (int i = 0; i < kCount; ++i) {
-            const Pose truth = cameraAt({1.5 + 0.02 * i, 2. + 0.05 * i, 1.5}, kOblique, 0.1 * i);
+            const Pose truth = lookFrom({1.5 + 0.02 * i, 2. + 0.05 * i, 1.5}, kOblique, 0.1 * i);
             const View view = test::photographed(room(), longer, truth);
             const Alignment a = aligner.align(view.intensity, truth);
             const Vector6 xi = test::errorOf(a, truth);
@@ -136,7 +135,7 @@ TEST(ResidualCovariance, TheWidthOfAnEdgeIsNoDistance) {
         double most = 0.;
         for (int i = 0; i < 5; ++i) {
             const double z = 1.9 + 0.06 * i;
-            const Pose truth = cameraAt({-0.65 * z - 0.004 * i, 0.2, z}, kDown, kDown);
+            const Pose truth = lookFrom({-0.65 * z - 0.004 * i, 0.2, z}, kDown, kDown);
             const ImageF exact = test::photographed(floor, camera, truth).intensity;
             const ImageF image = test::noisy(exact, 0.01, random);
             Vector6 off = Vector6::Zero();
@@ -155,7 +154,7 @@ TEST(ResidualCovariance, TheWidthOfAnEdgeIsNoDistance) {
 /// The blocks of an image add up to the whole.
 TEST(ResidualCovariance, BlocksAddUp) {
     const Camera camera = makeCamera(188, 120, 1.2);
-    const Pose pose = cameraAt({1.6, 3., 1.6}, kOblique, 0.1);
+    const Pose pose = lookFrom({1.6, 3., 1.6}, kOblique, 0.1);
     const View view = test::photographed(room(), camera, pose);
     std::mt19937_64 random(3);
     const ImageF image = test::noisy(view.intensity, 0.02, random);
@@ -187,7 +186,7 @@ TEST(ResidualCovariance, BlocksAddUp) {
 /// a block without a pixel changes nothing.
 TEST(ResidualCovariance, AnUnusedHalfOfTheImageLeavesTheFieldsAsTheyAre) {
     const Camera camera = makeCamera(188, 120, 1.2);
-    const View view = test::photographed(room(), camera, cameraAt({1.6, 3., 1.6}, kOblique, 0.1));
+    const View view = test::photographed(room(), camera, lookFrom({1.6, 3., 1.6}, kOblique, 0.1));
     std::mt19937_64 random(3);
     ViewComparison compare(camera, {});
     compare(view, test::noisy(view.intensity, 0.02, random), {}, {});
@@ -204,7 +203,7 @@ TEST(ResidualCovariance, AnUnusedHalfOfTheImageLeavesTheFieldsAsTheyAre) {
 /// A poster of 20 cm on white: the residuals of its few blocks span less than six dimensions.
 TEST(ResidualCovariance, FewBlocksDoNotMakeItSingular) {
     const Camera camera = makeCamera(94, 60, 1.2);
-    const Pose truth = cameraAt({0., 0., 1.5}, kDown, 0.1);
+    const Pose truth = lookFrom({0., 0., 1.5}, kDown, 0.1);
     AlignmentOptions options = forPhotographs();
     options.trust.minOverlap = 0.;
     for (const double corner : {-0.1, 0.}) {
@@ -265,7 +264,7 @@ TEST(ResidualCovariance, TakesTheSmallerOrLargerVarianceAlongSharedAxes) {
 TEST(ResidualCovariance, ErrorsOfSurfacesAreErrorsOfThePose) {
     const MeshRenderer floor(test::floorOf(valueNoise({.seed = 4})));
     AlignmentOptions options = forPhotographs();
-    const Pose truth = cameraAt({0., 0., 2.}, kDown);
+    const Pose truth = lookFrom({0., 0., 2.}, kDown);
     const Camera camera = makeCamera(94, 60, 1.2);
     const ImageF image = test::photographed(floor, camera, truth).intensity;
     const auto height = [&] {

@@ -11,7 +11,7 @@ inline const Camera& camera() {
     return quarter;
 }
 
-inline const Pose kPose = cameraAt({1.6, 3., 1.6}, kOblique, 0.1);
+inline const Pose kPose = lookFrom({1.6, 3., 1.6}, kOblique, 0.1);
 
 inline ImageF observe(const ViewSource& model, const Pose& T_c_w, double sigma = 0.,
                       std::uint64_t seed = 1, const Camera& c = camera()) {

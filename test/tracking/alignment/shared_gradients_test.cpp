@@ -52,7 +52,7 @@ struct Compared {
     }
 };
 
-const Pose kInRoom = test::cameraAt({2., 3., 1.5}, 0.5);
+const Pose kInRoom = lookFrom({2., 3., 1.5}, 0.5);
 
 View blank() {
     View view = viewOf(test::room(), kInRoom);
@@ -110,7 +110,7 @@ TEST(SharedGradients, AreTheSlopeOfTheImage) {
 TEST(SharedGradients, NoiseBesideTextureIsNoTexture) {
     std::mt19937_64 random(1);
     View model = viewOf(MeshRenderer(test::floorOf(uniformTexture(0.5))),
-                        test::cameraAt({0., 0., 2.}, test::kDown));
+                        lookFrom({0., 0., 2.}, test::kDown));
     const unsigned half = tileCamera().width / 2;
     for (unsigned v = 0; v < tileCamera().height; ++v) {
         for (unsigned u = 0; u < half; ++u) {
@@ -142,7 +142,7 @@ class MapOfFewImages : public ::testing::TestWithParam<int> {
         const MeshRenderer world(scene);
         Result result;
         for (int i = 0; i < kMaps; ++i) {
-            const Pose near = test::cameraAt({0.2 * i, 0., 1.4}, test::kOblique, 0.5 * i);
+            const Pose near = lookFrom({0.2 * i, 0., 1.4}, test::kOblique, 0.5 * i);
             const TexturedOcTree map = mapAround(world, near);
             const VoxelRenderer views(map, UnknownPolicy::free);
             const Pose truth = expSE3(drawn(0.3)) * near;

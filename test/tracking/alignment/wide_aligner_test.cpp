@@ -12,7 +12,6 @@
 namespace photonav {
 namespace {
 
-using test::cameraAt;
 using test::kDown;
 
 class WideAlignerTest : public ::testing::Test {
@@ -46,8 +45,8 @@ TEST_F(WideAlignerTest, FindsThePlaceFromAfar) {
     const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
     WideAligner wide(floor, camera, options);
     DenseAligner dense(floor, camera, options);
-    const Pose truth = cameraAt({0.9, -0.8, 2.1}, kDown);
-    const UncertainPose belief = prior(cameraAt({0., 0., 2.}, kDown), 0.45);
+    const Pose truth = lookFrom({0.9, -0.8, 2.1}, kDown);
+    const UncertainPose belief = prior(lookFrom({0., 0., 2.}, kDown), 0.45);
     const ImageF image = seen(floor, truth);
     const auto errorOf = [&](const Alignment& a) {
         return logSE3(a.T_c_w * truth.inverse()).head<3>().norm();
@@ -62,10 +61,10 @@ TEST_F(WideAlignerTest, FindsThePlaceInAnotherExposure) {
     options.exposure = {.gainSigma = 0.15, .offsetSigma = 0.01};
     const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
     WideAligner wide(floor, camera, options);
-    const Pose truth = cameraAt({0.9, -0.8, 2.1}, kDown);
+    const Pose truth = lookFrom({0.9, -0.8, 2.1}, kDown);
     ImageF image = seen(floor, truth);
     for (unsigned i = 0; i < image.getSize(); ++i) image.bitmap[i] *= 0.65F;
-    const Alignment a = wide.align(image, prior(cameraAt({0., 0., 2.}, kDown), 0.45));
+    const Alignment a = wide.align(image, prior(lookFrom({0., 0., 2.}, kDown), 0.45));
     EXPECT_EQ(a.verdict, Verdict::converged) << describe(a);
     EXPECT_LT(logSE3(a.T_c_w * truth.inverse()).head<3>().norm(), 0.02);
     EXPECT_NEAR(a.exposure.gain, 0.65, 0.02);
@@ -83,9 +82,9 @@ TEST_F(WideAlignerTest, NothingInViewIsNoMatch) {
                    valueNoise({.size = {10., 20.}, .amplitudes = {0.03, 0.02, 0.01}, .seed = 3})));
     const MeshRenderer floor(scene);
     WideAligner wide(floor, camera, options);
-    const ImageF image = seen(floor, cameraAt({-1.2, 0., 2.}, kDown));
+    const ImageF image = seen(floor, lookFrom({-1.2, 0., 2.}, kDown));
     for (double x = -0.9; x < -0.6; x += 0.03) {
-        const UncertainPose belief = prior(cameraAt({x, 0., 2.}, kDown), 0.3);
+        const UncertainPose belief = prior(lookFrom({x, 0., 2.}, kDown), 0.3);
         const Alignment a = wide.align(image, belief);
         EXPECT_EQ(a.verdict, Verdict::degenerate);
         EXPECT_TRUE(a.covariance.isApprox(belief.covariance, 0.1)) << x;
@@ -101,7 +100,7 @@ TEST_F(WideAlignerTest, AStripOfTextureIsFoundWhereItIs) {
         test::floorOf(patchedTexture(uniformTexture(0.9F), {half}, {20., 20.})));
     camera = makeCamera(188, 120, 1.2);
     WideAligner wide(floor, camera, options);
-    UncertainPose belief = prior(cameraAt({-1.3, 0., 2.}, kDown, kDown), 0.34);  // x to the right
+    UncertainPose belief = prior(lookFrom({-1.3, 0., 2.}, kDown, kDown), 0.34);  // x to the right
     belief.covariance(2, 2) = 0.2 * 0.2;
     belief.covariance(5, 5) = 0.02 * 0.02;
     const Matrix6 root = rootOf(belief.covariance);
@@ -131,11 +130,11 @@ TEST_F(WideAlignerTest, AFaintStripIsAcceptedAtNoImageSize) {
     const Patch half{{10., 0.}, {20., 20.}, &faint};
     const MeshRenderer floor(
         test::floorOf(patchedTexture(uniformTexture(0.5F), {half}, {20., 20.})));
-    const Pose truth = cameraAt({-1.1, 0., 2.}, kDown, kDown);  // x to the right
+    const Pose truth = lookFrom({-1.1, 0., 2.}, kDown, kDown);  // x to the right
     for (const unsigned times : {1U, 2U, 3U}) {
         camera = makeCamera(94 * times, 60 * times, 1.2);
         WideAligner wide(floor, camera, options);
-        const UncertainPose belief = prior(cameraAt({-1.3, 0., 2.}, kDown, kDown), 0.3);
+        const UncertainPose belief = prior(lookFrom({-1.3, 0., 2.}, kDown, kDown), 0.3);
         const Alignment a = wide.align(seen(floor, truth), belief);
         std::cout << times << ": " << describe(a) << " " << a.residual.explained << "\n";
         EXPECT_EQ(a.verdict, Verdict::degenerate) << camera.width;
@@ -149,8 +148,8 @@ TEST_F(WideAlignerTest, PaleTextureIsFound) {
         valueNoise({.size = {20., 20.}, .amplitudes = {0.004, 0.003, 0.002}, .seed = 1})));
     camera = makeCamera(188, 120, 1.2);
     WideAligner wide(floor, camera, options);
-    const UncertainPose belief = prior(cameraAt({0., 0., 1.6}, kDown), 0.1);
-    const Pose truth = cameraAt({0.11, -0.07, 1.63}, kDown);
+    const UncertainPose belief = prior(lookFrom({0., 0., 1.6}, kDown), 0.1);
+    const Pose truth = lookFrom({0.11, -0.07, 1.63}, kDown);
     const Alignment a = wide.align(seen(floor, truth), belief);
     EXPECT_FALSE(isLost(a.verdict)) << describe(a);
     EXPECT_LT(a.covariance.trace(), 0.5 * belief.covariance.trace());
@@ -160,8 +159,8 @@ TEST_F(WideAlignerTest, PaleTextureIsFound) {
 TEST_F(WideAlignerTest, StripesAreAmbiguous) {
     const MeshRenderer floor(test::floorOf(stripes({.width = 0.2, .softEdge = 0.05})));
     WideAligner wide(floor, camera, options);
-    const UncertainPose belief = prior(cameraAt({0.05, 0., 2.}, kDown), 0.3);
-    expectUndecided(wide.align(seen(floor, cameraAt({0.15, 0., 2.}, kDown)), belief), belief);
+    const UncertainPose belief = prior(lookFrom({0.05, 0., 2.}, kDown), 0.3);
+    expectUndecided(wide.align(seen(floor, lookFrom({0.15, 0., 2.}, kDown)), belief), belief);
 }
 
 constexpr double kCell = 0.05;
@@ -180,7 +179,7 @@ class FineTexture : public WideAlignerTest {
     VoxelRenderer mapOf(const MeshRenderer& floor) const {
         TexturedOcTree map(kCell);
         for (int i = 0; i < 25; ++i) {
-            const Pose T_c_w = cameraAt({0.4 * (i % 5 - 2), 0.4 * (i / 5 - 2), 1.5}, kDown);
+            const Pose T_c_w = lookFrom({0.4 * (i % 5 - 2), 0.4 * (i / 5 - 2), 1.5}, kDown);
             View view;
             floor.render(camera, T_c_w, view);
             fuse(map, view, camera, T_c_w);
@@ -188,14 +187,14 @@ class FineTexture : public WideAlignerTest {
         return VoxelRenderer(map, UnknownPolicy::free);
     }
 
-    Pose truth = cameraAt({0.25, -0.2, 1.55}, kDown);
+    Pose truth = lookFrom({0.25, -0.2, 1.55}, kDown);
 };
 
 /// The rest of it is enough to find the place, and does not make another floor the right one.
 TEST_F(FineTexture, DoesNotContradictTheMapInASearch) {
     const MeshRenderer floor = floorOf(0.1, 0.15, 3), another = floorOf(0.1, 0.15, 4);
     const VoxelRenderer cells = mapOf(floor);
-    const UncertainPose belief = prior(cameraAt({0., 0., 1.5}, kDown), 0.2);
+    const UncertainPose belief = prior(lookFrom({0., 0., 1.5}, kDown), 0.2);
     const auto find = [&](const ViewSource& world) {
         return WideAligner(cells, camera, options).align(seen(world, truth), belief);
     };
@@ -211,7 +210,7 @@ TEST_F(FineTexture, DoesNotContradictTheMapInASearch) {
 TEST_F(FineTexture, OfCellsIsComparedWithImagesAsTheyAre) {
     const MeshRenderer floor = floorOf(0.1, 0.15, 3);
     const VoxelRenderer cells = mapOf(floor);
-    const UncertainPose belief = prior(cameraAt({0.27, -0.19, 1.54}, kDown), 0.02);
+    const UncertainPose belief = prior(lookFrom({0.27, -0.19, 1.54}, kDown), 0.02);
     const ImageF image = seen(floor, truth);
     const auto poseBy = [&](double blur) {
         options.blur = blur;
@@ -225,7 +224,7 @@ TEST_F(FineTexture, OfCellsIsComparedWithImagesAsTheyAre) {
 TEST_F(FineTexture, DoesNotContradictTheMapNearThePose) {
     const MeshRenderer floor = floorOf(0.03, 0.3, 3), another = floorOf(0.03, 0.3, 4);
     const VoxelRenderer cells = mapOf(floor);
-    const UncertainPose belief = prior(cameraAt({0.27, -0.19, 1.54}, kDown), 0.02);
+    const UncertainPose belief = prior(lookFrom({0.27, -0.19, 1.54}, kDown), 0.02);
     const auto align = [&](const ViewSource& world) {
         return DenseAligner(cells, camera, options).align(seen(world, truth), belief);
     };
@@ -241,7 +240,7 @@ TEST_F(WideAlignerTest, IsLostWhereNoPlaceExplainsTheImage) {
     const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
     const MeshRenderer another(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
     WideAligner wide(floor, camera, options);
-    const Pose here = cameraAt({0., 0., 2.}, kDown);
+    const Pose here = lookFrom({0., 0., 2.}, kDown);
     EXPECT_TRUE(isLost(wide.align(seen(another, here), prior(here, 0.3)).verdict));
 }
 
@@ -260,7 +259,7 @@ TEST_F(WideAlignerTest, LittleContrastDoesNotContradict) {
         for (const unsigned times : {1U, 2U}) {
             camera = makeCamera(94 * times, 60 * times, 1.2);
             WideAligner wide(floor, camera, options);
-            const Pose here = cameraAt({0., 0., 2.}, kDown);
+            const Pose here = lookFrom({0., 0., 2.}, kDown);
             View view;
             another.render(camera, here, view);
             const UncertainPose belief = prior(here, 0.3);

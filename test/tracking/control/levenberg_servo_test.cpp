@@ -15,7 +15,7 @@ const LevenbergServoOptions kOptions{.gain = 2., .damping = 0.1};
 struct OverFloor {
     MeshRenderer floor;
     Camera camera = makeCamera(94, 60, 1.2);
-    Pose goal = test::cameraAt({0., 0., 2.}, test::kDown);
+    Pose goal = lookFrom({0., 0., 2.}, test::kDown);
 
     explicit OverFloor(Texture texture) : floor(test::floorOf(std::move(texture))) {}
 

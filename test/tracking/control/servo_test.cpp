@@ -4,12 +4,12 @@
 #include "control/motion_limits.hpp"
 #include "control/photometric_servo.hpp"
 #include "control/waypoint_servo.hpp"
+#include "geometry/se3.hpp"
 #include "tracking/rooms.hpp"
 
 namespace photonav {
 namespace {
 
-using test::cameraAt;
 using test::kDown;
 using test::kOblique;
 
@@ -38,9 +38,7 @@ class ServoWithMount : public ::testing::TestWithParam<double> {};
 TEST_P(ServoWithMount, ReachesAPlannedViewFromAnywhere) {
     const Pose T_b_c = cameraMount(GetParam());
     WaypointServo servo(T_b_c, 1.5);
-    Pose T_w_goal = Pose::Identity();
-    T_w_goal.translation() << 1., -2., 1.5;
-    T_w_goal.linear() = Eigen::AngleAxisd(2., Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const Pose T_w_goal = levelPose({1., -2., 1.5}, 2.);
     Pose T_w_b = Pose::Identity();
     for (int i = 0; i < 200; ++i) {
         const BodyVelocity velocity =
@@ -83,7 +81,7 @@ TEST(PhotometricServo, RejectsTheImageOfAnotherPlaceAndOfAWhiteFloor) {
     T_w_goal.translation() << 0., 0., 2.;
     PhotometricServo servo(floor, camera, cameraMount(kDown), T_w_goal, {});
     View elsewhere;
-    floor.render(camera, cameraAt({3., 1., 2.}, kDown), elsewhere);
+    floor.render(camera, lookFrom({3., 1., 2.}, kDown), elsewhere);
     EXPECT_FALSE(servo.toward(elsewhere.intensity, T_w_goal).isTrusted);
     const MeshRenderer white(test::floorOf(uniformTexture(0.9F)));
     EXPECT_FALSE(PhotometricServo(white, camera, cameraMount(kDown), T_w_goal, {}).isInformative());

@@ -13,7 +13,7 @@ using namespace test;
 class DepthFilterTest : public ::testing::Test {
   protected:
     static Pose pose(int i) {
-        return cameraAt({2.2 + 0.01 * i, 2.6 - 0.03 * i, 1.4}, kOblique, 0.01 * i);
+        return lookFrom({2.2 + 0.01 * i, 2.6 - 0.03 * i, 1.4}, kOblique, 0.01 * i);
     }
 
     View seen(int i) {
@@ -81,7 +81,7 @@ TEST_F(DepthFilterTest, ImagesTooSmallGiveNoDepth) {
     DepthFilter filter(seen(0).intensity, camera, pose(0));
     for (int i = 1; i <= 12; ++i) {
         const Pose forward =
-            cameraAt(pose(0).inverse() * Eigen::Vector3d(0., 0., 0.05 * i), kOblique, 0.);
+            lookFrom(pose(0).inverse() * Eigen::Vector3d(0., 0., 0.05 * i), kOblique, 0.);
         View view;
         room().render(camera, forward, view);
         filter.observe(view.intensity, forward);
@@ -93,7 +93,7 @@ TEST_F(DepthFilterTest, ImagesOfAnotherPlaceGiveHardlyAnyDepth) {
     DepthFilter filter(seen(0).intensity, camera, pose(0));
     for (int i = 1; i <= 12; ++i) {
         View other;
-        room().render(camera, cameraAt({4.5, 4.6, 1.4}, kOblique, 2.), other);
+        room().render(camera, lookFrom({4.5, 4.6, 1.4}, kOblique, 2.), other);
         filter.observe(noisy(other.intensity, 0.01, random), pose(i));
     }
     EXPECT_LT(filter.shareConverged(), 0.05);

@@ -8,7 +8,6 @@
 namespace photonav {
 namespace {
 
-using test::cameraAt;
 using test::kOblique;
 
 const Camera& filterCamera() {
@@ -48,7 +47,7 @@ class Filter {
 /// A lost image leaves what the planner predicts.
 TEST(Filter, PropagatesAsThePlannerDoes) {
     const MeshRenderer room(test::texturedRoom());
-    const UncertainPose start{cameraAt({2., 3., 1.5}, kOblique), 1e-3 * Matrix6::Identity()};
+    const UncertainPose start{lookFrom({2., 3., 1.5}, kOblique), 1e-3 * Matrix6::Identity()};
     Filter filter(room, start, {});
     const ImageF black(filterCamera().height, filterCamera().width, 0.F);
     EXPECT_TRUE(filter.update(motion(), black).rejected);
@@ -69,7 +68,7 @@ TEST(Filter, IsConsistentAlongFlights) {
     double sum = 0., odometry = 0., final = 0.;
     const int flights = 60;
     for (int flight = 0; flight < flights; ++flight) {
-        Pose truth = cameraAt({0.1 * flight - 3., 1., 1.5}, 1.1, 0.2 * flight);
+        Pose truth = lookFrom({0.1 * flight - 3., 1., 1.5}, 1.1, 0.2 * flight);
         Filter filter(floor,
                       {expSE3(draw(rootOf(startCovariance), random)) * truth, startCovariance},
                       options);
@@ -107,7 +106,7 @@ TEST(Filter, BarsDoNotInformAlongThem) {
     const Matrix6 before = sigmas.cwiseAbs2().asDiagonal();
     sigmas << 0.002, 0.002, 0.002, 0.002, 0.002, 0.01;
     const UncertainPose hover{Pose::Identity(), sigmas.cwiseAbs2().asDiagonal()};
-    Pose truth = cameraAt({0.1, 0., 2.}, test::kDown, test::kDown);
+    Pose truth = lookFrom({0.1, 0., 2.}, test::kDown, test::kDown);
     Filter filter(bars, {expSE3(draw(rootOf(before), random)) * truth, before}, options);
     for (int image = 0; image < 40; ++image) {
         truth = expSE3(draw(rootOf(hover.covariance), random)) * truth;

@@ -18,7 +18,7 @@ class OwnMapErrors : public ::testing::Test {
         floor.render(camera, poseAt(x), view);
         return view;
     }
-    static Pose poseAt(double x) { return test::cameraAt({x, 0., 2.}, test::kDown); }
+    static Pose poseAt(double x) { return lookFrom({x, 0., 2.}, test::kDown); }
 
     void addKeyframe(double x, const Matrix6& covariance) {
         errors.addSurfaces(errors.addPose({poseAt(x), covariance}), viewAt(x).depth, camera);

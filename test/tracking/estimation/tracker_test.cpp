@@ -11,7 +11,6 @@
 namespace photonav {
 namespace {
 
-using test::cameraAt;
 using test::room;
 
 const Camera& flightCamera() {
@@ -37,7 +36,7 @@ View viewFrom(const Pose& T_c_w) {
 }
 
 /// Forward through the room with a slow turn, 4 cm and 1.4 degrees an image.
-Pose flight(int i) { return cameraAt({1. + 0.04 * i, 2.6 + 0.01 * i, 1.6}, 0.6, -0.2 + 0.025 * i); }
+Pose flight(int i) { return lookFrom({1. + 0.04 * i, 2.6 + 0.01 * i, 1.6}, 0.6, -0.2 + 0.025 * i); }
 
 constexpr double kInterval = 0.1;
 
@@ -110,7 +109,7 @@ TEST(KeyframeTracker, BlackImagesAreLostAndThenItGoesOn) {
 TEST(KeyframeTracker, ComesBackToAnOldKeyframe) {
     Tracker odometry = odometryFrom(start());
     for (int i = 0; i < 30; ++i) odometry.track(viewFrom(flight(i)), kInterval * i);
-    const View wall = viewFrom(cameraAt({3., 3., 1.5}, 0., 2.5));
+    const View wall = viewFrom(lookFrom({3., 3., 1.5}, 0., 2.5));
     EXPECT_TRUE(odometry.track(wall, 3.).rejected);
     const TrackedFrame frame = odometry.track(viewFrom(flight(12)), 3.1);
     EXPECT_FALSE(frame.rejected) << describe(frame.alignment);
@@ -145,7 +144,7 @@ TEST(KeyframeTracker, LostForLongItBeginsAnewAsUncertainAsItIs) {
     for (; i < 3; ++i) odometry.track(viewFrom(flight(i)), kInterval * i);
     for (; i < 20; ++i) EXPECT_TRUE(odometry.track(black(), kInterval * i).rejected) << i;
     const double lost = odometry.beliefAtLastImage().covariance.trace();
-    const auto elsewhere = [](int k) { return cameraAt({4., 1.5 + 0.03 * k, 1.6}, 0.5, 2.5); };
+    const auto elsewhere = [](int k) { return lookFrom({4., 1.5 + 0.03 * k, 1.6}, 0.5, 2.5); };
     TrackedFrame frame;
     for (int k = 0; k < 10; ++k, ++i) {
         frame = odometry.track(viewFrom(elsewhere(k)), kInterval * i);
@@ -234,7 +233,7 @@ TEST(MapTracker, AnotherRoomIsNotThisOne) {
 /// It agrees with the map wherever the camera is: the motion must not be carried on by it.
 TEST(MapTracker, WithoutOdometryAnImageThatDoesNotInformIsRejected) {
     const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
-    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    const Pose here = lookFrom({0., 0., 2.}, test::kDown);
     Tracker localizer = trackerIn(white, {here, 1e-4 * Matrix6::Identity()});
     View view;
     white->render(flightCamera(), here, view);

@@ -9,8 +9,6 @@
 namespace photonav {
 namespace {
 
-using test::cameraAt;
-
 const Camera& hoverCamera() {
     static const Camera small = makeCamera(160, 120, 1.1);
     return small;
@@ -59,7 +57,7 @@ UncertainPose narrow(const Pose& T_c_w) { return {T_c_w, 1e-6 * Matrix6::Identit
 
 TEST(TrackerWithOdometry, TheVerticalCorrectsRollAndPitchAlone) {
     const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
-    const Pose truth = cameraAt({0., 0., 2.}, test::kDown);
+    const Pose truth = lookFrom({0., 0., 2.}, test::kDown);
     Vector6 error;
     error << 0.01, -0.02, 0.03, 0., 0., 0.;
     const Eigen::Vector3d up_c = truth.linear().col(2);
@@ -89,7 +87,7 @@ TEST(TrackerWithOdometry, TheVerticalCorrectsRollAndPitchAlone) {
 /// A plan may lead over a surface without texture: such an image agrees with the map.
 TEST(TrackerWithOdometry, AnImageThatDoesNotInformIsNoLoss) {
     const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
-    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    const Pose here = lookFrom({0., 0., 2.}, test::kDown);
     HoverOver hover(white, narrow(here));
     for (int i = 0; i < 6; ++i) EXPECT_FALSE(hover.see(*white, here).rejected);
     EXPECT_FALSE(hover.tracker.loss().isLost());
@@ -100,7 +98,7 @@ TEST(TrackerWithOdometry, TheLastCertainViewDeterminesAllDirections) {
     const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
     const auto floor =
         std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
-    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    const Pose here = lookFrom({0., 0., 2.}, test::kDown);
     const Pose T_next_now(Eigen::Translation3d(0.1, 0., 0.));
     for (const auto& [map, isInformative] : {std::pair(white, false), std::pair(floor, true)}) {
         HoverOver hover(map, narrow(here));
@@ -115,7 +113,7 @@ TEST(TrackerWithOdometry, TheLastCertainViewDeterminesAllDirections) {
 /// Not when it was exposed: until then odometry was all there was.
 TEST(TrackerWithOdometry, ALossBeginsWhenTheImageHasArrived) {
     const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
-    HoverOver hover(white, narrow(cameraAt({0., 0., 2.}, test::kDown)));
+    HoverOver hover(white, narrow(lookFrom({0., 0., 2.}, test::kDown)));
     hover.latency = 0.1;
     const ImageF black(hoverCamera().height, hoverCamera().width, 0.F);
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(black).rejected);
@@ -131,7 +129,7 @@ TEST(TrackerWithOdometry, WhatItsOwnMapLacksIsNoLoss) {
              addTexture(elsewhere, uniformTexture(0.5F)));
     const auto map = std::make_shared<MeshRenderer>(std::move(elsewhere));
     const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
-    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    const Pose here = lookFrom({0., 0., 2.}, test::kDown);
     HoverOver own(map, narrow(here), std::make_shared<MapErrors>(0.05));
     HoverOver given(map, narrow(here));
     for (int i = 0; i < 8; ++i) {
@@ -150,7 +148,7 @@ TEST(TrackerWithOdometry, DoubtsItsOwnMapAfterALongLoss) {
     const auto map =
         std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
     const MeshRenderer floor(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 5})));
-    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    const Pose here = lookFrom({0., 0., 2.}, test::kDown);
     HoverOver own(map, narrow(here), std::make_shared<MapErrors>(0.05));
     HoverOver dark(map, narrow(here), std::make_shared<MapErrors>(0.05));
     const ImageF black(hoverCamera().height, hoverCamera().width, 0.F);
@@ -173,7 +171,7 @@ TEST(TrackerWithOdometry, DoubtsItsOwnMapAfterALongLoss) {
 TEST(TrackerWithOdometry, AnImageThatDoesNotInformEndsNoLoss) {
     const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
     const MeshRenderer another(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 4})));
-    const Pose here = cameraAt({0., 0., 2.}, test::kDown);
+    const Pose here = lookFrom({0., 0., 2.}, test::kDown);
     for (const double sigma : {1e-3, 0.8}) {
         HoverOver hover(white, {here, sigma * sigma * Matrix6::Identity()});
         for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(another, here).rejected);
@@ -188,7 +186,7 @@ TEST(TrackerWithOdometry, AnImageThatDoesNotInformEndsNoLoss) {
 TEST(TrackerWithOdometry, StripesEndNoLossAlongThem) {
     const auto bars =
         std::make_shared<MeshRenderer>(test::floorOf(stripes({.width = 2.5, .softEdge = 0.05})));
-    const Pose here = cameraAt({0.05, 0., 2.}, test::kDown);
+    const Pose here = lookFrom({0.05, 0., 2.}, test::kDown);
     const ImageF black(hoverCamera().height, hoverCamera().width, 0.F);
     HoverOver hover(bars, narrow(here));
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(hover.see(black).rejected);
@@ -208,7 +206,7 @@ TEST(TrackerWithOdometry, StripesEndNoLossAlongThem) {
         std::make_shared<MeshRenderer>(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})));
     HoverOver found(floor, narrow(here));
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(found.see(black).rejected);
-    const Pose moved = cameraAt({0.3, 0.2, 2.}, test::kDown);
+    const Pose moved = lookFrom({0.3, 0.2, 2.}, test::kDown);
     for (int i = 0; i < 3; ++i) frame = found.see(*floor, moved);
     EXPECT_FALSE(frame.rejected) << describe(frame.alignment);
     EXPECT_LT((frame.T_c_w.mean.inverse().translation() - moved.inverse().translation()).norm(),
@@ -219,7 +217,7 @@ TEST(TrackerWithOdometry, StripesEndNoLossAlongThem) {
 /// without images. Steps are forgotten neither at an image nor at the next keyframe.
 TEST(TrackerWithOdometry, OdometryAddsUpAlongWhatKeyframesDoNotShow) {
     const MeshRenderer bars(test::floorOf(stripes({.width = 2.5, .softEdge = 0.05})));
-    const Pose here = cameraAt({0.05, 0., 2.}, test::kDown);
+    const Pose here = lookFrom({0.05, 0., 2.}, test::kDown);
     const Eigen::Vector3d along_c = here.linear().col(1), across_c = here.linear().col(0);
     TrackerOptions options;
     options.keyframes.emplace();
