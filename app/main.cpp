@@ -93,6 +93,11 @@ std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
     const std::vector<std::string> unknown = app.remaining(true);
     const bool isUnknown =
         code == CLI::ExitCodes::ExtrasError || code == CLI::ExitCodes::RequiredError;
+    if (code == CLI::ExitCodes::ArgumentMismatch) {
+        const std::string what = error.what();
+        const std::size_t end = what.find(": At Most 1 required");
+        if (end != std::string::npos) return what.substr(0, end) + ": given twice";
+    }
     if (!isUnknown || unknown.empty()) return error.what();
     const std::string& word = unknown.front();
     const std::vector<CLI::App*> chosen = app.get_subcommands();

@@ -100,8 +100,7 @@ int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& inter
     const Config config = loadBenchmarkConfig(options);
     const World world(config);
     PlanningProblem(config, world).checkPlaces();
-    FolderTransaction folder =
-        beginResult(options, "benchmark", {config.sceneFile, config.mapFile});
+    FolderTransaction folder = beginResult(options, "benchmark", inputsOf(config));
 
     BenchmarkOutcome outcome;
     const std::size_t asked = config.sweep.planners.size() * config.sweep.runs;
@@ -121,6 +120,7 @@ int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& inter
             });
     }
     const bool stopped = outcome.runs.size() < asked;
+    if (stopped && keepsEarlierResult(folder, outcome.runs.empty())) return kInterrupted;
     const double seconds = watch.seconds();
     const json result = benchmarkResult(config, outcome, stopped, seconds);
     writeReport(folder.path(), options, config, world, outcome, result);

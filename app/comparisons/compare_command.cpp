@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <utility>
 
 #include "figures/top_view.hpp"
 #include "io/atomic_file.hpp"
@@ -21,7 +24,13 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-std::string nameOf(const Config& config) { return fs::path(config.file).stem().string(); }
+/// Of files of the result: without line breaks and their like.
+std::string nameOf(const Config& config) {
+    std::string name = fs::path(config.file).stem().string();
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '_');
+    return name;
+}
 
 /// Planners with the photometric model, or without views, have their own colours.
 Color colorOf(const CompareMethod& method) {
@@ -108,8 +117,9 @@ json writeScenario(const Config& config, const World& world, const std::vector<C
 
 int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupted) {
     const std::vector<Config> configs = loadConfigs(options);
-    FolderTransaction folder =
-        beginResult(options.out, {options.configs.begin(), options.configs.end()});
+    InputPaths inputs;
+    for (const Config& config : configs) inputs = inputsOf(config, std::move(inputs));
+    FolderTransaction folder = beginResult(options.out, inputs);
     json result = resultJson("compare", {{"scenarios", json::array()}});
     bool anyPath = false;
     for (const Config& given : configs) {
@@ -124,6 +134,9 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
             result["scenarios"].push_back(
                 writeScenario(config, world, runs, folder.path(), options.quiet));
         if (interrupted) break;
+    }
+    if (interrupted && keepsEarlierResult(folder, result["scenarios"].empty())) {
+        return kInterrupted;
     }
     result["interrupted"] = interrupted.load();
     commitResult(folder, result);

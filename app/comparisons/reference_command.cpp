@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
-#include "io/atomic_file.hpp"
+#include <cerrno>
+#include <cstring>
+
 #include "io/error.hpp"
 #include "shared/command_io.hpp"
 #include "sweep/reference_search.hpp"
@@ -18,9 +21,9 @@ void prepareFolder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw InputError(folder.string(), "", "cannot be made: " + error.message());
-    const fs::path probe = folder / ".probe";
-    writeFileAtomically(probe, "");
-    fs::remove(probe, error);
+    if (access(folder.c_str(), W_OK | X_OK) != 0) {
+        throw InputError(folder.string(), "", std::string("not writable: ") + std::strerror(errno));
+    }
 }
 
 /// With the effort of references, but the kappa of the sweeps that are compared with them.
@@ -60,7 +63,10 @@ int runReference(const ReferenceOptions& options, const std::atomic<bool>& inter
                                                      (source.stem().string() + ".csv")
                                                : fs::path(options.file);
     ReferenceTable table(file);
-    if (!options.fromScratch) table.read();
+    table.read();
+    if (options.fromScratch) {
+        for (const double alpha : given.sweep.alphas) table.setAside(alpha);
+    }
     prepareFolder(fs::absolute(file).parent_path());
     const Config config = withEffort(given, options, world, interrupted);
 

@@ -49,7 +49,7 @@ ReferenceCosts referenceOf(const Config& config) {
 
 FolderTransaction beginSweep(const ManyRunsOptions& options, const Config& config,
                              const fs::path& folder) {
-    return beginRuns(options, folder, {config.sceneFile, config.mapFile, config.sweep.reference});
+    return beginRuns(options, folder, inputsOf(config));
 }
 
 int sweepAll(const ManyRunsOptions& options, const std::atomic<bool>& interrupted) {

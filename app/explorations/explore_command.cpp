@@ -152,12 +152,6 @@ std::optional<ExplorationResult> flyMissing(const ExploreOptions& options,
     return cut;
 }
 
-std::vector<TrialItem> itemsOfShard(const Shard& shard, const Config& config) {
-    const std::vector<TrialItem> all = trialItems(config);
-    if (shard.index <= all.size()) return itemsOf(shard, all);
-    throw InputError("--shard", toString(shard), fmt::format("of {} flights none", all.size()));
-}
-
 /// @throws InputError where the first flight, which is to be recorded or watched, was flown before
 void checkIsOpen(const ExploreOptions& options, bool isFlown) {
     if (!isFlown) return;
@@ -185,7 +179,7 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
         options.serve.empty() ? std::optional<ServerAddress>{} : parseServerAddress(options.serve);
     const Config config = loadConfig(options.config, options.overrides);
     const Shard shard = shardOf(options);
-    const std::vector<TrialItem> items = itemsOfShard(shard, config);
+    const std::vector<TrialItem> items = itemsOf(shard, trialItems(config));
     const World world(config);
     const PlanningProblem problem(config, world);
     const ExplorationSetup setup = setUpExploration(problem);

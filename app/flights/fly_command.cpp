@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 #include "flight/flight_setup.hpp"
 #include "flights/flight_recording.hpp"
@@ -138,8 +139,22 @@ void printSummary(const std::vector<FlightSet>& sets) {
     if (!sets.empty()) printFailure(sets.front());
 }
 
-InputPaths inputsOf(const FlyOptions& options, const Config& config) {
-    return {options.config, config.fly.plan, config.sceneFile, config.mapFile, config.fly.map};
+InputPaths inputsOfFlight(const FlyOptions& options, const Config& config) {
+    return inputsOf(config, {options.config, options.calibration});
+}
+
+bool isNothingFlown(const std::vector<FlightSet>& sets) {
+    return std::all_of(sets.begin(), sets.end(),
+                       [](const FlightSet& set) { return set.flights.empty(); });
+}
+
+/// A folder has its own plan.
+void checkNamesOnePlan(const FlyOptions& options) {
+    for (const std::string& text : options.overrides) {
+        if (!text.starts_with("fly.plan=")) continue;
+        throw InputError("--set", "fly.plan",
+                         fmt::format("{} is a plan already; give its config", options.config));
+    }
 }
 
 FolderTransaction folderFor(const FlyOptions& options, const Config& config) {
@@ -149,7 +164,7 @@ FolderTransaction folderFor(const FlyOptions& options, const Config& config) {
     if (!plan.empty()) {  // named as the plan, not as "config"
         named.config = plan.parent_path().filename().string() + ".";
     }
-    return beginResult(named, "fly", inputsOf(options, config));
+    return beginResult(named, "fly", inputsOfFlight(options, config));
 }
 
 /// The config's own plan is the first one: what it is compared with is no success.
@@ -164,6 +179,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     const PlanSource source = findPlan(options.config);
     Config config = loadConfig(source.configFile, options.overrides);
     if (!source.resultFile.empty()) {
+        checkNamesOnePlan(options);
         config.fly.plan = std::filesystem::absolute(source.resultFile).lexically_normal().string();
     }
     const World world(config);
@@ -172,7 +188,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
     const FlightSetup setup = setUpFlight(problem);
     if (!options.calibration.empty()) readCalibration(options.calibration, setup.map);
     FolderTransaction folder = folderFor(options, config);
-    FlightRecording recording(options.record, folder.target(), inputsOf(options, config),
+    FlightRecording recording(options.record, folder.target(), inputsOfFlight(options, config),
                               setup.world.camera, setup.options.tracker.map);
 
     std::vector<FlightSet> sets;
@@ -183,6 +199,7 @@ int runFly(const FlyOptions& options, const std::atomic<bool>& interrupted) {
         frames = flyAll(sets, setup, options, recording, config.fly.flights, line, interrupted);
     }
     const bool stopped = interrupted;
+    if (stopped && keepsEarlierResult(folder, isNothingFlown(sets))) return kInterrupted;
     nlohmann::json result = flyResult(config, sets, setup.options, stopped);
     result["time"]["total_s"] = watch.seconds();
     writeFlyReport(folder.path(), config, world, sets, std::move(frames), options.commandLine,

@@ -48,7 +48,7 @@ int runPosters(const PostersOptions& options, const std::atomic<bool>& interrupt
     const Stopwatch watch;
     const PosterProblem problem = problemOf(options);
     FolderTransaction folder = beginResult(
-        options, "posters", {problem.config.sceneFile, options.candidates, options.trajectory});
+        options, "posters", inputsOf(problem.config, {options.candidates, options.trajectory}));
     ProgressLine line(options.quiet);
     const PosterRanking ranking =
         rankPosters(problem, interrupted, [&](std::size_t done, const PosterIndices& set) {

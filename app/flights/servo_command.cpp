@@ -48,7 +48,7 @@ int runServo(const ServoOptions& options, const std::atomic<bool>& interrupted) 
     const ServoStudyOptions study = studyOf(options, config);
     const Place place = placeOf(options.at, config.goal, config);
     const World world(config);
-    FolderTransaction folder = beginResult(options, "servo", {config.sceneFile, config.mapFile});
+    FolderTransaction folder = beginResult(options, "servo", inputsOf(config));
     // At half the size: a quarter of the work, and it converges from twice as far.
     const InterruptibleViews views(world.sharedViews(), [&] { return interrupted.load(); });
     const ServoGoal goal{views, halved(config.camera.camera()), config.camera.T_b_c(),

@@ -124,8 +124,7 @@ FolderTransaction folderFor(const CheckCommandOptions& options, const Config& co
         options.out.empty()
             ? fs::path("out") / ("check-" + fs::path(options.trajectory).stem().string())
             : options.out;
-    return beginResult(folder,
-                       {options.trajectory, options.config, config.sceneFile, config.mapFile});
+    return beginResult(folder, inputsOf(config, {options.trajectory, options.config}));
 }
 
 }  // namespace

@@ -142,7 +142,7 @@ int runInfo(const InfoOptions& options) {
     const Place place = placeOf(options.at, config.start, config);
     const World world(config);
     PlanningProblem problem(config, world);
-    FolderTransaction folder = beginResult(options, "info", {config.sceneFile, config.mapFile});
+    FolderTransaction folder = beginResult(options, "info", inputsOf(config));
 
     const Grids grids = lookAround(options, config, height, place.yaw.value_or(0.), problem);
     const Camera camera = config.camera.camera();

@@ -94,7 +94,7 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     const World world(config);
     PlanningProblem problem(config, world, alphaOf(config.planner, config.belief.alpha));
     problem.checkPlaces();
-    FolderTransaction folder = beginResult(options, "plan", {config.sceneFile, config.mapFile});
+    FolderTransaction folder = beginResult(options, "plan", inputsOf(config));
     if (!world.hasTexture()) {
         fmt::print(stderr,
                    "photonav: warning: {}: no cell of the map has a grey value; planning without "
@@ -120,6 +120,7 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     if (options.evolution)
         evolutions = growthOf({"rrt_star", config.planner}, problem, config.vertices, interrupted);
     const bool stopped = interrupted;
+    if (stopped && keepsEarlierResult(folder, !outcome.path)) return kInterrupted;
     nlohmann::json result = planResult(config, problem.kappa(), outcome, baseline, stopped);
     const auto recorded = compareWithImages(config, world, outcome);
     if (recorded) result["recorded_frames"] = toJson(*recorded);

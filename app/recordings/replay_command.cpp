@@ -70,7 +70,8 @@ ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bo
     const Stopwatch watch;
     const Replay replay(options);
     FolderTransaction folder =
-        beginResult(options.out, {options.dataset, options.cameraFile, options.mapFile});
+        beginResult(options.out, {options.dataset, options.cameraFile, options.mapFile,
+                                  options.calibration, options.config});
 
     const Sequence& sequence = replay.recording().sequence;
     const ReplayRun run = replay.run([&] { return interrupted.load(); },
@@ -78,6 +79,9 @@ ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bo
                                          if (options.progress)
                                              options.progress(done, sequence.frames.size());
                                      });
+    if (run.interrupted && keepsEarlierResult(folder, run.frames.empty())) {
+        return {.exitCode = kInterrupted};
+    }
     const ReplayErrors errors = evaluate(run);
 
     ReplayReport report;

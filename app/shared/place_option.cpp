@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shared/place_option.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "geometry/se3.hpp"
 #include "io/error.hpp"
 #include "io/number.hpp"
@@ -16,6 +20,9 @@ Place placeOf(const std::optional<std::string>& at, const Place& otherwise, cons
         }
         place = {Eigen::Vector3d(numbers->data()), std::nullopt};
         if (numbers->size() == 4) place.yaw = (*numbers)[3];
+        if (std::abs(place.yaw.value_or(0.)) > kMostTurns) {
+            throw InputError("--at", *at, fmt::format("heading beyond {} rad", kMostTurns));
+        }
     }
     if (!place.yaw) place.yaw = config.start.yaw;  // the only heading there is in space xyz
     if (at && !config.bounds.contains(place.position)) {

@@ -22,6 +22,19 @@ void checkInputsApart(const std::string& option, const fs::path& folder, const I
     }
 }
 
+InputPaths inputsOf(const Config& config, InputPaths others) {
+    const std::vector<std::string> files = inputFiles(config);
+    others.insert(others.end(), files.begin(), files.end());
+    return others;
+}
+
+bool keepsEarlierResult(const FolderTransaction& folder, bool isNothingDone) {
+    if (!isNothingDone || Manifest::read(folder.target()).empty()) return false;
+    fmt::print(stderr, "photonav: nothing was done; the earlier result in {} stays\n",
+               folder.target().string());
+    return true;
+}
+
 FolderTransaction beginResult(const fs::path& folder, const InputPaths& inputs,
                               FolderTransaction::Unfinished unfinished) {
     checkInputsApart("--out", folder, inputs);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/config.hpp"
 #include "io/folder_transaction.hpp"
 #include "report/report.hpp"
 #include "shared/command_io.hpp"
@@ -16,6 +17,9 @@ namespace photonav {
 
 /// Files and folders that a command reads; empty paths are ignored.
 using InputPaths = std::vector<std::filesystem::path>;
+
+/// inputFiles() of a config, and what else the command reads.
+InputPaths inputsOf(const Config& config, InputPaths others = {});
 
 /// @param option names the folder in the message
 /// @throws InputError if the folder is or contains an input
@@ -37,6 +41,10 @@ FolderTransaction beginResult(const CommandOptions& options, const std::string& 
 
 /// Writes result.json, the last file of a result, and commits the folder.
 void commitResult(FolderTransaction& folder, const nlohmann::json& result);
+
+/// Whether an interrupted command that has done nothing leaves an earlier result where it is; it
+/// says so, and must not commit then.
+bool keepsEarlierResult(const FolderTransaction& folder, bool isNothingDone);
 
 /// Calls commitResult(), then prints result.json (--json), or the summary and the path of the
 /// report, or nothing (--quiet).

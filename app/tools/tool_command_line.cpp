@@ -68,8 +68,17 @@ void addReportOptions(CLI::App& parser, ReportOptions& options) {
     parser.add_option("folder", options.folder, "result folder")->required();
 }
 
+/// A page that is not of this result is never replaced.
+void checkIsOwnReport(const fs::path& folder, const fs::path& file) {
+    std::error_code ignored;
+    if (!fs::exists(file, ignored) || !Manifest::read(folder).empty()) return;
+    throw InputError(file.string(), "",
+                     "is there, in a folder without a list of its files; move it away");
+}
+
 int rebuildReport(const ReportOptions& options, const std::atomic<bool>& /*interrupted*/) {
     const fs::path file = options.folder / "report.html";
+    checkIsOwnReport(options.folder, file);
     writeReport(file, readReportOf(options.folder));
     Manifest::renew(options.folder, "report.html");
     fmt::print("report: {}\n", file.string());

@@ -119,6 +119,11 @@ Config parseConfig(const std::string& text, const std::string& name,
     return reading(name, [&] { return configOf(parseYaml(text, name), name, overrides); });
 }
 
+std::vector<std::string> inputFiles(const Config& config) {
+    return {config.file,     config.sceneFile, config.mapFile,
+            config.fly.plan, config.fly.map,   config.sweep.reference};
+}
+
 std::string toYaml(const Config& config) {
     Config copy = config;
     return keysOf(copy).toYaml();

@@ -22,6 +22,9 @@ namespace photonav {
 
 /// A position and perhaps a heading of the body in the world, [x, y, z] or [x, y, z, yaw]
 /// [m, rad].
+/// Largest absolute heading of a place [rad].
+inline constexpr double kMostTurns = 1e3;
+
 struct Place {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     std::optional<double> yaw;
@@ -111,6 +114,9 @@ Config loadConfig(const std::string& file, const std::vector<std::string>& overr
 ///        are relative to its folder
 Config parseConfig(const std::string& text, const std::string& name,
                    const std::vector<std::string>& overrides = {});
+
+/// The files that a config was read from and that it names; empty for those that it does not name.
+std::vector<std::string> inputFiles(const Config& config);
 
 /// The complete config with all default values, as YAML that loadConfig() can read.
 std::string toYaml(const Config& config);

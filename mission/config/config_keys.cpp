@@ -14,9 +14,8 @@ namespace photonav {
 namespace {
 
 constexpr double kTiny = 1e-6;
-constexpr double kFarthest = 1e5;        // of lengths [m]
-constexpr double kLargestHeading = 1e3;  // [rad]: of 1e16 no digit is left within a turn
-constexpr double kLargest = 1e12;        // of weights: what is larger overflows in products
+constexpr double kFarthest = 1e5;  // of lengths [m]
+constexpr double kLargest = 1e12;  // of weights: what is larger overflows in products
 
 Place readPlace(YamlMap& root, const std::string& key, const Eigen::AlignedBox3d& bounds) {
     if (!root.has(key)) root.fail(key, "missing");
@@ -24,8 +23,8 @@ Place readPlace(YamlMap& root, const std::string& key, const Eigen::AlignedBox3d
     root.readNumbers(key, numbers, 3, 4);
     Place place{Eigen::Vector3d(numbers[0], numbers[1], numbers[2]), std::nullopt};
     if (numbers.size() == 4) {
-        if (std::abs(numbers[3]) > kLargestHeading) {
-            root.fail(key, fmt::format("heading beyond {} rad", kLargestHeading));
+        if (std::abs(numbers[3]) > kMostTurns) {
+            root.fail(key, fmt::format("heading beyond {} rad", kMostTurns));
         }
         place.yaw = numbers[3];
     }

@@ -17,7 +17,6 @@ using nlohmann::json;
 namespace {
 
 constexpr double kMostSteps = 1e5;
-constexpr double kMostTurns = 1e3;  // [rad]
 
 Place placeFrom(const json& point) {
     const auto& p = point.at("position");

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "io/atomic_file.hpp"
+#include "io/durable_file.hpp"
 #include "io/error.hpp"
 #include "io/json_nesting.hpp"
 #include "io/reading.hpp"
@@ -94,6 +95,7 @@ void JournalFile::append(const json& line) {
     stream_ << text << std::flush;
     if (stream_) {
         size_ += text.size();
+        synchronise(path_, path_);
         return;
     }
     const std::string reason = errno != 0 ? std::strerror(errno) : "input/output error";

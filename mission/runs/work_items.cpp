@@ -2,6 +2,7 @@
 #include "runs/work_items.hpp"
 
 #include <fmt/format.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
@@ -27,6 +28,10 @@ Shard parseShard(const std::string& text) {
 
 std::string toString(const Shard& shard) { return fmt::format("{}/{}", shard.index, shard.count); }
 
+void refuseEmptyShard(const Shard& shard, std::size_t items) {
+    throw InputError("--shard", toString(shard), fmt::format("of {} runs none", items));
+}
+
 void checkSeeds(const Config& config, unsigned runs) {
     constexpr std::uint64_t kLast = std::numeric_limits<std::uint32_t>::max();
     if (std::uint64_t{config.seed} + runs - 1 <= kLast) return;
@@ -43,8 +48,10 @@ void workInOrder(std::size_t count, unsigned jobs, const std::function<bool(std:
             if (i >= count || !work(i)) return;
         }
     };
-    tbb::task_arena threads(static_cast<int>(jobs));
-    threads.execute([&] { tbb::parallel_for(0U, jobs, 1U, workOn, tbb::simple_partitioner{}); });
+    const unsigned most = static_cast<unsigned>(tbb::info::default_concurrency());
+    const unsigned used = std::min(jobs, most);  // TBB warns of more
+    tbb::task_arena threads(static_cast<int>(used));
+    threads.execute([&] { tbb::parallel_for(0U, used, 1U, workOn, tbb::simple_partitioner{}); });
 }
 
 }  // namespace photonav

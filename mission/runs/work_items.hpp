@@ -23,9 +23,13 @@ Shard parseShard(const std::string& text);
 /// "k/n".
 std::string toString(const Shard& shard);
 
+[[noreturn]] void refuseEmptyShard(const Shard& shard, std::size_t items);
+
 /// The items of one shard, in their order.
+/// @throws InputError naming --shard for a shard without items
 template <typename Item>
 std::vector<Item> itemsOf(const Shard& shard, const std::vector<Item>& items) {
+    if (shard.index > items.size()) refuseEmptyShard(shard, items.size());
     std::vector<Item> chosen;
     for (std::size_t i = shard.index - 1; i < items.size(); i += shard.count) {
         chosen.push_back(items[i]);

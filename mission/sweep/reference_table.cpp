@@ -73,7 +73,10 @@ void ReferenceTable::read() {
 void ReferenceTable::readFiles() {
     rows_.clear();
     notes_.clear();
-    if (!fs::exists(file_)) return;
+    if (!fs::exists(file_)) {
+        if (fs::exists(pathsFile())) readCsv(pathsFile(), kPathColumns, 5, [](const auto&) {});
+        return;
+    }
     notes_ = readCsv(file_, kColumns, 9, [&](const std::vector<std::string>& f) {
         const double alpha = toNumber(f[0]);
         rows_[keyOf(alpha)] = {.alpha = alpha,
@@ -100,7 +103,9 @@ void ReferenceTable::write() const {
     for (const std::string& note : notes_) table += note + "\n";
     table += std::string(kColumns) + "\n";
     std::string paths = std::string(kPathColumns) + "\n";
-    for (const auto& [key, r] : rows_) {
+    std::map<long, ReferencePath> all = rows_;
+    all.insert(aside_.begin(), aside_.end());
+    for (const auto& [key, r] : all) {
         table += fmt::format("{:.6g},{:.9g},{:.6g},{:.6g},{:.6g},{},{},{},{}\n", r.alpha, r.cost,
                              r.length, r.meanTrace, r.goalTrace, r.planner, r.vertices, r.labels,
                              r.seed);
@@ -132,6 +137,11 @@ const ReferencePath* ReferenceTable::at(double alpha) const {
 }
 
 void ReferenceTable::drop(double alpha) { rows_.erase(keyOf(alpha)); }
+
+void ReferenceTable::setAside(double alpha) {
+    const auto row = rows_.extract(keyOf(alpha));
+    if (!row.empty()) aside_[row.key()] = row.mapped();
+}
 
 std::vector<double> ReferenceTable::alphas() const {
     std::vector<double> alphas;

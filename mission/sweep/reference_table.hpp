@@ -31,7 +31,7 @@ class ReferenceTable {
     explicit ReferenceTable(std::filesystem::path file);
 
     /// Reads both files; the table is empty afterwards if FILE.csv does not exist.
-    /// @throws InputError naming file and line
+    /// @throws InputError naming file and line, also for a FILE_paths.csv that is another file
     void read();
     /// Writes both files. @throws InputError if that is not possible
     void write() const;
@@ -46,6 +46,8 @@ class ReferenceTable {
     const ReferencePath* at(double alpha) const;
     /// Removes the path for an alpha, if there is one.
     void drop(double alpha);
+    /// As drop(), but write() stores it until another path is offered for this alpha.
+    void setAside(double alpha);
     std::vector<double> alphas() const;
 
   private:
@@ -54,7 +56,8 @@ class ReferenceTable {
 
     std::filesystem::path file_;
     std::vector<std::string> notes_;
-    std::map<long, ReferencePath> rows_;  // by alpha in millionths
+    std::map<long, ReferencePath> rows_;   // by alpha in millionths
+    std::map<long, ReferencePath> aside_;  // of an earlier search
 };
 
 }  // namespace photonav

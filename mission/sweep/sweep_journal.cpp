@@ -50,14 +50,16 @@ SweepRun SweepKind::load(const json& line, const std::filesystem::path& /*folder
         number("goal_trace"),
         wholeNumber<std::size_t>(line.at("vertices")),
         wholeNumber<std::size_t>(line.at("views")),
-        number("seconds"),
+        nonNegative(line, "seconds"),
         line.at("status"),
         {}};
     if (run.isSolved() != std::isfinite(run.cost)) throw std::out_of_range("cost");
     for (const json& p : line.at("path")) {
         const Eigen::Vector3d place(p.at(0), p.at(1), p.at(2));
         if (!(place.norm() <= kMostOfARun)) throw std::out_of_range("path");
-        run.path.push_back({place, p.at(3).get<double>()});
+        const double heading = p.at(3);
+        if (!(std::abs(heading) <= kMostTurns)) throw std::out_of_range("heading");
+        run.path.push_back({place, heading});
     }
     return run;
 }

@@ -160,6 +160,12 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
     endExchange();
     // The process ended after an exchange, before the earlier result was removed.
     Manifest left = Manifest::read(working_);
+    if (!left.empty()) {
+        if (const auto file = left.foreignFile(working_)) {
+            refuse(working_ / *file,
+                   "is in the way of a result that is being written; move it away");
+        }
+    }
     const bool isReplaced = !left.empty() && Manifest::read(resolved_).hasReplaced(working_);
     if (unfinished_ == Unfinished::removed) checkLeftNoWork(working_, left);
     if (isReplaced || unfinished_ == Unfinished::removed) removeLeftovers();

@@ -8,6 +8,7 @@
 
 #include "app/executable.hpp"
 #include "comparisons/compare_command.hpp"
+#include "temporary_folder.hpp"
 
 namespace photonav {
 namespace {
@@ -45,6 +46,24 @@ TEST(Compare, EveryMethodOnceJudgedByTheSameBeliefs) {
         EXPECT_NE(table.str().find("| " + method.label() + " |"), std::string::npos);
     }
     fs::remove_all(folder);
+}
+
+TEST(Compare, ItsFilesAndItsInputsStayApart) {
+    const test::TemporaryFolder folder;
+    const auto text = test::contentOf(config("two_textures"));
+    fs::create_directories(folder.path() / "scenes");
+    fs::copy(fs::path(config("two_textures")).parent_path() / "scenes" / "two_textures.yaml",
+             folder.path() / "scenes");
+    const std::string named = folder.write("line\nbreak.yaml", text);
+    const std::string command = "compare '" + named +
+                                "' --runs 1 --set planner.vertices=50 --set planner.view_pitch=1 "
+                                "--set camera.width=94 --set camera.height=60 --quiet --out ";
+    expectBadInput(photonav(command + folder.file("scenes")), "which this run reads");
+    for (int i = 0; i < 2; ++i) {  // and once more in the place of the first
+        const Execution run = photonav(command + folder.file("out"));
+        EXPECT_LE(run.exitCode, 1) << run.output;
+        EXPECT_TRUE(fs::exists(folder.path() / "out" / "line_break.md"));
+    }
 }
 
 TEST(Compare, ItsTableSaysHowManyRunsFoundAPath) {

@@ -48,5 +48,40 @@ TEST(ReferenceCommand, EveryRunHasItsOwnSeed) {
     EXPECT_EQ(costOf("--runs 2 --set seed=2"), second);
 }
 
+/// The table is replaced as it grows, and only by what was found.
+TEST(ReferenceCommand, FromScratchLosesNothing) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("table.csv");
+    const std::string mine = folder.write(".probe", "mine");
+    ReferenceTable earlier(file);
+    for (const double alpha : {0.1, 0.5}) {
+        earlier.offer({.alpha = alpha,
+                       .cost = 1e-3,
+                       .planner = "rrt_star",
+                       .waypoints = {Pose::Identity(), Pose::Identity()}});
+    }
+    earlier.write();
+    const std::string command = fmt::format(
+        "reference {} --alpha 0.5 --labels 2 --runs 1 --moves 0 --planners rrt_star --quiet "
+        "--set planner.kappa=2.5 --from-scratch --file ",
+        config("two_textures"));
+    ASSERT_EQ(photonav(command + file + " --vertices 2").exitCode, 1) << "found a path";
+    ReferenceTable table(file);
+    table.read();
+    EXPECT_EQ(table.alphas(), (std::vector<double>{0.1, 0.5}));
+    ASSERT_EQ(photonav(command + file + " --vertices 500").exitCode, 0);
+    table.read();
+    EXPECT_EQ(table.at(0.1)->cost, 1e-3);
+    EXPECT_GT(table.at(0.5)->cost, 1.);
+    EXPECT_EQ(test::contentOf(mine), "mine");
+
+    const std::string foreign = folder.write("user.csv", "x,y\n1,2\n");
+    expectBadInput(photonav(command + foreign), "user.csv: line 1: expected alpha");
+    EXPECT_EQ(test::contentOf(foreign), "x,y\n1,2\n");
+    const std::string beside = folder.write("new_paths.csv", "x,y\n1,2\n");
+    expectBadInput(photonav(command + folder.file("new.csv")), "new_paths.csv: line 1: expected");
+    EXPECT_EQ(test::contentOf(beside), "x,y\n1,2\n");
+}
+
 }  // namespace
 }  // namespace photonav

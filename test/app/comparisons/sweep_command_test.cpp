@@ -173,6 +173,7 @@ TEST_F(SweepCommand, ShardsThatDoNotMatchAreRefused) {
         return photonav(arguments.str());
     };
     expectBadInput(merge({"1of2"}), "shard 2/2: missing");
+    expectBadInput(sweep("none", "--shard 9/4000000000", quick), "--shard: 9/4000000000: of ");
     expectBadInput(merge({"1of2", "1of2"}), "is shard 1/2, as is ");
     expectBadInput(merge({"1of2", "2of3"}), "is shard 2/3");
     expectBadInput(merge({"1of2", "other"}), "planner.range: 1.5 instead of 0");

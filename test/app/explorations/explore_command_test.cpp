@@ -285,7 +285,7 @@ TEST_F(ExploreCommand, RefusesBadInputInOneLine) {
     refuses("--planners rrt_star,rrt_star", "explore.planners: rrt_star twice");
     refuses("--seed 4294967295 --trials 2", "2 runs from 4294967295 on go beyond the last seed");
     refuses("--shard 3/2", "--shard: '3/2' is not k/n");
-    refuses("--shard 3/3 --trials 2", "--shard: 3/3: of 2 flights none");
+    refuses("--shard 3/3 --trials 2", "--shard: 3/3: of 2 runs none");
     refuses("--jobs 0", "--jobs");
     expectBadInput(photonav("explore"), "give a CONFIG");
 }

@@ -9,6 +9,7 @@
 
 #include "app/command_test.hpp"
 #include "io/stopwatch.hpp"
+#include "plans/plan_command.hpp"
 #include "tum_dataset.hpp"
 
 namespace photonav {
@@ -132,6 +133,17 @@ TEST_F(PlanCommand, CtrlCKeepsTheBestPathSoFar) {
 }
 
 /// The texture of this scene takes seconds.
+TEST_F(PlanCommand, InterruptedWithoutAPathLeavesAnEarlierResult) {
+    ASSERT_EQ(plan(kQuickPlan).exitCode, 0);
+    const json before = result();
+    PlanOptions options;
+    options.config = config("two_textures");
+    options.out = folder_;
+    const std::atomic<bool> interrupted{true};
+    EXPECT_EQ(runPlan(options, interrupted), kInterrupted);
+    EXPECT_EQ(result(), before);
+}
+
 TEST_F(PlanCommand, CtrlCBeforeThereIsAResultEndsAtOnce) {
     fs::create_directories(folder_);
     const fs::path scene = folder_ / "scene.yaml";

@@ -110,8 +110,26 @@ TEST_F(ReplayCommand, CalibrationMakesCovariancesConsistent) {
     EXPECT_NEAR(read.scale, fitted["scale"].get<double>(), 0.01 * read.scale);
     EXPECT_NEAR(read.leastSigma, fitted["least_sigma"][0].get<double>(), 1e-4);
     EXPECT_NEAR(read.leastSigmaRotation, fitted["least_sigma"][1].get<double>(), 1e-4);
+    options.calibration = (options.out / "calibration.yaml").string();
+    expectInputError([&] { run(); }, {"--out", "calibration.yaml, which this run reads"});
+    EXPECT_TRUE(test::fs::exists(options.calibration));
+    options.calibration.clear();
     options.frames = ":10";
     EXPECT_TRUE(run().result["calibration"].is_null());
+}
+
+TEST_F(ReplayCommand, InterruptedAtOnceLeavesAnEarlierResult) {
+    run();
+    const std::string before = test::contentOf(options.out / "result.json");
+    running = true;
+    EXPECT_EQ(run().exitCode, kInterrupted);
+    EXPECT_EQ(test::contentOf(options.out / "result.json"), before);
+}
+
+TEST_F(ReplayCommand, WithoutAnEarlierResultAnInterruptedOneIsWritten) {
+    running = true;
+    EXPECT_EQ(run().exitCode, kInterrupted);
+    EXPECT_TRUE(test::fs::exists(options.out / "result.json"));
 }
 
 TEST_F(ReplayCommand, ItsConfigRepeatsTheRun) {

@@ -255,6 +255,16 @@ TEST_F(FolderTransactionTest, WhatWasReplacedIsNotTakenForUnfinishedWork) {
     EXPECT_EQ(entries(target_), 2U);
 }
 
+TEST_F(FolderTransactionTest, AUsersFileBesideAResultThatWasReplacedIsKept) {
+    commit(target_, "old.txt", "old");
+    const fs::path working = target_.string() + ".unfinished";
+    fs::copy(target_, working, fs::copy_options::recursive);
+    write(working / "notes.txt", "mine");
+    EXPECT_NE(complaint(target_).find("notes.txt: is in the way"), std::string::npos);
+    EXPECT_EQ(contentOf(working / "notes.txt"), "mine");
+    EXPECT_EQ(contentOf(target_ / "old.txt"), "old");
+}
+
 TEST_F(FolderTransactionTest, UnfinishedWorkIsKeptThatWasAboutToReplaceTheFolder) {
     commit(target_, "old.txt", "old");
     inKilledProcess([&] {
