@@ -69,9 +69,8 @@ KeyTable keysOf(ReplayCommandOptions& options) {
 ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
     const Replay replay(options);
-    FolderTransaction folder =
-        beginResult(options.out, {options.dataset, options.cameraFile, options.mapFile,
-                                  options.calibration, options.config});
+    FolderTransaction folder = beginResult(
+        options.out, {options.dataset, options.cameraFile, options.mapFile, options.calibration});
 
     const Sequence& sequence = replay.recording().sequence;
     const ReplayRun run = replay.run([&] { return interrupted.load(); },
