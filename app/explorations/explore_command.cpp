@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "exploration/known_map.hpp"
 #include "exploration/trial_journal.hpp"
 #include "explorations/explore_report.hpp"
 #include "explorations/flight_watch.hpp"
@@ -180,7 +181,7 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     const Config config = loadConfig(options.config, options.overrides);
     const Shard shard = shardOf(options);
     const std::vector<TrialItem> items = itemsOf(shard, trialItems(config));
-    const World world(config);
+    const World world = trueWorld(config);
     const PlanningProblem problem(config, world);
     const ExplorationSetup setup = setUpExploration(problem);
     const std::string name = fs::path(options.config).stem().string();
@@ -248,7 +249,7 @@ int mergeExplorations(const ExploreOptions& options, const std::atomic<bool>& in
         throw InputError("--merge", "shard " + toString({1, header.shard.count}),
                          "the map of its first flight is missing; finish it with --resume");
     }
-    const World world(config);
+    const World world = trueWorld(config);
     const PlanningProblem problem(config, world);
     const ExplorationSetup setup = setUpExploration(problem);
     FolderTransaction folder = beginExploration(options, config, target);

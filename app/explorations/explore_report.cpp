@@ -122,8 +122,9 @@ void writeExploreReport(const fs::path& folder, const ExplorationSetup& setup, c
     const ExplorationResult& first = flights.front();
     ReportData report = problemReport(config, world, outcome.commandLine, result);
     report.title = outcome.name + ", explored";
-    report.subtitle =
-        "A flight to the goal in a scene unknown to the robot: its own map, path and beliefs.";
+    report.subtitle = fmt::format(
+        "A flight to the goal in a scene {} to the robot: its own map, path and beliefs.",
+        setup.known ? "of which a map was known" : "unknown");
     report.mesh = {};
     report.fieldOfView = fieldOfView(setup.truth.camera);
     if (outcome.log) {

@@ -68,7 +68,7 @@ inline constexpr double kSmoothedNoiseScale = 0.08;
 struct Config {
     std::string file;  ///< the file that the config was read from
 
-    // Either sceneFile or mapFile is given.
+    // Either sceneFile or mapFile is given; for explorations also both, see knowsMap().
     std::string sceneFile;  ///< procedural scene (.yaml) or mesh; absolute path
     std::string mapFile;    ///< textured OctoMap (.ot, .bt); absolute path
     std::string mapMadeBy;  ///< command that makes the map, shown if the map file is missing

@@ -83,7 +83,9 @@ StateKind readSpace(YamlMap& root, const Config& config) {
 void addWorld(KeyTable& keys, Config& c) {
     static const std::vector<std::string> kUnknown{"free", "occupied"};
     keys.beginSection("scene");
-    keys.file({"file", "", "procedural scene (`.yaml`) or mesh; either this or `map.file`"},
+    keys.file({"file", "",
+               "procedural scene (`.yaml`) or mesh; either this or `map.file`, only "
+               "[`explore`](explore.md#a-map-that-is-known) takes both"},
               c.sceneFile);
     keys.beginSection("map");
     keys.file({"file", "", "OctoMap (`.ot`, `.bt`)"}, c.mapFile);
@@ -98,8 +100,8 @@ void addWorld(KeyTable& keys, Config& c) {
               .allowed = "`[[x, y, z], [x, y, z]]`",
               .read =
                   [&c](YamlMap& root) {
-                      if (c.sceneFile.empty() == c.mapFile.empty()) {
-                          root.fail("scene.file", "give either scene.file or map.file");
+                      if (c.sceneFile.empty() && c.mapFile.empty()) {
+                          root.fail("scene.file", "give scene.file or map.file");
                       }
                       c.bounds = readBounds(root);
                   },

@@ -18,10 +18,12 @@ struct ExplorationSetup {
     Config config;
     FlightWorld truth;  ///< the true world; FlightWorld::map is not used
     FlightOptions flight;
+    std::shared_ptr<const TexturedOcTree> known;  ///< see ExplorerOptions::known
 };
 
 /// @param problem the config's problem in the true World, which must outlive the setup
-/// @throws InputError as explorerOptions() does, and for a start in collision
+/// @throws InputError as explorerOptions() does, and for a start in collision in the world or in
+///         the known map
 ExplorationSetup setUpExploration(const PlanningProblem& problem);
 
 /// The options of the robot in a setup, without the true world.

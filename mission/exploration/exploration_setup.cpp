@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "exploration/exploration.hpp"
+#include "exploration/known_map.hpp"
 #include "exploration/online_map.hpp"
 #include "io/error.hpp"
 #include "map/textured_octree.hpp"
@@ -36,18 +37,21 @@ void checkHeadings(const Config& config) {
     }
 }
 
-ExplorerOptions explorerOf(const Config& config, const FlightOptions& flight) {
+ExplorerOptions explorerOf(const Config& config, const FlightOptions& flight,
+                           std::shared_ptr<const TexturedOcTree> known) {
     const SimulatedCameraOptions& camera = flight.robot.camera;
     return {.config = config,
             .tracker = flight.tracker,
             .pilot = flight.pilot,
             .timeStep = flight.timeStep,
             .imageAge = 2. * camera.period + camera.latency,
-            .bodyRadius = flight.bodyRadius};
+            .bodyRadius = flight.bodyRadius,
+            .known = std::move(known)};
 }
 
 /// A map of its own that the robot cannot make is refused before it takes off.
-void checkMap(const Config& config) {
+void checkMap(const ExplorationSetup& setup) {
+    const Config& config = setup.config;
     constexpr double kSeenBeyond = 20.;  // what is seen beyond the bounds [m]
     const double farthest = std::max(config.bounds.min().cwiseAbs().maxCoeff(),
                                      config.bounds.max().cwiseAbs().maxCoeff());
@@ -60,26 +64,39 @@ void checkMap(const Config& config) {
                                      resolution, reach, farthest));
     }
     try {
-        const OnlineMap map(config);
-        const World world(map.cells(), map.obstacles(), config);
+        const OnlineMap map(config, setup.known.get());
+        Config optimistic = config;
+        optimistic.unknownToPlanner = UnknownPolicy::free;
+        const World world(map.cells(), map.obstacles(), optimistic);
+        const double clearance = world.clearance(config.start.position);
+        if (setup.known && clearance < setup.flight.bodyRadius) {
+            throw InputError(config.file, "map.file",
+                             fmt::format("{}: the start is in an obstacle of this map: clearance "
+                                         "{:.3f} m, the body's radius is {} m",
+                                         config.mapFile, clearance, setup.flight.bodyRadius));
+        }
     } catch (const std::invalid_argument& error) {  // too large a grid for these bounds
         throw InputError(config.file, "explore.resolution", error.what());
     }
 }
 
-FlightOptions flightOf(const Config& config) {
-    return flightOptions(config, MapKind::surfaces, config.explore.resolution);
+/// Surfaces of a known map that lie anywhere in their cells decide how exact the map is.
+FlightOptions flightOf(const Config& config, const TexturedOcTree* known) {
+    const bool isCoarse = known != nullptr && !known->hasSurfaces();
+    return flightOptions(config, isCoarse ? MapKind::cells : MapKind::surfaces,
+                         config.explore.resolution);
 }
 
 }  // namespace
 
 ExplorerOptions explorerOptions(const Config& config) {
     checkHeadings(config);
-    return explorerOf(config, flightOf(config));
+    const auto known = loadKnownMap(config);
+    return explorerOf(config, flightOf(config, known.get()), known);
 }
 
 ExplorerOptions explorerOptions(const ExplorationSetup& setup) {
-    return explorerOf(setup.config, setup.flight);
+    return explorerOf(setup.config, setup.flight, setup.known);
 }
 
 ExplorationSetup setUpExploration(const PlanningProblem& problem) {
@@ -91,8 +108,10 @@ ExplorationSetup setUpExploration(const PlanningProblem& problem) {
             fmt::format("in collision: clearance {:.3f} m, robot.radius {} m",
                         problem.world().clearance(config.start.position), config.robotRadius));
     }
-    checkMap(config);
-    ExplorationSetup setup{config, setUpFlight(problem).world, flightOf(config)};
+    const auto known = loadKnownMap(config);
+    ExplorationSetup setup{config, setUpFlight(problem).world, flightOf(config, known.get()),
+                           known};
+    checkMap(setup);
     SimulatedCameraOptions& camera = setup.flight.robot.camera;
     camera.depth = depthSensorOf(config.explore.sensor);
     camera.depthNoise = {config.explore.depthSigma, config.explore.depthMissing};

@@ -100,7 +100,7 @@ Explorer::Explorer(const ExplorerOptions& options, const Robot& robot, const std
       T_b_c_(robot.T_b_c()),
       interrupted_(interrupted),
       on_(std::move(on)),
-      map_(config_),
+      map_(config_, options.known.get()),
       planner_(config_, map_, explorePlanner(planner), seed),
       tracker_(trackerOf(robot, views(), beliefAtTakeOff(config_), trackerFor(options, map_))),
       pilot_(pilotOf(robot, stayingAt(beliefAtTakeOff(config_), T_b_c_), views(),
@@ -178,6 +178,7 @@ void Explorer::updatePlan(MapChange& change, double fuseSeconds) {
     Stopwatch watch;
     if (!change.occupancy.empty()) blindInVain_ = 0;
     change.join(map_.addBody(bodyOf(T_c_w.mean).translation()));
+    if (record_.updates.empty()) change.join(map_.whole());  // for those who saw no earlier change
     update.fuseSeconds = fuseSeconds + watch.seconds();
     record_.keyframes = mapper_.keyframes();
     planner_.update(change, T_c_w, update, interrupted_);

@@ -30,10 +30,14 @@ struct ExplorerOptions {
     /// missing [s].
     double imageAge = 0.55;
     double bodyRadius = 0.1;  ///< radius kept free of obstacles in the last image [m]
+    /// What the robot knows of the world at take-off, with cells of explore.resolution; null:
+    /// nothing.
+    std::shared_ptr<const TexturedOcTree> known;
 };
 
 /// The options that follow from a config, as `photonav explore` uses them.
-/// @throws InputError if explore.planners asks for headings and the space is not xyz_yaw
+/// @throws InputError if explore.planners asks for headings and the space is not xyz_yaw, and as
+///         loadKnownMap() does
 ExplorerOptions explorerOptions(const Config& config);
 
 /// The belief of T_c_w at take-off: the start of a config, with the covariance explore.initial in

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "exploration/known_map.hpp"
 #include "map/brick_leaves.hpp"
 
 namespace photonav {
@@ -15,6 +16,9 @@ constexpr double kDisparity = 0.2;  // standard deviation of block matching [pix
 // Hits in a row after which a cell is occupied however long it was free, less a half for rounding.
 // A wrong hit beside a surface makes a cell occupied with the square of its probability.
 constexpr float kHitsToOccupy = 1.5F;
+// Of a known map, in the frame of the start [m^2, rad^2]: a centimetre and a milliradian. A map
+// that was made by a flight is as exact as that flight knew its poses.
+const Vector6 kKnownVariances{{1e-4, 1e-4, 1e-4, 1e-6, 1e-6, 1e-6}};
 constexpr float kForgotten = -0.01F;  // log odds: free, until a surface is seen there once
 
 /// Depths that are fused; the others are 0.
@@ -37,8 +41,9 @@ double depthSigmaAtOneMetre(const Config& config) {
     return kDisparity / (config.camera.camera().fx() * explore.baseline);
 }
 
-OnlineMap::OnlineMap(const Config& config)
-    : cells_(std::make_shared<TexturedOcTree>(config.explore.resolution)),
+OnlineMap::OnlineMap(const Config& config, const TexturedOcTree* known)
+    : cells_(known != nullptr ? std::make_shared<TexturedOcTree>(*known)
+                              : std::make_shared<TexturedOcTree>(config.explore.resolution)),
       obstacles_(config.explore.resolution, config.bounds, config.explore.unknown),
       doubted_(config.explore.resolution, config.explore.range),
       errors_(std::make_shared<MapErrors>(config.explore.resolution)),
@@ -51,6 +56,30 @@ OnlineMap::OnlineMap(const Config& config)
     if (config.explore.unknownInformation == UnknownInformation::predicted) unseen_.emplace();
     fusion_.maxRange = config.explore.range;
     cells_->setClampingThresMin(octomap::probability(-kHitsToOccupy * cells_->getProbHitLog()));
+    if (known != nullptr) addKnown(config);
+}
+
+/// What was known long ago may have changed since: a free cell is as soon occupied as one that was
+/// seen in this flight.
+void OnlineMap::addKnown(const Config& config) {
+    const float least = cells_->getClampingThresMinLog();
+    for (auto leaf = cells_->begin_leafs(); leaf != cells_->end_leafs(); ++leaf) {
+        if (leaf->getLogOdds() < least) leaf->setLogOdds(least);
+    }
+    cells_->updateInnerOccupancy();
+    const auto hasTexture = [&](const TexturedOcTreeNode& leaf) {
+        return cells_->isNodeOccupied(leaf) && leaf.meanGrey().has_value();
+    };
+    Pose T_b_w = Pose::Identity();
+    T_b_w.translation() = -config.start.position;
+    T_b_w.prerotate(Eigen::AngleAxisd(-config.start.yaw.value_or(0.), Eigen::Vector3d::UnitZ()));
+    errors_->addMap(T_b_w, kKnownVariances.asDiagonal(), bricksWith(*cells_, hasTexture));
+    obstacles_.update(*cells_, whole());
+}
+
+MapChange OnlineMap::whole() const {
+    return {.resolution = cells_->getResolution(),
+            .occupancy = bricksWith(*cells_, [](const TexturedOcTreeNode&) { return true; })};
 }
 
 void OnlineMap::compare(const View& shown, const ImageF& image, const Camera& camera) {

@@ -26,8 +26,13 @@ double depthSigmaAtOneMetre(const Config& config);
 /// The map with its obstacles and a model of its errors, all made from the fused images.
 class OnlineMap {
   public:
-    /// @param config uses camera, section `explore`, bounds and robot.radius
-    explicit OnlineMap(const Config& config);
+    /// @param config uses camera, section `explore`, bounds, robot.radius and start
+    /// @param known what the robot knows at take-off, with cells of explore.resolution; null:
+    ///        nothing. It may be displaced by a centimetre, and is corrected by what is fused.
+    explicit OnlineMap(const Config& config, const TexturedOcTree* known = nullptr);
+
+    /// All that is in the map, as a change from an empty one.
+    MapChange whole() const;
 
     /// Updates the estimate of the map's noise (MapNoise), and of the information expected of
     /// unknown space (UnseenInformation) if the config asks for it.
@@ -70,6 +75,8 @@ class OnlineMap {
     InformationModel information(const Camera& camera, const PhotometricOptions& options) const;
 
   private:
+    void addKnown(const Config& config);
+
     std::shared_ptr<TexturedOcTree> cells_;
     ObstacleMap obstacles_;
     DoubtedColumns doubted_;

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
 
 #include "io/error.hpp"
-#include "map/octree_file.hpp"
+#include "problem/map_of_config.hpp"
 #include "render/mesh_renderer.hpp"
 #include "render/voxel_renderer.hpp"
 #include "scene/scene.hpp"
@@ -58,23 +57,23 @@ struct World::Collectors {
 };
 
 World::World(const Config& config) {
-    if (!config.mapMadeBy.empty() && !std::filesystem::exists(config.mapFile)) {
-        throw InputError(
-            config.file, "map.file",
-            config.mapFile + ": not there; this config's map is made by " + config.mapMadeBy);
+    if (!config.sceneFile.empty() && !config.mapFile.empty()) {
+        throw InputError(config.file, "map.file",
+                         "not together with scene.file: only `photonav explore` takes both, the "
+                         "scene as the world and the map as what the robot knows of it");
     }
+    const std::shared_ptr<TexturedOcTree> map =
+        config.mapFile.empty() ? nullptr : loadMapOf(config);
     try {
-        if (config.mapFile.empty()) {
+        if (map == nullptr) {
             useScene(loadScene(config.sceneFile), config);
         } else {
-            const std::shared_ptr<TexturedOcTree> map = loadTexturedOcTree(config.mapFile);
             hasTexture_ = isTextured(*map);
             views_ = std::make_shared<VoxelRenderer>(*map, config.unknownToCamera);
             useMap(map, map, config);
         }
     } catch (const InputError& error) {
-        throw InputError(config.file, config.mapFile.empty() ? "scene.file" : "map.file",
-                         error.what());
+        throw InputError(config.file, "scene.file", error.what());
     } catch (const std::invalid_argument& error) {  // too large a grid for these bounds
         throw InputError(config.file, "bounds", error.what());
     } catch (const std::bad_alloc&) {

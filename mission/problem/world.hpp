@@ -16,7 +16,8 @@ namespace photonav {
 class World {
   public:
     /// Loads the scene or map of the config.
-    /// @throws InputError if it cannot be read, or if the bounds are too large for the resolution
+    /// @throws InputError if it cannot be read, if the bounds are too large for the resolution, and
+    ///         for a config with both
     explicit World(const Config& config);
     /// A world made from a given scene; clearance is measured within the bounds of the config.
     World(Scene scene, const Config& config);

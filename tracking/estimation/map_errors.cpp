@@ -24,6 +24,15 @@ constexpr double kOpenVariance = 1e3;    // of directions that an image leaves o
 /// Unlike an alignment, a map is displaced at its edges and where it is saturated as well.
 constexpr PhotometricOptions kEveryPixel{.depthJump = kInfinity, .saturation = -1.};
 
+/// A brick, by its index along each axis.
+std::uint64_t keyOf(const Eigen::Array3i& brick) {
+    std::uint64_t key = 0;
+    for (const int index : brick) {
+        key = key << 21U | (static_cast<std::uint64_t>(index + (1 << 20)) & 0x1fffffU);
+    }
+    return key;
+}
+
 Matrix6 symmetric(const Matrix6& A) { return 0.5 * (A + A.transpose()); }
 
 /// Differences of covariances may lose definiteness by rounding.
@@ -49,12 +58,7 @@ struct MapErrors::Shares {
 MapErrors::MapErrors(double resolution) : brick_(MapChange::kBrickEdge * resolution) {}
 
 std::uint64_t MapErrors::brickOf(const Eigen::Vector3d& p_w) const {
-    std::uint64_t key = 0;
-    for (const double x : p_w) {
-        const auto index = static_cast<std::int64_t>(std::floor(x / brick_)) + (1 << 20);
-        key = key << 21U | (static_cast<std::uint64_t>(index) & 0x1fffffU);
-    }
-    return key;
+    return keyOf((p_w / brick_).array().floor().cast<int>());
 }
 
 void MapErrors::propagate(const Pose& T_next_now) {
@@ -183,14 +187,27 @@ Matrix6 MapErrors::relocalize(const Relation& relation, const Alignment& alignme
 }
 
 int MapErrors::addPose(const UncertainPose& T_c_w) {
+    return add(T_c_w.mean, T_c_w.covariance, cross_, T_c_w.covariance);
+}
+
+void MapErrors::addMap(const Pose& T_k_w, const Matrix6& covariance,
+                       const std::vector<Eigen::Array3i>& bricks) {
+    const int k = add(T_k_w, covariance, Wide::Zero(6, cross_.cols()), Matrix6::Zero());
+    for (const Eigen::Array3i& brick : bricks) makers_[keyOf(brick)].push_back(k);
+}
+
+/// @param withOthers cross-covariance with the errors of the keyframes so far
+/// @param withCamera cross-covariance with the error of the camera
+int MapErrors::add(const Pose& T_k_w, const Matrix6& covariance, const Wide& withOthers,
+                   const Matrix6& withCamera) {
     const int k = static_cast<int>(poses_.size());
-    poses_.push_back(T_c_w.mean);
+    poses_.push_back(T_k_w);
     covariance_.conservativeResize(6 * k + 6, 6 * k + 6);
-    covariance_.bottomLeftCorner(6, 6 * k) = cross_;
-    covariance_.topRightCorner(6 * k, 6) = cross_.transpose();
-    covariance_.bottomRightCorner<6, 6>() = T_c_w.covariance;
+    covariance_.bottomLeftCorner(6, 6 * k) = withOthers;
+    covariance_.topRightCorner(6 * k, 6) = withOthers.transpose();
+    covariance_.bottomRightCorner<6, 6>() = covariance;
     cross_.conservativeResize(6, 6 * k + 6);
-    cross_.rightCols<6>() = T_c_w.covariance;
+    cross_.rightCols<6>() = withCamera;
     return k;
 }
 

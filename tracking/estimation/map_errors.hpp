@@ -76,6 +76,14 @@ class MapErrors {
     /// @param depth depth of the fused surfaces [m]; 0: none
     void addSurfaces(int keyframe, const ImageF& depth, const Camera& camera);
 
+    /// Adds a map that was known before the flight, as one keyframe: it may be displaced as a
+    /// whole, by a motion that has nothing to do with the error of the camera's pose.
+    /// @param T_k_w a frame, in which the motion is small
+    /// @param covariance of the motion, left perturbation of T_k_w
+    /// @param bricks with surfaces, see MapChange
+    void addMap(const Pose& T_k_w, const Matrix6& covariance,
+                const std::vector<Eigen::Array3i>& bricks);
+
     std::size_t keyframes() const { return poses_.size(); }
 
   private:
@@ -84,6 +92,8 @@ class MapErrors {
     Shares sharesOf(const View& map, const Camera& camera, const Pose& T_c_w) const;
     Matrix6 joined(const Relation& relation, const Matrix6& relative, const Matrix6& withMap) const;
 
+    int add(const Pose& T_k_w, const Matrix6& covariance, const Wide& withOthers,
+            const Matrix6& withCamera);
     std::uint64_t brickOf(const Eigen::Vector3d& p_w) const;
 
     double brick_;                // edge of a brick of cells, whose keyframes are kept [m]

@@ -268,6 +268,29 @@ TEST_F(ExploreCommand, AFirstFlightThatIsInterruptedIsReportedNotKept) {
     EXPECT_EQ(std::count(kept.begin(), kept.end(), '\n'), 1);
 }
 
+TEST_F(ExploreCommand, KnowsTheMapOfAnEarlierFlight) {
+    ASSERT_EQ(explore("first", "").exitCode, 0);
+    const std::string known = "--set map.file=" + at("first/map.ot");
+    const Execution run = explore("second", known);
+    ASSERT_EQ(run.exitCode, 0) << run.output;
+    EXPECT_LT(result("second")["updates"].size(), result("first")["updates"].size());
+    EXPECT_EQ(result("second")["known_map"], at("first/map.ot"));
+    EXPECT_TRUE(result("first")["known_map"].is_null());
+    const Execution again =
+        photonav(fmt::format("explore {} --out {}", at("second/config.yaml"), at("third")));
+    ASSERT_EQ(again.exitCode, 0) << again.output;
+    EXPECT_EQ(flown("third"), flown("second"));
+    expectBadInput(explore("second", "--resume"), "map.file: nothing instead of map.ot");
+    expectBadInput(explore("first", known), "which this run reads; give another folder");
+    for (const char* command : {"plan", "fly", "sweep", "info"}) {
+        expectBadInput(
+            photonav(fmt::format("{} {} {} --out {}", command, config("two_textures"), known,
+                                 at("new"))),
+            "map.file: not together with scene.file: only `photonav explore` takes both");
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "new"));
+}
+
 TEST_F(ExploreCommand, RefusesBadInputInOneLine) {
     const auto refuses = [&](const std::string& arguments, const std::string& reason) {
         const Execution run = explore("bad", arguments);

@@ -126,5 +126,23 @@ TEST_F(OwnMapErrors, ALossIsResolvedToTheErrorsOfTheMapInView) {
     EXPECT_NEAR(found.trace(), start.trace(), 0.2 * start.trace());
 }
 
+/// The error of a map that was known before has nothing to do with that of the start.
+TEST_F(OwnMapErrors, AKnownMapNarrowsAPoseToItsOwnError) {
+    std::vector<Eigen::Array3i> bricks;
+    for (int x = -40; x < 40; ++x) {
+        for (int y = -40; y < 40; ++y) {
+            for (int z = -1; z <= 0; ++z) bricks.emplace_back(x, y, z);
+        }
+    }
+    errors.addMap(poseAt(0.), kFirst * Matrix6::Identity(), bricks);
+    const Matrix6 start = 1e-2 * Matrix6::Identity();
+    const Matrix6 there = aligned(0., start);
+    EXPECT_LT(there.trace(), 1.2 * 6. * kFirst);
+    EXPECT_GT(there.trace(), 0.99 * 6. * kFirst);
+    addKeyframe(0., there);  // whose error is that of the map
+    EXPECT_GT(aligned(0., there).trace(), 0.99 * 6. * kFirst);
+    EXPECT_EQ(errors.keyframes(), 2U);
+}
+
 }  // namespace
 }  // namespace photonav
