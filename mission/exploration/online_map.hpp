@@ -28,7 +28,8 @@ class OnlineMap {
   public:
     /// @param config uses camera, section `explore`, bounds, robot.radius and start
     /// @param known what the robot knows at take-off, with cells of explore.resolution; null:
-    ///        nothing. It may be displaced by a centimetre, and is corrected by what is fused.
+    ///        nothing. It is as exact as a map of an exploration, and is corrected by what is
+    ///        fused.
     explicit OnlineMap(const Config& config, const TexturedOcTree* known = nullptr);
 
     /// All that is in the map, as a change from an empty one.
