@@ -174,6 +174,32 @@ std::optional<FlightLog> earlierLog(const FolderTransaction& folder, const Trial
     return log ? log : readFlightLog(folder.target(), first);
 }
 
+/// @throws InputError where a killed program has left a flight, and --resume is not given
+void checkNoFlightIsLost(const ExploreOptions& options, const FolderTransaction& folder) {
+    if (options.resume) return;
+    const std::size_t keyframes = storedKeyframes(folder.path());
+    if (keyframes == 0) return;
+    throw InputError(folder.path().string(), "",
+                     fmt::format("holds {} keyframes of a flight that was killed: go on with "
+                                 "--resume, or remove that folder",
+                                 keyframes));
+}
+
+/// Stores the first flight while it is flown.
+void store(const ExploreOptions& options, const ExplorationSetup& setup, const World& world,
+           const JournalHeader& header, const TrialItem& first, const fs::path& folder,
+           FlightWatch& watch) {
+    JournalHeader ofFlight = header;
+    ofFlight.name = nameOf(first);
+    const std::size_t earlier = watch.storeIn(std::make_unique<FlightStore>(
+        folder, ofFlight, pageSoFar(setup, world, header.name, options.commandLine)));
+    if (earlier == 0 || options.quiet) return;
+    fmt::print(stderr,
+               "photonav: {}: killed after {} keyframes; it is flown again from its start, as its "
+               "seed says\n",
+               ofFlight.name, earlier);
+}
+
 int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch stopwatch;
     const auto address =
@@ -196,6 +222,7 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
                               setup.truth.camera, setup.flight.tracker.map);
     const JournalHeader header{name, toYaml(config), TrialKind::identity(config), shard};
     std::vector<ExplorationResult> earlier = runsSoFar<TrialKind>(options, folder, header);
+    checkNoFlightIsLost(options, folder);
     keepMapOf(items.front(), earlier);
     const bool isFlown = std::any_of(
         earlier.begin(), earlier.end(),
@@ -205,6 +232,11 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     if (isFlown) log = earlierLog(folder, items.front());
     TrialJournal journal = TrialJournal::create(folder.path(), header, std::move(earlier));
     if (log) writeFlightLog(folder.path(), *log);
+    if (isFlown) {
+        fs::remove(folder.path() / FlightStore::kWords.file);  // of a flight not asked for any more
+    } else {
+        store(options, setup, world, header, items.front(), folder.path(), watch);
+    }
 
     const auto cut =
         flyMissing(options, setup, items, journal, recording, watch, folder.path(), interrupted);

@@ -101,18 +101,38 @@ std::vector<NamedFigure> figuresOf(const ExplorationSetup& setup, const World& w
     return figures;
 }
 
+/// The page of a flight that is being flown, without the flight.
+ReportData reportOfFlight(const ExplorationSetup& setup, const World& world,
+                          const std::string& name, const std::string& commandLine) {
+    ReportData report = problemReport(setup.config, world, commandLine, {{"command", "explore"}});
+    report.title = name + ", being explored";
+    report.mesh = {};
+    report.voxels = {};
+    report.fieldOfView = fieldOfView(setup.truth.camera);
+    return report;
+}
+
 }  // namespace
 
 std::string livePage(const ExplorationSetup& setup, const World& world, const std::string& name,
                      const std::string& commandLine, const FlightLog& log) {
-    ReportData report = problemReport(setup.config, world, commandLine, {{"command", "explore"}});
-    report.title = name + ", being explored";
+    ReportData report = reportOfFlight(setup, world, name, commandLine);
     report.subtitle = "The first flight, while it is flown.";
-    report.mesh = {};
-    report.voxels = {};
-    report.fieldOfView = fieldOfView(setup.truth.camera);
     report.flight = {{"header", headerJson(log)}, {"live", true}};
     return reportPage(reportJson(report));
+}
+
+std::function<std::string(const FlightLog& soFar)> pageSoFar(const ExplorationSetup& setup,
+                                                             const World& world,
+                                                             const std::string& name,
+                                                             const std::string& commandLine) {
+    ReportData report = reportOfFlight(setup, world, name, commandLine);
+    report.subtitle = "The first flight, as far as it was flown when this page was written.";
+    return [report = std::move(report)](const FlightLog& soFar) mutable {
+        report.flight = flightLogJson(soFar);
+        report.flight["end"]["end"] = "not ended";
+        return reportPage(reportJson(report));
+    };
 }
 
 void writeExploreReport(const fs::path& folder, const ExplorationSetup& setup, const World& world,

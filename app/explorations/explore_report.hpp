@@ -2,6 +2,8 @@
 // Report of `photonav explore`.
 #pragma once
 
+#include <functional>
+
 #include "exploration/explore_result.hpp"
 #include "flightlog/flight_log.hpp"
 #include "report/report.hpp"
@@ -29,5 +31,13 @@ void writeExploreReport(const std::filesystem::path& folder, const ExplorationSe
 /// @param log log of the flight before its first moment
 std::string livePage(const ExplorationSetup& setup, const World& world, const std::string& name,
                      const std::string& commandLine, const FlightLog& log);
+
+/// Makes the HTML page of a flight that has not ended, with its log so far.
+/// @param world the true world
+/// @param name name of the config
+std::function<std::string(const FlightLog& soFar)> pageSoFar(const ExplorationSetup& setup,
+                                                             const World& world,
+                                                             const std::string& name,
+                                                             const std::string& commandLine);
 
 }  // namespace photonav

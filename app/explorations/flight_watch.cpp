@@ -14,9 +14,15 @@ void FlightWatch::serve(const ServerAddress& address, std::string page) {
     fmt::print(stderr, "photonav: watch the flight at {}\n", server_->url());
 }
 
+std::size_t FlightWatch::storeIn(std::unique_ptr<FlightStore> store) {
+    store_ = std::move(store);
+    return store_->earlier();
+}
+
 OnExplorationMoment FlightWatch::onMoment() {
     return [this](const ExplorationMoment& moment) {
         logger_.add(moment);
+        if (store_) store_->add(moment, log());
         if (server_) server_->publish("moment", momentJson(log(), log().moments.back()).dump());
     };
 }
@@ -24,6 +30,7 @@ OnExplorationMoment FlightWatch::onMoment() {
 void FlightWatch::finish(const ExplorationResult& flight, const fs::path& folder) {
     logger_.finish(flight);
     writeFlightLog(folder, log());
+    if (store_) store_->remove();
     if (server_) server_->publish("end", endJson(log()).dump());
 }
 

@@ -7,12 +7,13 @@
 #include <optional>
 
 #include "exploration/explorations.hpp"
+#include "explorations/flight_store.hpp"
 #include "flightlog/flight_logger.hpp"
 #include "live/live_server.hpp"
 
 namespace photonav {
 
-/// The log of a flight and, on request, a server for browsers.
+/// The log of a flight and, on request, a store and a server for browsers.
 class FlightWatch {
   public:
     /// @param config config of the flight
@@ -26,11 +27,16 @@ class FlightWatch {
     /// @throws InputError as the constructor of LiveServer does
     void serve(const ServerAddress& address, std::string page);
 
-    /// A callback that adds a moment to the log and sends it to the browsers. It must not outlive
-    /// the watch.
+    /// Also stores the flight while it is flown.
+    /// @return number of updates of a killed flight that the store holds
+    std::size_t storeIn(std::unique_ptr<FlightStore> store);
+
+    /// A callback that adds a moment to the log, stores it and sends it to the browsers. It must
+    /// not outlive the watch.
     OnExplorationMoment onMoment();
 
-    /// Adds the end of the flight, writes the log into a folder and informs the browsers.
+    /// Adds the end of the flight, writes the log into a folder in place of what was stored so far,
+    /// and informs the browsers.
     void finish(const ExplorationResult& flight, const std::filesystem::path& folder);
 
     const FlightLog& log() const { return logger_.log(); }
@@ -38,6 +44,7 @@ class FlightWatch {
   private:
     FlightLogger logger_;
     std::unique_ptr<LiveServer> server_;
+    std::unique_ptr<FlightStore> store_;
 };
 
 /// Reads the log of a flight from a folder; nothing if the folder has no log, or the log of another

@@ -20,12 +20,14 @@ namespace photonav {
 
 namespace {
 
+constexpr const char* kTemporary = ".tmp";
+
 /// A name beside the file that no other writer has, be it in this process, in another, or on
 /// another machine that shares the folder.
 std::filesystem::path temporaryFor(const std::filesystem::path& file) {
     static const unsigned random = std::random_device{}();
     static std::atomic<unsigned> count{0};
-    std::string name = file.string() + ".tmp";
+    std::string name = file.string() + kTemporary;
     for (const auto part : {static_cast<unsigned>(getpid()), random, count++}) {
         name.append("-").append(std::to_string(part));
     }
@@ -95,6 +97,13 @@ void writeFileAtomically(const std::filesystem::path& file, const Write& write) 
 
 void writeFileAtomically(const std::filesystem::path& file, std::string_view content) {
     writeFileAtomically(file, writing(content));
+}
+
+bool isTemporaryFile(const std::filesystem::path& file) {
+    const std::string extension = file.extension().string();
+    return extension.starts_with(std::string(kTemporary) + "-") &&
+           extension.find_first_not_of("-0123456789", std::string(kTemporary).size()) ==
+               std::string::npos;
 }
 
 void replaceFile(const std::filesystem::path& file, std::string_view content) {

@@ -21,4 +21,8 @@ void writeFileAtomically(const std::filesystem::path& file, std::string_view con
 void writeFileAtomically(const std::filesystem::path& file,
                          const std::function<void(std::ostream&)>& write);
 
+/// Whether a file is a temporary one of writeFileAtomically(), which stays where the program is
+/// killed while it writes.
+bool isTemporaryFile(const std::filesystem::path& file);
+
 }  // namespace photonav

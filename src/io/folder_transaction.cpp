@@ -12,7 +12,9 @@
 #include <cstdio>
 #include <cstring>
 #include <utility>
+#include <vector>
 
+#include "io/atomic_file.hpp"
 #include "io/durable_file.hpp"
 #include "io/error.hpp"
 
@@ -46,6 +48,15 @@ void synchroniseAll(const fs::path& folder) {
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& reason) {
     throw InputError(folder.string(), "", reason);
+}
+
+/// What a killed process was writing.
+void removeTemporaryFiles(const fs::path& folder) {
+    std::vector<fs::path> found;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        if (isTemporaryFile(entry.path())) found.push_back(entry.path());
+    }
+    for (const fs::path& file : found) fs::remove(file);
 }
 
 /// What stands in the way of replacing a folder.
@@ -170,6 +181,7 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
     if (unfinished_ == Unfinished::removed) checkLeftNoWork(working_, left);
     if (isReplaced || unfinished_ == Unfinished::removed) removeLeftovers();
     if (isReplaced) left = {};
+    removeTemporaryFiles(working_);
     const bool isNewWork = unfinished_ == Unfinished::kept && left.empty();
     if (isNewWork && !writeInto(lock_.get(), left)) {  // on a full disk: what comes next says so
         static_cast<void>(!ftruncate(lock_.get(), 0));

@@ -102,6 +102,16 @@ TEST_F(AtomicFile, FilesThatThreadsWriteAtTheSameTimeAreWhole) {
     EXPECT_EQ(names(), std::vector<std::string>{"a"});
 }
 
+TEST_F(AtomicFile, KnowsWhatAKilledWriterLeaves) {
+    writeFileAtomically(folder_ / "a", [&](std::ostream&) {
+        ASSERT_EQ(names().size(), 1U);
+        EXPECT_TRUE(isTemporaryFile(names().front()));
+    });
+    for (const char* name : {"a", "a.tmp", "a.tmp-b", "tmp-1-2-3"}) {
+        EXPECT_FALSE(isTemporaryFile(name)) << name;
+    }
+}
+
 TEST_F(AtomicFile, AFolderThatDoesNotExistIsNamed) {
     EXPECT_THROW(writeFileAtomically(folder_ / "none" / "a", "x"), InputError);
 }
