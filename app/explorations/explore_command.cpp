@@ -52,7 +52,7 @@ bool hasArrived(const std::vector<ExplorationResult>& flights) {
 
 FolderTransaction beginExploration(const ExploreOptions& options, const Config& config,
                                    const fs::path& folder) {
-    return beginRuns(options, folder, {config.sceneFile, config.mapFile});
+    return beginRuns(options, folder, inputsOf(config));
 }
 
 void print(const ExploreOutcome& outcome) {

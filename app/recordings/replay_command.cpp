@@ -79,7 +79,9 @@ ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bo
                                              options.progress(done, sequence.frames.size());
                                      });
     if (run.interrupted && keepsEarlierResult(folder, run.frames.empty())) {
-        return {.exitCode = kInterrupted};
+        ReplayReport nothing;
+        nothing.exitCode = kInterrupted;
+        return nothing;
     }
     const ReplayErrors errors = evaluate(run);
 

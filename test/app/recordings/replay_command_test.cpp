@@ -7,6 +7,7 @@
 #include "flight_dataset.hpp"
 #include "recordings/replay_report.hpp"
 #include "replay/calibration_file.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 namespace {
