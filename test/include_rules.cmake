@@ -40,7 +40,7 @@ set(folders_mission_check io geometry photometry render dataset alignment estima
 set(folders_mission_posters io geometry scene render planners alignment result problem runs check
     servo)
 set(folders_mission_exploration io geometry photometry map render evaluation belief planners alignment depth
-    estimation control result config problem runs flight)
+    estimation control result config problem runs robot flight)
 set(folders_drawing_plot io planners)
 set(folders_drawing_shapes geometry scene map dataset plot)
 set(folders_drawing_flightlog io geometry map result problem recording simulation exploration shapes)

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "exploration/known_map.hpp"
+#include "exploration/real_time_json.hpp"
 #include "exploration/trial_journal.hpp"
 #include "explorations/explore_report.hpp"
 #include "explorations/flight_watch.hpp"
@@ -29,6 +30,10 @@ void printFlight(const ExplorationResult& flight, const ExplorationSummary& s) {
         "update {:.0f} ms (95 %: {:.0f} ms)\n",
         lengthText(s.positionRmse), s.nees, lengthText(flight.goalError), flight.keyframes,
         1e3 * s.updateMedian, 1e3 * s.update95);
+    if (!flight.realTime) return;
+    for (const auto& [what, value] : realTimeRows(*flight.realTime)) {
+        fmt::print("{}: {}\n", what, value);
+    }
 }
 
 void printSummary(const std::vector<ExplorationSummary>& summaries) {
@@ -205,6 +210,10 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     const auto address =
         options.serve.empty() ? std::optional<ServerAddress>{} : parseServerAddress(options.serve);
     const Config config = loadConfig(options.config, options.overrides);
+    if (config.explore.realtime && options.jobs > 1) {
+        throw InputError("--jobs", fmt::format("{}", options.jobs),
+                         "flights in real time (explore.realtime) are flown one after the other");
+    }
     const Shard shard = shardOf(options);
     const std::vector<TrialItem> items = itemsOf(shard, trialItems(config));
     const World world = trueWorld(config);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "dataset/belief_trajectory.hpp"
-#include "exploration/plan_update_json.hpp"
+#include "exploration/real_time_json.hpp"
 #include "figures/explore_figures.hpp"
 #include "figures/flight_log_figures.hpp"
 #include "flight/flight_statistics.hpp"
@@ -155,6 +155,10 @@ void writeExploreReport(const fs::path& folder, const ExplorationSetup& setup, c
         report.trees.push_back(drawnWay(first));
     }
     for (const ExplorationSummary& s : outcome.summaries) report.tables.push_back(tableOf(s));
+    if (first.realTime) {
+        report.tables.push_back(
+            {"Real time: what the first flight missed", realTimeRows(*first.realTime)});
+    }
     report.tables.push_back(tableOfUpdates(first));
     writeFlownTrajectory(folder, first);
     saveTexturedOcTree(*first.map, (folder / "map.ot").string());

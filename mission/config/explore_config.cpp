@@ -94,6 +94,10 @@ void addFlightKeys(KeyTable& keys, ExploreConfig& c) {
          "goal with at least this probability"},
         c.goalConfidence, {0., 0.9999});
     keys.number({"time_limit", "s", "longest duration of a flight"}, c.timeLimit, {1., 1e5});
+    keys.flag({"realtime", "",
+               "the robot flies by the clock while a second thread plans; such flights are not "
+               "reproducible"},
+              c.realtime);
     keys.count({"trials", "", "flights per planner"}, c.trials, {1., 1e6});
     keys.add({.words = {"planners", "",
                         "planners that are compared; none: `planner.name`. A planner may be "

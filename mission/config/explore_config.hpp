@@ -53,6 +53,7 @@ struct ExploreConfig {
     double goalConfidence = 0.5;  ///< the robot reports its arrival if it is within goalTolerance
                                   ///< with at least this believed probability
     double timeLimit = 600.;      ///< longest duration of a flight [s]
+    bool realtime = false;        ///< a second thread plans while the robot flies by the clock
     unsigned trials = 1;          ///< flights per planner
     std::vector<std::string> planners;  ///< planners to compare; empty: planner.name alone
 };

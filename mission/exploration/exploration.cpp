@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "flight/flight_loop.hpp"
 #include "io/stopwatch.hpp"
 #include "render/interruptible_views.hpp"
 
@@ -35,8 +34,9 @@ class Exploration {
     const OnExploration& on_;
     SimulatedRobot robot_;
     FlightEvaluator evaluator_;
-    Explorer explorer_;
     ExplorationResult result_;
+    ExplorationResult atUpdate_;  // result_ at the last update, for on_.moment
+    Explorer explorer_;           // last: its second thread ends first
 };
 
 Exploration::Exploration(const ExplorationSetup& setup, const std::string& planner,
@@ -52,21 +52,16 @@ Exploration::Exploration(const ExplorationSetup& setup, const std::string& plann
       explorer_(explorerOptions(setup), robot_, planner, seed, interrupted, onExplorer()) {}
 
 ExplorationResult Exploration::run() {
-    bool isInterrupted = false;
-    try {
-        flyLoop(robot_, explorer_.tracker(), explorer_.pilot(), setup_.flight.timeStep,
-                [this](const auto& observation, const auto& tracked) {
-                    return onStep(observation, tracked);
-                });
-    } catch (const RenderingStopped&) {
-        isInterrupted = true;
-    }
+    const bool isDone = explorer_.fly(robot_, setup_.flight.timeStep,
+                                      [this](const auto& observation, const auto& tracked) {
+                                          return onStep(observation, tracked);
+                                      });
     evaluator_.finish(explorer_.tracker());
     resultSoFar();
-    if (isInterrupted) {
-        result_.reason = "interrupted";
-    } else {
+    if (isDone) {
         enterEnd();
+    } else {
+        result_.reason = "interrupted";
     }
     return std::move(result_);
 }
@@ -100,11 +95,16 @@ const ExplorationResult& Exploration::resultSoFar() {
     return result_;
 }
 
+/// A moment may be shown by another thread while this one flies on and changes the result.
 OnExplorer Exploration::onExplorer() {
     OnExplorer on;
-    if (on_.update) on.update = [this](const auto&) { on_.update(resultSoFar()); };
+    on.update = [this](const auto&) {
+        const ExplorationResult& soFar = resultSoFar();
+        if (on_.update) on_.update(soFar);
+        if (on_.moment) atUpdate_ = soFar;
+    };
     if (on_.moment) {
-        on.moment = [this](const ExplorerMoment& m) { on_.moment({m, resultSoFar()}); };
+        on.moment = [this](const ExplorerMoment& m) { on_.moment({m, atUpdate_}); };
     }
     return on;
 }

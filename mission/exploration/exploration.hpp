@@ -26,7 +26,7 @@ struct ExplorationSetup {
 ///         the known map
 ExplorationSetup setUpExploration(const PlanningProblem& problem);
 
-/// The options of the robot in a setup, without the true world.
+/// The options of the simulated robot in a setup, without the true world.
 ExplorerOptions explorerOptions(const ExplorationSetup& setup);
 
 /// Called after every update of the plan.
@@ -42,11 +42,11 @@ using OnExplorationMoment = std::function<void(const ExplorationMoment& moment)>
 struct OnExploration {
     OnPlanUpdate update = {};
     OnExposure exposure = {};
-    OnExplorationMoment moment = {};  ///< after `update`
+    OnExplorationMoment moment = {};  ///< after `update`; in real time by a second thread
 };
 
-/// Explores with a simulated robot. Deterministic for a seed. When interrupted, the result holds
-/// the flight so far and ends as FlightEnd::stopped.
+/// Explores with a simulated robot. Deterministic for a seed, unless explore.realtime is set. When
+/// interrupted, the result holds the flight so far and ends as FlightEnd::stopped.
 /// @param planner a name for explorePlanner()
 ExplorationResult explore(const ExplorationSetup& setup, const std::string& planner,
                           std::uint32_t seed, const std::atomic<bool>& interrupted,

@@ -38,7 +38,7 @@ void checkHeadings(const Config& config) {
 }
 
 ExplorerOptions explorerOf(const Config& config, const FlightOptions& flight,
-                           std::shared_ptr<const TexturedOcTree> known) {
+                           std::shared_ptr<const TexturedOcTree> known, Timing inRealTime) {
     const SimulatedCameraOptions& camera = flight.robot.camera;
     return {.config = config,
             .tracker = flight.tracker,
@@ -46,7 +46,8 @@ ExplorerOptions explorerOf(const Config& config, const FlightOptions& flight,
             .timeStep = flight.timeStep,
             .imageAge = 2. * camera.period + camera.latency,
             .bodyRadius = flight.bodyRadius,
-            .known = std::move(known)};
+            .known = std::move(known),
+            .timing = config.explore.realtime ? inRealTime : Timing::byWork};
 }
 
 /// A map of its own that the robot cannot make is refused before it takes off.
@@ -92,11 +93,11 @@ FlightOptions flightOf(const Config& config, const TexturedOcTree* known) {
 ExplorerOptions explorerOptions(const Config& config) {
     checkHeadings(config);
     const auto known = loadKnownMap(config);
-    return explorerOf(config, flightOf(config, known.get()), known);
+    return explorerOf(config, flightOf(config, known.get()), known, Timing::realTime);
 }
 
 ExplorerOptions explorerOptions(const ExplorationSetup& setup) {
-    return explorerOf(setup.config, setup.flight, setup.known);
+    return explorerOf(setup.config, setup.flight, setup.known, Timing::simulatedRealTime);
 }
 
 ExplorationSetup setUpExploration(const PlanningProblem& problem) {

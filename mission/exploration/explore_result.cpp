@@ -2,6 +2,7 @@
 #include "exploration/explore_result.hpp"
 
 #include "exploration/plan_update_json.hpp"
+#include "exploration/real_time_json.hpp"
 #include "flight/flight_statistics.hpp"
 #include "result/json_values.hpp"
 
@@ -32,28 +33,30 @@ json traceOf(const ExplorationResult& flight, double characteristicLength) {
 json jsonOf(const ExplorationResult& flight, double characteristicLength) {
     json updates = json::array();
     for (const PlanUpdate& update : flight.updates) updates.push_back(jsonOf(update));
-    return {{"planner", flight.planner},
-            {"seed", flight.seed},
-            {"arrived", flight.hasArrived()},
-            {"end", nameOf(flight.end)},
-            {"reason", flight.reason},
-            {"collisions", flight.end == FlightEnd::collided ? 1 : 0},
-            {"duration_s", flight.duration},
-            {"length", flight.flown},
-            {"goal_error_m", flight.goalError},
-            {"arrival_probability", flight.arrivalProbability},
-            {"position_rmse_m", finiteOrNull(positionRmse(flight))},
-            {"nees_per_dof", finiteOrNull(neesPerDof(flight))},
-            {"least_clearance_m", finiteOrNull(flight.leastClearance)},
-            {"images", flight.images},
-            {"rejected_images", flight.rejectedImages},
-            {"keyframes", flight.keyframes},
-            {"blind_steps", flight.blindSteps},
-            {"times_lost", flight.timesLost},
-            {"lost_s", flight.lostTime},
-            {"wall_s", flight.wallSeconds},
-            {"path_trace", traceOf(flight, characteristicLength)},
-            {"updates", std::move(updates)}};
+    json result{{"planner", flight.planner},
+                {"seed", flight.seed},
+                {"arrived", flight.hasArrived()},
+                {"end", nameOf(flight.end)},
+                {"reason", flight.reason},
+                {"collisions", flight.end == FlightEnd::collided ? 1 : 0},
+                {"duration_s", flight.duration},
+                {"length", flight.flown},
+                {"goal_error_m", flight.goalError},
+                {"arrival_probability", flight.arrivalProbability},
+                {"position_rmse_m", finiteOrNull(positionRmse(flight))},
+                {"nees_per_dof", finiteOrNull(neesPerDof(flight))},
+                {"least_clearance_m", finiteOrNull(flight.leastClearance)},
+                {"images", flight.images},
+                {"rejected_images", flight.rejectedImages},
+                {"keyframes", flight.keyframes},
+                {"blind_steps", flight.blindSteps},
+                {"times_lost", flight.timesLost},
+                {"lost_s", flight.lostTime},
+                {"wall_s", flight.wallSeconds},
+                {"path_trace", traceOf(flight, characteristicLength)},
+                {"updates", std::move(updates)}};
+    if (flight.realTime) result["real_time"] = realTimeJson(*flight.realTime);
+    return result;
 }
 
 json jsonOf(const ExplorationSummary& s) {

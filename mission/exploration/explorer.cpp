@@ -8,14 +8,11 @@
 #include <utility>
 
 #include "geometry/se3.hpp"
-#include "io/stopwatch.hpp"
 #include "render/interruptible_views.hpp"
 
 namespace photonav {
 namespace {
 
-/// Radius around the robot that a camera that looks ahead does not observe [m].
-constexpr double kHidden = 0.3;
 /// Number of updates in a row without a flyable plan after which the flight ends; for one camera
 /// also the limit of steps, see kBlindInVain.
 constexpr int kMostInVain = 6;
@@ -33,6 +30,8 @@ constexpr double kAroundGoal = 2.;
 /// Time without an update, while the plan is only a part of the way, after which the next image
 /// becomes a keyframe [s].
 constexpr double kWait = 1.;
+/// Longest improvement of a plan in real time [s].
+constexpr double kPlanTime = 0.5;
 
 /// Distance flown at full speed from the exposure of an image that shows an obstacle until the
 /// robot stands, if the next image is missing.
@@ -52,18 +51,20 @@ double stoppingRadius(const ExplorerOptions& options, double distance) {
     return std::min(config.robotRadius, options.bodyRadius + 3. * std::sqrt(variance));
 }
 
-TrackerOptions trackerFor(const ExplorerOptions& options, const OnlineMap& map) {
+TrackerOptions trackerFor(const ExplorerOptions& options, const Mapper& mapper) {
     TrackerOptions tracker = options.tracker;
-    tracker.mapErrors = map.errors();
+    tracker.mapErrors = mapper.errors();
     return tracker;
 }
 
-PilotOptions pilotFor(const ExplorerOptions& options, const OnlinePlanner& planner) {
+PilotOptions pilotFor(const ExplorerOptions& options, const Replanner& replanner) {
     PilotOptions pilot = options.pilot;
     pilot.photometricGoal = false;
     pilot.radius = options.config.robotRadius;
     pilot.bodyRadius = options.bodyRadius;
-    pilot.clearance = [&planner](const Eigen::Vector3d& p_w) { return planner.clearance(p_w); };
+    pilot.clearance = [&replanner](const Eigen::Vector3d& p_w) {
+        return replanner.clearanceBeside(p_w);
+    };
     return pilot;
 }
 
@@ -98,35 +99,58 @@ Explorer::Explorer(const ExplorerOptions& options, const Robot& robot, const std
     : config_(checked(options.config, robot)),
       camera_(robot.camera()),
       T_b_c_(robot.T_b_c()),
+      timing_(options.timing),
       interrupted_(interrupted),
       on_(std::move(on)),
-      map_(config_, options.known.get()),
-      planner_(config_, map_, explorePlanner(planner), seed),
-      tracker_(trackerOf(robot, views(), beliefAtTakeOff(config_), trackerFor(options, map_))),
-      pilot_(pilotOf(robot, stayingAt(beliefAtTakeOff(config_), T_b_c_), views(),
-                     pilotFor(options, planner_))),
-      mapper_(config_, map_),
       toStop_(stoppingDistance(options)),
-      tube_(stoppingRadius(options, toStop_)) {
-    const bool isAhead = looksAhead(T_b_c_);
-    space_ = {.clearance = [this](const Eigen::Vector3d& p_w) { return clearance(p_w); },
-              .isSeen = [this](const Eigen::Vector3d& p_w) { return map_.isSeen(p_w); },
-              .radius = config_.robotRadius,
-              .hidden = isAhead ? kHidden : 0.,
-              .canLook = isAhead && config_.space != StateKind::position &&
-                         explorePlanner(planner).headings != Headings::fixed};
+      tube_(stoppingRadius(options, toStop_)),
+      replanner_(config_, options.known.get(), explorePlanner(planner), seed, tube_),
+      views_(replanner_.planner().views()),
+      known_(*replanner_.map().cells()),
+      mapper_(config_, options.known.get()),
+      tracker_(trackerOf(robot, views(), beliefAtTakeOff(config_), trackerFor(options, mapper_))),
+      pilot_(pilotOf(robot, stayingAt(beliefAtTakeOff(config_), T_b_c_), views(),
+                     pilotFor(options, replanner_))) {
     record_.planner = planner;
     record_.seed = seed;
-    record_.map = map_.cells();
+    record_.map = replanner_.map().cells();
+    if (timing_ != Timing::byWork) background_.emplace(replanner_, kPlanTime);
+}
+
+bool Explorer::fly(Robot& robot, double timeStep, const OnFlightStep& onStep) {
+    RealTimeRobot timed(robot,
+                        timing_ == Timing::simulatedRealTime ? RealTimeRobot::Clock::wall
+                                                             : RealTimeRobot::Clock::robot,
+                        monitor_);
+    bool isInterrupted = false;
+    try {
+        flyLoop(background_ ? timed : robot, tracker_, pilot_, timeStep, onStep);
+    } catch (const RenderingStopped&) {
+        isInterrupted = true;
+    }
+    finishRealTime();
+    return !isInterrupted;
+}
+
+void Explorer::finishRealTime() {
+    if (!background_) return;
+    background_->stop();
+    record_.realTime = monitor_.summary();
+    record_.realTime->waited = background_->waited();
+    record_.realTime->joined = background_->joined();
 }
 
 bool Explorer::onStep(const Observation& observation, const std::vector<TrackedFrame>& tracked) {
     time_ = observation.time;
+    if (background_) {
+        if (auto replanned = background_->poll()) takeOver(std::move(*replanned));
+    }
     for (std::size_t i = 0; i < tracked.size(); ++i) {
         stopIfInterrupted();
         corrections_.add(tracked[i]);
         onImage(tracked[i], observation.frames[i].view);
     }
+    if (background_) background_->goOn(tracker_.belief());
     return !hasEnded();
 }
 
@@ -135,77 +159,119 @@ void Explorer::stopIfInterrupted() const {
     if (interrupted_) throw RenderingStopped();
 }
 
-/// Whether the robot is where its present plan ends, short of the goal.
+/// Whether the robot is where its present plan ends, short of the goal, and no other one is made.
 bool Explorer::isWaiting() const {
-    return !isWhole_ && (pilot_.route().isAtGoal() || time_ - lastUpdate_ > kWait);
-}
-
-/// Above the robot's radius the same as in the map. The last image shows obstacles before the map
-/// does; from them the body keeps away as far as it must to stop.
-double Explorer::clearance(const Eigen::Vector3d& p_w) const {
-    const double inView = inView_.clearance(p_w) + config_.robotRadius - tube_;
-    return std::min(planner_.clearance(p_w), inView);
-}
-
-/// Whether an image shows that the way to be flown next is not free.
-bool Explorer::isInTheWay(const TrackedFrame& tracked, const View& image) {
-    if (image.depth.getSize() == 0) return false;
-    inView_ = map_.obstaclesIn(image.depth, camera_, tracked.T_c_w.mean, toStop_ + tube_);
-    std::vector<Eigen::Vector3d> way{bodyOf(tracker_.belief().mean).translation()};
-    for (const PlannedView& view : pilot_.route().ahead()) way.push_back(view.T_w_b.translation());
-    return !inView_.newWalls().empty() || inView_.isOn(way, tube_);
+    if (isWhole_ || (background_ && background_->isBusy())) return false;
+    return pilot_.route().isAtGoal() || time_ - lastUpdate_ > kWait;
 }
 
 void Explorer::onImage(const TrackedFrame& tracked, const View& image) {
+    const bool isStopped = isInTheWay(tracked, image);
     View shown;
     views()->render(camera_, tracked.T_c_w.mean, shown);
-    Stopwatch watch;
-    const bool isStopped = isInTheWay(tracked, image);
-    auto change = mapper_.add(tracked, image, shown, isWaiting() || isStopped);
+    auto input = mapper_.choose(tracked, image, shown, isWaiting() || isStopped);
+    record_.keyframes = mapper_.keyframes();
     stopIfInterrupted();
-    if (!change && isStopped) change.emplace();  // plan without a new map
-    if (!change) return;
-    updatePlan(*change, watch.seconds());
-    if (on_.moment) on_.moment({planner_, map_, *change, tracked.T_c_w, image, shown});
+    if (!input && isStopped) input = MapInput{image, shown, tracked.T_c_w};  // for the plan alone
+    if (!input) return;
+    ReplanRequest request{{std::move(*input)}, inView_, tracker_.belief(), tracked.time};
+    if (background_) return background_->add(std::move(request));
+    takeOver(replanner_.replan(std::move(request), {interrupted_}));
 }
 
-/// Plans from where the robot is by now, in a map that has changed.
-/// @param change the space of the body is added
-void Explorer::updatePlan(MapChange& change, double fuseSeconds) {
-    const UncertainPose& T_c_w = tracker_.belief();
-    PlanUpdate update;
-    update.time = time_;
-    Stopwatch watch;
-    if (!change.occupancy.empty()) blindInVain_ = 0;
-    change.join(map_.addBody(bodyOf(T_c_w.mean).translation()));
-    if (record_.updates.empty()) change.join(map_.whole());  // for those who saw no earlier change
-    update.fuseSeconds = fuseSeconds + watch.seconds();
-    record_.keyframes = mapper_.keyframes();
-    planner_.update(change, T_c_w, update, interrupted_);
+/// Whether an image shows that the way to be flown next is not free. In real time the robot then
+/// flies only as far as it is, until it has another plan.
+bool Explorer::isInTheWay(const TrackedFrame& tracked, const View& image) {
+    if (image.depth.getSize() == 0) return false;
+    inView_ = {image.depth, camera_, tracked.T_c_w.mean, known_,
+               obstacleRange(config_, toStop_ + tube_)};
+    const std::vector<PlannedView> ahead = wayAhead();
+    std::vector<Eigen::Vector3d> way;
+    for (const PlannedView& view : ahead) way.push_back(view.T_w_b.translation());
+    const bool isOnWay = inView_.isOn(way, tube_);
+    if (background_) {
+        monitor_.onAnswer(tracked.time);
+        if (isOnWay) {
+            FlyablePart free = fromHere({.plan = ahead, .isWhole = isWhole_});
+            isWhole_ = free.isWhole;
+            pilot_.setPlan(std::move(free.plan));
+        }
+    }
+    return isOnWay || !inView_.newWalls().empty();
+}
+
+/// What is left of the present plan.
+std::vector<PlannedView> Explorer::wayAhead() const {
+    std::vector<PlannedView> way{{.T_w_b = here(), .covariance = tracker_.belief().covariance}};
+    for (PlannedView view : pilot_.route().ahead()) {
+        const Eigen::Vector3d leg = view.T_w_b.translation() - way.back().T_w_b.translation();
+        view.distance = way.back().distance + leg.norm();
+        way.push_back(view);
+    }
+    return way;
+}
+
+/// The part of a plan that is free in map and last image, for a robot that has flown on meanwhile.
+FlyablePart Explorer::fromHere(const FlyablePart& way) const {
+    const auto clearance = [this](const Eigen::Vector3d& p_w) {
+        return std::min(replanner_.clearanceBeside(p_w),
+                        clearanceInView(inView_, p_w, config_.robotRadius, tube_));
+    };
+    const auto isSeen = [](const Eigen::Vector3d&) { return true; };  // or it would not be flown
+    FlyablePart rest =
+        flyablePart(continuedFrom(here(), way.plan),
+                    {.clearance = clearance, .isSeen = isSeen, .radius = config_.robotRadius});
+    rest.isWhole = rest.isWhole && way.isWhole;
+    rest.isStopped = rest.isStopped || way.isStopped;
+    rest.isBlind = way.isBlind;
+    return rest;
+}
+
+/// From now on the robot uses the new map and plan.
+void Explorer::takeOver(Replanned replanned) {
+    for (const MapInput& image : replanned.request.images) mapper_.addSurfaces(image);
+    known_.set(replanned.cells);
+    views_ = replanned.views;
     tracker_.setMap(views());
     pilot_.setMap(views());
+    if (replanned.hasMapGrown) blindInVain_ = 0;
+    hasPath_ = replanned.way.has_value();
     lastUpdate_ = time_;
-    flyOn(T_c_w);
+    flyOn(std::move(replanned.way));
+    PlanUpdate& update = replanned.update;
+    update.time = time_;
+    if (background_) monitor_.onPlan(replanned.request.imageTime, update.isEndedByClock);
     record_.updates.push_back(update);
     if (on_.update) on_.update(record_);
+    if (on_.moment) showMoment(std::move(replanned));
+}
+
+/// By the thread that made map and plan, which do not change until then.
+void Explorer::showMoment(Replanned replanned) {
+    const auto show = [this, made = std::make_shared<Replanned>(std::move(replanned))] {
+        const MapInput& image = made->request.images.back();
+        on_.moment({replanner_.planner(), replanner_.map(), made->change, image.T_c_w, image.image,
+                    image.shown});
+    };
+    if (background_) return background_->run(show);
+    show();
 }
 
 /// Gives the pilot the part of the plan that is safe, or lets it hover.
-void Explorer::flyOn(const UncertainPose& T_c_w) {
-    const std::vector<BeliefPoint>& path = planner_.path();
-    if (path.empty()) return hover(T_c_w);
+void Explorer::flyOn(std::optional<FlyablePart> way) {
+    if (!way) return hover();
     // Hovering over the goal is not interrupted by a way of a few centimetres to it.
     if (isWhole_ && pilot_.route().isAtGoal()) return;
-    FlyablePart way = flyablePart(path, space_);
-    if (way.isBlind && !mayStepBlindly()) return hover(T_c_w);
+    if (background_) way = fromHere(*way);
+    if (way->isBlind && !mayStepBlindly()) return hover();
     withoutWay_ = 0;
     withoutWaySince_.reset();
-    if (!way.isStopped) stoppedSince_.reset();
-    if (way.isStopped && !stoppedSince_) stoppedSince_ = time_;
-    blindInVain_ += way.isBlind;
-    isWhole_ = way.isWhole;
-    record_.blindSteps += way.isBlind;
-    pilot_.setPlan(std::move(way.plan));
+    if (!way->isStopped) stoppedSince_.reset();
+    if (way->isStopped && !stoppedSince_) stoppedSince_ = time_;
+    blindInVain_ += way->isBlind;
+    isWhole_ = way->isWhole;
+    record_.blindSteps += way->isBlind;
+    pilot_.setPlan(std::move(way->plan));
 }
 
 /// A camera without a depth sensor has to move before it sees anything.
@@ -214,16 +280,15 @@ bool Explorer::mayStepBlindly() const {
     return blindInVain_ < (isMonocular ? kMostInVain : kBlindInVain);
 }
 
-void Explorer::hover(const UncertainPose& T_c_w) {
+void Explorer::hover() {
     ++withoutWay_;
     if (!withoutWaySince_) withoutWaySince_ = time_;
     isWhole_ = false;
-    pilot_.setPlan(stayingAt(T_c_w, T_b_c_));
+    pilot_.setPlan(stayingAt(tracker_.belief(), T_b_c_));
 }
 
 std::shared_ptr<const ViewSource> Explorer::views() const {
-    return std::make_shared<InterruptibleViews>(planner_.views(),
-                                                [this] { return interrupted_.load(); });
+    return std::make_shared<InterruptibleViews>(views_, [this] { return interrupted_.load(); });
 }
 
 bool Explorer::endAs(FlightEnd end, const std::string& reason) {
@@ -233,17 +298,17 @@ bool Explorer::endAs(FlightEnd end, const std::string& reason) {
 }
 
 std::string Explorer::reasonForNoWay() const {
-    const double clearance = planner_.clearance(config_.goal.position);
+    const double clearance = replanner_.clearanceBeside(config_.goal.position);
     if (clearance < config_.robotRadius) {
         return fmt::format("the goal is in collision: clearance {:.2f} m in the map", clearance);
     }
-    if (!planner_.path().empty()) return "the sensor cannot observe the space ahead";
+    if (hasPath_) return "the sensor cannot observe the space ahead";
     return "the map shows no way to the goal";
 }
 
 /// Whether the robot was at its goal and is still around it, but too often lost to arrive.
 bool Explorer::isStuckAtGoal() {
-    const Eigen::Vector3d p_w = bodyOf(tracker_.belief().mean).translation();
+    const Eigen::Vector3d p_w = here().translation();
     if ((p_w - config_.goal.position).norm() > kAroundGoal) atGoalSince_.reset();
     if (!atGoalSince_ && isWhole_ && pilot_.route().isAtGoal()) atGoalSince_ = time_;
     return atGoalSince_ && time_ - *atGoalSince_ > kMostAtGoal;
@@ -289,10 +354,7 @@ ExplorationOutcome explore(Robot& robot, const ExplorerOptions& options, const s
         if (onStep && !onStep(observation, tracked)) return false;
         return explorer.onStep(observation, tracked);
     };
-    try {
-        flyLoop(robot, explorer.tracker(), explorer.pilot(), options.timeStep, step);
-    } catch (const RenderingStopped&) {  // interrupted
-    }
+    explorer.fly(robot, options.timeStep, step);
     static_cast<ExplorationRecord&>(outcome) = explorer.record();
     outcome.end = explorer.end().value_or(FlightEnd::stopped);
     outcome.arrival = explorer.arrival();

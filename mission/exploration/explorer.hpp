@@ -8,15 +8,26 @@
 #include <string>
 #include <vector>
 
-#include "exploration/flyable_part.hpp"
+#include "exploration/background_replanner.hpp"
 #include "exploration/mapper.hpp"
-#include "exploration/obstacles_in_view.hpp"
-#include "exploration/online_planner.hpp"
+#include "exploration/real_time_monitor.hpp"
 #include "flight/arrival.hpp"
 #include "flight/flight_end.hpp"
 #include "flight/flight_loop.hpp"
 
 namespace photonav {
+
+/// What planning and the clock have to do with each other.
+enum class Timing {
+    /// The robot waits until its plan is updated, which takes no time of the flight. Planning is
+    /// limited by work: flights are deterministic.
+    byWork,
+    /// The robot flies on while a second thread updates map and plan, which is limited by the
+    /// clock: flights are not reproducible. Robot::fly() takes the time that it flies.
+    realTime,
+    /// As realTime, with a simulated robot: the loop waits until each step would have been flown.
+    simulatedRealTime
+};
 
 struct ExplorerOptions {
     /// Start, goal, camera, beliefs, and the section `explore`. Camera and mount must be those of
@@ -32,10 +43,12 @@ struct ExplorerOptions {
     double bodyRadius = 0.1;  ///< radius kept free of obstacles in the last image [m]
     /// What the robot knows of the world at take-off, with cells of explore.resolution; null:
     /// nothing.
-    std::shared_ptr<const TexturedOcTree> known;
+    std::shared_ptr<const TexturedOcTree> known = {};
+    Timing timing = Timing::byWork;
 };
 
-/// The options that follow from a config, as `photonav explore` uses them.
+/// The options that follow from a config, as `photonav explore` uses them, but for a robot whose
+/// fly() takes its time: explore.realtime is Timing::realTime.
 /// @throws InputError if explore.planners asks for headings and the space is not xyz_yaw, and as
 ///         loadKnownMap() does
 ExplorerOptions explorerOptions(const Config& config);
@@ -52,7 +65,9 @@ struct ExplorationRecord {
     int keyframes = 0;   ///< number of images fused into the map
     int blindSteps = 0;  ///< number of steps into space that could not be observed first
     std::vector<PlanUpdate> updates;
-    std::shared_ptr<TexturedOcTree> map;  ///< the map made by the robot; null: not kept
+    /// The map made by the robot; null: not kept. In real time it is written until the flight ends.
+    std::shared_ptr<TexturedOcTree> map;
+    std::optional<RealTimeSummary> realTime = {};  ///< of a flight in real time that has ended
 };
 
 /// The state right after an update of the plan, for logs and figures.
@@ -65,15 +80,24 @@ struct ExplorerMoment {
     const View& predicted;       ///< view of the map before this update, from the believed pose
 };
 
-/// Callbacks after every update of the plan. They do not change the flight; each may be empty.
+/// Callbacks after every update of the plan. They do not change the flight (but for its times, in
+/// real time); each may be empty.
 struct OnExplorer {
     std::function<void(const ExplorationRecord& soFar)> update = {};
-    std::function<void(const ExplorerMoment& moment)> moment = {};  ///< after `update`
+    /// After `update` and before the next one. In real time it is called by the second thread.
+    std::function<void(const ExplorerMoment& moment)> moment = {};
 };
 
-/// Tracker, pilot, map and planner of an exploring robot, for flyLoop(). While the robot flies, it
-/// extends its map and repairs its plan. Deterministic for a given seed and given measurements:
-/// planning is limited by work, not by time.
+/// Tracker, pilot, map and planner of an exploring robot. While the robot flies, it extends its map
+/// and repairs its plan:
+///
+///     every step:   take over map and plan, if they were updated            (takeOver)
+///     every image:  is the way ahead free? If not, stop before the obstacle (isInTheWay)
+///                   does it become part of the map?                         (Mapper)
+///                   if so, update map and plan                              (Replanner)
+///
+/// Timing::byWork updates at once. In real time a second thread does (BackgroundReplanner), and all
+/// else stays on the thread of the loop, which never waits for it.
 class Explorer {
   public:
     /// @param robot gives camera, mount and blur
@@ -90,7 +114,13 @@ class Explorer {
     const Tracker& tracker() const { return tracker_; }
     Pilot& pilot() { return pilot_; }
 
-    /// Is to be called after every step of flyLoop(). @return whether to fly on
+    /// Flies until the end.
+    /// @param onStep called after every step, in place of onStep() of this class, which it calls
+    /// @return false if the flight was interrupted
+    /// @throws whatever the robot, the callbacks or the second thread have thrown
+    bool fly(Robot& robot, double timeStep, const OnFlightStep& onStep);
+
+    /// Is to be called after every step. @return whether to fly on
     bool onStep(const Observation& observation, const std::vector<TrackedFrame>& tracked);
 
     const ExplorationRecord& record() const { return record_; }
@@ -104,39 +134,45 @@ class Explorer {
   private:
     void stopIfInterrupted() const;
     void onImage(const TrackedFrame& tracked, const View& image);
-    void updatePlan(MapChange& change, double fuseSeconds);
-    void flyOn(const UncertainPose& T_c_w);
+    bool isInTheWay(const TrackedFrame& tracked, const View& image);
+    std::vector<PlannedView> wayAhead() const;
+    FlyablePart fromHere(const FlyablePart& way) const;
+    void takeOver(Replanned replanned);
+    void showMoment(Replanned replanned);
+    void flyOn(std::optional<FlyablePart> way);
     bool mayStepBlindly() const;
-    void hover(const UncertainPose& T_c_w);
+    void hover();
     bool isWaiting() const;
     bool isStuckAtGoal();
     bool hasEnded();
     bool endAtGoal();
     bool endAs(FlightEnd end, const std::string& reason);
     std::string reasonForNoWay() const;
+    void finishRealTime();
     Pose bodyOf(const Pose& T_c_w) const { return (T_b_c_ * T_c_w).inverse(); }
-    bool isInTheWay(const TrackedFrame& tracked, const View& image);
-    double clearance(const Eigen::Vector3d& p_w) const;
-    /// Renders views of the present map.
+    Pose here() const { return bodyOf(tracker_.belief().mean); }
+    /// Renders views of the map that was taken over last.
     std::shared_ptr<const ViewSource> views() const;
 
     Config config_;
     Camera camera_;
     Pose T_b_c_;
+    Timing timing_;
     const std::atomic<bool>& interrupted_;
     OnExplorer on_;
-    OnlineMap map_;
-    OnlinePlanner planner_;
+    double toStop_;  // stopping distance, from the exposure of an image on [m]
+    double tube_;    // radius around the path that must be free in every depth image [m]
+    Replanner replanner_;
+    std::shared_ptr<const ViewSource> views_;  // of the map that was taken over last
+    KnownCells known_;                         // of this map
+    Mapper mapper_;
     Tracker tracker_;
     Pilot pilot_;
-    SpaceAhead space_;
-    Mapper mapper_;
-    double toStop_;           // stopping distance, from the exposure of an image on [m]
-    double tube_;             // radius around the path that must be free in every depth image [m]
-    ObstaclesInView inView_;  // in the last image
-    double time_ = 0.;        // [s]
-    bool isWhole_ = false;    // the part of the plan being flown leads to the goal
-    int withoutWay_ = 0;      // updates in a row without a path
+    ObstaclesInView inView_;                 // in the last image
+    double time_ = 0.;                       // [s]
+    bool hasPath_ = false;                   // the planner has found one at the last update
+    bool isWhole_ = false;                   // the part of the plan being flown leads to the goal
+    int withoutWay_ = 0;                     // updates in a row without a path
     std::optional<double> withoutWaySince_;  // [s]
     std::optional<double> stoppedSince_;     // time of the stop before an obstacle in view [s]
     int blindInVain_ = 0;                    // blind steps since the map last grew
@@ -146,6 +182,8 @@ class Explorer {
     ExplorationRecord record_;
     std::optional<FlightEnd> end_;
     std::optional<BelievedArrival> arrival_;
+    RealTimeMonitor monitor_;
+    std::optional<BackgroundReplanner> background_;  // in real time; last: ends before the others
 };
 
 /// The course and end of an exploration, without ground truth.
@@ -159,7 +197,7 @@ struct ExplorationOutcome : ExplorationRecord {
 /// @param planner a name for explorePlanner()
 /// @param onStep called after each step before the explorer's own; may end the flight as
 ///        FlightEnd::stopped
-/// @throws std::invalid_argument as Explorer does
+/// @throws std::invalid_argument as Explorer does, and as Explorer::fly() does
 ExplorationOutcome explore(Robot& robot, const ExplorerOptions& options, const std::string& planner,
                            std::uint32_t seed, const std::atomic<bool>& interrupted,
                            const OnExplorer& on = {}, const OnFlightStep& onStep = {});

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The first part of a path, which may be flown before the map is updated again.
+// The first part of a plan, which may be flown before the map is updated again.
 #pragma once
 
 #include <functional>
 #include <vector>
 
-#include "belief/belief.hpp"
 #include "control/route.hpp"
 
 namespace photonav {
@@ -24,16 +23,22 @@ struct SpaceAhead {
 
 struct FlyablePart {
     std::vector<PlannedView> plan;  ///< at least two views; equal poses: the robot hovers
-    bool isWhole = false;           ///< the part is the whole path
+    bool isWhole = false;           ///< the part is the whole plan
     bool isStopped = false;         ///< the obstacle is right ahead: the robot hovers
     bool isBlind = false;           ///< the part leads into space that could not be observed before
 };
 
-/// The part of a path up to unobserved space or to an obstacle. If the space right ahead was not
+/// The part of a plan up to unobserved space or to an obstacle. If the space right ahead was not
 /// observed, the robot first turns its camera there. If it cannot (the camera looks down, or the
 /// heading is fixed), it makes a short blind step, from which it observes the next one.
-/// @param path from the robot's position on
-FlyablePart flyablePart(const std::vector<BeliefPoint>& path, const SpaceAhead& space);
+/// @param plan from the robot's position on, at least two views
+FlyablePart flyablePart(const std::vector<PlannedView>& plan, const SpaceAhead& space);
+
+/// The rest of a plan for a robot that has flown on along another one since the plan was made: from
+/// its pose to the nearest position of the plan, as far as the robot may have come, and along the
+/// plan. A plan without a motion (to hover, to turn) is executed where the robot is.
+/// @param plan at least two views
+std::vector<PlannedView> continuedFrom(const Pose& T_w_b, const std::vector<PlannedView>& plan);
 
 /// A plan to hover at a pose: two equal views.
 std::vector<PlannedView> hovering(const Pose& T_w_b, const Matrix6& covariance);

@@ -51,16 +51,14 @@ std::vector<OcTreeKey> cellsHit(const ImageF& depth, const Camera& camera, const
 
 /// Whether the map shows a cell free, and no surface right beside it, where errors of depth or
 /// pose would show it.
-bool isFreeAround(const TexturedOcTree& map, const OcTreeKey& key) {
-    const TexturedOcTreeNode* node = map.search(key);
-    if (node == nullptr || map.isNodeOccupied(*node)) return false;
+bool isFreeAround(const KnownCells& known, const OcTreeKey& key) {
+    if (!known.isFree(key)) return false;
     for (int i = 0; i < 27; ++i) {
         OcTreeKey beside = key;
         beside[0] = static_cast<octomap::key_type>(beside[0] + i % 3 - 1);
         beside[1] = static_cast<octomap::key_type>(beside[1] + i / 3 % 3 - 1);
         beside[2] = static_cast<octomap::key_type>(beside[2] + i / 9 - 1);
-        node = map.search(beside);
-        if (node != nullptr && map.isNodeOccupied(*node)) return false;
+        if (known.isOccupied(beside)) return false;
     }
     return true;
 }
@@ -78,8 +76,9 @@ bool isSeenThrough(const Eigen::Vector3d& p_w, const ImageF& depth, const Camera
 }
 
 ObstaclesInView::ObstaclesInView(const ImageF& depth, const Camera& camera, const Pose& T_c_w,
-                                 const TexturedOcTree& map, const ObstacleRange& range)
-    : cell_(map.getResolution()) {
+                                 const KnownCells& known, const ObstacleRange& range)
+    : cell_(known.grid().getResolution()) {
+    const TexturedOcTree& map = known.grid();
     const auto add = [&](const OcTreeKey& key) {
         const Eigen::Vector3d p_w = middleOf(map, key);
         if (p_w.z() >= range.lowest && p_w.z() <= range.highest) occupied_.push_back(p_w);
@@ -93,7 +92,7 @@ ObstaclesInView::ObstaclesInView(const ImageF& depth, const Camera& camera, cons
         return isSeenThrough(middleOf(map, key), depth, camera, T_c_w, cell_);
     };
     const auto isNew = [&](const OcTreeKey& key) {
-        return (T_c_w * middleOf(map, key)).z() <= range.precise && isFreeAround(map, key);
+        return (T_c_w * middleOf(map, key)).z() <= range.precise && isFreeAround(known, key);
     };
     for (auto& [column, keys] : columns) {
         if (keys.size() < kWallCells) continue;

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "map/textured_octree.hpp"
+#include "exploration/known_cells.hpp"
 #include "photometry/view.hpp"
 
 namespace photonav {
@@ -29,9 +29,9 @@ class ObstaclesInView {
   public:
     ObstaclesInView() = default;  ///< no obstacles
     /// @param depth depth image [m]; 0: not measured
-    /// @param map the map before this image is fused
+    /// @param known cells of the map before this image is fused
     ObstaclesInView(const ImageF& depth, const Camera& camera, const Pose& T_c_w,
-                    const TexturedOcTree& map, const ObstacleRange& range);
+                    const KnownCells& known, const ObstacleRange& range);
 
     /// Distance from a place to the obstacles [m]. It is measured to the third nearest cell,
     /// because single cells may be errors of the sensor. Infinite with fewer than three cells.

@@ -16,20 +16,7 @@ constexpr double kDisparity = 0.2;  // standard deviation of block matching [pix
 // Hits in a row after which a cell is occupied however long it was free, less a half for rounding.
 // A wrong hit beside a surface makes a cell occupied with the square of its probability.
 constexpr float kHitsToOccupy = 1.5F;
-// Of a known map, in the frame of the start [m^2, rad^2]: 2 cm, and 4, 4 and 10 mrad. So exact are
-// maps of explorations of rooms of 8 m; their errors grow with the distance from the start.
-const Vector6 kKnownVariances{{4e-4, 4e-4, 4e-4, 1.6e-5, 1.6e-5, 1e-4}};
 constexpr float kForgotten = -0.01F;  // log odds: free, until a surface is seen there once
-
-/// Depths that are fused; the others are 0.
-ImageF fusedDepth(const ImageF& depth, const FusionOptions& fusion) {
-    ImageF fused = depth;
-    for (unsigned i = 0; i < fused.getSize(); ++i) {
-        float& z = fused.bitmap[i];
-        if (!(z >= fusion.minRange && z <= fusion.maxRange)) z = 0.F;
-    }
-    return fused;
-}
 
 }  // namespace
 
@@ -41,39 +28,39 @@ double depthSigmaAtOneMetre(const Config& config) {
     return kDisparity / (config.camera.camera().fx() * explore.baseline);
 }
 
+ObstacleRange obstacleRange(const Config& config, double distance) {
+    // There three standard deviations of depth equal a cell.
+    const double precise =
+        std::sqrt(config.explore.resolution / (3. * depthSigmaAtOneMetre(config)));
+    return {distance, precise, config.bounds.min().z() - config.robotRadius,
+            config.bounds.max().z() + config.robotRadius};
+}
+
 OnlineMap::OnlineMap(const Config& config, const TexturedOcTree* known)
     : cells_(known != nullptr ? std::make_shared<TexturedOcTree>(*known)
                               : std::make_shared<TexturedOcTree>(config.explore.resolution)),
+      known_(config.explore.resolution),
       obstacles_(config.explore.resolution, config.bounds, config.explore.unknown),
       doubted_(config.explore.resolution, config.explore.range),
-      errors_(std::make_shared<MapErrors>(config.explore.resolution)),
       photometric_(config.photometric),
-      precise_(std::sqrt(config.explore.resolution / (3. * depthSigmaAtOneMetre(config)))),
-      lowest_(config.bounds.min().z() - config.robotRadius),
-      highest_(config.bounds.max().z() + config.robotRadius),
+      range_(obstacleRange(config, config.explore.range)),
       radius_(config.robotRadius),
       looksDown_(!looksAhead(config.camera.T_b_c())) {
     if (config.explore.unknownInformation == UnknownInformation::predicted) unseen_.emplace();
     fusion_.maxRange = config.explore.range;
     cells_->setClampingThresMin(octomap::probability(-kHitsToOccupy * cells_->getProbHitLog()));
-    if (known != nullptr) addKnown(config);
+    if (known != nullptr) addKnown();
 }
 
 /// What was known long ago may have changed since: a free cell is as soon occupied as one that was
 /// seen in this flight.
-void OnlineMap::addKnown(const Config& config) {
+void OnlineMap::addKnown() {
     const float least = cells_->getClampingThresMinLog();
     for (auto leaf = cells_->begin_leafs(); leaf != cells_->end_leafs(); ++leaf) {
         if (leaf->getLogOdds() < least) leaf->setLogOdds(least);
     }
     cells_->updateInnerOccupancy();
-    const auto hasTexture = [&](const TexturedOcTreeNode& leaf) {
-        return cells_->isNodeOccupied(leaf) && leaf.meanGrey().has_value();
-    };
-    Pose T_b_w = Pose::Identity();
-    T_b_w.translation() = -config.start.position;
-    T_b_w.prerotate(Eigen::AngleAxisd(-config.start.yaw.value_or(0.), Eigen::Vector3d::UnitZ()));
-    errors_->addMap(T_b_w, kKnownVariances.asDiagonal(), bricksWith(*cells_, hasTexture));
+    updateKnown(whole());
     obstacles_.update(*cells_, whole());
 }
 
@@ -87,10 +74,19 @@ void OnlineMap::compare(const View& shown, const ImageF& image, const Camera& ca
     if (unseen_) unseen_->observe(shown, noise_.model(camera, photometric_)(shown));
 }
 
-MapChange OnlineMap::fuse(const View& image, const Camera& camera, const Pose& T_c_w, int number) {
-    const ObstaclesInView seen = obstaclesIn(image.depth, camera, T_c_w, fusion_.maxRange);
+MapChange OnlineMap::add(const MapInput& input, const Camera& camera) {
+    MapChange change;
+    if (input.isMapInconsistent) change.join(forget(input.shown, camera, input.T_c_w.mean));
+    if (!input.keyframe) return change;
+    compare(input.shown, input.image.intensity, camera);
+    change.join(fuse(input.keyframe->view, camera, input.keyframe->T_c_w));
+    return change;
+}
+
+MapChange OnlineMap::fuse(const View& image, const Camera& camera, const Pose& T_c_w) {
+    const ObstaclesInView seen(image.depth, camera, T_c_w, known_, range_);
     MapChange change = photonav::fuse(*cells_, image, camera, T_c_w, fusion_);
-    errors_->addSurfaces(number, fusedDepth(image.depth, fusion_), camera);
+    updateKnown(change);
     change.join(obstacles_.update(*cells_, change));
     change.join(obstacles_.forget(*cells_, seen.aboveNewWalls()));
     change.join(obstacles_.remember(*cells_, image.depth, camera, T_c_w));
@@ -102,9 +98,8 @@ MapChange OnlineMap::fuse(const View& image, const Camera& camera, const Pose& T
     return change;
 }
 
-ObstaclesInView OnlineMap::obstaclesIn(const ImageF& depth, const Camera& camera, const Pose& T_c_w,
-                                       double distance) const {
-    return {depth, camera, T_c_w, *cells_, {distance, precise_, lowest_, highest_}};
+void OnlineMap::updateKnown(const MapChange& change) {
+    known_.set(KnownCells::bricksOf(*cells_, change.occupancy));
 }
 
 MapChange OnlineMap::forget(const View& shown, const Camera& camera, const Pose& T_c_w) {
@@ -131,6 +126,7 @@ MapChange OnlineMap::forget(const View& shown, const Camera& camera, const Pose&
     }
     cells_->updateInnerOccupancy();
     change.normalize();
+    updateKnown(change);
     change.join(obstacles_.update(*cells_, change));
     return change;
 }

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "config/config.hpp"
-#include "estimation/map_errors.hpp"
 #include "exploration/doubted_columns.hpp"
 #include "exploration/map_noise.hpp"
 #include "exploration/obstacle_map.hpp"
@@ -23,30 +22,50 @@ bool looksAhead(const Pose& T_b_c);
 /// a depth sensor; for stereo and monocular depth it follows from 0.2 pixels of disparity.
 double depthSigmaAtOneMetre(const Config& config);
 
-/// The map with its obstacles and a model of its errors, all made from the fused images.
+/// The region in which obstacles of a depth image matter: the heights that the robot may reach.
+/// @param distance largest horizontal distance from the camera [m]
+ObstacleRange obstacleRange(const Config& config, double distance);
+
+/// A tracked image, and how it changes the map.
+struct MapInput {
+    View image;
+    View shown;           ///< view of the map from the believed pose, before the image is fused
+    UncertainPose T_c_w;  ///< the belief at the image
+    bool isMapInconsistent = false;  ///< the surfaces of `shown` are to be removed
+
+    /// Depth that is fused: of the image or, with a single camera, of an earlier one.
+    struct Keyframe {
+        View view;
+        Pose T_c_w = Pose::Identity();
+        int number = 0;  ///< from MapErrors::addPose()
+    };
+    std::optional<Keyframe> keyframe = {};  ///< none: nothing is fused
+};
+
+/// The map with its obstacles and its noise, all made from the fused images.
 class OnlineMap {
   public:
-    /// @param config uses camera, section `explore`, bounds, robot.radius and start
+    /// @param config uses camera, section `explore`, bounds and robot.radius
     /// @param known what the robot knows at take-off, with cells of explore.resolution; null:
-    ///        nothing. It is as exact as a map of an exploration, and is corrected by what is
-    ///        fused.
+    ///        nothing. It is corrected by what is fused.
     explicit OnlineMap(const Config& config, const TexturedOcTree* known = nullptr);
 
     /// All that is in the map, as a change from an empty one.
     MapChange whole() const;
+
+    /// Applies compare(), fuse() and forget() as an image requires.
+    /// @return the change of map and obstacles
+    MapChange add(const MapInput& input, const Camera& camera);
 
     /// Updates the estimate of the map's noise (MapNoise), and of the information expected of
     /// unknown space (UnseenInformation) if the config asks for it.
     /// @param shown view of the map from the pose of the image, before the image is fused
     void compare(const View& shown, const ImageF& image, const Camera& camera);
 
-    /// Registers the pose of an image that is fused now or later. @return the number of the pose
-    int addPose(const UncertainPose& T_c_w) { return errors_->addPose(T_c_w); }
     /// Fuses an image.
     /// @param T_c_w believed pose of the camera
-    /// @param number of this pose, from addPose()
     /// @return the change of map and obstacles
-    MapChange fuse(const View& image, const Camera& camera, const Pose& T_c_w, int number);
+    MapChange fuse(const View& image, const Camera& camera, const Pose& T_c_w);
     /// Removes the surfaces that a view of the map shows. They count as free until they are
     /// observed again. @return the change of map and obstacles
     MapChange forget(const View& shown, const Camera& camera, const Pose& T_c_w);
@@ -56,19 +75,12 @@ class OnlineMap {
         return obstacles_.addBody(*cells_, p_w, radius_);
     }
 
-    /// The obstacles in a depth image that is not fused yet, within the heights that the robot may
-    /// reach.
-    /// @param distance largest horizontal distance from the camera [m]
-    ObstaclesInView obstaclesIn(const ImageF& depth, const Camera& camera, const Pose& T_c_w,
-                                double distance) const;
-
     /// Whether a surface or free space was observed at a place, or below it within explore.range,
     /// and the column of the place is not doubted (DoubtedColumns).
     bool isSeen(const Eigen::Vector3d& p_w) const;
 
     const std::shared_ptr<TexturedOcTree>& cells() const { return cells_; }
     const std::shared_ptr<TexturedOcTree>& obstacles() const { return obstacles_.cells(); }
-    const std::shared_ptr<MapErrors>& errors() const { return errors_; }
 
     /// The information model for planning with views of this map: without the information of its
     /// noise (MapNoise), and with the information expected of unknown space (UnseenInformation) if
@@ -76,19 +88,19 @@ class OnlineMap {
     InformationModel information(const Camera& camera, const PhotometricOptions& options) const;
 
   private:
-    void addKnown(const Config& config);
+    void addKnown();
+    void updateKnown(const MapChange& change);
 
     std::shared_ptr<TexturedOcTree> cells_;
+    KnownCells known_;  // of cells_
     ObstacleMap obstacles_;
     DoubtedColumns doubted_;
-    std::shared_ptr<MapErrors> errors_;
     MapNoise noise_;
     std::optional<UnseenInformation> unseen_;
     PhotometricOptions photometric_;
     FusionOptions fusion_;
-    double precise_;           // depth at which three standard deviations equal a cell [m]
-    double lowest_, highest_;  // heights of relevant obstacles [m]
-    double radius_;            // radius of the robot [m]
+    ObstacleRange range_;  // of images that are fused
+    double radius_;        // radius of the robot [m]
     bool looksDown_;
 };
 

@@ -47,6 +47,25 @@ std::shared_ptr<ob::State> copyOf(const ob::SpaceInformationPtr& si, const ob::S
 
 }  // namespace
 
+/// PlanningLimits with a clock that runs from the construction.
+class OnlinePlanner::Limits {
+  public:
+    explicit Limits(const PlanningLimits& limits) : limits_(limits) {}
+    bool isInterrupted() const { return limits_.interrupted; }
+    /// @param hasPath whether there is a path that could be improved
+    bool isOver(bool hasPath) const {
+        if (isInterrupted()) return true;
+        if (hasPath && watch_.seconds() > limits_.seconds) isClockOver_ = true;
+        return hasPath && isClockOver_;
+    }
+    bool isClockOver() const { return isClockOver_; }  ///< it has ended an improvement
+
+  private:
+    const PlanningLimits& limits_;
+    Stopwatch watch_;
+    mutable bool isClockOver_ = false;
+};
+
 OnlinePlanner::OnlinePlanner(const Config& config, const OnlineMap& map, const ExplorePlanner& kind,
                              std::uint32_t seed)
     : config_(configOf(config, kind.name)),
@@ -93,10 +112,13 @@ std::optional<Eigen::Vector3d> OnlinePlanner::flyableNear(const Eigen::Vector3d&
 }
 
 void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, PlanUpdate& update,
-                           const std::atomic<bool>& interrupted) {
-    const InterruptionScope scope = problem_.interruptedBy(interrupted);
+                           const PlanningLimits& given) {
+    const InterruptionScope scope = problem_.interruptedBy(given.interrupted);
     Stopwatch watch;
-    world_.mapChanged(change);
+    {
+        const std::lock_guard lock(worldMutex_);
+        world_.mapChanged(change);
+    }
     update.clearanceSeconds = watch.seconds();
     const auto field = planner_->model().sharedField();
     const InformationField& exact = problem_.evaluator().field();
@@ -106,6 +128,7 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
     watch = {};
     problem_.followMap();
 
+    const Limits limits(given);
     path_.clear();
     const Pose T_w_b = T_c_w.mean.inverse() * config_.camera.T_b_c().inverse();
     if (const auto from_w = flyableNear(T_w_b.translation())) {
@@ -115,10 +138,11 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
         // Relative to the map in view. What the map's own error adds stays the same wherever the
         // way leads: texture seen for the first time does not inform of the place in the world.
         const Belief belief{inRotatedAxes(config_.belief.initialCovariance, R_w_c), 0.};
-        update.counts = planFrom(state.get(), belief, interrupted);
+        update.counts = planFrom(state.get(), belief, limits);
         if (!plan_.empty()) evaluatePath(T_w_b, T_c_w.covariance);
     }
     update.planSeconds = watch.seconds();
+    update.isEndedByClock = limits.isClockOver();
     update.viewSeconds = field->seconds() + exact.seconds() - viewSecondsBefore;
     update.viewsMarked = field->marked() - markedBefore;
     update.viewsRendered = field->views() + exact.views() - viewsBefore;
@@ -130,7 +154,7 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
 
 /// @return what this changed in the tree
 UpdateCounts OnlinePlanner::planFrom(const ob::State* state, const Belief& belief,
-                                     const std::atomic<bool>& interrupted) {
+                                     const Limits& limits) {
     if (kind_.replanning == Replanning::never && hasPlanned_) {
         if (!plan_.empty()) plan_ = restOf(plan_, state);
         return {};
@@ -138,14 +162,14 @@ UpdateCounts OnlinePlanner::planFrom(const ob::State* state, const Belief& belie
     const bool isNew = kind_.replanning == Replanning::scratch;
     if (isNew) planner_ = problem_.makePlanner(kind_.name, seed_);
     UpdateCounts dropped;
-    if (!solveFrom(state, belief, interrupted) && !isNew && !interrupted) {
+    if (!solveFrom(state, belief, limits) && !isNew && !limits.isInterrupted()) {
         // What is left of a tree may be full without the goal: another one begins here.
         dropped = planner_->lastUpdate();
         dropped.verticesInvalidated += planner_->vertices();
         planner_ = problem_.makePlanner(kind_.name, ++seed_);
-        solveFrom(state, belief, interrupted);
+        solveFrom(state, belief, limits);
     }
-    plan_ = solution(interrupted);
+    plan_ = solution(limits);
     hasPlanned_ = hasPlanned_ || !plan_.empty();
     UpdateCounts counts = planner_->lastUpdate();
     counts.verticesInvalidated += dropped.verticesInvalidated;
@@ -155,16 +179,16 @@ UpdateCounts OnlinePlanner::planFrom(const ob::State* state, const Belief& belie
 }
 
 /// @return whether there is a way to the goal
-bool OnlinePlanner::solveFrom(const ob::State* state, const Belief& belief,
-                              const std::atomic<bool>& interrupted) {
+bool OnlinePlanner::solveFrom(const ob::State* state, const Belief& belief, const Limits& limits) {
     planner_->moveRoot(state, belief);
-    planner_->solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+    planner_->solve(ob::PlannerTerminationCondition(
+        [&] { return limits.isOver(!planner_->bestPath().empty()); }));
     return planner_->getProblemDefinition()->hasExactSolution();
 }
 
 /// The planner's path, smoothed if it has seen no views, with the kind's headings; empty: there
 /// is none.
-OnlinePlanner::States OnlinePlanner::solution(const std::atomic<bool>& interrupted) const {
+OnlinePlanner::States OnlinePlanner::solution(const Limits& limits) const {
     const auto& best = planner_->bestPath();
     if (best.empty()) return {};
     std::vector<const ob::State*> states(best.begin(), best.end());
@@ -174,7 +198,7 @@ OnlinePlanner::States OnlinePlanner::solution(const std::atomic<bool>& interrupt
         for (const ob::State* state : states) plan.push_back(copyOf(si, state));
     } else {
         plan = shortenPath(si, problem_.space(), states, kChangesWithoutViews,
-                           ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+                           ob::PlannerTerminationCondition([&] { return limits.isOver(true); }));
     }
     if (!kind_.headings) return plan;
     states.clear();

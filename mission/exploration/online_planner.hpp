@@ -2,8 +2,11 @@
 // Online planning: updates a plan while the map grows and the robot moves.
 #pragma once
 
+#include <mutex>
+
 #include "config/explore_planner.hpp"
 #include "exploration/online_map.hpp"
+#include "io/stopwatch.hpp"
 #include "problem/planning_problem.hpp"
 
 namespace photonav {
@@ -20,6 +23,15 @@ struct PlanUpdate {
     double cost = 0.;
     double length = 0.;  ///< length of the path from the robot to the goal [m]; NaN: no path
     double trace = 0.;   ///< weightedTrace() of the robot's present belief [m^2]
+    bool isEndedByClock = false;  ///< PlanningLimits::seconds ended the improvement of the plan
+};
+
+/// What ends an update before its work is done.
+struct PlanningLimits {
+    const std::atomic<bool>& interrupted;  ///< ends it at once when it becomes true
+    /// Wall-clock time of planning after which a path is not improved any more [s]. The search for
+    /// a first path goes on.
+    double seconds = kInfinity;
 };
 
 /// The planning problem of a config in the robot's own map, its planner and its best path.
@@ -42,7 +54,7 @@ class OnlinePlanner {
     /// @param update receives all values except `time` and `fuseSeconds`
     /// @throws RenderingStopped when it is interrupted inside a large view
     void update(const MapChange& change, const UncertainPose& T_c_w, PlanUpdate& update,
-                const std::atomic<bool>& interrupted);
+                const PlanningLimits& limits);
 
     /// The path from the robot to the goal with predicted beliefs; empty if none was found.
     const std::vector<BeliefPoint>& path() const { return path_; }
@@ -53,22 +65,29 @@ class OnlinePlanner {
     const BeliefPlanner& planner() const { return *planner_; }
     const Config& config() const { return config_; }
     double clearance(const Eigen::Vector3d& p_w) const { return world_.clearance(p_w); }
+    /// clearance() for another thread than that of update(). It waits while update() changes the
+    /// clearances, which takes milliseconds; not while update() plans.
+    double clearanceBeside(const Eigen::Vector3d& p_w) const {
+        const std::lock_guard lock(worldMutex_);
+        return world_.clearance(p_w);
+    }
 
   private:
     using States = std::vector<std::shared_ptr<ompl::base::State>>;
+    class Limits;
 
     bool isWayOut(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const;
     std::optional<Eigen::Vector3d> flyableNear(const Eigen::Vector3d& p_w) const;
     UpdateCounts planFrom(const ompl::base::State* state, const Belief& belief,
-                          const std::atomic<bool>& interrupted);
-    bool solveFrom(const ompl::base::State* state, const Belief& belief,
-                   const std::atomic<bool>& interrupted);
-    States solution(const std::atomic<bool>& interrupted) const;
+                          const Limits& limits);
+    bool solveFrom(const ompl::base::State* state, const Belief& belief, const Limits& limits);
+    States solution(const Limits& limits) const;
     States restOf(const States& plan, const ompl::base::State* state) const;
     std::vector<BeliefPoint> pathFrom(const Pose& T_w_b, const Matrix6& covariance);
     void evaluatePath(const Pose& T_w_b, const Matrix6& covariance);
 
     Config config_;
+    mutable std::mutex worldMutex_;  // of world_ while it changes, for clearanceBeside()
     World world_;
     PlanningProblem problem_;
     ExplorePlanner kind_;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "exploration/plan_update_json.hpp"
+#include "exploration/real_time_json.hpp"
 #include "geometry/constants.hpp"
 #include "map/octree_file.hpp"
 #include "result/json_values.hpp"
@@ -107,6 +108,7 @@ json TrialKind::save(const ExplorationResult& flight, const fs::path& folder) {
     json line = lineOf(flight, linesOf(flight.updates));
     line["wall_s"] = flight.wallSeconds;
     line["has_map"] = flight.map != nullptr;
+    if (flight.realTime) line["real_time"] = realTimeJson(*flight.realTime);
     return line;
 }
 
@@ -136,6 +138,7 @@ ExplorationResult TrialKind::load(const json& line, const fs::path& folder) {
     flight.wallSeconds = nonNegative(line, "wall_s");
     for (const json& sample : line.at("samples")) flight.samples.push_back(sampleFrom(sample));
     for (const json& update : line.at("updates")) flight.updates.push_back(planUpdateFrom(update));
+    if (line.contains("real_time")) flight.realTime = realTimeFrom(line.at("real_time"));
     if (line.at("has_map").get<bool>() && fs::exists(folder / kMapFile)) {
         flight.map = loadTexturedOcTree(folder / kMapFile);
     }

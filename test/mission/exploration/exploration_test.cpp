@@ -7,6 +7,7 @@
 
 #include "flight/flight_statistics.hpp"
 #include "io/error.hpp"
+#include "mission/exploration/changing_views.hpp"
 #include "mission/exploration/room_to_explore.hpp"
 
 namespace photonav {
@@ -132,21 +133,6 @@ TEST_F(RoomToExplore, ArrivesByOdometryWhereNothingHasTexture) {
     EXPECT_EQ(nameOf(flown(test::greyRoom()).end), "uncertain arrival");
 }
 
-/// One world until it becomes another.
-class ChangingViews : public ViewSource {
-  public:
-    ChangingViews(const World& before, const World& after, const bool& hasChanged)
-        : before_(before), after_(after), hasChanged_(hasChanged) {}
-    void render(const Camera& camera, const Pose& T_c_w, View& view) const override {
-        (hasChanged_ ? after_ : before_).views().render(camera, T_c_w, view);
-    }
-
-  private:
-    const World& before_;
-    const World& after_;
-    const bool& hasChanged_;
-};
-
 /// A box comes down on the way, in space that the map has free, when the robot is 1.4 m before it.
 TEST_F(RoomToExplore, FliesAroundABoxThatAppearsInFrontOfIt) {
     Scene boxed = test::roomToExplore();
@@ -156,7 +142,7 @@ TEST_F(RoomToExplore, FliesAroundABoxThatAppearsInFrontOfIt) {
     for (const std::uint32_t seed : {1U, 2U, 3U, 4U}) {
         bool hasChanged = false;
         ExplorationSetup setup = setUpExploration(problem);
-        setup.truth.truth = std::make_shared<ChangingViews>(before, after, hasChanged);
+        setup.truth.truth = std::make_shared<test::ChangingViews>(before, after, hasChanged);
         setup.truth.clearance = [&](const Eigen::Vector3d& p_w) {
             return (hasChanged ? after : before).clearance(p_w);
         };

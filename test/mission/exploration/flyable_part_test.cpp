@@ -11,12 +11,12 @@ namespace {
 using Eigen::Vector3d;
 
 /// A straight path of 4 m along x.
-std::vector<BeliefPoint> straightPath(double yaw) {
-    std::vector<BeliefPoint> path;
+std::vector<PlannedView> straightPath(double yaw) {
+    std::vector<PlannedView> path;
     for (int i = 0; i <= 8; ++i) {
-        BeliefPoint point;
+        PlannedView point;
         point.T_w_b = levelPose({0.5 * i, 0., 1.}, yaw);
-        point.length = point.distance = 0.5 * i;
+        point.distance = 0.5 * i;
         path.push_back(point);
     }
     return path;
@@ -126,6 +126,54 @@ TEST(FlyablePart, NeverLeadsIntoAnObstacle) {
     EXPECT_TRUE(flyablePart(straightPath(0.), space).isWhole);
     space.clearance = [](const Vector3d& p_w) { return 0.2 - p_w.x(); };
     EXPECT_EQ(endOf(flyablePart(straightPath(0.), space)), 0.);
+}
+
+/// Of a plan of 4 m along x for a robot that is now half a metre along it and somewhat beside it.
+TEST(ContinuedFrom, LeadsToTheNearestPlaceAndOn) {
+    Pose here = Pose::Identity();
+    here.translation() << 0.7, 0.1, 1.;
+    const std::vector<PlannedView> rest = continuedFrom(here, straightPath(0.));
+    ASSERT_EQ(rest.size(), 9U);  // here, beside here, and at 1, 1.5, ... 4 m
+    EXPECT_TRUE(rest.front().T_w_b.isApprox(here));
+    EXPECT_EQ(rest.front().distance, 0.);
+    EXPECT_TRUE(rest[1].T_w_b.translation().isApprox(Vector3d(0.7, 0., 1.), 1e-9));
+    EXPECT_NEAR(rest[1].distance, 0.1, 1e-9);
+    EXPECT_NEAR(rest[2].distance, 0.4, 1e-9);
+    EXPECT_NEAR(rest.back().distance, 3.4, 1e-9);
+    EXPECT_TRUE(rest.back().isWaypoint == straightPath(0.).back().isWaypoint);
+}
+
+/// A plan may come back to where it began: what lies in between is not left out.
+TEST(ContinuedFrom, LeavesOutNoMoreThanWasFlown) {
+    std::vector<PlannedView> plan = straightPath(0.);
+    for (int i = 7; i >= 0; --i) {
+        PlannedView back = plan[static_cast<std::size_t>(i)];
+        back.distance = 8. - back.distance;
+        plan.push_back(back);
+    }
+    Pose here = Pose::Identity();
+    here.translation() << 0.3, 0., 1.;
+    EXPECT_NEAR(continuedFrom(here, plan).back().distance, 7.7, 1e-9);
+}
+
+TEST(ContinuedFrom, TurnsWhereTheRobotIs) {
+    const PlannedView begin = straightPath(0.).front(), end = straightPath(2.).front();
+    Pose here = Pose::Identity();
+    here.translation() << 0.4, 0.2, 1.;
+    const std::vector<PlannedView> turn = continuedFrom(here, {begin, end});
+    ASSERT_EQ(turn.size(), 2U);
+    EXPECT_EQ(turn.back().T_w_b.translation(), here.translation());
+    EXPECT_NEAR(yawOf(turn.back().T_w_b), 2., 1e-9);
+    EXPECT_EQ(turn.back().distance, 0.);
+}
+
+TEST(ContinuedFrom, IsThePlanWhereTheRobotHasNotMoved) {
+    const std::vector<PlannedView> plan = straightPath(0.5);
+    const std::vector<PlannedView> rest = continuedFrom(plan.front().T_w_b, plan);
+    ASSERT_EQ(rest.size(), plan.size());
+    for (std::size_t i = 0; i < plan.size(); ++i) {
+        EXPECT_EQ(rest[i].T_w_b.matrix(), plan[i].T_w_b.matrix());
+    }
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ class EmptyFloor : public testing::Test {
         return render(std::move(scene), 0.);
     }
     ObstaclesInView seenIn(const View& view) const {
-        return {view.depth, camera, at(0.), map, {1.6, 3., 0.7, 1.7}};
+        return {view.depth, camera, at(0.), KnownCells(map), {1.6, 3., 0.7, 1.7}};
     }
 
     Camera camera = makeCamera(188, 120, 1.2);
@@ -83,14 +83,13 @@ TEST_F(EmptyFloor, AWallOfTheMapIsNotNew) {
     const View box = boxOf(3.);
     for (int i = 0; i < 12; ++i) fuse(map, 0., box);
     EXPECT_TRUE(seenIn(box).newWalls().empty());
-    TexturedOcTree empty(0.05);
-    const ObstaclesInView unknown(box.depth, camera, at(0.), empty, {1.6, 3., 0.7, 1.7});
+    const ObstaclesInView unknown(box.depth, camera, at(0.), KnownCells(0.05), {1.6, 3., 0.7, 1.7});
     EXPECT_TRUE(unknown.newWalls().empty());
 }
 
 TEST_F(EmptyFloor, DepthsThatAreTooCoarseShowNothingNew) {
     const View box = boxOf(3.);
-    const ObstaclesInView seen(box.depth, camera, at(0.), map, {1.6, 0.8, 0.7, 1.7});
+    const ObstaclesInView seen(box.depth, camera, at(0.), KnownCells(map), {1.6, 0.8, 0.7, 1.7});
     EXPECT_TRUE(seen.newWalls().empty());
 }
 

@@ -27,7 +27,7 @@ class MapOfABox : public testing::Test {
 
     OnlineMap fused() const {
         OnlineMap map(config);
-        map.fuse(image, camera, T_c_w, map.addPose({T_c_w, 1e-4 * Matrix6::Identity()}));
+        map.fuse(image, camera, T_c_w);
         return map;
     }
     static bool isObstacle(const OnlineMap& map, double x, double y, double z) {
@@ -101,16 +101,15 @@ TEST_F(MapOfABox, FollowsWhatMoves) {
     MeshRenderer(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})))
         .render(camera, T_c_w, empty);
     OnlineMap map(config);
-    const int pose = map.addPose({T_c_w, 1e-4 * Matrix6::Identity()});
     const auto isOccupied = [&] { return isObstacle(map, 0.05, 0.35, 1.05); };
-    for (int i = 0; i < 20; ++i) map.fuse(empty, camera, T_c_w, pose);
+    for (int i = 0; i < 20; ++i) map.fuse(empty, camera, T_c_w);
     EXPECT_TRUE(map.isSeen({0., -1.2, 1.}));
-    map.fuse(image, camera, T_c_w, pose);
+    map.fuse(image, camera, T_c_w);
     EXPECT_FALSE(isOccupied());
-    map.fuse(image, camera, T_c_w, pose);
+    map.fuse(image, camera, T_c_w);
     EXPECT_TRUE(isOccupied());
-    for (int i = 0; i < 20; ++i) map.fuse(image, camera, T_c_w, pose);
-    for (int i = 0; i < 4; ++i) map.fuse(empty, camera, T_c_w, pose);
+    for (int i = 0; i < 20; ++i) map.fuse(image, camera, T_c_w);
+    for (int i = 0; i < 4; ++i) map.fuse(empty, camera, T_c_w);
     EXPECT_FALSE(isOccupied());
 }
 
@@ -122,13 +121,13 @@ TEST_F(MapOfABox, DoubtsWhatIsNotInViewAroundANewOne) {
     const auto look = [&](double x) {
         const Pose there = lookFrom({x, 0., 2.}, test::kDown);
         floor.render(camera, there, empty);
-        map.fuse(empty, camera, there, map.addPose({there, 1e-4 * Matrix6::Identity()}));
+        map.fuse(empty, camera, there);
     };
     look(1.2);
     look(0.);
     const Eigen::Vector3d beyond(1.05, 0.35, 1.2), farBeyond(1.5, 0.35, 1.2);
     ASSERT_TRUE(map.isSeen(beyond) && map.isSeen(farBeyond));
-    map.fuse(image, camera, T_c_w, map.addPose({T_c_w, 1e-4 * Matrix6::Identity()}));
+    map.fuse(image, camera, T_c_w);
     EXPECT_FALSE(map.isSeen(beyond));
     EXPECT_TRUE(map.isSeen(farBeyond));
     EXPECT_TRUE(map.isSeen({0., -0.5, 1.2}));   // in view
@@ -154,15 +153,9 @@ TEST_F(MapOfABox, IsSeenAboveSurfacesWithinRange) {
     EXPECT_FALSE(OnlineMap(config).isSeen({0., -0.5, 1.}));
 }
 
-/// Whose errors the map has are those of the keyframes whose surfaces it was made of.
 TEST_F(MapOfABox, SurfacesOutOfRangeAreNotMapped) {
-    View shown = image;
-    const UncertainPose belief{T_c_w, 1e-4 * Matrix6::Identity()};
-    EXPECT_NEAR(fused().errors()->relate(shown, camera, belief).views, 1., 1e-9);
     config.explore.range = 0.4;
-    const OnlineMap map = fused();
-    EXPECT_EQ(map.errors()->relate(shown, camera, belief).views, 0.);
-    EXPECT_FALSE(isObstacle(map, 0.05, -0.45, 0.05));
+    EXPECT_FALSE(isObstacle(fused(), 0.05, -0.45, 0.05));
 }
 
 /// The noise of the images left in the map does not inform; unknown space does as the config says.

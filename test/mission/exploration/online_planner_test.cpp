@@ -44,13 +44,13 @@ class OnlinePlannerTest : public ::testing::Test {
 
     /// @param p_w of the robot, which looks along x
     PlanUpdate updateAt(OnlinePlanner& planner, const Eigen::Vector3d& p_w,
-                        const MapChange& change = {}) {
+                        const MapChange& change = {}, double seconds = kInfinity) {
         Pose T_w_b = Pose::Identity();
         T_w_b.translation() = p_w;
         PlanUpdate update;
         planner.update(
             change, {(T_w_b * config_.camera.T_b_c()).inverse(), config_.explore.initialCovariance},
-            update, kNotInterrupted);
+            update, {kNotInterrupted, seconds});
         return update;
     }
 
@@ -120,6 +120,18 @@ TEST_F(OnlinePlannerTest, FromScratchKeepsNothing) {
     const std::size_t all = 10 * config_.explore.vertices;  // as rival
     EXPECT_EQ(updateAt(scratch, {0.2, 0., 1.}).counts.verticesAdded, all);
     EXPECT_LT(updateAt(repaired, {0.2, 0., 1.}).counts.verticesAdded, all / 2);
+}
+
+/// Without any time there is a path, but nothing is improved; with time again, it is.
+TEST_F(OnlinePlannerTest, TheClockEndsImprovementsAfterTheFirstPath) {
+    for (const char* name : {"rrt_star", "belief_rrt_star"}) {
+        OnlinePlanner hurried = planner(name);
+        EXPECT_TRUE(updateAt(hurried, {0., 0., 1.}, {}, 0.).isEndedByClock) << name;
+        ASSERT_FALSE(hurried.path().empty()) << name;
+        const std::size_t few = hurried.planner().samples();
+        EXPECT_FALSE(updateAt(hurried, {0., 0., 1.}).isEndedByClock) << name;
+        EXPECT_LT(few, hurried.planner().samples()) << name;
+    }
 }
 
 }  // namespace

@@ -104,6 +104,20 @@ TEST_F(TrialFiles, GiveBackWhatWasWritten) {
     EXPECT_EQ(journal.missing({first_, second_}), std::vector{second_});
 }
 
+TEST_F(TrialFiles, GiveBackWhatAFlightInRealTimeMissed) {
+    ExplorationResult flight = makeFlight(first_);
+    flight.realTime.emplace();
+    flight.realTime->planAge = {3, 0.1 + 0.2, 1., 2.};
+    flight.realTime->waited = 2;
+    create({makeFlight(second_)}).append(flight);
+    const std::vector<ExplorationResult> flights = read().runs();
+    ASSERT_EQ(flights.size(), 2U);
+    EXPECT_FALSE(flights[0].realTime);
+    ASSERT_TRUE(flights[1].realTime);
+    EXPECT_EQ(flights[1].realTime->planAge.median, 0.1 + 0.2);
+    EXPECT_EQ(flights[1].realTime->waited, 2U);
+}
+
 TEST_F(TrialFiles, AFlightThatIsThereTwiceMustBeTheSame) {
     ExplorationResult flight = makeFlight(first_);
     TrialJournal journal = create({flight});
