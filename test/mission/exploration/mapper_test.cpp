@@ -15,7 +15,7 @@ class MapperTest : public testing::Test {
         config.camera.width = 94;
         config.camera.height = 60;
         camera = config.camera.camera();
-        tracked.T_c_w = {test::cameraAt({0., 0., 2.}, test::kDown), 1e-4 * Matrix6::Identity()};
+        tracked.T_c_w = {lookFrom({0., 0., 2.}, test::kDown), 1e-4 * Matrix6::Identity()};
         MeshRenderer(test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})))
             .render(camera, tracked.T_c_w.mean, image);
         empty.intensity = ImageF(60, 94, 0.F);
