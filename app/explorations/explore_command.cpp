@@ -141,11 +141,13 @@ std::optional<ExplorationResult> flyMissing(const ExploreOptions& options,
     ExploreProgress progress(options.quiet, items.size(), open);
     const auto onEnd = [&](ExplorationResult flight) {
         const bool isFirst = itemOf(flight) == items.front();
-        if (isFirst) watch.finish(flight, folder);
-        if (flight.end != FlightEnd::stopped) {
+        const bool isCut = flight.end == FlightEnd::stopped;
+        if (isFirst && !(isCut && watch.isBehindStored())) watch.finish(flight, folder);
+        if (!isCut) {
             progress.onEnd(flight);
             if (!isFirst) flight.map.reset();
             journal.append(std::move(flight));
+            if (isFirst) watch.removeStored();
         } else if (isFirst) {
             cut = std::move(flight);
         }
@@ -179,11 +181,19 @@ std::optional<FlightLog> earlierLog(const FolderTransaction& folder, const Trial
     return log ? log : readFlightLog(folder.target(), first);
 }
 
-/// @throws InputError where a killed program has left a flight, and --resume is not given
-void checkNoFlightIsLost(const ExploreOptions& options, const FolderTransaction& folder) {
-    if (options.resume) return;
+/// @throws InputError where a killed program has left a flight, and --resume is not given or cannot
+///         fly it again
+void checkNoFlightIsLost(const ExploreOptions& options, const Config& config,
+                         const FolderTransaction& folder) {
+    if (options.resume && !config.explore.realtime) return;
     const std::size_t keyframes = storedKeyframes(folder.path());
     if (keyframes == 0) return;
+    if (config.explore.realtime) {
+        throw InputError(folder.path().string(), "",
+                         fmt::format("holds {} keyframes of a killed flight in real time, which "
+                                     "cannot be flown again: move that folder away",
+                                     keyframes));
+    }
     throw InputError(folder.path().string(), "",
                      fmt::format("holds {} keyframes of a flight that was killed: go on with "
                                  "--resume, or remove that folder",
@@ -231,7 +241,7 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
                               setup.truth.camera, setup.flight.tracker.map);
     const JournalHeader header{name, toYaml(config), TrialKind::identity(config), shard};
     std::vector<ExplorationResult> earlier = runsSoFar<TrialKind>(options, folder, header);
-    checkNoFlightIsLost(options, folder);
+    checkNoFlightIsLost(options, config, folder);
     keepMapOf(items.front(), earlier);
     const bool isFlown = std::any_of(
         earlier.begin(), earlier.end(),
@@ -249,10 +259,19 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
 
     const auto cut =
         flyMissing(options, setup, items, journal, recording, watch, folder.path(), interrupted);
-    recording.commit();
+    if (cut && watch.isBehindStored()) {
+        fmt::print(stderr, "photonav: the killed flight in {} stays\n", folder.path().string());
+        return kInterrupted;
+    }
     if (!isFlown) log = watch.log();
     std::vector<ExplorationResult> flights = journal.runsOf(items);
     const std::size_t ended = flights.size();
+    if (cut && ended == 0 && keepsEarlierResult(folder, log->moments.empty())) {
+        folder.discard();
+        return kInterrupted;
+    }
+    if (cut) watch.removeStored();
+    recording.commit();
     if (cut) flights.insert(flights.begin(), *cut);
     return conclude(options, setup, world, folder,
                     {{.flights = std::move(flights),

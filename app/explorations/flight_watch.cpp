@@ -30,7 +30,6 @@ OnExplorationMoment FlightWatch::onMoment() {
 void FlightWatch::finish(const ExplorationResult& flight, const fs::path& folder) {
     logger_.finish(flight);
     writeFlightLog(folder, log());
-    if (store_) store_->remove();
     if (server_) server_->publish("end", endJson(log()).dump());
 }
 

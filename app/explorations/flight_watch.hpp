@@ -35,8 +35,14 @@ class FlightWatch {
     /// not outlive the watch.
     OnExplorationMoment onMoment();
 
-    /// Adds the end of the flight, writes the log into a folder in place of what was stored so far,
-    /// and informs the browsers.
+    /// Whether the store holds a killed flight that went on longer than this one so far.
+    bool isBehindStored() const { return store_ && log().moments.size() < store_->earlier(); }
+    /// The flight is kept elsewhere.
+    void removeStored() {
+        if (store_) store_->remove();
+    }
+
+    /// Adds the end of the flight, writes the log into a folder, and informs the browsers.
     void finish(const ExplorationResult& flight, const std::filesystem::path& folder);
 
     const FlightLog& log() const { return logger_.log(); }

@@ -20,8 +20,8 @@ Place placeOf(const std::optional<std::string>& at, const Place& otherwise, cons
         }
         place = {Eigen::Vector3d(numbers->data()), std::nullopt};
         if (numbers->size() == 4) place.yaw = (*numbers)[3];
-        if (std::abs(place.yaw.value_or(0.)) > kMostTurns) {
-            throw InputError("--at", *at, fmt::format("heading beyond {} rad", kMostTurns));
+        if (std::abs(place.yaw.value_or(0.)) > kLargestHeading) {
+            throw InputError("--at", *at, fmt::format("heading beyond {} rad", kLargestHeading));
         }
     }
     if (!place.yaw) place.yaw = config.start.yaw;  // the only heading there is in space xyz

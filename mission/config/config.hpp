@@ -20,11 +20,11 @@
 
 namespace photonav {
 
+/// Largest absolute heading of a place [rad]: of 1e16 no digit is left within a turn.
+inline constexpr double kLargestHeading = 1e3;
+
 /// A position and perhaps a heading of the body in the world, [x, y, z] or [x, y, z, yaw]
 /// [m, rad].
-/// Largest absolute heading of a place [rad].
-inline constexpr double kMostTurns = 1e3;
-
 struct Place {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     std::optional<double> yaw;

@@ -23,8 +23,8 @@ Place readPlace(YamlMap& root, const std::string& key, const Eigen::AlignedBox3d
     root.readNumbers(key, numbers, 3, 4);
     Place place{Eigen::Vector3d(numbers[0], numbers[1], numbers[2]), std::nullopt};
     if (numbers.size() == 4) {
-        if (std::abs(numbers[3]) > kMostTurns) {
-            root.fail(key, fmt::format("heading beyond {} rad", kMostTurns));
+        if (std::abs(numbers[3]) > kLargestHeading) {
+            root.fail(key, fmt::format("heading beyond {} rad", kLargestHeading));
         }
         place.yaw = numbers[3];
     }

@@ -12,12 +12,12 @@ namespace photonav {
 BackgroundReplanner::~BackgroundReplanner() { isStopped_ = true; }
 
 void BackgroundReplanner::add(ReplanRequest request) {
-    waited_ += isBusy() ? 1 : 0;
+    waited_ += running_.valid() ? 1 : 0;
     if (!waiting_) {
         waiting_ = std::move(request);
         return;
     }
-    ++joined_;
+    joined_ += running_.valid() ? 1 : 0;
     std::vector<MapInput> images = std::move(waiting_->images);
     std::move(request.images.begin(), request.images.end(), std::back_inserter(images));
     waiting_ = std::move(request);

@@ -169,10 +169,14 @@ void Explorer::onImage(const TrackedFrame& tracked, const View& image) {
     const bool isStopped = isInTheWay(tracked, image);
     View shown;
     views()->render(camera_, tracked.T_c_w.mean, shown);
-    auto input = mapper_.choose(tracked, image, shown, isWaiting() || isStopped);
+    // While the second thread is busy, the first image that shows an obstacle is enough.
+    const bool isBusy = background_ && background_->isBusy();
+    const bool isNews = isStopped && !(isBusy && !notInMap_.empty());
+    if (background_ && isStopped) notInMap_.emplace_back(tracked.time, inView_);
+    auto input = mapper_.choose(tracked, image, shown, isWaiting() || isNews);
     record_.keyframes = mapper_.keyframes();
     stopIfInterrupted();
-    if (!input && isStopped) input = MapInput{image, shown, tracked.T_c_w};  // for the plan alone
+    if (!input && isNews) input = MapInput{image, shown, tracked.T_c_w};  // for the plan alone
     if (!input) return;
     ReplanRequest request{{std::move(*input)}, inView_, tracker_.belief(), tracked.time};
     if (background_) return background_->add(std::move(request));
@@ -214,10 +218,15 @@ std::vector<PlannedView> Explorer::wayAhead() const {
 /// The part of a plan that is free in map and last image, for a robot that has flown on meanwhile.
 FlyablePart Explorer::fromHere(const FlyablePart& way) const {
     const auto clearance = [this](const Eigen::Vector3d& p_w) {
-        return std::min(replanner_.clearanceBeside(p_w),
-                        clearanceInView(inView_, p_w, config_.robotRadius, tube_));
+        const auto inImage = [&](const ObstaclesInView& inView) {
+            return clearanceInView(inView, p_w, config_.robotRadius, tube_);
+        };
+        double least = std::min(replanner_.clearanceBeside(p_w), inImage(inView_));
+        for (const auto& [time, inView] : notInMap_) least = std::min(least, inImage(inView));
+        return least;
     };
-    const auto isSeen = [](const Eigen::Vector3d&) { return true; };  // or it would not be flown
+    // The Replanner has ended the way before unseen space.
+    const auto isSeen = [](const Eigen::Vector3d&) { return true; };
     FlyablePart rest =
         flyablePart(continuedFrom(here(), way.plan),
                     {.clearance = clearance, .isSeen = isSeen, .radius = config_.robotRadius});
@@ -231,6 +240,8 @@ FlyablePart Explorer::fromHere(const FlyablePart& way) const {
 void Explorer::takeOver(Replanned replanned) {
     for (const MapInput& image : replanned.request.images) mapper_.addSurfaces(image);
     known_.set(replanned.cells);
+    std::erase_if(notInMap_,
+                  [&](const auto& image) { return image.first <= replanned.request.imageTime; });
     views_ = replanned.views;
     tracker_.setMap(views());
     pilot_.setMap(views());

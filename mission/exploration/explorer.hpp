@@ -168,7 +168,9 @@ class Explorer {
     Mapper mapper_;
     Tracker tracker_;
     Pilot pilot_;
-    ObstaclesInView inView_;                 // in the last image
+    ObstaclesInView inView_;  // in the last image
+    /// In images before that have stopped the robot, until its map has them: time, obstacles.
+    std::vector<std::pair<double, ObstaclesInView>> notInMap_;
     double time_ = 0.;                       // [s]
     bool hasPath_ = false;                   // the planner has found one at the last update
     bool isWhole_ = false;                   // the part of the plan being flown leads to the goal

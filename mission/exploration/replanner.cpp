@@ -42,6 +42,8 @@ Replanned Replanner::replan(ReplanRequest request, const PlanningLimits& limits)
     fuse(replanned);
     if (limits.interrupted) throw RenderingStopped();
     planner_.update(replanned.change, replanned.request.T_c_w, replanned.update, limits);
+    if (isFirst_) replanned.change.join(map_.whole());  // for those who saw no earlier change
+    isFirst_ = false;
     replanned.views = planner_.views();
     replanned.way = flyableWay(replanned.request.inView);
     return replanned;
@@ -55,8 +57,6 @@ void Replanner::fuse(Replanned& replanned) {
     replanned.cells = KnownCells::bricksOf(*map_.cells(), change.occupancy);
     const Pose T_w_b = (config_.camera.T_b_c() * replanned.request.T_c_w.mean).inverse();
     change.join(map_.addBody(T_w_b.translation()));
-    if (isFirst_) change.join(map_.whole());  // for those who saw no earlier change
-    isFirst_ = false;
     replanned.update.fuseSeconds = watch.seconds();
 }
 

@@ -32,10 +32,10 @@ struct Replanned {
 /// The robot's map and the planner in it.
 ///
 ///     replan(request):
-///         for every image: remove what it contradicts, fuse its depth          (OnlineMap::add)
-///         free the space of the robot's body (OnlineMap::addBody) update clearance and views,
-///         repair the plan from the present belief  (OnlinePlanner) keep the part of the plan that
-///         was seen and is free                  (flyablePart)
+///         for every image: remove what it contradicts, fuse its depth       (OnlineMap::add)
+///         free the space of the robot's body                            (OnlineMap::addBody)
+///         update clearance and views, repair the plan                        (OnlinePlanner)
+///         keep the part of the plan that was seen and is free                 (flyablePart)
 ///
 /// One thread at a time may call replan() and the accessors. Another thread may call
 /// clearanceBeside() at any time.

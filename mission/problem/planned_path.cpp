@@ -47,7 +47,7 @@ void checkPlaces(const std::vector<Place>& waypoints, const std::string& file,
             fail(fmt::format("({}, {}, {}) is out of the bounds of its config", p_w.x(), p_w.y(),
                              p_w.z()));
         }
-        if (std::abs(*waypoints[i].yaw) > kMostTurns) {
+        if (std::abs(*waypoints[i].yaw) > kLargestHeading) {
             fail(fmt::format("a heading of {} rad", *waypoints[i].yaw));
         }
         if (i == 0) continue;

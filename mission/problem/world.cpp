@@ -62,17 +62,18 @@ World::World(const Config& config) {
                          "not together with scene.file: only `photonav explore` takes both, the "
                          "scene as the world and the map as what the robot knows of it");
     }
-    const std::shared_ptr<TexturedOcTree> map =
-        config.mapFile.empty() ? nullptr : loadMapOf(config);
+    const bool isScene = config.mapFile.empty();
     try {
-        if (map == nullptr) {
+        if (isScene) {
             useScene(loadScene(config.sceneFile), config);
         } else {
+            const std::shared_ptr<TexturedOcTree> map = loadMapOf(config);
             hasTexture_ = isTextured(*map);
             views_ = std::make_shared<VoxelRenderer>(*map, config.unknownToCamera);
             useMap(map, map, config);
         }
     } catch (const InputError& error) {
+        if (!isScene) throw;
         throw InputError(config.file, "scene.file", error.what());
     } catch (const std::invalid_argument& error) {  // too large a grid for these bounds
         throw InputError(config.file, "bounds", error.what());

@@ -91,17 +91,25 @@ void JournalFile::append(const json& line) {
         stream_.open(path_, std::ios::app);
     }
     const std::string text = jsonLine(line);
+    const auto dropLine = [&] {
+        stream_.close();          // tries once more
+        std::error_code ignored;  // a line that was cut is dropped by readers, too
+        fs::resize_file(path_, size_, ignored);
+    };
     errno = 0;
     stream_ << text << std::flush;
     if (stream_) {
+        try {
+            synchronise(path_, path_);
+        } catch (const InputError&) {
+            dropLine();
+            throw;
+        }
         size_ += text.size();
-        synchronise(path_, path_);
         return;
     }
     const std::string reason = errno != 0 ? std::strerror(errno) : "input/output error";
-    stream_.close();          // tries once more
-    std::error_code ignored;  // a line that was cut is dropped by readers, too
-    fs::resize_file(path_, size_, ignored);
+    dropLine();
     throw InputError(path_.string(), "", "cannot be written: " + reason);
 }
 

@@ -58,7 +58,7 @@ SweepRun SweepKind::load(const json& line, const std::filesystem::path& /*folder
         const Eigen::Vector3d place(p.at(0), p.at(1), p.at(2));
         if (!(place.norm() <= kMostOfARun)) throw std::out_of_range("path");
         const double heading = p.at(3);
-        if (!(std::abs(heading) <= kMostTurns)) throw std::out_of_range("heading");
+        if (!(std::abs(heading) <= kLargestHeading)) throw std::out_of_range("heading");
         run.path.push_back({place, heading});
     }
     return run;

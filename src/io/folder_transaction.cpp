@@ -170,7 +170,7 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
     lock();
     endExchange();
     // The process ended after an exchange, before the earlier result was removed.
-    Manifest left = Manifest::read(working_);
+    const Manifest left = Manifest::read(working_);
     if (!left.empty()) {
         if (const auto file = left.foreignFile(working_)) {
             refuse(working_ / *file,
@@ -180,10 +180,10 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
     const bool isReplaced = !left.empty() && Manifest::read(resolved_).hasReplaced(working_);
     if (unfinished_ == Unfinished::removed) checkLeftNoWork(working_, left);
     if (isReplaced || unfinished_ == Unfinished::removed) removeLeftovers();
-    if (isReplaced) left = {};
     removeTemporaryFiles(working_);
-    const bool isNewWork = unfinished_ == Unfinished::kept && left.empty();
-    if (isNewWork && !writeInto(lock_.get(), left)) {  // on a full disk: what comes next says so
+    // What it lists changes from here on.
+    const bool isKept = unfinished_ == Unfinished::kept;
+    if (!isKept || !writeInto(lock_.get(), {})) {  // on a full disk: what comes next says so
         static_cast<void>(!ftruncate(lock_.get(), 0));
     }
     ++open_;
@@ -244,6 +244,8 @@ void FolderTransaction::removeLeftovers() const {
         if (entry.path().filename() != Manifest::kFileName) fs::remove_all(entry.path());
     }
 }
+
+void FolderTransaction::discard() { removeLeftovers(); }
 
 FolderTransaction::~FolderTransaction() {
     --open_;

@@ -59,6 +59,9 @@ class FolderTransaction {
     /// @throws InputError when that cannot be done; the working folder is kept then
     void commit();
 
+    /// Removes what was written so far: nothing of it is worth keeping.
+    void discard();
+
     /// Whether this process has an open transaction. Without one, an interrupted process has no
     /// results to keep. May be called in a signal handler.
     static bool isAnyOpen() { return open_ > 0; }

@@ -28,7 +28,8 @@ ResidualStatistics statisticsOf(const NormalEquations& e, const Exposure& exposu
     return s;
 }
 
-/// The pose has little influence: gradients and Laplacian are hardly correlated.
+/// Least squares of residuals that are the variance of the blur times b (BlurSums). The pose is
+/// left out: gradients and Laplacian are hardly correlated.
 void estimateBlur(const NormalEquations& e, const PhotometricOptions& photometric, Alignment& a) {
     if (!(e.byBlur.btb > 0.) || e.count < 1.) return;
     const double noise = std::max(photometric.sigma * photometric.sigma, e.sumSquares / e.count);

@@ -141,7 +141,7 @@ Calibration calibrateLeastSigma(std::span<const AlignmentError> errors, double s
     return result;
 }
 
-double calibrateDepthError(std::span<const AlignmentError> errors, double counted) {
+std::optional<double> calibrateDepthError(std::span<const AlignmentError> errors, double counted) {
     requireEnough(errors);
     constexpr double kLeast = 1e-3, kStep = 1.05;
     double best = 0., least = kInfinity;
@@ -155,6 +155,7 @@ double calibrateDepthError(std::span<const AlignmentError> errors, double counte
         if (m < least) best = share;
         least = std::min(least, m);
     }
+    if (least == kInfinity) return {};
     return best;
 }
 

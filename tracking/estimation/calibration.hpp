@@ -3,6 +3,7 @@
 // deviations to recorded errors.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "alignment/alignment.hpp"
@@ -53,9 +54,9 @@ Calibration calibrateLeastSigma(std::span<const AlignmentError> errors, double s
 /// The relative error of depth (ModelErrors::depthScale) of maximum likelihood, for alignments to
 /// keyframes: what depth gets wrong shows as an error in proportion to the motion.
 /// @param counted the relative error that the information of `errors` contains
-/// @return in [0, 1]
+/// @return in [0, 1]; nothing if the information of an error is smaller than `counted` allows
 /// @throws std::invalid_argument below 20 samples
-double calibrateDepthError(std::span<const AlignmentError> errors, double counted);
+std::optional<double> calibrateDepthError(std::span<const AlignmentError> errors, double counted);
 
 /// By how much rendered views of textures, with texels from 0.15 to 3 pixels wide, are sharper than
 /// AreaSensor's with the point spread added: 0.04 to 0.11, root mean square over poses [pixels^2].

@@ -281,6 +281,23 @@ TEST_F(FolderTransactionTest, UnfinishedWorkIsKeptThatWasAboutToReplaceTheFolder
     EXPECT_FALSE(fs::exists(target_ / "old.txt"));
 }
 
+TEST_F(FolderTransactionTest, WorkThatWentOnAfterAFailedCommitIsNoForeignFile) {
+    commit(target_, "old.txt", "old");
+    inKilledProcess([&] {
+        FolderTransaction transaction(target_, Unfinished::kept);
+        write(transaction.path() / "runs.txt", "1");
+        write(target_ / "notes.txt", "mine");  // in the way: the manifest is written, and stays
+        EXPECT_THROW(transaction.commit(), InputError);
+    });
+    fs::remove(target_ / "notes.txt");
+    inKilledProcess([&] {
+        const FolderTransaction transaction(target_, Unfinished::kept);
+        write(transaction.path() / "runs.txt", "1 2");
+    });
+    const FolderTransaction next(target_, Unfinished::kept);
+    EXPECT_EQ(contentOf(next.path() / "runs.txt"), "1 2");
+}
+
 TEST_F(FolderTransactionTest, UnfinishedWorkIsKeptWhereTheFolderInTheWayWasMoved) {
     commit(target_, "old.txt", "old");
     inKilledProcess([&] {

@@ -197,8 +197,7 @@ TEST(Config, ComplaintsNameKeyAndReason) {
     expectComplaint("seed=1.5", "seed", "whole number");
     expectComplaint("camera.width=188.5", "camera.width", "whole number");
     expectComplaint("goal=[2, 9, 2, 1]", "goal", "xyz_yaw");
-    expectComplaint("map.file=x.ot", "scene.file", "either");
-    expectComplaint("scene.file=", "scene.file", "either");
+    expectComplaint("scene.file=", "scene.file", "give scene.file or map.file");
     expectComplaint("noequals", "noequals", "key.path=value");
 }
 

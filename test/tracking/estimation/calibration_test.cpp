@@ -53,10 +53,12 @@ std::vector<AlignmentError> withDepthError(double share, double counted, int cou
 
 TEST(Calibration, FindsTheErrorOfDepth) {
     for (const double counted : {0., 0.03, 0.1}) {
-        EXPECT_NEAR(calibrateDepthError(withDepthError(0.05, counted, 200), counted), 0.05, 0.005);
-        EXPECT_LT(calibrateDepthError(withDepthError(0., counted, 200), counted), 0.005);
+        EXPECT_NEAR(calibrateDepthError(withDepthError(0.05, counted, 200), counted).value(), 0.05,
+                    0.005);
+        EXPECT_LT(calibrateDepthError(withDepthError(0., counted, 200), counted).value(), 0.005);
     }
     EXPECT_THROW(calibrateDepthError({}, 0.), std::invalid_argument);
+    EXPECT_FALSE(calibrateDepthError(withDepthError(0.05, 0.03, 200), 5.)) << "never counted";
 }
 
 TEST(Calibration, LeavesConsistentErrorsAlone) {
