@@ -230,7 +230,7 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     const PlanningProblem problem(config, world);
     const ExplorationSetup setup = setUpExploration(problem);
     const std::string name = fs::path(options.config).stem().string();
-    FlightWatch watch(config, world, items.front());
+    FlightWatch watch(config, world, items.front(), interrupted);
     if (address) {
         watch.serve(*address, livePage(setup, world, name, options.commandLine, watch.log()));
     }

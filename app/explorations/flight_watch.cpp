@@ -22,7 +22,7 @@ std::size_t FlightWatch::storeIn(std::unique_ptr<FlightStore> store) {
 OnExplorationMoment FlightWatch::onMoment() {
     return [this](const ExplorationMoment& moment) {
         logger_.add(moment);
-        if (store_) store_->add(moment, log());
+        if (store_ && !interrupted_) store_->add(moment, log());
         if (server_) server_->publish("moment", momentJson(log(), log().moments.back()).dump());
     };
 }

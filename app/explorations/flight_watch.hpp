@@ -2,6 +2,7 @@
 // Logs the first flight of an exploration, and shows it to browsers while it is flown.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -19,8 +20,11 @@ class FlightWatch {
     /// @param config config of the flight
     /// @param world the true world
     /// @param item the flight
-    FlightWatch(const Config& config, const World& world, const TrialItem& item)
-        : logger_(config, world, item) {}
+    /// @param interrupted must outlive the watch. Once it is set, an update may have been cut short,
+    ///        and is not stored.
+    FlightWatch(const Config& config, const World& world, const TrialItem& item,
+                const std::atomic<bool>& interrupted)
+        : interrupted_(interrupted), logger_(config, world, item) {}
 
     /// Starts a server that shows the flight, and prints its address.
     /// @param page livePage() of log()
@@ -48,6 +52,7 @@ class FlightWatch {
     const FlightLog& log() const { return logger_.log(); }
 
   private:
+    const std::atomic<bool>& interrupted_;
     FlightLogger logger_;
     std::unique_ptr<LiveServer> server_;
     std::unique_ptr<FlightStore> store_;
