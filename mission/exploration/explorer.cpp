@@ -191,6 +191,7 @@ bool Explorer::isInTheWay(const TrackedFrame& tracked, const View& image) {
                obstacleRange(config_, toStop_ + tube_)};
     const std::vector<PlannedView> ahead = wayAhead();
     std::vector<Eigen::Vector3d> way;
+    way.reserve(ahead.size());
     for (const PlannedView& view : ahead) way.push_back(view.T_w_b.translation());
     const bool isOnWay = inView_.isOn(way, tube_);
     if (background_) {

@@ -27,6 +27,7 @@ std::optional<BlurEstimate> estimateBlur(const ReplayRun& run) {
     BlurEstimate estimate;
     estimate.variance = median(variances, 0.);
     std::vector<double> away;
+    away.reserve(variances.size());
     for (const double v : variances) away.push_back(std::abs(v - estimate.variance));
     const double scatter = 1.4826 * median(away, 0.);
     estimate.sigma = std::hypot(scatter / std::sqrt(double(variances.size())), kBlurError);
