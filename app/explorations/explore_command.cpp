@@ -215,15 +215,30 @@ void store(const ExploreOptions& options, const ExplorationSetup& setup, const W
                ofFlight.name, earlier);
 }
 
+/// Whether an interrupted exploration leaves what was there before: a killed flight that went on
+/// longer than this one, or an earlier result where nothing was done.
+bool leavesEarlierWork(const FlightWatch& watch, std::size_t ended, FolderTransaction& folder) {
+    if (watch.isBehindStored()) {
+        fmt::print(stderr, "photonav: the killed flight in {} stays\n", folder.path().string());
+        return true;
+    }
+    if (ended > 0 || !keepsEarlierResult(folder, watch.log().moments.empty())) return false;
+    folder.discard();
+    return true;
+}
+
+void checkJobs(const ExploreOptions& options, const Config& config) {
+    if (!config.explore.realtime || options.jobs <= 1) return;
+    throw InputError("--jobs", fmt::format("{}", options.jobs),
+                     "flights in real time (explore.realtime) are flown one after the other");
+}
+
 int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch stopwatch;
     const auto address =
         options.serve.empty() ? std::optional<ServerAddress>{} : parseServerAddress(options.serve);
     const Config config = loadConfig(options.config, options.overrides);
-    if (config.explore.realtime && options.jobs > 1) {
-        throw InputError("--jobs", fmt::format("{}", options.jobs),
-                         "flights in real time (explore.realtime) are flown one after the other");
-    }
+    checkJobs(options, config);
     const Shard shard = shardOf(options);
     const std::vector<TrialItem> items = itemsOf(shard, trialItems(config));
     const World world = trueWorld(config);
@@ -236,9 +251,8 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     }
     FolderTransaction folder =
         beginExploration(options, config, folderOf(options, TrialKind::kWords, name, shard));
-    FlightRecording recording(options.record, folder.target(),
-                              {options.config, config.sceneFile, config.mapFile},
-                              setup.truth.camera, setup.flight.tracker.map);
+    FlightRecording recording(options.record, folder.target(), inputsOf(config), setup.truth.camera,
+                              setup.flight.tracker.map);
     const JournalHeader header{name, toYaml(config), TrialKind::identity(config), shard};
     std::vector<ExplorationResult> earlier = runsSoFar<TrialKind>(options, folder, header);
     checkNoFlightIsLost(options, config, folder);
@@ -259,19 +273,12 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
 
     const auto cut =
         flyMissing(options, setup, items, journal, recording, watch, folder.path(), interrupted);
-    if (cut && watch.isBehindStored()) {
-        fmt::print(stderr, "photonav: the killed flight in {} stays\n", folder.path().string());
-        return kInterrupted;
-    }
-    if (!isFlown) log = watch.log();
     std::vector<ExplorationResult> flights = journal.runsOf(items);
     const std::size_t ended = flights.size();
-    if (cut && ended == 0 && keepsEarlierResult(folder, log->moments.empty())) {
-        folder.discard();
-        return kInterrupted;
-    }
+    if (cut && leavesEarlierWork(watch, ended, folder)) return kInterrupted;
     if (cut) watch.removeStored();
     recording.commit();
+    if (!isFlown) log = watch.log();
     if (cut) flights.insert(flights.begin(), *cut);
     return conclude(options, setup, world, folder,
                     {{.flights = std::move(flights),

@@ -35,7 +35,7 @@ class Exploration {
     SimulatedRobot robot_;
     FlightEvaluator evaluator_;
     ExplorationResult result_;
-    ExplorationResult atUpdate_;  // result_ at the last update, for on_.moment
+    ExplorationResult atUpdate_;  // in real time: result_ at the last update, for on_.moment
     Explorer explorer_;           // last: its second thread ends first
 };
 
@@ -98,13 +98,15 @@ const ExplorationResult& Exploration::resultSoFar() {
 /// A moment may be shown by another thread while this one flies on and changes the result.
 OnExplorer Exploration::onExplorer() {
     OnExplorer on;
-    on.update = [this](const auto&) {
+    const bool isShownBeside = on_.moment && setup_.config.explore.realtime;
+    on.update = [this, isShownBeside](const auto&) {
         const ExplorationResult& soFar = resultSoFar();
         if (on_.update) on_.update(soFar);
-        if (on_.moment) atUpdate_ = soFar;
+        if (isShownBeside) atUpdate_ = soFar;
     };
     if (on_.moment) {
-        on.moment = [this](const ExplorerMoment& m) { on_.moment({m, atUpdate_}); };
+        const ExplorationResult& shown = isShownBeside ? atUpdate_ : result_;
+        on.moment = [this, &shown](const ExplorerMoment& m) { on_.moment({m, shown}); };
     }
     return on;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "exploration/explorations.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <utility>
 
 #include "evaluation/averages.hpp"
 #include "flight/flight_statistics.hpp"
@@ -70,9 +70,9 @@ ExplorationSummary summarise(std::span<const ExplorationResult> flights,
     s.meanTrace = mean(traces, kNoFlight);
     s.goalTrace = mean(goalTraces, kNoFlight);
     if (updates.empty()) return s;
-    std::sort(updates.begin(), updates.end());
-    s.updateMedian = updates[updates.size() / 2];
-    s.update95 = updates[(updates.size() - 1) * 95 / 100];
+    const Durations ofUpdates = summaryOf(std::move(updates));
+    s.updateMedian = ofUpdates.median;
+    s.update95 = ofUpdates.quantile95;
     return s;
 }
 
