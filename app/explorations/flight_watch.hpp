@@ -20,7 +20,8 @@ class FlightWatch {
     /// @param config config of the flight
     /// @param world the true world
     /// @param item the flight
-    /// @param interrupted must outlive the watch. Once it is set, an update may have been cut short,
+    /// @param interrupted must outlive the watch. Once it is set, an update may have been cut
+    /// short,
     ///        and is not stored.
     FlightWatch(const Config& config, const World& world, const TrialItem& item,
                 const std::atomic<bool>& interrupted)
