@@ -39,11 +39,14 @@ set(folders_mission_check io geometry photometry render dataset alignment estima
     flight)
 set(folders_mission_posters io geometry scene render planners alignment result problem runs check
     servo)
-set(folders_mission_exploration io geometry photometry map render evaluation belief planners alignment depth
-    estimation control result config problem runs robot flight)
+set(folders_mission_onlinemap io geometry photometry map belief alignment depth estimation config problem)
+set(folders_mission_replanning io geometry render planners alignment control result config problem flight
+    onlinemap)
+set(folders_mission_exploration io geometry map render evaluation result runs robot flight onlinemap replanning)
 set(folders_drawing_plot io planners)
 set(folders_drawing_shapes geometry scene map dataset plot)
-set(folders_drawing_flightlog io geometry map result problem recording simulation exploration shapes)
+set(folders_drawing_flightlog io geometry map result problem recording simulation replanning exploration
+    shapes)
 set(folders_drawing_figures io geometry photometry evaluation depth problem servo sweep recording replay
     flight check posters exploration plot shapes flightlog)
 set(folders_drawing_interchange io geometry bag dataset result shapes flightlog)
@@ -52,8 +55,8 @@ set(folders_app_report io dataset problem plot shapes figures)
 set(folders_app_shared io geometry result config runs report)
 set(folders_app_flights io geometry render dataset planners alignment result config problem servo recording replay
     flight check posters flightlog figures report shared)
-set(folders_app_explorations io map dataset result config problem runs flight exploration flightlog figures live report
-    shared flights)
+set(folders_app_explorations io map dataset result config problem runs flight onlinemap replanning exploration
+    flightlog figures live report shared flights)
 set(folders_app_recordings io geometry map render dataset result config recording mapping replay figures
     report shared)
 set(folders_app_plans io geometry map render dataset planners result problem recording mapping flight check

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "exploration/known_map.hpp"
 #include "exploration/real_time_json.hpp"
 #include "exploration/trial_journal.hpp"
 #include "explorations/explore_report.hpp"
@@ -14,6 +13,7 @@
 #include "flights/flight_recording.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
+#include "onlinemap/known_map.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 #include "shared/result_folder.hpp"

@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <utility>
 
-#include "exploration/plan_update_json.hpp"
 #include "exploration/trial_journal.hpp"
 #include "io/atomic_file.hpp"
 #include "map/octree_file.hpp"
 #include "problem/tree_evolution.hpp"
+#include "replanning/plan_update_json.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {

@@ -7,12 +7,12 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "exploration/plan_update_json.hpp"
 #include "flightlog/flight_log.hpp"
 #include "io/base64.hpp"
 #include "io/image_bytes.hpp"
 #include "io/json_nesting.hpp"
 #include "io/reading.hpp"
+#include "replanning/plan_update_json.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {

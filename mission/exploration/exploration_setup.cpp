@@ -5,10 +5,10 @@
 #include <stdexcept>
 
 #include "exploration/exploration.hpp"
-#include "exploration/known_map.hpp"
-#include "exploration/online_map.hpp"
 #include "io/error.hpp"
 #include "map/textured_octree.hpp"
+#include "onlinemap/known_map.hpp"
+#include "onlinemap/online_map.hpp"
 
 namespace photonav {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "exploration/explore_result.hpp"
 
-#include "exploration/plan_update_json.hpp"
 #include "exploration/real_time_json.hpp"
 #include "flight/flight_statistics.hpp"
+#include "replanning/plan_update_json.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {

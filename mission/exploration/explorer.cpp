@@ -106,7 +106,7 @@ Explorer::Explorer(const ExplorerOptions& options, const Robot& robot, const std
       tube_(stoppingRadius(options, toStop_)),
       replanner_(config_, options.known.get(), explorePlanner(planner), seed, tube_),
       views_(replanner_.planner().views()),
-      known_(*replanner_.map().cells()),
+      states_(*replanner_.map().cells()),
       mapper_(config_, options.known.get()),
       tracker_(trackerOf(robot, views(), beliefAtTakeOff(config_), trackerFor(options, mapper_))),
       pilot_(pilotOf(robot, stayingAt(beliefAtTakeOff(config_), T_b_c_), views(),
@@ -187,7 +187,7 @@ void Explorer::onImage(const TrackedFrame& tracked, const View& image) {
 /// flies only as far as it is, until it has another plan.
 bool Explorer::isInTheWay(const TrackedFrame& tracked, const View& image) {
     if (image.depth.getSize() == 0) return false;
-    inView_ = {image.depth, camera_, tracked.T_c_w.mean, known_,
+    inView_ = {image.depth, camera_, tracked.T_c_w.mean, states_,
                obstacleRange(config_, toStop_ + tube_)};
     const std::vector<PlannedView> ahead = wayAhead();
     std::vector<Eigen::Vector3d> way;
@@ -240,7 +240,7 @@ FlyablePart Explorer::fromHere(const FlyablePart& way) const {
 /// From now on the robot uses the new map and plan.
 void Explorer::takeOver(Replanned replanned) {
     for (const MapInput& image : replanned.request.images) mapper_.addSurfaces(image);
-    known_.set(replanned.cells);
+    states_.set(replanned.cells);
     std::erase_if(notInMap_,
                   [&](const auto& image) { return image.first <= replanned.request.imageTime; });
     views_ = replanned.views;

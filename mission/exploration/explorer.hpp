@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "exploration/background_replanner.hpp"
-#include "exploration/mapper.hpp"
 #include "exploration/real_time_monitor.hpp"
 #include "flight/arrival.hpp"
 #include "flight/flight_end.hpp"
 #include "flight/flight_loop.hpp"
+#include "onlinemap/mapper.hpp"
+#include "replanning/background_replanner.hpp"
 
 namespace photonav {
 
@@ -164,7 +164,7 @@ class Explorer {
     double tube_;    // radius around the path that must be free in every depth image [m]
     Replanner replanner_;
     std::shared_ptr<const ViewSource> views_;  // of the map that was taken over last
-    KnownCells known_;                         // of this map
+    CellStates states_;                        // of this map
     Mapper mapper_;
     Tracker tracker_;
     Pilot pilot_;

@@ -6,10 +6,10 @@
 
 #include <stdexcept>
 
-#include "exploration/plan_update_json.hpp"
 #include "exploration/real_time_json.hpp"
 #include "geometry/constants.hpp"
 #include "map/octree_file.hpp"
+#include "replanning/plan_update_json.hpp"
 #include "result/json_values.hpp"
 
 namespace photonav {

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "replanning/replanner.hpp"
+
+#include "flight/flight_setup.hpp"
+#include "io/stopwatch.hpp"
+#include "render/interruptible_views.hpp"
+
+namespace photonav {
+namespace {
+
+/// Radius around the robot that a camera that looks ahead does not observe [m].
+constexpr double kHidden = 0.3;
+
+SpaceAhead spaceIn(const OnlineMap& map, const Config& config, const ExplorePlanner& kind) {
+    const bool isAhead = looksAhead(config.camera.T_b_c());
+    return {.clearance = {},  // see flyableWay()
+            .isSeen = [&map](const Eigen::Vector3d& p_w) { return map.isSeen(p_w); },
+            .radius = config.robotRadius,
+            .hidden = isAhead ? kHidden : 0.,
+            .canLook =
+                isAhead && config.space != StateKind::position && kind.headings != Headings::fixed};
+}
+
+}  // namespace
+
+double clearanceInView(const ObstaclesInView& inView, const Eigen::Vector3d& p_w, double radius,
+                       double tube) {
+    return inView.clearance(p_w) + radius - tube;
+}
+
+Replanner::Replanner(const Config& config, const TexturedOcTree* known, const ExplorePlanner& kind,
+                     std::uint32_t seed, double tube)
+    : config_(config),
+      camera_(config.camera.camera()),
+      map_(config_, known),
+      planner_(config_, map_, kind, seed),
+      space_(spaceIn(map_, config_, kind)),
+      tube_(tube) {}
+
+Replanned Replanner::replan(ReplanRequest request, const PlanningLimits& limits) {
+    Replanned replanned{std::move(request), {}};
+    fuse(replanned);
+    if (limits.interrupted) throw RenderingStopped();
+    planner_.update(replanned.change, replanned.request.T_c_w, replanned.update, limits);
+    if (isFirst_) replanned.change.join(map_.whole());  // for those who saw no earlier change
+    isFirst_ = false;
+    replanned.views = planner_.views();
+    replanned.way = flyableWay(replanned.request.inView);
+    return replanned;
+}
+
+void Replanner::fuse(Replanned& replanned) {
+    const Stopwatch watch;
+    MapChange& change = replanned.change;
+    for (const MapInput& image : replanned.request.images) change.join(map_.add(image, camera_));
+    replanned.hasMapGrown = !change.occupancy.empty();
+    replanned.cells = CellStates::bricksOf(*map_.cells(), change.occupancy);
+    const Pose T_w_b = (config_.camera.T_b_c() * replanned.request.T_c_w.mean).inverse();
+    change.join(map_.addBody(T_w_b.translation()));
+    replanned.update.fuseSeconds = watch.seconds();
+}
+
+/// Above the robot's radius, clearances are those of the map. The last image shows obstacles before
+/// the map does; from them the body keeps away as far as it must to stop.
+std::optional<FlyablePart> Replanner::flyableWay(const ObstaclesInView& inView) const {
+    if (planner_.path().empty()) return {};
+    SpaceAhead space = space_;
+    space.clearance = [&](const Eigen::Vector3d& p_w) {
+        return std::min(planner_.clearance(p_w),
+                        clearanceInView(inView, p_w, space_.radius, tube_));
+    };
+    return flyablePart(plannedViews(planner_.path()), space);
+}
+
+}  // namespace photonav

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "onlinemap/keyframe_choice.hpp"
+
+#include <gtest/gtest.h>
+
+namespace photonav {
+namespace {
+
+/// An image of a wall at 2 m that the map shows as well, after a first keyframe.
+class Keyframes : public testing::Test {
+  protected:
+    Keyframes() {
+        image.intensity.resize(40, 40, 0.5F);
+        image.depth.resize(40, 40, 2.F);
+        shown = image;
+        tracked.alignment.verdict = Verdict::converged;
+        choice.fused(Pose::Identity());
+    }
+    bool isKeyframe() const { return choice.isKeyframe(tracked, image, shown); }
+    /// Depth of the upper rows.
+    static void setDepth(View& view, unsigned rows, float depth) {
+        for (unsigned i = 0; i < rows * view.depth.getWidth(); ++i) view.depth.bitmap[i] = depth;
+    }
+
+    ExploreConfig config;
+    KeyframeChoice choice{config};
+    TrackedFrame tracked;
+    View image, shown;
+};
+
+TEST_F(Keyframes, BeginWithTheFirstImage) {
+    EXPECT_TRUE(KeyframeChoice(config).isKeyframe(tracked, image, shown));
+    EXPECT_FALSE(isKeyframe());
+}
+
+TEST_F(Keyframes, ComeAtADistanceFromTheLastOne) {
+    tracked.T_c_w.mean.translation().x() = config.keyframeDistance - 0.01;
+    EXPECT_FALSE(isKeyframe());
+    tracked.T_c_w.mean.translation().x() = config.keyframeDistance + 0.01;
+    EXPECT_TRUE(isKeyframe());
+    choice.fused(tracked.T_c_w.mean);
+    EXPECT_FALSE(isKeyframe());
+}
+
+TEST_F(Keyframes, ComeAfterATurn) {
+    const auto turn = [&](double angle) {
+        tracked.T_c_w.mean = Pose(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()));
+    };
+    turn(config.keyframeAngle - 0.01);
+    EXPECT_FALSE(isKeyframe());
+    turn(config.keyframeAngle + 0.01);
+    EXPECT_TRUE(isKeyframe());
+}
+
+TEST_F(Keyframes, ComeWhereMuchIsNew) {
+    setDepth(shown, 8, 0.F);  // a fifth
+    EXPECT_FALSE(isKeyframe());
+    setDepth(shown, 16, 0.F);
+    EXPECT_TRUE(isKeyframe());
+    // Of a surface that is out of range nothing would be mapped, and of none, nothing can be.
+    setDepth(image, 16, static_cast<float>(config.range) + 0.1F);
+    EXPECT_FALSE(isKeyframe());
+    setDepth(image, 40, 0.F);
+    EXPECT_FALSE(isKeyframe());
+}
+
+TEST_F(Keyframes, AreNotBlackOrContradictedByTheMap) {
+    tracked.T_c_w.mean.translation().x() = 1.;
+    EXPECT_TRUE(choice.isUsable(tracked, image));
+    tracked.rejected = true;
+    for (const Verdict verdict : {Verdict::lostResidual, Verdict::lostDivergence,
+                                  Verdict::lostImplausible, Verdict::lostExposure}) {
+        tracked.alignment.verdict = verdict;
+        EXPECT_FALSE(choice.isUsable(tracked, image));
+        EXPECT_FALSE(isKeyframe());
+    }
+    tracked.isMapInconsistent = true;  // the map has to be made again
+    EXPECT_TRUE(choice.isUsable(tracked, image));
+    tracked.isMapInconsistent = false;
+    tracked.alignment.verdict = Verdict::lostOverlap;  // the map shows too little: it has to grow
+    EXPECT_TRUE(isKeyframe());
+    image.intensity = 0.F;
+    EXPECT_FALSE(isKeyframe());
+    EXPECT_FALSE(choice.isUsable(tracked, image));
+}
+
+}  // namespace
+}  // namespace photonav
