@@ -15,6 +15,7 @@
 
 #include "alignment/dense_aligner.hpp"
 #include "alignment/keyframe_model.hpp"
+#include "bench_arguments.hpp"
 #include "dataset/sequence_tum.hpp"
 #include "estimation/calibration.hpp"
 #include "geometry/se3.hpp"
@@ -220,10 +221,11 @@ void trackInMaps() {
 }  // namespace
 
 int main(int argc, char** argv) {
+    const BenchArguments arguments(argc, argv, "align_bench [TUM_FOLDER]");
     cv::setNumThreads(1);
     const char* data = std::getenv("PHOTONAV_DATA");
     const std::string folder =
-        argc > 1 ? argv[1] : (data ? std::string(data) + "/rgbd_office" : std::string());
+        arguments.text(1, data ? std::string(data) + "/rgbd_office" : std::string());
     trackInMaps();
     if (folder.empty()) return 0;
     compareOnPairs(folder, 1);

@@ -3,7 +3,7 @@
 // times, on the paper's two scenarios and in a room. Seconds are processor time of this process
 // (one thread), views included; every planner starts without cached views. The row "known time" has
 // solve(seconds), begun anew for each time, by the wall clock; below it is the share of the time
-// that was used. Usage: anytime_bench [seeds = 10] [longest time in seconds = 10]
+// that was used.
 #include <fmt/format.h>
 #include <ompl/geometric/PathGeometric.h>
 #include <ompl/geometric/planners/rrt/RRTstar.h>
@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "bench_arguments.hpp"
 #include "problem/planning_problem.hpp"
 #include "thread_time.hpp"
 
@@ -149,9 +150,10 @@ void printTable(const std::string& scenario, unsigned seeds, const std::vector<d
 }  // namespace
 
 int main(int argc, char** argv) {
+    const BenchArguments arguments(argc, argv, "anytime_bench [SEEDS=10] [LONGEST_TIME=10]");
     ompl::msg::noOutputHandler();
-    const unsigned seeds = argc > 1 ? static_cast<unsigned>(std::stoul(argv[1])) : 10;
-    const double longest = argc > 2 ? std::stod(argv[2]) : 10.;
+    const auto seeds = arguments.number(1, 10U, 1U);
+    const double longest = arguments.number(2, 10.);
     std::vector<double> times;
     for (const double time : {0.05, 0.1, 0.2, 0.5, 1., 2., 5., 10.}) {
         if (time <= longest) times.push_back(time);

@@ -3,14 +3,14 @@
 // was seen free: a flight per seed, planner and distance flown until then. The face of the box
 // is 1.4 m from the robot, across its motion. "collided": the body, half of robot.radius, has
 // touched something; "in view": images that have the middle of the face in view, as far as it is
-// below the camera. Usage: appearing_box_bench [scene = room | CONFIG] [seeds = 3] [away = 1.4]
-// [planners = rrt_star,belief_rrt_star]
+// below the camera.
 #include <fmt/format.h>
 #include <ompl/util/Console.h>
 
 #include <optional>
 #include <sstream>
 
+#include "bench_arguments.hpp"
 #include "exploration/exploration.hpp"
 #include "flight/flight_statistics.hpp"
 #include "mission/exploration/room_to_explore.hpp"
@@ -114,24 +114,23 @@ void fly(const Scene& scene, Config config, const std::string& planner, std::uin
     std::fflush(stdout);
 }
 
-std::string argument(int argc, char** argv, int i, const char* none) {
-    return argc > i ? argv[i] : none;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
+    const BenchArguments arguments(argc, argv,
+                                   "appearing_box_bench [room|CONFIG] [SEEDS=3] [AWAY=1.4] "
+                                   "[PLANNERS=rrt_star,belief_rrt_star]");
     ompl::msg::setLogLevel(ompl::msg::LOG_WARN);
-    const std::string name = argument(argc, argv, 1, "room");
-    const auto seeds = static_cast<std::uint32_t>(std::stoul(argument(argc, argv, 2, "3")));
-    const double away = std::stod(argument(argc, argv, 3, "1.4"));
+    const std::string name = arguments.text(1, "room");
+    const auto seeds = arguments.number(2, std::uint32_t(3));
+    const double away = arguments.number(3, 1.4);
     const bool isRoom = name == "room";
     const Config config = isRoom ? roomConfig() : loadConfig(name);
     const Scene scene = isRoom ? test::roomToExplore() : loadScene(config.sceneFile);
     fmt::print(
         "planner          seed after                end clearance  flown  seconds  box lost "
         "rejected in view  error   NEES CPU [s]\n");
-    std::istringstream planners(argument(argc, argv, 4, "rrt_star,belief_rrt_star"));
+    std::istringstream planners(arguments.text(4, "rrt_star,belief_rrt_star"));
     for (std::string planner; std::getline(planners, planner, ',');) {
         for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
             for (const double flown : {0.8, 2.}) fly(scene, config, planner, seed, flown, away);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The basin of convergence: success rate of alignments without a prior, by initial offset, and how
 // often a wrong pose is accepted. The tables of docs/experiments/tracking.md.
-// Usage: basin_bench [trials per cell]
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <random>
 
 #include "alignment/dense_aligner.hpp"
+#include "bench_arguments.hpp"
 #include "geometry/se3.hpp"
 #include "image_noise.hpp"
 #include "render/mesh_renderer.hpp"
@@ -74,7 +74,8 @@ void table(const std::string& name, const MeshRenderer& world, double belowHoriz
 }  // namespace
 
 int main(int argc, char** argv) {
-    const int trials = argc > 1 ? std::max(1, std::atoi(argv[1])) : 40;
+    const BenchArguments arguments(argc, argv, "basin_bench [TRIALS_PER_CELL=40]");
+    const int trials = arguments.number(1, 40, 1);
     const MeshRenderer hall(furnishedHall()), floor(texturedFloor());
     fmt::print("{} alignments a cell, 188x120, noise 0.02; found: within 1 cm and 0.3 degrees\n",
                trials);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Are predicted covariances consistent? NEES per degree of freedom of simulated alignments and
 // flights, with independent noise and with the noise of a real camera, before and after
-// calibration. The numbers of docs/experiments/tracking.md. Usage: consistency_bench [alignments
-// per row]
+// calibration. The numbers of docs/experiments/tracking.md.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -10,6 +9,7 @@
 #include <random>
 
 #include "alignment/keyframe_model.hpp"
+#include "bench_arguments.hpp"
 #include "estimation/calibration.hpp"
 #include "estimation/tracker.hpp"
 #include "geometry/se3.hpp"
@@ -176,7 +176,8 @@ void flights(const std::string& name, const ViewSource& world, const ViewSource&
 }  // namespace
 
 int main(int argc, char** argv) {
-    const int count = argc > 1 ? std::max(20, std::atoi(argv[1])) : 300;
+    const BenchArguments arguments(argc, argv, "consistency_bench [ALIGNMENTS_PER_ROW=300]");
+    const int count = arguments.number(1, 300, 20);
     const MeshRenderer room(furnishedHall()), floor(texturedFloor());
     const AlignmentOptions ideal;
     AlignmentOptions exposed;

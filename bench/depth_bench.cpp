@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "bench_arguments.hpp"
 #include "dataset/sequence_tum.hpp"
 #include "depth/monocular_depth.hpp"
 #include "depth/stereo_depth.hpp"
@@ -223,7 +224,8 @@ void repeatFlight(const std::string& name, const std::string& scene) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+    const BenchArguments arguments(argc, argv, "depth_bench");
     cv::setNumThreads(1);
     repeatFlight("flight_down", "two_textures");
     repeatFlight("flight_front45", "room");

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <visp3/visual_features/vpFeatureLuminance.h>
 
+#include "bench_arguments.hpp"
 #include "min_time.hpp"
 #include "photometry/photometric.hpp"
 #include "photometry/simd.hpp"
@@ -48,7 +49,8 @@ Matrix6 eigen(const View& view, const Camera& camera) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+    const BenchArguments arguments(argc, argv, "information_bench");
     const Camera camera = makeCamera(188, 120, 1.22);
     const View view = wavyView(camera);
     vpImage<unsigned char> bytes(camera.height, camera.width);

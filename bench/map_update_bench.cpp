@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "belief/information_field.hpp"
+#include "bench_arguments.hpp"
 #include "geometry/se3.hpp"
 #include "image_noise.hpp"
 #include "map/distance_map.hpp"
@@ -249,7 +250,8 @@ void runInOpenSpace(const Eigen::Vector3d& size) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+    const BenchArguments arguments(argc, argv, "map_update_bench");
     fmt::print("one cell in open space\n");
     runInOpenSpace({8., 8., 3.});
     runInOpenSpace({27., 10., 2.5});

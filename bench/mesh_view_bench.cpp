@@ -11,6 +11,7 @@
 #include <numbers>
 #include <random>
 
+#include "bench_arguments.hpp"
 #include "photometry/photometric.hpp"
 #include "render/mesh_renderer.hpp"
 #include "render/surface_shader.hpp"
@@ -177,7 +178,8 @@ void compare(const char* name, double belowHorizon, const MeshRenderer& renderer
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+    const BenchArguments arguments(argc, argv, "mesh_view_bench");
     const Scene scene = hall();
     fmt::print("{} triangles, 188x120, one thread\n", scene.triangles.size());
     const MeshRenderer renderer(scene);

@@ -4,14 +4,14 @@
 // in the same maps. One thread, processor time. The camera of the robot looks down at 45 degrees,
 // its heading is free. Depth and images are noisy, poses are exact. Paths are ranked by quick views
 // or, to compare, by whole ones; J is always that of whole views at exact poses, which are not part
-// of the times unless the planner asks for them. Usage: online_bench [vertices = 1000] [keyframes =
-// 60] [planner = belief_rrt_star] [views = quick | whole] [labyrinth = both | known | unknown]
+// of the times unless the planner asks for them.
 #include <fmt/format.h>
 #include <ompl/geometric/PathGeometric.h>
 #include <ompl/util/Console.h>
 
 #include <random>
 
+#include "bench_arguments.hpp"
 #include "geometry/se3.hpp"
 #include "image_noise.hpp"
 #include "map/map_fusion.hpp"
@@ -288,14 +288,18 @@ void run(const Config& config, const std::string& planner, bool isKnown, int key
 }  // namespace
 
 int main(int argc, char** argv) {
+    const BenchArguments arguments(
+        argc, argv,
+        "online_bench [VERTICES=1000] [KEYFRAMES=60] [PLANNER=belief_rrt_star] [VIEWS=quick|whole] "
+        "[LABYRINTH=both|known|unknown]");
     ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);
     Config config = loadConfig(PHOTONAV_SOURCE_DIR "/config/labyrinth.yaml");
-    config.vertices = argc > 1 ? static_cast<unsigned>(std::stoi(argv[1])) : 1000;
+    config.vertices = arguments.number(1, 1000U, 1U);
     config.unknownToPlanner = UnknownPolicy::free;
-    const int keyframes = argc > 2 ? std::stoi(argv[2]) : 60;
-    const std::string planner = argc > 3 ? argv[3] : "belief_rrt_star";
-    config.quickViews = argc <= 4 || std::string_view(argv[4]) != "whole";
-    const std::string_view labyrinth = argc > 5 ? argv[5] : "both";
+    const int keyframes = arguments.number(2, 60);
+    const std::string planner = arguments.text(3, "belief_rrt_star");
+    config.quickViews = arguments.text(4, "quick") != "whole";
+    const std::string labyrinth = arguments.text(5, "both");
     if (labyrinth != "unknown") run(config, planner, true, keyframes);
     if (labyrinth != "known") run(config, planner, false, keyframes);
 }

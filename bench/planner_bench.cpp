@@ -18,6 +18,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "bench_arguments.hpp"
 #include "planners/planner_table.hpp"
 #include "thread_time.hpp"
 
@@ -191,9 +192,10 @@ void printTables(const Bench& bench) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    const BenchArguments arguments(argc, argv, "planner_bench [tables]");
     ompl::msg::noOutputHandler();
     const Eigen::AlignedBox3d box(Eigen::Vector3d::Zero(), Eigen::Vector3d(10., 10., 3.));
-    if (argc > 1 && std::string_view(argv[1]) == "tables") {
+    if (arguments.text(1, "") == "tables") {
         printTables(Bench{FlightSpace(StateKind::position, box)});
         return 0;
     }

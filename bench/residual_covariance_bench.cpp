@@ -2,8 +2,7 @@
 // Are covariances right where nothing was fitted? Images that no model here can make (pixels
 // average over their area, with noise, with a lens, with another light) are localised in a mesh and
 // in maps of cells, and aligned to images with depth, with one set of defaults. A table of
-// docs/experiments/tracking.md. Usage: residual_covariance_bench [alignments per row [largest
-// width [smallest cell]]]
+// docs/experiments/tracking.md.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -15,6 +14,7 @@
 
 #include "alignment/dense_aligner.hpp"
 #include "alignment/keyframe_model.hpp"
+#include "bench_arguments.hpp"
 #include "dataset/trajectory.hpp"
 #include "estimation/calibration.hpp"
 #include "estimation/keyframe_chain.hpp"
@@ -287,9 +287,12 @@ void table(const Place& place, int count, unsigned widest, double smallest) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    const int count = argc > 1 ? std::max(5, std::atoi(argv[1])) : 40;
-    const auto widest = static_cast<unsigned>(argc > 2 ? std::max(188, std::atoi(argv[2])) : 640);
-    const double smallest = argc > 3 ? std::atof(argv[3]) : 0.01;
+    const BenchArguments arguments(argc, argv,
+                                   "residual_covariance_bench [ALIGNMENTS_PER_ROW=40] "
+                                   "[LARGEST_WIDTH=640] [SMALLEST_CELL=0.01]");
+    const int count = arguments.number(1, 40, 5);
+    const auto widest = arguments.number(2, 640U, 188U);
+    const double smallest = arguments.number(3, 0.01);
     fmt::print(
         "{} alignments a row: median errors | median and mean NEES / 3 of position | of "
         "rotation, of those that converged\n",

@@ -9,6 +9,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "bench_arguments.hpp"
 #include "depth/stereo_depth.hpp"
 #include "estimation/tracker.hpp"
 #include "thread_time.hpp"
@@ -66,13 +67,15 @@ Timed run(const StereoSequence& sequence, const std::vector<StereoImages>& image
 }  // namespace
 
 int main(int argc, char** argv) {
+    const BenchArguments arguments(argc, argv, "stereo_bench [EUROC_FOLDER]");
     cv::setNumThreads(1);
     const char* data = std::getenv("PHOTONAV_DATA");
-    if (argc < 2 && data == nullptr) {
-        fmt::print(stderr, "usage: stereo_bench EUROC_FOLDER (or set PHOTONAV_DATA)\n");
+    const std::string folder =
+        arguments.text(1, data ? std::string(data) + "/euroc_v101_start" : std::string());
+    if (folder.empty()) {
+        fmt::print(stderr, "stereo_bench: give EUROC_FOLDER, or set PHOTONAV_DATA\n");
         return 2;
     }
-    const std::string folder = argc > 1 ? argv[1] : std::string(data) + "/euroc_v101_start";
     const StereoSequence sequence = readEurocSequence(folder);
     std::vector<StereoImages> images;
     for (std::size_t i = 0; i < sequence.frames.size(); ++i)

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "alignment/dense_aligner.hpp"
+#include "bench_arguments.hpp"
 #include "estimation/calibration.hpp"
 #include "geometry/se3.hpp"
 #include "map/map_fusion.hpp"
@@ -200,10 +201,11 @@ void compare(const MeshRenderer& mesh, const World& world, double resolution) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    const BenchArguments arguments(argc, argv, "surface_bench [CELL_SIZE]");
     const MeshRenderer mesh(furnishedHall());
     fmt::print("errors: mean and p90 of depth, median and p90 of localisation\n");
     std::vector<double> resolutions{0.05, 0.025, 0.01};
-    if (argc > 1) resolutions = {std::atof(argv[1])};
+    if (const double one = arguments.number(1, 0.); one > 0.) resolutions = {one};
     for (const double resolution : resolutions) {
         for (const World& world : makeWorlds()) compare(mesh, world, resolution);
     }

@@ -2,6 +2,7 @@
 // Compounding and update of 6x6 covariances against the formulas as printed, in plain Eigen.
 #include <fmt/format.h>
 
+#include "bench_arguments.hpp"
 #include "geometry/se3.hpp"
 #include "geometry/uncertain_pose.hpp"
 #include "min_time.hpp"
@@ -65,7 +66,8 @@ std::vector<Matrix6> covariances(double scale) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+    const BenchArguments arguments(argc, argv, "uncertain_pose_bench");
     const std::vector<Matrix6> motion = covariances(0.03);
     const std::vector<Matrix6> prior = covariances(0.1);
     const std::vector<Matrix6> information = covariances(1e3);

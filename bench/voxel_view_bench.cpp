@@ -8,6 +8,7 @@
 
 #include <numbers>
 
+#include "bench_arguments.hpp"
 #include "map/map_fusion.hpp"
 #include "photometry/photometric.hpp"
 #include "render/mesh_renderer.hpp"
@@ -205,7 +206,8 @@ void printInformation(double resolution) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+    const BenchArguments arguments(argc, argv, "voxel_view_bench");
     const double resolution = 0.05;
     const TexturedOcTree map = makeRoom({400, 400, 60}, resolution);
     octomap::OcTree occupancy(resolution);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Our information of views beside the Fisher Information Field (FIF), at the same poses of a scene:
 // time of a query, memory, the best heading, and plans, which our exact beliefs evaluate.
-// Usage: fif_bench [CONFIG [positions [seeds [GP_FOLDER]]]]
 #include "fif_field.hpp"
 
 #include <algorithm>
 #include <map>
 #include <random>
 
+#include "../bench_arguments.hpp"
 #include "geometry/se3.hpp"
 #include "heading_agreement.hpp"
 #include "peer_maps.hpp"
@@ -376,12 +376,12 @@ void compareWithFif(const std::string& file, std::size_t count, std::uint32_t se
 }  // namespace
 
 int main(int argc, char** argv) {
-    const auto number = [&](int i, int otherwise) {
-        return argc > i ? std::max(0, std::atoi(argv[i])) : otherwise;
-    };
+    const BenchArguments arguments(argc, argv,
+                                   "fif_bench [CONFIG] [POSITIONS=200] [SEEDS=3] [GP_FOLDER]");
     try {
-        compareWithFif(argc > 1 ? argv[1] : PHOTONAV_SOURCE_DIR "/config/room.yaml", number(2, 200),
-                       number(3, 3), argc > 4 ? argv[4] : kGaussianProcess);
+        compareWithFif(arguments.text(1, PHOTONAV_SOURCE_DIR "/config/room.yaml"),
+                       arguments.number(2, std::size_t(200)), arguments.number(3, 3U),
+                       arguments.text(4, kGaussianProcess));
         return 0;
     } catch (const InputError& error) {
         fmt::print(stderr, "fif_bench: {}\n", error.what());

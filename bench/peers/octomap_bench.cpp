@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Our integration of depth images beside OctoMap's own, on the same frames: processor time, memory,
 // and where the two maps agree.
-// Usage: octomap_bench [DATASET [resolution [every]]]
+// Usage: octomap_bench [RECORDING] [RESOLUTION=0.05] [EVERY=1]
 #include <octomap/OcTree.h>
 
 #include "peer_maps.hpp"

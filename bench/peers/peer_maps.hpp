@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdlib>
 
+#include "../bench_arguments.hpp"
 #include "../thread_time.hpp"
 #include "io/error.hpp"
 #include "map/map_fusion.hpp"
@@ -118,10 +119,12 @@ inline void print(const Agreement& agreement, const char* theirs) {
 /// @param compareWith is given the recording, the options of our fusion, and our map
 template <typename CompareWith>
 int runComparison(int argc, char** argv, const char* program, const CompareWith& compareWith) {
+    const std::string usage = fmt::format("{} [RECORDING] [RESOLUTION=0.05] [EVERY=1]", program);
+    const BenchArguments arguments(argc, argv, usage);
     RecordingOptions options;
-    options.dataset = argc > 1 ? argv[1] : PHOTONAV_SOURCE_DIR "/data/flight_front45";
-    const double resolution = argc > 2 ? std::atof(argv[2]) : 0.05;
-    if (argc > 3) options.every = std::max(1, std::atoi(argv[3]));
+    options.dataset = arguments.text(1, PHOTONAV_SOURCE_DIR "/data/flight_front45");
+    const double resolution = arguments.number(2, 0.05, 0.001);
+    options.every = arguments.number(3, options.every, 1);
     try {
         const Recording recording = readRecording(options);
         const FusionOptions fusion;

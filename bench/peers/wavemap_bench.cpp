@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Our integration of depth images beside wavemap's, on the same frames: processor time, memory, and
 // where the two maps agree.
-// Usage: wavemap_bench [DATASET [resolution [every]]]
+// Usage: wavemap_bench [RECORDING] [RESOLUTION=0.05] [EVERY=1]
 #include <wavemap/core/integrator/measurement_model/continuous_ray.h>
 #include <wavemap/core/integrator/projection_model/pinhole_camera_projector.h>
 #include <wavemap/core/integrator/projective/coarse_to_fine/hashed_chunked_wavelet_integrator.h>
