@@ -239,7 +239,7 @@ FlyablePart Explorer::fromHere(const FlyablePart& way) const {
 
 /// From now on the robot uses the new map and plan.
 void Explorer::takeOver(Replanned replanned) {
-    for (const MapInput& image : replanned.request.images) mapper_.addSurfaces(image);
+    for (const MapInput& image : replanned.request.images) mapper_.setFused(image);
     states_.set(replanned.cells);
     std::erase_if(notInMap_,
                   [&](const auto& image) { return image.first <= replanned.request.imageTime; });

@@ -39,7 +39,7 @@ ImageF fusedDepth(const ImageF& depth, double range) {
 Mapper::Mapper(const Config& config, const TexturedOcTree* known)
     : camera_(config.camera.camera()),
       errors_(std::make_shared<MapErrors>(config.explore.resolution)),
-      choice_(config.explore),
+      choice_(config.explore, camera_),
       range_(config.explore.range) {
     if (known != nullptr) addKnown(*known, config.start);
     if (config.explore.sensor != ExploreSensor::monocular) return;
@@ -72,8 +72,9 @@ std::optional<MapInput::Keyframe> Mapper::chooseImage(const TrackedFrame& tracke
     const bool isWanted =
         isNeeded ? choice_.isUsable(tracked, image) : choice_.isKeyframe(tracked, image, shown);
     if (!isWanted) return {};
-    choice_.fused(tracked.T_c_w.mean);
-    return Keyframe{image, tracked.T_c_w.mean, errors_->addPose(tracked.T_c_w)};
+    const int number = errors_->addPose(tracked.T_c_w);
+    choice_.add(number, image, tracked.T_c_w.mean);
+    return Keyframe{image, tracked.T_c_w.mean, number};
 }
 
 std::optional<MapInput::Keyframe> Mapper::addToFilter(const TrackedFrame& tracked,
@@ -89,9 +90,10 @@ std::optional<MapInput::Keyframe> Mapper::addToFilter(const TrackedFrame& tracke
     return keyframe;
 }
 
-void Mapper::addSurfaces(const MapInput& fused) {
+void Mapper::setFused(const MapInput& fused) {
     if (!fused.keyframe) return;
     const auto& [view, T_c_w, number] = *fused.keyframe;
+    choice_.setFused(number);
     errors_->addSurfaces(number, fusedDepth(view.depth, range_), camera_);
 }
 

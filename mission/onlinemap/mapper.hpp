@@ -33,8 +33,9 @@ class Mapper {
     std::optional<MapInput> choose(const TrackedFrame& tracked, const View& image,
                                    const View& shown, bool isNeeded);
 
-    /// Adds the surfaces of a keyframe to errors(): the tracker is about to use the map with them.
-    void addSurfaces(const MapInput& fused);
+    /// A chosen image is in the map that the tracker is about to use: the surfaces of its keyframe
+    /// are added to errors().
+    void setFused(const MapInput& fused);
 
     int keyframes() const { return keyframes_; }  ///< number of keyframes chosen so far
     const std::shared_ptr<MapErrors>& errors() const { return errors_; }

@@ -14,7 +14,8 @@ class Keyframes : public testing::Test {
         image.depth.resize(40, 40, 2.F);
         shown = image;
         tracked.alignment.verdict = Verdict::converged;
-        choice.fused(Pose::Identity());
+        choice.add(0, image, Pose::Identity());
+        choice.setFused(0);
     }
     bool isKeyframe() const { return choice.isKeyframe(tracked, image, shown); }
     /// Depth of the upper rows.
@@ -23,13 +24,14 @@ class Keyframes : public testing::Test {
     }
 
     ExploreConfig config;
-    KeyframeChoice choice{config};
+    Camera camera = makeCamera(40, 40, 1.);
+    KeyframeChoice choice{config, camera};
     TrackedFrame tracked;
     View image, shown;
 };
 
 TEST_F(Keyframes, BeginWithTheFirstImage) {
-    EXPECT_TRUE(KeyframeChoice(config).isKeyframe(tracked, image, shown));
+    EXPECT_TRUE(KeyframeChoice(config, camera).isKeyframe(tracked, image, shown));
     EXPECT_FALSE(isKeyframe());
 }
 
@@ -38,7 +40,7 @@ TEST_F(Keyframes, ComeAtADistanceFromTheLastOne) {
     EXPECT_FALSE(isKeyframe());
     tracked.T_c_w.mean.translation().x() = config.keyframeDistance + 0.01;
     EXPECT_TRUE(isKeyframe());
-    choice.fused(tracked.T_c_w.mean);
+    choice.add(1, image, tracked.T_c_w.mean);
     EXPECT_FALSE(isKeyframe());
 }
 
@@ -62,6 +64,25 @@ TEST_F(Keyframes, ComeWhereMuchIsNew) {
     EXPECT_FALSE(isKeyframe());
     setDepth(image, 40, 0.F);
     EXPECT_FALSE(isKeyframe());
+}
+
+TEST_F(Keyframes, AreNotChosenForWhatTheMapIsStillToShow) {
+    config.keyframeDistance = 2.;  // the choice is by new surfaces alone
+    KeyframeChoice busy(config, camera);
+    const auto isKeyframe = [&](double x) {
+        tracked.T_c_w.mean.translation().x() = x;
+        return busy.isKeyframe(tracked, image, shown);
+    };
+    busy.add(0, image, Pose::Identity());
+    setDepth(shown, 40, 0.F);
+    EXPECT_FALSE(isKeyframe(0.));
+    EXPECT_FALSE(isKeyframe(0.4));  // a fifth of the image is beside the keyframe
+    EXPECT_TRUE(isKeyframe(0.8));
+    setDepth(image, 40, 1.8F);  // a surface in front of that of the keyframe
+    EXPECT_TRUE(isKeyframe(0.));
+    setDepth(image, 40, 2.F);
+    busy.setFused(0);
+    EXPECT_TRUE(isKeyframe(0.));  // the map does not show what was fused
 }
 
 TEST_F(Keyframes, AreNotBlackOrContradictedByTheMap) {

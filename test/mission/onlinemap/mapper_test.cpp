@@ -40,9 +40,19 @@ TEST_F(MapperTest, ErrorsAreThoseOfSurfacesInRange) {
             return mapper.errors()->relate(image, camera, tracked.T_c_w).views;
         };
         EXPECT_EQ(views(), 0.);
-        mapper.addSurfaces(*input);
+        mapper.setFused(*input);
         EXPECT_NEAR(views(), range > 2. ? 1. : 0., 1e-9);
     }
+}
+
+/// While another thread fuses the first image, the next ones do not lack the same surfaces.
+TEST_F(MapperTest, ChoosesASurfaceOnceUntilTheMapShowsIt) {
+    Mapper mapper(config);
+    const auto first = mapper.choose(tracked, image, empty, false);
+    ASSERT_TRUE(first);
+    EXPECT_FALSE(mapper.choose(tracked, image, empty, false));
+    mapper.setFused(*first);
+    EXPECT_TRUE(mapper.choose(tracked, image, empty, false));  // the map has lost it
 }
 
 TEST_F(MapperTest, AsksForAnUpdateOnlyWhereTheMapChanges) {
