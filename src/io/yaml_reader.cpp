@@ -2,6 +2,7 @@
 #include "io/yaml_reader.hpp"
 
 #include <fmt/format.h>
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 
 #include <algorithm>
@@ -101,6 +102,8 @@ YAML::Node parseYaml(const std::string& text, const std::string& name) {
     try {
         requireOneDocument(name, text);
         return YAML::Load(text);
+    } catch (const YAML::DeepRecursion& error) {
+        throw InputError(name, fmt::format("line {}", error.mark.line + 1), "is nested too deeply");
     } catch (const YAML::ParserException& error) {
         throw InputError(name, fmt::format("line {}", error.mark.line + 1), error.msg);
     } catch (const YAML::Exception& error) {

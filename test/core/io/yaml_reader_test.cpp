@@ -50,6 +50,10 @@ TEST(YamlFile, AKeyWithoutValueIsNotTheWordNull) {
     }
 }
 
+TEST(YamlFile, DeepNestingIsRefused) {
+    EXPECT_EQ(saidAbout("a:\n" + std::string(100000, '[')), "a.yaml: line 2: is nested too deeply");
+}
+
 TEST(YamlFile, SecondDocumentsAreRefused) {
     EXPECT_EQ(saidAbout("a: 1\n---\nb: 2\n"),
               "a.yaml: holds several documents ('---'); only one is read");
