@@ -51,7 +51,7 @@ set(folders_drawing_figures io geometry photometry evaluation depth problem serv
     flight check posters exploration plot shapes flightlog)
 set(folders_drawing_interchange io geometry bag dataset result shapes flightlog)
 set(folders_app_live io)
-set(folders_app_report io dataset problem plot shapes figures)
+set(folders_app_report io dataset result problem plot shapes figures)
 set(folders_app_shared io geometry result config runs report)
 set(folders_app_flights io geometry render dataset planners alignment result config problem servo recording replay
     flight check posters flightlog figures report shared)

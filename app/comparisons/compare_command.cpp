@@ -3,63 +3,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <functional>
 #include <map>
 #include <utility>
 
-#include "figures/top_view.hpp"
-#include "io/atomic_file.hpp"
+#include "comparisons/compare_report.hpp"
 #include "io/error.hpp"
-#include "planners/planner_traits.hpp"
 #include "render/interruptible_views.hpp"
-#include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 #include "shared/result_folder.hpp"
 
 namespace photonav {
-namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
-
-/// Of files of the result: without line breaks and their like.
-std::string nameOf(const Config& config) {
-    std::string name = fs::path(config.file).stem().string();
-    std::replace_if(
-        name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '_');
-    return name;
-}
-
-/// Planners with the photometric model, or without views, have their own colours.
-Color colorOf(const CompareMethod& method) {
-    static const std::map<std::string, Color> kColors{{"feature_reprojection", {86, 180, 233}},
-                                                      {"feature_count", {204, 121, 167}},
-                                                      {"map_uncertainty", {110, 60, 160}},
-                                                      {"none", {90, 90, 90}}};
-    const auto own = kColors.find(method.information);
-    const bool isOwn = usesViews(method.planner) && own != kColors.end();
-    return isOwn ? own->second : plannerColor(method.planner);
-}
-
-/// The first path of every method from above.
-Png picture(const Config& config, const World& world, const std::vector<CompareRun>& runs) {
-    std::vector<DrawnPath> paths;
-    for (const CompareMethod& method : compareMethods()) {
-        const auto run = std::find_if(runs.begin(), runs.end(), [&](const CompareRun& r) {
-            return r.method == method.label() && r.outcome.path;
-        });
-        if (run == runs.end()) continue;
-        DrawnPath& path = paths.emplace_back(drawnPath(*run->outcome.path, config.camera.T_b_c()));
-        path.name = method.label();
-        path.color = colorOf(method);
-    }
-    TopView view = viewFromAbove(config, world, paths);
-    view.title = fmt::format("{}, alpha {}", nameOf(config), config.belief.alpha);
-    view.ellipseScale = 0.;
-    return topViewFigure(view).png();
-}
 
 std::vector<CompareRun> runMethods(const Config& config, const World& world,
                                    const CompareOptions& options, ProgressLine& line,
@@ -97,20 +52,20 @@ std::vector<Config> loadConfigs(const CompareOptions& options) {
     return configs;
 }
 
-/// Writes the table and picture of one problem.
-json writeScenario(const Config& config, const World& world, const std::vector<CompareRun>& runs,
-                   const fs::path& folder, bool quiet) {
-    const std::string name = nameOf(config);
-    const std::string table = compareTable(runs);
-    writeFileAtomically(folder / (name + ".md"), table);
-    writeFileAtomically(folder / (name + ".png"), picture(config, world, runs));
-    if (!quiet) fmt::print("{}\n{}\n", name, table);
-    json scenario{{"config", name},
+json scenarioJson(const Comparison& comparison) {
+    const Config& config = comparison.config;
+    json scenario{{"config", nameOf(config)},
                   {"alpha", config.belief.alpha},
                   {"kappa", config.belief.kappa},
                   {"runs", json::array()}};
-    for (const CompareRun& run : runs) scenario["runs"].push_back(toJson(run));
+    for (const CompareRun& run : comparison.runs) scenario["runs"].push_back(toJson(run));
     return scenario;
+}
+
+void print(const Comparison& comparison) {
+    fmt::print("{}, mean of {} seed{}, traces in m²\n{}\n", nameOf(comparison.config),
+               comparison.seeds, comparison.seeds == 1 ? "" : "s",
+               alignedText(shortComparisonTable(comparison.runs)));
 }
 
 }  // namespace
@@ -121,25 +76,34 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
     for (const Config& config : configs) inputs = inputsOf(config, std::move(inputs));
     FolderTransaction folder = beginResult(options.out, inputs);
     json result = resultJson("compare", {{"scenarios", json::array()}});
+    CompareReport report(folder.path(), options.commandLine, configs.size() == 1);
     bool anyPath = false;
     for (const Config& given : configs) {
         const World world(given);
         PlanningProblem(given, world).checkPlaces();
-        const Config config = withKappa(given, world, interrupted);
+        Comparison comparison{withKappa(given, world, interrupted), options.runs, {}};
         ProgressLine line(options.quiet);
-        const auto runs = runMethods(config, world, options, line, interrupted);
+        comparison.runs = runMethods(comparison.config, world, options, line, interrupted);
         line.clear();
-        for (const CompareRun& run : runs) anyPath = anyPath || run.outcome.path;
-        if (!runs.empty())
-            result["scenarios"].push_back(
-                writeScenario(config, world, runs, folder.path(), options.quiet));
+        for (const CompareRun& run : comparison.runs) anyPath = anyPath || run.outcome.path;
+        if (!comparison.runs.empty()) {
+            result["scenarios"].push_back(scenarioJson(comparison));
+            report.add(comparison, world);
+            if (!options.quiet && !options.json) print(comparison);
+        }
         if (interrupted) break;
     }
     if (interrupted && keepsEarlierResult(folder, result["scenarios"].empty())) {
         return kInterrupted;
     }
     result["interrupted"] = interrupted.load();
+    report.write(result);
     commitResult(folder, result);
+    if (options.json) {
+        fmt::print("{}", jsonText(result));
+    } else if (!options.quiet && !result["scenarios"].empty()) {
+        printFile(folder.target() / "report.html");
+    }
     if (interrupted) return kInterrupted;
     return anyPath ? kDone : kNoAnswer;
 }

@@ -40,11 +40,7 @@ void addCompareOptions(CLI::App& parser, CompareOptions& options) {
     addOverrides(parser, options.overrides);
     addNumber(parser, "--runs", options.runs,
               "number of seeds per method, from the config's seed on", 1U, 10000U);
-    parser.add_option("--out", options.out, "result folder")
-        ->type_name("DIR")
-        ->check(notEmpty())
-        ->capture_default_str();
-    addQuiet(parser, options.quiet);
+    addOutput(parser, options, options.out.string());
 }
 
 void addBenchmarkOptions(CLI::App& parser, BenchmarkOptions& options) {

@@ -12,6 +12,7 @@
 #include "render/interruptible_views.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
+#include "result/text_table.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -60,13 +61,6 @@ std::string cellText(const Statistic& value, double scale, int decimals) {
     const std::string mean = fmt::format("{:.{}f}", scale * value.mean, decimals);
     if (!std::isfinite(value.deviation)) return mean;
     return fmt::format("{} ± {:.{}f}", mean, scale * value.deviation, decimals);
-}
-
-/// Pads by characters, not bytes: ± takes two of these.
-std::string padded(const std::string& text, std::size_t width) {
-    const auto characters = static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-    return std::string(width > characters ? width - characters : 0, ' ') + text;
 }
 
 /// A column of the table.

@@ -14,6 +14,7 @@
 
 #include "plot/picture.hpp"
 #include "problem/planning_problem.hpp"
+#include "result/text_table.hpp"
 #include "shapes/paths.hpp"
 #include "shapes/surroundings.hpp"
 
@@ -46,6 +47,13 @@ struct ReportTable {
     std::vector<std::pair<std::string, std::string>> rows;  ///< label, value with unit
 };
 
+/// A table of several columns.
+struct ReportTextTable {
+    std::string title;
+    TextTable table;
+    std::string note = {};  ///< below the table
+};
+
 /// The content of the page. Empty members are not shown.
 struct ReportData {
     std::string title;
@@ -67,6 +75,7 @@ struct ReportData {
     std::vector<ReportFigure> figures;
     std::vector<ReportFrame> frames;  ///< frames of the animation, in their order
     std::vector<ReportTable> tables;
+    std::vector<ReportTextTable> textTables;
     nlohmann::json flight;  ///< flightLogJson() of a flight to play in the 3-D view; null: none
 };
 

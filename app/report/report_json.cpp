@@ -92,7 +92,8 @@ std::string reportJson(const ReportData& data) {
     root["voxels"] = {{"centers", packed(data.voxels.centers)},
                       {"grey", packed(data.voxels.grey)},
                       {"size", data.voxels.size}};
-    for (const char* list : {"trees", "paths", "views", "progress", "figures", "frames", "tables"})
+    for (const char* list :
+         {"trees", "paths", "views", "progress", "figures", "frames", "tables", "text_tables"})
         root[list] = json::array();
     for (const DrawnTree& tree : data.trees) root["trees"].push_back(treeToJson(tree));
     for (const DrawnPath& path : data.paths) root["paths"].push_back(pathToJson(path));
@@ -110,6 +111,9 @@ std::string reportJson(const ReportData& data) {
     for (const ReportFrame& frame : data.frames) root["frames"].push_back(frameToJson(frame));
     for (const ReportTable& table : data.tables)
         root["tables"].push_back({{"title", table.title}, {"rows", table.rows}});
+    for (const auto& [title, table, note] : data.textTables)
+        root["text_tables"].push_back(
+            {{"title", title}, {"head", table.head}, {"rows", table.rows}, {"note", note}});
     if (!data.flight.is_null()) root["flight"] = data.flight;
     root["planner_colors"] = json::object();
     for (const json& planner : data.result.value("planners", json::array()))

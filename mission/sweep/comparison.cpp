@@ -18,51 +18,71 @@ constexpr const char* kNoModel = "none";
 
 using Values = std::vector<double>;
 
-std::string meanAndDeviation(const Values& values, int decimals) {
+/// Of what a table shows of its values.
+enum class Shown { mean, meanAndDeviation };
+
+std::string textOf(const Values& values, int decimals, Shown shown) {
     if (values.empty()) return "-";
     const auto n = static_cast<double>(values.size());
     double mean = 0.;
     for (const double v : values) mean += v / n;
-    if (values.size() == 1) return fmt::format("{:.{}f}", mean, decimals);
+    if (values.size() == 1 || shown == Shown::mean) return fmt::format("{:.{}f}", mean, decimals);
     double variance = 0.;
     for (const double v : values) variance += (v - mean) * (v - mean) / (n - 1.);
     return fmt::format("{:.{}f} ± {:.{}f}", mean, decimals, std::sqrt(variance), decimals);
 }
 
 /// Three digits, whatever the order of magnitude.
-std::string traceText(const Values& values) {
+std::string traceText(const Values& values, Shown shown) {
     double largest = 0.;
     for (const double v : values) largest = std::max(largest, std::abs(v));
     const bool isNumber = largest > 0. && std::isfinite(largest);
     const int decimals = isNumber ? 2 - static_cast<int>(std::floor(std::log10(largest))) : 2;
-    return meanAndDeviation(values, std::clamp(decimals, 0, 12));
+    return textOf(values, std::clamp(decimals, 0, 12), shown);
 }
 
-std::string tableRow(const std::string& method, const std::vector<const CompareRun*>& runs) {
-    const auto ofPath = [&](double EvaluatedPath::*value) {
+/// The runs of one method.
+struct MethodRuns {
+    std::string method;
+    std::vector<const CompareRun*> runs;
+
+    Values ofPaths(double EvaluatedPath::*value) const {
         Values values;
         for (const CompareRun* run : runs) {
             if (run->outcome.path) values.push_back((*run->outcome.path).*value);
         }
         return values;
-    };
-    const auto ofRun = [&](const std::function<double(const PlanOutcome&)>& value) {
+    }
+    Values ofRuns(const std::function<double(const PlanOutcome&)>& value) const {
         Values values;
         for (const CompareRun* run : runs) values.push_back(value(run->outcome));
         return values;
-    };
-    const Values costs = ofPath(&EvaluatedPath::cost);
-    const std::string label =
-        costs.size() == runs.size()
-            ? method
-            : fmt::format("{} ({} of {} found a path)", method, costs.size(), runs.size());
-    return fmt::format(
-        "| {} | {} | {} | {} | {} | {} | {} | {} |\n", label, meanAndDeviation(costs, 3),
-        meanAndDeviation(ofPath(&EvaluatedPath::length), 2),
-        traceText(ofPath(&EvaluatedPath::meanTrace)), traceText(ofPath(&EvaluatedPath::goalTrace)),
-        meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.vertices); }), 0),
-        meanAndDeviation(ofRun([](const auto& o) { return static_cast<double>(o.views); }), 0),
-        meanAndDeviation(ofRun([](const auto& o) { return o.planSeconds; }), 1));
+    }
+    std::string label() const {
+        const std::size_t found = ofPaths(&EvaluatedPath::cost).size();
+        if (found == runs.size()) return method;
+        return fmt::format("{} ({} of {} found a path)", method, found, runs.size());
+    }
+};
+
+std::vector<MethodRuns> byMethod(const std::vector<CompareRun>& runs) {
+    std::vector<MethodRuns> all;
+    for (const CompareMethod& method : compareMethods()) {
+        MethodRuns own{method.label(), {}};
+        for (const CompareRun& run : runs) {
+            if (run.method == own.method) own.runs.push_back(&run);
+        }
+        if (!own.runs.empty()) all.push_back(std::move(own));
+    }
+    return all;
+}
+
+/// Label, cost, length and traces.
+std::vector<std::string> cellsOfPaths(const MethodRuns& own, Shown shown) {
+    return {own.label(), textOf(own.ofPaths(&EvaluatedPath::cost), 3, shown),
+            textOf(own.ofPaths(&EvaluatedPath::length), 2, shown),
+            traceText(own.ofPaths(&EvaluatedPath::meanTrace), shown),
+            traceText(own.ofPaths(&EvaluatedPath::goalTrace), shown)};
 }
 
 /// Planners with views by the photometric model; then the default one by every other model, and
@@ -108,16 +128,26 @@ CompareRun runMethod(const Config& config, const World& world, const CompareMeth
     return {method.label(), seed, std::move(outcome), status};
 }
 
-std::string compareTable(const std::vector<CompareRun>& runs) {
-    std::string table =
-        "| planner, information | cost J | length [m] | mean trace [m²] | goal trace [m²] | "
-        "vertices | views | seconds |\n|---|---|---|---|---|---|---|---|\n";
-    for (const CompareMethod& method : compareMethods()) {
-        std::vector<const CompareRun*> own;
-        for (const CompareRun& run : runs) {
-            if (run.method == method.label()) own.push_back(&run);
-        }
-        if (!own.empty()) table += tableRow(method.label(), own);
+TextTable comparisonTable(const std::vector<CompareRun>& runs) {
+    TextTable table{{"planner, information", "cost J", "length [m]", "mean trace [m²]",
+                     "goal trace [m²]", "vertices", "views", "seconds"},
+                    {}};
+    for (const MethodRuns& own : byMethod(runs)) {
+        auto& row = table.rows.emplace_back(cellsOfPaths(own, Shown::meanAndDeviation));
+        const auto add = [&](const auto& value, int decimals) {
+            row.push_back(textOf(own.ofRuns(value), decimals, Shown::meanAndDeviation));
+        };
+        add([](const PlanOutcome& o) { return static_cast<double>(o.vertices); }, 0);
+        add([](const PlanOutcome& o) { return static_cast<double>(o.views); }, 0);
+        add([](const PlanOutcome& o) { return o.planSeconds; }, 1);
+    }
+    return table;
+}
+
+TextTable shortComparisonTable(const std::vector<CompareRun>& runs) {
+    TextTable table{{"planner, information", "cost J", "length", "mean trace", "at goal"}, {}};
+    for (const MethodRuns& own : byMethod(runs)) {
+        table.rows.push_back(cellsOfPaths(own, Shown::mean));
     }
     return table;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "problem/planning_problem.hpp"
+#include "result/text_table.hpp"
 
 namespace photonav {
 
@@ -38,9 +39,12 @@ struct CompareRun {
 CompareRun runMethod(const Config& config, const World& world, const CompareMethod& method,
                      std::uint32_t seed, const std::atomic<bool>& interrupted);
 
-/// A Markdown table with one row per method, in the order of compareMethods(): mean +- standard
-/// deviation over the seeds. The row says how many runs found a path if some did not.
-std::string compareTable(const std::vector<CompareRun>& runs);
+/// One row per method, in the order of compareMethods(): mean +- standard deviation over the seeds.
+/// The row says how many runs found a path if some did not.
+TextTable comparisonTable(const std::vector<CompareRun>& runs);
+
+/// The means of cost, length and traces only: it fits into 80 columns.
+TextTable shortComparisonTable(const std::vector<CompareRun>& runs);
 
 /// A run as an object of result.json. Without a path, cost, length and traces are left out.
 nlohmann::json toJson(const CompareRun& run);

@@ -108,6 +108,21 @@ function addTable(title, pairs) {
   element('tables').append(box);
 }
 
+function addTextTable({title, head, rows, note}) {
+  const box = make('div', undefined, {className: 'wide'}), table = make('table');
+  const thead = make('thead'), body = make('tbody'), top = make('tr');
+  top.append(...head.map((cell) => make('th', cell)));
+  thead.append(top);
+  body.append(...rows.map((cells) => {
+    const row = make('tr');
+    row.append(...cells.map((cell) => make('td', cell)));
+    return row;
+  }));
+  table.append(thead, body);
+  box.append(make('h2', title), table, make('p', note, {className: 'note'}));
+  element('tables').append(box);
+}
+
 function addComparison() {
   if (paths.length < 2 || !hasBeliefs || data.result.command === 'replay' || sweep) return;
   const box = make('div', undefined, {className: 'wide'}), table = make('table');
@@ -133,6 +148,7 @@ function addComparison() {
 
 function fillRest() {
   element('characteristic-length').textContent = data.result.characteristic_length ?? 1;
+  (data.text_tables ?? []).forEach(addTextTable);
   addComparison();
   addTable('All numbers', flattened(data.result));
   for (const table of data.tables) addTable(table.title, table.rows);

@@ -43,8 +43,14 @@ TEST(Compare, EveryMethodOnceJudgedByTheSameBeliefs) {
     std::stringstream table;
     table << std::ifstream(folder / "two_textures.md").rdbuf();
     for (const CompareMethod& method : compareMethods()) {
-        EXPECT_NE(table.str().find("| " + method.label() + " |"), std::string::npos);
+        EXPECT_NE(table.str().find("| " + method.label() + " "), std::string::npos);
     }
+    const std::string page = test::contentOf((folder / "report.json").string());
+    const auto report = nlohmann::json::parse(page);
+    EXPECT_EQ(report["paths"].size(), compareMethods().size());
+    EXPECT_EQ(report["text_tables"][0]["rows"].size(), compareMethods().size());
+    EXPECT_EQ(report["figures"].size(), 1U);
+    EXPECT_TRUE(fs::exists(folder / "report.html") && fs::exists(folder / "config.yaml"));
     fs::remove_all(folder);
 }
 
@@ -71,10 +77,45 @@ TEST(Compare, ItsTableSaysHowManyRunsFoundAPath) {
     PlanOutcome found;
     found.path = EvaluatedPath{};
     found.path->cost = 2.;
-    const std::string table =
-        compareTable({{method, 1, found, "done"}, {method, 2, PlanOutcome{}, "no path"}});
-    EXPECT_NE(table.find("| " + method + " (1 of 2 found a path) | 2.000 |"), std::string::npos)
-        << table;
+    const std::vector<CompareRun> runs{{method, 1, found, "done"},
+                                       {method, 2, PlanOutcome{}, "no path"}};
+    for (const TextTable& table : {comparisonTable(runs), shortComparisonTable(runs)}) {
+        ASSERT_EQ(table.rows.size(), 1U);
+        EXPECT_EQ(table.rows[0].size(), table.head.size());
+        EXPECT_EQ(table.rows[0][0], method + " (1 of 2 found a path)");
+        EXPECT_EQ(table.rows[0][1], "2.000");
+    }
+}
+
+/// Whatever the methods are called, and traces have three digits.
+TEST(Compare, ItsShortTableFitsIntoATerminal) {
+    std::vector<CompareRun> runs;
+    for (const CompareMethod& method : compareMethods()) {
+        CompareRun& run = runs.emplace_back(CompareRun{method.label(), 1, {}, "done"});
+        run.outcome.path = EvaluatedPath{};
+        run.outcome.path->cost = 123.4567;
+        run.outcome.path->length = 123.4567;
+        run.outcome.path->meanTrace = run.outcome.path->goalTrace = 1.2345e-5;
+    }
+    const std::string text = alignedText(shortComparisonTable(runs));
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(characters(line), 80U) << line;
+}
+
+TEST(Compare, SeveralConfigsShareAPage) {
+    const test::TemporaryFolder folder;
+    const std::string out = folder.file("out");
+    const Execution run = photonav(
+        "compare " + config("two_textures") + " " + config("stripes") + " --runs 1 --out " + out +
+        " --json --set planner.vertices=60 --set planner.view_pitch=1 --set camera.width=94 "
+        "--set camera.height=60");
+    EXPECT_LE(run.exitCode, 1) << run.output;
+    EXPECT_EQ(nlohmann::json::parse(run.output)["scenarios"].size(), 2U);
+    const auto report = nlohmann::json::parse(test::contentOf(out + "/report.json"));
+    EXPECT_EQ(report["title"], "two_textures, stripes");
+    EXPECT_EQ(report["text_tables"].size(), 2U);
+    EXPECT_EQ(report["figures"].size(), 2U);
+    EXPECT_FALSE(fs::exists(out + "/config.yaml"));
 }
 
 TEST(Compare, TwoConfigsOfOneNameAreRefused) {
