@@ -191,6 +191,14 @@ class BackgroundReplannerTest : public RealTimeExploration {
         input.keyframe = MapInput::Keyframe{input.image, belief.mean, 0};
         return {{input}, {}, belief, time};
     }
+    /// A point of the surface in the middle of the first image.
+    Eigen::Vector3d seen() const {
+        const Camera camera = config.camera.camera();
+        View view;
+        world.views().render(camera, beliefAtTakeOff(config).mean, view);
+        const unsigned u = camera.width / 2, v = camera.height / 2;
+        return beliefAtTakeOff(config).mean.inverse() * camera.unproject(u, v, view.depth[v][u]);
+    }
     static Replanned resultOf(BackgroundReplanner& background) {
         std::optional<Replanned> result;
         waitUntil([&] {
@@ -226,6 +234,21 @@ TEST_F(BackgroundReplannerTest, JoinsWhatComesWhileItIsBusy) {
     EXPECT_EQ(second.request.imageTime, 3.);
     EXPECT_EQ(second.request.T_c_w.covariance, moved.covariance);
     EXPECT_FALSE(background.isBusy());
+}
+
+/// It would go on for hours: the planner is to have more vertices than it can find.
+TEST_F(BackgroundReplannerTest, StopEndsAPlanInProgressAndDropsWhatWaits) {
+    config.explore.vertices = 100000000;
+    Replanner replanner = this->replanner();
+    BackgroundReplanner background(replanner, kInfinity);
+    const Eigen::Vector3d wall = seen();
+    const double unknown = replanner.clearanceBeside(wall);
+    background.add(request(1.));
+    background.goOn(beliefAtTakeOff(config));
+    background.add(request(2.));
+    waitUntil([&] { return replanner.clearanceBeside(wall) != unknown; });  // planning is next
+    background.stop();
+    EXPECT_FALSE(background.isBusy() || background.poll());
 }
 
 TEST_F(BackgroundReplannerTest, PollThrowsWhatItsThreadHasThrown) {
