@@ -52,20 +52,19 @@ std::vector<Config> loadConfigs(const CompareOptions& options) {
     return configs;
 }
 
-json scenarioJson(const Comparison& comparison) {
-    const Config& config = comparison.config;
+json scenarioJson(const ProblemRuns& problem) {
+    const Config& config = problem.config;
     json scenario{{"config", nameOf(config)},
                   {"alpha", config.belief.alpha},
                   {"kappa", config.belief.kappa},
                   {"runs", json::array()}};
-    for (const CompareRun& run : comparison.runs) scenario["runs"].push_back(toJson(run));
+    for (const CompareRun& run : problem.runs) scenario["runs"].push_back(toJson(run));
     return scenario;
 }
 
-void print(const Comparison& comparison) {
-    fmt::print("{}, mean of {} seed{}, traces in m²\n{}\n", nameOf(comparison.config),
-               comparison.seeds, comparison.seeds == 1 ? "" : "s",
-               alignedText(shortComparisonTable(comparison.runs)));
+void print(const ProblemRuns& problem) {
+    fmt::print("{}, mean of {} seed{}, traces in m²\n{}\n", nameOf(problem.config), problem.seeds,
+               problem.seeds == 1 ? "" : "s", alignedText(shortComparisonTable(problem.runs)));
 }
 
 }  // namespace
@@ -81,15 +80,15 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
     for (const Config& given : configs) {
         const World world(given);
         PlanningProblem(given, world).checkPlaces();
-        Comparison comparison{withKappa(given, world, interrupted), options.runs, {}};
+        ProblemRuns problem{withKappa(given, world, interrupted), options.runs, {}};
         ProgressLine line(options.quiet);
-        comparison.runs = runMethods(comparison.config, world, options, line, interrupted);
+        problem.runs = runMethods(problem.config, world, options, line, interrupted);
         line.clear();
-        for (const CompareRun& run : comparison.runs) anyPath = anyPath || run.outcome.path;
-        if (!comparison.runs.empty()) {
-            result["scenarios"].push_back(scenarioJson(comparison));
-            report.add(comparison, world);
-            if (!options.quiet && !options.json) print(comparison);
+        for (const CompareRun& run : problem.runs) anyPath = anyPath || run.outcome.path;
+        if (!problem.runs.empty()) {
+            result["scenarios"].push_back(scenarioJson(problem));
+            report.add(problem, world);
+            if (!options.quiet && !options.json) print(problem);
         }
         if (interrupted) break;
     }

@@ -30,15 +30,15 @@ Color colorOf(const CompareMethod& method) {
 }
 
 /// The first path of every method.
-std::vector<DrawnPath> firstPaths(const Comparison& comparison) {
+std::vector<DrawnPath> firstPaths(const ProblemRuns& problem) {
     std::vector<DrawnPath> paths;
     for (const CompareMethod& method : compareMethods()) {
         const auto run = std::find_if(
-            comparison.runs.begin(), comparison.runs.end(),
+            problem.runs.begin(), problem.runs.end(),
             [&](const CompareRun& r) { return r.method == method.label() && r.outcome.path; });
-        if (run == comparison.runs.end()) continue;
+        if (run == problem.runs.end()) continue;
         DrawnPath& path =
-            paths.emplace_back(drawnPath(*run->outcome.path, comparison.config.camera.T_b_c()));
+            paths.emplace_back(drawnPath(*run->outcome.path, problem.config.camera.T_b_c()));
         path.name = method.label();
         path.color = colorOf(method);
     }
@@ -64,26 +64,26 @@ std::string nameOf(const Config& config) {
 CompareReport::CompareReport(fs::path folder, const std::string& commandLine, bool hasConfig)
     : folder_(std::move(folder)), commandLine_(commandLine), hasConfig_(hasConfig) {}
 
-void CompareReport::add(const Comparison& comparison, const World& world) {
-    const std::string name = nameOf(comparison.config);
-    const TextTable table = comparisonTable(comparison.runs);
+void CompareReport::add(const ProblemRuns& problem, const World& world) {
+    const std::string name = nameOf(problem.config);
+    const TextTable table = comparisonTable(problem.runs);
     writeFileAtomically(folder_ / (name + ".md"), alignedMarkdown(table));
-    std::vector<DrawnPath> paths = firstPaths(comparison);
+    std::vector<DrawnPath> paths = firstPaths(problem);
     figures_.push_back({name + ".png",
                         {fmt::format("{}: the first path of every method, from above.", name),
-                         fromAbove(comparison.config, world, paths)}});
-    if (names_.empty()) begin(comparison, world, std::move(paths));
+                         fromAbove(problem.config, world, paths)}});
+    if (names_.empty()) begin(problem, world, std::move(paths));
     names_.push_back(name);
     page_.textTables.push_back(
-        {fmt::format("{}, alpha {}", name, comparison.config.belief.alpha), table,
+        {fmt::format("{}, alpha {}", name, problem.config.belief.alpha), table,
          fmt::format("Mean ± standard deviation over {} seed{}. All paths are evaluated by the "
                      "photometric beliefs.",
-                     comparison.seeds, comparison.seeds == 1 ? "" : "s")});
+                     problem.seeds, problem.seeds == 1 ? "" : "s")});
 }
 
-void CompareReport::begin(const Comparison& comparison, const World& world,
+void CompareReport::begin(const ProblemRuns& problem, const World& world,
                           std::vector<DrawnPath> paths) {
-    page_ = problemReport(comparison.config, world, commandLine_, {});
+    page_ = problemReport(problem.config, world, commandLine_, {});
     page_.paths = std::move(paths);
     if (!hasConfig_) page_.config.clear();
 }

@@ -13,7 +13,7 @@
 namespace photonav {
 
 /// The runs of all methods on one problem.
-struct Comparison {
+struct ProblemRuns {
     Config config;
     unsigned seeds = 0;  ///< number of runs per method, if it was not interrupted
     std::vector<CompareRun> runs;
@@ -30,14 +30,14 @@ class CompareReport {
     CompareReport(std::filesystem::path folder, const std::string& commandLine, bool hasConfig);
 
     /// Writes the table of one problem, and adds it to the page. The world is used only here.
-    void add(const Comparison& comparison, const World& world);
+    void add(const ProblemRuns& problem, const World& world);
 
     /// Writes the page and the pictures; nothing if no problem was added.
     /// @param result content of result.json
     void write(const nlohmann::json& result);
 
   private:
-    void begin(const Comparison& comparison, const World& world, std::vector<DrawnPath> paths);
+    void begin(const ProblemRuns& problem, const World& world, std::vector<DrawnPath> paths);
 
     std::filesystem::path folder_;
     std::string commandLine_;
