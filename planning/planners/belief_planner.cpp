@@ -4,6 +4,7 @@
 #include <ompl/base/goals/GoalSampleableRegion.h>
 #include <ompl/datastructures/NearestNeighborsGNATNoThreadSafety.h>
 #include <ompl/geometric/PathGeometric.h>
+#include <ompl/util/Console.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,6 +50,7 @@ BeliefPlanner::BeliefPlanner(const ob::SpaceInformationPtr& si, std::shared_ptr<
       best_{kInfinity, {}},
       updated_(si, model_->space()),
       objective_(std::make_shared<OmplObjective>(si, model_)) {
+    fieldEpoch_ = model_->field().epoch();
     specs_.optimizingPaths = true;
     specs_.canReportIntermediateSolutions = false;
     declareOption("range", growth_.range);
@@ -198,18 +200,17 @@ void BeliefPlanner::publishProgress() {
     progress_.views = model_->field().views();
 }
 
+/// A start in collision is no root; when it is free, it becomes one.
+/// @return whether there is a root that is free
 bool BeliefPlanner::addStarts() {
-    unsigned seen = pis_.getSeenStartStatesCount();
-    while (const ob::State* start = pis_.nextStart()) {
-        Belief belief;
-        try {
-            belief = rootBelief(start);
-        } catch (...) {  // a view: the next solve() takes this start again
-            pis_.restart();
-            while (pis_.getSeenStartStatesCount() < seen) pis_.nextStart();
-            throw;
+    for (unsigned i = 0; i < pdef_->getStartStateCount(); ++i) {
+        const ob::State* start = pdef_->getStartState(i);
+        if (rootAt(start) != nullptr) continue;
+        if (!si_->satisfiesBounds(start) || !si_->isValid(start)) {
+            OMPL_WARN("%s: a start state is out of bounds or in collision", getName().c_str());
+            continue;
         }
-        seen = pis_.getSeenStartStatesCount();
+        const Belief belief = rootBelief(start);  // if a view throws, the start is no root yet
         Vertex& root = addVertex(start);
         root.isGoal = pdef_->getGoal()->isSatisfied(start);
         roots_.push_back({&root, belief});
@@ -358,6 +359,7 @@ void BeliefPlanner::clear() {
     parentsBefore_.clear();
     movedRoot_.reset();
     model_->clear();
+    fieldEpoch_ = model_->field().epoch();
     publishProgress();
 }
 

@@ -295,7 +295,6 @@ class BeliefPlanner : public ompl::base::Planner {
     void orBeginAnew(const std::function<void()>& update);
     std::optional<double> costOf(const std::vector<ompl::base::State*>& path);
     const Root* rootAt(const ompl::base::State* state) const;
-    void setStartOfProblem(const ompl::base::State* state);
     void addSolution();
     ompl::base::PlannerStatus report();
     ompl::base::PlannerStatus solveFor(double seconds,
@@ -318,6 +317,7 @@ class BeliefPlanner : public ompl::base::Planner {
     double budget_ = 0.;           // of the solve() that has a deadline [s]
     std::size_t iterations_ = 0;
     std::size_t iterationsAtChange_ = 0;      // of the map or the root, the last one
+    std::uint32_t fieldEpoch_ = 0;            // whose views the beliefs are made of
     std::vector<const Vertex*> goalSamples_;  // vertices that were sampled at a goal
     std::vector<Vertex*> movedRoots_;         // added by moveRoot(): they are no samples
     std::vector<Vertex*> unused_;             // removed, to be used again

@@ -9,7 +9,10 @@ namespace photonav {
 namespace ob = ompl::base;
 
 void BeliefPlanner::mapChanged(const MapChange& change) {
-    if (change.empty() || roots_.empty()) return;
+    // Entries of the field may become stale without a change, see updatesUntilStale.
+    const bool isFieldUpdated = fieldEpoch_ != model_->field().epoch();
+    if ((change.empty() && !isFieldUpdated) || roots_.empty()) return;
+    fieldEpoch_ = model_->field().epoch();
     beginUpdate();
     iterationsAtChange_ = iterations_;
     updated_.addChange(change);
@@ -101,11 +104,15 @@ bool BeliefPlanner::isRoot(const Vertex& vertex) const {
                        [&](const Root& root) { return root.vertex == &vertex; });
 }
 
-void BeliefPlanner::moveRoot(const ob::State* state, const Belief& belief) {
+void BeliefPlanner::moveRoot(const ob::State* given, const Belief& belief) {
     checkValidity();
     beginUpdate();
     iterationsAtChange_ = iterations_;
-    setStartOfProblem(state);
+    ob::ScopedState<> copy(si_);  // the given one may be the problem's
+    copy = given;
+    const ob::State* const state = copy.get();
+    pdef_->clearStartStates();
+    pdef_->addStartState(state);
     Vertex probe;
     probe.state = const_cast<ob::State*>(state);
     Vertex* root = neighbours_->size() > 0 ? neighbours_->nearest(&probe) : nullptr;
@@ -138,13 +145,6 @@ void BeliefPlanner::removeFormerRoots() {
     const std::vector<Vertex*> former = movedRoots_;
     for (Vertex* vertex : former) {
         if (!isRoot(*vertex) && !isNeeded(*vertex)) erase({vertex});
-    }
-}
-
-void BeliefPlanner::setStartOfProblem(const ob::State* state) {
-    pdef_->clearStartStates();
-    pdef_->addStartState(state);
-    while (pis_.nextStart() != nullptr) {
     }
 }
 

@@ -181,7 +181,7 @@ void PerceptionRRTstar::removeEdgesOf(const Vertex& vertex) {
 /// motion that leads to them, get the new one. Covariances are propagated through their subtrees.
 void PerceptionRRTstar::renewBeliefs() {
     for (Vertex& vertex : vertices_) {
-        if (vertex.state != nullptr && hasStaleViews(at(vertex).motion)) {
+        if (vertex.state != nullptr && hasChangedViews(at(vertex).motion)) {
             informed_.push_back(&vertex);
         }
     }
@@ -189,9 +189,12 @@ void PerceptionRRTstar::renewBeliefs() {
     offerBestGoal();
 }
 
-bool PerceptionRRTstar::hasStaleViews(const Motion& motion) const {
-    return std::any_of(motion.views.begin(), motion.views.end(),
-                       [](const auto* view) { return view != nullptr && view->isStale; });
+/// Whether views on a motion have changed since its belief was propagated. A path or another
+/// planner that shares the field may have rendered them again already.
+bool PerceptionRRTstar::hasChangedViews(const Motion& motion) const {
+    return std::any_of(motion.views.begin(), motion.views.end(), [&](const auto* view) {
+        return view != nullptr && (view->isStale || view->epoch > motion.epoch);
+    });
 }
 
 /// Lines 8 to 11 of Algorithm 2: rewires around every vertex whose information changed.

@@ -62,7 +62,7 @@ class PerceptionRRTstar : public BeliefPlanner {
     void chooseParent(Vertex& fresh, std::vector<Candidate>& candidates);
     void rewire(Vertex& fresh, std::vector<Candidate>& candidates);
     void updateSubtree(const Vertex& root, const Belief& belief);
-    bool hasStaleViews(const Motion& motion) const;
+    bool hasChangedViews(const Motion& motion) const;
     void offerBestGoal();
     bool isFree(Candidate& candidate, const Vertex& fresh) const;
     Branch& at(const Vertex& vertex) { return tree_[vertex.index]; }

@@ -189,6 +189,68 @@ TEST_P(ChangedPlanner, AMoveBelongsToTheUpdateOfTheMapBeforeIt) {
     EXPECT_EQ(planner.lastUpdate().verticesAdded, 0U);
 }
 
+/// Planners over a textured floor that share the information of its views.
+class PlannersOverTexture : public testing::TestWithParam<std::string> {
+  protected:
+    PlannersOverTexture() {
+        problem.clearance = world.clearance();
+        paint(kFloor);
+    }
+    std::shared_ptr<BeliefPlanner> planner() {
+        const auto model = std::make_shared<BeliefModel>(problem.space(), field, problem.belief);
+        auto planner = problem.planner(GetParam(), 5, model);
+        grow(*planner, 120);
+        return planner;
+    }
+    MapChange paint(const Eigen::AlignedBox2d& area) {
+        return world.paintFloor(area, [&] { return std::generate_canonical<float, 24>(random); });
+    }
+    void makeField(unsigned updatesUntilStale) {
+        const Camera camera = makeCamera(24, 16, 1.2);
+        field = std::make_shared<InformationField>(
+            world.freshViews(), camera, photometricModel(camera, {}), problem.mount,
+            InformationField::Options{.positionPitch = 0.25,
+                                      .updatesUntilStale = updatesUntilStale});
+    }
+
+    std::mt19937 random{1};
+    Problem problem = problemIn(SceneKind::overTexture);
+    ChangingWorld world{problem.bounds};
+    std::shared_ptr<InformationField> field;
+};
+INSTANTIATE_TEST_SUITE_P(Planners, PlannersOverTexture,
+                         testing::Values("pa_rrt_star", "rrbt", "belief_rrt_star"));
+
+/// The first one renders the views again that both have in common.
+TEST_P(PlannersOverTexture, BothFollowAChange) {
+    makeField(1);
+    const auto first = planner(), second = planner();
+    ASSERT_EQ(first->bestCost(), second->bestCost());
+    const MapChange change = paint({Eigen::Vector2d(1., 1.), Eigen::Vector2d(6., 6.)});
+    field->update(world.freshViews(), change);
+    for (const auto& planner : {first, second}) {
+        planner->mapChanged(change);
+        grow(*planner, 120);
+        EXPECT_LT(auditTree(*planner).maxCostError, 1e-9);
+    }
+    EXPECT_EQ(first->bestCost(), second->bestCost());
+    EXPECT_EQ(first->lastUpdate().verticesRewired, second->lastUpdate().verticesRewired);
+}
+
+/// Some views become stale at the next update only, although nothing changes then.
+TEST_P(PlannersOverTexture, FollowViewsThatBecomeStaleLater) {
+    makeField(2);
+    const auto planner = this->planner();
+    MapChange change = paint({Eigen::Vector2d(1., 1.), Eigen::Vector2d(6., 6.)});
+    for (int update = 0; update < 2; ++update) {
+        field->update(world.freshViews(), change);
+        EXPECT_GT(field->stale(), 0U);
+        planner->mapChanged(change);
+        EXPECT_LT(auditTree(*planner).maxCostError, 1e-9) << "update " << update;
+        change = {.resolution = change.resolution};
+    }
+}
+
 TEST(ChangedBeliefRRTstar, SearchesAfterAChangeFindWhatASearchAnewFinds) {
     PlannerBetweenWalls problem("belief_rrt_star");
     std::mt19937 random(3);

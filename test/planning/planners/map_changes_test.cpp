@@ -240,6 +240,30 @@ TEST_P(ChangingMap, APathIsFoundAgainWhenGoalAndRobotAreFreeAgain) {
     }
 }
 
+TEST_P(ChangingMap, AStartThatIsBlockedAtFirstBecomesTheRootWhenItIsFree) {
+    ChangingFlight flight(std::get<0>(GetParam()), std::get<1>(GetParam()), 1);
+    flight.wallAround(flight.position(), true);
+    flight.plan();
+    EXPECT_FALSE(flight.hasPath());
+    flight.wallAround(flight.position(), false);
+    flight.plan();
+    EXPECT_TRUE(flight.hasPath());
+    flight.check();
+}
+
+/// The root may be given by the problem itself, whose start it replaces.
+TEST_P(ChangingMap, TheRootMovesToTheStartOfTheProblem) {
+    ChangingFlight flight(std::get<0>(GetParam()), std::get<1>(GetParam()), 1);
+    flight.plan();
+    BeliefPlanner& planner = flight.planner();
+    const ob::State* start = planner.getProblemDefinition()->getStartState(0);
+    planner.moveRoot(start, planner.model().root(start));
+    flight.check();
+    flight.plan();
+    EXPECT_TRUE(flight.hasPath());
+    flight.check();
+}
+
 /// By how much the cost of a plan that follows random changes exceeds that of plans from scratch,
 /// relative; one value per update, in three scenes, sorted.
 std::vector<double> excessOverScratch(std::uint32_t firstSeed, std::uint32_t lastSeed) {

@@ -35,11 +35,36 @@ TEST(MeasuredMotion, IsTakenUntilAnExposureAndKeptAfterIt) {
     expectForward(motion.pending(), 0.7, 7e-4);
     expectForward(motion.takeUntil(0.2), 0.3, 3e-4);  // the step that ends at the exposure, too
     expectForward(motion.pending(), 0.4, 4e-4);
-    expectForward(motion.takeUntil(0.25), 0., 0.);
+    expectForward(motion.takeUntil(0.2), 0., 0.);
     motion.add(0.4, step(0.8, 8e-4));
     expectForward(motion.pending(), 1.2, 12e-4);
     expectForward(motion.takeUntil(1.), 1.2, 12e-4);
     expectForward(motion.pending(), 0., 0.);
+}
+
+TEST(MeasuredMotion, IsDividedAtAnExposureWithinAStep) {
+    MeasuredMotion motion(Pose::Identity());
+    Vector6 xi;
+    xi << 0.04, -0.02, 0.01, 0.02, 0.1, -0.05;
+    const UncertainPose T_next_now{expSE3(xi), 1e-4 * Matrix6::Identity()};
+    motion.add(0.1, T_next_now);
+    motion.add(0.2, T_next_now);
+    const UncertainPose first = motion.takeUntil(0.175);
+    EXPECT_LT((logSE3(first.mean) - 1.75 * xi).norm(), 1e-12);
+    EXPECT_NEAR(first.covariance(5, 5), 1.75e-4, 1e-7);
+    EXPECT_LT((logSE3(motion.pending().mean) - 0.25 * xi).norm(), 1e-12);
+    EXPECT_NEAR(motion.pending().covariance(5, 5), 0.25e-4, 1e-9);
+    const UncertainPose second = motion.takeUntil(0.19);  // the same step once more
+    EXPECT_LT((logSE3(second.mean) - 0.15 * xi).norm(), 1e-12);
+    EXPECT_LT((logSE3(motion.takeUntil(0.2).mean) - 0.1 * xi).norm(), 1e-12);
+}
+
+/// When it began is not known.
+TEST(MeasuredMotion, TheFirstStepIsNotDivided) {
+    MeasuredMotion motion(Pose::Identity());
+    motion.add(0.1, step(0.1, 1e-4));
+    EXPECT_EQ(motion.takeUntil(0.05).mean.translation().norm(), 0.);
+    EXPECT_NEAR(motion.takeUntil(0.1).mean.translation().norm(), 0.1, 1e-12);
 }
 
 TEST(MotionModel, GoesOnAtTheVelocityObservedLast) {
