@@ -87,7 +87,7 @@ std::vector<std::string> optionsOf(const CLI::App& parser) {
     return names;
 }
 
-/// What was typed in place of a command or an option, when that is what is wrong.
+/// The message for a wrong command line. It names the unknown word, if there is one.
 std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
     const auto code = static_cast<CLI::ExitCodes>(error.get_exit_code());
     const std::vector<std::string> unknown = app.remaining(true);

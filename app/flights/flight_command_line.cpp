@@ -33,7 +33,7 @@ void addFlyOptions(CLI::App& parser, FlyArguments& options) {
     addRecord(parser, options.record);
 }
 
-/// What was typed, and --set, go over the calibration.
+/// Options of the command line and --set override the calibration.
 int flyCalibrated(FlyArguments& options, const std::atomic<bool>& interrupted) {
     if (!options.calibration.empty()) {
         FlyConfig fly;

@@ -98,7 +98,7 @@ HeatMap heatMap(const Config& config, PlanningProblem& problem) {
     return map;
 }
 
-/// Where the robot may be, and what stands around that, down to the floor.
+/// A view of the bounds of the robot and the obstacles around them, down to the floor.
 Perspective perspective(const Config& config, const World& world, const PlanOutcome& outcome,
                         const std::vector<DrawnPath>& paths) {
     Eigen::AlignedBox3d box = config.bounds;

@@ -169,7 +169,7 @@ std::string degenerateText(const json& result) {
     return count > 0 ? fmt::format(" ({} degenerate)", count) : "";
 }
 
-/// What the covariances of odometry allow for, when that is not nothing.
+/// The systematic errors that the covariances of odometry include, if there are any.
 std::string depthErrorText(const json& dataset) {
     std::string text =
         fmt::format("{:g} % of the motion", 100. * dataset["depth_error"].get<double>());

@@ -9,7 +9,7 @@
 namespace photonav {
 namespace {
 
-/// What may stand in a quoted text of a shell script.
+/// A text without the characters that may not stand in quotes of a shell script.
 std::string plain(const std::string& text) {
     std::string line;
     for (const char c : text) {

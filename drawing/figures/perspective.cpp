@@ -45,7 +45,7 @@ Pose lookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target) {
     return T_w_c.inverse();
 }
 
-/// Where a box lies in the image plane at depth 1.
+/// The rectangle around a box in the image plane at depth 1.
 Eigen::AlignedBox2d projected(const Eigen::AlignedBox3d& box, const Pose& T_c_w) {
     Eigen::AlignedBox2d image;
     for (int i = 0; i < 8; ++i) {

@@ -72,7 +72,7 @@ bool Exploration::onStep(const Observation& observation, const std::vector<Track
     return explorer_.onStep(observation, tracked) && !hasCollided();
 }
 
-/// What the robot does not know of its end.
+/// Compares the end of the flight with the ground truth, which the robot does not know.
 void Exploration::enterEnd() {
     if (hasCollided()) {
         result_.end = FlightEnd::collided;

@@ -17,7 +17,7 @@
 
 namespace photonav {
 
-/// What planning and the clock have to do with each other.
+/// Whether the robot waits for its planner.
 enum class Timing {
     /// The robot waits until its plan is updated, which takes no time of the flight. Planning is
     /// limited by work: flights are deterministic.
@@ -35,7 +35,7 @@ struct ExplorerOptions {
     Config config;
     /// Mount and blur are replaced by the robot's, map errors by those of the robot's map.
     TrackerOptions tracker;
-    PilotOptions pilot;      ///< isFree is replaced by a test in the robot's map
+    PilotOptions pilot;      ///< clearance and radii are replaced by those of the robot's map
     double timeStep = 0.02;  ///< time step of control and odometry [s]
     /// Longest time from an exposure to the arrival of the next image, if one image in between is
     /// missing [s].

@@ -59,7 +59,7 @@ class RealTimeMonitor {
 /// Another robot in real time.
 class RealTimeRobot : public Robot {
   public:
-    /// Who takes care that a flight of a second takes a second.
+    /// The clock that paces a flight: a second of flight takes a second.
     enum class Clock {
         robot,  ///< fly() of the other robot does
         wall,   ///< this class waits; the other robot is simulated

@@ -47,7 +47,7 @@ class Corrections {
     std::deque<double> last_;
 };
 
-/// What a robot whose estimate is at its goal believes.
+/// The belief of a robot whose estimated position is at its goal.
 struct BelievedArrival {
     PositionBelief position;  ///< as wide as the corrections by the last images ask for
     double probability = 0.;  ///< to be within the tolerance of the goal

@@ -39,7 +39,7 @@ struct FlightOptions {
     std::uint64_t seed = 1;
 };
 
-/// What became of an image.
+/// The outcome of tracking an image.
 enum class ImageUse {
     missing,   ///< it never arrived
     used,      ///< the belief was updated

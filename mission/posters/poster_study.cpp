@@ -37,8 +37,8 @@ std::optional<GivenTrajectory> plannedIn(const World& world, const Config& confi
     return trajectory;
 }
 
-/// What may be flown with a set: what is given, or a new path, or that of the set that it grew
-/// from.
+/// The paths that a set may be judged by: a given one, or a new one, or that of the set that it
+/// grew from.
 std::vector<GivenTrajectory> trajectoriesIn(const World& world, const PosterProblem& problem,
                                             const PosterSet* before,
                                             const std::atomic<bool>& interrupted) {

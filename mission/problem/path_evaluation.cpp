@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMostKappa = 1e12;  // as in a config
 
-/// What the trace of a path is charged: its integral, or its sum over the vertices.
+/// The uncertainty in the cost of a path: the integral of the trace, or its sum over the vertices.
 double chargeOf(const std::vector<BeliefPoint>& points, CostRule rule) {
     double charge = 0.;
     for (std::size_t i = 1; i < points.size(); ++i) {

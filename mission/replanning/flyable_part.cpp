@@ -20,7 +20,7 @@ constexpr double kSlack = 0.02;      // of clearances, which are interpolated [m
 constexpr double kRetreat = 0.002;   // nearer to an obstacle [m]
 constexpr double kSide = 0.8;        // of the radius must be seen: a wall may be beyond
 
-/// Where along a path something is.
+/// A place on a path.
 struct Stop {
     double length = kInfinity;  // of the path until there [m]
     Eigen::Vector3d p_w = Eigen::Vector3d::Zero();

@@ -26,7 +26,7 @@ struct PlanUpdate {
     bool isEndedByClock = false;  ///< PlanningLimits::seconds ended the improvement of the plan
 };
 
-/// What ends an update before its work is done.
+/// The limits of an update, which may end it before its work is done.
 struct PlanningLimits {
     const std::atomic<bool>& interrupted;  ///< ends it at once when it becomes true
     /// Wall-clock time of planning after which a path is not improved any more [s]. The search for

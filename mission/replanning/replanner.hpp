@@ -7,7 +7,8 @@
 
 namespace photonav {
 
-/// What map and plan are to be updated by. It holds copies, which no other thread changes.
+/// The images and the belief for an update of map and plan. It holds copies, which no other thread
+/// changes.
 struct ReplanRequest {
     /// Images since the last request, at least one. If none changes the map, only the plan is
     /// updated.

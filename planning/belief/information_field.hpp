@@ -74,7 +74,9 @@ class InformationField {
     /// Updates the field after a change of the map. From now on views are rendered from `views`,
     /// and entries whose view may depend on the change become stale (see
     /// Options::updatesUntilStale). All other entries equal newly evaluated ones bit by bit, except
-    /// for changes of grey values below the tolerance of MapChange::texture. Takes about 1 us per
+    /// for changes of grey values below the tolerance of MapChange::texture, if the model depends
+    /// on the view alone: an entry keeps what a model that learns (of the noise of the map, of
+    /// unseen places) returned when the entry was evaluated. Takes about 1 us per
     /// entry in view of a change of 600 bricks (map_update_bench): for 1000 entries as long as a
     /// few views.
     ///

@@ -180,8 +180,8 @@ bool PathDescent::tryReplace(std::size_t first, std::size_t last,
     return true;
 }
 
-/// Least cost of the path after a node: that of a robot which knows there exactly where it is. The
-/// cost of the rest grows with the covariance, and the views are those of the path as it is.
+/// Least cost of the path after a node: the cost if the covariance at the node is zero. The cost
+/// of the rest grows with the covariance, and the views are those of the path as it is.
 double PathDescent::leastRest(std::size_t i) {
     auto& least = nodes_[i].leastRest;
     if (!least) {

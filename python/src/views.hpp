@@ -7,7 +7,7 @@
 
 namespace photonav::python {
 
-/// What Python renders views from.
+/// A map or a scene from which Python renders views.
 struct Views {
     std::shared_ptr<const ViewSource> source;
     double cellSize = 0.;  ///< of a map [m]; 0: a scene or mesh

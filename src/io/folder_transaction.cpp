@@ -50,7 +50,7 @@ void synchroniseAll(const fs::path& folder) {
     throw InputError(folder.string(), "", reason);
 }
 
-/// What a killed process was writing.
+/// Removes the unfinished files that a killed process left.
 void removeTemporaryFiles(const fs::path& folder) {
     std::vector<fs::path> found;
     for (const auto& entry : fs::directory_iterator(folder)) {
@@ -59,7 +59,7 @@ void removeTemporaryFiles(const fs::path& folder) {
     for (const fs::path& file : found) fs::remove(file);
 }
 
-/// What stands in the way of replacing a folder.
+/// Refuses a folder that cannot be replaced.
 void checkTarget(const fs::path& target, const fs::path& resolved) {
     std::error_code error;
     const fs::file_status status = fs::status(resolved, error);
@@ -105,8 +105,8 @@ void removeResult(const fs::path& folder) {
     removeEmptyFolders(folder);
 }
 
-/// What stands in the way of writing beside a folder: anything but a working folder, in which the
-/// lock is the first file and the last one.
+/// Refuses a folder beside which something else is than a working folder. The lock is the first
+/// file in a working folder, and the last one.
 void checkWorkingFolder(const fs::path& target, const fs::path& working) {
     std::error_code error;
     // As of the longest path that is made before there are results.

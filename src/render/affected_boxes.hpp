@@ -17,7 +17,7 @@ CellBox cellsBeside(const CellBox& box, int side, int thickness);
 /// A hash of a box.
 unsigned hashOf(const CellBox& box);
 
-/// What is left of a box, one part for each side at most.
+/// The rest of a box, in at most one part per side.
 class BoxParts {
   public:
     void add(const CellBox& part) { parts_[count_++] = part; }

@@ -61,7 +61,7 @@ AffineLanes inPixels(const Float3& perRay, const Lens& lens, float slack) {
     return {a, b, perRay.z - a * lens.cx - b * lens.cy + slack * size};
 }
 
-/// What is needed to draw kWidth triangles.
+/// The data to draw kWidth triangles.
 struct Batch {
     std::array<AffineLanes, 3> edges;
     AffineLanes inverseDepth;

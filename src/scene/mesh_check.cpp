@@ -166,8 +166,8 @@ const json& memberOf(const json& object, const char* name) {
     return object.is_object() && object.contains(name) ? object[name] : none;
 }
 
-/// What a small file can make of itself: meshes of many parts, many of them from the same numbers,
-/// and nodes that show the same mesh again and again.
+/// Limits the size of the scene that a small file can describe: meshes of many parts, many of them
+/// from the same numbers, and nodes that show the same mesh again and again.
 class GltfAmount {
   public:
     GltfAmount(const std::string& file, const json& root) : file_(file), root_(root) {}

@@ -134,7 +134,7 @@ class PlyBody {
     std::size_t row_ = 0;
 };
 
-/// What a PLY header says, line by line.
+/// The header of a PLY file, read line by line.
 class PlyHeader {
   public:
     explicit PlyHeader(const std::string& file)

@@ -133,7 +133,7 @@ Matrix8 scatterOfField(const std::vector<ImageBlock>& blocks, const Eigen::Array
     return 2. / EIGEN_PI * variance * sum;
 }
 
-/// What varies slowly over the image: the blocks' gains, and their variance.
+/// Errors that vary slowly over the image: the blocks' gains, and their variance.
 class Light {
   public:
     /// @param x the step to the minimum of the image alone

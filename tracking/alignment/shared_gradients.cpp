@@ -41,7 +41,7 @@ double scatterAlong(const Vector6& v, const std::vector<GradientTile>& tiles, do
     return variance;
 }
 
-/// What chance does not give; at most 1.
+/// The part of kappa that is not by chance; at most 1.
 double certainly(double kappa, double variance) {
     const double chance = kByChance * kByChance * variance;
     if (kappa <= 0. || kappa * kappa <= chance) return 0.;

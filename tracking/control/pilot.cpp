@@ -57,8 +57,10 @@ Pilot::Pilot(std::vector<PlannedView> plan, std::shared_ptr<const ViewSource> ma
       goalServo_(servoToGoal()),
       search_(searchInMap()) {}
 
-PhotometricServo Pilot::servoToGoal() const {
-    return {*map_, camera_, T_b_c_, route_.goal().T_w_b, {.photometric = options_.photometric}};
+std::optional<PhotometricServo> Pilot::servoToGoal() const {
+    if (!options_.photometricGoal) return {};  // it renders the view of the goal
+    return PhotometricServo(*map_, camera_, T_b_c_, route_.goal().T_w_b,
+                            {.photometric = options_.photometric});
 }
 
 ViewSearch Pilot::searchInMap() const { return {map_, camera_, T_b_c_, options_.photometric}; }
@@ -85,19 +87,19 @@ void Pilot::observe(const Tracker& tracker, const TrackedFrame& tracked, const I
                     T_w_b);
 }
 
-/// The belief is all there is.
+/// From now on the pilot approaches the goal by the belief, not by the image.
 void Pilot::leaveImage() {
     onImage_.reset();
     smallSteps_ = 0;
 }
 
 void Pilot::approachOnImage(const ImageF& image, const Pose& T_w_b) {
-    if (!options_.photometricGoal || !goalServo_.isInformative()) return;
-    const PhotometricServo::Step step = goalServo_.toward(image, T_w_b);
+    if (!goalServo_ || !goalServo_->isInformative()) return;
+    const PhotometricServo::Step step = goalServo_->toward(image, T_w_b);
     if (!step.isTrusted) return leaveImage();
     hasServoedOnImage_ = true;
     onImage_ = step.velocity;
-    const double small = std::max(kPhotometricStep, 2. * goalServo_.sigma());
+    const double small = std::max(kPhotometricStep, 2. * goalServo_->sigma());
     const bool isSmall =
         step.displacement.linear.norm() < small && std::abs(step.displacement.yawRate) < small;
     smallSteps_ = isSmall ? smallSteps_ + 1 : 0;
@@ -153,7 +155,7 @@ Route::Reference Pilot::advance(Route& route, const Tracker& tracker, double dt)
     return route.advance(belief, dt, untouchedBy(belief));
 }
 
-/// Where the body touches nothing, wherever within three standard deviations it is.
+/// Whether the body touches nothing at any place within three standard deviations.
 IsFree Pilot::untouchedBy(const UncertainPose& belief) const {
     const auto touchesNothing = [this](const Eigen::Vector3d& p_w) {
         return options_.clearance(p_w) >= options_.bodyRadius;

@@ -95,7 +95,7 @@ class Pilot {
     Pose bodyOf(const Pose& T_c_w) const { return T_c_w.inverse() * T_b_c_.inverse(); }
     void approachOnImage(const ImageF& image, const Pose& T_w_b);
     void leaveImage();
-    PhotometricServo servoToGoal() const;
+    std::optional<PhotometricServo> servoToGoal() const;
     ViewSearch searchInMap() const;
 
     std::shared_ptr<const ViewSource> map_;
@@ -104,7 +104,7 @@ class Pilot {
     PilotOptions options_;
     Route route_;
     WaypointServo servo_;
-    PhotometricServo goalServo_;
+    std::optional<PhotometricServo> goalServo_;  // none without photometricGoal
     ViewSearch search_;
     std::optional<double> searchSince_;  ///< [s]
     std::optional<Pose> searched_;       ///< body pose of the search; none: the route is followed

@@ -43,7 +43,7 @@ Matrix6 nonNegative(const Matrix6& A) {
 
 }  // namespace
 
-/// Who made what a view shows.
+/// The keyframes that the surfaces in a view were made of, and their shares in its information.
 struct MapErrors::Shares {
     struct Share {
         int keyframe;

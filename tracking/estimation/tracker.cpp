@@ -114,7 +114,7 @@ void Tracker::correctByVertical(const MeasuredVertical& measured) {
     belief_.mean = expSE3(belief_.covariance * right) * belief_.mean;
 }
 
-/// What the map in view owes to which keyframes.
+/// Finds the keyframes that the map in view was made of: their errors are errors of this map.
 void Tracker::relateToMap() {
     relation_.reset();
     if (!map_ || !options_.mapErrors) return;

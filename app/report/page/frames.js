@@ -1,5 +1,5 @@
-// Pictures one after the other: by hand with the slider, or played. The robot of the picture is in
-// the 3-D view.
+// The frames of an animation, played or chosen by a slider; the robot is drawn in the 3-D view at
+// the pose of the frame.
 'use strict';
 
 /// The robot as it believes to be, and the way from there to where it truly is.
