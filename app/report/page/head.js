@@ -16,7 +16,9 @@ function verdict() {
   if (data.result.verdict) return `${data.result.verdict[0].toUpperCase()}${data.result.verdict.slice(1)}.`;
   if (!paths.length) return data.result.command === 'plan' ? 'No path was found.' : '';
   if (!hasBeliefs) return '';
-  const ours = summaries[0], other = summaries[1];
+  // compare: with the last one, the shortest path.
+  const isComparison = data.result.command === 'compare', rival = isComparison ? paths.length - 1 : 1;
+  const ours = summaries[0], other = rival > 0 && summaries[rival];
   if (!other)
     return `The path is ${say(ours.length, 'm')} long and ends with a predicted position error of ` +
            `${say(100 * ours.goalSigma, 'cm')} (1σ, worst direction).`;
@@ -30,7 +32,8 @@ function verdict() {
   const mean = ours.goalSigma < other.goalSigma ? ''
       : `, the mean trace along the path is ${say(ours.meanTrace)} instead of ${say(other.meanTrace, 'm²')}` +
         factorOf(ours.meanTrace, other.meanTrace);
-  return `Compared with ${paths[1].name}, the path is ${length}${mean}, and ${goal}.`;
+  const name = isComparison ? ` of ${paths[0].name}` : '';
+  return `Compared with ${paths[rival].name}, the path${name} is ${length}${mean}, and ${goal}.`;
 }
 
 function factorOf(ours, other) {
