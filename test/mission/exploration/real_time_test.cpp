@@ -239,6 +239,7 @@ TEST_F(BackgroundReplannerTest, JoinsWhatComesWhileItIsBusy) {
 /// It would go on for hours: the planner is to have more vertices than it can find.
 TEST_F(BackgroundReplannerTest, StopEndsAPlanInProgressAndDropsWhatWaits) {
     config.explore.vertices = 100000000;
+    config.belief.kappa = 1.;  // given: to find it takes a planner as well
     Replanner replanner = this->replanner();
     BackgroundReplanner background(replanner, kInfinity);
     const Eigen::Vector3d wall = seen();
