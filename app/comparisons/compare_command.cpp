@@ -92,15 +92,13 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
         }
         if (interrupted) break;
     }
-    if (interrupted && keepsEarlierResult(folder, result["scenarios"].empty())) {
-        return kInterrupted;
-    }
+    if (interrupted && result["scenarios"].empty()) throw RenderingStopped();
     result["interrupted"] = interrupted.load();
     report.write(result);
     commitResult(folder, result);
     if (options.json) {
         fmt::print("{}", jsonText(result));
-    } else if (!options.quiet && !result["scenarios"].empty()) {
+    } else if (!options.quiet) {
         printFile(folder.target() / "report.html");
     }
     if (interrupted) return kInterrupted;

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "io/error.hpp"
+#include "io/file_lock.hpp"
 #include "shared/command_io.hpp"
 #include "sweep/reference_search.hpp"
 
@@ -63,11 +64,12 @@ int runReference(const ReferenceOptions& options, const std::atomic<bool>& inter
                                                      (source.stem().string() + ".csv")
                                                : fs::path(options.file);
     ReferenceTable table(file);
+    prepareFolder(fs::absolute(file).parent_path());
+    const FileLock lock(file);
     table.read();
     if (options.fromScratch) {
         for (const double alpha : given.sweep.alphas) table.setAside(alpha);
     }
-    prepareFolder(fs::absolute(file).parent_path());
     const Config config = withEffort(given, options, world, interrupted);
 
     ProgressLine line(options.quiet);
@@ -88,6 +90,8 @@ int runReference(const ReferenceOptions& options, const std::atomic<bool>& inter
                 table.write();
             }
         }
+        if (!interrupted) table.dropAside(alpha);
+        table.write();
         isComplete = isComplete && table.at(alpha) != nullptr;
     }
     line.clear();

@@ -181,23 +181,29 @@ std::optional<FlightLog> earlierLog(const FolderTransaction& folder, const Trial
     return log ? log : readFlightLog(folder.target(), first);
 }
 
-/// @throws InputError where a killed program has left a flight, and --resume is not given or cannot
-///         fly it again
+/// @throws InputError where a killed program has left a flight, and this command does not fly it
+///         again
 void checkNoFlightIsLost(const ExploreOptions& options, const Config& config,
-                         const FolderTransaction& folder) {
-    if (options.resume && !config.explore.realtime) return;
-    const std::size_t keyframes = storedKeyframes(folder.path());
-    if (keyframes == 0) return;
+                         const FolderTransaction& folder, const TrialItem& first, bool isFlown) {
+    const StoredFlight stored = storedFlight(folder.path());
+    const bool isFirst = stored.name == nameOf(first);
+    if (stored.keyframes == 0 || (isFirst && isFlown)) return;
+    if (options.resume && isFirst && !config.explore.realtime) return;
+    const std::string what = fmt::format("holds {} keyframes of a ", stored.keyframes);
     if (config.explore.realtime) {
         throw InputError(folder.path().string(), "",
-                         fmt::format("holds {} keyframes of a killed flight in real time, which "
-                                     "cannot be flown again: move that folder away",
-                                     keyframes));
+                         what +
+                             "killed flight in real time, which cannot be flown again: move that "
+                             "folder away");
+    }
+    if (options.resume) {
+        throw InputError(folder.path().string(), "",
+                         fmt::format("{}flight that was killed, {}: go on with its planner and "
+                                     "seed, or remove that folder",
+                                     what, stored.name));
     }
     throw InputError(folder.path().string(), "",
-                     fmt::format("holds {} keyframes of a flight that was killed: go on with "
-                                 "--resume, or remove that folder",
-                                 keyframes));
+                     what + "flight that was killed: go on with --resume, or remove that folder");
 }
 
 /// Stores the first flight while it is flown.
@@ -255,11 +261,11 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
                               setup.flight.tracker.map);
     const JournalHeader header{name, toYaml(config), TrialKind::identity(config), shard};
     std::vector<ExplorationResult> earlier = runsSoFar<TrialKind>(options, folder, header);
-    checkNoFlightIsLost(options, config, folder);
     keepMapOf(items.front(), earlier);
     const bool isFlown = std::any_of(
         earlier.begin(), earlier.end(),
         [&](const ExplorationResult& flight) { return itemOf(flight) == items.front(); });
+    checkNoFlightIsLost(options, config, folder, items.front(), isFlown);
     checkIsOpen(options, isFlown);
     std::optional<FlightLog> log;
     if (isFlown) log = earlierLog(folder, items.front());

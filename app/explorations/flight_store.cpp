@@ -84,11 +84,13 @@ bool FlightStore::isStored(const LoggedMoment& moment, std::size_t number) {
 
 void FlightStore::remove() { fs::remove(file_.path()); }
 
-std::size_t storedKeyframes(const fs::path& folder) {
+StoredFlight storedFlight(const fs::path& folder) {
     JournalFile file(folder, FlightStore::kWords);
-    std::size_t count = 0;
-    if (fs::exists(file.path())) file.read([&](const json&) { ++count; });
-    return count;
+    StoredFlight stored;
+    if (fs::exists(file.path())) {
+        stored.name = file.read([&](const json&) { ++stored.keyframes; }).name;
+    }
+    return stored;
 }
 
 }  // namespace photonav

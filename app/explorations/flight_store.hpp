@@ -68,8 +68,13 @@ class FlightStore {
     LimitedShare map_, shown_;
 };
 
-/// Number of updates of a killed flight that a folder holds; 0: it holds none.
-/// @throws InputError for a damaged file
-std::size_t storedKeyframes(const std::filesystem::path& folder);
+/// A killed flight.
+struct StoredFlight {
+    std::string name;           ///< nameOf(TrialItem)
+    std::size_t keyframes = 0;  ///< number of its updates; 0: there is no flight
+};
+
+/// The killed flight that a folder holds. @throws InputError for a damaged file
+StoredFlight storedFlight(const std::filesystem::path& folder);
 
 }  // namespace photonav

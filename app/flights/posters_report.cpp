@@ -33,8 +33,11 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
     return lines;
 }
 
+/// At most six characters.
 std::string numberOr(const char* otherwise, double value, double scale = 1.) {
-    return std::isfinite(value) ? fmt::format("{:.3g}", scale * value) : otherwise;
+    if (!std::isfinite(value)) return otherwise;
+    const std::string text = fmt::format("{:.3g}", scale * value);
+    return text.size() <= 6 ? text : fmt::format("{:.0e}", scale * value);
 }
 
 /// At most seven characters.

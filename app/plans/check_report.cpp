@@ -125,7 +125,9 @@ ReportTable summaryOf(const CheckOutcome& report) {
         row("with the best headings",
             fmt::format("{:.3g}; {}", report.turned->meanTrace, verdictOf(*report.turned)));
     }
-    row("in collision", stretchesText(report.obstruction.collisions));
+    const bool isWithin = report.obstruction.outside.empty();
+    row("in collision", stretchesText(report.obstruction.collisions) +
+                            (isWithin ? "" : "; unknown where it is out of bounds"));
     row("out of bounds", stretchesText(report.obstruction.outside));
     if (!report.flights.flights.empty()) row("flights", flightsText(report.flights));
     return table;

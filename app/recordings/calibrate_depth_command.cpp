@@ -10,6 +10,7 @@
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 #include "io/atomic_file.hpp"
+#include "render/interruptible_views.hpp"
 #include "replay/depth_registration.hpp"
 #include "result/json_values.hpp"
 #include "shared/command_io.hpp"
@@ -60,10 +61,10 @@ ReportTable summaryOf(const DepthRegistration& found) {
 
 CalibrateDepthReport runCalibrateDepth(const CalibrateDepthOptions& options,
                                        const std::atomic<bool>& interrupted) {
+    FolderTransaction folder = beginResult(options.out, {options.dataset, options.cameraFile});
     const DepthRegistration found = registerDepth(
         options, [&] { return interrupted.load(); }, options.progress);
-    if (found.isInterrupted) return {.result = {}, .summary = {}, .exitCode = kInterrupted};
-    FolderTransaction folder = beginResult(options.out, {options.dataset, options.cameraFile});
+    if (found.isInterrupted) throw RenderingStopped();  // half of the pairs are no calibration
     CalibrateDepthReport report{resultOf(options, found), summaryOf(found), kDone};
     writeFileAtomically(folder.path() / "camera.yaml", cameraYaml(found.sequence));
     commitResult(folder, report.result);

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "config/config.hpp"
 #include "dataset/trajectory.hpp"
 #include "geometry/se3.hpp"
 #include "io/number.hpp"
@@ -121,6 +122,9 @@ Row rowOf(const TextRow& row, const Columns& columns) {
     Row read;
     if (columns[kTime]) read.time = row.time(*columns[kTime]);
     if (columns[kYaw]) read.yaw = number(kYaw);
+    if (read.yaw && std::abs(*read.yaw) > kLargestHeading) {
+        row.fail(fmt::format("a heading beyond {} rad", kLargestHeading));
+    }
     read.position = {number(kX), number(kY), number(kZ)};
     if (read.position.cwiseAbs().maxCoeff() > kFarthestPose) {
         row.fail(fmt::format("farther than {} m from the origin", kFarthestPose));
@@ -201,7 +205,7 @@ void check(const GivenTrajectory& trajectory, const std::string& file) {
         throw InputError(file, "", fmt::format("{} pose; at least two are needed", poses.size()));
     }
     const bool isStill = std::all_of(poses.begin(), poses.end(), [&](const GivenPose& pose) {
-        return pose.T_w_b.matrix() == poses.front().T_w_b.matrix();
+        return (pose.T_w_b.matrix() - poses.front().T_w_b.matrix()).cwiseAbs().maxCoeff() < 1e-6;
     });
     if (isStill) throw InputError(file, "", "all poses are the same");
     const double length = lengthOf(trajectory);

@@ -21,10 +21,12 @@ YAML::Node overrideValue(const KeyTable& keys, const std::string& path, const st
     try {
         const bool isQuoted = text.front() == '"' || text.front() == '\'';
         const ConfigKey* key = keys.find(path);
-        if (key == nullptr || !key->isFile) return YAML::Load(text);
-        const auto file = isQuoted ? YAML::Load(text).as<std::string>() : text;
+        if (key == nullptr || !key->isFile) return parseYaml(text, "--set");
+        const auto file = isQuoted ? parseYaml(text, "--set").as<std::string>() : text;
         return YAML::Node(file.empty() ? file : fs::absolute(file).string());
-    } catch (const YAML::Exception&) {
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception&) {
         throw InputError("--set", path, "cannot read the value '" + text + "'");
     }
 }

@@ -71,8 +71,10 @@ std::string ConfigKey::description() const {
 void ConfigKey::set(const std::string& text) const {
     YAML::Node node(YAML::NodeType::Map);
     try {
-        node[words.name] = isFile || isText ? YAML::Node(text) : YAML::Load(text);
-    } catch (const YAML::Exception&) {
+        node[words.name] = isFile || isText ? YAML::Node(text) : parseYaml(text, "");
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception&) {
         throw InputError("", "", "cannot read the value '" + text + "'");
     }
     YamlMap map("", node);

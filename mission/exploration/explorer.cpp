@@ -9,6 +9,7 @@
 
 #include "geometry/se3.hpp"
 #include "render/interruptible_views.hpp"
+#include "render/voxel_grid.hpp"
 
 namespace photonav {
 namespace {
@@ -127,6 +128,8 @@ bool Explorer::fly(Robot& robot, double timeStep, const OnFlightStep& onStep) {
         flyLoop(background_ ? timed : robot, tracker_, pilot_, timeStep, onStep);
     } catch (const RenderingStopped&) {
         isInterrupted = true;
+    } catch (const MapTooLarge& error) {
+        endAs(FlightEnd::stopped, fmt::format("{}; cells: explore.resolution", error.what()));
     }
     finishRealTime();
     return !isInterrupted;

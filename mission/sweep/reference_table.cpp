@@ -8,7 +8,9 @@
 #include <fstream>
 #include <numbers>
 #include <sstream>
+#include <stdexcept>
 
+#include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 #include "io/durable_file.hpp"
 #include "io/error.hpp"
@@ -24,6 +26,13 @@ namespace {
 constexpr const char* kColumns =
     "alpha,cost,length,mean_trace,goal_trace,planner,vertices,labels,seed";
 constexpr const char* kPathColumns = "alpha,x,y,z,yaw";
+
+constexpr double kLeastCost = 1e-300;  // of a path: not 0
+
+double inRange(double value, double least, double most) {
+    if (!(value >= least && value <= most)) throw std::out_of_range("a number");
+    return value;
+}
 
 long keyOf(double alpha) { return std::lround(alpha * 1e6); }
 
@@ -60,7 +69,9 @@ std::vector<std::string> readCsv(const fs::path& file, const std::string& header
 
 }  // namespace
 
-ReferenceTable::ReferenceTable(fs::path file) : file_(std::move(file)) {}
+ReferenceTable::ReferenceTable(fs::path file) : file_(std::move(file)) {
+    if (file_.extension() != ".csv") throw InputError(file_.string(), "", "is not named *.csv");
+}
 
 fs::path ReferenceTable::pathsFile() const {
     return file_.parent_path() / (file_.stem().string() + "_paths.csv");
@@ -78,12 +89,12 @@ void ReferenceTable::readFiles() {
         return;
     }
     notes_ = readCsv(file_, kColumns, 9, [&](const std::vector<std::string>& f) {
-        const double alpha = toNumber(f[0]);
+        const double alpha = inRange(toNumber(f[0]), 0., 1.);
         rows_[keyOf(alpha)] = {.alpha = alpha,
-                               .cost = toNumber(f[1]),
-                               .length = toNumber(f[2]),
-                               .meanTrace = toNumber(f[3]),
-                               .goalTrace = toNumber(f[4]),
+                               .cost = inRange(toNumber(f[1]), kLeastCost, kInfinity),
+                               .length = inRange(toNumber(f[2]), 0., kInfinity),
+                               .meanTrace = inRange(toNumber(f[3]), 0., kInfinity),
+                               .goalTrace = inRange(toNumber(f[4]), 0., kInfinity),
                                .planner = f[5],
                                .vertices = toNumber<unsigned>(f[6]),
                                .labels = toNumber<unsigned>(f[7]),
@@ -103,9 +114,7 @@ void ReferenceTable::write() const {
     for (const std::string& note : notes_) table += note + "\n";
     table += std::string(kColumns) + "\n";
     std::string paths = std::string(kPathColumns) + "\n";
-    std::map<long, ReferencePath> all = rows_;
-    all.insert(aside_.begin(), aside_.end());
-    for (const auto& [key, r] : all) {
+    for (const auto& [key, r] : best()) {
         table += fmt::format("{:.6g},{:.9g},{:.6g},{:.6g},{:.6g},{},{},{},{}\n", r.alpha, r.cost,
                              r.length, r.meanTrace, r.goalTrace, r.planner, r.vertices, r.labels,
                              r.seed);
@@ -117,6 +126,17 @@ void ReferenceTable::write() const {
     }
     replaceFile(pathsFile(), paths);
     replaceFile(file_, table);
+}
+
+/// The rows, and those of an earlier search that are cheaper, until its alpha is searched to the
+/// end.
+std::map<long, ReferencePath> ReferenceTable::best() const {
+    std::map<long, ReferencePath> all = rows_;
+    for (const auto& [key, aside] : aside_) {
+        const auto [row, isAlone] = all.emplace(key, aside);
+        if (!isAlone && aside.cost < row->second.cost) row->second = aside;
+    }
+    return all;
 }
 
 void ReferenceTable::addNote(const std::string& text) {
@@ -141,6 +161,10 @@ void ReferenceTable::drop(double alpha) { rows_.erase(keyOf(alpha)); }
 void ReferenceTable::setAside(double alpha) {
     const auto row = rows_.extract(keyOf(alpha));
     if (!row.empty()) aside_[row.key()] = row.mapped();
+}
+
+void ReferenceTable::dropAside(double alpha) {
+    if (at(alpha) != nullptr) aside_.erase(keyOf(alpha));
 }
 
 std::vector<double> ReferenceTable::alphas() const {

@@ -28,6 +28,7 @@ struct ReferencePath {
 class ReferenceTable {
   public:
     /// An empty table of a file. Nothing is read yet.
+    /// @throws InputError for a name that does not end in .csv: two tables could share their paths
     explicit ReferenceTable(std::filesystem::path file);
 
     /// Reads both files; the table is empty afterwards if FILE.csv does not exist.
@@ -46,13 +47,16 @@ class ReferenceTable {
     const ReferencePath* at(double alpha) const;
     /// Removes the path for an alpha, if there is one.
     void drop(double alpha);
-    /// As drop(), but write() stores it until another path is offered for this alpha.
+    /// As drop(), but write() stores it in place of a path that costs more, until dropAside().
     void setAside(double alpha);
+    /// Forgets what was set aside for an alpha that has another path now.
+    void dropAside(double alpha);
     std::vector<double> alphas() const;
 
   private:
     std::filesystem::path pathsFile() const;
     void readFiles();
+    std::map<long, ReferencePath> best() const;
 
     std::filesystem::path file_;
     std::vector<std::string> notes_;

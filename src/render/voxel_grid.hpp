@@ -4,11 +4,18 @@
 
 #include <array>
 #include <cstdint>
+#include <stdexcept>
 #include <vector>
 
 #include "map/textured_octree.hpp"
 
 namespace photonav {
+
+/// A map has more cells in its bounding box than a snapshot can hold.
+class MapTooLarge : public std::invalid_argument {
+  public:
+    using std::invalid_argument::invalid_argument;
+};
 
 /// Grey values of 4 x 4 coplanar cell faces and of the faces around them, for bilinear
 /// interpolation: entry 6 * (q + 1) + p + 1 belongs to the face at (p, q), -1 <= p, q <= 4.

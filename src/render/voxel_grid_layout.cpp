@@ -38,12 +38,13 @@ CellBox wholeBricks(const CellBox& box) {
 
 double cellsIn(const CellBox& box) { return (box.high - box.low).cast<double>().prod(); }
 
-/// The space to allocate for a box: a quarter larger on those sides where `held` was too small.
+/// The space to allocate for a box: a quarter larger on those sides where `held` was too small, if
+/// there may be so many cells. Else it may leave out empty parts of `held`.
 CellBox roomFor(const CellBox& box, const CellBox& held) {
     CellBox room = wholeBricks(box);
     if (cellsIn(room) > kMaxGridCells) {
         const Array3i size = box.high - box.low;
-        throw std::invalid_argument(
+        throw MapTooLarge(
             fmt::format("voxel view: the map's bounding box has {} x {} x {} "
                         "cells, more than 2^31; use a "
                         "coarser map or a part of it",
@@ -56,17 +57,20 @@ CellBox roomFor(const CellBox& box, const CellBox& held) {
     return cellsIn(more) > kMaxGridCells ? room : more;
 }
 
-/// The rows of a dense array in a larger one; the rest is zero.
+/// The rows of a dense array in another one, as far as they fit into it; the rest is zero.
 template <class T>
 std::vector<T> movedRows(const std::vector<T>& from, const Array3i& fromSize, const Array3i& toSize,
                          const Array3i& offset) {
     std::vector<T> to(toSize.cast<std::size_t>().prod(), T{});
-    for (int z = 0; z < fromSize.z(); ++z) {
-        for (int y = 0; y < fromSize.y(); ++y) {
-            const auto in = (std::size_t(z) * fromSize.y() + y) * fromSize.x();
+    const Array3i low = (-offset).max(0), high = fromSize.min(toSize - offset);
+    if ((low >= high).any()) return to;
+    for (int z = low.z(); z < high.z(); ++z) {
+        for (int y = low.y(); y < high.y(); ++y) {
+            const auto in = (std::size_t(z) * fromSize.y() + y) * fromSize.x() + low.x();
             const auto out =
-                (std::size_t(z + offset.z()) * toSize.y() + y + offset.y()) * toSize.x();
-            std::copy_n(from.data() + in, fromSize.x(), to.data() + out + offset.x());
+                (std::size_t(z + offset.z()) * toSize.y() + y + offset.y()) * toSize.x() + low.x() +
+                offset.x();
+            std::copy_n(from.data() + in, high.x() - low.x(), to.data() + out);
         }
     }
     return to;

@@ -13,10 +13,10 @@ CellBox boundingBox(const TexturedOcTree& map);
 
 /// Makes `box` (world indices) the box of the grid. If the box does not fit into the grid's space,
 /// the grid is moved to a larger space; a grid that was not empty gets additional space to grow.
-/// @throws std::invalid_argument when the box has more than 2^31 cells
+/// @throws MapTooLarge when the box has more than 2^31 cells
 void layOut(const CellBox& box, VoxelGrid& grid);
 
-/// Moves the grid to a larger space of whole bricks (world indices) with its whole content except
+/// Moves the grid to another space of whole bricks (world indices), with its content there except
 /// VoxelGrid::box. In new bricks no cell ends rays, and they have no empty box.
 void moveTo(const CellBox& space, VoxelGrid& grid);
 

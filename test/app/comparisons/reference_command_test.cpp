@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/executable.hpp"
+#include "io/file_lock.hpp"
 #include "sweep/reference_table.hpp"
 #include "temporary_folder.hpp"
 
@@ -74,6 +75,17 @@ TEST(ReferenceCommand, FromScratchLosesNothing) {
     EXPECT_EQ(table.at(0.1)->cost, 1e-3);
     EXPECT_GT(table.at(0.5)->cost, 1.);
     EXPECT_EQ(test::contentOf(mine), "mine");
+
+    {
+        const FileLock other(file);
+        expectBadInput(photonav(command + file), "table.csv: another photonav is writing it");
+    }
+    EXPECT_FALSE(std::filesystem::exists(file + ".lock"));
+    expectBadInput(photonav(command + folder.file("table.txt")), "is not named *.csv");
+    std::string impossible = test::contentOf(file);
+    impossible.replace(impossible.find("0.1,0.001"), 9, "0.1,-1e300");
+    expectBadInput(photonav(command + folder.write("nonsense.csv", impossible)),
+                   "nonsense.csv: line");
 
     const std::string foreign = folder.write("user.csv", "x,y\n1,2\n");
     expectBadInput(photonav(command + foreign), "user.csv: line 1: expected alpha");

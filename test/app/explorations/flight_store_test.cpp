@@ -73,7 +73,7 @@ TEST_F(FlightStoreTest, HoldsTheFlightUntilTheLastKeyframe) {
         EXPECT_FALSE(moment.at("cells").empty());
         EXPECT_GT(moment.at("update").at("length"), 0.);
     }
-    EXPECT_EQ(storedKeyframes(folder.path()), 4U);
+    EXPECT_EQ(storedFlight(folder.path()).keyframes, 4U);
 }
 
 /// The next program is killed as well, before it is where the first one was, and the last of all
@@ -83,7 +83,7 @@ TEST_F(FlightStoreTest, AFlightThatIsFlownAgainLosesNothingThatIsStored) {
     const std::vector<std::string> first = lines();
     std::ofstream(folder.file("flight.jsonl"), std::ios::app) << R"({"update": {"ti)";
     fly(1, 2);
-    EXPECT_EQ(storedKeyframes(folder.path()), 3U);
+    EXPECT_EQ(storedFlight(folder.path()).keyframes, 3U);
     fly(1, 5);
     ASSERT_EQ(lines().size(), 1U + 5U);
     for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(lines()[i], first[i]);
@@ -131,12 +131,14 @@ TEST(KilledExploration, IsFlownAgainToTheSameResult) {
                   0., "KILL");
     const fs::path left = folder.path() / "out.unfinished";
     ASSERT_FALSE(fs::exists(folder.path() / "out")) << killed.output;
-    EXPECT_GE(storedKeyframes(left), 3U);
+    EXPECT_GE(storedFlight(left).keyframes, 3U);
     EXPECT_GT(loadTexturedOcTree(left / "map.ot")->size(), 10U);
     EXPECT_NE(test::contentOf(left / "report.html").find("as far as it was flown"),
               std::string::npos);
     std::ofstream(left / "map.ot.tmp-1-2-3") << "half a ma";
     expectBadInput(execute(command("out", "")), "of a flight that was killed: go on with --resume");
+    expectBadInput(execute(command("out", "--resume --seed 7")),
+                   "of a flight that was killed, rrt_star seed 1: go on with");
     const Execution resumed = execute(command("out", "--resume"));
     EXPECT_EQ(resumed.exitCode, whole.exitCode) << resumed.output;
     for (const char* file : {"map.ot", "trajectory.tum", "trajectory.cov", "groundtruth.tum"}) {

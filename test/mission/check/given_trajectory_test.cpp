@@ -136,6 +136,9 @@ TEST_F(GivenTrajectoryTest, OnePlaceIsNoTrajectory) {
     EXPECT_NE(reasonFor("x,y,z\n").find("0 pose"), std::string::npos);
     EXPECT_NE(reasonFor("0 0 1\n").find("at least two"), std::string::npos);
     EXPECT_NE(reasonFor("0 0 1\n0 0 1\n").find("all poses are the same"), std::string::npos);
+    EXPECT_NE(reasonFor("0 0 1\n1e-9 0 1\n").find("all poses are the same"), std::string::npos);
+    EXPECT_NE(reasonFor("0 0 0 1 1e308\n1 1 1 1 0\n").find("a heading beyond 1000 rad"),
+              std::string::npos);
     EXPECT_NE(test::reasonOf([] {
                   readGivenTrajectory("/no/such", Pose::Identity());
               }).find("no such file"),

@@ -198,6 +198,8 @@ TEST(Config, ComplaintsNameKeyAndReason) {
     expectComplaint("camera.width=188.5", "camera.width", "whole number");
     expectComplaint("goal=[2, 9, 2, 1]", "goal", "xyz_yaw");
     expectComplaint("scene.file=", "scene.file", "give scene.file or map.file");
+    expectComplaint("goal=[2, 9, 2][2, 9, 2]", "goal", "cannot read the value");
+    expectComplaint("goal=[2, 9, 2]\nseed: 5", "goal", "cannot read the value");
     expectComplaint("noequals", "noequals", "key.path=value");
 }
 

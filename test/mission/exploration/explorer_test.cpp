@@ -7,6 +7,7 @@
 #include "mission/exploration/room_to_explore.hpp"
 #include "mission/obedient_robot.hpp"
 #include "problem/world.hpp"
+#include "render/voxel_grid.hpp"
 
 namespace photonav {
 namespace {
@@ -52,6 +53,20 @@ TEST_F(ExplorerTest, ExploresWithAnyRobot) {
     EXPECT_GT(outcome.map->size(), 1000U);
     EXPECT_GT(outcome.keyframes, 5);
     EXPECT_GT(outcome.duration, 6.);
+}
+
+/// A map that is too large for views ends the flight, not the program.
+TEST_F(ExplorerTest, EndsWhenItsMapIsTooLarge) {
+    const World world(test::roomToExplore(), config);
+    test::ObedientRobot robot = robotIn(world);
+    int steps = 0;
+    const ExplorationOutcome outcome =
+        explored(robot, [&](const Observation&, const auto&) -> bool {
+            if (++steps == 5) throw MapTooLarge("too many cells");
+            return true;
+        });
+    EXPECT_EQ(nameOf(outcome.end), "stopped");
+    EXPECT_EQ(outcome.reason, "too many cells; cells: explore.resolution");
 }
 
 /// Near the goal the robot is pushed, by as much as its odometry says, where nothing has texture:

@@ -123,5 +123,39 @@ TEST_F(ReferenceFiles, NameTheLineThatIsWrong) {
     EXPECT_NE(complaint().find("table_paths.csv: line 2"), std::string::npos) << complaint();
 }
 
+/// What an interrupted search from scratch has found takes the place of a cheaper path in no file.
+TEST(ReferenceTableTest, ASearchFromScratchReplacesAPathWhenItHasEnded) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("table.csv");
+    const auto costInFile = [&] {
+        ReferenceTable table(file);
+        table.read();
+        return table.at(0.5)->cost;
+    };
+    const auto path = [](double cost) {
+        return ReferencePath{.alpha = 0.5,
+                             .cost = cost,
+                             .planner = "rrt_star",
+                             .waypoints = {Pose::Identity(), Pose::Identity()}};
+    };
+    ReferenceTable table(file);
+    table.offer(path(7.));
+    table.setAside(0.5);
+    EXPECT_EQ(table.at(0.5), nullptr);
+    table.write();
+    EXPECT_EQ(costInFile(), 7.);
+    table.offer(path(9.));
+    table.write();
+    EXPECT_EQ(costInFile(), 7.);
+    table.offer(path(6.));
+    table.write();
+    EXPECT_EQ(costInFile(), 6.);
+    table.setAside(0.5);
+    table.offer(path(8.));
+    table.dropAside(0.5);
+    table.write();
+    EXPECT_EQ(costInFile(), 8.);
+}
+
 }  // namespace
 }  // namespace photonav
