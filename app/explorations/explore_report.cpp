@@ -12,6 +12,7 @@
 #include "flight/flight_statistics.hpp"
 #include "flight/fly_result.hpp"
 #include "map/octree_file.hpp"
+#include "render/voxel_grid.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 
@@ -56,6 +57,18 @@ ReportTable tableOfUpdates(const ExplorationResult& flight) {
     return table;
 }
 
+/// The map of a flight from above; empty if it is too large for views.
+ImageF mapFromAbove(const ExplorationResult& flight, const Config& config, const TopView& view) {
+    Config mapped = config;
+    mapped.unknownToPlanner = UnknownPolicy::free;
+    try {
+        return World(flight.map, mapped)
+            .pictureFromAbove(view.area, config.bounds.max().z(), kMapPixel);
+    } catch (const MapTooLarge&) {
+        return {};
+    }
+}
+
 std::vector<NamedFigure> figuresOf(const ExplorationSetup& setup, const World& world,
                                    const ExploreOutcome& outcome) {
     const std::vector<ExplorationResult>& flights = outcome.flights;
@@ -66,10 +79,7 @@ std::vector<NamedFigure> figuresOf(const ExplorationSetup& setup, const World& w
     map.title = "The map of the first flight: believed positions and 3σ ellipses";
     map.trees = {drawnWay(flights.front())};
     map.paths = {drawnBeliefs(flights.front(), setup.config.belief.characteristicLength)};
-    Config mapped = setup.config;
-    mapped.unknownToPlanner = UnknownPolicy::free;
-    map.background = World(flights.front().map, mapped)
-                         .pictureFromAbove(map.area, setup.config.bounds.max().z(), kMapPixel);
+    map.background = mapFromAbove(flights.front(), setup.config, map);
     std::vector<NamedFigure> figures{
         {"map.png",
          {"What the first flight mapped, from above, and where it believed to be, with 3σ "

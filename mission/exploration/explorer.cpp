@@ -129,7 +129,7 @@ bool Explorer::fly(Robot& robot, double timeStep, const OnFlightStep& onStep) {
     } catch (const RenderingStopped&) {
         isInterrupted = true;
     } catch (const MapTooLarge& error) {
-        endAs(FlightEnd::stopped, fmt::format("{}; cells: explore.resolution", error.what()));
+        endAs(FlightEnd::noWay, fmt::format("{}; cells: explore.resolution", error.what()));
     }
     finishRealTime();
     return !isInterrupted;

@@ -65,7 +65,7 @@ TEST_F(ExplorerTest, EndsWhenItsMapIsTooLarge) {
             if (++steps == 5) throw MapTooLarge("too many cells");
             return true;
         });
-    EXPECT_EQ(nameOf(outcome.end), "stopped");
+    EXPECT_EQ(nameOf(outcome.end), "no way");
     EXPECT_EQ(outcome.reason, "too many cells; cells: explore.resolution");
 }
 
