@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -13,28 +14,33 @@
 
 namespace photonav {
 
+void FileDescriptor::reset(int number) {
+    if (number_ >= 0) close(number_);
+    number_ = number;
+}
+
+bool lockOpenFile(const FileDescriptor& opened, const std::filesystem::path& file,
+                  const std::filesystem::path& target) {
+    if (flock(opened.get(), LOCK_EX | LOCK_NB) != 0) {
+        const bool isHeld = errno == EWOULDBLOCK;
+        const std::string reason = std::strerror(errno);
+        throw InputError(target.string(), "",
+                         isHeld ? "another photonav is writing it" : "not locked: " + reason);
+    }
+    struct stat locked {};
+    struct stat there {};
+    return fstat(opened.get(), &locked) == 0 && stat(file.c_str(), &there) == 0 &&
+           locked.st_ino == there.st_ino && locked.st_dev == there.st_dev;
+}
+
 FileLock::FileLock(const std::filesystem::path& file) : lockFile_(file.string() + ".lock") {
-    for (;;) {
+    do {
         lock_.reset(open(lockFile_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
         if (lock_.get() < 0) {
             throw InputError(lockFile_.string(), "",
                              std::string("cannot be made: ") + std::strerror(errno));
         }
-        if (flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) {
-            const bool isHeld = errno == EWOULDBLOCK;
-            const std::string reason = std::strerror(errno);
-            lock_.reset();
-            throw InputError(file.string(), "",
-                             isHeld ? "another photonav is writing it" : "not locked: " + reason);
-        }
-        // The process that had the lock may have removed the file meanwhile.
-        struct stat locked {};
-        struct stat there {};
-        if (fstat(lock_.get(), &locked) == 0 && stat(lockFile_.c_str(), &there) == 0 &&
-            locked.st_ino == there.st_ino && locked.st_dev == there.st_dev) {
-            return;
-        }
-    }
+    } while (!lockOpenFile(lock_, lockFile_, file));
 }
 
 FileLock::~FileLock() {

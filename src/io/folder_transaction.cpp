@@ -144,11 +144,6 @@ void checkLeftNoWork(const fs::path& working, const Manifest& left) {
 
 }  // namespace
 
-void FileDescriptor::reset(int number) {
-    if (number_ >= 0) close(number_);
-    number_ = number;
-}
-
 fs::path resolvedFolder(const fs::path& path) {
     std::error_code error;
     const fs::path whole = fs::weakly_canonical(fs::absolute(path) / "", error);
@@ -210,17 +205,7 @@ void FolderTransaction::lock() {
         if (lock_.get() < 0 && errno == ENOENT) continue;
         if (lock_.get() < 0)
             refuse(target_, std::string("cannot be made: ") + std::strerror(errno));
-        if (flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) {
-            const bool isHeld = errno == EWOULDBLOCK;
-            const std::string reason = std::strerror(errno);
-            refuse(target_, isHeld ? "another photonav is writing it" : "not locked: " + reason);
-        }
-        struct stat locked {};
-        struct stat there {};
-        if (fstat(lock_.get(), &locked) == 0 && stat(file.c_str(), &there) == 0 &&
-            locked.st_ino == there.st_ino && locked.st_dev == there.st_dev) {
-            return;
-        }
+        if (lockOpenFile(lock_, file, target_)) return;
     }
 }
 

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <filesystem>
 
+#include "io/file_lock.hpp"
 #include "io/manifest.hpp"
 
 namespace photonav {
@@ -13,21 +14,6 @@ namespace photonav {
 /// and its last parents need not exist.
 /// @throws InputError for a path that the system refuses, such as one that is too long
 std::filesystem::path resolvedFolder(const std::filesystem::path& path);
-
-/// Owns the descriptor of an open file and closes it.
-class FileDescriptor {
-  public:
-    FileDescriptor() = default;
-    FileDescriptor(const FileDescriptor&) = delete;
-    FileDescriptor& operator=(const FileDescriptor&) = delete;
-    ~FileDescriptor() { reset(); }
-
-    int get() const { return number_; }
-    void reset(int number = -1);
-
-  private:
-    int number_ = -1;
-};
 
 /// Replaces a folder as a whole. Files are written into a working folder beside it,
 /// NAME.unfinished; commit() exchanges the two in one step. Until then, and when the program is
