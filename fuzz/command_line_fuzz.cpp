@@ -12,11 +12,22 @@ namespace {
 using namespace photonav;
 using fuzz::require;
 
-/// A config whose keys are overridden.
+/// A config whose keys are overridden, by one value per part between lines "====".
 void override(const std::string& text) {
-    static const std::string file = fuzz::write(
-        "config.yaml", "{bounds: [[0, 0, 2], [9, 9, 2]], start: [0, 0, 2], goal: [2, 9, 2]}");
-    loadConfig(file, {text});
+    static const std::string file =
+        fuzz::write("config.yaml",
+                    "{bounds: [[0, 0, 2], [9, 9, 2]], start: [0, 0, 2], goal: [2, 9, 2], "
+                    "scene: {file: a.yaml}}");
+    const std::string separator = "\n====\n";
+    std::vector<std::string> overrides;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(separator, begin), text.size());
+        overrides.push_back(text.substr(begin, end - begin));
+        begin = end + separator.size();
+    }
+    const Config config = loadConfig(file, overrides);
+    require(toYaml(parseConfig(toYaml(config), "written")) == toYaml(config),
+            "what was set is written and read again");
 }
 
 /// "name=value" as an option of map or replay.

@@ -91,13 +91,16 @@ void addPostersOptions(CLI::App& parser, PostersOptions& options) {
                     "file of a trajectory, as photonav check reads it (default: a path is planned "
                     "with every candidate)")
         ->type_name("FILE");
+    CLI::Option* rankBy =
+        parser
+            .add_option("--rank-by", options.rankBy,
+                        "path: by the uncertainty along it; goal: by servoing there")
+            ->check(CLI::IsMember({"path", "goal"}))
+            ->capture_default_str();
     parser
-        .add_option("--rank-by", options.rankBy,
-                    "path: by the uncertainty along it; goal: by servoing there")
-        ->check(CLI::IsMember({"path", "goal"}))
-        ->capture_default_str();
-    parser.add_flag("--goal-only", options.goalOnly,
-                    "do not plan paths, rank by servoing at the goal");
+        .add_flag("--goal-only", options.goalOnly,
+                  "do not plan paths, rank by servoing at the goal")
+        ->excludes(rankBy);
     addNumber(parser, "--most", options.most,
               "number of candidates together; beyond one they are added to the best so far, one "
               "by one",

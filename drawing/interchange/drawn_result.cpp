@@ -74,22 +74,34 @@ struct Triangles {
     std::vector<cv::Mat> images;
 
     Eigen::Vector3d corner(std::size_t i, std::size_t k) const {
-        return Eigen::Vector3f(&positions.at(9 * i + 3 * k + 2) - 2).cast<double>();
+        return Eigen::Vector3f(&positions[9 * i + 3 * k]).cast<double>();
     }
     Eigen::Vector2d at(std::size_t i, std::size_t k) const {
-        return Eigen::Vector2f(&uv.at(6 * i + 2 * k + 1) - 1).cast<double>();
+        return Eigen::Vector2f(&uv[6 * i + 2 * k]).cast<double>();
     }
     double area(std::size_t i) const {
         return 0.5 * (corner(i, 1) - corner(i, 0)).cross(corner(i, 2) - corner(i, 0)).norm();
     }
 };
 
+/// @throws std::invalid_argument for lists that do not belong together
+void checkNumbers(const Triangles& mesh) {
+    const std::size_t count = mesh.textures.size();
+    if (mesh.positions.size() != 9 * count || mesh.uv.size() != 6 * count) {
+        throw std::invalid_argument("mesh: positions, uv and textures differ in number");
+    }
+    const auto isMissing = [&](std::uint32_t texture) { return texture >= mesh.images.size(); };
+    if (std::ranges::any_of(mesh.textures, isMissing)) {
+        throw std::invalid_argument("mesh: a triangle whose texture is not among the images");
+    }
+}
+
 /// Points of a triangle in rows along its sides, `spacing` [m] apart.
 void addPoints(const Triangles& mesh, std::size_t i, double spacing, GreyPoints& points) {
     const Eigen::Vector3d a = mesh.corner(i, 0), b = mesh.corner(i, 1) - a,
                           c = mesh.corner(i, 2) - a;
     const Eigen::Vector2d at = mesh.at(i, 0), atB = mesh.at(i, 1) - at, atC = mesh.at(i, 2) - at;
-    const cv::Mat& texture = mesh.images.at(mesh.textures.at(i));
+    const cv::Mat& texture = mesh.images[mesh.textures[i]];
     const int rows = std::max(1, static_cast<int>(b.norm() / spacing));
     for (int row = 0; row < rows; ++row) {
         const double s = (row + 0.5) / rows;
@@ -111,6 +123,7 @@ void addSurfaces(const json& mesh, GreyPoints& points) {
     for (const json& image : mesh.at("images")) {
         triangles.images.push_back(textureIn(image.get<std::string>()));
     }
+    checkNumbers(triangles);
     double area = 0.;
     for (std::size_t i = 0; i < triangles.textures.size(); ++i) area += triangles.area(i);
     if (!(area > 0.) || !std::isfinite(area)) return;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "config/config_keys.hpp"
@@ -54,6 +55,13 @@ void applyOverride(const KeyTable& keys, const YAML::Node& root, const std::stri
     }
 }
 
+/// Whether a message names a key whose value is not the file's.
+bool isAboutOverride(const InputError& error, const std::vector<std::string>& overrides) {
+    return std::ranges::any_of(overrides, [&](const std::string& text) {
+        return error.reason().starts_with(text.substr(0, text.find('=')) + ": ");
+    });
+}
+
 /// Throws for files of other commands, which are often given in place of a planning problem.
 void checkIsPlanningProblem(const std::string& file) {
     if (isOcTreeFile(file)) {
@@ -88,10 +96,15 @@ Config configOf(const YAML::Node& node, const std::string& file,
     config.file = file;
     const KeyTable keys = keysOf(config);
     for (const auto& text : overrides) applyOverride(keys, node, text);
-    YamlMap root(file, node);
-    checkSource(root);
-    keys.read(root);
-    checkShape(root, config.camera);
+    try {
+        YamlMap root(file, node);
+        checkSource(root);
+        keys.read(root);
+        checkShape(root, config.camera);
+    } catch (const InputError& error) {
+        if (!isAboutOverride(error, overrides)) throw;
+        throw InputError("command line", "", error.reason());
+    }
     return config;
 }
 

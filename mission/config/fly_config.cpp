@@ -55,7 +55,7 @@ void addKeys(KeyTable& keys, FlyConfig& c) {
                  "such as by wind"},
                 c.drift, {0., 10.});
     keys.number({"odometry", "", "true odometry variance divided by the assumed one"}, c.odometry,
-                {0., 1e6});
+                {0., 1e4});
     keys.number({"body_radius", "m",
                  "radius of the body in collisions; 0: half of `robot.radius`, the other "
                  "half is margin"},

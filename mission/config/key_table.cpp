@@ -150,16 +150,19 @@ void KeyTable::choice(const KeyWords& words, std::string& value,
 }
 
 void KeyTable::variances(const KeyWords& words, Matrix6& value) {
-    static constexpr double kLargest = 1e6;  // a kilometre, or any heading at all
+    static const Vector6 kLargest =
+        (Vector6() << Eigen::Vector3d::Constant(1e6), Eigen::Vector3d::Constant(10.)).finished();
     add({.words = words,
-         .allowed = textOf({0., kLargest}),
+         .allowed = "0 to 1e6 m^2, 0 to 10 rad^2",
          .read =
              [&value, name = words.name](YamlMap& map) {
                  Vector6 variances = value.diagonal();
                  map.readVector<6>(name, variances);
                  if ((variances.array() < 0.).any()) map.fail(name, "negative variance");
-                 if ((variances.array() > kLargest).any()) {
-                     map.fail(name, fmt::format("variance above {}", numberText(kLargest)));
+                 if ((variances.array() > kLargest.array()).any()) {
+                     map.fail(name,
+                              "variance above 1e6 m^2 (position) or 10 rad^2 (rotation: any "
+                              "heading at all)");
                  }
                  value = variances.asDiagonal();
              },

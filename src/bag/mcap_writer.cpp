@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bag/mcap_writer.hpp"
 
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -92,8 +93,10 @@ McapWriter::ChannelId McapWriter::addChannel(const std::string& topic,
 
 void McapWriter::add(ChannelId channel, double time, std::string json) {
     constexpr double kNanoseconds = 1e9, kLast = 1e10;  // [s], of the year 2286
-    if (!(time >= 0. && time <= kLast))
-        throw std::invalid_argument("McapWriter: time of a message");
+    if (!(time >= 0. && time <= kLast)) {
+        throw std::invalid_argument(fmt::format("{}: time {:g} s is not within 0 and {:g} s",
+                                                channels_.at(channel).topic, time, kLast));
+    }
     messages_.push_back(
         {static_cast<std::uint64_t>(std::llround(kNanoseconds * time)), channel, std::move(json)});
 }

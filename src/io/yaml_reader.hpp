@@ -38,7 +38,11 @@ template <typename T>
 void setFrom(const YAML::Node& node, std::vector<T>& values) {
     if (!node.IsSequence()) throw YAML::TypedBadConversion<std::vector<T>>(node.Mark());
     values.assign(node.size(), T());
-    for (std::size_t i = 0; i < values.size(); ++i) setFrom(node[i], values[i]);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        // For yaml-cpp an empty place is the word "null".
+        if (node[i].IsNull()) throw YAML::TypedBadConversion<T>(node[i].Mark());
+        setFrom(node[i], values[i]);
+    }
 }
 
 /// One YAML mapping being read. read() the keys you know, then finish().

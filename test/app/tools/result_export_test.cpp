@@ -32,6 +32,12 @@ TEST(McapWriter, PutsMessagesInOrderAndChunks) {
     const json topics = topicsOf(folder.write("a.mcap", writer.content()));
     EXPECT_EQ(topics, (json{{"/a", {"X", 3, 0., 1.}}, {"/b", {"X", 3, 0.25, 1.25}}}));
     EXPECT_EQ(topicsOf(folder.write("b.mcap", McapWriter().content())), json::object());
+    try {
+        writer.add(a, 1e308, "{}");
+        ADD_FAILURE() << "a time of 1e308 s";
+    } catch (const std::invalid_argument& error) {
+        EXPECT_STREQ(error.what(), "/a: time 1e+308 s is not within 0 and 1e+10 s");
+    }
     EXPECT_THROW(writer.add(a, -1., "{}"), std::invalid_argument);
 }
 
@@ -81,6 +87,25 @@ TEST(ResultExport, OfWhatIsNoResultIsRefused) {
     EXPECT_EQ(run.exitCode, 2);
     EXPECT_NE(run.output.find("report.json: "), std::string::npos) << run.output;
     EXPECT_FALSE(test::fs::exists(folder.path().string() + ".mcap"));
+}
+
+TEST(ResultExport, SurfacesThatWereCutAreRefused) {
+    const test::TemporaryFolder folder;
+    const std::string out = folder.file("info");
+    photonav("info " + config("two_textures") + " --cells 2 --quiet --out " + out);
+    const json whole = json::parse(test::contentOf(out + "/report.json"));
+    const auto expectRefused = [&](const json& report, const std::string& reason) {
+        folder.write("info/report.json", report.dump());
+        const Execution run = photonav("export " + out);
+        EXPECT_EQ(run.exitCode, 2);
+        EXPECT_NE(run.output.find("report.json: " + reason), std::string::npos) << run.output;
+    };
+    json cut = whole;
+    cut["mesh"]["uv"] = "";
+    expectRefused(cut, "mesh: positions, uv and textures differ in number");
+    cut = whole;
+    cut["mesh"]["images"] = json::array();
+    expectRefused(cut, "mesh: a triangle whose texture is not among the images");
 }
 
 TEST(ResultExport, ReplacesAnEarlierExportOnly) {

@@ -184,6 +184,9 @@ TEST(Config, ComplaintsNameKeyAndReason) {
     expectComplaint("planner.vertices=2.5", "planner.vertices", "whole number");
     expectComplaint("planner.ds=0", "planner.ds", "outside");
     expectComplaint("noise.initial=[-1, 0, 0, 0, 0, 0]", "noise.initial", "negative variance");
+    expectComplaint("noise.motion=[0, 0, 0, 0, 0, 11]", "noise.motion", "above 1e6 m^2");
+    expectComplaint("noise.motion=[0, 0, 2e6, 0, 0, 0]", "noise.motion", "10 rad^2 (rotation");
+    expectComplaint("sweep.planners=[,,,]", "sweep.planners", "cannot read the value");
     expectComplaint("noise.motion=[1, 0, 0]", "noise.motion", "6 numbers, found 3");
     expectComplaint("noise.motion=[.nan, 0, 0, 0, 0, 0]", "noise.motion", "finite");
     expectComplaint("camera.hfov=0", "camera.hfov", "outside [1, 170]");
@@ -201,6 +204,17 @@ TEST(Config, ComplaintsNameKeyAndReason) {
     expectComplaint("goal=[2, 9, 2][2, 9, 2]", "goal", "cannot read the value");
     expectComplaint("goal=[2, 9, 2]\nseed: 5", "goal", "cannot read the value");
     expectComplaint("noequals", "noequals", "key.path=value");
+}
+
+TEST(Config, ComplaintsSayWhereAValueWasGiven) {
+    EXPECT_TRUE(complaint({"seed=2", "planner.alpha=1.5"})
+                    .starts_with("command line: planner.alpha: 1.5 is outside [0, 1]"));
+    EXPECT_TRUE(complaint({"planner.alhpa=1"}).starts_with("command line: planner.alhpa: unknown"));
+    const fs::path file = fs::temp_directory_path() / "photonav_config_of_file.yaml";
+    std::ofstream(file) << "bounds: [[0, 0, 0], [1, 1, 1]]\nplanner: {alpha: 7}\n";
+    EXPECT_TRUE(
+        complaint({"planner.alphas=1", "seed=2"}, file.string()).starts_with(file.string() + ": "));
+    fs::remove(file);
 }
 
 TEST(Config, AMapThatIsNotThereYetIsMadeBySomething) {
