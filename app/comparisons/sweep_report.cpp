@@ -66,19 +66,18 @@ std::string cellText(const Statistic& value, double scale, int decimals) {
 /// A column of the table.
 struct TextColumn {
     std::string heading;
-    std::size_t width;
     std::function<std::string(const SweepCell&)> text;
 };
 
-TextColumn ownColumn(const std::string& heading, std::size_t width, const std::string& name,
-                     double scale, int decimals) {
-    return {heading, width, [=](const SweepCell& cell) {
+TextColumn ownColumn(const std::string& heading, const std::string& name, double scale,
+                     int decimals) {
+    return {heading, [=](const SweepCell& cell) {
                 return cellText(cell.columns.at(name), scale, decimals);
             }};
 }
 
 TextColumn paperColumn(double PaperRow::*value, int decimals) {
-    return {"paper", 8, [=](const SweepCell& cell) {
+    return {"paper", [=](const SweepCell& cell) {
                 const bool isBeside = cell.paper && cell.solved > 0;  // a value of ours
                 return isBeside ? fmt::format("{:.{}f}", (*cell.paper).*value, decimals) : "";
             }};
@@ -87,20 +86,20 @@ TextColumn paperColumn(double PaperRow::*value, int decimals) {
 /// The columns that are not empty for a planner.
 std::vector<TextColumn> textColumns(const std::vector<SweepCell>& cells, int decimals) {
     std::vector<TextColumn> columns{
-        {"alpha", 6, [](const SweepCell& cell) { return fmt::format("{}", cell.alpha); }},
-        ownColumn("J", 17, "cost", 1., 3),
-        ownColumn("length [m]", 15, "length", 1., 2),
+        {"alpha", [](const SweepCell& cell) { return fmt::format("{}", cell.alpha); }},
+        {"solved",
+         [](const SweepCell& cell) { return fmt::format("{}/{}", cell.solved, cell.runs); }},
+        ownColumn("J", "cost", 1., 3),
+        ownColumn("length [m]", "length", 1., 2),
         paperColumn(&PaperRow::length, 2),
-        ownColumn("mean trace", 19, "mean_trace", 1., decimals),
+        ownColumn("mean trace", "mean_trace", 1., decimals),
         paperColumn(&PaperRow::meanTrace, decimals),
-        ownColumn("goal trace", 19, "goal_trace", 1., decimals),
+        ownColumn("goal trace", "goal_trace", 1., decimals),
         paperColumn(&PaperRow::goalTrace, decimals),
-        ownColumn("excess [%]", 15, "excess", 100., 2),
-        ownColumn("vertices", 12, "vertices", 1., 0),
-        ownColumn("views", 13, "views", 1., 0),
-        ownColumn("seconds", 14, "seconds", 1., 2),
-        {"solved", 8,
-         [](const SweepCell& cell) { return fmt::format("{}/{}", cell.solved, cell.runs); }}};
+        ownColumn("excess [%]", "excess", 100., 2),
+        ownColumn("vertices", "vertices", 1., 0),
+        ownColumn("views", "views", 1., 0),
+        ownColumn("seconds", "seconds", 1., 2)};
     std::erase_if(columns, [&](const TextColumn& column) {
         return std::all_of(cells.begin(), cells.end(), [&](const SweepCell& cell) {
             const std::string text = column.text(cell);
@@ -108,6 +107,17 @@ std::vector<TextColumn> textColumns(const std::vector<SweepCell>& cells, int dec
         });
     });
     return columns;
+}
+
+TextTable textTable(const std::vector<SweepCell>& cells, int decimals) {
+    const std::vector<TextColumn> columns = textColumns(cells, decimals);
+    TextTable table;
+    for (const TextColumn& column : columns) table.head.push_back(column.heading);
+    for (const SweepCell& cell : cells) {
+        std::vector<std::string>& row = table.rows.emplace_back();
+        for (const TextColumn& column : columns) row.push_back(column.text(cell));
+    }
+    return table;
 }
 
 }  // namespace
@@ -143,14 +153,8 @@ std::string sweepTable(const std::vector<SweepCell>& cells) {
         const auto last = std::find_if(
             first, cells.end(), [&](const SweepCell& c) { return c.planner != first->planner; });
         text += "\n" + first->planner + "  (traces in m^2)\n";
-        const auto columns = textColumns({first, last}, decimals);
-        for (const TextColumn& column : columns) text += padded(column.heading, column.width);
-        text += '\n';
-        for (; first != last; ++first) {
-            for (const TextColumn& column : columns)
-                text += padded(column.text(*first), column.width);
-            text += '\n';
-        }
+        text += alignedText(textTable({first, last}, decimals));
+        first = last;
     }
     return text;
 }

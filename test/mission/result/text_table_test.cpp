@@ -21,6 +21,23 @@ TEST(TextTableTest, AlignsColumns) {
               "longer            2\n");
 }
 
+TEST(TextTableTest, ColumnsThatDoNotFitFollowBelow) {
+    const TextTable table{{"a", "first", "second", "third"}, {{"1", "2", "3", "4"}}};
+    EXPECT_EQ(alignedText(table, 16),
+              "a  first  second\n"
+              "1      2       3\n"
+              "\n"
+              "a  third\n"
+              "1      4\n");
+    EXPECT_EQ(alignedText(table, 15),
+              "a  first\n"
+              "1      2\n"
+              "\n"
+              "a  second  third\n"
+              "1       3      4\n");
+    EXPECT_EQ(alignedText({{"only"}, {{"1"}}}), "only\n1   \n");
+}
+
 TEST(TextTableTest, MarkdownIsAligned) {
     EXPECT_EQ(alignedMarkdown(kTable),
               "| name   | length [m²] |\n"
