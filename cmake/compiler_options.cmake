@@ -50,7 +50,7 @@ function(photonav_compiler_options target)
         target_compile_options(${target} PUBLIC -march=${PHOTONAV_MARCH})
     endif()
     target_compile_options(${target} PRIVATE
-        -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-psabi
+        -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-psabi -Wno-overlength-strings
         -fno-math-errno -fno-trapping-math -fpch-preprocess
         $<$<BOOL:${PHOTONAV_WERROR}>:-Werror>
         ${_sanitizers} ${_sanitizer_options})

@@ -31,6 +31,8 @@ constexpr double kAroundGoal = 2.;
 /// Time without an update, while the plan is only a part of the way, after which the next image
 /// becomes a keyframe [s].
 constexpr double kWait = 1.;
+/// Rest of a plan that is not worth flying [m].
+constexpr double kShortRest = 0.1;
 /// Longest improvement of a plan in real time [s].
 constexpr double kPlanTime = 0.5;
 
@@ -274,7 +276,7 @@ void Explorer::showMoment(Replanned replanned) {
 
 /// Gives the pilot the part of the plan that is safe, or lets it hover.
 void Explorer::flyOn(std::optional<FlyablePart> way) {
-    if (!way) return hover();
+    if (!way) return flyRest();
     // Hovering over the goal is not interrupted by a way of a few centimetres to it.
     if (isWhole_ && pilot_.route().isAtGoal()) return;
     if (background_) way = fromHere(*way);
@@ -287,6 +289,16 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
     isWhole_ = way->isWhole;
     record_.blindSteps += way->isBlind;
     pilot_.setPlan(std::move(way->plan));
+}
+
+/// Where the map shows no way, the robot flies the plan that it has as far as this is free, and
+/// hovers at its end: from there the camera may see that an obstacle is none. (Depth of a stereo
+/// pair is poor far away.)
+void Explorer::flyRest() {
+    FlyablePart rest = fromHere({.plan = wayAhead(), .isWhole = false});
+    if (rest.isStopped || rest.plan.back().distance < kShortRest) return hover();
+    isWhole_ = false;
+    pilot_.setPlan(std::move(rest.plan));
 }
 
 /// A camera without a depth sensor has to move before it sees anything.

@@ -141,6 +141,7 @@ class Explorer {
     void showMoment(Replanned replanned);
     void flyOn(std::optional<FlyablePart> way);
     bool mayStepBlindly() const;
+    void flyRest();
     void hover();
     bool isWaiting() const;
     bool isStuckAtGoal();

@@ -80,8 +80,8 @@ OnlinePlanner::OnlinePlanner(const Config& config, const OnlineMap& map, const E
 
 /// Whether a robot that is too near to obstacles comes no nearer on the way: not through a wall.
 bool OnlinePlanner::isWayOut(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const {
-    constexpr double kStep = 0.02, kRounding = 1e-3;  // [m]
-    const int steps = static_cast<int>((to_w - from_w).norm() / kStep) + 1;
+    constexpr double kSpacing = 0.02, kRounding = 1e-3;  // [m]
+    const int steps = static_cast<int>((to_w - from_w).norm() / kSpacing) + 1;
     const double least = std::min(clearance(from_w), config_.robotRadius) - kRounding;
     for (int i = 1; i < steps; ++i) {
         if (clearance(from_w + (to_w - from_w) * i / steps) < least) return false;
@@ -91,12 +91,12 @@ bool OnlinePlanner::isWayOut(const Eigen::Vector3d& from_w, const Eigen::Vector3
 
 /// The nearest place around that leaves room for the robot; nothing within a metre.
 std::optional<Eigen::Vector3d> OnlinePlanner::flyableNear(const Eigen::Vector3d& p_w) const {
-    constexpr double kStep = 0.05, kFarthest = 1.;  // [m]
+    constexpr double kRing = 0.05, kFarthest = 1.;  // [m]
     constexpr int kDirections = 16;
     const Eigen::AlignedBox3d& bounds = config_.bounds;
     const Eigen::Vector3d inside = p_w.cwiseMax(bounds.min()).cwiseMin(bounds.max());
     if (problem_.isFlyable(inside)) return inside;
-    for (double radius = kStep; radius <= kFarthest; radius += kStep) {
+    for (double radius = kRing; radius <= kFarthest; radius += kRing) {
         for (const double rise : {0., 0.5, -0.5}) {
             for (int i = 0; i < kDirections; ++i) {
                 const double angle = 2. * std::numbers::pi * i / kDirections;

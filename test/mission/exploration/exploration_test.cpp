@@ -21,6 +21,26 @@ class RoomToExplore : public ::testing::Test {
         return explore(setUpExploration(problem), config.planner, seed, kNotInterrupted);
     }
 
+    /// A flight in a world that changes once the robot is beyond x [m].
+    ExplorationResult flownWhereItChanges(const World& before, const World& after, double x,
+                                          std::uint32_t seed) {
+        const PlanningProblem problem(config, before);
+        bool hasChanged = false;
+        ExplorationSetup setup = setUpExploration(problem);
+        setup.truth.truth = std::make_shared<test::ChangingViews>(before, after, hasChanged);
+        setup.truth.clearance = [&](const Eigen::Vector3d& p_w) {
+            return (hasChanged ? after : before).clearance(p_w);
+        };
+        const auto onExposure = [&](const Exposed& exposed) {
+            const Pose T_w_b = (setup.truth.T_b_c * exposed.T_c_w).inverse();
+            hasChanged = hasChanged || T_w_b.translation().x() > x;
+        };
+        ExplorationResult flight =
+            explore(setup, "rrt_star/forward", seed, kNotInterrupted, {.exposure = onExposure});
+        EXPECT_TRUE(hasChanged);
+        return flight;
+    }
+
     Config config = test::flightThroughRoom();
 };
 
@@ -107,6 +127,17 @@ TEST_F(RoomToExplore, SaysThatTheGoalIsInAnObstacle) {
     EXPECT_EQ(nameOf(flight.end), "no way");
     EXPECT_NE(flight.reason.find("goal is in collision"), std::string::npos) << flight.reason;
     EXPECT_GT(flight.leastClearance, 0.125);
+    EXPECT_LT(flight.goalError, 1.) << "it did not look from nearby";
+}
+
+/// A crate around the goal that was an error of depths measured from far away.
+TEST_F(RoomToExplore, LooksFromNearbyWhetherTheGoalIsInAnObstacle) {
+    Scene crate = test::roomToExplore();
+    addBox(crate, {6.8, 1.8, 0.}, {7.2, 2.2, 1.2}, addTexture(crate, valueNoise({.seed = 3})));
+    const World seenFromAfar(crate, config), truth(test::roomToExplore(), config);
+    const ExplorationResult flight = flownWhereItChanges(seenFromAfar, truth, 5., 1);
+    EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
+    EXPECT_LT(flight.goalError, 0.3);
 }
 
 /// A depth sensor that measures nothing: the robot does not fly into what it cannot see.
@@ -138,21 +169,8 @@ TEST_F(RoomToExplore, FliesAroundABoxThatAppearsInFrontOfIt) {
     Scene boxed = test::roomToExplore();
     addBox(boxed, {3.2, 1.3, 0.}, {3.6, 2.7, 3.}, addTexture(boxed, valueNoise({.seed = 5})));
     const World before(test::roomToExplore(), config), after(boxed, config);
-    const PlanningProblem problem(config, before);
     for (const std::uint32_t seed : {1U, 2U, 3U, 4U}) {
-        bool hasChanged = false;
-        ExplorationSetup setup = setUpExploration(problem);
-        setup.truth.truth = std::make_shared<test::ChangingViews>(before, after, hasChanged);
-        setup.truth.clearance = [&](const Eigen::Vector3d& p_w) {
-            return (hasChanged ? after : before).clearance(p_w);
-        };
-        const auto onExposure = [&](const Exposed& exposed) {
-            const Pose T_w_b = (setup.truth.T_b_c * exposed.T_c_w).inverse();
-            hasChanged = hasChanged || T_w_b.translation().x() > 1.8;
-        };
-        const ExplorationResult flight =
-            explore(setup, "rrt_star/forward", seed, kNotInterrupted, {.exposure = onExposure});
-        EXPECT_TRUE(hasChanged);
+        const ExplorationResult flight = flownWhereItChanges(before, after, 1.8, seed);
         EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason << ", seed " << seed;
         EXPECT_GT(flight.leastClearance, 0.15);
         EXPECT_LT(flight.goalError, 0.3);
