@@ -15,13 +15,13 @@ namespace photonav {
 namespace {
 
 /// Number of updates in a row without a flyable plan after which the flight ends; for one camera
-/// also the limit of steps, see kBlindInVain.
-constexpr int kMostInVain = 6;
+/// also the limit of steps, see kMostBlindSteps.
+constexpr int kMostWithoutWay = 6;
 /// Least time without a flyable plan after which the flight ends, at whatever rate images come [s].
-constexpr double kLeastInVain = 2.;
+constexpr double kLeastWithoutWay = 2.;
 /// Number of steps in a row into unobserved space that may leave the map unchanged; then the robot
 /// hovers.
-constexpr int kBlindInVain = 1;
+constexpr int kMostBlindSteps = 1;
 /// Longest stop before an obstacle in view that does not enter the map; then the flight ends [s].
 constexpr double kMostStopped = 10.;
 /// Longest time around the goal without an arrival; then the flight ends with its belief [s].
@@ -251,7 +251,7 @@ void Explorer::takeOver(Replanned replanned) {
     views_ = replanned.views;
     tracker_.setMap(views());
     pilot_.setMap(views());
-    if (replanned.hasMapGrown) blindInVain_ = 0;
+    if (replanned.hasMapGrown) blindInARow_ = 0;
     hasPath_ = replanned.way.has_value();
     lastUpdate_ = time_;
     flyOn(std::move(replanned.way));
@@ -285,7 +285,7 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
     withoutWaySince_.reset();
     if (!way->isStopped) stoppedSince_.reset();
     if (way->isStopped && !stoppedSince_) stoppedSince_ = time_;
-    blindInVain_ += way->isBlind;
+    blindInARow_ += way->isBlind;
     isWhole_ = way->isWhole;
     record_.blindSteps += way->isBlind;
     pilot_.setPlan(std::move(way->plan));
@@ -304,7 +304,7 @@ void Explorer::flyRest() {
 /// A camera without a depth sensor has to move before it sees anything.
 bool Explorer::mayStepBlindly() const {
     const bool isMonocular = config_.explore.sensor == ExploreSensor::monocular;
-    return blindInVain_ < (isMonocular ? kMostInVain : kBlindInVain);
+    return blindInARow_ < (isMonocular ? kMostWithoutWay : kMostBlindSteps);
 }
 
 void Explorer::hover() {
@@ -346,7 +346,7 @@ bool Explorer::hasEnded() {
     if (tracker_.loss().isLost() && pilot_.hasGivenUp(tracker_, time_)) {
         return endAs(FlightEnd::lost, "tracking was lost and not regained");
     }
-    if (withoutWay_ >= kMostInVain && time_ - *withoutWaySince_ >= kLeastInVain) {
+    if (withoutWay_ >= kMostWithoutWay && time_ - *withoutWaySince_ >= kLeastWithoutWay) {
         return endAs(FlightEnd::noWay, reasonForNoWay());
     }
     if (stoppedSince_ && time_ - *stoppedSince_ > kMostStopped) {

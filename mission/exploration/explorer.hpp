@@ -178,7 +178,7 @@ class Explorer {
     int withoutWay_ = 0;                     // updates in a row without a path
     std::optional<double> withoutWaySince_;  // [s]
     std::optional<double> stoppedSince_;     // time of the stop before an obstacle in view [s]
-    int blindInVain_ = 0;                    // blind steps since the map last grew
+    int blindInARow_ = 0;                    // blind steps since the map last grew
     double lastUpdate_ = 0.;                 // time of the last update [s]
     std::optional<double> atGoalSince_;      // time of reaching the goal, if still near it [s]
     Corrections corrections_;

@@ -20,8 +20,8 @@ std::size_t characters(const std::string& text);
 /// Fills a text up with spaces on the left.
 std::string padded(const std::string& text, std::size_t width);
 
-/// Columns of equal width, the first one aligned to the left, the others to the right. Columns that do
-/// not fit into `width` characters follow below, with the first column again.
+/// Columns of equal width, the first one aligned to the left, the others to the right. Columns that
+/// do not fit into `width` characters follow below, with the first column again.
 std::string alignedText(const TextTable& table, std::size_t width = 80);
 
 /// The same as a table of Markdown, whose source is aligned, too.

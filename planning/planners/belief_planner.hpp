@@ -292,7 +292,7 @@ class BeliefPlanner : public ompl::base::Planner {
     void reevaluateBest();
     void dropBlocked();
     void reportUpdate();
-    void orBeginAnew(const std::function<void()>& update);
+    void clearIfInterrupted(const std::function<void()>& update);
     std::optional<double> costOf(const std::vector<ompl::base::State*>& path);
     const Root* rootAt(const ompl::base::State* state) const;
     void addSolution();

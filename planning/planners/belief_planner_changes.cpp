@@ -17,7 +17,7 @@ void BeliefPlanner::mapChanged(const MapChange& change) {
     iterationsAtChange_ = iterations_;
     updated_.addChange(change);
     removeColliding(ChangedSpace(change, growth_.obstacleReach));
-    orBeginAnew([&] {
+    clearIfInterrupted([&] {
         if (!movedRoot_) {  // the views from the starts may have changed
             for (Root& root : roots_) root.belief = rootBelief(root.vertex->state);
         }
@@ -35,7 +35,7 @@ void BeliefPlanner::reportUpdate() {
 
 /// An update that ends by an exception, for example because rendering was stopped, would leave
 /// beliefs of two maps in one tree: planning begins anew from the present root.
-void BeliefPlanner::orBeginAnew(const std::function<void()>& update) {
+void BeliefPlanner::clearIfInterrupted(const std::function<void()>& update) {
     try {
         update();
     } catch (...) {
@@ -131,7 +131,7 @@ void BeliefPlanner::moveRoot(const ob::State* given, const Belief& belief) {
     movedRoot_ = belief;
     if (best_.states.empty()) std::swap(best_.states, blocked_);
     joinRootToBest();
-    orBeginAnew([&] {
+    clearIfInterrupted([&] {
         reevaluateBest();
         remove(replaceRoots(roots_.front(), others));
         removeFormerRoots();

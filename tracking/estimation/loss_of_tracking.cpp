@@ -35,7 +35,7 @@ void LossOfTracking::onTracked(double time) {
 void LossOfTracking::onRejected(double time, bool isMotionMeasured, bool isBlack) {
     lastImage_ = time;
     ++rejectedInRow_;
-    inVain_ += !isBlack;
+    rejectedWithContent_ += !isBlack;
     if (since_) ++searched_;
     if (!isMotionMeasured || rejectedInRow_ >= options_.rejectedImages) begin(time);
 }

@@ -71,7 +71,9 @@ class LossOfTracking {
     /// Whether keyframes should begin anew (LossOptions::freshStartAfter).
     bool wantsFreshStart() const { return rejectedInRow_ >= options_.freshStartAfter; }
     /// Whether the start counts as wrong (LossOptions::wrongStartAfter).
-    bool isStartWrong() const { return !wasTracked_ && inVain_ >= options_.wrongStartAfter; }
+    bool isStartWrong() const {
+        return !wasTracked_ && rejectedWithContent_ >= options_.wrongStartAfter;
+    }
 
     /// A belief with the wider covariance that the search while lost uses.
     UncertainPose widened(const UncertainPose& T_c_w) const;
@@ -87,7 +89,7 @@ class LossOfTracking {
     double lastImage_ = 0.;
     int rejectedInRow_ = 0;
     int searched_ = 0;
-    int inVain_ = 0;  // rejected images that show something
+    int rejectedWithContent_ = 0;  // rejected images that are not black
     bool wasTracked_ = false;
     std::optional<double> since_;
     double lost_ = 0.;
