@@ -79,7 +79,7 @@ TEST(ImagePyramid, WidensByTheVarianceAskedFor) {
 TEST(ImagePyramid, ContentFinerThanCellsIsWhatAGaussianRemoves) {
     const ImageF image =
         valueNoise({.size = {1.6, 1.2}, .cells = {0.6, 0.1, 0.03}, .seed = 3}).image;
-    const Camera camera(160, 120, vpCameraParameters(100., 100., 79.5, 59.5));
+    const Camera camera{160, 120, vpCameraParameters(100., 100., 79.5, 59.5)};
     const cv::Mat sharp = asMat(image);
     for (const double cell : {3., 20., 31., 33., 60., 150.}) {  // [pixels]
         cv::Mat smooth;
