@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <new>
 #include <string_view>
+#include <system_error>
 
 #include "io/error.hpp"
 #include "io/folder_transaction.hpp"
@@ -18,6 +19,7 @@
 #include "io/stopwatch.hpp"
 #include "io/yaml_reader.hpp"
 #include "render/interruptible_views.hpp"
+#include "shared/command_io.hpp"
 #include "shared/command_line.hpp"
 
 namespace {
@@ -41,6 +43,14 @@ static_assert(kInterrupted == 128 + SIGINT);
 /// Standard error, also while it is closed to decoders of images.
 const int standardError = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
 
+/// A file that is opened later must not take the place of standard output: results would be printed
+/// into it. /dev/null is opened for reading, so that printing fails and is reported.
+void occupyStandardStreams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (fcntl(stream, F_GETFD) < 0) static_cast<void>(open("/dev/null", O_RDONLY));
+    }
+}
+
 /// Writes without a lock or a buffer, as a signal handler must.
 void say(std::string_view text) {
     static_cast<void>(!write(standardError, text.data(), text.size()));
@@ -59,7 +69,8 @@ void onInterrupt(int signal) {
     }
     interruptedBy = signal;
     interrupted = true;
-    const bool hasResults = reaction == OnInterrupt::finishAlways || FolderTransaction::isAnyOpen();
+    const bool hasResults = reaction == OnInterrupt::finishAlways ||
+                            FolderTransaction::isAnyOpen() || FolderTransaction::isAnyCommitted();
     if (reaction == OnInterrupt::endAtOnce || !hasResults) {
         say("photonav: interrupted before there was any result\n");
         std::_Exit(exitCodeOf(signal));
@@ -71,6 +82,14 @@ void onAlarm(int /*signal*/) {
     say("photonav: interrupted; finishing the current step and writing the results so far (once "
         "more "
         "to stop at once, which keeps an earlier result as it was)\n");
+}
+
+/// What the system says of a thread that it does not start names nothing.
+std::string reasonOf(const std::exception& error) {
+    const auto* system = dynamic_cast<const std::system_error*>(&error);
+    const bool isThread =
+        system != nullptr && system->code() == std::errc::resource_unavailable_try_again;
+    return isThread ? "the system starts no more threads (ulimit -u)" : error.what();
 }
 
 std::string withNearest(const std::string& complaint, const std::string& word,
@@ -139,7 +158,7 @@ int run(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);
-        fmt::print(stderr, "photonav: {} (see photonav --help)\n", complaint(app, error));
+        printError(fmt::format("photonav: {} (see photonav --help)", complaint(app, error)));
         return kBadInput;
     }
     for (const Command& command : commands) {
@@ -147,7 +166,7 @@ int run(int argc, char** argv) {
         reaction = command.onInterrupt;
         const int code = command.run();
         if (code != kInterrupted) return code;
-        fmt::print(stderr, "photonav: interrupted; what was done until then is kept\n");
+        printError("photonav: interrupted; what was done until then is kept");
         return exitCodeOf(interruptedBy);
     }
     return kBadInput;
@@ -157,6 +176,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     constexpr const char* kNoOutput = "standard output cannot be written";
+    occupyStandardStreams();
     std::signal(SIGINT, onInterrupt);
     std::signal(SIGTERM, onInterrupt);
     std::signal(SIGALRM, onAlarm);
@@ -165,7 +185,7 @@ int main(int argc, char** argv) {
     quietDecoders = true;
     const std::string command = argc > 1 ? argv[1] : "";
     const auto fail = [](int code, std::string_view reason) {
-        fmt::print(stderr, "photonav: {}\n", oneLine(reason));
+        printError(fmt::format("photonav: {}", oneLine(reason)));
         return code;
     };
     try {
@@ -182,6 +202,6 @@ int main(int argc, char** argv) {
         return fail(kNoAnswer, command + ": needs more memory than there is");
     } catch (const std::exception& error) {
         if (std::ferror(stdout) != 0) return fail(kNoAnswer, kNoOutput);
-        return fail(kNoAnswer, command + ": " + error.what());
+        return fail(kNoAnswer, command + ": " + reasonOf(error));
     }
 }

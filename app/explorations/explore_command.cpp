@@ -16,6 +16,7 @@
 #include "onlinemap/known_map.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
+#include "shared/command_io.hpp"
 #include "shared/result_folder.hpp"
 
 namespace photonav {
@@ -74,7 +75,7 @@ void print(const ExploreOutcome& outcome) {
 void film(const ExploreOptions& options, const ExplorationSetup& setup, const World& world,
           const fs::path& folder, ExploreOutcome& outcome, const std::atomic<bool>& interrupted) {
     if (!outcome.log || outcome.log->moments.empty()) {
-        fmt::print(stderr, "photonav: warning: no film: the first flight has no log\n");
+        printError("photonav: warning: no film: the first flight has no log");
         return;
     }
     ProgressLine line(options.quiet);
@@ -215,17 +216,17 @@ void store(const ExploreOptions& options, const ExplorationSetup& setup, const W
     const std::size_t earlier = watch.storeIn(std::make_unique<FlightStore>(
         folder, ofFlight, pageSoFar(setup, world, header.name, options.commandLine)));
     if (earlier == 0 || options.quiet) return;
-    fmt::print(stderr,
-               "photonav: {}: killed after {} keyframes; it is flown again from its start, as its "
-               "seed says\n",
-               ofFlight.name, earlier);
+    printError(fmt::format(
+        "photonav: {}: killed after {} keyframes; it is flown again from its start, as its "
+        "seed says",
+        ofFlight.name, earlier));
 }
 
 /// Whether an interrupted exploration leaves what was there before: a killed flight that went on
 /// longer than this one, or an earlier result where nothing was done.
 bool leavesEarlierWork(const FlightWatch& watch, std::size_t ended, FolderTransaction& folder) {
     if (watch.isBehindStored()) {
-        fmt::print(stderr, "photonav: the killed flight in {} stays\n", folder.path().string());
+        printError(fmt::format("photonav: the killed flight in {} stays", folder.path().string()));
         return true;
     }
     if (ended > 0 || !keepsEarlierResult(folder, watch.log().moments.empty())) return false;

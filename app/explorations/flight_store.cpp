@@ -13,6 +13,7 @@
 #include "problem/tree_evolution.hpp"
 #include "replanning/plan_update_json.hpp"
 #include "result/json_values.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -56,10 +57,10 @@ void FlightStore::add(const ExplorationMoment& moment, const FlightLog& log) {
     const std::size_t number = log.moments.size() - 1;
     if (isStored(log.moments.back(), number)) return;
     if (number < earlier_.size()) {
-        fmt::print(stderr,
-                   "photonav: warning: {}: from {:.1f} s on not the flight that was killed, as may "
-                   "be on another processor\n",
-                   header_.name, log.moments.back().update.time);
+        printError(fmt::format(
+            "photonav: warning: {}: from {:.1f} s on not the flight that was killed, as may "
+            "be on another processor",
+            header_.name, log.moments.back().update.time));
         earlier_.clear();
         std::string lines;
         for (std::size_t i = 0; i < number; ++i) {

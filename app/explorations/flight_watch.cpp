@@ -3,15 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include "io/atomic_file.hpp"
+#include "result/json_values.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
 void FlightWatch::serve(const ServerAddress& address, std::string page) {
     server_ = std::make_unique<LiveServer>(address, std::move(page));
-    fmt::print(stderr, "photonav: watch the flight at {}\n", server_->url());
+    printError(fmt::format("photonav: watch the flight at {}", server_->url()));
 }
 
 std::size_t FlightWatch::storeIn(std::unique_ptr<FlightStore> store) {
@@ -23,14 +23,15 @@ OnExplorationMoment FlightWatch::onMoment() {
     return [this](const ExplorationMoment& moment) {
         logger_.add(moment);
         if (store_ && !interrupted_) store_->add(moment, log());
-        if (server_) server_->publish("moment", momentJson(log(), log().moments.back()).dump());
+        if (server_)
+            server_->publish("moment", compactJson(momentJson(log(), log().moments.back())));
     };
 }
 
 void FlightWatch::finish(const ExplorationResult& flight, const fs::path& folder) {
     logger_.finish(flight);
     writeFlightLog(folder, log());
-    if (server_) server_->publish("end", endJson(log()).dump());
+    if (server_) server_->publish("end", compactJson(endJson(log())));
 }
 
 std::optional<FlightLog> readFlightLog(const fs::path& folder, const TrialItem& item) {
@@ -42,7 +43,7 @@ std::optional<FlightLog> readFlightLog(const fs::path& folder, const TrialItem& 
 }
 
 void writeFlightLog(const fs::path& folder, const FlightLog& log) {
-    writeFileAtomically(folder / FlightLog::kFileName, flightLogJson(log).dump());
+    writeFileAtomically(folder / FlightLog::kFileName, compactJson(flightLogJson(log)));
 }
 
 }  // namespace photonav

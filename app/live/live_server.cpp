@@ -11,7 +11,10 @@
 #include <condition_variable>
 #include <csignal>
 #include <cstring>
+#include <deque>
+#include <functional>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -45,6 +48,72 @@ void reuseAddress(socket_t socket) {
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
 }
 
+/// Threads that start meanwhile take no signals: those are for the flight, and must not interrupt
+/// accept().
+class NoSignals {
+  public:
+    NoSignals() {
+        sigset_t all;
+        sigfillset(&all);
+        pthread_sigmask(SIG_SETMASK, &all, &before_);
+    }
+    ~NoSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+    NoSignals(const NoSignals&) = delete;
+    NoSignals& operator=(const NoSignals&) = delete;
+
+  private:
+    sigset_t before_;
+};
+
+/// The threads of the server, which start before it does: a program that may have no more of them
+/// can still say so. (The library's own pool would end it.)
+class Threads : public httplib::TaskQueue {
+  public:
+    /// @throws InputError when the system does not start them
+    explicit Threads(std::size_t count) {
+        try {
+            while (threads_.size() < count) threads_.emplace_back([this] { work(); });
+        } catch (const std::system_error&) {
+            shutdown();
+            throw InputError("--serve", "", "the system starts no more threads (ulimit -u)");
+        }
+    }
+
+    void enqueue(std::function<void()> job) override {
+        const std::lock_guard lock(mutex_);
+        jobs_.push_back(std::move(job));
+        changed_.notify_one();
+    }
+
+    void shutdown() override {
+        {
+            const std::lock_guard lock(mutex_);
+            isEnding_ = true;
+            changed_.notify_all();
+        }
+        for (std::thread& thread : threads_) thread.join();
+        threads_.clear();
+    }
+
+  private:
+    void work() {
+        for (std::unique_lock lock(mutex_);; lock.lock()) {
+            changed_.wait(lock, [this] { return isEnding_ || !jobs_.empty(); });
+            if (jobs_.empty()) return;
+            const std::function<void()> job = std::move(jobs_.front());
+            jobs_.pop_front();
+            lock.unlock();
+            job();
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<std::function<void()>> jobs_;
+    bool isEnding_ = false;
+    std::vector<std::thread> threads_;
+};
+
 }  // namespace
 
 ServerAddress parseServerAddress(const std::string& text) {
@@ -75,13 +144,15 @@ class LiveServer::Implementation {
   public:
     Implementation(const ServerAddress& address, std::string page)
         : address_(address), page_(std::move(page)) {
-        server_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+        server_.new_task_queue = [this] { return threads_.release(); };
         server_.set_socket_options(reuseAddress);
         server_.set_keep_alive_timeout(1);
+        server_.set_read_timeout(kFarewell / 2);
         server_.set_write_timeout(kFarewell);
         server_.set_default_headers(
             {{"Cache-Control", "no-store"}, {"X-Content-Type-Options", "nosniff"}});
         if (isLoopback(address_.host)) refuseOtherHosts();
+        discardUploads();
         server_.Get("/", [this](const httplib::Request&, httplib::Response& response) {
             response.set_content(page_, "text/html; charset=utf-8");
         });
@@ -144,24 +215,37 @@ class LiveServer::Implementation {
                          reason);
     }
 
-    /// Its threads take no signals: those are for the flight, and must not interrupt accept().
     void startThread() {
-        sigset_t all, before;
-        sigfillset(&all);
-        pthread_sigmask(SIG_SETMASK, &all, &before);
+        const NoSignals none;
+        threads_ = std::make_unique<Threads>(kThreads);
         thread_ = std::thread([this] { server_.listen_after_bind(); });
-        pthread_sigmask(SIG_SETMASK, &before, nullptr);
     }
 
+    /// Pages of other hosts, for which a browser would fetch what only this machine may see.
     void refuseOtherHosts() {
         server_.set_pre_routing_handler(
             [](const httplib::Request& request, httplib::Response& response) {
-                if (isLoopback(hostOf(request.get_header_value("Host")))) {
+                const bool isRead = request.method == "GET" || request.method == "HEAD";
+                if (!isRead || isLoopback(hostOf(request.get_header_value("Host")))) {
                     return httplib::Server::HandlerResponse::Unhandled;
                 }
                 response.status = 403;
                 return httplib::Server::HandlerResponse::Handled;
             });
+    }
+
+    /// What is sent is read, as the protocol demands, but not kept.
+    void discardUploads() {
+        server_.set_payload_max_length(0);
+        const auto discard = [](const httplib::Request&, httplib::Response& response,
+                                const httplib::ContentReader& read) {
+            read([](const char*, std::size_t) { return true; });
+            response.status = 405;
+        };
+        server_.Post(".*", discard);
+        server_.Put(".*", discard);
+        server_.Patch(".*", discard);
+        server_.Delete(".*", discard);
     }
 
     void stream(const httplib::Request& request, httplib::Response& response) {
@@ -209,6 +293,7 @@ class LiveServer::Implementation {
 
     ServerAddress address_;
     std::string page_;
+    std::unique_ptr<Threads> threads_;  // until the server takes them
     httplib::Server server_;
     std::mutex mutex_;
     std::condition_variable changed_;

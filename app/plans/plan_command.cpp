@@ -14,6 +14,7 @@
 #include "plans/plan_report.hpp"
 #include "problem/advantage.hpp"
 #include "problem/tree_evolution.hpp"
+#include "shared/command_io.hpp"
 #include "shared/result_folder.hpp"
 
 namespace photonav {
@@ -63,7 +64,8 @@ std::optional<RecordedComparison> compareWithImages(const Config& config, const 
         if (!map) return {};
         return compareWithRecording(*map, config, world, *outcome.path);
     } catch (const InputError& error) {
-        fmt::print(stderr, "photonav: warning: recorded frames not compared: {}\n", error.what());
+        printError(
+            fmt::format("photonav: warning: recorded frames not compared: {}", error.what()));
         return {};
     }
 }
@@ -96,10 +98,10 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     problem.checkPlaces();
     FolderTransaction folder = beginResult(options, "plan", inputsOf(config));
     if (!world.hasTexture()) {
-        fmt::print(stderr,
-                   "photonav: warning: {}: no cell of the map has a grey value; planning without "
-                   "views\n",
-                   config.mapFile);
+        printError(fmt::format(
+            "photonav: warning: {}: no cell of the map has a grey value; planning without "
+            "views",
+            config.mapFile));
     }
 
     PlanOutcome outcome;

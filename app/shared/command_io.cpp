@@ -9,20 +9,30 @@
 
 namespace photonav {
 
+void printError(std::string_view line) {
+    const std::string text = fmt::format("{}\n", line);
+    std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
 ProgressLine::ProgressLine(bool quiet) : enabled_(!quiet && isatty(STDERR_FILENO) != 0) {}
 
 ProgressLine::~ProgressLine() { clear(); }
 
 void ProgressLine::clear() {
-    if (enabled_ && width_ > 0) fmt::print(stderr, "\r{:{}}\r", "", width_);
+    if (enabled_ && width_ > 0) write(fmt::format("\r{:{}}\r", "", width_));
     width_ = 0;
 }
 
 void ProgressLine::show(const std::string& text) {
     if (!enabled_) return;
-    fmt::print(stderr, "\r{:{}}", text, std::max(width_, text.size()));
-    std::fflush(stderr);
+    write(fmt::format("\r{:{}}", text, std::max(width_, text.size())));
     width_ = text.size();
+}
+
+/// A terminal may go away while the command runs.
+void ProgressLine::write(const std::string& text) {
+    enabled_ = std::fwrite(text.data(), 1, text.size(), stderr) == text.size();
+    std::fflush(stderr);
 }
 
 }  // namespace photonav

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace photonav {
@@ -31,6 +32,10 @@ struct OutputOptions {
     bool& json;
 };
 
+/// Prints a line to standard error. Where that is closed or full, nothing is printed: a result is
+/// worth more than what is said about it.
+void printError(std::string_view line);
+
 /// A progress line on standard error, which is overwritten by the next one. Nothing is printed
 /// unless standard error is a terminal.
 class ProgressLine {
@@ -44,6 +49,8 @@ class ProgressLine {
     void clear();
 
   private:
+    void write(const std::string& text);
+
     bool enabled_;
     std::size_t width_ = 0;
 };

@@ -2,6 +2,8 @@
 // The command lines of the subcommands, and options that several of them share.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <cmath>
@@ -80,14 +82,16 @@ void addQuiet(CLI::App& parser, bool& quiet);
 /// The format of the help texts: at most 80 columns.
 std::shared_ptr<CLI::FormatterBase> helpFormat();
 
-/// Allows the numbers from `least` to `most`. CLI::Range alone lets "nan" pass.
+/// Allows the numbers from `least` to `most`.
 template <typename Number>
 CLI::Option* limit(CLI::Option* option, Number least, Number most) {
-    const auto refuseNan = [](const std::string& text) -> std::string {
+    return option->check([=](const std::string& text) {
         const auto number = numberIn(text);
-        return number && std::isnan(*number) ? text + " is not a number" : std::string();
-    };
-    return option->check(CLI::Range(least, most))->check(refuseNan);
+        const bool isAllowed =
+            number && *number >= static_cast<double>(least) && *number <= static_cast<double>(most);
+        return isAllowed ? std::string()
+                         : fmt::format("'{}' is not a number from {} to {}", text, least, most);
+    });
 }
 
 /// Adds an option for a number from `least` to `most`. The value of `number` is the default.

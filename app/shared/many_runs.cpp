@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shared/many_runs.hpp"
+#include "shared/command_io.hpp"
+#include "shared/path_inside.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,8 +47,8 @@ void reportNewBegin(const ManyRunsOptions& options, const FolderTransaction& fol
                                      words.aWhole));
     }
     if (options.quiet) return;
-    fmt::print(stderr, "photonav: --resume: {}: nothing there yet; {} begins anew\n", target,
-               words.theWhole);
+    printError(fmt::format("photonav: --resume: {}: nothing there yet; {} begins anew", target,
+                           words.theWhole));
 }
 
 void RemainingTime::count(const std::string& planner, double seconds, double wall) {
@@ -138,8 +140,7 @@ void checkMakeOneWhole(const std::vector<std::string>& folders,
 
 void checkIsNoShard(const ManyRunsOptions& options, const fs::path& target) {
     for (const std::string& shard : options.merge) {
-        std::error_code noFolder;  // none yet: no shard's
-        if (!fs::equivalent(shard, target, noFolder)) continue;
+        if (!isInside(target, shard)) continue;
         throw InputError("--merge", shard, "the result needs another folder (--out)");
     }
 }

@@ -8,6 +8,7 @@
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
 #include "result/json_values.hpp"
+#include "shared/command_io.hpp"
 #include "shared/path_inside.hpp"
 
 namespace photonav {
@@ -30,8 +31,8 @@ InputPaths inputsOf(const Config& config, InputPaths others) {
 
 bool keepsEarlierResult(const FolderTransaction& folder, bool isNothingDone) {
     if (!isNothingDone || Manifest::read(folder.target()).empty()) return false;
-    fmt::print(stderr, "photonav: nothing was done; the earlier result in {} stays\n",
-               folder.target().string());
+    printError(fmt::format("photonav: nothing was done; the earlier result in {} stays",
+                           folder.target().string()));
     return true;
 }
 

@@ -14,6 +14,7 @@
 #include <sstream>
 #include <thread>
 
+#include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "problem/planning_problem.hpp"
 #include "shared/command_io.hpp"
@@ -115,7 +116,9 @@ planner: {vertices: 300, alpha: 0.1, view_pitch: 0.25}
 class Scratch {
   public:
     Scratch() : path_(fs::temp_directory_path() / fmt::format("photonav-doctor-{}", getpid())) {
-        fs::create_directories(path_);
+        std::error_code error;
+        fs::create_directories(path_, error);
+        if (error) throw InputError("TMPDIR", path_.string(), error.message());
     }
     Scratch(const Scratch&) = delete;
     Scratch& operator=(const Scratch&) = delete;

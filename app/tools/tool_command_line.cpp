@@ -6,6 +6,7 @@
 #include "config/config_keys.hpp"
 #include "interchange/result_export.hpp"
 #include "io/atomic_file.hpp"
+#include "io/durable_file.hpp"
 #include "mapping/map_config.hpp"
 #include "recordings/replay_command.hpp"
 #include "shared/command_line.hpp"
@@ -103,8 +104,9 @@ void checkExportTarget(const fs::path& file) {
     if (fs::exists(file.parent_path() / Manifest::kFileName)) {
         throw InputError("--out", file.string(), "is inside a result folder");
     }
-    if (!fs::is_regular_file(file) || McapWriter::isMcap(file.string())) return;
-    throw InputError("--out", file.string(), "exists, and is no MCAP file; give another name");
+    if (!fs::is_regular_file(file) || McapWriter::isOurs(file.string())) return;
+    throw InputError("--out", file.string(),
+                     "exists, and photonav did not write it; give another name");
 }
 
 int exportResult(const ExportOptions& options, const std::atomic<bool>& /*interrupted*/) {
@@ -113,7 +115,7 @@ int exportResult(const ExportOptions& options, const std::atomic<bool>& /*interr
     const std::string file = options.out.empty() ? folder.string() + ".mcap" : options.out.string();
     checkExportTarget(file);
     const McapExport result = exportMcap(folder, readReportOf(folder));
-    writeFileAtomically(file, result.content);
+    replaceFile(file, result.content);
     if (!options.quiet) {
         fmt::print("{}: {} messages over {:.1f} s, {:.1f} MB\n", file, result.messages,
                    result.duration, 1e-6 * static_cast<double>(result.content.size()));

@@ -256,6 +256,7 @@ Surface drawn(const Figure& figure, const Create& create) {
     cairo_set_source_surface(cairo.get(), record.get(), 0., 0.);
     cairo_paint(cairo.get());
     const cairo_status_t status = cairo_status(cairo.get());
+    if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
     if (status != CAIRO_STATUS_SUCCESS)
         throw std::runtime_error(std::string("figure: ") + cairo_status_to_string(status));
     return surface;

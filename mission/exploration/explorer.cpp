@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -31,6 +33,10 @@ constexpr double kAroundGoal = 2.;
 /// Time without an update, while the plan is only a part of the way, after which the next image
 /// becomes a keyframe [s].
 constexpr double kWait = 1.;
+/// Heading of a robot that faces a place [rad].
+constexpr double kFacing = 0.1;
+/// Longest turn toward a place [s].
+constexpr double kLongestLook = 5.;
 /// Rest of a plan that is not worth flying [m].
 constexpr double kShortRest = 0.1;
 /// Longest improvement of a plan in real time [s].
@@ -239,6 +245,7 @@ FlyablePart Explorer::fromHere(const FlyablePart& way) const {
     rest.isWhole = rest.isWhole && way.isWhole;
     rest.isStopped = rest.isStopped || way.isStopped;
     rest.isBlind = way.isBlind;
+    rest.isLook = way.isLook;
     return rest;
 }
 
@@ -280,6 +287,7 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
     // Hovering over the goal is not interrupted by a way of a few centimetres to it.
     if (isWhole_ && pilot_.route().isAtGoal()) return;
     if (background_) way = fromHere(*way);
+    if (way->isLook && isLooking()) return;
     if (way->isBlind && !mayStepBlindly()) return hover();
     withoutWay_ = 0;
     withoutWaySince_.reset();
@@ -288,7 +296,17 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
     blindInARow_ += way->isBlind;
     isWhole_ = way->isWhole;
     record_.blindSteps += way->isBlind;
+    look_.reset();
+    if (way->isLook) look_ = Look{yawOf(way->plan.back().T_w_b), time_};
     pilot_.setPlan(std::move(way->plan));
+}
+
+/// A robot between two ways that are as good as each other would turn to and fro: it first looks
+/// where it began to look.
+bool Explorer::isLooking() const {
+    if (!look_ || time_ - look_->since > kLongestLook) return false;
+    const double turn = std::remainder(look_->yaw - yawOf(here()), 2. * std::numbers::pi);
+    return std::abs(turn) > kFacing;
 }
 
 /// Where the map shows no way, the robot flies the plan that it has as far as this is free, and
@@ -298,6 +316,7 @@ void Explorer::flyRest() {
     FlyablePart rest = fromHere({.plan = wayAhead(), .isWhole = false});
     if (rest.isStopped || rest.plan.back().distance < kShortRest) return hover();
     isWhole_ = false;
+    look_.reset();
     pilot_.setPlan(std::move(rest.plan));
 }
 
@@ -311,6 +330,7 @@ void Explorer::hover() {
     ++withoutWay_;
     if (!withoutWaySince_) withoutWaySince_ = time_;
     isWhole_ = false;
+    look_.reset();
     pilot_.setPlan(stayingAt(tracker_.belief(), T_b_c_));
 }
 

@@ -140,6 +140,7 @@ class Explorer {
     void takeOver(Replanned replanned);
     void showMoment(Replanned replanned);
     void flyOn(std::optional<FlyablePart> way);
+    bool isLooking() const;
     bool mayStepBlindly() const;
     void flyRest();
     void hover();
@@ -178,9 +179,14 @@ class Explorer {
     int withoutWay_ = 0;                     // updates in a row without a path
     std::optional<double> withoutWaySince_;  // [s]
     std::optional<double> stoppedSince_;     // time of the stop before an obstacle in view [s]
-    int blindInARow_ = 0;                    // blind steps since the map last grew
-    double lastUpdate_ = 0.;                 // time of the last update [s]
-    std::optional<double> atGoalSince_;      // time of reaching the goal, if still near it [s]
+    struct Look {
+        double yaw = 0.;    // [rad]
+        double since = 0.;  // [s]
+    };
+    std::optional<Look> look_;           // that the robot turns to
+    int blindInARow_ = 0;                // blind steps since the map last grew
+    double lastUpdate_ = 0.;             // time of the last update [s]
+    std::optional<double> atGoalSince_;  // time of reaching the goal, if still near it [s]
     Corrections corrections_;
     ExplorationRecord record_;
     std::optional<FlightEnd> end_;

@@ -149,6 +149,7 @@ FlyablePart flyablePart(const std::vector<PlannedView>& plan, const SpaceAhead& 
         way.isStopped = true;
         way.plan = hovering(plan.front().T_w_b, plan.front().covariance);
     } else if (auto look = isToLook ? lookAt(unseen.p_w, plan.front()) : std::nullopt) {
+        way.isLook = true;
         way.plan = std::move(*look);
     } else if (std::min(seen, free) >= kShort) {
         // Not even what lies beyond the hidden places was seen.

@@ -25,6 +25,7 @@ struct FlyablePart {
     std::vector<PlannedView> plan;  ///< at least two views; equal poses: the robot hovers
     bool isWhole = false;           ///< the part is the whole plan
     bool isStopped = false;         ///< the obstacle is right ahead: the robot hovers
+    bool isLook = false;            ///< the robot only turns, to look where the plan leads
     bool isBlind = false;           ///< the part leads into space that could not be observed before
 };
 

@@ -77,7 +77,11 @@ Number wholeNumber(const nlohmann::json& value) {
 /// `not_finite` gives the place and the reason of each.
 std::string jsonText(const nlohmann::json& value);
 
-/// As jsonText(), on one line.
+/// The text of a value without line breaks. Bytes that are not UTF-8 are replaced; numbers that are
+/// not finite become null.
+std::string compactJson(const nlohmann::json& value);
+
+/// compactJson() and a line break.
 std::string jsonLine(const nlohmann::json& value);
 
 /// Image size and intrinsics [pixels].

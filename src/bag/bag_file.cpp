@@ -59,6 +59,9 @@ double timeOf(const Fields& fields) {
     return seconds + 1e-9 * reader.number<std::uint32_t>();
 }
 
+/// Images of nothing but black are packed to less, but are of no use.
+constexpr std::uint64_t kMostCompression = 1000;
+
 }  // namespace
 
 bool BagFile::isBag(const std::string& file) { return beginsWith(file, kMagic); }
@@ -137,12 +140,18 @@ void BagFile::visitChunk(const Visit& visit, std::map<std::uint32_t, BagTopic>& 
 void BagFile::forEachMessage(const Visit& visit) {
     reading(file_, [&] {
         std::map<std::uint32_t, BagTopic> topics;
+        std::uint64_t unpacked = 0;
         stream_.seekg(std::ptrdiff_t(kMagic.size() + kBagVersion.size()));
         while (static_cast<std::uint64_t>(stream_.tellg()) < fileSize_) {
             const auto position = static_cast<std::uint64_t>(stream_.tellg());
             const Record record = nextRecord();
             if (numberOf<std::uint8_t>(fieldsOf(record.header), "op") == kChunk) {
                 loadChunk(position, record);
+                unpacked += chunk_.size();
+                if (unpacked > kLargestChunk + kMostCompression * fileSize_) {
+                    throw std::runtime_error(fmt::format(
+                        "its chunks unpack to more than {} times the file", kMostCompression));
+                }
                 visitChunk(visit, topics);
             } else {
                 stream_.seekg(record.size, std::ios::cur);

@@ -13,7 +13,6 @@
 namespace photonav {
 namespace {
 
-constexpr std::uint32_t kLargestChunk = 1U << 30U;  // [bytes]; rosbag's own are 0.8 MB
 constexpr std::size_t kPiece = 1U << 16U;
 
 /// Calls next(piece) -> bytes in it, until that is 0. A size that is only claimed costs no memory.

@@ -8,6 +8,8 @@
 
 namespace photonav {
 
+inline constexpr std::uint32_t kLargestChunk = 1U << 28U;  ///< [bytes]; rosbag's own are 0.8 MB
+
 /// Decompresses a chunk of a bag.
 /// @param compression "none", "bz2" or "lz4"
 /// @param size expected size of the result [bytes]

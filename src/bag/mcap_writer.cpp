@@ -68,6 +68,11 @@ class McapFields {
     std::string bytes_;
 };
 
+/// Of a file by this writer: it says by whom it was written.
+std::string beginning() {
+    return std::string(kMcapMagic) + McapFields().text("").text("photonav").as(Op::header);
+}
+
 template <typename Key>
 std::string tableOf(const std::map<Key, std::uint64_t>& table) {
     McapFields fields;
@@ -77,7 +82,7 @@ std::string tableOf(const std::map<Key, std::uint64_t>& table) {
 
 }  // namespace
 
-bool McapWriter::isMcap(const std::string& file) { return beginsWith(file, kMcapMagic); }
+bool McapWriter::isOurs(const std::string& file) { return beginsWith(file, beginning()); }
 
 McapWriter::ChannelId McapWriter::addChannel(const std::string& topic,
                                              const std::string& schemaName,
@@ -227,8 +232,7 @@ std::string McapWriter::content() const {
     ordered.reserve(messages_.size());
     for (const Message& message : messages_) ordered.push_back(&message);
     std::ranges::stable_sort(ordered, {}, &Message::time);
-    std::string file(kMcapMagic);
-    file += McapFields().text("").text("photonav").as(Op::header);
+    std::string file = beginning();
     file += schemaRecords() + channelRecords();
     std::vector<Chunk> chunks;
     std::vector<const Message*> inChunk;

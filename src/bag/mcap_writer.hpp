@@ -16,8 +16,8 @@ class McapWriter {
   public:
     using ChannelId = std::uint16_t;
 
-    /// Whether a file begins as MCAP files do.
-    static bool isMcap(const std::string& file);
+    /// Whether a file begins as those of this writer do, which name it.
+    static bool isOurs(const std::string& file);
 
     /// @param schema JSON Schema of the channel's messages. If several channels give the same
     ///         schemaName, the schema of the first one is used for all.

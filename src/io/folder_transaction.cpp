@@ -261,6 +261,7 @@ void FolderTransaction::commit() {
                                      "run with this folder",
                                      error.what(), working_.string()));
     }
+    isAnyCommitted_ = true;
     unfinished_ = before;
     isOpen_ = false;
     synchronise(resolved_.parent_path(), target_);

@@ -52,6 +52,9 @@ class FolderTransaction {
     /// results to keep. May be called in a signal handler.
     static bool isAnyOpen() { return open_ > 0; }
 
+    /// Whether this process has put a result in its place. May be called in a signal handler.
+    static bool isAnyCommitted() { return isAnyCommitted_; }
+
     /// Whether another process is writing this folder.
     static bool isBeingWritten(const std::filesystem::path& target);
 
@@ -68,6 +71,7 @@ class FolderTransaction {
     Unfinished unfinished_;
     FileDescriptor lock_;  // of the working folder's manifest
     bool isOpen_ = true;
+    static inline std::atomic<bool> isAnyCommitted_{false};
     static inline std::atomic<int> open_{0};
 };
 

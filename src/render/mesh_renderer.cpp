@@ -4,6 +4,8 @@
 #include <embree3/rtcore.h>
 
 #include <limits>
+#include <memory>
+#include <new>
 #include <stdexcept>
 
 #include "photometry/simd.hpp"
@@ -36,32 +38,41 @@ constexpr std::size_t kPixelsPerTriangle = 4;
 struct Release {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
     void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
 };
+
+/// What Embree has made. @throws std::bad_alloc for null
+template <typename Made>
+Made made(Made object) {
+    if (object == nullptr) throw std::bad_alloc();
+    return object;
+}
 
 /// Embree's bounding volume hierarchy over the triangles.
 class RayCaster {
   public:
     explicit RayCaster(const std::vector<Triangle>& triangles)
-        : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_.get())) {
+        : device_(made(rtcNewDevice(nullptr))), scene_(made(rtcNewScene(device_.get()))) {
         const std::size_t n = triangles.size();
-        RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* corners = static_cast<float*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * n));
-        auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), n));
+        const std::unique_ptr<RTCGeometryTy, Release> geometry(
+            made(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE)));
+        auto* corners = static_cast<float*>(
+            made(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                         RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * n)));
+        auto* indices = static_cast<unsigned*>(made(rtcSetNewGeometryBuffer(
+            geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), n)));
         for (std::size_t i = 0; i < 3 * n; ++i) {
             Eigen::Map<Eigen::Vector3f>(corners + 3 * i) = triangles[i / 3].corners[i % 3];
             indices[i] = static_cast<unsigned>(i);
         }
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene_.get(), geometry);
-        rtcReleaseGeometry(geometry);
+        rtcCommitGeometry(geometry.get());
+        rtcAttachGeometry(scene_.get(), geometry.get());
         // Robust: rays through an edge shared by two triangles must not slip between them.
         rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
         rtcCommitScene(scene_.get());
-        if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) {
-            throw std::runtime_error("Embree cannot build the scene");
-        }
+        const RTCError error = rtcGetDeviceError(device_.get());
+        if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+        if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build the scene");
     }
 
     void cast(const Camera& camera, const Pose& T_c_w, VisibilityImage& visible) const {

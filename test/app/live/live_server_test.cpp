@@ -124,6 +124,30 @@ TEST(LiveServer, ABrowserThatReadsNothingOrLeavesDelaysNobody) {
     EXPECT_EQ(countOf("event: moment", got), 20U);
 }
 
+TEST(LiveServer, KeepsNothingOfWhatIsSentToIt) {
+    const LiveServer server(ServerAddress{}, "page");
+    httplib::Client client("127.0.0.1", portOf(server));
+    const std::string large(1U << 20U, 'x');
+    for (const char* path : {"/", "/events", "/none"}) {
+        const auto answer = client.Post(path, large, "text/plain");
+        ASSERT_TRUE(answer) << path;
+        EXPECT_GE(answer->status, 400) << path;
+    }
+    const auto chunked = client.Post(
+        "/",
+        [&](std::size_t offset, httplib::DataSink& sink) {
+            if (offset >= 10 * large.size()) {
+                sink.done();
+                return true;
+            }
+            return sink.write(large.data(), large.size());
+        },
+        "text/plain");
+    ASSERT_TRUE(chunked);
+    EXPECT_EQ(chunked->status, 405);
+    EXPECT_EQ(client.Get("/")->body, "page");
+}
+
 TEST(LiveServer, OnLoopbackOtherHostsAreRefused) {
     const LiveServer server({}, "page");
     httplib::Client client("127.0.0.1", portOf(server));

@@ -64,6 +64,39 @@ TEST_F(CommandLine, OutputThatCannotBeWrittenIsNoSuccess) {
     }
 }
 
+/// What is opened first would otherwise be standard output: the lock of the result.
+TEST_F(CommandLine, AClosedStandardOutputIsNotAFileOfTheResult) {
+    const std::string plan = fmt::format("{} plan {} --set planner.vertices=60 --json --out {}",
+                                         PHOTONAV_BINARY, config("two_textures"), folder_.string());
+    for (int i = 0; i < 2; ++i) {
+        const Execution run = execute("{ " + plan + " >&-; }");
+        EXPECT_EQ(run.exitCode, 1) << run.output;
+        EXPECT_EQ(run.output, "photonav: standard output cannot be written\n");
+    }
+    EXPECT_EQ(execute(plan).exitCode, 0);
+}
+
+TEST_F(CommandLine, AStandardErrorThatCannotBeWrittenChangesNoExitCode) {
+    for (const char* end : {"2> /dev/full", "2>&-", ">&- 2>&-"}) {
+        for (const char* arguments : {"plan none.yaml", "plan --none"}) {
+            const Execution run =
+                execute(fmt::format("{{ {} {} {}; }}", PHOTONAV_BINARY, arguments, end));
+            EXPECT_EQ(run.exitCode, 2) << arguments << " " << end;
+        }
+    }
+}
+
+TEST_F(CommandLine, NumbersOutOfRangeAreSaidWithTheirRange) {
+    for (const char* number : {"1", "nan", "many"}) {
+        const Execution run =
+            photonav("info " + config("two_textures") + " --cells " + std::string(number));
+        EXPECT_EQ(run.exitCode, 2);
+        EXPECT_NE(run.output.find(fmt::format("--cells: '{}' is not a number from 2 to ", number)),
+                  std::string::npos)
+            << run.output;
+    }
+}
+
 TEST_F(CommandLine, ADamagedTextureIsSaidInOneLine) {
     fs::create_directories(folder_);
     std::ofstream(folder_ / "a.pgm") << "P5\n64 64\n255\ncut short";

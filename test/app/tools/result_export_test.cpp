@@ -114,7 +114,8 @@ TEST(ResultExport, ReplacesAnEarlierExportOnly) {
     photonav("info " + config("two_textures") + " --cells 2 --quiet --out " + out);
     const std::string user = folder.write("notes.txt", "the user's");
     const std::string report = test::contentOf(out + "/report.json");
-    for (const std::string& file : {user, out + "/report.json", out + "/new.mcap"}) {
+    const std::string recording = folder.write("recording.mcap", "\x89MCAP0\r\nof another program");
+    for (const std::string& file : {user, recording, out + "/report.json", out + "/new.mcap"}) {
         const Execution run = photonav("export " + out + " --out " + file);
         EXPECT_EQ(run.exitCode, 2) << run.output;
         EXPECT_TRUE(run.output.starts_with("photonav: --out: " + file)) << run.output;

@@ -80,7 +80,9 @@ TEST(FlyablePart, TurnsToLookFirst) {
     const FlyablePart way = flyablePart(straightPath(2.), space);
     EXPECT_EQ(endOf(way), 0.);
     EXPECT_NEAR(yawOf(way.plan.back().T_w_b), 0., 1e-9);
+    EXPECT_TRUE(way.isLook);
     EXPECT_FALSE(way.isBlind);
+    EXPECT_FALSE(flyablePart(straightPath(0.), space).isLook);
     // Where it looks there already, or cannot, it takes a short step.
     EXPECT_NEAR(endOf(flyablePart(straightPath(0.), space)), 0.12, 0.02);
     space.canLook = false;
