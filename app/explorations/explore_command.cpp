@@ -223,12 +223,13 @@ void store(const ExploreOptions& options, const ExplorationSetup& setup, const W
 }
 
 /// Whether an interrupted exploration leaves what was there before: a killed flight that went on
-/// longer than this one, or an earlier result where nothing was done.
+/// longer than this one, an earlier result of more flights, or one where nothing was done.
 bool leavesEarlierWork(const FlightWatch& watch, std::size_t ended, FolderTransaction& folder) {
     if (watch.isBehindStored()) {
         printError(fmt::format("photonav: the killed flight in {} stays", folder.path().string()));
         return true;
     }
+    if (leavesMoreRuns<TrialKind>(folder, ended)) return true;
     if (ended > 0 || !keepsEarlierResult(folder, watch.log().moments.empty())) return false;
     folder.discard();
     return true;

@@ -131,6 +131,21 @@ std::vector<typename Kind::Run> runsSoFar(const ManyRunsOptions& options,
     return journal->runs();
 }
 
+/// Whether an interrupted command leaves an earlier result in its place, because that has more
+/// runs. Its own runs then stay in the working folder for --resume, as a line on standard error
+/// says.
+template <typename Kind>
+bool leavesMoreRuns(const FolderTransaction& folder, std::size_t ownRuns) {
+    if (!std::filesystem::exists(folder.target() / Journal<Kind>::kFileName)) return false;
+    const std::size_t earlier = Journal<Kind>::read(folder.target()).runs().size();
+    if (earlier <= ownRuns) return false;
+    printError(
+        fmt::format("photonav: the earlier result in {} has {} {}s, and stays; --resume goes "
+                    "on with the {} that ended now",
+                    folder.target().string(), earlier, Kind::kWords.run, ownRuns));
+    return true;
+}
+
 /// Checks that no other process is writing a folder.
 /// @throws InputError naming the folder if a process is writing it
 void checkIsNotWritten(const std::string& folder);

@@ -8,7 +8,7 @@ namespace photonav {
 namespace {
 
 TEST(Build, SanitizersComeWithAssertions) {
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef PHOTONAV_SANITIZED
     Eigen::VectorXd three(3);
     EXPECT_DEATH(three[three.size()] = 1., "Assertion");
 #else

@@ -99,7 +99,7 @@ struct Problem {
 /// Vertices of a tree: half under the address sanitizer, which is after other errors than the
 /// test's statement, made at full size by the ordinary build, and for which RRBT's n^2 is slow.
 constexpr std::size_t treeOf(std::size_t vertices) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef PHOTONAV_SANITIZED
     return vertices / 2;
 #else
     return vertices;

@@ -303,8 +303,26 @@ TEST_F(SweepCommand, CtrlCKeepsTheRunsDone) {
     EXPECT_LT(r["runs"].size(), 1000000U);
 }
 
+TEST_F(SweepCommand, CtrlCLeavesAnEarlierResultOfMoreRuns) {
+    const std::string common = fmt::format(
+        "sweep {} --set planner.vertices=150 --alpha 0.5 --planners rrt_star --quiet --out {}",
+        config("two_textures"), at("out"));
+    ASSERT_EQ(photonav(common + " --runs 40").exitCode, 0);
+    const json whole = result("out");
+    const Execution run = interrupt(
+        fmt::format("{} {} --runs 1000000", PHOTONAV_BINARY, common),
+        fmt::format("[ $(cat {}.unfinished/runs.jsonl 2>/dev/null | wc -l) -gt 1 ]", at("out")));
+    EXPECT_EQ(run.exitCode, 130) << run.output;
+    EXPECT_NE(run.output.find("has 40 runs, and stays; --resume goes on"), std::string::npos)
+        << run.output;
+    EXPECT_EQ(result("out"), whole);
+    EXPECT_EQ(photonav(common + " --runs 40").exitCode, 2);  // its runs are not lost, either
+    EXPECT_EQ(photonav(common + " --runs 40 --resume").exitCode, 0);
+    EXPECT_EQ(result("out")["runs"].size(), 40U);
+}
+
 TEST_F(SweepCommand, ItsPageShowsCurvesAndTables) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef PHOTONAV_SANITIZED
     GTEST_SKIP() << "the page runs in the browser, not under the sanitizers";
 #endif
     constexpr const char* kBrowser = "/usr/bin/chromium";

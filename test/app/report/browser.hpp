@@ -27,7 +27,7 @@ struct Outcome {
 class ReportBrowserTest : public testing::Test {
   protected:
     void SetUp() override {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef PHOTONAV_SANITIZED
         GTEST_SKIP() << "the page runs in the browser, not under the sanitizers";
 #endif
         if (!std::filesystem::exists(kChromium)) GTEST_SKIP() << kChromium << " is not installed";

@@ -15,7 +15,7 @@ using test::randomCovariance;
 using test::randomPose;
 using test::sameCovariance;
 
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef PHOTONAV_SANITIZED
 constexpr int kSamples = 4000;
 #else
 constexpr int kSamples = 100000;
