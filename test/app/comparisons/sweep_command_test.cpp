@@ -305,7 +305,7 @@ TEST_F(SweepCommand, CtrlCKeepsTheRunsDone) {
 
 TEST_F(SweepCommand, CtrlCLeavesAnEarlierResultOfMoreRuns) {
     const std::string common = fmt::format(
-        "sweep {} --set planner.vertices=150 --alpha 0.5 --planners rrt_star --quiet --out {}",
+        "sweep {} --set planner.vertices=400 --alpha 0.5 --planners rrt_star --quiet --out {}",
         config("two_textures"), at("out"));
     ASSERT_EQ(photonav(common + " --runs 40").exitCode, 0);
     const json whole = result("out");
