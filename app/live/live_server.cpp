@@ -293,7 +293,7 @@ class LiveServer::Implementation {
 
     ServerAddress address_;
     std::string page_;
-    std::unique_ptr<Threads> threads_;  // until the server takes them
+    std::unique_ptr<httplib::TaskQueue> threads_;  // until the server takes them
     httplib::Server server_;
     std::mutex mutex_;
     std::condition_variable changed_;
