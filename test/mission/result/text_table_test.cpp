@@ -33,8 +33,11 @@ TEST(TextTableTest, ColumnsThatDoNotFitFollowBelow) {
               "a  first\n"
               "1      2\n"
               "\n"
-              "a  second  third\n"
-              "1       3      4\n");
+              "a  second\n"
+              "1       3\n"
+              "\n"
+              "a  third\n"
+              "1      4\n");
     EXPECT_EQ(alignedText({{"only"}, {{"1"}}}), "only\n1   \n");
 }
 
