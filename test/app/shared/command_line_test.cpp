@@ -42,7 +42,7 @@ TEST_F(CommandLine, BadInputIsOneLineAndExitCodeTwo) {
     expectBadInput(photonav("plan --bar"), "--bar: no such option");
     for (const char* arguments : {"check x.tum --max-sigma nan", "servo x.yaml --gain nan",
                                   "servo x.yaml --duration -nan", "info x.yaml --height nan"}) {
-        expectBadInput(photonav(arguments), "nan is not a number");
+        expectBadInput(photonav(arguments), "nan' is not a number");
     }
     expectBadInput(plan("--audits"), "--audits: no such option, did you mean '--audit'?");
     expectBadInput(photonav("keys planner.kap"), "did you mean 'planner.kappa'?");
