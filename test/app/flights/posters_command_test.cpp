@@ -82,7 +82,7 @@ TEST_F(PostersCommand, RefusesBadInput) {
         EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
         EXPECT_FALSE(fs::exists(folder_.path() / "out"));
     };
-    expectRefused(shipped() + " --rank-by path --goal-only", "--goal-only excludes --rank-by");
+    expectRefused(shipped() + " --rank-by path --goal-only", "--rank-by excludes --goal-only");
     expectRefused("--candidates none.yaml", "none.yaml: no such file");
     expectRefused(shipped() + " --trajectory none.tum", "none.tum: no such file");
     expectRefused(shipped() + " --rank-by luck", "--rank-by: luck not in {path,goal}");
