@@ -210,6 +210,7 @@ bool Explorer::isInTheWay(const TrackedFrame& tracked, const View& image) {
         if (isOnWay) {
             FlyablePart free = fromHere({.plan = ahead, .isWhole = isWhole_});
             isWhole_ = free.isWhole;
+            look_.reset();
             pilot_.setPlan(std::move(free.plan));
         }
     }
