@@ -127,7 +127,6 @@ TEST_F(RoomToExplore, SaysThatTheGoalIsInAnObstacle) {
     EXPECT_EQ(nameOf(flight.end), "no way");
     EXPECT_NE(flight.reason.find("goal is in collision"), std::string::npos) << flight.reason;
     EXPECT_GT(flight.leastClearance, 0.125);
-    EXPECT_LT(flight.goalError, 2.) << "it did not look from nearby";
 }
 
 /// A crate around the goal that was an error of depths measured from far away.
