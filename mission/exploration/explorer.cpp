@@ -34,7 +34,7 @@ constexpr double kAroundGoal = 2.;
 /// becomes a keyframe [s].
 constexpr double kWait = 1.;
 /// Heading of a robot that faces a place [rad].
-constexpr double kFacing = 0.1;
+constexpr double kLooksThere = 0.1;
 /// Longest turn toward a place [s].
 constexpr double kLongestLook = 5.;
 /// Rest of a plan that is not worth flying [m].
@@ -307,7 +307,7 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
 bool Explorer::isLooking() const {
     if (!look_ || time_ - look_->since > kLongestLook) return false;
     const double turn = std::remainder(look_->yaw - yawOf(here()), 2. * std::numbers::pi);
-    return std::abs(turn) > kFacing;
+    return std::abs(turn) > kLooksThere;
 }
 
 /// Where the map shows no way, the robot flies the plan that it has as far as this is free, and
