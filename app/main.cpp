@@ -158,7 +158,7 @@ int run(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);
-        printError(fmt::format("photonav: {} (see photonav --help)", complaint(app, error)));
+        printMessage(fmt::format("{} (see photonav --help)", complaint(app, error)));
         return kBadInput;
     }
     for (const Command& command : commands) {
@@ -166,7 +166,7 @@ int run(int argc, char** argv) {
         reaction = command.onInterrupt;
         const int code = command.run();
         if (code != kInterrupted) return code;
-        printError("photonav: interrupted; what was done until then is kept");
+        printMessage("interrupted; what was done until then is kept");
         return exitCodeOf(interruptedBy);
     }
     return kBadInput;
@@ -185,7 +185,7 @@ int main(int argc, char** argv) {
     quietDecoders = true;
     const std::string command = argc > 1 ? argv[1] : "";
     const auto fail = [](int code, std::string_view reason) {
-        printError(fmt::format("photonav: {}", oneLine(reason)));
+        printMessage(oneLine(reason));
         return code;
     };
     try {

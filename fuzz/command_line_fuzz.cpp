@@ -12,19 +12,16 @@ namespace {
 using namespace photonav;
 using fuzz::require;
 
-/// A config whose keys are overridden, by one value per part between lines "====".
-void override(const std::string& text) {
+/// A config whose keys are overridden, one by each part of the text.
+void override(std::string_view text) {
     static const std::string file =
         fuzz::write("config.yaml",
                     "{bounds: [[0, 0, 2], [9, 9, 2]], start: [0, 0, 2], goal: [2, 9, 2], "
                     "scene: {file: a.yaml}}");
-    const std::string separator = "\n====\n";
     std::vector<std::string> overrides;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(separator, begin), text.size());
-        overrides.push_back(text.substr(begin, end - begin));
-        begin = end + separator.size();
-    }
+    do {
+        overrides.emplace_back(fuzz::takePart(text));
+    } while (!text.empty());
     loadConfig(file, overrides);
 }
 

@@ -46,17 +46,22 @@ std::string write(const std::string& name, std::string_view content) {
     return path;
 }
 
-void writeParts(std::span<const std::string> names, std::string_view input) {
+std::string_view takePart(std::string_view& input) {
     constexpr std::string_view kSeparator = "\n====\n";
+    const std::size_t end = input.find(kSeparator);
+    const std::string_view part = input.substr(0, end);
+    input.remove_prefix(end == std::string_view::npos ? input.size() : end + kSeparator.size());
+    return part;
+}
+
+void writeParts(std::span<const std::string> names, std::string_view input) {
     for (const std::string& name : names) {
-        const std::size_t end = input.find(kSeparator);
-        const std::string_view part = input.substr(0, end);
+        const std::string_view part = takePart(input);
         if (part.empty()) {
             unlink((folder() / name).c_str());
         } else {
             write(name, part);
         }
-        input.remove_prefix(end == std::string_view::npos ? input.size() : end + kSeparator.size());
     }
 }
 

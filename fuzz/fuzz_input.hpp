@@ -20,8 +20,10 @@ const std::filesystem::path& folder();
 /// @returns its path
 std::string write(const std::string& name, std::string_view content);
 
-/// Writes one file per name from an input with separator lines "====" between them; a file with an
-/// empty part is not there.
+/// Takes what comes before the next separator line "====", and the line.
+std::string_view takePart(std::string_view& input);
+
+/// Writes one file per name from the parts of an input; a file with an empty part is not there.
 void writeParts(std::span<const std::string> names, std::string_view input);
 
 /// Runs a reader. An InputError of one line is an answer; anything else that is thrown, a crash,

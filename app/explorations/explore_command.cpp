@@ -75,7 +75,7 @@ void print(const ExploreOutcome& outcome) {
 void film(const ExploreOptions& options, const ExplorationSetup& setup, const World& world,
           const fs::path& folder, ExploreOutcome& outcome, const std::atomic<bool>& interrupted) {
     if (!outcome.log || outcome.log->moments.empty()) {
-        printError("photonav: warning: no film: the first flight has no log");
+        printMessage("warning: no film: the first flight has no log");
         return;
     }
     ProgressLine line(options.quiet);
@@ -216,17 +216,17 @@ void store(const ExploreOptions& options, const ExplorationSetup& setup, const W
     const std::size_t earlier = watch.storeIn(std::make_unique<FlightStore>(
         folder, ofFlight, pageSoFar(setup, world, header.name, options.commandLine)));
     if (earlier == 0 || options.quiet) return;
-    printError(fmt::format(
-        "photonav: {}: killed after {} keyframes; it is flown again from its start, as its "
-        "seed says",
-        ofFlight.name, earlier));
+    printMessage(
+        fmt::format("{}: killed after {} keyframes; it is flown again from its start, as its "
+                    "seed says",
+                    ofFlight.name, earlier));
 }
 
 /// Whether an interrupted exploration leaves what was there before: a killed flight that went on
 /// longer than this one, an earlier result of more flights, or one where nothing was done.
 bool leavesEarlierWork(const FlightWatch& watch, std::size_t ended, FolderTransaction& folder) {
     if (watch.isBehindStored()) {
-        printError(fmt::format("photonav: the killed flight in {} stays", folder.path().string()));
+        printMessage(fmt::format("the killed flight in {} stays", folder.path().string()));
         return true;
     }
     if (leavesMoreRuns<TrialKind>(folder, ended)) return true;

@@ -57,10 +57,10 @@ void FlightStore::add(const ExplorationMoment& moment, const FlightLog& log) {
     const std::size_t number = log.moments.size() - 1;
     if (isStored(log.moments.back(), number)) return;
     if (number < earlier_.size()) {
-        printError(fmt::format(
-            "photonav: warning: {}: from {:.1f} s on not the flight that was killed, as may "
-            "be on another processor",
-            header_.name, log.moments.back().update.time));
+        printMessage(
+            fmt::format("warning: {}: from {:.1f} s on not the flight that was killed, as may "
+                        "be on another processor",
+                        header_.name, log.moments.back().update.time));
         earlier_.clear();
         std::string lines;
         for (std::size_t i = 0; i < number; ++i) {

@@ -11,7 +11,7 @@ namespace photonav {
 namespace fs = std::filesystem;
 void FlightWatch::serve(const ServerAddress& address, std::string page) {
     server_ = std::make_unique<LiveServer>(address, std::move(page));
-    printError(fmt::format("photonav: watch the flight at {}", server_->url()));
+    printMessage(fmt::format("watch the flight at {}", server_->url()));
 }
 
 std::size_t FlightWatch::storeIn(std::unique_ptr<FlightStore> store) {

@@ -64,8 +64,7 @@ std::optional<RecordedComparison> compareWithImages(const Config& config, const 
         if (!map) return {};
         return compareWithRecording(*map, config, world, *outcome.path);
     } catch (const InputError& error) {
-        printError(
-            fmt::format("photonav: warning: recorded frames not compared: {}", error.what()));
+        printMessage(fmt::format("warning: recorded frames not compared: {}", error.what()));
         return {};
     }
 }
@@ -98,10 +97,10 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     problem.checkPlaces();
     FolderTransaction folder = beginResult(options, "plan", inputsOf(config));
     if (!world.hasTexture()) {
-        printError(fmt::format(
-            "photonav: warning: {}: no cell of the map has a grey value; planning without "
-            "views",
-            config.mapFile));
+        printMessage(
+            fmt::format("warning: {}: no cell of the map has a grey value; planning without "
+                        "views",
+                        config.mapFile));
     }
 
     PlanOutcome outcome;

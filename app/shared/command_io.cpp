@@ -9,8 +9,8 @@
 
 namespace photonav {
 
-void printError(std::string_view line) {
-    const std::string text = fmt::format("{}\n", line);
+void printMessage(std::string_view line) {
+    const std::string text = fmt::format("photonav: {}\n", line);
     std::fwrite(text.data(), 1, text.size(), stderr);
 }
 

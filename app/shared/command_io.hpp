@@ -32,9 +32,9 @@ struct OutputOptions {
     bool& json;
 };
 
-/// Prints a line to standard error. Where that is closed or full, nothing is printed: a result is
-/// worth more than what is said about it.
-void printError(std::string_view line);
+/// Prints "photonav: LINE" to standard error. Where that is closed or full, nothing is printed: a
+/// result is worth more than what is said about it.
+void printMessage(std::string_view line);
 
 /// A progress line on standard error, which is overwritten by the next one. Nothing is printed
 /// unless standard error is a terminal.

@@ -47,8 +47,8 @@ void reportNewBegin(const ManyRunsOptions& options, const FolderTransaction& fol
                                      words.aWhole));
     }
     if (options.quiet) return;
-    printError(fmt::format("photonav: --resume: {}: nothing there yet; {} begins anew", target,
-                           words.theWhole));
+    printMessage(
+        fmt::format("--resume: {}: nothing there yet; {} begins anew", target, words.theWhole));
 }
 
 void RemainingTime::count(const std::string& planner, double seconds, double wall) {

@@ -139,10 +139,10 @@ bool leavesMoreRuns(const FolderTransaction& folder, std::size_t ownRuns) {
     if (!std::filesystem::exists(folder.target() / Journal<Kind>::kFileName)) return false;
     const std::size_t earlier = Journal<Kind>::read(folder.target()).runs().size();
     if (earlier <= ownRuns) return false;
-    printError(fmt::format(
-        "photonav: the earlier result in {} has more {}s than the {} that ended now, and stays; "
-        "--resume goes on with these",
-        folder.target().string(), Kind::kWords.run, ownRuns));
+    printMessage(
+        fmt::format("the earlier result in {} has more {}s than the {} that ended now, and stays; "
+                    "--resume goes on with these",
+                    folder.target().string(), Kind::kWords.run, ownRuns));
     return true;
 }
 

@@ -31,8 +31,8 @@ InputPaths inputsOf(const Config& config, InputPaths others) {
 
 bool keepsEarlierResult(const FolderTransaction& folder, bool isNothingDone) {
     if (!isNothingDone || Manifest::read(folder.target()).empty()) return false;
-    printError(fmt::format("photonav: nothing was done; the earlier result in {} stays",
-                           folder.target().string()));
+    printMessage(
+        fmt::format("nothing was done; the earlier result in {} stays", folder.target().string()));
     return true;
 }
 

@@ -208,10 +208,7 @@ bool Explorer::isInTheWay(const TrackedFrame& tracked, const View& image) {
     if (background_) {
         monitor_.onAnswer(tracked.time);
         if (isOnWay) {
-            FlyablePart free = fromHere({.plan = ahead, .isWhole = isWhole_});
-            isWhole_ = free.isWhole;
-            look_.reset();
-            pilot_.setPlan(std::move(free.plan));
+            follow(fromHere({.plan = ahead, .isWhole = isWhole_}));
         }
     }
     return isOnWay || !inView_.newWalls().empty();
@@ -295,11 +292,15 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
     if (!way->isStopped) stoppedSince_.reset();
     if (way->isStopped && !stoppedSince_) stoppedSince_ = time_;
     blindInARow_ += way->isBlind;
-    isWhole_ = way->isWhole;
     record_.blindSteps += way->isBlind;
+    follow(std::move(*way));
+}
+
+void Explorer::follow(FlyablePart part) {
+    isWhole_ = part.isWhole;
     look_.reset();
-    if (way->isLook) look_ = Look{yawOf(way->plan.back().T_w_b), time_};
-    pilot_.setPlan(std::move(way->plan));
+    if (part.isLook) look_ = Look{yawOf(part.plan.back().T_w_b), time_};
+    pilot_.setPlan(std::move(part.plan));
 }
 
 /// A robot between two ways that are as good as each other would turn to and fro: it first looks
@@ -316,9 +317,7 @@ bool Explorer::isLooking() const {
 void Explorer::flyRest() {
     FlyablePart rest = fromHere({.plan = wayAhead(), .isWhole = false});
     if (rest.isStopped || rest.plan.back().distance < kShortRest) return hover();
-    isWhole_ = false;
-    look_.reset();
-    pilot_.setPlan(std::move(rest.plan));
+    follow(std::move(rest));
 }
 
 /// A camera without a depth sensor has to move before it sees anything.
@@ -330,9 +329,7 @@ bool Explorer::mayStepBlindly() const {
 void Explorer::hover() {
     ++withoutWay_;
     if (!withoutWaySince_) withoutWaySince_ = time_;
-    isWhole_ = false;
-    look_.reset();
-    pilot_.setPlan(stayingAt(tracker_.belief(), T_b_c_));
+    follow({.plan = stayingAt(tracker_.belief(), T_b_c_)});
 }
 
 std::shared_ptr<const ViewSource> Explorer::views() const {

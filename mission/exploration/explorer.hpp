@@ -142,6 +142,7 @@ class Explorer {
     void flyOn(std::optional<FlyablePart> way);
     bool isLooking() const;
     bool mayStepBlindly() const;
+    void follow(FlyablePart part);
     void flyRest();
     void hover();
     bool isWaiting() const;

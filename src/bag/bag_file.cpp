@@ -20,6 +20,9 @@ constexpr std::string_view kMagic = "#ROSBAG V";
 constexpr std::string_view kBagVersion = "2.0\n";
 constexpr std::uint32_t kLongestHeader = 1U << 16U;  // [bytes]; with a topic's name
 constexpr std::uint8_t kMessage = 2, kBagHeader = 3, kChunk = 5, kConnection = 7;
+/// The most that chunks may unpack to, in sizes of the file. Images of nothing but black unpack to
+/// more, but are of no use.
+constexpr std::uint64_t kMostCompression = 1000;
 
 /// Fields "name=value", each after its length.
 Fields fieldsOf(ByteSpan header) {
@@ -58,9 +61,6 @@ double timeOf(const Fields& fields) {
     const auto seconds = reader.number<std::uint32_t>();
     return seconds + 1e-9 * reader.number<std::uint32_t>();
 }
-
-/// Images of nothing but black are packed to less, but are of no use.
-constexpr std::uint64_t kMostCompression = 1000;
 
 }  // namespace
 
