@@ -138,7 +138,9 @@ class Light {
   public:
     /// @param x the step to the minimum of the image alone
     /// @param size of the image [blocks]
-    Light(const std::vector<ImageBlock>& blocks, const Eigen::Array2i& size, const Vector8& x)
+    /// @param least standard deviation of the gains, ModelErrors::light
+    Light(const std::vector<ImageBlock>& blocks, const Eigen::Array2i& size, const Vector8& x,
+          double least)
         : blocks_(blocks), size_(size) {
         std::vector<const ImageBlock*> at(std::size_t(size_.prod()), nullptr);
         for (const ImageBlock& block : blocks) at[number(block.index)] = &block;
@@ -153,7 +155,7 @@ class Light {
                 weight += w;
             }
         }
-        variance_ = weight > 0. ? std::max(0., product / weight) : 0.;
+        variance_ = std::max(least * least, weight > 0. ? product / weight : 0.);
     }
 
     /// Effect of the gains on Atr, squared.
@@ -248,7 +250,7 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
         return seen.solve * (seen.E.transpose() * scatter * seen.E) * seen.solve.transpose();
     };
     const Eigen::Array2i size = ImageBlock::numberIn(camera);
-    const Light light(blocks, size, x);
+    const Light light(blocks, size, x, errors.light);
     const MatrixXd repeating =
         covariance(
             light.scatter() + scatterByDisplacement(blocks, size, camera, errors.displacement) +
