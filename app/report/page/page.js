@@ -63,43 +63,6 @@ function createPlayer(button, speed, interval, {isAtEnd, next, rewind}) {
 }
 
 // Tables ------------------------------------------------------------------------------------------
-const kNames = {
-  length: ['Length of the path', 'm'], mean_trace: ['Mean trace', 'm²'],
-  goal_trace: ['Trace at the goal', 'm²'],
-  metric_length: ['Length with rotations counted', 'm'],
-  alpha: ['Alpha (1: only length counts)', ''], cost: ['Cost', ''], views: ['Views predicted', ''],
-  cache_hits: ['Views taken from the cache', ''], seed: ['Seed of the random numbers', ''],
-  'time.total_s': ['Time, but for this report', 's'], 'time.views_s': ['Time for views', 's'],
-  'time.beliefs_s': ['Time for beliefs', 's'], 'time.tree_s': ['Time for the tree', 's'],
-  'audit.max_cost_error': ['Audit: largest error of a cost', ''],
-  'audit.max_covariance_error': ['Audit: largest error of a covariance', 'm²'],
-};
-const kUnits = {_s: 's', _ms: 'ms', _m: 'm', _cm: 'cm', _m2: 'm²', _rad: 'rad', _deg: '°'};
-
-function nameAndUnit(key) {
-  if (kNames[key]) return kNames[key];
-  const suffix = Object.keys(kUnits).filter((end) => key.endsWith(end)).pop();
-  const name = (suffix ? key.slice(0, -suffix.length) : key).replace(/[._]/g, ' ');
-  return [name[0].toUpperCase() + name.slice(1), suffix ? kUnits[suffix] : ''];
-}
-
-/// Short numbers as they are: they were typed by someone.
-const sayExactly = (value, unit) => String(value).length > 6 || Number.isInteger(value) ? say(value, unit)
-    : `${value}${unit && '\u00a0'}${unit}`.replace('-', '−');
-
-function flattened(object, prefix = '') {
-  return Object.entries(object).flatMap(([key, value]) => {
-    const path = prefix + key;
-    if (value === null || ['config', 'schema', 'path'].includes(path)) return [];
-    if (Array.isArray(value))
-      return value.length > 6 || value.some((x) => typeof x === 'object') ? []
-          : [[nameAndUnit(path)[0], value.map((x) => typeof x === 'number' ? say(x) : x).join(', ')]];
-    if (typeof value === 'object') return flattened(value, `${path}.`);
-    const [name, unit] = nameAndUnit(path);
-    return [[name, typeof value === 'number' ? sayExactly(value, unit) : String(value)]];
-  });
-}
-
 function addTable(title, pairs) {
   if (!pairs.length) return;
   const box = make('div'), table = make('table', undefined, {className: 'numbers'});
@@ -150,7 +113,7 @@ function fillRest() {
   element('characteristic-length').textContent = data.result.characteristic_length ?? 1;
   (data.text_tables ?? []).forEach(addTextTable);
   addComparison();
-  addTable('All numbers', flattened(data.result));
+  addAllNumbers();
   for (const table of data.tables) addTable(table.title, table.rows);
   for (const figure of data.figures) {
     const box = make('figure');

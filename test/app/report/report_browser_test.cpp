@@ -102,6 +102,37 @@ TEST_F(ReportBrowserTest, FlightsBeginWithWhatWasFlown) {
     EXPECT_FALSE(contains(outcome.dom, "<span>goal trace</span>"));
 }
 
+TEST_F(ReportBrowserTest, AllNumbersOfAPlanAreGroupedAndHaveUnits) {
+    ReportData data = sampleReport();
+    data.result = {{"command", "plan"},
+                   {"length", 12.4},
+                   {"kappa", 2.5},
+                   {"kappa_is_automatic", false},
+                   {"covariance_frame", "an explanation"},
+                   {"baseline", {{"metric_length", 9.3}}},
+                   {"time", {{"total_s", 1.5}}}};
+    const Outcome outcome = open(data);
+    expectNoErrors(outcome);
+    EXPECT_TRUE(contains(outcome.dom, "<h3>Path</h3>"));
+    EXPECT_TRUE(contains(outcome.dom, "<th>Length</th><td>12.4&nbsp;m</td>"));
+    EXPECT_TRUE(contains(outcome.dom, "<h3>RRT*’s path (baseline)</h3>"));
+    EXPECT_TRUE(contains(outcome.dom, "<th>Length with rotations counted</th><td>9.3&nbsp;m</td>"));
+    EXPECT_TRUE(contains(outcome.dom, "<th>Kappa chosen automatically</th><td>no</td>"));
+    EXPECT_FALSE(contains(outcome.dom, "<th>Covariance frame</th>"));
+}
+
+TEST_F(ReportBrowserTest, AllNumbersOfOtherResultsAreGroupedByTheirObjects) {
+    ReportData data = sampleReport();
+    data.result = {{"command", "check"},
+                   {"verdict", "the camera stays localised"},
+                   {"flights", {{"mean_speed_mps", 0.5}, {"collisions", nlohmann::json::array()}}}};
+    const Outcome outcome = open(data);
+    expectNoErrors(outcome);
+    EXPECT_TRUE(contains(outcome.dom, "<h3>Flights</h3>"));
+    EXPECT_TRUE(contains(outcome.dom, "<th>Mean speed</th><td>0.5&nbsp;m/s</td>"));
+    EXPECT_TRUE(contains(outcome.dom, "<th>Collisions</th><td>none</td>"));
+}
+
 TEST_F(ReportBrowserTest, RecordedFlightsHaveFramesAndNeitherGoalNorCost) {
     ReportData data = sampleReport();
     data.views.clear();
