@@ -171,7 +171,7 @@ void YamlMap::readChoice(const std::string& key, std::string& value,
 YamlMap YamlMap::map(const std::string& key) {
     known_.insert(key);
     const YAML::Node child = has(key) ? node_[key] : YAML::Node(YAML::NodeType::Map);
-    return {file_, child, prefix_.empty() ? key : prefix_ + "." + key};
+    return {file_, child, pathOf(key)};
 }
 
 std::vector<YamlMap> YamlMap::list(const std::string& key) {
@@ -179,24 +179,35 @@ std::vector<YamlMap> YamlMap::list(const std::string& key) {
     std::vector<YamlMap> maps;
     if (!has(key)) return maps;
     if (!node_[key].IsSequence()) fail(key, "expected a list");
-    const std::string path = prefix_.empty() ? key : prefix_ + "." + key;
     for (std::size_t i = 0; i < node_[key].size(); ++i) {
-        maps.emplace_back(file_, node_[key][i], fmt::format("{}[{}]", path, i));
+        maps.emplace_back(file_, node_[key][i], fmt::format("{}[{}]", pathOf(key), i));
     }
     return maps;
+}
+
+std::string YamlMap::pathOf(const std::string& key) const {
+    return prefix_.empty() || key.empty() ? prefix_ + key : prefix_ + "." + key;
+}
+
+std::vector<std::string> YamlMap::similarPaths(const std::string& key,
+                                               const std::vector<std::string>& elsewhere) const {
+    const std::vector<std::string> same = pathsOf(key, elsewhere);
+    if (!same.empty()) return same;
+    std::vector<std::string> names(known_.begin(), known_.end());  // first: they win a draw
+    for (const std::string& path : elsewhere) names.push_back(path.substr(path.rfind('.') + 1));
+    const std::string nearest = nearestWord(key, names);
+    if (known_.contains(nearest)) return {pathOf(nearest)};
+    return pathsOf(nearest, elsewhere);
 }
 
 void YamlMap::finish(const std::vector<std::string>& elsewhere) const {
     for (const auto& entry : node_) {
         const auto key = entry.first.as<std::string>();
         if (known_.contains(key)) continue;
-        const std::vector<std::string> paths = pathsOf(key, elsewhere);
-        if (!paths.empty()) {
-            fail(key, fmt::format("unknown key, did you mean '{}'?", fmt::join(paths, "' or '")));
-        }
-        const auto nearest = nearestWord(key, {known_.begin(), known_.end()});
-        fail(key, nearest.empty() ? fmt::format("unknown key; known: {}", fmt::join(known_, ", "))
-                                  : fmt::format("unknown key, did you mean '{}'?", nearest));
+        const std::vector<std::string> paths = similarPaths(key, elsewhere);
+        fail(key, paths.empty()
+                      ? fmt::format("unknown key; known: {}", fmt::join(known_, ", "))
+                      : fmt::format("unknown key, did you mean '{}'?", fmt::join(paths, "' or '")));
     }
 }
 
@@ -205,8 +216,7 @@ void YamlMap::fail(const std::string& key, const std::string& reason) const {
     const auto cut = [](const std::string& text) {
         return text.size() > kLongest ? text.substr(0, kLongest) + " ..." : text;
     };
-    const char* dot = prefix_.empty() || key.empty() ? "" : ".";
-    throw InputError(file_, cut(prefix_ + dot + key), cut(reason));
+    throw InputError(file_, cut(pathOf(key)), cut(reason));
 }
 
 }  // namespace photonav

@@ -93,8 +93,8 @@ class YamlMap {
     std::vector<YamlMap> list(const std::string& key);
 
     /// @param elsewhere dotted paths of keys of other mappings of the file
-    /// @throws InputError for the first key that was not read. The message suggests a key of the
-    ///         same name in `elsewhere`, or else the known key with the most similar name
+    /// @throws InputError for the first key that was not read. The message suggests the paths of
+    ///         keys in `elsewhere` with the same name, or else of keys with the most similar name
     void finish(const std::vector<std::string>& elsewhere = {}) const;
 
     /// @throws InputError naming this file and the dotted key
@@ -103,6 +103,12 @@ class YamlMap {
     const std::string& file() const { return file_; }
 
   private:
+    /// Dotted path of a key of this mapping inside the file.
+    std::string pathOf(const std::string& key) const;
+    /// Paths of keys, here or elsewhere, that may be meant by an unknown one.
+    std::vector<std::string> similarPaths(const std::string& key,
+                                          const std::vector<std::string>& elsewhere) const;
+
     std::string file_;
     YAML::Node node_;
     std::string prefix_;

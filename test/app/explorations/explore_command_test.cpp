@@ -303,7 +303,7 @@ TEST_F(ExploreCommand, RefusesBadInputInOneLine) {
     refuses("--planners rrt_star/sometimes", "the policy 'sometimes' is not one of fixed");
     refuses("--planners rrt_star/fixed", "rrt_star/fixed: the robot's heading is not free");
     refuses("--set explore.sensor=sonar", "explore.sensor");
-    refuses("--set explore.vertex=3", "did you mean 'vertices'");
+    refuses("--set explore.vertex=3", "did you mean 'explore.vertices'");
     refuses("--set fly.rate=-1", "fly.rate");
     refuses("--planners rrt_star,rrt_star", "explore.planners: rrt_star twice");
     refuses("--seed 4294967295 --trials 2", "2 runs from 4294967295 on go beyond the last seed");

@@ -151,7 +151,7 @@ TEST_F(FlyCommand, ItsConfigRepeatsTheRun) {
     EXPECT_NE(test::contentOf(folder_ / "c/config.yaml").find("rate: 5"), std::string::npos);
     const Execution bad = photonav(fmt::format("fly {} --set fly.odometri=2", at("a/config.yaml")));
     EXPECT_EQ(bad.exitCode, 2);
-    EXPECT_NE(bad.output.find("fly.odometri: unknown key, did you mean 'odometry'"),
+    EXPECT_NE(bad.output.find("fly.odometri: unknown key, did you mean 'fly.odometry'"),
               std::string::npos)
         << bad.output;
 }

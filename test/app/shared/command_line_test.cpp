@@ -19,7 +19,7 @@ class CommandLine : public CommandTest {};
 
 TEST_F(CommandLine, BadInputIsOneLineAndExitCodeTwo) {
     expectBadInput(plan("--set planner.alpha=1.5"), "planner.alpha: 1.5 is outside [0, 1]");
-    expectBadInput(plan("--set planner.alhpa=1"), "did you mean 'alpha'");
+    expectBadInput(plan("--set planner.alhpa=1"), "did you mean 'planner.alpha'");
     expectBadInput(plan("--set scene.file=nowhere.yaml"), "nowhere.yaml");
     expectBadInput(plan("--set goal=[50,0,2]"), "goal: outside the bounds");
     expectBadInput(plan("--set noise.initial=[-1,0,0,0,0,0]"), "negative variance");

@@ -153,7 +153,7 @@ TEST(SceneYaml, ComplaintsNameFileKeyAndReason) {
     EXPECT_EQ(complaint(white + "plains: []\n"),
               file + ": plains: unknown key, did you mean 'planes'?");
     EXPECT_EQ(complaint("textures: [{name: a, type: noise, cels: [1]}]"),
-              file + ": textures[0].cels: unknown key, did you mean 'cells'?");
+              file + ": textures[0].cels: unknown key, did you mean 'textures[0].cells'?");
     EXPECT_EQ(complaint(white + "boxes: [{min: [0, 0, 0], max: [1, 1, 1], texture: wite}]"),
               file + ": boxes[0].texture: no texture 'wite' above, did you mean 'white'?");
     EXPECT_EQ(complaint("textures: [{name: a, type: image, file: no.png}]"),

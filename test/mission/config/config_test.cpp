@@ -171,7 +171,7 @@ TEST(Config, MountsAreWordsOrDegrees) {
 }
 
 TEST(Config, ComplaintsNameKeyAndReason) {
-    expectComplaint("planner.alhpa=0.5", "planner.alhpa", "did you mean 'alpha'");
+    expectComplaint("planner.alhpa=0.5", "planner.alhpa", "did you mean 'planner.alpha'");
     expectComplaint("planer.alpha=0.5", "planer", "did you mean 'planner'");
     expectComplaint("planner.alpha=1.5", "planner.alpha", "outside [0, 1]");
     expectComplaint("planner.alpha=.nan", "planner.alpha", "outside [0, 1]");
@@ -179,7 +179,8 @@ TEST(Config, ComplaintsNameKeyAndReason) {
     expectComplaint("planner.name=rrt", "planner.name", "pa_rrt_star, rrbt, rrt_star");
     expectComplaint("planner.information=sift", "planner.information", "feature_count");
     expectComplaint("features.threshold=2", "features.threshold", "outside");
-    expectComplaint("features.treshold=0.1", "features.treshold", "did you mean 'threshold'");
+    expectComplaint("features.treshold=0.1", "features.treshold",
+                    "did you mean 'features.threshold'");
     expectComplaint("planner.penalty_kappa=-1", "planner.penalty_kappa", "outside");
     expectComplaint("planner.vertices=2.5", "planner.vertices", "whole number");
     expectComplaint("planner.ds=0", "planner.ds", "outside");
@@ -270,7 +271,11 @@ TEST(Config, AKeyInTheWrongPlaceIsNamedWithItsPath) {
     expectComplaint("alpha=0.3", "alpha", "did you mean 'planner.alpha'?");
     expectComplaint("planner.hfov=60", "planner.hfov", "did you mean 'camera.hfov'?");
     expectComplaint("planner.seed=3", "planner.seed", "did you mean 'seed'?");
-    expectComplaint("alhpa=0.3", "alhpa", "unknown key");
+    expectComplaint("alhpa=0.3", "alhpa", "did you mean 'planner.alpha'?");
+    expectComplaint("vertces=3", "vertces",
+                    "did you mean 'planner.vertices' or 'explore.vertices'?");
+    expectComplaint("planner.hfvo=60", "planner.hfvo", "did you mean 'camera.hfov'?");
+    expectComplaint("qqqqqqqq=1", "qqqqqqqq", "unknown key; known: ");
 }
 
 TEST(Config, TextIsReadAsAFileIs) {

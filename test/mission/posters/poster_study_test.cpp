@@ -212,7 +212,7 @@ TEST(Posters, FilesAreReadAsScenesAre) {
     EXPECT_EQ(complaint("candidates: [{name: none, " + surface + "}]"),
               "candidates[0].name: 'none' stands for the scene as it is");
     EXPECT_EQ(complaint("candidates: [{name: a, plains: []}]"),
-              "candidates[0].plains: unknown key, did you mean 'planes'?");
+              "candidates[0].plains: unknown key, did you mean 'candidates[0].planes'?");
     EXPECT_EQ(complaint("candidates: [{name: a}]"), "candidates[0]: the scene has no surfaces");
     EXPECT_EQ(complaint("candidats: [{name: a}]"),
               "candidats: unknown key, did you mean 'candidates'?");
