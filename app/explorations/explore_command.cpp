@@ -16,6 +16,7 @@
 #include "onlinemap/known_map.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
+#include "result/text_table.hpp"
 #include "shared/command_io.hpp"
 #include "shared/result_folder.hpp"
 
@@ -27,7 +28,7 @@ void printFlight(const ExplorationResult& flight, const ExplorationSummary& s) {
     fmt::print("{} after {:.1f} m and {:.1f} s{}\n", nameOf(flight.end), flight.flown,
                flight.duration, flight.reason.empty() ? "" : ": " + flight.reason);
     fmt::print(
-        "position error (rms) {}, NEES {:.2f}, goal error {}, {} keyframes, "
+        "position error (rms) {}, NEES {:.2f} (1: consistent), goal error {}, {} keyframes, "
         "update {:.0f} ms (95 %: {:.0f} ms)\n",
         lengthText(s.positionRmse), s.nees, lengthText(flight.goalError), flight.keyframes,
         1e3 * s.updateMedian, 1e3 * s.update95);
@@ -38,15 +39,18 @@ void printFlight(const ExplorationResult& flight, const ExplorationSummary& s) {
 }
 
 void printSummary(const std::vector<ExplorationSummary>& summaries) {
-    fmt::print("{:<16} {:>10} {:>10} {:>11} {:>13} {:>10} {:>8} {:>8} {:>11}\n", "planner",
-               "arrived", "collisions", "error (rms)", "NEES (median)", "goal error", "duration",
-               "length", "mean trace");
+    TextTable table{{"planner", "arrived", "collisions", "error (rms)", "NEES (median)",
+                     "goal error", "duration", "length", "mean trace"},
+                    {}};
     for (const ExplorationSummary& s : summaries) {
-        fmt::print("{:<16} {:>10} {:>10} {:>11} {:>13} {:>10} {:>6.1f} s {:>6.1f} m {:>11.3g}\n",
-                   s.planner, fmt::format("{} of {}", s.arrived, s.flights), s.collisions,
-                   lengthText(s.positionRmse), fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian),
-                   lengthText(s.goalError), s.duration, s.length, s.meanTrace);
+        table.rows.push_back({s.planner, fmt::format("{} of {}", s.arrived, s.flights),
+                              fmt::format("{}", s.collisions), lengthText(s.positionRmse),
+                              fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian),
+                              lengthText(s.goalError), fmt::format("{:.1f} s", s.duration),
+                              fmt::format("{:.1f} m", s.length),
+                              fmt::format("{:.3g}", s.meanTrace)});
     }
+    fmt::print("{}", alignedText(table));
 }
 
 bool hasArrived(const std::vector<ExplorationResult>& flights) {

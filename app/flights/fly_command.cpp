@@ -16,6 +16,7 @@
 #include "problem/planned_path.hpp"
 #include "replay/calibration_file.hpp"
 #include "result/json_values.hpp"
+#include "result/text_table.hpp"
 #include "shared/result_folder.hpp"
 
 namespace photonav {
@@ -109,34 +110,46 @@ void printFailure(const FlightSet& set) {
     }
 }
 
+const std::vector<std::string> kFlightColumns{
+    "planner",   "arrived",  "astray",        "uncertain",    "collisions", "error (rms)",
+    "predicted", "believed", "NEES (median)", "NEES at goal", "lost (sum)", "goal error"};
+
+std::vector<std::string> flightRow(const FlightSet& set) {
+    const FlightSummary s = summarise(set);
+    if (s.flights == 0) {
+        std::vector<std::string> row{set.path.planner, "not flown"};
+        row.resize(kFlightColumns.size());
+        return row;
+    }
+    const auto number = [](std::size_t value) { return fmt::format("{}", value); };
+    return {set.path.planner,
+            fmt::format("{} of {}", s.arrived, s.flights),
+            number(s.astray),
+            number(s.uncertain),
+            number(s.collisions),
+            lengthText(s.positionRmse),
+            lengthText(s.predictedSigma),
+            lengthText(s.believedSigma),
+            fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian),
+            fmt::format("{:.2f}", s.neesAtGoal),
+            fmt::format("{:.1f} s", s.lostTime),
+            lengthText(s.goalError)};
+}
+
 void printSummary(const std::vector<FlightSet>& sets) {
-    if (sets.empty()) fmt::print("no path to fly\n");
-    if (!sets.empty()) {
-        fmt::print(
-            "{:<16} {:>10} {:>7} {:>9} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12} {:>10} {:>10}\n",
-            "planner", "arrived", "astray", "uncertain", "collisions", "error (rms)", "predicted",
-            "believed", "NEES (median)", "NEES at goal", "lost (sum)", "goal error");
+    if (sets.empty()) {
+        fmt::print("no path to fly\n");
+        return;
     }
-    for (const FlightSet& set : sets) {
-        const FlightSummary s = summarise(set);
-        if (s.flights == 0) {
-            fmt::print("{:<16} {:>9}\n", set.path.planner, "not flown");
-            continue;
-        }
-        fmt::print(
-            "{:<16} {:>10} {:>7} {:>9} {:>10} {:>11} {:>9} {:>9} {:>13} {:>12.2f} {:>8.1f} s "
-            "{:>10}\n",
-            set.path.planner, fmt::format("{} of {}", s.arrived, s.flights), s.astray, s.uncertain,
-            s.collisions, lengthText(s.positionRmse), lengthText(s.predictedSigma),
-            lengthText(s.believedSigma), fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian),
-            s.neesAtGoal, s.lostTime, lengthText(s.goalError));
-    }
-    if (!sets.empty() && !sets.front().flights.empty()) {
+    TextTable table{kFlightColumns, {}};
+    for (const FlightSet& set : sets) table.rows.push_back(flightRow(set));
+    fmt::print("{}", alignedText(table));
+    if (!sets.front().flights.empty()) {
         const FlightSummary s = summarise(sets.front());
         fmt::print("consistent at the goal: {:.2f} to {:.2f} (95 % of chi-square)\n", s.neesLow,
                    s.neesHigh);
     }
-    if (!sets.empty()) printFailure(sets.front());
+    printFailure(sets.front());
 }
 
 InputPaths inputsOfFlight(const FlyOptions& options, const Config& config) {

@@ -57,7 +57,7 @@ function exploreVerdict(r) {
   if (!r.end) return '';
   const how = r.arrived ? 'The robot arrived' : `The robot did not arrive (${r.reason || r.end})`;
   return `${how}: ${say(r.length, 'm')} flown in ${say(r.duration_s, 's')}, ` +
-         `with a position error of ${say(times(100, r.position_rmse_m), 'cm')} rms (NEES ${say(r.nees_per_dof)}).`;
+         `with a position error of ${say(times(100, r.position_rmse_m), 'cm')} rms (NEES ${say(r.nees_per_dof)}; 1 if consistent).`;
 }
 
 function fillHead() {
@@ -77,7 +77,7 @@ function replayTiles({ate_rmse_m: ate, rpe, nees_per_dof: nees, tracked, frames,
     ['absolute error, rms', times(1000, ate), 'mm'],
     [`position error over ${over}, rms`, 1000 * second.translation_m, 'mm'],
     [`rotation error over ${over}, rms`, second.rotation_deg, '°'],
-    ['NEES per degree of freedom', nees, ''], ['frames per second, with reading', fps, ''],
+    ['NEES per degree of freedom (1: consistent)', nees, ''], ['frames per second, with reading', fps, ''],
   ];
 }
 
@@ -89,7 +89,7 @@ function flyTiles({planners}) {
     [`${flown.planner}: arrived`, flown.arrived, `of ${flown.flights}`],
     ['position error, rms', times(100, flown.position_rmse_m), 'cm'],
     ['predicted, 1σ', times(100, flown.predicted_sigma_m), 'cm'],
-    ['NEES per degree of freedom', flown.nees_per_dof, ''],
+    ['NEES per degree of freedom (1: consistent)', flown.nees_per_dof, ''],
   ]);
 }
 
@@ -97,7 +97,7 @@ function exploreTiles(r) {
   return [
     ['path flown', r.length, 'm'], ['time of flight', r.duration_s, 's'],
     ['position error, rms', times(100, r.position_rmse_m ?? null), 'cm'],
-    ['NEES per degree of freedom', r.nees_per_dof, ''],
+    ['NEES per degree of freedom (1: consistent)', r.nees_per_dof, ''],
     ['true distance to the goal', times(100, r.goal_error_m ?? null), 'cm'],
     ['keyframes', r.keyframes, ''], ['updates of the plan', r.updates?.length, ''],
     ['median update', (r.summary || [])[0]?.update_median_ms, 'ms'],
