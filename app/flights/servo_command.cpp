@@ -29,6 +29,18 @@ std::vector<double> listOf(const char* option, const std::string& text, double m
     return *numbers;
 }
 
+void printBasin(const ServoStudy& study) {
+    if (study.converged() == 0) {
+        fmt::print("none of {} starts converges\n", study.trials());
+        return;
+    }
+    for (const BasinCell& cell : study.basin) {
+        fmt::print("from {:5g} m, {:3g} deg: {:3} of {} converge ({:.0f} to {:.0f} %)\n",
+                   cell.distance, cell.angle, cell.converged, cell.trials, 100. * cell.low,
+                   100. * cell.high);
+    }
+}
+
 }  // namespace
 
 ServoStudyOptions studyOf(const ServoOptions& options, const Config& config) {
@@ -64,11 +76,7 @@ int runServo(const ServoOptions& options, const std::atomic<bool>& interrupted) 
     writeServoReport(folder.path(), report, options.commandLine, content);
     concludeResult(folder, options, content, [&] {
         printTable(servoSummary(report));
-        for (const BasinCell& cell : result.basin) {
-            fmt::print("from {:5g} m, {:3g} deg: {:3} of {} converge ({:.0f} to {:.0f} %)\n",
-                       cell.distance, cell.angle, cell.converged, cell.trials, 100. * cell.low,
-                       100. * cell.high);
-        }
+        printBasin(result);
     });
     if (result.interrupted) return kInterrupted;
     return result.modes.front().rate > 0. ? kDone : kNoAnswer;

@@ -23,6 +23,10 @@ constexpr double kPercent = 100.;
 
 ReportTable basinTable(const ServoStudy& study) {
     ReportTable table{"Converged", {}};
+    if (study.converged() == 0) {
+        table.rows = {{"none", fmt::format("of {} starts", study.trials())}};
+        return table;
+    }
     for (const BasinCell& cell : study.basin) {
         std::string text = fmt::format("{} of {} ({:.0f} to {:.0f} %)", cell.converged, cell.trials,
                                        kPercent * cell.low, kPercent * cell.high);
@@ -80,13 +84,16 @@ void writeServoReport(const fs::path& folder, const ServoReport& report,
     for (int i = halvingsToShow(camera.width); i > 0; --i) camera = halved(camera);
     View view;
     report.goal.views.render(camera, (report.goal.T_w_b * report.goal.T_b_c).inverse(), view);
-    writeResultFolder(
-        folder, page,
-        {{"basin.png",
-          {"The share of starts that converge.",
-           servoBasinFigure(report.options, report.study).png()}},
-         {"modes.png", {"The decrease of small offsets.", servoModesFigure(report.study).png()}},
-         {"goal.png", {"The goal's image.", greyPng(view.intensity)}}});
+    std::vector<NamedFigure> figures{{"basin.png",
+                                      {"The share of starts that converge.",
+                                       servoBasinFigure(report.options, report.study).png()}},
+                                     {"goal.png", {"The goal's image.", greyPng(view.intensity)}}};
+    if (report.study.openDirections() < report.study.modes.size()) {
+        figures.push_back(
+            {"modes.png",
+             {"The decrease of small offsets.", servoModesFigure(report.study).png()}});
+    }
+    writeResultFolder(folder, page, figures);
 }
 
 }  // namespace photonav

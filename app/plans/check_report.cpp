@@ -71,7 +71,8 @@ std::vector<NamedFigure> checkFigures(const CheckOutcome& report,
     Config around = report.config;  // the trajectory may leave the bounds
     around.bounds.extend(boxAround(report.trajectory));
     TopView view = viewFromAbove(around, report.world, {paths.front()});
-    view.title = "The trajectory, and where the camera is lost";
+    const bool isLost = checked.isLost();
+    view.title = isLost ? "The trajectory, and where the camera is lost" : "The trajectory";
     view.start = checked.places.front().T_w_b.translation();
     view.goal = checked.places.back().T_w_b.translation();
     view.goalName = "end";
@@ -83,8 +84,9 @@ std::vector<NamedFigure> checkFigures(const CheckOutcome& report,
     add(lostStretches(checked));
     std::vector<NamedFigure> figures{
         {"top_view.png",
-         {"From above: the trajectory with 3σ ellipses of the position, where the camera is lost, "
-          "and headings that would gain at least a tenth of the trace.",
+         {fmt::format("From above: the trajectory with 3σ ellipses of the position{}, and headings "
+                      "that would reduce the trace by more than a tenth.",
+                      isLost ? ", where the camera is lost" : ""),
           topViewFigure(view).png()}},
         {"sigma.png",
          {"Standard deviations along the weakest direction, with every image.",
@@ -140,7 +142,7 @@ void writeCheckReport(const fs::path& folder, const CheckOutcome& report,
     json shown = result;
     shown.erase("path");
     ReportData page = problemReport(config, report.world, commandLine, shown);
-    page.title = fs::path(report.file).stem().string();
+    page.title = "Check of " + fs::path(report.file).filename().string();
     page.subtitle = "Whether the camera stays localised along a given trajectory.";
     page.start = report.checked.places.front().T_w_b.translation();
     page.goal = report.checked.places.back().T_w_b.translation();

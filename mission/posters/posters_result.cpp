@@ -12,24 +12,37 @@
 
 namespace photonav {
 using nlohmann::json;
+namespace {
+
+/// What a set of posters changes of the path, compared with the scene as it is.
+std::string pathGain(const PosterSet& best, const PosterSet& asItIs) {
+    if (!best.path || !asItIs.path) return "";
+    const std::string text =
+        fmt::format(": mean trace along the path {:.3g} m² instead of {:.3g} m²",
+                    best.path->meanTrace, asItIs.path->meanTrace);
+    if (!(best.cost > 0.)) return text;
+    return text + fmt::format(", cost {:.4g} instead of {:.4g}", best.cost, asItIs.cost);
+}
+
+/// What it changes of servoing at the goal.
+std::string goalGain(const PosterSet& best, const PosterSet& asItIs) {
+    return fmt::format(": {} of {} starts converge instead of {}", best.servo.converged(),
+                       best.servo.trials(), asItIs.servo.converged());
+}
+
+}  // namespace
 
 std::string verdictOf(const PosterProblem& problem, const PosterRanking& ranking) {
     const PosterSet& best = ranking.sets.front();
     if (best.posters.empty()) return "no candidate improves on the scene as it is";
     const auto asItIs = std::ranges::find_if(
         ranking.sets, [](const PosterSet& set) { return set.posters.empty(); });
-    std::string text =
-        fmt::format("'{}' is the best by the {}", nameOf(best.posters, problem.posters),
-                    problem.options.rankBy == RankBy::path ? "path" : "goal");
+    const bool isByPath = problem.options.rankBy == RankBy::path;
+    const std::string text =
+        fmt::format("'{}' is the best for {}", nameOf(best.posters, problem.posters),
+                    isByPath ? "the path" : "servoing at the goal");
     if (asItIs == ranking.sets.end()) return text;
-    if (best.path && asItIs->path) {
-        text += fmt::format("; mean trace along the path {:.3g} m², without it {:.3g} m²",
-                            best.path->meanTrace, asItIs->path->meanTrace);
-        if (best.cost > 0.) text += fmt::format(" (cost {:.4g}, {:.4g})", best.cost, asItIs->cost);
-    }
-    return text + fmt::format("; at the goal {} of {} starts converge, without it {}",
-                              best.servo.converged(), best.servo.trials(),
-                              asItIs->servo.converged());
+    return text + (isByPath ? pathGain(best, *asItIs) : goalGain(best, *asItIs));
 }
 
 json postersResult(const PosterProblem& problem, const PosterRanking& ranking) {

@@ -117,7 +117,7 @@ function fillTiles() {
     ['cost', hasCost ? ours.cost : result.cost, ''],
     ['vertices', result.vertices, ''],
     ['views predicted', result.views, ''],
-    ['planning time', seconds, 's'],
+    [result.command === 'plan' ? 'planning time' : 'computing time', seconds, 's'],
   ];
   for (const [name, value, unit] of tiles) {
     if (typeof value !== 'number' || !isFinite(value)) continue;

@@ -213,7 +213,9 @@ function plannerTable(planner) {
   const box = make('div', undefined, {className: 'wide'}), title = make('h2'), swatch = make('span', undefined, {className: 'swatch'});
   swatch.style.background = plannerColor(planner);
   title.append(swatch, planner);
-  box.append(title, table, make('p', `Mean ± standard deviation over ${sweep.runs_per_cell} seeds.`, {className: 'note'}));
+  const seeds = sweep.runs_per_cell;
+  const note = seeds > 1 ? `Mean ± standard deviation over ${seeds} seeds.` : 'One seed: there is no standard deviation.';
+  box.append(title, table, make('p', note, {className: 'note'}));
   return box;
 }
 

@@ -44,7 +44,8 @@ TEST_F(PostersCommand, RanksTheShippedCandidatesByAPlannedPath) {
     ASSERT_EQ(r["ranking"].size(), 6U);
     EXPECT_EQ(r["ranking"][0]["name"], "halfway carpet");
     EXPECT_LT(r["ranking"][0]["cost"], r["ranking"][5]["cost"]);
-    EXPECT_TRUE(r["verdict"].get<std::string>().starts_with("'halfway carpet' is the best"));
+    EXPECT_TRUE(r["verdict"].get<std::string>().starts_with(
+        "'halfway carpet' is the best for the path: mean trace along the path "));
 }
 
 TEST_F(PostersCommand, RanksByServoingAtTheGoalAlone) {
