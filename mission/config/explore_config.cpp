@@ -84,7 +84,7 @@ void addPlanningKeys(KeyTable& keys, ExploreConfig& c) {
 void addFlightKeys(KeyTable& keys, ExploreConfig& c) {
     keys.variances({"initial", "m^2, rad^2",
                     "variances at the start, in place of `noise.initial`: an unknown scene has no "
-                    "frame but that of the start"},
+                    "frame but its start"},
                    c.initialCovariance);
     keys.number({"goal_tolerance", "m", "distance to the goal of a flight that arrived"},
                 c.goalTolerance, {0.01, 100.});

@@ -31,7 +31,7 @@ class MyRobot : public photonav::Robot {
     }
     const photonav::Camera& camera() const override { return camera_; }
     const photonav::Pose& T_b_c() const override { return T_b_c_; }
-    /// Its images are rendered; without this line they count as those of a real camera in focus.
+    /// Its images are rendered; without this line they count as images of a real camera in focus.
     double blur() const override { return photonav::kRenderedBlur; }
 
   private:
