@@ -28,8 +28,8 @@ void printFlight(const ExplorationResult& flight, const ExplorationSummary& s) {
     fmt::print("{} after {:.1f} m and {:.1f} s{}\n", nameOf(flight.end), flight.flown,
                flight.duration, flight.reason.empty() ? "" : ": " + flight.reason);
     fmt::print(
-        "position error (rms) {}, NEES {:.2f} (1: consistent), goal error {}, {} keyframes, "
-        "update {:.0f} ms (95 %: {:.0f} ms)\n",
+        "position error (rms) {}, NEES {:.2f} (1: consistent), goal error {}\n"
+        "{} keyframes, update {:.0f} ms (95 %: {:.0f} ms)\n",
         lengthText(s.positionRmse), s.nees, lengthText(flight.goalError), flight.keyframes,
         1e3 * s.updateMedian, 1e3 * s.update95);
     if (!flight.realTime) return;

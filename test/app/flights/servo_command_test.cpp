@@ -33,6 +33,18 @@ TEST(ServoCommand, WritesBasinAndModesOfTheGoal) {
     EXPECT_GT(result["modes"][0]["rate_per_s"], 0.);
 }
 
+TEST(ServoCommand, AGoalWithoutTextureIsSaidOnceAndHasNoModesToDraw) {
+    const test::TemporaryFolder folder;
+    const Execution run =
+        photonav("servo " + config("two_textures") +
+                 " --at 1,5,2 --trials 1 --distances 0.05,0.1 --angles 0 --duration 1 --out " +
+                 folder.file("out"));
+    EXPECT_EQ(run.exitCode, 1) << run.output;
+    EXPECT_NE(run.output.find("none of 2 starts converges"), std::string::npos) << run.output;
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/basin.png"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out/modes.png"));
+}
+
 TEST(ServoCommand, RefusesWhatIsNoStudy) {
     const std::string servo = "servo " + config("two_textures") + " ";
     const auto expectReason = [&](const std::string& options, const std::string& reason) {

@@ -52,6 +52,8 @@ TEST_F(CheckCommand, ATrajectoryOverTextureKeepsTheCameraLocalised) {
     EXPECT_LT(r["worst"]["position_sigma_m"].get<double>(), 0.1);
     EXPECT_TRUE(r["collisions"].empty());
     EXPECT_TRUE(r["flights"].is_null());
+    std::ifstream page(folder_.file("out/report.json"));
+    EXPECT_EQ(json::parse(page)["title"], "Check of way.csv");
 }
 
 /// The trajectory that was written is the one that was read.
