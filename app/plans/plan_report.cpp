@@ -13,6 +13,7 @@
 #include "figures/tree_evolution_figure.hpp"
 #include "geometry/se3.hpp"
 #include "problem/advantage.hpp"
+#include "shapes/cutaway.hpp"
 #include "shared/command_io.hpp"
 
 namespace photonav {
@@ -98,7 +99,7 @@ HeatMap heatMap(const Config& config, PlanningProblem& problem) {
     return map;
 }
 
-/// A view of the bounds of the robot and the obstacles around them, down to the floor.
+/// A view of the bounds of the robot and the obstacles around them, from the floor to their top.
 Perspective perspective(const Config& config, const World& world, const PlanOutcome& outcome,
                         const std::vector<DrawnPath>& paths) {
     Eigen::AlignedBox3d box = config.bounds;
@@ -108,6 +109,7 @@ Perspective perspective(const Config& config, const World& world, const PlanOutc
     const Eigen::AlignedBox3d extent = world.extent();
     box = box.intersection(extent).merged(config.bounds);
     box.min().z() = std::min(box.min().z(), extent.min().z());
+    box.max().z() = config.bounds.max().z();
     return {fmt::format("{}, alpha {}", config.planner, outcome.alpha), box, paths};
 }
 
@@ -139,9 +141,11 @@ std::vector<NamedFigure> planFigures(const Config& config, const World& world,
     if (config.bounds.sizes().z() > 0. && world.hasTexture()) {
         figures.push_back(
             {"perspective.png",
-             {"In perspective, with the shadows of the paths; paths are thin where they are "
-              "hidden.",
-              perspectiveFigure(world.views(), perspective(config, world, outcome, paths)).png()}});
+             {"In perspective, cut open above the bounds of the robot and at the near walls. The "
+              "paths have shadows, and are thin where they are hidden.",
+              perspectiveFigure(*cutawayViews(world, config.bounds),
+                                perspective(config, world, outcome, paths))
+                  .png()}});
     }
     if (!paths.empty()) {
         figures.push_back({"trace.png",

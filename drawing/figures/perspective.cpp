@@ -17,23 +17,20 @@ constexpr double kSurfaceMargin = 0.1;   // a path this far behind a surface is 
 constexpr double kPictureMargin = 1.13;  // of the box in the picture, for the labels of the axes
 constexpr double kLabelDistance = 26.;   // of the labels from their axis [px]
 
-/// Depth of the first surface along a direction, 0 when there is none.
-double depthAlong(const ViewSource& world, const Eigen::Vector3d& eye, bool up) {
+/// Depth of the first surface below a point, 0 when there is none.
+double depthBelow(const ViewSource& world, const Eigen::Vector3d& p_w) {
     Pose T_w_c = Pose::Identity();
-    if (!up) T_w_c.linear() = Eigen::Vector3d(1., -1., -1.).asDiagonal();
-    T_w_c.translation() = eye;
+    T_w_c.linear() = Eigen::Vector3d(1., -1., -1.).asDiagonal();
+    T_w_c.translation() = p_w;
     View view;
     world.render(makeCamera(3, 3, 0.01), T_w_c.inverse(), view);
     return view.depth[1][1];
 }
 
-/// Above the corner of least x and y, as high as the ceiling allows.
-Eigen::Vector3d eyeAbove(const ViewSource& world, const Eigen::AlignedBox3d& box) {
-    Eigen::Vector3d eye(box.min().x(), box.min().y(), box.max().z());
-    const double wanted = kHeightOfEye * box.sizes().head<2>().maxCoeff();
-    const double ceiling = depthAlong(world, eye, true);
-    eye.z() += ceiling > 0. ? std::min(wanted, 0.9 * ceiling) : wanted;
-    return eye;
+/// Above the corner of least x and y.
+Eigen::Vector3d eyeAbove(const Eigen::AlignedBox3d& box) {
+    const double height = kHeightOfEye * box.sizes().head<2>().maxCoeff();
+    return {box.min().x(), box.min().y(), box.max().z() + height};
 }
 
 Pose lookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target) {
@@ -172,7 +169,7 @@ class Sketch {
     }
 
     Eigen::Vector3d below(const Eigen::Vector3d& p_w) const {
-        return p_w - depthAlong(world_, p_w, false) * Eigen::Vector3d::UnitZ();
+        return p_w - depthBelow(world_, p_w) * Eigen::Vector3d::UnitZ();
     }
 
     Plot& plot_;
@@ -197,7 +194,7 @@ Picture shaded(const View& view, const Shading& shading) {
 
 Figure perspectiveFigure(const ViewSource& world, const Perspective& perspective) {
     const Eigen::AlignedBox3d& box = perspective.box;
-    const Pose T_c_w = lookAtMiddle(eyeAbove(world, box), box);
+    const Pose T_c_w = lookAtMiddle(eyeAbove(box), box);
     const Camera camera = cameraAround(box, T_c_w);
     View view;
     world.render(camera, T_c_w, view);

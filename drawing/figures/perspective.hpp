@@ -15,7 +15,8 @@ struct Perspective {
 };
 
 /// The box, seen from above its corner of least x and y, with axes along its floor. Paths are drawn
-/// with their shadows on the surfaces below; hidden parts of a path are thin.
+/// with their shadows on the surfaces below; hidden parts of a path are thin. The inside of rooms
+/// is seen in views that leave out ceilings and near walls, see cutawayViews().
 Figure perspectiveFigure(const ViewSource& world, const Perspective& perspective);
 
 }  // namespace photonav
