@@ -51,7 +51,7 @@ std::vector<DrawnPath> pathsByAlpha(const Config& config, const World& world,
 TopView pathsView(const Config& config, const World& world, const std::vector<DrawnPath>& paths) {
     TopView view = viewFromAbove(config, world, paths);
     view.title = fmt::format("{}: the cheapest path per alpha", config.sweep.planners.front());
-    view.ellipseScale = 0.;
+    view.ellipseScale = view.horizontalFov = 0.;
     return view;
 }
 

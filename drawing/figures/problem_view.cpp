@@ -51,6 +51,7 @@ TopView viewFromAbove(const Config& config, const World& world,
     view.background = world.pictureFromAbove(view.area, config.bounds.max().z(), pixel);
     view.paths = paths;
     view.ellipseScale = readableEllipseScale(paths, view.area.sizes().maxCoeff());
+    if (config.space != StateKind::position) view.horizontalFov = config.camera.hfov * kDegree;
     view.start = config.start.position;
     view.goal = config.goal.position;
     return view;

@@ -18,7 +18,8 @@ Eigen::AlignedBox2d areaOf(const Config& config);
 /// @param T_b_c camera mount
 DrawnPath drawnPath(const EvaluatedPath& path, const Pose& T_b_c);
 
-/// Start, goal and paths over a picture of the surfaces below the top of the bounds.
+/// Start, goal and paths over a picture of the surfaces below the top of the bounds. In spaces with
+/// a heading, wedges show where the camera looks.
 TopView viewFromAbove(const Config& config, const World& world,
                       const std::vector<DrawnPath>& paths);
 

@@ -4,11 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace photonav {
 namespace {
 
-constexpr double kSigmas = 3.;  // size of the ellipses
+constexpr double kSigmas = 3.;             // size of the ellipses
+constexpr double kWedgeRadius = 0.035;     // over the longer side of the picture
+constexpr double kMostWedges = 25.;        // along a path
+constexpr double kLeastHorizontal = 0.26;  // part of the view direction: others look down or up
 
 /// The background is lightened, so that lines are distinct on it.
 Picture lightened(const ImageF& background) {
@@ -30,22 +34,57 @@ void addTree(Plot& plot, const DrawnTree& tree) {
                          .name = tree.name});
 }
 
-/// About twenty ellipses along the path, with its ends; more would hide each other.
-void addEllipses(Plot& plot, const DrawnPath& path, double scale, const std::string& name) {
-    if (path.points.empty()) return;
-    const double length = path.points.back().distance;
-    std::vector<Plot::Points> outlines;
+/// Points of a path at least `step` [m] apart, with its ends.
+std::vector<PathPoint> spreadPoints(const DrawnPath& path, double step) {
+    std::vector<PathPoint> spread;
     double next = 0.;
     for (const PathPoint& point : path.points) {
         if (point.distance < next) continue;
+        spread.push_back(point);
+        next = std::min(point.distance + step,
+                        std::max(path.points.back().distance, point.distance + 1e-9));
+    }
+    return spread;
+}
+
+/// About twenty ellipses along the path, with its ends; more would hide each other.
+void addEllipses(Plot& plot, const DrawnPath& path, double scale, const std::string& name) {
+    if (path.points.empty()) return;
+    std::vector<Plot::Points> outlines;
+    for (const PathPoint& point : spreadPoints(path, path.points.back().distance / 20.))
         outlines.push_back(ellipse(point.position.head<2>(),
                                    point.positionCovariance.topLeftCorner<2, 2>(),
                                    kSigmas * scale));
-        next = std::min(point.distance + length / 20., std::max(length, point.distance + 1e-9));
-    }
     plot.fill(outlines, {.color = path.color, .opacity = 0.22, .name = name});
     for (const Plot::Points& outline : outlines)
         plot.curve(outline, {.color = path.color, .width = 1.2});
+}
+
+/// A sector around the view direction.
+Plot::Points wedge(const Plot::Point& apex, double heading, double angle, double radius) {
+    constexpr int kArc = 12;
+    Plot::Points outline{apex};
+    for (int i = 0; i <= kArc; ++i) {
+        const double at = heading + angle * (static_cast<double>(i) / kArc - 0.5);
+        outline.emplace_back(apex + radius * Plot::Point(std::cos(at), std::sin(at)));
+    }
+    return outline;
+}
+
+/// Where the camera looks along the path, unless it looks down.
+void addWedges(Plot& plot, const TopView& view, const DrawnPath& path) {
+    if (path.points.empty()) return;
+    const double radius = kWedgeRadius * view.area.sizes().maxCoeff();
+    const double step = std::max(1.2 * radius, path.points.back().distance / (kMostWedges - 1.));
+    std::vector<Plot::Points> outlines;
+    for (const PathPoint& point : spreadPoints(path, step)) {
+        const Eigen::Vector2d direction = point.T_w_c.linear().col(2).head<2>();
+        if (direction.norm() < kLeastHorizontal) continue;
+        outlines.push_back(wedge(point.position.head<2>(), std::atan2(direction.y(), direction.x()),
+                                 view.horizontalFov, radius));
+    }
+    if (outlines.empty()) return;
+    plot.fill(std::move(outlines), {.color = path.color, .opacity = 0.45, .name = "camera's view"});
 }
 
 /// Wider than each path on top of it that runs along it, so that none hides another. White on both
@@ -92,6 +131,8 @@ Plot topViewPlot(const TopView& view, double side) {
                                      : fmt::format("3σ of the position, {:g}×", view.ellipseScale);
         for (const DrawnPath& path : view.paths) addEllipses(plot, path, view.ellipseScale, name);
     }
+    if (view.horizontalFov > 0.)
+        for (const DrawnPath& path : view.paths) addWedges(plot, view, path);
     for (std::size_t i = view.paths.size(); i-- > 0;) addRoute(plot, view, i);
     for (const DrawnTree& tree : view.trees)
         if (tree.isOnTop) addTree(plot, tree);
@@ -109,7 +150,7 @@ Figure mapsFigure(const std::vector<std::vector<TopView>>& rows) {
     for (const auto& row : rows) {
         auto& plots = figure.rows.emplace_back();
         for (TopView view : row) {
-            view.ellipseScale = 0.;
+            view.ellipseScale = view.horizontalFov = 0.;
             Plot& plot = plots.emplace_back(topViewPlot(view, 420.));
             plot.title = view.title;
             if (&row != &rows.back()) plot.x.label.clear();

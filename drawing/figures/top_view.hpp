@@ -22,8 +22,10 @@ struct TopView {
     Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< world frame [m]
     Eigen::Vector3d goal = Eigen::Vector3d::Zero();   ///< world frame [m]
     std::string goalName = "goal";
-    double ellipseScale = 1.0;  ///< factor on the 3-sigma ellipses of the position, stated in the
-                                ///< legend; 0: no ellipses
+    double ellipseScale = 1.0;   ///< factor on the 3-sigma ellipses of the position, stated in the
+                                 ///< legend; 0: no ellipses
+    double horizontalFov = 0.0;  ///< full angle of the wedges that show where cameras along the
+                                 ///< paths look [rad]; 0: no wedges
 };
 
 /// The largest ellipseScale of 1, 2, 5, 10, 20, ... for which the half axis of the largest 3-sigma
@@ -40,7 +42,7 @@ Plot topViewPlot(const TopView& view, double side);
 /// @throws std::invalid_argument if the area is empty
 Figure topViewFigure(const TopView& view);
 
-/// A figure of small views from above in rows, without ellipses and legend.
+/// A figure of small views from above in rows, without ellipses, wedges and legend.
 /// @throws std::invalid_argument if there is no view, or an area is empty
 Figure mapsFigure(const std::vector<std::vector<TopView>>& rows);
 

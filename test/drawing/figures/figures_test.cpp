@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "drawing/figures/sample_run.hpp"
@@ -11,6 +13,8 @@
 #include "figures/images.hpp"
 #include "figures/top_view.hpp"
 #include "figures/trace.hpp"
+#include "geometry/camera.hpp"
+#include "geometry/se3.hpp"
 
 namespace photonav {
 namespace {
@@ -74,6 +78,44 @@ TEST(Figures, NoPathHidesAnother) {
     EXPECT_GE(widthOf(kFirst), 2);
     EXPECT_GE(widthOf(kSecond), 2);  // on both sides
     EXPECT_EQ(widthOf(kTreeColor), widthOf(kFirst));
+}
+
+/// A path along y whose camera looks along x, so many radians below the horizon.
+DrawnPath pathLookingAside(double belowHorizon) {
+    DrawnPath path = samplePath("", kFirst, {{4, 2, 1}, {4, 7, 1}});
+    for (PathPoint& point : path.points)
+        point.T_w_c = levelPose(point.position, 0.) * cameraMount(belowHorizon);
+    return path;
+}
+
+/// The top view with wedges of cameras, and without.
+std::array<cv::Mat3b, 2> withAndWithoutWedges(TopView view, const std::string& name) {
+    const cv::Mat3b without = decoded(topViewFigure(view).png(), name + "_without_wedges");
+    view.horizontalFov = 1.2;
+    return {decoded(topViewFigure(view).png(), name), without};
+}
+
+TEST(Figures, WedgesShowWhereCamerasLook) {
+    TopView view = emptyView();
+    view.paths = {pathLookingAside(0.8)};
+    const std::array images = withAndWithoutWedges(view, "headings");
+    const cv::Mat3b &with = images[0], &without = images[1];
+    const cv::Rect path = boundsOf(without, kFirst);
+    const auto changesBeside = [&](int dx) {
+        const cv::Rect strip(path.x + dx, path.y, 8, path.height);
+        cv::Mat3b difference;
+        cv::absdiff(with(strip), without(strip), difference);
+        return cv::countNonZero(difference.reshape(1));
+    };
+    EXPECT_GT(changesBeside(14), 300);
+    EXPECT_EQ(changesBeside(-20), 0);
+}
+
+TEST(Figures, CamerasThatLookDownHaveNoWedges) {
+    TopView view = emptyView();
+    view.paths = {pathLookingAside(0.5 * std::numbers::pi)};
+    const auto [with, without] = withAndWithoutWedges(view, "down");
+    EXPECT_EQ(cv::norm(with, without), 0.);
 }
 
 TEST(Figures, EmptyAreaIsRefused) {
