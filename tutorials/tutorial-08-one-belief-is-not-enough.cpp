@@ -25,7 +25,7 @@ struct Method {
 
 std::vector<Method> methods() {
     return {{"Algorithm 1", "pa_rrt_star", 1, plannerColor("pa_rrt_star"), 5.},
-            {"search, 1 label", "belief_rrt_star", 1, {38, 140, 122}, 3.},
+            {"search, 1 label", "belief_rrt_star", 1, kPurple, 3.},
             {"search, 5 labels", "belief_rrt_star", 5, plannerColor("belief_rrt_star"), 3.}};
 }
 

@@ -13,11 +13,8 @@ using namespace photonav;
 
 namespace {
 
-/// Orange for certain paths, blue for short ones.
-Color colorOf(double alpha) {
-    return {static_cast<std::uint8_t>(230. * (1. - alpha)), 100,
-            static_cast<std::uint8_t>(40. + 200. * alpha)};
-}
+/// Dark for certain paths, bright for short ones.
+Color colorOf(double alpha) { return viridis(0.94 * alpha); }
 
 /// Length and integral of the trace of a path.
 Eigen::Vector2d partsOf(const EvaluatedPath& path) {

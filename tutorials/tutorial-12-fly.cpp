@@ -100,8 +100,7 @@ int main(int argc, char** argv) {
     Plot plot;
     plot.x = {.min = 0., .label = "distance along the plan [m]"};
     plot.y = {.min = 0., .label = "position error [cm]"};
-    for (const auto& [mount, color] :
-         {std::pair{"down", Color{222, 79, 12}}, {"front45", Color{28, 108, 214}}}) {
+    for (const auto& [mount, color] : {std::pair{"down", kIndigo}, {"front45", kWine}}) {
         //! [fly]
         const Config config = straightFlight(mount);
         const World world(paleFloor(), config);

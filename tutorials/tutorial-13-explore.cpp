@@ -9,6 +9,7 @@
 #include "figures/images.hpp"
 #include "long_room.hpp"
 #include "plot/figure.hpp"
+#include "shapes/paths.hpp"
 
 using namespace photonav;
 
@@ -45,8 +46,8 @@ Plot drawMap(const ExplorationResult& flight, const Config& config) {
     plot.curve(
         fromAbove(flight.samples),
         {.color = plannerColor(flight.planner), .width = 3., .name = "path flown", .halo = 1.});
-    plot.marker(config.start.position.head<2>(), kInk, "start");
-    plot.marker(config.goal.position.head<2>(), Color{222, 79, 12}, "goal");
+    plot.marker(config.start.position.head<2>(), kStartColor, "start");
+    plot.marker(config.goal.position.head<2>(), kGoalColor, "goal");
     return plot;
 }
 
@@ -70,7 +71,7 @@ Plot drawErrors(const std::vector<FlightSample>& samples) {
         actual.emplace_back(s.distance, errorsOf(s)[1]);
     }
     plot.curve(believed, {.color = kInk, .width = 3., .name = "believed σ"});
-    plot.curve(actual, {.color = Color{222, 79, 12}, .name = "true error"});
+    plot.curve(actual, {.color = kWine, .name = "true error"});
     return plot;
 }
 

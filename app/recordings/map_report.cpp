@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr Color kCameraColor{222, 79, 12};
+constexpr Color kCameraColor = kIndigo;
 
 using TableRows = std::vector<std::pair<std::string, std::string>>;
 

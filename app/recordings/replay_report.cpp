@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr Color kEstimateColor{222, 79, 12}, kTruthColor{28, 108, 214};
+constexpr Color kEstimateColor = kIndigo, kTruthColor = kPurple;  // as on the page
 constexpr double kOverconfident = 3.;  // NEES per degree of freedom that is stated in words
 
 /// "0.0123 m", or `none` for a missing value.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kWidth = 900., kHeight = 240.;  // of a panel [px]
 constexpr int kColumns = 400, kRows = 120;       // of the picture of headings [px]
-constexpr Color kLost{200, 30, 45}, kOpen{230, 159, 0}, kRejected{120, 126, 133};
+constexpr Color kLost{200, 30, 45}, kOpen = kSand, kRejected{120, 126, 133};
 
 /// Boxes over the stretches that end at places of a kind.
 template <typename Kind>

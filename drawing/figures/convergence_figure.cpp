@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxRows = 5;
 constexpr double kFullError = 0.1;  // brightest colour of the relative error
-constexpr std::array<Color, 3> kStateColors{{{205, 205, 205}, {38, 140, 122}, {222, 79, 12}}};
+constexpr std::array<Color, 3> kStateColors{{{205, 205, 205}, {38, 140, 122}, kWine}};
 
 CaptionedImage emptyImage(const ImageF& shape) {
     return {
@@ -56,7 +56,7 @@ CaptionedImage stateImage(const DepthFilter& filter) {
     const auto percent = [&](DepthState state) {
         return 100. * counts[static_cast<std::size_t>(state)] / double(image.picture.pixels.size());
     };
-    image.caption = fmt::format("converged {:.0f} % (green), given up {:.0f} % (orange)",
+    image.caption = fmt::format("converged {:.0f} % (green), given up {:.0f} % (dark red)",
                                 percent(DepthState::converged), percent(DepthState::givenUp));
     return image;
 }

@@ -13,8 +13,6 @@
 namespace photonav {
 namespace {
 
-constexpr std::array kSetColors{Color{222, 79, 12},   Color{28, 108, 214}, Color{0, 158, 115},
-                                Color{204, 121, 167}, Color{230, 159, 0},  Color{86, 180, 233}};
 constexpr Color kAsItIs{98, 104, 112}, kLostPlace{200, 30, 45}, kOutline{200, 30, 45};
 constexpr std::size_t kColumnsOfSets = 3;
 
@@ -55,8 +53,8 @@ std::vector<DrawnPosterSet> drawnSets(const PosterProblem& problem, const Poster
         const std::string name = nameOf(set.posters, problem.posters);
         if (set.posters.empty()) {
             drawn.push_back({&set, name, kAsItIs});
-        } else if (colors < kSetColors.size()) {
-            drawn.push_back({&set, name, kSetColors[colors++]});
+        } else if (colors < kSeriesColors.size()) {
+            drawn.push_back({&set, name, kSeriesColors[colors++]});
         }
     }
     return drawn;

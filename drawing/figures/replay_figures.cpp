@@ -11,7 +11,7 @@
 namespace photonav {
 namespace {
 
-constexpr Color kErrorColor{222, 79, 12}, kPredictedColor{28, 108, 214}, kLostColor{178, 182, 188};
+constexpr Color kErrorColor = kWine, kPredictedColor = kIndigo, kLostColor{178, 182, 188};
 // 95 % of the squared normalised errors of a six-dimensional Gaussian, per degree of freedom.
 constexpr double kNeesLow = 1.2373 / 6., kNeesHigh = 14.4494 / 6.;
 constexpr double kFullResidual = 0.25;  // grey values; brightest colour of the difference

@@ -11,7 +11,7 @@ function cholesky(c) {
   return [a, 0, 0, b, e, 0, d, f, g];
 }
 
-const kTruthColor = '#4f8ad0';
+const kTruthColor = '#aa4499';
 const unitSphere = new THREE.SphereBufferGeometry(1, 28, 18);
 
 /// Where a position with a covariance is, as a transformed sphere.

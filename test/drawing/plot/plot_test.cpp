@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "drawing/plot/decoded.hpp"
 #include "io/error.hpp"
 #include "plot/figure.hpp"
+#include "scene/texture.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {
@@ -179,6 +182,43 @@ TEST(Figure, WritesThreeFormatsByTheNameOfTheFile) {
     }
     EXPECT_THROW(figure.save(folder.path() / "a.gif"), InputError);
     EXPECT_THROW(Figure{}.png(), std::invalid_argument);
+}
+
+/// CIELAB distance of two colours for a reader whose sight is given by a matrix on linear RGB.
+double perceivedDistance(const Color& a, const Color& b, const Eigen::Matrix3d& sight) {
+    cv::Mat3f seen(1, 2);
+    for (const int i : {0, 1}) {
+        const Color& color = i == 0 ? a : b;
+        const Eigen::Vector3d linear(decodeSrgb(color.red / 255.), decodeSrgb(color.green / 255.),
+                                     decodeSrgb(color.blue / 255.));
+        const Eigen::Vector3f rgb = (sight * linear).cwiseMax(0.).cwiseMin(1.).cast<float>();
+        seen(0, i) = {rgb.x(), rgb.y(), rgb.z()};
+    }
+    cv::cvtColor(seen, seen, cv::COLOR_LRGB2Lab);
+    return cv::norm(seen(0, 0), seen(0, 1));
+}
+
+/// The least distance for readers with all receptors, without green and without red ones (Machado
+/// et al. 2009).
+double leastDistance(const Color& a, const Color& b) {
+    Eigen::Matrix3d noGreen, noRed;
+    noGreen << 0.367322, 0.860646, -0.227968, 0.280085, 0.672501, 0.047413, -0.011820, 0.042940,
+        0.968881;
+    noRed << 0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116,
+        1.051998;
+    return std::min({perceivedDistance(a, b, Eigen::Matrix3d::Identity()),
+                     perceivedDistance(a, b, noGreen), perceivedDistance(a, b, noRed)});
+}
+
+TEST(SeriesColors, DifferFromEachOtherAndFromThePlanners) {
+    for (std::size_t i = 0; i < kSeriesColors.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j)
+            EXPECT_GT(leastDistance(kSeriesColors[i], kSeriesColors[j]), 15.) << i << ", " << j;
+        for (const char* planner : {"belief_rrt_star", "pa_rrt_star", "rrbt", "rrt_star",
+                                    "rrt_star/fixed", "rrt_star/forward"})
+            EXPECT_GT(leastDistance(kSeriesColors[i], plannerColor(planner)), 15.)
+                << i << ", " << planner;
+    }
 }
 
 TEST(PlannerColor, DiffersForEveryPlanner) {
