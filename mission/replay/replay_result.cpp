@@ -51,12 +51,15 @@ json meanAndMedian(const std::vector<double>& values) {
             {"median", finiteOrNull(median(values, none))}};
 }
 
-/// Frames that converged, and are off by more than five of their standard deviations.
-std::size_t countBeyond(const ReplayRun& run, const ReplayErrors& errors) {
-    constexpr double kFar = 5.;
+bool isBeyond5Sigma(const EvaluatedFrame& frame) {
+    return frame.normalised && frame.normalised->largest > 5.;
+}
+
+/// Of the frames that converged.
+std::size_t countConvergedBeyond(const ReplayRun& run, const ReplayErrors& errors) {
     return static_cast<std::size_t>(
         std::ranges::count_if(errors.frames, [&](const EvaluatedFrame& f) {
-            return f.normalised && f.normalised->largest > kFar &&
+            return isBeyond5Sigma(f) &&
                    run.frames[f.frame].tracked.alignment.verdict == Verdict::converged;
         }));
 }
@@ -226,7 +229,8 @@ json replayResult(const Sequence& sequence, const ReplayRun& run, const ReplayEr
             {"nees_median_per_dof", finiteOrNull(median(nees, none))},
             {"nees_position_per_dof", meanAndMedian(neesOf(errors, &NormalisedError::position))},
             {"nees_rotation_per_dof", meanAndMedian(neesOf(errors, &NormalisedError::rotation))},
-            {"converged_beyond_5_sigma", countBeyond(run, errors)},
+            {"beyond_5_sigma", std::ranges::count_if(errors.frames, isBeyond5Sigma)},
+            {"converged_beyond_5_sigma", countConvergedBeyond(run, errors)},
             {"fps", framesPerSecond(looked, run.trackSeconds)},
             {"fps_with_reading", framesPerSecond(looked, run.trackSeconds + run.loadSeconds)},
             {"depth_density", densityJson(run)},
