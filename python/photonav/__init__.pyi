@@ -69,14 +69,14 @@ def information(
     depth: ArrayLike,
     camera: Camera,
     sigma: float = 0.02,
-    scale: float = 1.0,
+    scale: float = 0.08,
     stride: int = 1,
 ) -> Array:
     """Fisher information (6, 6) of the camera pose from one image with depth, camera frame.
 
     image must be predicted or noise-free: gradients of noise look like information. sigma:
     standard deviation of the image noise. scale: factor, since neighbouring pixels are not
-    independent.
+    independent: that of a config (camera.information_scale).
     """
 
 def contribution(
@@ -85,7 +85,7 @@ def contribution(
     camera: Camera,
     direction: Optional[ArrayLike] = None,
     sigma: float = 0.02,
-    scale: float = 1.0,
+    scale: float = 0.08,
 ) -> Image:
     """What every pixel adds to the information about a direction (6,), or about all together."""
 

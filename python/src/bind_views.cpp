@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "bindings.hpp"
+#include "config/config.hpp"
 #include "conversions.hpp"
 #include "interruptible.hpp"
 #include "map/map_fusion.hpp"
@@ -125,11 +126,11 @@ void bindViews(py::module_& module) {
              "Noise-free image in [0, 1] and depth [m] (0: no surface), both (height, width).");
     bindMap(module);
     module.def("information", &information, "image"_a, "depth"_a, "camera"_a, "sigma"_a = 0.02,
-               "scale"_a = 1., "stride"_a = 1,
+               "scale"_a = kSmoothedNoiseScale, "stride"_a = 1,
                "Fisher information (6, 6) of the camera pose from one noise-free image with depth, "
                "camera frame.");
     module.def("contribution", &contribution, "image"_a, "depth"_a, "camera"_a,
-               "direction"_a = py::none(), "sigma"_a = 0.02, "scale"_a = 1.,
+               "direction"_a = py::none(), "sigma"_a = 0.02, "scale"_a = kSmoothedNoiseScale,
                "What every pixel adds to the information about a direction (6,), or about all "
                "together.");
 }

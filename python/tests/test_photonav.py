@@ -72,7 +72,7 @@ class ViewsAndMaps(unittest.TestCase):
         np.testing.assert_allclose(information, information.T)
         # J of a translation along x at constant depth: the gradient times -fx / z
         gradient = 0.5 * (image[1:-1, 2:] - image[1:-1, :-2])
-        expected = np.sum((gradient * self.camera.fx / 2) ** 2) / 0.02**2
+        expected = 0.08 * np.sum((gradient * self.camera.fx / 2) ** 2) / 0.02**2
         self.assertAlmostEqual(information[0, 0] / expected, 1, delta=0.01)
         share = photonav.contribution(image, depth, self.camera, (1, 0, 0, 0, 0, 0))
         self.assertAlmostEqual(share.sum() / information[0, 0], 1, delta=1e-4)
