@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/sequence_bag.hpp"
 
+#include <bzlib.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -155,6 +156,48 @@ TEST_F(BagRecordingFile, CutShortIsRefused) {
     folder_.write("flight.bag", "rosbag");
     EXPECT_NE(test::reasonOf([&] { readBagSequence(file_); }).find("not a ROS bag"),
               std::string::npos);
+}
+
+std::string afterItsLength(const std::string& text) {
+    const auto size = static_cast<std::uint32_t>(text.size());
+    return std::string(reinterpret_cast<const char*>(&size), sizeof(size)) + text;
+}
+
+std::string bagField(const std::string& name, const std::string& value) {
+    return afterItsLength(name + "=" + value);
+}
+
+std::string bagRecord(const std::string& header, const std::string& data) {
+    return afterItsLength(header) + afterItsLength(data);
+}
+
+/// 300 bytes of bz2 that are 200 MB of a message's zeros.
+TEST_F(BagRecordingFile, ThatUnpacksToMuchMoreIsRefused) {
+    const auto bytes = [](const auto& value) {
+        return std::string(reinterpret_cast<const char*>(&value), sizeof(value));
+    };
+    const std::string conn = bagField("conn", bytes(std::uint32_t{0}));
+    const std::string chunk =
+        bagRecord(conn + bagField("op", "\x07") + bagField("topic", "/zeros"),
+                  bagField("type", "std_msgs/Empty")) +
+        bagRecord(conn + bagField("op", "\x02") + bagField("time", std::string(8, '\0')),
+                  std::string(200'000'000, '\0'));
+    std::string packed(chunk.size() / 100 + 600, '\0');
+    auto size = static_cast<unsigned>(packed.size());
+    ASSERT_EQ(BZ2_bzBuffToBuffCompress(packed.data(), &size, const_cast<char*>(chunk.data()),
+                                       static_cast<unsigned>(chunk.size()), 9, 0, 0),
+              BZ_OK);
+    packed.resize(size);
+    const std::string record =
+        bagRecord(bagField("op", "\x05") + bagField("compression", "bz2") +
+                      bagField("size", bytes(static_cast<std::uint32_t>(chunk.size()))),
+                  packed);
+    folder_.write("flight.bag",
+                  "#ROSBAG V2.0\n" + bagRecord(bagField("op", "\x03"), "") + record + record);
+    EXPECT_NE(
+        test::reasonOf([&] { readBagSequence(file_); }).find("unpack to more than 1000 times"),
+        std::string::npos)
+        << test::reasonOf([&] { readBagSequence(file_); });
 }
 
 TEST_F(BagRecordingFile, DamagedIsReadOrRefused) {
