@@ -62,8 +62,9 @@ std::optional<double> calibrateDepthError(std::span<const AlignmentError> errors
 /// AreaSensor's with the point spread added: 0.04 to 0.11, root mean square over poses [pixels^2].
 inline constexpr double kBlurError = 0.1;
 
-/// What lenses and light leave in photographs: vignetting and shading of a few percent.
-inline constexpr double kLightError = 0.02;
+/// What lenses and light leave in photographs: gains scatter by 0.7 % over an image whose corners
+/// are 3 % darker, which is what corrections of vignetting leave, and by more with shading.
+inline constexpr double kLightError = 0.01;
 
 /// Options for images that were not rendered from the model: covariances follow from the residuals.
 /// @param blur point spread of the images, standard deviation [pixels]
