@@ -138,9 +138,7 @@ class Light {
   public:
     /// @param x the step to the minimum of the image alone
     /// @param size of the image [blocks]
-    /// @param least standard deviation of the gains, ModelErrors::light
-    Light(const std::vector<ImageBlock>& blocks, const Eigen::Array2i& size, const Vector8& x,
-          double least)
+    Light(const std::vector<ImageBlock>& blocks, const Eigen::Array2i& size, const Vector8& x)
         : blocks_(blocks), size_(size) {
         std::vector<const ImageBlock*> at(std::size_t(size_.prod()), nullptr);
         for (const ImageBlock& block : blocks) at[number(block.index)] = &block;
@@ -155,7 +153,7 @@ class Light {
                 weight += w;
             }
         }
-        variance_ = std::max(least * least, weight > 0. ? product / weight : 0.);
+        variance_ = weight > 0. ? std::max(0., product / weight) : 0.;
     }
 
     /// Effect of the gains on Atr, squared.
@@ -194,6 +192,20 @@ Matrix8 scatterByDisplacement(const std::vector<ImageBlock>& blocks, const Eigen
         });
     }
     return sum;
+}
+
+/// Images darker toward the corners, or brighter, by the share `sigma`.
+Matrix8 scatterByVignetting(const std::vector<ImageBlock>& blocks, const Camera& camera,
+                            double sigma) {
+    const double side = ImageBlock::side(camera);
+    const Eigen::Array2d centre(camera.cx(), camera.cy());
+    const Eigen::Array2d corner = centre.max(Eigen::Array2d(camera.width, camera.height) - centre);
+    Vector8 sum = Vector8::Zero();
+    for (const ImageBlock& block : blocks) {
+        const Eigen::Array2d pixel = side * (block.index.cast<double>() + 0.5) - 0.5;
+        sum += (pixel - centre).square().sum() / corner.square().sum() * block.AtA.col(6);
+    }
+    return sigma * sigma * sum * sum.transpose();
 }
 
 /// Images blurrier, or less blurred, than the model.
@@ -250,11 +262,12 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
         return seen.solve * (seen.E.transpose() * scatter * seen.E) * seen.solve.transpose();
     };
     const Eigen::Array2i size = ImageBlock::numberIn(camera);
-    const Light light(blocks, size, x, errors.light);
+    const Light light(blocks, size, x);
     const MatrixXd repeating =
-        covariance(
-            light.scatter() + scatterByDisplacement(blocks, size, camera, errors.displacement) +
-            scatterByBlur(blocks, size, errors.blur) + scatterBySurface(blocks, errors.surface)) +
+        covariance(light.scatter() + scatterByVignetting(blocks, camera, errors.vignetting) +
+                   scatterByDisplacement(blocks, size, camera, errors.displacement) +
+                   scatterByBlur(blocks, size, errors.blur) +
+                   scatterBySurface(blocks, errors.surface)) +
         seen.toY * covarianceByScale(errors.depthScale, toModel) * seen.toY.transpose();
     const MatrixXd scatter = seen.scale.asDiagonal() *
                              covarianceOf(changesWithout(blocks, seen, x)) *

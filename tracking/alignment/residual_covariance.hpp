@@ -21,9 +21,9 @@ struct ModelErrors {
     /// mean over the image is eliminated like the exposure (withoutBlur()); its variation over the
     /// image is smooth.
     double blur = 0.;
-    /// Gain that varies slowly over the image: vignetting that a calibration leaves, and shading.
-    /// The pose absorbs most of it where there is little texture.
-    double light = 0.;
+    /// Share of the light that is lost in the corners of the image, after correction. It grows with
+    /// the square of the distance to the principal point.
+    double vignetting = 0.;
     double surface = 0.;     ///< displacement of the surfaces along their normals [m]
     double depthScale = 0.;  ///< relative error of a depth sensor's scale and registration
 };
@@ -48,9 +48,10 @@ struct MeasuredInformation {
 /// of any size and cause, and does not depend on an assumed image noise. The exposure is eliminated
 /// first.
 ///
-/// A gain that varies slowly over the image (vignetting, shading, changed light) repeats from image
-/// to image. Its variance is ModelErrors::light squared, or the covariance of the gains of
-/// neighbouring blocks if that is larger.
+/// A gain that varies slowly over the image (shading, changed light) repeats from image to image.
+/// Its variance is estimated by the covariance of the gains of neighbouring blocks. Over little
+/// texture the pose absorbs vignetting, and these gains show nothing of it:
+/// ModelErrors::vignetting.
 /// @param prior of the exposure; none: the exposure is fixed
 /// @param errors used in C_repeating
 /// @param camera camera of the level at which the blocks were compared

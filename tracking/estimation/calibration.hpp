@@ -62,9 +62,9 @@ std::optional<double> calibrateDepthError(std::span<const AlignmentError> errors
 /// AreaSensor's with the point spread added: 0.04 to 0.11, root mean square over poses [pixels^2].
 inline constexpr double kBlurError = 0.1;
 
-/// What lenses and light leave in photographs: gains scatter by 0.7 % over an image whose corners
-/// are 3 % darker, which is what corrections of vignetting leave, and by more with shading.
-inline constexpr double kLightError = 0.01;
+/// What a correction leaves of a lens's vignetting, share of the light in the corners. Uncorrected
+/// lenses lose 10 to 50 %.
+inline constexpr double kVignettingError = 0.03;
 
 /// Options for images that were not rendered from the model: covariances follow from the residuals.
 /// @param blur point spread of the images, standard deviation [pixels]
