@@ -149,7 +149,7 @@ class Planning(unittest.TestCase):
         shortest = problem.plan("rrt_star").path  # kappa is automatic
         self.assertAlmostEqual(shortest.length_share, 0.5)
         config["planner"]["alhpa"] = 1
-        with self.assertRaisesRegex(photonav.InputError, "config: planner.alhpa: .*'alpha'"):
+        with self.assertRaisesRegex(photonav.InputError, "config: planner.alhpa: .*'planner.alpha'"):
             photonav.Problem(config)
 
     def test_flights_arrive(self):
