@@ -47,7 +47,7 @@ set(folders_drawing_plot io planners)
 set(folders_drawing_shapes geometry scene map dataset plot)
 set(folders_drawing_flightlog io geometry map result problem recording simulation replanning exploration
     shapes)
-set(folders_drawing_figures io geometry photometry evaluation depth problem servo sweep recording replay
+set(folders_drawing_figures io geometry render photometry evaluation depth problem servo sweep recording replay
     flight check posters exploration plot shapes flightlog)
 set(folders_drawing_interchange io geometry bag dataset result shapes flightlog)
 set(folders_app_live io)

@@ -6,6 +6,7 @@
 #include "dataset/image_file.hpp"
 #include "dataset/trajectory.hpp"
 #include "figures/comparison_images.hpp"
+#include "figures/cutaway.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
 #include "figures/perspective.hpp"
@@ -13,7 +14,6 @@
 #include "figures/tree_evolution_figure.hpp"
 #include "geometry/se3.hpp"
 #include "problem/advantage.hpp"
-#include "shapes/cutaway.hpp"
 #include "shared/command_io.hpp"
 
 namespace photonav {

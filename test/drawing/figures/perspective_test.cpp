@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "drawing/plot/decoded.hpp"
-#include "shapes/cutaway.hpp"
+#include "figures/cutaway.hpp"
 
 namespace photonav {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "shapes/cutaway.hpp"
+#include "figures/cutaway.hpp"
 
 #include <array>
 #include <vector>
