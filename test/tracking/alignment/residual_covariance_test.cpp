@@ -151,6 +151,41 @@ TEST(ResidualCovariance, TheWidthOfAnEdgeIsNoDistance) {
     EXPECT_LT(nees(photographOptions().modelErrors.blur), 2.);
 }
 
+/// Over texture that is as weak as the vignetting, the pose absorbs it, and it is the same in every
+/// image.
+TEST(ResidualCovariance, VignettingOverLittleTextureRepeats) {
+    const MeshRenderer floor(test::floorOf(valueNoise(
+        {.size = {20., 20.}, .cells = {1.5, 0.5, 0.2}, .amplitudes = {0.012, 0.006, 0.006}})));
+    const Camera camera = makeCamera(188, 120, 1.2217);
+    std::mt19937_64 random(1);
+    const auto nees = [&](double vignetting) {
+        AlignmentOptions options = realCameraOptions();
+        options.modelErrors.vignetting = vignetting;
+        DenseAligner aligner(floor, camera, options);
+        double sum = 0.;
+        for (int i = 0; i < 10; ++i) {
+            const Pose truth = lookFrom({0.3 * i, -0.2 * i, 1.5}, kDown);
+            ImageF image = test::photographed(floor, camera, truth).intensity;
+            for (unsigned v = 0; v < image.getHeight(); ++v) {
+                for (unsigned u = 0; u < image.getWidth(); ++u) {
+                    const Eigen::Vector2d centre(0.5 * camera.width, 0.5 * camera.height);
+                    const double share = (Eigen::Vector2d(u, v) - centre).norm() / centre.norm();
+                    image[v][u] *= static_cast<float>(1. - 0.03 * share * share);
+                }
+            }
+            image = test::noisy(image, 0.005, random);
+            const UncertainPose prior{truth, 1e-2 * Matrix6::Identity()};
+            const Alignment a = aligner.align(image, prior);
+            const Vector6 xi = test::errorOf(a, truth);
+            sum += xi.dot(a.covariance.ldlt().solve(xi)) / 60.;
+        }
+        return sum;
+    };
+    const double with = nees(realCameraOptions().modelErrors.vignetting);
+    EXPECT_GT(nees(0.), 4. * with);
+    EXPECT_LT(with, 1.5);
+}
+
 /// The blocks of an image add up to the whole.
 TEST(ResidualCovariance, BlocksAddUp) {
     const Camera camera = makeCamera(188, 120, 1.2);
