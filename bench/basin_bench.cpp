@@ -10,7 +10,6 @@
 #include "bench_arguments.hpp"
 #include "geometry/se3.hpp"
 #include "image_noise.hpp"
-#include "render/mesh_renderer.hpp"
 #include "tracking_scenes.hpp"
 
 using namespace photonav;
@@ -76,10 +75,9 @@ void table(const std::string& name, const MeshRenderer& world, double belowHoriz
 int main(int argc, char** argv) {
     const BenchArguments arguments(argc, argv, "basin_bench [TRIALS_PER_CELL=40]");
     const int trials = arguments.number(1, 40, 1);
-    const MeshRenderer hall(furnishedHall()), floor(texturedFloor());
     fmt::print("{} alignments a cell, 188x120, noise 0.02; found: within 1 cm and 0.3 degrees\n",
                trials);
-    table("textured floor, downward from 1.7 m", floor, std::numbers::pi / 2., trials);
-    table("hall with boxes, 45 degrees", hall, std::numbers::pi / 4., trials);
-    table("hall with boxes, 10 degrees below the horizon", hall, std::numbers::pi / 18., trials);
+    forTrackingViews([&](const auto& name, const auto& world, double belowHorizon) {
+        table(name, world, belowHorizon, trials);
+    });
 }

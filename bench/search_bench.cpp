@@ -10,7 +10,6 @@
 #include "bench_arguments.hpp"
 #include "geometry/se3.hpp"
 #include "image_noise.hpp"
-#include "render/mesh_renderer.hpp"
 #include "thread_time.hpp"
 #include "tracking_scenes.hpp"
 
@@ -42,7 +41,7 @@ struct Outcome {
 };
 
 Outcome search(const MeshRenderer& world, double belowHorizon, unsigned width, int trials) {
-    const Camera camera = makeCamera(width, width * 120 / 188, 1.2217);
+    const Camera camera = trackingCamera(width);
     AlignmentOptions options;
     options.photometric = {.sigma = 0.02, .scale = 1.};
     WideAligner aligner(world, camera, options);
@@ -75,7 +74,7 @@ void rows(const std::string& name, const MeshRenderer& world, double belowHorizo
     for (const unsigned width : {94U, 188U, 376U, 640U}) {
         const Outcome o = search(world, belowHorizon, width, trials);
         const double percent = 100. / trials;
-        fmt::print("{:<42} {:5} {:8.0f} {:10.0f} {:6.0f} {:8.0f}\n", name, width, percent * o.found,
+        fmt::print("{:<46} {:5} {:8.0f} {:10.0f} {:6.0f} {:8.0f}\n", name, width, percent * o.found,
                    percent * o.undecided, percent * o.wrong, o.milliseconds / trials);
         std::fflush(stdout);
     }
@@ -86,12 +85,11 @@ void rows(const std::string& name, const MeshRenderer& world, double belowHorizo
 int main(int argc, char** argv) {
     const BenchArguments arguments(argc, argv, "search_bench [TRIALS_PER_ROW=40]");
     const int trials = arguments.number(1, 40, 1);
-    const MeshRenderer hall(furnishedHall()), floor(texturedFloor());
     fmt::print("{} searches a row [%], prior 0.3 m and 0.1 rad about the vertical, noise 0.02\n\n",
                trials);
-    fmt::print("{:<42} {:>5} {:>8} {:>10} {:>6} {:>8}\n", "", "width", "found", "undecided",
+    fmt::print("{:<46} {:>5} {:>8} {:>10} {:>6} {:>8}\n", "", "width", "found", "undecided",
                "wrong", "ms");
-    rows("textured floor, downward from 1.7 m", floor, std::numbers::pi / 2., trials);
-    rows("hall with boxes, 45 degrees", hall, std::numbers::pi / 4., trials);
-    rows("hall with boxes, 10 degrees down", hall, std::numbers::pi / 18., trials);
+    forTrackingViews([&](const auto& name, const auto& world, double belowHorizon) {
+        rows(name, world, belowHorizon, trials);
+    });
 }

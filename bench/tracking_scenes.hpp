@@ -6,11 +6,14 @@
 #include <numbers>
 
 #include "geometry/camera.hpp"
+#include "render/mesh_renderer.hpp"
 #include "scene/scene.hpp"
 
 namespace photonav {
 
-inline Camera trackingCamera() { return makeCamera(188, 120, 70. * std::numbers::pi / 180.); }
+inline Camera trackingCamera(unsigned width = 188) {
+    return makeCamera(width, width * 120 / 188, 70. * std::numbers::pi / 180.);
+}
 
 /// A hall of 8 x 8 x 3 m with textured floor and walls and twelve boxes.
 inline Scene furnishedHall() {
@@ -39,6 +42,15 @@ inline Scene texturedFloor() {
 inline Pose onCircle(double angle, double belowHorizon) {
     return lookFrom({4. + 2. * std::cos(angle), 4. + 2. * std::sin(angle), 1.7}, belowHorizon,
                     angle + 2.);
+}
+
+/// Calls compare(name, world, angle of the view below the horizon) for a floor, and for a hall seen
+/// from two angles.
+inline void forTrackingViews(const auto& compare) {
+    const MeshRenderer hall(furnishedHall()), floor(texturedFloor());
+    compare("textured floor, downward from 1.7 m", floor, std::numbers::pi / 2.);
+    compare("hall with boxes, 45 degrees", hall, std::numbers::pi / 4.);
+    compare("hall with boxes, 10 degrees below the horizon", hall, std::numbers::pi / 18.);
 }
 
 }  // namespace photonav

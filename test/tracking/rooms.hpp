@@ -60,6 +60,12 @@ inline Vector6 errorOf(const Alignment& a, const Pose& truth) {
     return logSE3(truth * a.T_c_w.inverse());
 }
 
+/// Normalised squared error per degree of freedom: about 1 in the mean if covariances are right.
+inline double neesOf(const Alignment& a, const Pose& truth) {
+    const Vector6 xi = errorOf(a, truth);
+    return xi.dot(a.covariance.ldlt().solve(xi)) / 6.;
+}
+
 inline constexpr double kDown = std::numbers::pi / 2.;
 inline constexpr double kOblique = std::numbers::pi / 4.;
 

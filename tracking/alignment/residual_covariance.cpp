@@ -176,6 +176,11 @@ class Light {
     double variance_ = 0.;
 };
 
+/// Pixel in the middle of a block.
+Eigen::Array2d middleOf(const ImageBlock& block, double side) {
+    return side * (block.index.cast<double>() + 0.5) - 0.5;
+}
+
 /// The image's content displaced by a field of a standard deviation of `sigma` pixels. A rotation
 /// of the camera displaces a block in the same way.
 Matrix8 scatterByDisplacement(const std::vector<ImageBlock>& blocks, const Eigen::Array2i& size,
@@ -184,7 +189,7 @@ Matrix8 scatterByDisplacement(const std::vector<ImageBlock>& blocks, const Eigen
     Matrix8 sum = Matrix8::Zero();
     for (int axis = 0; axis < 2; ++axis) {
         sum += scatterOfField(blocks, size, sigma * sigma, [&](const ImageBlock& block) -> Vector8 {
-            const Eigen::Array2d pixel = side * (block.index.cast<double>() + 0.5) - 0.5;
+            const Eigen::Array2d pixel = middleOf(block, side);
             const Eigen::Vector3d p = camera.unproject(pixel.x(), pixel.y());
             const Eigen::Matrix2d byRotation =  // pixels by radians about x and y
                 (camera.projectionJacobian(p) * -hat(p)).leftCols<2>();
@@ -197,15 +202,16 @@ Matrix8 scatterByDisplacement(const std::vector<ImageBlock>& blocks, const Eigen
 /// Images darker toward the corners, or brighter, by the share `sigma`.
 Matrix8 scatterByVignetting(const std::vector<ImageBlock>& blocks, const Camera& camera,
                             double sigma) {
+    if (sigma == 0.) return Matrix8::Zero();
     const double side = ImageBlock::side(camera);
     const Eigen::Array2d centre(camera.cx(), camera.cy());
     const Eigen::Array2d corner = centre.max(Eigen::Array2d(camera.width, camera.height) - centre);
     Vector8 sum = Vector8::Zero();
     for (const ImageBlock& block : blocks) {
-        const Eigen::Array2d pixel = side * (block.index.cast<double>() + 0.5) - 0.5;
-        sum += (pixel - centre).square().sum() / corner.square().sum() * block.AtA.col(6);
+        sum += (middleOf(block, side) - centre).square().sum() * block.AtA.col(6);
     }
-    return sigma * sigma * sum * sum.transpose();
+    sum *= sigma / corner.square().sum();
+    return sum * sum.transpose();
 }
 
 /// Images blurrier, or less blurred, than the model.
