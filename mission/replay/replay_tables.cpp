@@ -35,11 +35,13 @@ std::string row(const ReplayedFrame& frame, const EvaluatedFrame* evaluated) {
         fmt::format("{},{:.6f},{},{}", frame.index, frame.timestamp, nameOf(frame.status),
                     keyframe ? fmt::format("{:.6f}", *keyframe) : "");
     if (frame.status == FrameStatus::unreadable) {
-        line += ",,,,,,,";
+        line += ",,,,,,,,";
     } else {
         const Alignment& a = frame.tracked.alignment;
-        line += fmt::format(",{},{:.4f},{:.6f},{:.4f},{:.5f},{:.5f},{:.3f}", a.iterations,
-                            a.overlap, a.residual.rms, a.residual.unexplained, a.exposure.gain,
+        const std::optional<SharedTexture>& texture = a.residual.texture;
+        line += fmt::format(",{},{:.4f},{:.6f},{:.4f},{},{:.5f},{:.5f},{:.3f}", a.iterations,
+                            a.overlap, a.residual.rms, a.residual.unexplained,
+                            texture ? fmt::format("{:.3f}", texture->share) : "", a.exposure.gain,
                             a.exposure.offset, 1e3 * frame.seconds);
     }
     if (evaluated) {
@@ -68,8 +70,8 @@ std::vector<StampedBelief> beliefsOf(const ReplayRun& run) {
 void writeReplayTables(const std::filesystem::path& folder, const ReplayRun& run,
                        const ReplayErrors& errors) {
     std::string csv =
-        "frame,timestamp_s,status,keyframe_s,iterations,overlap,residual_rms,unexplained,gain,"
-        "offset,"
+        "frame,timestamp_s,status,keyframe_s,iterations,overlap,residual_rms,unexplained,texture,"
+        "gain,offset,"
         "time_ms,position_error_m,rotation_error_deg,position_sigma_m,rotation_sigma_deg,"
         "nees_per_dof,verdict\n";
     auto evaluated = errors.frames.begin();

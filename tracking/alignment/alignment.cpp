@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "alignment/residual_covariance.hpp"
@@ -23,6 +24,9 @@ std::string describe(const Alignment& a, const TrustOptions& options) {
         case Verdict::lostResidual:
             return fmt::format("lost: {:.0f} % of the image unexplained, residual {:.3f}",
                                100. * a.residual.unexplainedCoarse(), a.residual.rms);
+        case Verdict::lostTexture:
+            return fmt::format("lost: {:.0f} % of the texture is where the model has it",
+                               100. * std::max(0., a.residual.texture->share));
         case Verdict::lostImplausible:
             return "lost: the best pose is not one that the prior allows";
         case Verdict::lostExposure:

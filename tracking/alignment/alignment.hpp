@@ -19,6 +19,7 @@ enum class Verdict {
     degenerate,       ///< converged, but the image does not determine all directions
     lostOverlap,      ///< too little of the model in view
     lostResidual,     ///< predicted and observed image differ too much
+    lostTexture,      ///< most of the predicted texture is not where it was predicted
     lostDivergence,   ///< no minimum found
     lostImplausible,  ///< the pose is too far from the prior
     lostExposure,     ///< the fit needs an implausible gain
@@ -59,6 +60,9 @@ struct TrustOptions {
     /// counted.
     double maxUnexplained = 0.4;
     double residualSigmas = 3.;  ///< see maxUnexplained [standard deviations of the image noise]
+    /// Least share of the predicted texture that the image must show (SharedTexture), if the model
+    /// can be rendered and the covariance is measured. Smaller ones by chance are accepted.
+    double minTexture = 0.5;
     /// A direction is open if its standard deviation by the image alone is larger than this [rad;
     /// translations in units of the mean depth].
     double openSigma = 0.02;
@@ -84,6 +88,7 @@ struct ResidualStatistics {
     /// Mean square of the image content that is finer than the model's cells, noise included. No
     /// pose explains it. 0 for a mesh, and if the residuals are within the image noise.
     double finer = 0.;
+    std::optional<SharedTexture> texture;  ///< none: not measured
 
     /// `unexplained` without the content that is finer than the model's cells.
     double unexplainedCoarse() const {
@@ -92,6 +97,11 @@ struct ResidualStatistics {
                               : 0.;
     }
 };
+
+/// Whether the image contradicts most of the predicted texture (TrustOptions::minTexture).
+inline bool isTextureElsewhere(const ResidualStatistics& residual, const TrustOptions& trust) {
+    return residual.texture && residual.texture->isBelow(trust.minTexture);
+}
 
 /// Names of the components of the camera's twist: translations along x, y, z of the camera frame,
 /// then rotations about x, y, z.

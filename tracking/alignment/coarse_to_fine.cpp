@@ -83,6 +83,7 @@ class Search {
     Loss loss_;
     Matrix6 slope_ = Matrix6::Identity();  ///< M of measuredSlope(), times that of sharedSlope()
     Iterate at_;
+    std::optional<SharedTexture> texture_;  ///< at the minimum
     int iterations_ = 0;
     bool isCompared_ = false;  ///< at_ is the last comparison
     bool done_ = false;        ///< with this level, as the last step was small
@@ -214,6 +215,7 @@ bool Search::measureSlope() {
 /// weighted, and prior agree.
 MeasuredInformation Search::measured() {
     if (!isCompared_) at_ = evaluate(at_.T_c_w, at_.exposure);
+    texture_ = comparison_.sharedTexture(level_, at_.exposure);
     MeasuredInformation image = respondingBy(
         slope_, measuredInformation(comparison_.blocks(level_, at_.T_c_w, at_.exposure, loss_),
                                     options_.photometric, options_.exposure, options_.modelErrors,
@@ -261,6 +263,7 @@ Alignment Search::run(const Pose& T_start) {
     LastIterate last{confined(at_.equations, slope_), comparison_.pixels(), image};
     last.finer = finerThanModel(last.equations);
     last.prior = transportedPrior();
+    last.texture = texture_;
     conclude(result, last, options_);
     result.residual.robustSigma = comparison_.robustSigma();
     return result;

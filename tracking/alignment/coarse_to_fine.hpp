@@ -72,6 +72,11 @@ class Comparison {
     virtual Matrix6 sharedSlope(std::size_t /*level*/, const Exposure& /*exposure*/) const {
         return Matrix6::Identity();
     }
+    /// sharedTexture() of model and image in the last comparison; none: not known.
+    virtual std::optional<SharedTexture> sharedTexture(std::size_t /*level*/,
+                                                       const Exposure& /*exposure*/) const {
+        return {};
+    }
     /// A function that takes the view predicted at one pose as the observed image and compares it
     /// with the view predicted at another pose; empty if the model cannot be rendered from other
     /// poses.

@@ -78,7 +78,14 @@ class DenseAligner::RenderedModel : public Comparison {
 
     Matrix6 sharedSlope(std::size_t level, const Exposure& exposure) const override {
         if (options_.modelNoise == ModelNoise::none) return Matrix6::Identity();
-        return levels_[level].compare.sharedSlope(exposure);
+        return photonav::sharedSlope(levels_[level].compare.tiles(exposure));
+    }
+
+    std::optional<SharedTexture> sharedTexture(std::size_t level,
+                                               const Exposure& exposure) const override {
+        return photonav::sharedTexture(levels_[level].compare.tiles(exposure),
+                                       options_.photometric.sigma / exposure.gain,
+                                       options_.modelNoise == ModelNoise::measured);
     }
 
     AgainstPrediction predictionAsImage(std::size_t level, const Pose& T_image_w) override {

@@ -175,7 +175,6 @@ GradientTile ViewComparison::tileAt(unsigned left, unsigned top, double gain) co
     const unsigned bottom = std::min(top + kTile, camera_.height - 1);
     const double aspect = camera_.fy() / camera_.fx();
     GradientTile tile;
-    double count = 0.;
     for (unsigned v = top; v < bottom; ++v) {
         for (unsigned u = left; u < right; ++u) {
             const std::size_t i = v * pitch_ + u;
@@ -187,20 +186,21 @@ GradientTile ViewComparison::tileAt(unsigned left, unsigned top, double gain) co
             const Eigen::Vector2d g = gradientOf(intensity_), o = gradientOf(observed_) / gain;
             tile.model += g * g.transpose();
             tile.shared += 0.5 * (g * o.transpose() + o * g.transpose());
+            tile.observed += o.squaredNorm();
             tile.x += (u - camera_.cx()) / camera_.fx();
             tile.y += (v - camera_.cy()) / camera_.fy();
             tile.inverseDepth += inverseDepth_[i];
-            ++count;
+            ++tile.pixels;
         }
     }
-    if (count == 0.) return tile;
-    tile.x /= count;
-    tile.y /= count;
-    tile.inverseDepth /= count;
+    if (tile.pixels == 0) return tile;
+    tile.x /= tile.pixels;
+    tile.y /= tile.pixels;
+    tile.inverseDepth /= tile.pixels;
     return tile;
 }
 
-Matrix6 ViewComparison::sharedSlope(const Exposure& exposure) const {
+std::vector<GradientTile> ViewComparison::tiles(const Exposure& exposure) const {
     std::vector<GradientTile> tiles;
     for (unsigned top = 1; top + 1 < camera_.height; top += kTile) {
         for (unsigned left = 1; left + 1 < camera_.width; left += kTile) {
@@ -208,7 +208,7 @@ Matrix6 ViewComparison::sharedSlope(const Exposure& exposure) const {
             if (tile.inverseDepth > 0.) tiles.push_back(tile);
         }
     }
-    return photonav::sharedSlope(tiles);
+    return tiles;
 }
 
 std::vector<ImageBlock> ViewComparison::blocks(const Exposure& exposure, const Loss& loss) const {

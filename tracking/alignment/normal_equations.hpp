@@ -110,9 +110,8 @@ class ViewComparison {
     /// The equations of the last call by blocks of the image, for the same arguments.
     std::vector<ImageBlock> blocks(const Exposure& exposure, const Loss& loss) const;
 
-    /// sharedSlope() of the gradients of the last prediction and of the last observed image, which
-    /// are divided by the gain.
-    Matrix6 sharedSlope(const Exposure& exposure) const;
+    /// The gradients of the last prediction, and of the last observed image divided by the gain.
+    std::vector<GradientTile> tiles(const Exposure& exposure) const;
 
   private:
     void load(const View& predicted, const ImageF& observed);

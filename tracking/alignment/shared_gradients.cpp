@@ -2,6 +2,7 @@
 #include "alignment/shared_gradients.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/eigensystem.hpp"
 
@@ -10,6 +11,8 @@ namespace {
 
 constexpr double kByChance = 3.;      // standard deviations
 constexpr double kNoGradient = 1e-9;  // variance of a gradient that makes J^T J invertible
+/// Squared standard deviation of a tile's share below which its weight does not grow.
+constexpr double kClear = 0.1;
 
 /// Motion of a point in the image, in units of the focal length, with the camera's pose.
 struct TileMotion {
@@ -63,6 +66,28 @@ Matrix6 sharedSlope(const std::vector<GradientTile>& tiles) {
         kappa[i] = certainly(kappa[i], scatterAlong(V.col(i), tiles, kappa[i]));
     }
     return V * kappa.asDiagonal() * V.transpose() * model;
+}
+
+SharedTexture sharedTexture(const std::vector<GradientTile>& tiles, double sigma,
+                            bool isModelNoisy) {
+    const double noise = 2. * sigma * sigma;  // of central differences
+    const auto weight = [&](const GradientTile& tile) {
+        const double model = tile.model.trace();
+        if (isModelNoisy && model < 2. * noise * tile.pixels) return 0.;
+        return 1. / (kClear * std::max(model, tile.observed) + noise);
+    };
+    double model = 0., shared = 0., scatter = 0.;
+    for (const GradientTile& tile : tiles) {
+        model += weight(tile) * tile.model.trace();
+        shared += weight(tile) * tile.shared.trace();
+    }
+    if (!(model > 0.)) return {};
+    const double share = shared / model;
+    for (const GradientTile& tile : tiles) {
+        const double rest = tile.shared.trace() - share * tile.model.trace();
+        scatter += std::pow(weight(tile) * rest, 2);
+    }
+    return {share, std::sqrt(scatter) / model};
 }
 
 }  // namespace photonav

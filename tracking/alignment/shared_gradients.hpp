@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The share of a model's gradients that the image has as well. A model that was made of images
-// contains their noise, whose gradients look like texture.
+// The share of a model's gradients that the image has as well: noise of a model that was made of
+// images looks like texture, and a scene may have changed since the model was made.
 #pragma once
 
 #include <vector>
 
+#include "geometry/constants.hpp"
 #include "geometry/types.hpp"
 
 namespace photonav {
@@ -17,6 +18,8 @@ struct GradientTile {
     Eigen::Matrix2d model = Eigen::Matrix2d::Zero();  ///< sum of g g^T, g gradient of the model
     /// Symmetric part of the sum of g o^T, o gradient of the image.
     Eigen::Matrix2d shared = Eigen::Matrix2d::Zero();
+    double observed = 0.;  ///< sum of |o|^2
+    int pixels = 0;
 };
 
 /// The slope M of the image relative to the model: the image responds to a displacement x of the
@@ -32,5 +35,23 @@ struct GradientTile {
 /// because images are sharper than maps.
 /// @return M; rows and columns refer to the left perturbation (rho, phi) of the camera pose
 Matrix6 sharedSlope(const std::vector<GradientTile>& tiles);
+
+/// How much of the texture that a model predicts an image shows at the predicted pixels.
+struct SharedTexture {
+    double share = 0.;         ///< 1: all; 0: image and model are unrelated
+    double sigma = kInfinity;  ///< standard deviation of `share` by the scatter of the tiles
+
+    /// Whether the share is larger, or smaller, than a value by more than chance.
+    bool isAbove(double value) const { return share - 2. * sigma > value; }
+    bool isBelow(double value) const { return share + 2. * sigma < value; }
+};
+
+/// The regression of the image's gradients on the model's. Each tile in which the texture exceeds
+/// the noise has the same weight, whatever its contrast. (The variance of the whole image is
+/// explained by an object of high contrast, even if that has moved and everything else disagrees.)
+/// @param sigma standard deviation of the image noise [grey value]
+/// @param isModelNoisy tiles whose gradients are not larger than those of image noise are left out
+SharedTexture sharedTexture(const std::vector<GradientTile>& tiles, double sigma,
+                            bool isModelNoisy);
 
 }  // namespace photonav

@@ -64,9 +64,10 @@ UncertainPose LossOfTracking::widened(const UncertainPose& T_c_w) const {
 
 bool LossOfTracking::isExplained(const Alignment& alignment, const TrustOptions& trust,
                                  double sigma) const {
-    return alignment.residual.rms <= trust.residualSigmas * sigma ||
-           alignment.residual.unexplainedCoarse() <=
-               options_.maxUnexplainedShare * trust.maxUnexplained;
+    const ResidualStatistics& residual = alignment.residual;
+    if (residual.texture && !residual.texture->isAbove(trust.minTexture)) return false;
+    return residual.rms <= trust.residualSigmas * sigma ||
+           residual.unexplainedCoarse() <= options_.maxUnexplainedShare * trust.maxUnexplained;
 }
 
 }  // namespace photonav

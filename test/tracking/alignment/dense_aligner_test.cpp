@@ -221,6 +221,42 @@ TEST(DenseAligner, ReportsThatItIsLost) {
     EXPECT_EQ(aligner.align(image, confident).verdict, Verdict::lostImplausible);
 }
 
+/// A floor of faint texture, and a box of strong contrast with its corner at x.
+Scene boxOnFaintFloor(double x) {
+    Scene scene = test::floorOf(valueNoise({.size = {20., 20.},
+                                            .cells = {0.3, 0.08},
+                                            .amplitudes = {0.03, 0.03},
+                                            .mean = 0.5,
+                                            .seed = 4}));
+    addBox(scene, {x, -0.3, 0.}, {x + 0.6, 0.3, 0.6},
+           addTexture(scene, checker({.cell = 0.17, .dark = 0.2, .light = 0.8})));
+    return scene;
+}
+
+/// Its contrast is most of the image's variance, and where it is now explains all of this.
+TEST(DenseAligner, AMovedObjectDoesNotMoveTheCamera) {
+    const MeshRenderer before(boxOnFaintFloor(1.)), now(boxOnFaintFloor(1.15));
+    AlignmentOptions options;
+    options.measureCovariance = true;
+    DenseAligner aligner(before, camera(), options);
+    AlignmentOptions trusting = options;
+    trusting.trust.minTexture = -1.;
+    DenseAligner deceived(before, camera(), trusting);
+    const Matrix6 prior = Vector6{{0.1, 0.1, 0.1, 0.03, 0.03, 0.03}}.cwiseAbs2().asDiagonal();
+    int wrong = 0;
+    for (int k = 0; k < 8; ++k) {
+        const Pose truth = lookFrom({-0.4, -0.4 + 0.1 * k, 1.2}, 0.4, 0.05 * k);
+        const ImageF image = observe(now, truth, 0.02, k);
+        const UncertainPose belief{expSE3(0.05 * Vector6::Unit(0)) * truth, prior};
+        const Alignment a = aligner.align(image, belief);
+        EXPECT_TRUE(isLost(a.verdict) || test::neesOf(a, truth) < 5.) << k << " " << describe(a);
+        wrong += test::neesOf(deceived.align(image, belief), truth) > 25. ? 1 : 0;
+        EXPECT_EQ(aligner.align(observe(before, truth, 0.02, k), belief).verdict,
+                  Verdict::converged);
+    }
+    EXPECT_GT(wrong, 2) << "the case that this is about";
+}
+
 TEST(DenseAligner, IsLostInTheDarkOverWhite) {
     const MeshRenderer white(test::floorOf(uniformTexture(0.9)));
     const Pose truth = lookFrom({0., 0., 2.}, kDown);

@@ -31,7 +31,7 @@ struct Compared {
     Compared(const View& model, const ImageF& observed, const Exposure& exposure = {}) {
         ViewComparison compare(tileCamera(), {});
         information = compare(model, observed, exposure, {}).AtA.topLeftCorner<6, 6>();
-        slope = compare.sharedSlope(exposure);
+        slope = sharedSlope(compare.tiles(exposure));
     }
     /// Share of the information along a direction that is left.
     double leftAlong(const Vector6& xi) const {
@@ -74,6 +74,51 @@ TEST(SharedGradients, NoiseIsNotShared) {
     // The same noise in both cannot be told from texture: maps and images must not share it.
     const View same = withNoise(blank(), kSigma, random);
     EXPECT_GT(Compared(same, same.intensity).least(), 0.99);
+}
+
+SharedTexture textureSharedBy(const View& model, const ImageF& observed, bool isModelNoisy) {
+    ViewComparison compare(tileCamera(), {});
+    compare(model, observed, {}, {});
+    return sharedTexture(compare.tiles({}), kSigma, isModelNoisy);
+}
+
+TEST(SharedTexture, IsAllOfTheSamePlaceAndNothingOfAnother) {
+    std::mt19937_64 random(1);
+    for (const bool isModelNoisy : {false, true}) {
+        const View here = viewOf(test::room(), kInRoom);
+        const View elsewhere = viewOf(test::room(), lookFrom({4., 3., 1.5}, 0.5, 2.));
+        const SharedTexture same =
+            textureSharedBy(here, test::noisy(here.intensity, kSigma, random), isModelNoisy);
+        EXPECT_NEAR(same.share, 1., 3. * same.sigma);
+        EXPECT_LT(same.sigma, 0.02);
+        const SharedTexture other =
+            textureSharedBy(here, test::noisy(elsewhere.intensity, kSigma, random), isModelNoisy);
+        EXPECT_NEAR(other.share, 0., 3. * other.sigma);
+        EXPECT_LT(other.sigma, 0.05);
+    }
+}
+
+TEST(SharedTexture, OfAFaintTextureIsKnownByManyPixels) {
+    const MeshRenderer faint(test::floorOf(valueNoise(
+        {.size = {20., 20.}, .cells = {0.2}, .amplitudes = {0.01}, .mean = 0.5, .seed = 3})));
+    std::mt19937_64 random(2);
+    const View here = viewOf(faint, lookFrom({0., 0., 1.}, test::kDown));
+    const View elsewhere = viewOf(faint, lookFrom({2., 1., 1.}, test::kDown));
+    EXPECT_TRUE(
+        textureSharedBy(here, test::noisy(here.intensity, 0.01, random), false).isAbove(0.5));
+    EXPECT_TRUE(
+        textureSharedBy(here, test::noisy(elsewhere.intensity, 0.01, random), false).isBelow(0.5));
+}
+
+TEST(SharedTexture, OfNoiseIsNotKnown) {
+    std::mt19937_64 random(3);
+    const View noise = withNoise(blank(), 0.5 * kSigma, random);
+    const ImageF observed = test::noisy(blank().intensity, kSigma, random);
+    EXPECT_TRUE(textureSharedBy(noise, observed, false).isBelow(0.5)) << "an exact model";
+    const SharedTexture share = textureSharedBy(noise, observed, true);
+    EXPECT_FALSE(share.isBelow(0.5));
+    EXPECT_FALSE(share.isAbove(0.5));
+    EXPECT_FALSE(textureSharedBy(blank(), observed, false).isBelow(0.5)) << "no texture at all";
 }
 
 /// With information A = T + N of texture and noise, A M is T, and T A^-1 T is left.
