@@ -7,6 +7,7 @@
 
 #include "alignment/conclusion.hpp"
 #include "alignment/measured_slope.hpp"
+#include "alignment/search_grid.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 
@@ -20,6 +21,8 @@ constexpr int kMeasurements = 3;  // of the slope, at most
 /// Relative noise of the cost. The used pixels change from pose to pose, and with them the cost, by
 /// more than small steps do. (Steps by J M do not quite follow the gradient of the cost, either.)
 constexpr double kCostNoise = 1e-3;
+/// Displacement of the texture that a covariance allows [standard deviations].
+constexpr double kTextureSigmas = 1.5;
 
 /// A pose and the normal equations there.
 struct Iterate {
@@ -69,6 +72,8 @@ class Search {
     bool isSmall(const Vector6& xi, const Matrix6& information) const;
     std::optional<Matrix6> transportedPrior() const;
     double finerThanModel(const NormalEquations& e) const;
+    std::size_t levelAsUncertainAs(const Alignment& a) const;
+    void judgeTexture(Alignment& a);
     /// Factor that turns sums of squares into -2 log likelihoods.
     double weight() const {
         const PhotometricOptions& p = options_.photometric;
@@ -83,7 +88,6 @@ class Search {
     Loss loss_;
     Matrix6 slope_ = Matrix6::Identity();  ///< M of measuredSlope(), times that of sharedSlope()
     Iterate at_;
-    std::optional<SharedTexture> texture_;  ///< at the minimum
     int iterations_ = 0;
     bool isCompared_ = false;  ///< at_ is the last comparison
     bool done_ = false;        ///< with this level, as the last step was small
@@ -215,7 +219,6 @@ bool Search::measureSlope() {
 /// weighted, and prior agree.
 MeasuredInformation Search::measured() {
     if (!isCompared_) at_ = evaluate(at_.T_c_w, at_.exposure);
-    texture_ = comparison_.sharedTexture(level_, at_.exposure);
     MeasuredInformation image = respondingBy(
         slope_, measuredInformation(comparison_.blocks(level_, at_.T_c_w, at_.exposure, loss_),
                                     options_.photometric, options_.exposure, options_.modelErrors,
@@ -233,6 +236,24 @@ double Search::finerThanModel(const NormalEquations& e) const {
     const double noise = options_.trust.residualSigmas * options_.photometric.sigma;
     const bool isNoise = e.sumSquares <= e.count * noise * noise;
     return isNoise ? 0. : comparison_.finerThanModel(1. / e.meanInverseDepth);
+}
+
+/// The finest level on which the covariance moves the texture by little more than a pixel. An image
+/// that leaves directions open must agree in what it shows, whatever the covariance.
+std::size_t Search::levelAsUncertainAs(const Alignment& a) const {
+    if (a.verdict == Verdict::degenerate) return 0;
+    const ImageMotion motion = imageMotionOf(a.covariance, comparison_.camera(0), a.meanDepth);
+    const double pixels = kTextureSigmas * motion.sigmas.maxCoeff();
+    const int level = static_cast<int>(std::ceil(std::log2(std::max(1., pixels))));
+    return std::min(static_cast<std::size_t>(level), comparison_.levels() - 1);
+}
+
+/// Whether the texture is where the alignment claims that it is.
+void Search::judgeTexture(Alignment& a) {
+    const std::size_t level = levelAsUncertainAs(a);
+    if (level > 0) comparison_.compare(level, at_.T_c_w, at_.exposure, loss_);
+    a.residual.texture = comparison_.sharedTexture(level, at_.exposure);
+    if (isTextureElsewhere(a.residual, options_.trust)) a.verdict = Verdict::lostTexture;
 }
 
 Alignment Search::run(const Pose& T_start) {
@@ -263,9 +284,9 @@ Alignment Search::run(const Pose& T_start) {
     LastIterate last{confined(at_.equations, slope_), comparison_.pixels(), image};
     last.finer = finerThanModel(last.equations);
     last.prior = transportedPrior();
-    last.texture = texture_;
     conclude(result, last, options_);
     result.residual.robustSigma = comparison_.robustSigma();
+    if (options_.measureCovariance && !isLost(result.verdict)) judgeTexture(result);
     return result;
 }
 

@@ -71,7 +71,6 @@ Verdict verdictOf(const Alignment& a, const AlignmentOptions& options) {
     if (a.residual.rms > noise && a.residual.unexplainedCoarse() > trust.maxUnexplained) {
         return Verdict::lostResidual;
     }
-    if (isTextureElsewhere(a.residual, trust)) return Verdict::lostTexture;
     if (options.exposure && isAtLimit(a.exposure.gain, trust.maxGain)) return Verdict::lostExposure;
     return a.verdict;
 }
@@ -82,7 +81,6 @@ void conclude(Alignment& a, const LastIterate& last, const AlignmentOptions& opt
     a.overlap = last.equations.count / static_cast<double>(last.pixels);
     a.residual = statisticsOf(last.equations, a.exposure);
     a.residual.finer = last.finer;
-    a.residual.texture = last.texture;
     estimateBlur(last.equations, options.photometric, a);
     const double meanInverseDepth = last.equations.meanInverseDepth;
     a.meanDepth = meanInverseDepth > 0. ? 1. / meanInverseDepth : 1.;

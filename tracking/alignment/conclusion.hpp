@@ -14,7 +14,6 @@ struct LastIterate {
     std::size_t pixels = 0;          ///< largest number of pixels that could be used
     MeasuredInformation image = {};  ///< information of the image about the pose
     double finer = 0.;               ///< see ResidualStatistics
-    std::optional<SharedTexture> texture = {};
     std::optional<Matrix6> prior = {};  ///< covariance of the prior, transported() to the iterate
 };
 

@@ -83,9 +83,10 @@ class DenseAligner::RenderedModel : public Comparison {
 
     std::optional<SharedTexture> sharedTexture(std::size_t level,
                                                const Exposure& exposure) const override {
-        return photonav::sharedTexture(levels_[level].compare.tiles(exposure),
-                                       options_.photometric.sigma / exposure.gain,
-                                       options_.modelNoise == ModelNoise::measured);
+        const double sigma = std::ldexp(options_.photometric.sigma, -static_cast<int>(level));
+        return photonav::sharedTexture(
+            levels_[level].compare.tiles(exposure), sigma / exposure.gain,
+            options_.modelNoise == ModelNoise::measured || options_.cellSize > 0.);
     }
 
     AgainstPrediction predictionAsImage(std::size_t level, const Pose& T_image_w) override {
