@@ -224,11 +224,11 @@ TEST(DenseAligner, ReportsThatItIsLost) {
 /// A floor of faint texture, and a box of strong contrast with its corner at x.
 Scene boxOnFaintFloor(double x) {
     Scene scene = test::floorOf(valueNoise({.size = {20., 20.},
-                                            .cells = {0.3, 0.08},
+                                            .cells = {0.12, 0.05},
                                             .amplitudes = {0.03, 0.03},
                                             .mean = 0.5,
                                             .seed = 4}));
-    addBox(scene, {x, -0.3, 0.}, {x + 0.6, 0.3, 0.6},
+    addBox(scene, {x, -0.2, 0.}, {x + 0.4, 0.2, 0.4},
            addTexture(scene, checker({.cell = 0.17, .dark = 0.2, .light = 0.8})));
     return scene;
 }
@@ -245,7 +245,7 @@ TEST(DenseAligner, AMovedObjectDoesNotMoveTheCamera) {
     const Matrix6 prior = Vector6{{0.1, 0.1, 0.1, 0.03, 0.03, 0.03}}.cwiseAbs2().asDiagonal();
     int wrong = 0;
     for (int k = 0; k < 8; ++k) {
-        const Pose truth = lookFrom({-0.4, -0.4 + 0.1 * k, 1.2}, 0.4, 0.05 * k);
+        const Pose truth = lookFrom({-0.4, -0.4 + 0.1 * k, 1.4}, 0.7, 0.05 * k);
         const ImageF image = observe(now, truth, 0.02, k);
         const UncertainPose belief{expSE3(0.05 * Vector6::Unit(0)) * truth, prior};
         const Alignment a = aligner.align(image, belief);

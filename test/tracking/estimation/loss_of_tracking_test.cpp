@@ -123,12 +123,17 @@ TEST(LossOfTracking, EndsByImagesThatExplainEnough) {
     const LossOfTracking loss({.maxUnexplainedShare = 0.5});
     const TrustOptions trust{.maxUnexplained = 0.4, .residualSigmas = 3.};
     Alignment alignment;
-    alignment.residual = {.rms = 0.1, .unexplained = 0.19};
+    alignment.residual.rms = 0.1;
+    alignment.residual.unexplained = 0.19;
     EXPECT_TRUE(loss.isExplained(alignment, trust, 0.01));
     alignment.residual.unexplained = 0.3;  // enough to be tracked
     EXPECT_FALSE(loss.isExplained(alignment, trust, 0.01));
     alignment.residual.rms = 0.02;  // noise
     EXPECT_TRUE(loss.isExplained(alignment, trust, 0.01));
+    alignment.residual.texture = {.share = 0.9, .sigma = 0.1};
+    EXPECT_TRUE(loss.isExplained(alignment, trust, 0.01));
+    alignment.residual.texture->sigma = 0.3;  // this may be chance
+    EXPECT_FALSE(loss.isExplained(alignment, trust, 0.01));
 }
 
 }  // namespace
