@@ -51,7 +51,8 @@ std::shared_ptr<TexturedOcTree> withoutTexture(const TexturedOcTree& map) {
 }
 
 /// The first plan goes around the box, which the first flight met on its way.
-/// How much sooner a flight ends depends on its seed: docs/explore.md has the mean of several.
+/// How much sooner a flight ends depends on its seed: docs/experiments/explorations.md has the
+/// mean of several.
 TEST_F(KnownMap, TheFirstPlanOfTheSecondFlightKnowsTheDetour) {
     const ExplorationResult first = flown(test::roomToExplore(), nullptr);
     ASSERT_TRUE(first.hasArrived()) << first.reason;
