@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "geometry/camera.hpp"
 #include "render/mesh_renderer.hpp"
@@ -16,15 +17,20 @@ inline Camera trackingCamera(unsigned width = 188) {
 }
 
 /// A hall of 8 x 8 x 3 m with textured floor and walls and twelve boxes.
-inline Scene furnishedHall() {
+/// @param moved distance by which the boxes stand elsewhere, along x [m]
+/// @param contrast contrast of floor and walls relative to the boxes
+inline Scene furnishedHall(double moved = 0., double contrast = 1.) {
     Scene scene;
-    const auto floor = addTexture(scene, valueNoise({.size = {8., 8.}, .seed = 1}));
-    const auto walls = addTexture(scene, valueNoise({.size = {4., 3.}, .seed = 2}));
+    const std::vector<double> amplitudes(3, contrast * 0.4 / 3.);
+    const auto floor =
+        addTexture(scene, valueNoise({.size = {8., 8.}, .amplitudes = amplitudes, .seed = 1}));
+    const auto walls =
+        addTexture(scene, valueNoise({.size = {4., 3.}, .amplitudes = amplitudes, .seed = 2}));
     const auto crates = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 3}));
     addBox(scene, {0., 0., 0.}, {8., 8., 3.}, walls, BoxInside::hollow);
     addPlane(scene, {0., 0., 0.01}, {8., 0., 0.}, {0., 8., 0.}, floor);
     for (int i = 0; i < 12; ++i) {
-        const Eigen::Vector3d corner(1. + 0.5 * i, 1. + 1.7 * (i * 5 % 4), 0.);
+        const Eigen::Vector3d corner(1. + 0.5 * i + moved, 1. + 1.7 * (i * 5 % 4), 0.);
         addBox(scene, corner, corner + Eigen::Vector3d(0.4, 0.4, 0.5), crates);
     }
     return scene;

@@ -18,6 +18,10 @@ constexpr double kOpen = 1e-6;
 constexpr double kOpenSigma = 10.;     // of directions that the image leaves open [m], [rad]
 constexpr double kPixelNoise = 1e-3;   // least standard deviation of a pixel: 8 bits
 constexpr double kFieldLength = 0.25;  // correlation length of gain and displacement [image widths]
+constexpr double kSaturation = 0.1;    // see weightsByArea()
+constexpr double kByChance = 2.;       // see disagreement(), per degree of freedom
+/// Share of the covariance of the pose that differences of two estimates are too small to matter.
+constexpr double kNoDifference = 1e-3;
 
 /// H after eliminating the exposure, in coordinates y (x = V y) of the directions that the image
 /// observes.
@@ -131,6 +135,57 @@ Matrix8 scatterOfField(const std::vector<ImageBlock>& blocks, const Eigen::Array
     Matrix8 sum = Matrix8::Zero();
     for (const Vector8& p : pull) sum += p * p.transpose();
     return 2. / EIGEN_PI * variance * sum;
+}
+
+/// Weights by which each block with more texture than noise counts alike, whatever its contrast.
+/// Their mean over the pixels is 1.
+std::vector<double> weightsByArea(const std::vector<ImageBlock>& blocks, double focal,
+                                  double noise) {
+    std::vector<double> weights;
+    double sum = 0., pixels = 0.;
+    for (const ImageBlock& block : blocks) {
+        const double gradients = (block.AtA(3, 3) + block.AtA(4, 4)) / (focal * focal);
+        weights.push_back(1. / (kSaturation * gradients + 0.5 * noise));
+        sum += weights.back() * block.AtA(7, 7);
+        pixels += block.AtA(7, 7);
+    }
+    for (double& weight : weights) weight *= pixels / sum;
+    return weights;
+}
+
+/// Covariance d d^T by the difference d of two estimates of the same pose, by weights of the
+/// contrast and of the area (Hausman, Specification Tests in Econometrics, 1978). Where the model
+/// is right they differ by chance alone; where an object of high contrast has moved, the first one
+/// follows the object, and the second one the rest of the scene. The covariance of d follows from
+/// the scatter of the blocks. What d may be by chance is subtracted.
+/// @param x the step to the minimum of the image alone
+/// @param covariance of the pose; all matrices refer to y
+MatrixXd disagreement(const std::vector<ImageBlock>& blocks, const Observed& seen, const Vector8& x,
+                      const std::vector<double>& weights, const PhotometricOptions& photometric,
+                      const std::optional<ExposurePrior>& prior, const MatrixXd& covariance) {
+    Matrix8 H = Matrix8::Zero();
+    Vector8 gradient = Vector8::Zero();
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        H += weights[b] * blocks[b].AtA;
+        gradient += weights[b] * blocks[b].Atr;
+    }
+    const Observed byArea(H, photometric, prior);
+    const auto solve = [&](const Observed& o) {  // A^T r -> y
+        return (seen.toY * o.root.topRows<6>() * o.root.transpose()).eval();
+    };
+    const auto toArea = solve(byArea), toMinimum = solve(seen);
+    const Vector8 xByArea = byArea.root * (byArea.root.transpose() * gradient);
+    const Eigen::VectorXd d = seen.toY * (xByArea - x).head<6>();
+    MatrixXd chance = kNoDifference * covariance;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        const Eigen::VectorXd draw =
+            weights[b] * (toArea * (blocks[b].Atr - blocks[b].AtA * xByArea)) -
+            toMinimum * (blocks[b].Atr - blocks[b].AtA * x);
+        chance += draw * draw.transpose();
+    }
+    const double squared = d.dot(chance.ldlt().solve(d)) / static_cast<double>(d.size());
+    if (!(squared > kByChance)) return MatrixXd::Zero(d.size(), d.size());
+    return (1. - kByChance / squared) * d * d.transpose();
 }
 
 /// Errors that vary slowly over the image: the blocks' gains, and their variance.
@@ -269,7 +324,7 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
     };
     const Eigen::Array2i size = ImageBlock::numberIn(camera);
     const Light light(blocks, size, x);
-    const MatrixXd repeating =
+    MatrixXd repeating =
         covariance(light.scatter() + scatterByVignetting(blocks, camera, errors.vignetting) +
                    scatterByDisplacement(blocks, size, camera, errors.displacement) +
                    scatterByBlur(blocks, size, errors.blur) +
@@ -278,8 +333,13 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
     const MatrixXd scatter = seen.scale.asDiagonal() *
                              covarianceOf(changesWithout(blocks, seen, x)) *
                              seen.scale.asDiagonal();
-    const MatrixXd whole =
+    MatrixXd whole =
         repeating + scatter + covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * H);
+    const double noise = std::pow(photometric.sigma, 2);
+    const MatrixXd disagreeing = disagreement(
+        blocks, seen, x, weightsByArea(blocks, camera.fx(), noise), photometric, prior, whole);
+    whole += disagreeing;
+    repeating += disagreeing;
     if (!whole.allFinite()) return result;
     result.repeating += seen.V * repeating * seen.V.transpose();
     PoseEquations& equations = result.equations;

@@ -52,6 +52,11 @@ struct MeasuredInformation {
 /// Its variance is estimated by the covariance of the gains of neighbouring blocks. Over little
 /// texture the pose absorbs vignetting, and these gains show nothing of it:
 /// ModelErrors::vignetting.
+///
+/// Blocks are not independent if an object has moved since the model was made: all of its blocks
+/// lead to the same wrong pose. The pose is estimated a second time with weights by which every
+/// textured block counts alike. A difference beyond chance is added to the covariance, as an error
+/// that repeats.
 /// @param prior of the exposure; none: the exposure is fixed
 /// @param errors used in C_repeating
 /// @param camera camera of the level at which the blocks were compared

@@ -184,6 +184,52 @@ TEST(ResidualCovariance, VignettingOverLittleTextureRepeats) {
 }
 
 /// The blocks of an image add up to the whole.
+/// A floor, and boxes of more contrast that stand elsewhere.
+Scene boxesMovedBy(double moved) {
+    Scene scene = test::floorOf(valueNoise(
+        {.size = {20., 20.}, .cells = {0.6, 0.2}, .amplitudes = {0.04, 0.04}, .seed = 1}));
+    const auto crates = addTexture(scene, valueNoise({.size = {1., 1.}, .seed = 3}));
+    for (int i = 0; i < 5; ++i) {
+        const Eigen::Vector3d corner(0.9 * i + moved, 0.7 * (i * 3 % 5) - 1.5, 0.);
+        addBox(scene, corner, corner + Eigen::Vector3d(0.4, 0.4, 0.4), crates);
+    }
+    return scene;
+}
+
+/// Boxes and floor disagree on the pose by more than the scatter of the residuals.
+TEST(ResidualCovariance, ObjectsThatHaveMovedMakeThePoseUncertain) {
+    const MeshRenderer model(boxesMovedBy(0.));
+    const Camera camera = makeCamera(188, 120, 1.2);
+    DenseAligner aligner(model, camera, forPhotographs());
+    const auto mean = [&](double moved) {  // of NEES, and of the standard deviation
+        const MeshRenderer world(boxesMovedBy(moved));
+        std::mt19937_64 random(3);
+        Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+        constexpr int kCount = 20;
+        for (int i = 0; i < kCount; ++i) {
+            const Pose truth = lookFrom({-0.6 + 0.1 * i, -1. + 0.1 * i, 1.6}, 0.8, 0.1 * i);
+            const ImageF image =
+                test::noisy(test::photographed(world, camera, truth).intensity, 0.01, random);
+            const UncertainPose prior{
+                expSE3(test::randomTwist(0.05, 0.02, random)) * truth,
+                Vector6{{0.05, 0.05, 0.05, 0.02, 0.02, 0.02}}.cwiseAbs2().asDiagonal()};
+            const Alignment a = aligner.align(image, prior);
+            if (isLost(a.verdict)) continue;
+            sum += Eigen::Vector2d(test::neesOf(a, truth),
+                                   std::sqrt(a.covariance.topLeftCorner<3, 3>().trace())) /
+                   kCount;
+        }
+        return sum;
+    };
+    const Eigen::Vector2d same = mean(0.), moved = mean(0.04);
+    std::cout << "NEES per dof, sigma [m]: " << same.transpose() << ", moved " << moved.transpose()
+              << '\n';
+    EXPECT_GT(same[0], 0.2);
+    EXPECT_LT(same[0], 1.5);
+    EXPECT_LT(moved[0], 3.);
+    EXPECT_GT(moved[1], 3. * same[1]);
+}
+
 TEST(ResidualCovariance, BlocksAddUp) {
     const Camera camera = makeCamera(188, 120, 1.2);
     const Pose pose = lookFrom({1.6, 3., 1.6}, kOblique, 0.1);
