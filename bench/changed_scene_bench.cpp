@@ -4,7 +4,10 @@
 // docs/experiments/tracking.md.
 #include <fmt/format.h>
 
+#include <cstdio>
+#include <numbers>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "alignment/dense_aligner.hpp"
@@ -76,7 +79,7 @@ int main(int argc, char** argv) {
     const int count = arguments.number(1, 100, 1);
     fmt::print(
         "{} images a row, 188 x 120, mesh; contrast of floor and walls relative to the boxes\n"
-        "                  | without sharedTexture()  | with it\n"
+        "                  | texture not judged       | judged\n"
         "contrast  moved/m |converged  wrong       mm |converged  wrong       mm\n",
         count);
     for (const double contrast : {1., 0.3, 0.1, 0.03}) {

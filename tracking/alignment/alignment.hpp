@@ -61,7 +61,8 @@ struct TrustOptions {
     double maxUnexplained = 0.4;
     double residualSigmas = 3.;  ///< see maxUnexplained [standard deviations of the image noise]
     /// Least share of the predicted texture that the image must show (SharedTexture), if the model
-    /// can be rendered and the covariance is measured. Smaller ones by chance are accepted.
+    /// can be rendered and the covariance is measured: lost if it is below by two standard
+    /// deviations.
     double minTexture = 0.5;
     /// A direction is open if its standard deviation by the image alone is larger than this [rad;
     /// translations in units of the mean depth].

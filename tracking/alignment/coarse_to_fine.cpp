@@ -7,7 +7,6 @@
 
 #include "alignment/conclusion.hpp"
 #include "alignment/measured_slope.hpp"
-#include "alignment/search_grid.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 
@@ -72,6 +71,7 @@ class Search {
     bool isSmall(const Vector6& xi, const Matrix6& information) const;
     std::optional<Matrix6> transportedPrior() const;
     double finerThanModel(const NormalEquations& e) const;
+    double imageSigma(const Alignment& a) const;
     std::size_t levelAsUncertainAs(const Alignment& a) const;
     void judgeTexture(Alignment& a);
     /// Factor that turns sums of squares into -2 log likelihoods.
@@ -238,17 +238,35 @@ double Search::finerThanModel(const NormalEquations& e) const {
     return isNoise ? 0. : comparison_.finerThanModel(1. / e.meanInverseDepth);
 }
 
+/// How far the covariance moves the image, root mean square over nine places [pixels].
+double Search::imageSigma(const Alignment& a) const {
+    const Camera& camera = comparison_.camera(0);
+    double sum = 0.;
+    for (const double v : {1. / 6., 0.5, 5. / 6.}) {
+        for (const double u : {1. / 6., 0.5, 5. / 6.}) {
+            const Eigen::Vector3d p =
+                a.meanDepth * camera.unproject(u * camera.width, v * camera.height);
+            Eigen::Matrix<double, 3, 6> ofPoint;
+            ofPoint << Eigen::Matrix3d::Identity(), -hat(p);
+            const Eigen::Matrix<double, 2, 6> J = camera.projectionJacobian(p) * ofPoint;
+            sum += (J * a.covariance * J.transpose()).trace();
+        }
+    }
+    return std::sqrt(sum / 9.);
+}
+
 /// The finest level on which the covariance moves the texture by little more than a pixel. An image
 /// that leaves directions open must agree in what it shows, whatever the covariance.
 std::size_t Search::levelAsUncertainAs(const Alignment& a) const {
     if (a.verdict == Verdict::degenerate) return 0;
-    const ImageMotion motion = imageMotionOf(a.covariance, comparison_.camera(0), a.meanDepth);
-    const double pixels = kTextureSigmas * motion.sigmas.maxCoeff();
-    const int level = static_cast<int>(std::ceil(std::log2(std::max(1., pixels))));
-    return std::min(static_cast<std::size_t>(level), comparison_.levels() - 1);
+    double pixels = kTextureSigmas * imageSigma(a);
+    std::size_t level = 0;
+    for (; pixels > 1. && level + 1 < comparison_.levels(); ++level) pixels *= 0.5;
+    return level;
 }
 
-/// Whether the texture is where the alignment claims that it is.
+/// Whether the texture is where the alignment claims that it is. (At full size that of the last
+/// iterate is taken: the step after it was small.)
 void Search::judgeTexture(Alignment& a) {
     const std::size_t level = levelAsUncertainAs(a);
     if (level > 0) comparison_.compare(level, at_.T_c_w, at_.exposure, loss_);
@@ -286,7 +304,8 @@ Alignment Search::run(const Pose& T_start) {
     last.prior = transportedPrior();
     conclude(result, last, options_);
     result.residual.robustSigma = comparison_.robustSigma();
-    if (options_.measureCovariance && !isLost(result.verdict)) judgeTexture(result);
+    const bool isMeasured = options_.measureCovariance && comparison_.comparesTexture();
+    if (isMeasured && !isLost(result.verdict)) judgeTexture(result);
     return result;
 }
 

@@ -72,6 +72,8 @@ class Comparison {
     virtual Matrix6 sharedSlope(std::size_t /*level*/, const Exposure& /*exposure*/) const {
         return Matrix6::Identity();
     }
+    /// Whether sharedTexture() can be known.
+    virtual bool comparesTexture() const { return false; }
     /// sharedTexture() of model and image in the last comparison; none: not known.
     virtual std::optional<SharedTexture> sharedTexture(std::size_t /*level*/,
                                                        const Exposure& /*exposure*/) const {

@@ -11,9 +11,9 @@ namespace photonav {
 /// The last iterate of an alignment.
 struct LastIterate {
     NormalEquations equations;
-    std::size_t pixels = 0;          ///< largest number of pixels that could be used
-    MeasuredInformation image = {};  ///< information of the image about the pose
-    double finer = 0.;               ///< see ResidualStatistics
+    std::size_t pixels = 0;             ///< largest number of pixels that could be used
+    MeasuredInformation image = {};     ///< information of the image about the pose
+    double finer = 0.;                  ///< see ResidualStatistics
     std::optional<Matrix6> prior = {};  ///< covariance of the prior, transported() to the iterate
 };
 

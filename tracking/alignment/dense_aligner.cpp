@@ -81,6 +81,9 @@ class DenseAligner::RenderedModel : public Comparison {
         return photonav::sharedSlope(levels_[level].compare.tiles(exposure));
     }
 
+    bool comparesTexture() const override { return true; }
+
+    /// Halving lowers the noise by more than two.
     std::optional<SharedTexture> sharedTexture(std::size_t level,
                                                const Exposure& exposure) const override {
         const double sigma = std::ldexp(options_.photometric.sigma, -static_cast<int>(level));

@@ -358,6 +358,7 @@ std::vector<ImageBlock> PointSet::blocks(const ImageF& observed, const Pose& T_c
         added.AtA = e.AtA;
         added.Atr = e.Atr;
         added.index = blockIndex_[block];
+        added.count = e.count;
         substitute(added, ofPoints_);
     }
     return blocks;

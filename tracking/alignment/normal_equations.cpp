@@ -243,7 +243,8 @@ std::vector<ImageBlock> ViewComparison::blocks(const Exposure& exposure, const L
                               e.Atr,
                               e.byBlur,
                               {left / side, top / side},
-                              normalAt((left + right) / 2, (top + bottom) / 2)});
+                              normalAt((left + right) / 2, (top + bottom) / 2),
+                              e.count});
         }
     }
     return blocks;

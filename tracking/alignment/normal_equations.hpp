@@ -86,6 +86,7 @@ struct ImageBlock {
     BlurSums byBlur;
     Eigen::Array2i index = Eigen::Array2i::Zero();     ///< column and row of the block
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the surface, camera frame; 0: unknown
+    double count = 0.;                                 ///< number of pixels used
 };
 
 /// Corrects the residuals of all blocks by the most likely blur; parameters as above.

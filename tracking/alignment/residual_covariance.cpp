@@ -18,9 +18,10 @@ constexpr double kOpen = 1e-6;
 constexpr double kOpenSigma = 10.;     // of directions that the image leaves open [m], [rad]
 constexpr double kPixelNoise = 1e-3;   // least standard deviation of a pixel: 8 bits
 constexpr double kFieldLength = 0.25;  // correlation length of gain and displacement [image widths]
-constexpr double kSaturation = 0.1;    // see weightsByArea()
-constexpr double kByChance = 2.;       // see disagreement(), per degree of freedom
-/// Share of the covariance of the pose that differences of two estimates are too small to matter.
+constexpr double kSaturation = 0.1;    // see weightedByArea()
+/// Squared difference of two estimates that is taken for chance, per degree of freedom [variances].
+constexpr double kMostByChance = 2.;
+/// Differences of two estimates do not matter below this share of the covariance of the pose.
 constexpr double kNoDifference = 1e-3;
 
 /// H after eliminating the exposure, in coordinates y (x = V y) of the directions that the image
@@ -137,20 +138,24 @@ Matrix8 scatterOfField(const std::vector<ImageBlock>& blocks, const Eigen::Array
     return 2. / EIGEN_PI * variance * sum;
 }
 
-/// Weights by which each block with more texture than noise counts alike, whatever its contrast.
-/// Their mean over the pixels is 1.
-std::vector<double> weightsByArea(const std::vector<ImageBlock>& blocks, double focal,
-                                  double noise) {
+/// The blocks with weights by which each one with more texture than noise counts alike, whatever
+/// its contrast. The weights' mean over the pixels is 1.
+/// @param noise variance of a pixel [grey value^2]
+std::vector<ImageBlock> weightedByArea(std::vector<ImageBlock> blocks, double focal, double noise) {
     std::vector<double> weights;
     double sum = 0., pixels = 0.;
     for (const ImageBlock& block : blocks) {
-        const double gradients = (block.AtA(3, 3) + block.AtA(4, 4)) / (focal * focal);
+        const double robust = std::max(1e-6, block.AtA(7, 7) / block.count);  // weight, mean
+        const double gradients = (block.AtA(3, 3) + block.AtA(4, 4)) / (focal * focal * robust);
         weights.push_back(1. / (kSaturation * gradients + 0.5 * noise));
-        sum += weights.back() * block.AtA(7, 7);
-        pixels += block.AtA(7, 7);
+        sum += weights.back() * block.count;
+        pixels += block.count;
     }
-    for (double& weight : weights) weight *= pixels / sum;
-    return weights;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        blocks[b].AtA *= weights[b] * pixels / sum;
+        blocks[b].Atr *= weights[b] * pixels / sum;
+    }
+    return blocks;
 }
 
 /// Covariance d d^T by the difference d of two estimates of the same pose, by weights of the
@@ -159,33 +164,31 @@ std::vector<double> weightsByArea(const std::vector<ImageBlock>& blocks, double 
 /// follows the object, and the second one the rest of the scene. The covariance of d follows from
 /// the scatter of the blocks. What d may be by chance is subtracted.
 /// @param x the step to the minimum of the image alone
-/// @param covariance of the pose; all matrices refer to y
-MatrixXd disagreement(const std::vector<ImageBlock>& blocks, const Observed& seen, const Vector8& x,
-                      const std::vector<double>& weights, const PhotometricOptions& photometric,
+/// @param changes changesWithout() at x
+/// @param byArea weightedByArea()
+/// @param covariance of the pose; it and the result refer to y / Observed::scale
+MatrixXd disagreement(const Observed& seen, const Vector8& x, const MatrixXd& changes,
+                      const std::vector<ImageBlock>& byArea, const PhotometricOptions& photometric,
                       const std::optional<ExposurePrior>& prior, const MatrixXd& covariance) {
+    const auto size = covariance.rows();
     Matrix8 H = Matrix8::Zero();
     Vector8 gradient = Vector8::Zero();
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-        H += weights[b] * blocks[b].AtA;
-        gradient += weights[b] * blocks[b].Atr;
+    for (const ImageBlock& block : byArea) {
+        H += block.AtA;
+        gradient += block.Atr;
     }
-    const Observed byArea(H, photometric, prior);
-    const auto solve = [&](const Observed& o) {  // A^T r -> y
-        return (seen.toY * o.root.topRows<6>() * o.root.transpose()).eval();
-    };
-    const auto toArea = solve(byArea), toMinimum = solve(seen);
-    const Vector8 xByArea = byArea.root * (byArea.root.transpose() * gradient);
-    const Eigen::VectorXd d = seen.toY * (xByArea - x).head<6>();
-    MatrixXd chance = kNoDifference * covariance;
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-        const Eigen::VectorXd draw =
-            weights[b] * (toArea * (blocks[b].Atr - blocks[b].AtA * xByArea)) -
-            toMinimum * (blocks[b].Atr - blocks[b].AtA * x);
-        chance += draw * draw.transpose();
-    }
-    const double squared = d.dot(chance.ldlt().solve(d)) / static_cast<double>(d.size());
-    if (!(squared > kByChance)) return MatrixXd::Zero(d.size(), d.size());
-    return (1. - kByChance / squared) * d * d.transpose();
+    const Observed area(H, photometric, prior);
+    if (area.V.cols() < size) return MatrixXd::Zero(size, size);
+    Vector8 xByArea = area.root * (area.root.transpose() * gradient);
+    if (prior) xByArea.tail<2>() += H.bottomRightCorner<2, 2>().ldlt().solve(gradient.tail<2>());
+    const MatrixXd toScaled = seen.scale.cwiseInverse().asDiagonal() * seen.toY;
+    const Eigen::VectorXd d = toScaled * (xByArea - x).head<6>();
+    const MatrixXd draws =
+        toScaled * area.root.topRows<6>() * changesWithout(byArea, area, xByArea) - changes;
+    const MatrixXd chance = covarianceOf(draws) + kNoDifference * covariance;
+    const double ratio = d.dot(chance.ldlt().solve(d)) / static_cast<double>(size);
+    if (!(ratio > kMostByChance)) return MatrixXd::Zero(size, size);
+    return (1. - kMostByChance / ratio) * d * d.transpose();
 }
 
 /// Errors that vary slowly over the image: the blocks' gains, and their variance.
@@ -324,26 +327,28 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
     };
     const Eigen::Array2i size = ImageBlock::numberIn(camera);
     const Light light(blocks, size, x);
-    MatrixXd repeating =
+    const MatrixXd repeating =
         covariance(light.scatter() + scatterByVignetting(blocks, camera, errors.vignetting) +
                    scatterByDisplacement(blocks, size, camera, errors.displacement) +
                    scatterByBlur(blocks, size, errors.blur) +
                    scatterBySurface(blocks, errors.surface)) +
         seen.toY * covarianceByScale(errors.depthScale, toModel) * seen.toY.transpose();
-    const MatrixXd scatter = seen.scale.asDiagonal() *
-                             covarianceOf(changesWithout(blocks, seen, x)) *
-                             seen.scale.asDiagonal();
-    MatrixXd whole =
+    const MatrixXd changes = changesWithout(blocks, seen, x);
+    const MatrixXd scatter =
+        seen.scale.asDiagonal() * covarianceOf(changes) * seen.scale.asDiagonal();
+    const MatrixXd whole =
         repeating + scatter + covariance(seen.scatterOfPrior + kPixelNoise * kPixelNoise * H);
-    const double noise = std::pow(photometric.sigma, 2);
-    const MatrixXd disagreeing = disagreement(
-        blocks, seen, x, weightsByArea(blocks, camera.fx(), noise), photometric, prior, whole);
-    whole += disagreeing;
-    repeating += disagreeing;
+    const double noise = std::max(std::pow(photometric.sigma, 2), kPixelNoise * kPixelNoise);
+    const Eigen::VectorXd unit = seen.scale.cwiseInverse();
+    const MatrixXd disagreeing =
+        seen.scale.asDiagonal() *
+        disagreement(seen, x, changes, weightedByArea(blocks, camera.fx(), noise), photometric,
+                     prior, unit.asDiagonal() * whole * unit.asDiagonal()) *
+        seen.scale.asDiagonal();
     if (!whole.allFinite()) return result;
-    result.repeating += seen.V * repeating * seen.V.transpose();
+    result.repeating += seen.V * (repeating + disagreeing) * seen.V.transpose();
     PoseEquations& equations = result.equations;
-    equations.information = seen.toY.transpose() * whole.ldlt().solve(seen.toY);
+    equations.information = seen.toY.transpose() * (whole + disagreeing).ldlt().solve(seen.toY);
     equations.information =
         0.5 * (equations.information + equations.information.transpose()).eval();
     equations.rhs = equations.information * x.head<6>();

@@ -13,6 +13,8 @@ constexpr double kByChance = 3.;      // standard deviations
 constexpr double kNoGradient = 1e-9;  // variance of a gradient that makes J^T J invertible
 /// Squared standard deviation of a tile's share below which its weight does not grow.
 constexpr double kClear = 0.1;
+constexpr double kSurelyTexture = 2.;  // gradients, squared, relative to those of image noise
+constexpr double kMostOfOneTile = 0.5;
 
 /// Motion of a point in the image, in units of the focal length, with the camera's pose.
 struct TileMotion {
@@ -68,26 +70,29 @@ Matrix6 sharedSlope(const std::vector<GradientTile>& tiles) {
     return V * kappa.asDiagonal() * V.transpose() * model;
 }
 
-SharedTexture sharedTexture(const std::vector<GradientTile>& tiles, double sigma,
-                            bool isModelNoisy) {
+std::optional<SharedTexture> sharedTexture(const std::vector<GradientTile>& tiles, double sigma,
+                                           bool isModelNoisy) {
     const double noise = 2. * sigma * sigma;  // of central differences
     const auto weight = [&](const GradientTile& tile) {
-        const double model = tile.model.trace();
-        if (isModelNoisy && model < 2. * noise * tile.pixels) return 0.;
-        return 1. / (kClear * std::max(model, tile.observed) + noise);
+        const double model = tile.model.trace(), ofNoise = 2. * noise * tile.pixels;
+        if (isModelNoisy && model < kSurelyTexture * ofNoise) return 0.;
+        return 1. / (kClear * std::max(model, tile.observed - ofNoise) + noise);
     };
-    double model = 0., shared = 0., scatter = 0.;
+    double model = 0., shared = 0.;
     for (const GradientTile& tile : tiles) {
         model += weight(tile) * tile.model.trace();
         shared += weight(tile) * tile.shared.trace();
     }
     if (!(model > 0.)) return {};
     const double share = shared / model;
+    double variance = 0.;  // by leaving out one tile at a time
     for (const GradientTile& tile : tiles) {
+        const double part = weight(tile) * tile.model.trace() / model;
+        if (part > kMostOfOneTile) return {};
         const double rest = tile.shared.trace() - share * tile.model.trace();
-        scatter += std::pow(weight(tile) * rest, 2);
+        variance += std::pow(weight(tile) * rest / model / (1. - part), 2);
     }
-    return {share, std::sqrt(scatter) / model};
+    return SharedTexture{share, std::sqrt(variance)};
 }
 
 }  // namespace photonav

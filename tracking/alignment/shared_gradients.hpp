@@ -3,6 +3,7 @@
 // images looks like texture, and a scene may have changed since the model was made.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "geometry/constants.hpp"
@@ -50,8 +51,9 @@ struct SharedTexture {
 /// the noise has the same weight, whatever its contrast. (The variance of the whole image is
 /// explained by an object of high contrast, even if that has moved and everything else disagrees.)
 /// @param sigma standard deviation of the image noise [grey value]
-/// @param isModelNoisy tiles whose gradients are not larger than those of image noise are left out
-SharedTexture sharedTexture(const std::vector<GradientTile>& tiles, double sigma,
-                            bool isModelNoisy);
+/// @param isModelNoisy tiles whose gradients may be noise as large as that of images are left out
+/// @return none: no tile counts, or the share depends on a single one
+std::optional<SharedTexture> sharedTexture(const std::vector<GradientTile>& tiles, double sigma,
+                                           bool isModelNoisy);
 
 }  // namespace photonav

@@ -325,7 +325,9 @@ Alignment WideAligner::align(const ImageF& observed, const UncertainPose& prior)
     model_.render(small_.camera(), prior.mean, expected);
     const double depth = meanDepth(expected);
     if (imageMotionOf(prior.covariance, aligner_.camera(), depth).sigmas.maxCoeff() < kBasinSigma) {
-        return isLost(first.verdict) ? first : bestRepetition(first, observed, prior);
+        // The texture may be elsewhere because it is another repetition's.
+        const bool isFound = !isLost(first.verdict) || first.verdict == Verdict::lostTexture;
+        return isFound ? bestRepetition(first, observed, prior) : first;
     }
 
     auto found = alignFrom(likelyStarts(observed, prior, depth), near_, observed, prior);

@@ -78,7 +78,8 @@ class LossOfTracking {
     /// A belief with the wider covariance that the search while lost uses.
     UncertainPose widened(const UncertainPose& T_c_w) const;
 
-    /// Whether the residuals of an alignment are small enough to end a loss.
+    /// Whether the residuals of an alignment are small enough to end a loss, and its texture, where
+    /// it is known, is in its place.
     /// @param sigma standard deviation of the image noise [grey value]
     bool isExplained(const Alignment& alignment, const TrustOptions& trust, double sigma) const;
 

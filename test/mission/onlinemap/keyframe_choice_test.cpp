@@ -89,8 +89,9 @@ TEST_F(Keyframes, AreNotBlackOrContradictedByTheMap) {
     tracked.T_c_w.mean.translation().x() = 1.;
     EXPECT_TRUE(choice.isUsable(tracked, image));
     tracked.rejected = true;
-    for (const Verdict verdict : {Verdict::lostResidual, Verdict::lostDivergence,
-                                  Verdict::lostImplausible, Verdict::lostExposure}) {
+    for (const Verdict verdict :
+         {Verdict::lostResidual, Verdict::lostTexture, Verdict::lostDivergence,
+          Verdict::lostImplausible, Verdict::lostExposure}) {
         tracked.alignment.verdict = verdict;
         EXPECT_FALSE(choice.isUsable(tracked, image));
         EXPECT_FALSE(isKeyframe());

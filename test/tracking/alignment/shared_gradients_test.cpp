@@ -76,7 +76,8 @@ TEST(SharedGradients, NoiseIsNotShared) {
     EXPECT_GT(Compared(same, same.intensity).least(), 0.99);
 }
 
-SharedTexture textureSharedBy(const View& model, const ImageF& observed, bool isModelNoisy) {
+std::optional<SharedTexture> textureSharedBy(const View& model, const ImageF& observed,
+                                             bool isModelNoisy) {
     ViewComparison compare(tileCamera(), {});
     compare(model, observed, {}, {});
     return sharedTexture(compare.tiles({}), kSigma, isModelNoisy);
@@ -88,11 +89,11 @@ TEST(SharedTexture, IsAllOfTheSamePlaceAndNothingOfAnother) {
         const View here = viewOf(test::room(), kInRoom);
         const View elsewhere = viewOf(test::room(), lookFrom({4., 3., 1.5}, 0.5, 2.));
         const SharedTexture same =
-            textureSharedBy(here, test::noisy(here.intensity, kSigma, random), isModelNoisy);
+            *textureSharedBy(here, test::noisy(here.intensity, kSigma, random), isModelNoisy);
         EXPECT_NEAR(same.share, 1., 3. * same.sigma);
         EXPECT_LT(same.sigma, 0.02);
         const SharedTexture other =
-            textureSharedBy(here, test::noisy(elsewhere.intensity, kSigma, random), isModelNoisy);
+            *textureSharedBy(here, test::noisy(elsewhere.intensity, kSigma, random), isModelNoisy);
         EXPECT_NEAR(other.share, 0., 3. * other.sigma);
         EXPECT_LT(other.sigma, 0.05);
     }
@@ -105,20 +106,26 @@ TEST(SharedTexture, OfAFaintTextureIsKnownByManyPixels) {
     const View here = viewOf(faint, lookFrom({0., 0., 1.}, test::kDown));
     const View elsewhere = viewOf(faint, lookFrom({2., 1., 1.}, test::kDown));
     EXPECT_TRUE(
-        textureSharedBy(here, test::noisy(here.intensity, 0.01, random), false).isAbove(0.5));
+        textureSharedBy(here, test::noisy(here.intensity, 0.01, random), false)->isAbove(0.5));
     EXPECT_TRUE(
-        textureSharedBy(here, test::noisy(elsewhere.intensity, 0.01, random), false).isBelow(0.5));
+        textureSharedBy(here, test::noisy(elsewhere.intensity, 0.01, random), false)->isBelow(0.5));
 }
 
 TEST(SharedTexture, OfNoiseIsNotKnown) {
     std::mt19937_64 random(3);
-    const View noise = withNoise(blank(), 0.5 * kSigma, random);
     const ImageF observed = test::noisy(blank().intensity, kSigma, random);
-    EXPECT_TRUE(textureSharedBy(noise, observed, false).isBelow(0.5)) << "an exact model";
-    const SharedTexture share = textureSharedBy(noise, observed, true);
-    EXPECT_FALSE(share.isBelow(0.5));
-    EXPECT_FALSE(share.isAbove(0.5));
-    EXPECT_FALSE(textureSharedBy(blank(), observed, false).isBelow(0.5)) << "no texture at all";
+    for (const double sigma : {0.5 * kSigma, kSigma, 1.2 * kSigma}) {
+        const View noise = withNoise(blank(), sigma, random);
+        EXPECT_TRUE(textureSharedBy(noise, observed, false)->isBelow(0.5)) << "an exact model";
+        EXPECT_FALSE(textureSharedBy(noise, observed, true)) << sigma;
+    }
+    EXPECT_FALSE(textureSharedBy(blank(), observed, false)) << "no texture at all";
+}
+
+TEST(SharedTexture, OfASingleTileIsNotKnown) {
+    View view = blank();
+    for (unsigned v = 20; v < 23; ++v) view.intensity[v][20] = 0.8F;
+    EXPECT_FALSE(textureSharedBy(view, blank().intensity, false));
 }
 
 /// With information A = T + N of texture and noise, A M is T, and T A^-1 T is left.
