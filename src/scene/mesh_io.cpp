@@ -3,6 +3,7 @@
 
 #include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/importerdesc.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
@@ -93,20 +94,41 @@ std::optional<std::string> baseTextureName(const aiMaterial& material) {
     return std::nullopt;
 }
 
+/// A copy of an OBJ file in which points and lines are comments. Only triangles are wanted, and
+/// assimp's importer (5.2) writes beyond its arrays where a mesh has faces and lines of one vertex.
+Assimp::IOStream* withoutLines(Assimp::IOStream& obj) {
+    const std::size_t size = obj.FileSize();
+    auto text = std::make_unique<std::uint8_t[]>(size);  // NOLINT(modernize-avoid-c-arrays)
+    const std::size_t read = obj.Read(text.get(), 1, size);
+    bool isFirst = true;  // of its line
+    for (std::size_t i = 0; i < read; ++i) {
+        if (isFirst && (text[i] == 'l' || text[i] == 'p')) text[i] = '#';
+        isFirst = text[i] == '\n' || text[i] == '\r' || text[i] == '\f' || text[i] == '\0' ||
+                  (isFirst && (text[i] == ' ' || text[i] == '\t'));
+    }
+    // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): assimp closes, and so deletes, it
+    return new Assimp::MemoryIOStream(text.release(), read, true);
+}
+
 /// Remembers which files assimp opened: the mesh, its buffers, its materials.
 class RememberingFiles : public Assimp::DefaultIOSystem {
   public:
-    explicit RememberingFiles(std::vector<std::string>& files) : files_(files) {}
+    RememberingFiles(const std::string& mesh, std::vector<std::string>& files)
+        : obj_(meshFormatOf(mesh) == MeshFormat::obj ? mesh : ""), files_(files) {}
 
     Assimp::IOStream* Open(const char* file, const char* mode) override {
         if (!std::filesystem::is_regular_file(file)) return nullptr;  // a pipe may never end
         Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
         const bool isNew = std::find(files_.begin(), files_.end(), file) == files_.end();
         if (stream != nullptr && isNew) files_.emplace_back(file);
-        return stream;
+        if (stream == nullptr || file != obj_) return stream;
+        Assimp::IOStream* copy = withoutLines(*stream);
+        Close(stream);
+        return copy;
     }
 
   private:
+    std::string obj_;  ///< the mesh, if it is of this format
     std::vector<std::string>& files_;
 };
 
@@ -298,7 +320,8 @@ Scene readMesh(const std::string& file, const MeshOptions& options) {
     std::vector<std::string> files;  // outlives the importer, which owns the RememberingFiles
     SingleImporter single(importerOf(meshFormatOf(file)));
     Assimp::Importer& importer = *single;
-    importer.SetIOHandler(new RememberingFiles(files));  // NOLINT(cppcoreguidelines-owning-memory)
+    // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): the importer owns it
+    importer.SetIOHandler(new RememberingFiles(file, files));
     const aiScene* input = importer.ReadFile(
         file, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType);
     if (input == nullptr || input->mRootNode == nullptr) {
