@@ -7,6 +7,7 @@
 
 #include "alignment/conclusion.hpp"
 #include "alignment/measured_slope.hpp"
+#include "alignment/search_grid.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 
@@ -71,7 +72,6 @@ class Search {
     bool isSmall(const Vector6& xi, const Matrix6& information) const;
     std::optional<Matrix6> transportedPrior() const;
     double finerThanModel(const NormalEquations& e) const;
-    double imageSigma(const Alignment& a) const;
     std::size_t levelAsUncertainAs(const Alignment& a) const;
     void judgeTexture(Alignment& a);
     /// Factor that turns sums of squares into -2 log likelihoods.
@@ -238,28 +238,13 @@ double Search::finerThanModel(const NormalEquations& e) const {
     return isNoise ? 0. : comparison_.finerThanModel(1. / e.meanInverseDepth);
 }
 
-/// How far the covariance moves the image, root mean square over nine places [pixels].
-double Search::imageSigma(const Alignment& a) const {
-    const Camera& camera = comparison_.camera(0);
-    double sum = 0.;
-    for (const double v : {1. / 6., 0.5, 5. / 6.}) {
-        for (const double u : {1. / 6., 0.5, 5. / 6.}) {
-            const Eigen::Vector3d p =
-                a.meanDepth * camera.unproject(u * camera.width, v * camera.height);
-            Eigen::Matrix<double, 3, 6> ofPoint;
-            ofPoint << Eigen::Matrix3d::Identity(), -hat(p);
-            const Eigen::Matrix<double, 2, 6> J = camera.projectionJacobian(p) * ofPoint;
-            sum += (J * a.covariance * J.transpose()).trace();
-        }
-    }
-    return std::sqrt(sum / 9.);
-}
-
-/// The finest level on which the covariance moves the texture by little more than a pixel. An image
-/// that leaves directions open must agree in what it shows, whatever the covariance.
+/// The finest level on which the covariance moves the texture by little more than a pixel, along
+/// its widest axis: a map with errors of its own moves the parts of the image apart along this
+/// axis. An image that leaves directions open must agree in what it shows, whatever the covariance.
 std::size_t Search::levelAsUncertainAs(const Alignment& a) const {
     if (a.verdict == Verdict::degenerate) return 0;
-    double pixels = kTextureSigmas * imageSigma(a);
+    const ImageMotion motion = imageMotionOf(a.covariance, comparison_.camera(0), a.meanDepth);
+    double pixels = kTextureSigmas * motion.sigmas.maxCoeff();
     std::size_t level = 0;
     for (; pixels > 1. && level + 1 < comparison_.levels(); ++level) pixels *= 0.5;
     return level;
