@@ -158,11 +158,12 @@ std::vector<ImageBlock> weightedByArea(std::vector<ImageBlock> blocks, double fo
     return blocks;
 }
 
-/// Covariance d d^T by the difference d of two estimates of the same pose, by weights of the
-/// contrast and of the area (Hausman, Specification Tests in Econometrics, 1978). Where the model
+/// Covariance by the difference d of two estimates of the same pose, by weights of the contrast and
+/// of the area (Hausman, Specification Tests in Econometrics, 1978). Where the model
 /// is right they differ by chance alone; where an object of high contrast has moved, the first one
-/// follows the object, and the second one the rest of the scene. The covariance of d follows from
-/// the scatter of the blocks. What d may be by chance is subtracted.
+/// follows the object, and the second one the rest of the scene. The covariance D of
+/// d follows from the scatter of the blocks. The pose may be either estimate if d is larger than by
+/// chance: d d^T + D, less what chance explains.
 /// @param x the step to the minimum of the image alone
 /// @param changes changesWithout() at x
 /// @param byArea weightedByArea()
@@ -188,7 +189,7 @@ MatrixXd disagreement(const Observed& seen, const Vector8& x, const MatrixXd& ch
     const MatrixXd chance = covarianceOf(draws) + kNoDifference * covariance;
     const double ratio = d.dot(chance.ldlt().solve(d)) / static_cast<double>(size);
     if (!(ratio > kMostByChance)) return MatrixXd::Zero(size, size);
-    return (1. - kMostByChance / ratio) * d * d.transpose();
+    return (1. - kMostByChance / ratio) * (d * d.transpose() + chance);
 }
 
 /// Errors that vary slowly over the image: the blocks' gains, and their variance.
