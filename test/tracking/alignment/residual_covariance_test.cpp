@@ -219,7 +219,6 @@ TEST(ResidualCovariance, ObjectsThatHaveMovedMakeThePoseUncertain) {
         EXPECT_GT(nees.size(), 14U);
         std::sort(nees.begin(), nees.end());
         std::sort(sigmas.begin(), sigmas.end());
-        for (const double x : nees) std::cout << x << ' ';
         return Eigen::Vector2d(nees[nees.size() / 2], sigmas[sigmas.size() / 2]);
     };
     const Eigen::Vector2d same = middle(0.), moved = middle(0.04);
@@ -227,8 +226,8 @@ TEST(ResidualCovariance, ObjectsThatHaveMovedMakeThePoseUncertain) {
               << '\n';
     EXPECT_GT(same[0], 0.2);
     EXPECT_LT(same[0], 1.5);
-    EXPECT_LT(moved[0], 3.);
-    EXPECT_GT(moved[1], 3. * same[1]);
+    EXPECT_LT(moved[0], 15.);  // several hundred for the covariance by scatter alone
+    EXPECT_GT(moved[1], 5. * same[1]);
 }
 
 /// The blocks of an image add up to the whole.
