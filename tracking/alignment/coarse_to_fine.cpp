@@ -240,9 +240,8 @@ double Search::finerThanModel(const NormalEquations& e) const {
 
 /// The finest level on which the covariance moves the texture by little more than a pixel, along
 /// its widest axis: a map with errors of its own moves the parts of the image apart along this
-/// axis. An image that leaves directions open must agree in what it shows, whatever the covariance.
+/// axis.
 std::size_t Search::levelAsUncertainAs(const Alignment& a) const {
-    if (a.verdict == Verdict::degenerate) return 0;
     const ImageMotion motion = imageMotionOf(a.covariance, comparison_.camera(0), a.meanDepth);
     double pixels = kTextureSigmas * motion.sigmas.maxCoeff();
     std::size_t level = 0;
