@@ -255,7 +255,8 @@ void Search::judgeTexture(Alignment& a) {
     const std::size_t level = levelAsUncertainAs(a);
     if (level > 0) comparison_.compare(level, at_.T_c_w, at_.exposure, loss_);
     a.residual.texture = comparison_.sharedTexture(level, at_.exposure);
-    if (isTextureElsewhere(a.residual, options_.trust)) a.verdict = Verdict::lostTexture;
+    const bool claims = a.verdict == Verdict::converged;
+    if (claims && isTextureElsewhere(a.residual, options_.trust)) a.verdict = Verdict::lostTexture;
 }
 
 Alignment Search::run(const Pose& T_start) {

@@ -164,7 +164,10 @@ bool Tracker::isUnmapped(const TrackedFrame& frame) const {
 /// must not carry the extrapolated motion on; after a loss, little but the image supports the pose.
 bool Tracker::agrees(const Alignment& alignment, const AlignmentOptions& options) const {
     if (isLost(alignment.verdict)) return false;
-    if (!hasOdometry_ && isUninformative(alignment)) return false;
+    if (!hasOdometry_ &&
+        (isUninformative(alignment) || isTextureElsewhere(alignment.residual, options.trust))) {
+        return false;
+    }
     return !loss_.isLost() ||
            loss_.isExplained(alignment, options.trust, options.photometric.sigma);
 }
