@@ -92,7 +92,7 @@ TEST_F(ReplayCommand, WritesWhatOtherProgramsRead) {
     std::ifstream csv(options.out / "frames.csv");
     int rows = 0;
     for (std::string line; std::getline(csv, line); ++rows) {
-        EXPECT_EQ(std::count(line.begin(), line.end(), ','), 16) << line;
+        EXPECT_EQ(std::count(line.begin(), line.end(), ','), 17) << line;
     }
     EXPECT_EQ(rows, 13);
 }
