@@ -138,6 +138,19 @@ Matrix8 scatterOfField(const std::vector<ImageBlock>& blocks, const Eigen::Array
     return 2. / EIGEN_PI * variance * sum;
 }
 
+struct Sum {
+    Matrix8 AtA = Matrix8::Zero();
+    Vector8 Atr = Vector8::Zero();
+};
+Sum sumOf(const std::vector<ImageBlock>& blocks) {
+    Sum sum;
+    for (const ImageBlock& block : blocks) {
+        sum.AtA += block.AtA;
+        sum.Atr += block.Atr;
+    }
+    return sum;
+}
+
 /// The blocks with weights by which each one with more texture than noise counts alike, whatever
 /// its contrast. The weights' mean over the pixels is 1.
 /// @param noise variance of a pixel [grey value^2]
@@ -172,12 +185,7 @@ MatrixXd disagreement(const Observed& seen, const Vector8& x, const MatrixXd& ch
                       const std::vector<ImageBlock>& byArea, const PhotometricOptions& photometric,
                       const std::optional<ExposurePrior>& prior, const MatrixXd& covariance) {
     const auto size = covariance.rows();
-    Matrix8 H = Matrix8::Zero();
-    Vector8 gradient = Vector8::Zero();
-    for (const ImageBlock& block : byArea) {
-        H += block.AtA;
-        gradient += block.Atr;
-    }
+    const auto [H, gradient] = sumOf(byArea);
     const Observed area(H, photometric, prior);
     if (area.V.cols() < size) return MatrixXd::Zero(size, size);
     Vector8 xByArea = area.root * (area.root.transpose() * gradient);
@@ -311,12 +319,7 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
                                         const std::optional<ExposurePrior>& prior,
                                         const ModelErrors& errors, const Camera& camera,
                                         const Pose& toModel) {
-    Matrix8 H = Matrix8::Zero();
-    Vector8 gradient = Vector8::Zero();
-    for (const ImageBlock& block : blocks) {
-        H += block.AtA;
-        gradient += block.Atr;
-    }
+    const auto [H, gradient] = sumOf(blocks);
     const Observed seen(H, photometric, prior);
     MeasuredInformation result;
     result.repeating = kOpenSigma * kOpenSigma * seen.open * seen.open.transpose();
