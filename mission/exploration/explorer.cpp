@@ -37,8 +37,6 @@ constexpr double kWait = 1.;
 constexpr double kLooksThere = 0.1;
 /// Longest turn toward a place [s].
 constexpr double kLongestLook = 5.;
-/// Rest of a plan that is not worth flying [m].
-constexpr double kShortRest = 0.1;
 /// Longest improvement of a plan in real time [s].
 constexpr double kPlanTime = 0.5;
 
@@ -257,7 +255,7 @@ void Explorer::takeOver(Replanned replanned) {
     tracker_.setMap(views());
     pilot_.setMap(views());
     if (replanned.hasMapGrown) blindInARow_ = 0;
-    hasPath_ = replanned.way.has_value();
+    hasPath_ = replanned.reachesGoal;
     lastUpdate_ = time_;
     flyOn(std::move(replanned.way));
     PlanUpdate& update = replanned.update;
@@ -281,10 +279,11 @@ void Explorer::showMoment(Replanned replanned) {
 
 /// Gives the pilot the part of the plan that is safe, or lets it hover.
 void Explorer::flyOn(std::optional<FlyablePart> way) {
-    if (!way) return flyRest();
+    if (!way) return hover();
     // Hovering over the goal is not interrupted by a way of a few centimetres to it.
     if (isWhole_ && pilot_.route().isAtGoal()) return;
     if (background_) way = fromHere(*way);
+    if (way->isStopped && !hasPath_) return hover();
     if (way->isLook && isLooking()) return;
     if (way->isBlind && !mayStepBlindly()) return hover();
     withoutWay_ = 0;
@@ -309,15 +308,6 @@ bool Explorer::isLooking() const {
     if (!look_ || time_ - look_->since > kLongestLook) return false;
     const double turn = std::remainder(look_->yaw - yawOf(here()), 2. * std::numbers::pi);
     return std::abs(turn) > kLooksThere;
-}
-
-/// Where the map shows no way, the robot flies the plan that it has as far as this is free, and
-/// hovers at its end: from there the camera may see that an obstacle is none. (Depth of a stereo
-/// pair is poor far away.)
-void Explorer::flyRest() {
-    FlyablePart rest = fromHere({.plan = wayAhead(), .isWhole = false});
-    if (rest.isStopped || rest.plan.back().distance < kShortRest) return hover();
-    follow(std::move(rest));
 }
 
 /// A camera without a depth sensor has to move before it sees anything.

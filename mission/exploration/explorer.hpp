@@ -143,7 +143,6 @@ class Explorer {
     bool isLooking() const;
     bool mayStepBlindly() const;
     void follow(FlyablePart part);
-    void flyRest();
     void hover();
     bool isWaiting() const;
     bool isStuckAtGoal();

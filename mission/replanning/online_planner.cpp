@@ -146,7 +146,7 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
     update.viewSeconds = field->seconds() + exact.seconds() - viewSecondsBefore;
     update.viewsMarked = field->marked() - markedBefore;
     update.viewsRendered = field->views() + exact.views() - viewsBefore;
-    const bool isFound = !path_.empty();
+    const bool isFound = reachesGoal_ && !path_.empty();
     update.cost = isFound ? path_.back().cost : std::numeric_limits<double>::quiet_NaN();
     update.length = isFound ? path_.back().length : std::numeric_limits<double>::quiet_NaN();
     update.trace = weightedTrace(T_c_w.covariance, config_.belief.characteristicLength);
@@ -157,6 +157,7 @@ UpdateCounts OnlinePlanner::planFrom(const ob::State* state, const Belief& belie
                                      const Limits& limits) {
     if (kind_.replanning == Replanning::never && hasPlanned_) {
         if (!plan_.empty()) plan_ = restOf(plan_, state);
+        reachesGoal_ = !plan_.empty();
         return {};
     }
     const bool isNew = kind_.replanning == Replanning::scratch;
@@ -170,7 +171,9 @@ UpdateCounts OnlinePlanner::planFrom(const ob::State* state, const Belief& belie
         solveFrom(state, belief, limits);
     }
     plan_ = solution(limits);
-    hasPlanned_ = hasPlanned_ || !plan_.empty();
+    reachesGoal_ = !plan_.empty();
+    hasPlanned_ = hasPlanned_ || reachesGoal_;
+    if (!reachesGoal_) plan_ = approach();
     UpdateCounts counts = planner_->lastUpdate();
     counts.verticesInvalidated += dropped.verticesInvalidated;
     counts.edgesInvalidated += dropped.edgesInvalidated;
@@ -200,10 +203,41 @@ OnlinePlanner::States OnlinePlanner::solution(const Limits& limits) const {
         plan = shortenPath(si, problem_.space(), states, kChangesWithoutViews,
                            ob::PlannerTerminationCondition([&] { return limits.isOver(true); }));
     }
-    if (!kind_.headings) return plan;
-    states.clear();
+    return withHeadings(std::move(plan));
+}
+
+/// From the root to the place nearest to the goal that the tree reaches; empty: none is nearer than
+/// the root by more than a step of the pilot.
+OnlinePlanner::States OnlinePlanner::approach() const {
+    constexpr double kNearer = 0.1;  // [m]
+    const FlightSpace& space = problem_.space();
+    const auto away = [&](const ob::State* state) {
+        return (config_.goal.position - space.position(state)).norm();
+    };
+    const std::vector<TreeNode> tree = planner_->tree();
+    const auto nearest = std::min_element(
+        tree.begin(), tree.end(),
+        [&](const TreeNode& a, const TreeNode& b) { return away(a.state) < away(b.state); });
+    States plan;
+    for (int i = static_cast<int>(nearest - tree.begin()); i >= 0 && !tree.empty();
+         i = tree[i].parent) {
+        plan.push_back(copyOf(problem_.spaceInformation(), tree[i].state));
+    }
+    std::reverse(plan.begin(), plan.end());
+    if (plan.empty() || away(plan.back().get()) > away(plan.front().get()) - kNearer) return {};
+    plan = withHeadings(std::move(plan));
+    if (kind_.headings == Headings::fixed) return plan;
+    const Eigen::Vector3d end = space.position(plan.back().get());
+    const Eigen::Vector3d view = config_.goal.position - end;
+    space.setState(plan.back().get(), end, std::atan2(view.y(), view.x()));
+    return plan;
+}
+
+OnlinePlanner::States OnlinePlanner::withHeadings(States plan) const {
+    if (!kind_.headings || plan.empty()) return plan;
+    std::vector<const ob::State*> states;
     for (const auto& state : plan) states.push_back(state.get());
-    return replaceHeadings(si, problem_.space(), states, *kind_.headings);
+    return replaceHeadings(problem_.spaceInformation(), problem_.space(), states, *kind_.headings);
 }
 
 /// What is left of a plan for a robot that flies along it; empty: an obstacle was seen on it.

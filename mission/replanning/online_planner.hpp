@@ -56,8 +56,12 @@ class OnlinePlanner {
     void update(const MapChange& change, const UncertainPose& T_c_w, PlanUpdate& update,
                 const PlanningLimits& limits);
 
-    /// The path from the robot to the goal with predicted beliefs; empty if none was found.
+    /// The path from the robot to the goal with predicted beliefs. If the map shows no way to the
+    /// goal: to the nearest place to the goal that can be reached, facing the goal. From there the
+    /// camera may see that an obstacle is none. (Depth of a stereo pair is poor far away.) Empty if
+    /// the robot would come no nearer, and for plans that are made once.
     const std::vector<BeliefPoint>& path() const { return path_; }
+    bool reachesGoal() const { return reachesGoal_; }  ///< whether path() ends at the goal
 
     /// Renders views of the present map.
     std::shared_ptr<const ViewSource> views() const { return world_.sharedViews(); }
@@ -82,6 +86,8 @@ class OnlinePlanner {
                           const Limits& limits);
     bool solveFrom(const ompl::base::State* state, const Belief& belief, const Limits& limits);
     States solution(const Limits& limits) const;
+    States approach() const;
+    States withHeadings(States plan) const;
     States restOf(const States& plan, const ompl::base::State* state) const;
     std::vector<BeliefPoint> pathFrom(const Pose& T_w_b, const Matrix6& covariance);
     void evaluatePath(const Pose& T_w_b, const Matrix6& covariance);
@@ -94,6 +100,7 @@ class OnlinePlanner {
     std::uint32_t seed_;
     std::shared_ptr<BeliefPlanner> planner_;
     States plan_;  // empty if no path was found
+    bool reachesGoal_ = false;
     bool hasPlanned_ = false;
     std::vector<BeliefPoint> path_;
 };

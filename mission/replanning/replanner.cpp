@@ -45,6 +45,7 @@ Replanned Replanner::replan(ReplanRequest request, const PlanningLimits& limits)
     if (isFirst_) replanned.change.join(map_.whole());  // for those who saw no earlier change
     isFirst_ = false;
     replanned.views = planner_.views();
+    replanned.reachesGoal = planner_.reachesGoal();
     replanned.way = flyableWay(replanned.request.inView);
     return replanned;
 }
@@ -69,7 +70,9 @@ std::optional<FlyablePart> Replanner::flyableWay(const ObstaclesInView& inView) 
         return std::min(planner_.clearance(p_w),
                         clearanceInView(inView, p_w, space_.radius, tube_));
     };
-    return flyablePart(plannedViews(planner_.path()), space);
+    FlyablePart way = flyablePart(plannedViews(planner_.path()), space);
+    way.isWhole = way.isWhole && planner_.reachesGoal();
+    return way;
 }
 
 }  // namespace photonav

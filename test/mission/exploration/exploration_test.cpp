@@ -134,9 +134,11 @@ TEST_F(RoomToExplore, LooksFromNearbyWhetherTheGoalIsInAnObstacle) {
     Scene crate = test::roomToExplore();
     addBox(crate, {6.8, 1.8, 0.}, {7.2, 2.2, 1.2}, addTexture(crate, valueNoise({.seed = 3})));
     const World seenFromAfar(crate, config), truth(test::roomToExplore(), config);
-    const ExplorationResult flight = flownWhereItChanges(seenFromAfar, truth, 5., 1);
-    EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
-    EXPECT_LT(flight.goalError, 0.3);
+    for (const std::uint32_t seed : {1U, 2U, 3U}) {
+        const ExplorationResult flight = flownWhereItChanges(seenFromAfar, truth, 5., seed);
+        EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
+        EXPECT_LT(flight.goalError, 0.3);
+    }
 }
 
 /// A depth sensor that measures nothing: the robot does not fly into what it cannot see.

@@ -54,10 +54,10 @@ class OnlinePlannerTest : public ::testing::Test {
         return update;
     }
 
-    /// A wall across the straight way, with room beside it.
-    MapChange seeWall() {
+    /// A wall across the straight way, with room beside it if it is not wider than 3 m.
+    MapChange seeWall(double width = 2.) {
         MapChange change{.resolution = config_.explore.resolution};
-        for (double y = -1.; y < 1.; y += change.resolution) {
+        for (double y = -width / 2.; y < width / 2.; y += change.resolution) {
             for (double z = 0.5; z < 1.5; z += change.resolution) {
                 map_->obstacles()->updateNode(
                     octomap::point3d(2.5F, static_cast<float>(y), static_cast<float>(z)), true);
@@ -111,6 +111,27 @@ TEST_F(OnlinePlannerTest, APlanMadeOnceEndsAtAnObstacle) {
     EXPECT_FALSE(repaired.path().empty());
     updateAt(once, {0.5, 0., 1.});
     EXPECT_TRUE(once.path().empty()) << "it does not plan again";
+}
+
+/// From near a wall the camera may see that there is none.
+TEST_F(OnlinePlannerTest, WithoutAWayToTheGoalItLooksAtTheGoalFromTheNearestPlace) {
+    const Eigen::Vector3d goal = config_.goal.position;
+    for (const char* name : {"pa_rrt_star", "rrt_star/forward", "belief_rrt_star/replan"}) {
+        OnlinePlanner planner = this->planner(name);
+        updateAt(planner, {0., 0., 1.});
+        EXPECT_TRUE(planner.reachesGoal()) << name;
+        const PlanUpdate update = updateAt(planner, {0.2, 0., 1.}, seeWall(5.));
+        EXPECT_FALSE(planner.reachesGoal()) << name;
+        EXPECT_TRUE(std::isnan(update.length)) << name;
+        ASSERT_FALSE(planner.path().empty()) << name;
+        const Pose& end = planner.path().back().T_w_b;
+        EXPECT_NEAR(end.translation().x(), 2., 0.3) << name << ", in front of the wall";
+        const Eigen::Vector3d view = goal - end.translation();
+        EXPECT_NEAR(yawOf(end), std::atan2(view.y(), view.x()), 1e-6) << name;
+        updateAt(planner, end.translation());
+        EXPECT_TRUE(planner.path().empty()) << name << " would come no nearer";
+        map_ = std::make_unique<OnlineMap>(config_);
+    }
 }
 
 TEST_F(OnlinePlannerTest, FromScratchKeepsNothing) {
