@@ -35,6 +35,10 @@ constexpr double kAroundGoal = 2.;
 constexpr double kWait = 1.;
 /// Heading of a robot that faces a place [rad].
 constexpr double kLooksThere = 0.1;
+/// Number of turns on the spot to look somewhere, from places not farther apart than kSamePlace;
+/// then the robot flies on as if it could not turn. (Right and left of an obstacle, each twice.)
+constexpr int kMostLooks = 4;
+constexpr double kSamePlace = 0.5;  // [m]
 /// Longest turn toward a place [s].
 constexpr double kLongestLook = 5.;
 /// Longest improvement of a plan in real time [s].
@@ -187,7 +191,7 @@ void Explorer::onImage(const TrackedFrame& tracked, const View& image) {
     stopIfInterrupted();
     if (!input && isNews) input = MapInput{image, shown, tracked.T_c_w};  // for the plan alone
     if (!input) return;
-    ReplanRequest request{{std::move(*input)}, inView_, tracker_.belief(), tracked.time};
+    ReplanRequest request{{std::move(*input)}, inView_, tracker_.belief(), tracked.time, mayLook()};
     if (background_) return background_->add(std::move(request));
     takeOver(replanner_.replan(std::move(request), {interrupted_}));
 }
@@ -298,7 +302,10 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
 void Explorer::follow(FlyablePart part) {
     isWhole_ = part.isWhole;
     look_.reset();
-    if (part.isLook) look_ = Look{yawOf(part.plan.back().T_w_b), time_};
+    if (part.isLook) {
+        look_ = Look{yawOf(part.plan.back().T_w_b), time_};
+        countLook();
+    }
     pilot_.setPlan(std::move(part.plan));
 }
 
@@ -308,6 +315,19 @@ bool Explorer::isLooking() const {
     if (!look_ || time_ - look_->since > kLongestLook) return false;
     const double turn = std::remainder(look_->yaw - yawOf(here()), 2. * std::numbers::pi);
     return std::abs(turn) > kLooksThere;
+}
+
+bool Explorer::mayLook() const {
+    return looks_ < kMostLooks || (here().translation() - lookedFrom_w_).norm() > kSamePlace;
+}
+
+void Explorer::countLook() {
+    const Eigen::Vector3d here_w = here().translation();
+    if ((here_w - lookedFrom_w_).norm() > kSamePlace) {
+        looks_ = 0;
+        lookedFrom_w_ = here_w;
+    }
+    ++looks_;
 }
 
 /// A camera without a depth sensor has to move before it sees anything.
@@ -334,8 +354,16 @@ bool Explorer::endAs(FlightEnd end, const std::string& reason) {
 
 std::string Explorer::reasonForNoWay() const {
     const double clearance = replanner_.clearanceBeside(config_.goal.position);
+    if (clearance < config_.robotRadius && config_.explore.unknown == UnknownSpace::pessimistic) {
+        return "the goal is not in space that was seen to be free";
+    }
     if (clearance < config_.robotRadius) {
-        return fmt::format("the goal is in collision: clearance {:.2f} m in the map", clearance);
+        const Matrix6& covariance = tracker_.belief().covariance;
+        const double sigma = std::sqrt(covariance.diagonal().head<3>().maxCoeff());
+        return fmt::format(
+            "the goal is in collision: clearance {:.2f} m in the map, where the "
+            "robot knows its position to {:.2f} m",
+            clearance, sigma);
     }
     if (hasPath_) return "the sensor cannot observe the space ahead";
     return "the map shows no way to the goal";

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/segment.hpp"
 #include "map/brick_leaves.hpp"
 #include "onlinemap/obstacles_in_view.hpp"
 
@@ -187,20 +188,21 @@ MapChange ObstacleMap::addHidden(const TexturedOcTree& map, const View& image, c
     return changed;
 }
 
-MapChange ObstacleMap::addBody(const TexturedOcTree& map, const Eigen::Vector3d& p_w,
-                               double radius) {
+MapChange ObstacleMap::addBody(const TexturedOcTree& map, const Eigen::Vector3d& body_w,
+                               const Eigen::Vector3d& ahead_w, double radius) {
     MapChange changed;
     changed.resolution = cells_->getResolution();
     if (unknown_ == UnknownSpace::optimistic) return changed;
     const double cell = changed.resolution;
-    const Eigen::Array3i low = ((p_w.array() - radius) / cell).floor().cast<int>();
-    const Eigen::Array3i high = ((p_w.array() + radius) / cell).floor().cast<int>();
+    const Eigen::Array3d least = body_w.cwiseMin(ahead_w), most = body_w.cwiseMax(ahead_w);
+    const Eigen::Array3i low = ((least - radius) / cell).floor().cast<int>();
+    const Eigen::Array3i high = ((most + radius) / cell).floor().cast<int>();
     for (int z = low.z(); z <= high.z(); ++z) {
         for (int y = low.y(); y <= high.y(); ++y) {
             for (int x = low.x(); x <= high.x(); ++x) {
                 const Eigen::Array3i at(x, y, z);
-                const Eigen::Array3d away = cell * (at.cast<double>() + 0.5) - p_w.array();
-                if (away.matrix().norm() > radius + cell) continue;
+                const Eigen::Vector3d middle = cell * (at.cast<double>() + 0.5);
+                if (distanceToSegment(middle, body_w, ahead_w) > radius + 2. * cell) continue;
                 const octomap::OcTreeKey key = keyOfCell(x, y, z);
                 if (map.search(key) != nullptr || !set(key, false)) continue;
                 changed.occupancy.emplace_back((at.cast<double>() / kEdge).floor().cast<int>());

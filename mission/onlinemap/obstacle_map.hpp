@@ -52,8 +52,11 @@ class ObstacleMap {
     MapChange addHidden(const TexturedOcTree& map, const View& image, const Camera& camera,
                         const Pose& T_c_w, double radius);
 
-    /// For UnknownSpace::pessimistic: frees the unknown cells within `radius` [m] of the body.
-    MapChange addBody(const TexturedOcTree& map, const Eigen::Vector3d& p_w, double radius);
+    /// For UnknownSpace::pessimistic: frees the unknown cells of the body, and of as wide a way
+    /// before the camera, which sees less than that right ahead of it.
+    /// @param ahead_w end of this way; @param radius of the body [m]
+    MapChange addBody(const TexturedOcTree& map, const Eigen::Vector3d& body_w,
+                      const Eigen::Vector3d& ahead_w, double radius);
 
   private:
     bool set(const octomap::OcTreeKey& key, bool isOccupied);

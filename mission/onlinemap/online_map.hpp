@@ -71,8 +71,8 @@ class OnlineMap {
     MapChange forget(const View& shown, const Camera& camera, const Pose& T_c_w);
     /// Marks the space of the body as free, see ObstacleMap::addBody(). @return the change of
     /// obstacles
-    MapChange addBody(const Eigen::Vector3d& p_w) {
-        return obstacles_.addBody(*cells_, p_w, radius_);
+    MapChange addBody(const Eigen::Vector3d& body_w, const Eigen::Vector3d& ahead_w) {
+        return obstacles_.addBody(*cells_, body_w, ahead_w, radius_);
     }
 
     /// Whether a surface or free space was observed at a place, or below it within explore.range,

@@ -21,6 +21,8 @@ namespace {
 // vertices, and changes by which its path is smoothed.
 constexpr unsigned kVerticesWithoutViews = 10;
 constexpr unsigned kChangesWithoutViews = 1000;
+/// After so many updates without a way the tree is grown anew, which takes as long as ten of them.
+constexpr int kAnew = 3;
 
 /// The config of plans in a map that grows. A view stands for a cell of twice the size: most views
 /// are seen once before the map changes again.
@@ -130,6 +132,7 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
 
     const Limits limits(given);
     path_.clear();
+    reachesGoal_ = false;
     const Pose T_w_b = T_c_w.mean.inverse() * config_.camera.T_b_c().inverse();
     if (const auto from_w = flyableNear(T_w_b.translation())) {
         ob::ScopedState<> state(problem_.spaceInformation());
@@ -163,7 +166,9 @@ UpdateCounts OnlinePlanner::planFrom(const ob::State* state, const Belief& belie
     const bool isNew = kind_.replanning == Replanning::scratch;
     if (isNew) planner_ = problem_.makePlanner(kind_.name, seed_);
     UpdateCounts dropped;
-    if (!solveFrom(state, belief, limits) && !isNew && !limits.isInterrupted()) {
+    const bool isFound = solveFrom(state, belief, limits);
+    failed_ = isFound ? 0 : failed_ + 1;
+    if (failed_ % kAnew == 1 && !isNew && !limits.isInterrupted()) {
         // What is left of a tree may be full without the goal: another one begins here.
         dropped = planner_->lastUpdate();
         dropped.verticesInvalidated += planner_->vertices();
@@ -206,31 +211,46 @@ OnlinePlanner::States OnlinePlanner::solution(const Limits& limits) const {
     return withHeadings(std::move(plan));
 }
 
-/// From the root to the place nearest to the goal that the tree reaches; empty: none is nearer than
-/// the root by more than a step of the pilot.
+/// From the root to where the goal is near and the way there is not long, and a turn toward the
+/// goal; empty: neither brings anything new.
 OnlinePlanner::States OnlinePlanner::approach() const {
-    constexpr double kNearer = 0.1;  // [m]
+    constexpr double kNearer = 0.1;    // than the root, at least [m]
+    constexpr double kPerMetre = 0.1;  // nearer by each metre of the way [m]
+    constexpr double kFacing = 0.3;    // [rad]
     const FlightSpace& space = problem_.space();
-    const auto away = [&](const ob::State* state) {
-        return (config_.goal.position - space.position(state)).norm();
-    };
     const std::vector<TreeNode> tree = planner_->tree();
-    const auto nearest = std::min_element(
-        tree.begin(), tree.end(),
-        [&](const TreeNode& a, const TreeNode& b) { return away(a.state) < away(b.state); });
+    if (tree.empty()) return {};
+    const auto toGoal = [&](const ob::State* state) -> Eigen::Vector3d {
+        return config_.goal.position - space.position(state);
+    };
+    std::vector<double> length(tree.size(), 0.);
+    std::size_t best = 0;
+    double least = toGoal(tree[0].state).norm() - kNearer;
+    for (std::size_t i = 1; i < tree.size(); ++i) {
+        if (tree[i].parent < 0) continue;
+        const ob::State* parent = tree[tree[i].parent].state;
+        length[i] = length[tree[i].parent] +
+                    (space.position(parent) - space.position(tree[i].state)).norm();
+        const double value = toGoal(tree[i].state).norm() + kPerMetre * length[i];
+        if (value >= least) continue;
+        least = value;
+        best = i;
+    }
     States plan;
-    for (int i = static_cast<int>(nearest - tree.begin()); i >= 0 && !tree.empty();
-         i = tree[i].parent) {
+    for (int i = static_cast<int>(best); i >= 0; i = tree[i].parent) {
         plan.push_back(copyOf(problem_.spaceInformation(), tree[i].state));
     }
     std::reverse(plan.begin(), plan.end());
-    if (plan.empty() || away(plan.back().get()) > away(plan.front().get()) - kNearer) return {};
-    plan = withHeadings(std::move(plan));
-    if (kind_.headings == Headings::fixed) return plan;
-    const Eigen::Vector3d end = space.position(plan.back().get());
-    const Eigen::Vector3d view = config_.goal.position - end;
-    space.setState(plan.back().get(), end, std::atan2(view.y(), view.x()));
-    return plan;
+    if (plan.size() > 1) plan = withHeadings(std::move(plan));
+    const ob::State* end = plan.back().get();
+    const double facing = std::atan2(toGoal(end).y(), toGoal(end).x());
+    const double turn = std::remainder(facing - yawOf(space.bodyPose(end)), 2. * std::numbers::pi);
+    const bool canTurn = config_.space != StateKind::position && kind_.headings != Headings::fixed;
+    if (canTurn && std::abs(turn) > kFacing) {
+        plan.push_back(copyOf(problem_.spaceInformation(), end));
+        space.setState(plan.back().get(), space.position(end), facing);
+    }
+    return plan.size() > 1 ? plan : States();
 }
 
 OnlinePlanner::States OnlinePlanner::withHeadings(States plan) const {

@@ -57,9 +57,10 @@ class OnlinePlanner {
                 const PlanningLimits& limits);
 
     /// The path from the robot to the goal with predicted beliefs. If the map shows no way to the
-    /// goal: to the nearest place to the goal that can be reached, facing the goal. From there the
-    /// camera may see that an obstacle is none. (Depth of a stereo pair is poor far away.) Empty if
-    /// the robot would come no nearer, and for plans that are made once.
+    /// goal: to a place near the goal that can be reached without a long way, facing the goal. From
+    /// there the camera may see that an obstacle is none. (Depth of a stereo pair is poor far
+    /// away.) Empty if the robot is there and looks at the goal, or if an obstacle was seen on a
+    /// plan that is made once.
     const std::vector<BeliefPoint>& path() const { return path_; }
     bool reachesGoal() const { return reachesGoal_; }  ///< whether path() ends at the goal
 
@@ -102,6 +103,7 @@ class OnlinePlanner {
     States plan_;  // empty if no path was found
     bool reachesGoal_ = false;
     bool hasPlanned_ = false;
+    int failed_ = 0;  // updates in a row without a way to the goal
     std::vector<BeliefPoint> path_;
 };
 

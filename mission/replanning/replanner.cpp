@@ -11,6 +11,13 @@ namespace {
 /// Radius around the robot that a camera that looks ahead does not observe [m].
 constexpr double kHidden = 0.3;
 
+/// How far ahead the view becomes as wide as the body [m].
+double asWideAsBody(const Camera& camera, double radius) {
+    const double tangent =
+        std::min(0.5 * camera.width / camera.fx(), 0.5 * camera.height / camera.fy());
+    return radius / tangent;
+}
+
 SpaceAhead spaceIn(const OnlineMap& map, const Config& config, const ExplorePlanner& kind) {
     const bool isAhead = looksAhead(config.camera.T_b_c());
     return {.clearance = {},  // see flyableWay()
@@ -46,7 +53,7 @@ Replanned Replanner::replan(ReplanRequest request, const PlanningLimits& limits)
     isFirst_ = false;
     replanned.views = planner_.views();
     replanned.reachesGoal = planner_.reachesGoal();
-    replanned.way = flyableWay(replanned.request.inView);
+    replanned.way = flyableWay(replanned.request);
     return replanned;
 }
 
@@ -56,19 +63,22 @@ void Replanner::fuse(Replanned& replanned) {
     for (const MapInput& image : replanned.request.images) change.join(map_.add(image, camera_));
     replanned.hasMapGrown = !change.occupancy.empty();
     replanned.cells = CellStates::bricksOf(*map_.cells(), change.occupancy);
-    const Pose T_w_b = (config_.camera.T_b_c() * replanned.request.T_c_w.mean).inverse();
-    change.join(map_.addBody(T_w_b.translation()));
+    const Pose& T_c_w = replanned.request.T_c_w.mean;
+    const Eigen::Vector3d body_w = (config_.camera.T_b_c() * T_c_w).inverse().translation();
+    const Eigen::Vector3d ahead_w = T_c_w.linear().row(2);
+    change.join(map_.addBody(body_w, body_w + asWideAsBody(camera_, space_.radius) * ahead_w));
     replanned.update.fuseSeconds = watch.seconds();
 }
 
 /// Above the robot's radius, clearances are those of the map. The last image shows obstacles before
 /// the map does; from them the body keeps away as far as it must to stop.
-std::optional<FlyablePart> Replanner::flyableWay(const ObstaclesInView& inView) const {
+std::optional<FlyablePart> Replanner::flyableWay(const ReplanRequest& request) const {
     if (planner_.path().empty()) return {};
     SpaceAhead space = space_;
+    space.canLook = space_.canLook && request.mayLook;
     space.clearance = [&](const Eigen::Vector3d& p_w) {
         return std::min(planner_.clearance(p_w),
-                        clearanceInView(inView, p_w, space_.radius, tube_));
+                        clearanceInView(request.inView, p_w, space_.radius, tube_));
     };
     FlyablePart way = flyablePart(plannedViews(planner_.path()), space);
     way.isWhole = way.isWhole && planner_.reachesGoal();

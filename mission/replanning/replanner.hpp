@@ -16,6 +16,7 @@ struct ReplanRequest {
     ObstaclesInView inView;  ///< in the last image
     UncertainPose T_c_w;     ///< the robot's present belief
     double imageTime = 0.;   ///< time of the last image [s]
+    bool mayLook = true;     ///< the robot may turn on the spot to look where the plan leads
 };
 
 /// Map and plan after an update. Nothing in it changes with the next update.
@@ -35,7 +36,7 @@ struct Replanned {
 ///
 ///     replan(request):
 ///         for every image: remove what it contradicts, fuse its depth       (OnlineMap::add)
-///         free the space of the robot's body                            (OnlineMap::addBody)
+///         free the space of the robot's body, and right ahead of it     (OnlineMap::addBody)
 ///         update clearance and views, repair the plan                        (OnlinePlanner)
 ///         keep the part of the plan that was seen and is free                 (flyablePart)
 ///
@@ -64,7 +65,7 @@ class Replanner {
 
   private:
     void fuse(Replanned& replanned);
-    std::optional<FlyablePart> flyableWay(const ObstaclesInView& inView) const;
+    std::optional<FlyablePart> flyableWay(const ReplanRequest& request) const;
 
     Config config_;
     Camera camera_;

@@ -13,7 +13,9 @@ std::vector<std::shared_ptr<ob::State>> replaceHeadings(const ob::SpaceInformati
                                                         const FlightSpace& space,
                                                         const std::vector<const ob::State*>& path,
                                                         Headings headings) {
-    constexpr double kVertical = 1e-6;  // a leg with a shorter way from above has no heading [m]
+    // A leg with a shorter way from above has no heading [m]. Else a robot whose plan is updated
+    // while it flies would turn for centimetres, again and again.
+    constexpr double kShort = 0.1;
     if (space.kind() != StateKind::positionYaw) {
         throw std::invalid_argument("headings: the space has none that is free");
     }
@@ -28,7 +30,7 @@ std::vector<std::shared_ptr<ob::State>> replaceHeadings(const ob::SpaceInformati
         const Eigen::Vector3d from = space.position(path[i - 1]);
         const Eigen::Vector3d to = space.position(path[i]);
         const Eigen::Vector2d leg = (to - from).head<2>();
-        if (headings == Headings::forward && leg.norm() > kVertical) {
+        if (headings == Headings::forward && leg.norm() > kShort) {
             const double along = std::atan2(leg.y(), leg.x());
             if (along != yaw) add(from, along);
             yaw = along;

@@ -17,8 +17,8 @@ enum class Headings {
 };
 
 /// Replaces the headings of a path. RRT* minimises the length, so that its headings are random
-/// samples; robots without planned headings follow one of these rules instead. A vertical leg keeps
-/// the heading of the leg before it.
+/// samples; robots without planned headings follow one of these rules instead. A vertical leg, or
+/// one shorter than 0.1 m, keeps the heading of the leg before it.
 /// @param path at least one state; the first one is the present pose of the robot and is not
 ///        changed
 /// @return the new states; a turn on the spot is a motion of its own

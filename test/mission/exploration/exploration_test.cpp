@@ -141,6 +141,32 @@ TEST_F(RoomToExplore, LooksFromNearbyWhetherTheGoalIsInAnObstacle) {
     }
 }
 
+/// What was not seen is an obstacle to this robot, whose camera sees the way ahead.
+TEST_F(RoomToExplore, AnticipatesObstaclesWhereItHasNotSeen) {
+    config.explore.unknown = UnknownSpace::pessimistic;
+    config.camera.mount = "forward";
+    config.goal.position.x() = 3.5;
+    const ExplorationResult flight = flown(test::roomToExplore());
+    EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
+    EXPECT_GT(flight.leastClearance, 0.125);
+    config.camera.mount = "front45";  // sees only what is lower
+    const ExplorationResult lower = flown(test::roomToExplore());
+    EXPECT_EQ(nameOf(lower.end), "no way");
+    EXPECT_NE(lower.reason.find("seen to be free"), std::string::npos) << lower.reason;
+}
+
+/// A wall across the whole room: right and left are as good as each other, at every update anew.
+TEST_F(RoomToExplore, DoesNotLookToAndFroForEver) {
+    Scene split = test::greyRoom();
+    addBox(split, {5., 0., 0.}, {5.2, 4., 3.}, addTexture(split, valueNoise({.seed = 3})));
+    const World world(std::move(split), config);
+    const PlanningProblem problem(config, world);
+    const ExplorationResult flight =
+        explore(setUpExploration(problem), "pa_rrt_star/forward", 1, kNotInterrupted);
+    EXPECT_EQ(nameOf(flight.end), "no way");
+    EXPECT_LT(flight.duration, 60.);
+}
+
 /// A depth sensor that measures nothing: the robot does not fly into what it cannot see.
 TEST_F(RoomToExplore, SaysThatItSeesNothingOfTheWay) {
     config.explore.depthMissing = 1.;

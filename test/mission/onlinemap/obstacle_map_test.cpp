@@ -85,10 +85,14 @@ TEST(ObstacleMap, TheBodysOwnPlaceIsFree) {
     ObstacleMap obstacles(kCell, {Vector3d(-1., -1., 0.), Vector3d(1., 1., 1.)},
                           UnknownSpace::pessimistic);
     obstacles.update(column.map, column.change);
-    EXPECT_FALSE(obstacles.addBody(column.map, {0.05, 0.05, 0.6}, 0.2).empty());
+    const Vector3d body(0.05, 0.05, 0.6);
+    EXPECT_FALSE(obstacles.addBody(column.map, body, body, 0.2).empty());
     EXPECT_NE(obstacles.cells()->search(0.05, 0.05, 0.65), nullptr);
     EXPECT_EQ(obstacles.cells()->search(0.05, 0.05, 1.15), nullptr);
-    EXPECT_TRUE(obstacles.addBody(column.map, {0.05, 0.05, 0.6}, 0.2).empty());
+    EXPECT_TRUE(obstacles.addBody(column.map, body, body, 0.2).empty());
+    const Vector3d ahead(0.05, 0.05, 1.1);
+    EXPECT_FALSE(obstacles.addBody(column.map, body, ahead, 0.2).empty());
+    EXPECT_NE(obstacles.cells()->search(0.05, 0.05, 1.15), nullptr);
 }
 
 /// A camera 2 m above the floor, looking down: the right side of its image shows y < 0. From

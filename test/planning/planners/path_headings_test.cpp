@@ -60,6 +60,14 @@ TEST_F(PathHeadings, LieAlongTheMotionAfterATurnOnTheSpot) {
     }
 }
 
+/// A robot that flies beside its plan goes back to it by a few centimetres, whatever its heading.
+TEST_F(PathHeadings, AreNotThoseOfAFewCentimetres) {
+    problem.space().setState(path[0], {4.05, 1.02, 2.}, 0.3);
+    const auto states = with(Headings::forward);
+    EXPECT_NEAR(yaw(states[1]), 0.3, 1e-12);
+    EXPECT_NEAR(yaw(states.back()), std::numbers::pi / 2, 1e-12);
+}
+
 TEST_F(PathHeadings, NeedASpaceThatHasThem) {
     const Problem flat;
     EXPECT_THROW(replaceHeadings(flat.spaceInformation(), flat.space(), {path.begin(), path.end()},
