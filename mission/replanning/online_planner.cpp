@@ -216,7 +216,7 @@ OnlinePlanner::States OnlinePlanner::solution(const Limits& limits) const {
 OnlinePlanner::States OnlinePlanner::approach() const {
     constexpr double kNearer = 0.1;    // than the root, at least [m]
     constexpr double kPerMetre = 0.1;  // nearer by each metre of the way [m]
-    constexpr double kFacing = 0.3;    // [rad]
+    constexpr double kTurned = 0.3;    // [rad]
     const FlightSpace& space = problem_.space();
     const std::vector<TreeNode> tree = planner_->tree();
     if (tree.empty()) return {};
@@ -246,7 +246,7 @@ OnlinePlanner::States OnlinePlanner::approach() const {
     const double facing = std::atan2(toGoal(end).y(), toGoal(end).x());
     const double turn = std::remainder(facing - yawOf(space.bodyPose(end)), 2. * std::numbers::pi);
     const bool canTurn = config_.space != StateKind::position && kind_.headings != Headings::fixed;
-    if (canTurn && std::abs(turn) > kFacing) {
+    if (canTurn && std::abs(turn) > kTurned) {
         plan.push_back(copyOf(problem_.spaceInformation(), end));
         space.setState(plan.back().get(), space.position(end), facing);
     }
