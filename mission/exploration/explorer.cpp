@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "geometry/gaussian.hpp"
 #include "geometry/se3.hpp"
 #include "render/interruptible_views.hpp"
 #include "render/voxel_grid.hpp"
@@ -358,8 +359,7 @@ std::string Explorer::reasonForNoWay() const {
         return "the goal is not in space that was seen to be free";
     }
     if (clearance < config_.robotRadius) {
-        const Matrix6& covariance = tracker_.belief().covariance;
-        const double sigma = std::sqrt(covariance.diagonal().head<3>().maxCoeff());
+        const double sigma = largestSigma(tracker_.belief().covariance.topLeftCorner<3, 3>());
         return fmt::format(
             "the goal is in collision: clearance {:.2f} m in the map, where the "
             "robot knows its position to {:.2f} m",

@@ -149,9 +149,8 @@ void OnlinePlanner::update(const MapChange& change, const UncertainPose& T_c_w, 
     update.viewSeconds = field->seconds() + exact.seconds() - viewSecondsBefore;
     update.viewsMarked = field->marked() - markedBefore;
     update.viewsRendered = field->views() + exact.views() - viewsBefore;
-    const bool isFound = reachesGoal_ && !path_.empty();
-    update.cost = isFound ? path_.back().cost : std::numeric_limits<double>::quiet_NaN();
-    update.length = isFound ? path_.back().length : std::numeric_limits<double>::quiet_NaN();
+    update.cost = reachesGoal_ ? path_.back().cost : std::numeric_limits<double>::quiet_NaN();
+    update.length = reachesGoal_ ? path_.back().length : std::numeric_limits<double>::quiet_NaN();
     update.trace = weightedTrace(T_c_w.covariance, config_.belief.characteristicLength);
 }
 
