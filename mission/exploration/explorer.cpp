@@ -36,10 +36,6 @@ constexpr double kAroundGoal = 2.;
 constexpr double kWait = 1.;
 /// Heading of a robot that faces a place [rad].
 constexpr double kLooksThere = 0.1;
-/// Number of turns on the spot to look somewhere, from places not farther apart than kSamePlace;
-/// then the robot flies on as if it could not turn. (Right and left of an obstacle, each twice.)
-constexpr int kMostLooks = 4;
-constexpr double kSamePlace = 0.5;  // [m]
 /// Longest turn toward a place [s].
 constexpr double kLongestLook = 5.;
 /// Longest improvement of a plan in real time [s].
@@ -66,6 +62,7 @@ double stoppingRadius(const ExplorerOptions& options, double distance) {
 TrackerOptions trackerFor(const ExplorerOptions& options, const Mapper& mapper) {
     TrackerOptions tracker = options.tracker;
     tracker.mapErrors = mapper.errors();
+    tracker.depth = {depthSigmaAtOneMetre(options.config), options.config.explore.resolution};
     return tracker;
 }
 
@@ -192,7 +189,7 @@ void Explorer::onImage(const TrackedFrame& tracked, const View& image) {
     stopIfInterrupted();
     if (!input && isNews) input = MapInput{image, shown, tracked.T_c_w};  // for the plan alone
     if (!input) return;
-    ReplanRequest request{{std::move(*input)}, inView_, tracker_.belief(), tracked.time, mayLook()};
+    ReplanRequest request{{std::move(*input)}, inView_, tracker_.belief(), tracked.time};
     if (background_) return background_->add(std::move(request));
     takeOver(replanner_.replan(std::move(request), {interrupted_}));
 }
@@ -303,10 +300,7 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
 void Explorer::follow(FlyablePart part) {
     isWhole_ = part.isWhole;
     look_.reset();
-    if (part.isLook) {
-        look_ = Look{yawOf(part.plan.back().T_w_b), time_};
-        countLook();
-    }
+    if (part.isLook) look_ = Look{yawOf(part.plan.back().T_w_b), time_};
     pilot_.setPlan(std::move(part.plan));
 }
 
@@ -316,19 +310,6 @@ bool Explorer::isLooking() const {
     if (!look_ || time_ - look_->since > kLongestLook) return false;
     const double turn = std::remainder(look_->yaw - yawOf(here()), 2. * std::numbers::pi);
     return std::abs(turn) > kLooksThere;
-}
-
-bool Explorer::mayLook() const {
-    return looks_ < kMostLooks || (here().translation() - lookedFrom_w_).norm() > kSamePlace;
-}
-
-void Explorer::countLook() {
-    const Eigen::Vector3d here_w = here().translation();
-    if ((here_w - lookedFrom_w_).norm() > kSamePlace) {
-        looks_ = 0;
-        lookedFrom_w_ = here_w;
-    }
-    ++looks_;
 }
 
 /// A camera without a depth sensor has to move before it sees anything.

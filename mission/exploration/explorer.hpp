@@ -12,7 +12,6 @@
 #include "flight/arrival.hpp"
 #include "flight/flight_end.hpp"
 #include "flight/flight_loop.hpp"
-#include "geometry/constants.hpp"
 #include "onlinemap/mapper.hpp"
 #include "replanning/background_replanner.hpp"
 
@@ -142,8 +141,6 @@ class Explorer {
     void showMoment(Replanned replanned);
     void flyOn(std::optional<FlyablePart> way);
     bool isLooking() const;
-    bool mayLook() const;
-    void countLook();
     bool mayStepBlindly() const;
     void follow(FlyablePart part);
     void hover();
@@ -187,8 +184,6 @@ class Explorer {
         double since = 0.;  // [s]
     };
     std::optional<Look> look_;  // that the robot turns to
-    int looks_ = 0;             // without a motion between them
-    Eigen::Vector3d lookedFrom_w_ = Eigen::Vector3d::Constant(kInfinity);
     int blindInARow_ = 0;                // blind steps since the map last grew
     double lastUpdate_ = 0.;             // time of the last update [s]
     std::optional<double> atGoalSince_;  // time of reaching the goal, if still near it [s]

@@ -75,7 +75,6 @@ void Replanner::fuse(Replanned& replanned) {
 std::optional<FlyablePart> Replanner::flyableWay(const ReplanRequest& request) const {
     if (planner_.path().empty()) return {};
     SpaceAhead space = space_;
-    space.canLook = space_.canLook && request.mayLook;
     space.clearance = [&](const Eigen::Vector3d& p_w) {
         return std::min(planner_.clearance(p_w),
                         clearanceInView(request.inView, p_w, space_.radius, tube_));

@@ -16,7 +16,6 @@ struct ReplanRequest {
     ObstaclesInView inView;  ///< in the last image
     UncertainPose T_c_w;     ///< the robot's present belief
     double imageTime = 0.;   ///< time of the last image [s]
-    bool mayLook = true;     ///< the robot may turn on the spot to look where the plan leads
 };
 
 /// Map and plan after an update. Nothing in it changes with the next update.

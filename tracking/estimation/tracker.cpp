@@ -14,10 +14,12 @@ class Tracker::MapAligner {
     MapAligner(std::shared_ptr<const ViewSource> map, const Camera& camera,
                const TrackerOptions& options)
         : map_(std::move(map)) {
+        if (options.depth) measured_.emplace(map_, *options.depth);
+        const ViewSource& views = measured_ ? *measured_ : *map_;
         if (options.searchPrior) {
-            wide_.emplace(*map_, camera, options.map);
+            wide_.emplace(views, camera, options.map);
         } else {
-            dense_.emplace(*map_, camera, options.map);
+            dense_.emplace(views, camera, options.map);
         }
     }
 
@@ -26,9 +28,11 @@ class Tracker::MapAligner {
     }
 
     const ViewSource& map() const { return *map_; }
+    MeasuredSurfaces* measured() { return measured_ ? &*measured_ : nullptr; }
 
   private:
     std::shared_ptr<const ViewSource> map_;
+    std::optional<MeasuredSurfaces> measured_;  ///< views of the map without what is contradicted
     std::optional<WideAligner> wide_;
     std::optional<DenseAligner> dense_;
 };
@@ -114,13 +118,16 @@ void Tracker::correctByVertical(const MeasuredVertical& measured) {
     belief_.mean = expSE3(belief_.covariance * right) * belief_.mean;
 }
 
-/// Finds the keyframes that the map in view was made of: their errors are errors of this map.
-void Tracker::relateToMap() {
+/// Finds the keyframes that the map in view was made of: their errors are errors of this map. Then
+/// finds the surfaces of the map that the measured depth contradicts.
+void Tracker::relateToMap(const ImageF& measuredDepth) {
     relation_.reset();
-    if (!map_ || !options_.mapErrors) return;
+    MeasuredSurfaces* measured = map_ ? map_->measured() : nullptr;
+    if (!map_ || (!options_.mapErrors && measured == nullptr)) return;
     View view;
     map_->map().render(camera_, belief_.mean, view);
-    relation_ = options_.mapErrors->relate(view, camera_, belief_);
+    if (options_.mapErrors) relation_ = options_.mapErrors->relate(view, camera_, belief_);
+    if (measured != nullptr) measured->measure(view, measuredDepth, camera_, priorInMap());
 }
 
 /// The belief of the pose in the map, whose errors are not those of the pose.
@@ -139,7 +146,7 @@ Matrix6 Tracker::covarianceOf(const Match& match) {
 std::optional<Tracker::Match> Tracker::find(const View& view, const Pose& stayed,
                                             TrackedFrame& frame) {
     std::optional<Match> match;
-    relateToMap();
+    relateToMap(view.depth);
     if (map_) match = findInMap(view.intensity, stayed, frame);
     if (!match && keyframes_ && !keyframes_->isEmpty()) {
         match = findByKeyframes(view.intensity, stayed, frame);

@@ -11,6 +11,7 @@
 #include "estimation/loss_of_tracking.hpp"
 #include "estimation/map_errors.hpp"
 #include "estimation/measured_motion.hpp"
+#include "estimation/measured_surfaces.hpp"
 #include "estimation/motion_model.hpp"
 #include "estimation/observation.hpp"
 
@@ -26,6 +27,9 @@ struct TrackerOptions {
     /// Errors of a map that is built on the same flight at the beliefs of this tracker: the belief
     /// does not become more certain than the map in view. Null: the map is exact.
     std::shared_ptr<MapErrors> mapErrors = {};
+    /// Of measured depth: surfaces of the map that it contradicts are left out (MeasuredSurfaces).
+    /// None: measured depth is not compared with the map.
+    std::optional<DepthAccuracy> depth = {};
     MotionNoise motion = {};  ///< of the motion between images, without odometry
     LossOptions loss = {};
     Pose T_b_c = Pose::Identity();  ///< mount of the camera on the body whose motion is measured
@@ -96,7 +100,7 @@ class Tracker {
     TrackedFrame track(const CameraFrame& image);
     void predict(double time);
     void correctByVertical(const MeasuredVertical& measured);
-    void relateToMap();
+    void relateToMap(const ImageF& measuredDepth);
     UncertainPose priorInMap() const;
     Matrix6 covarianceOf(const Match& match);
     std::optional<Match> find(const View& view, const Pose& stayed, TrackedFrame& frame);
