@@ -8,6 +8,8 @@
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <new>
 #include <string_view>
@@ -56,6 +58,12 @@ void say(std::string_view text) {
     static_cast<void>(!write(standardError, text.data(), text.size()));
 }
 
+/// Of a command that is interrupted and writes nothing more.
+std::string_view saidWhenEnded() {
+    return FolderTransaction::isAnyCommitted() ? "interrupted after the result was written"
+                                               : "interrupted before there was any result";
+}
+
 /// The first Ctrl-C, or SIGTERM as Slurm and systemd send it, lets the command finish its files, or
 /// ends it at once where there are none yet; the second one always does. timeout(1) sends its
 /// signal twice, to the process and to its group: that is one. A command that has not ended a
@@ -72,7 +80,9 @@ void onInterrupt(int signal) {
     const bool hasResults = reaction == OnInterrupt::finishAlways ||
                             FolderTransaction::isAnyOpen() || FolderTransaction::isAnyCommitted();
     if (reaction == OnInterrupt::endAtOnce || !hasResults) {
-        say("photonav: interrupted before there was any result\n");
+        say("photonav: ");
+        say(saidWhenEnded());
+        say("\n");
         std::_Exit(exitCodeOf(signal));
     }
     alarm(1);
@@ -82,6 +92,12 @@ void onAlarm(int /*signal*/) {
     say("photonav: interrupted; finishing the current step and writing the results so far (once "
         "more "
         "to stop at once, which keeps an earlier result as it was)\n");
+}
+
+/// Some libraries end the program where they run out of memory while they clean up (Embree).
+[[noreturn]] void onTerminate() {
+    say("photonav: ended by an error within a library; most often there is too little memory\n");
+    std::_Exit(kNoAnswer);
 }
 
 /// What the system says of a thread that it does not start names nothing.
@@ -177,6 +193,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
     constexpr const char* kNoOutput = "standard output cannot be written";
     occupyStandardStreams();
+    std::set_terminate(onTerminate);
     std::signal(SIGINT, onInterrupt);
     std::signal(SIGTERM, onInterrupt);
     std::signal(SIGALRM, onAlarm);
@@ -197,7 +214,7 @@ int main(int argc, char** argv) {
     } catch (const std::filesystem::filesystem_error& error) {
         return fail(kBadInput, error.path1().string() + ": " + error.code().message());
     } catch (const RenderingStopped&) {
-        return fail(exitCodeOf(interruptedBy), "interrupted before there was any result");
+        return fail(exitCodeOf(interruptedBy), saidWhenEnded());
     } catch (const std::bad_alloc&) {
         return fail(kNoAnswer, command + ": needs more memory than there is");
     } catch (const std::exception& error) {

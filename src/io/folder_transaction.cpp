@@ -162,7 +162,20 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
     }
     checkTarget(target_, resolved_);
     checkWorkingFolder(target_, working_);
-    lock();
+    const bool isNew = lock();
+    try {
+        takeUp();
+    } catch (...) {
+        std::error_code error;
+        if (isNew) fs::remove(working_ / Manifest::kFileName, error);
+        if (isNew) fs::remove(working_, error);
+        throw;
+    }
+    ++open_;
+}
+
+/// Ends what a killed process has left, and keeps its work if it is to be gone on with.
+void FolderTransaction::takeUp() {
     endExchange();
     // The process ended after an exchange, before the earlier result was removed.
     const Manifest left = Manifest::read(working_);
@@ -181,7 +194,6 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
     if (!isKept || !writeInto(lock_.get(), {})) {  // on a full disk: what comes next says so
         static_cast<void>(!ftruncate(lock_.get(), 0));
     }
-    ++open_;
 }
 
 bool FolderTransaction::isBeingWritten(const fs::path& target) {
@@ -195,17 +207,21 @@ bool FolderTransaction::isBeingWritten(const fs::path& target) {
 
 /// The lock is on the manifest, which moves with the folder: a folder that another process has just
 /// put in place is not ours, and the next try makes a new one.
-void FolderTransaction::lock() {
+/// @return whether the working folder was made
+bool FolderTransaction::lock() {
     const fs::path file = working_ / Manifest::kFileName;
     for (;;) {
         std::error_code error;
-        fs::create_directories(working_, error);
+        const bool isNew = fs::create_directories(working_, error);
         if (error) refuse(target_, "cannot be made: " + error.message());
         lock_.reset(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
         if (lock_.get() < 0 && errno == ENOENT) continue;
-        if (lock_.get() < 0)
-            refuse(target_, std::string("cannot be made: ") + std::strerror(errno));
-        if (lockOpenFile(lock_, file, target_)) return;
+        if (lock_.get() < 0) {
+            const int reason = errno;
+            if (isNew) fs::remove(working_, error);
+            refuse(target_, std::string("cannot be made: ") + std::strerror(reason));
+        }
+        if (lockOpenFile(lock_, file, target_)) return isNew;
     }
 }
 

@@ -59,7 +59,8 @@ class FolderTransaction {
     static bool isBeingWritten(const std::filesystem::path& target);
 
   private:
-    void lock();
+    bool lock();
+    void takeUp();
     void endExchange() const;
     void removeLeftovers() const;
     void exchange();

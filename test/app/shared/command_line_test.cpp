@@ -86,6 +86,38 @@ TEST_F(CommandLine, AStandardErrorThatCannotBeWrittenChangesNoExitCode) {
     }
 }
 
+/// From too little for the program to what the command needs: each time one line, or the result.
+TEST_F(CommandLine, TooLittleMemoryIsSaidInOneLine) {
+    constexpr int kNotLoaded = 127;  // by the system's loader
+    int refused = 0;
+    for (int megabytes = 300; megabytes <= 900; megabytes += 50) {
+        const Execution run = execute(fmt::format(
+            "{{ ulimit -v {}; {} plan {} --set planner.vertices=60 --quiet --out {}; }}",
+            1000 * megabytes, PHOTONAV_BINARY, config("two_textures"), folder_.string()));
+        if (run.exitCode == kNotLoaded || run.exitCode == 0) continue;
+        ++refused;
+        EXPECT_TRUE(run.exitCode == 1 || run.exitCode == 2) << run.exitCode << " " << run.output;
+        EXPECT_NE(run.output.find("memory"), std::string::npos) << run.output;
+        EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+        EXPECT_FALSE(fs::exists(folder_.string() + ".unfinished"));
+    }
+    EXPECT_GT(refused, 0);
+}
+
+/// While it prints more than a pipe holds.
+TEST_F(CommandLine, AnInterruptAfterTheResultDoesNotDenyIt) {
+    const std::string pipe = folder_.string() + ".pipe";
+    const std::string result = (folder_ / "result.json").string();
+    const Execution run = execute(
+        fmt::format("{{ mkfifo {0}; exec 3<>{0}; {1} info {2} --json --out {3} > {0} & "
+                    "until [ -f {4} ]; do sleep 0.02; done; sleep 0.2; kill -INT $!; wait $!; }}",
+                    pipe, PHOTONAV_BINARY, config("two_textures"), folder_.string(), result));
+    fs::remove(pipe);
+    EXPECT_EQ(run.exitCode, 130);
+    EXPECT_EQ(run.output, "photonav: interrupted after the result was written\n");
+    EXPECT_TRUE(fs::exists(result));
+}
+
 TEST_F(CommandLine, NumbersOutOfRangeAreSaidWithTheirRange) {
     for (const char* number : {"0", "nan", "many"}) {
         const Execution run =

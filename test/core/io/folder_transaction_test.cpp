@@ -3,6 +3,7 @@
 #include "io/folder_transaction.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -122,6 +123,26 @@ TEST_F(FolderTransactionTest, PathsThatAreTooLongAreNamedAndNothingIsMade) {
     while (deep.size() < 4078) deep += "/a";
     EXPECT_TRUE(complaint(deep).ends_with(": File name too long")) << complaint(deep);
     EXPECT_EQ(entries(temporary_.path()), 0U);
+}
+
+/// The lock takes the last descriptor, or finds none.
+TEST_F(FolderTransactionTest, LeavesNothingWhereTooManyFilesAreOpen) {
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+    const int next = dup(STDIN_FILENO);
+    ASSERT_GE(next, 0);
+    close(next);
+    for (const int more : {0, 1}) {
+        rlimit few = before;
+        few.rlim_cur = static_cast<rlim_t>(next + more);
+        ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+        const std::string reason = complaint(target_);
+        ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+        EXPECT_NE(reason.find("Too many open files"), std::string::npos) << reason;
+        EXPECT_EQ(entries(temporary_.path()), 0) << more;
+    }
+    commit(target_, "new.txt", "new");
+    EXPECT_EQ(contentOf(target_ / "new.txt"), "new");
 }
 
 TEST_F(FolderTransactionTest, NamesFoldersBesideWhichNothingMayBeWritten) {
