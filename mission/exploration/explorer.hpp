@@ -183,7 +183,7 @@ class Explorer {
         double yaw = 0.;    // [rad]
         double since = 0.;  // [s]
     };
-    std::optional<Look> look_;  // that the robot turns to
+    std::optional<Look> look_;           // that the robot turns to
     int blindInARow_ = 0;                // blind steps since the map last grew
     double lastUpdate_ = 0.;             // time of the last update [s]
     std::optional<double> atGoalSince_;  // time of reaching the goal, if still near it [s]

@@ -213,24 +213,31 @@ OnlinePlanner::States OnlinePlanner::solution(const Limits& limits) const {
 /// From the root to where the goal is near and the way there is not long, and a turn toward the
 /// goal; empty: neither brings anything new.
 OnlinePlanner::States OnlinePlanner::approach() const {
+    States plan = wayNearGoal();
+    if (plan.size() > 1) plan = withHeadings(std::move(plan));
+    plan = facingGoal(std::move(plan));
+    return plan.size() > 1 ? plan : States();
+}
+
+/// The way in the tree to the place nearest to the goal, where each metre of the way counts, too.
+OnlinePlanner::States OnlinePlanner::wayNearGoal() const {
     constexpr double kNearer = 0.1;    // than the root, at least [m]
     constexpr double kPerMetre = 0.1;  // nearer by each metre of the way [m]
-    constexpr double kTurned = 0.3;    // [rad]
     const FlightSpace& space = problem_.space();
     const std::vector<TreeNode> tree = planner_->tree();
     if (tree.empty()) return {};
-    const auto toGoal = [&](const ob::State* state) -> Eigen::Vector3d {
-        return config_.goal.position - space.position(state);
+    const auto toGoal = [&](const ob::State* state) {
+        return (config_.goal.position - space.position(state)).norm();
     };
     std::vector<double> length(tree.size(), 0.);
     std::size_t best = 0;
-    double least = toGoal(tree[0].state).norm() - kNearer;
+    double least = toGoal(tree[0].state) - kNearer;
     for (std::size_t i = 1; i < tree.size(); ++i) {
         if (tree[i].parent < 0) continue;
         const ob::State* parent = tree[tree[i].parent].state;
         length[i] = length[tree[i].parent] +
                     (space.position(parent) - space.position(tree[i].state)).norm();
-        const double value = toGoal(tree[i].state).norm() + kPerMetre * length[i];
+        const double value = toGoal(tree[i].state) + kPerMetre * length[i];
         if (value >= least) continue;
         least = value;
         best = i;
@@ -240,16 +247,23 @@ OnlinePlanner::States OnlinePlanner::approach() const {
         plan.push_back(copyOf(problem_.spaceInformation(), tree[i].state));
     }
     std::reverse(plan.begin(), plan.end());
-    if (plan.size() > 1) plan = withHeadings(std::move(plan));
-    const ob::State* end = plan.back().get();
-    const double facing = std::atan2(toGoal(end).y(), toGoal(end).x());
-    const double turn = std::remainder(facing - yawOf(space.bodyPose(end)), 2. * std::numbers::pi);
+    return plan;
+}
+
+/// With a turn toward the goal at its end, where the robot may turn.
+OnlinePlanner::States OnlinePlanner::facingGoal(States plan) const {
+    constexpr double kTurned = 0.3;  // [rad]
     const bool canTurn = config_.space != StateKind::position && kind_.headings != Headings::fixed;
-    if (canTurn && std::abs(turn) > kTurned) {
-        plan.push_back(copyOf(problem_.spaceInformation(), end));
-        space.setState(plan.back().get(), space.position(end), facing);
-    }
-    return plan.size() > 1 ? plan : States();
+    if (plan.empty() || !canTurn) return plan;
+    const FlightSpace& space = problem_.space();
+    const ob::State* end = plan.back().get();
+    const Eigen::Vector3d toGoal = config_.goal.position - space.position(end);
+    const double facing = std::atan2(toGoal.y(), toGoal.x());
+    const double turn = std::remainder(facing - yawOf(space.bodyPose(end)), 2. * std::numbers::pi);
+    if (std::abs(turn) <= kTurned) return plan;
+    plan.push_back(copyOf(problem_.spaceInformation(), end));
+    space.setState(plan.back().get(), space.position(end), facing);
+    return plan;
 }
 
 OnlinePlanner::States OnlinePlanner::withHeadings(States plan) const {

@@ -88,6 +88,8 @@ class OnlinePlanner {
     bool solveFrom(const ompl::base::State* state, const Belief& belief, const Limits& limits);
     States solution(const Limits& limits) const;
     States approach() const;
+    States wayNearGoal() const;
+    States facingGoal(States plan) const;
     States withHeadings(States plan) const;
     States restOf(const States& plan, const ompl::base::State* state) const;
     std::vector<BeliefPoint> pathFrom(const Pose& T_w_b, const Matrix6& covariance);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -19,40 +20,21 @@ struct DepthRange {
     ImageF least, most;
 };
 
-/// Replaces pixels by the best one within `reach` pixels along one axis.
-/// @param step from a pixel to the next one along the axis
-template <class Better>
-void spread(ImageF& image, int reach, int count, int step, int lines, int toNextLine,
-            const Better& better) {
-    std::vector<float> line(static_cast<std::size_t>(count));
-    for (int l = 0; l < lines; ++l) {
-        float* first = image.bitmap + static_cast<std::ptrdiff_t>(l) * toNextLine;
-        for (int i = 0; i < count; ++i) line[i] = first[i * step];
-        for (int i = 0; i < count; ++i) {
-            float best = line[i];
-            const int end = std::min(count - 1, i + reach);
-            for (int k = std::max(0, i - reach); k <= end; ++k) best = better(best, line[k]);
-            first[i * step] = best;
-        }
-    }
+cv::Mat wrapped(ImageF& image) {
+    return {static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_32F,
+            image.bitmap};
 }
 
-template <class Better>
-ImageF spread(ImageF image, const HoleMargin& margin, const Better& better) {
-    const int width = static_cast<int>(image.getWidth());
-    const int height = static_cast<int>(image.getHeight());
-    spread(image, margin.columns, width, 1, height, width, better);
-    spread(image, margin.rows, height, width, width, 1, better);
-    return image;
-}
-
-DepthRange rangeOf(const ImageF& depth, const HoleMargin& margin) {
-    ImageF least = depth;
-    for (unsigned i = 0; i < least.getSize(); ++i) {
-        if (!(least.bitmap[i] > 0.F)) least.bitmap[i] = static_cast<float>(kInfinity);
+DepthRange rangeOf(ImageF depth, const HoleMargin& margin) {
+    DepthRange range{ImageF(depth.getHeight(), depth.getWidth()),
+                     ImageF(depth.getHeight(), depth.getWidth())};
+    const cv::Mat around = cv::Mat::ones(2 * margin.rows + 1, 2 * margin.columns + 1, CV_8U);
+    cv::dilate(wrapped(depth), wrapped(range.most), around);
+    for (unsigned i = 0; i < depth.getSize(); ++i) {
+        if (!(depth.bitmap[i] > 0.F)) depth.bitmap[i] = static_cast<float>(kInfinity);
     }
-    return {spread(std::move(least), margin, [](float a, float b) { return std::min(a, b); }),
-            spread(depth, margin, [](float a, float b) { return std::max(a, b); })};
+    cv::erode(wrapped(depth), wrapped(range.least), around);
+    return range;
 }
 
 }  // namespace
