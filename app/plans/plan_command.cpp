@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -69,7 +70,8 @@ std::optional<RecordedComparison> compareWithImages(const Config& config, const 
     }
 }
 
-/// At every 1, 2 and 5 times a power of ten, up to the number of vertices.
+/// At every 1, 2 and 5 times a power of ten, up to the number of vertices; of an interrupted
+/// command, the stages that all planners have reached.
 std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, PlanningProblem& problem,
                                     std::size_t vertices, const std::atomic<bool>& interrupted) {
     std::vector<std::size_t> stages;
@@ -84,6 +86,12 @@ std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, Plann
     for (const std::string& planner : planners) {
         evolutions.push_back(growInStages(problem, planner, stages, interrupted));
     }
+    std::size_t reached = stages.size();
+    for (const TreeEvolution& evolution : evolutions) {
+        reached = std::min(reached, evolution.stages.size());
+    }
+    if (reached == 0) return {};
+    for (TreeEvolution& evolution : evolutions) evolution.stages.resize(reached);
     return evolutions;
 }
 

@@ -2,6 +2,7 @@
 #include "problem/tree_evolution.hpp"
 
 #include <set>
+#include <utility>
 
 #include "render/interruptible_views.hpp"
 
@@ -32,13 +33,14 @@ TreeEvolution growInStages(PlanningProblem& problem, const std::string& name,
     TreeEvolution evolution{planner->getName(), {}};
     for (const std::size_t stop : vertices) {
         planner->params().setParam("max_vertices", std::to_string(stop));
-        TreeStage& stage = evolution.stages.emplace_back();
+        TreeStage stage;
         try {
             grow(*planner, problem, interrupted, stage);
         } catch (const RenderingStopped&) {
-            evolution.stages.pop_back();
             break;
         }
+        if (interrupted) break;
+        evolution.stages.push_back(std::move(stage));
     }
     return evolution;
 }

@@ -23,7 +23,7 @@ struct TreeEvolution {
 
 /// Grows a planner in stages. The planner's solve() ends at every stage, where belief_rrt_star
 /// searches its roadmap. The result of the last stage therefore differs slightly from the result
-/// without stages.
+/// without stages. An interrupted planner has only the stages before.
 /// @param vertices numbers of vertices of the stages, in rising order
 TreeEvolution growInStages(PlanningProblem& problem, const std::string& planner,
                            const std::vector<std::size_t>& vertices,

@@ -2,10 +2,12 @@
 // photonav plan, as a user runs it.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 #include "app/command_test.hpp"
 #include "io/stopwatch.hpp"
@@ -130,6 +132,28 @@ TEST_F(PlanCommand, CtrlCKeepsTheBestPathSoFar) {
     }
     EXPECT_EQ(result()["status"], "interrupted");
     EXPECT_FALSE(result()["path"].empty());
+}
+
+TEST_F(PlanCommand, CtrlCWhileTheEvolutionIsDrawnKeepsThePath) {
+    PlanOptions options;
+    options.config = config("two_textures");
+    options.overrides = {"planner.vertices=100"};
+    options.out = folder_;
+    options.quiet = true;
+    options.evolution = true;
+    int kept = 0;
+    for (const double seconds : {0.1, 0.2, 0.4, 0.8, 1.6}) {
+        std::atomic<bool> interrupted{false};
+        const std::jthread timer([&] {
+            std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+            interrupted = true;
+        });
+        int code = kNoAnswer;
+        ASSERT_NO_THROW(code = runPlan(options, interrupted)) << "after " << seconds;
+        EXPECT_TRUE(code == kInterrupted || code == kDone) << code << " after " << seconds;
+        kept += fs::exists(folder_) && !result()["path"].empty();
+    }
+    EXPECT_GT(kept, 0);
 }
 
 /// The texture of this scene takes seconds.
