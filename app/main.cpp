@@ -182,7 +182,9 @@ int run(int argc, char** argv) {
         reaction = command.onInterrupt;
         const int code = command.run();
         if (code != kInterrupted) return code;
-        printMessage("interrupted; what was done until then is kept");
+        printMessage(FolderTransaction::isAnyCommitted()
+                         ? "interrupted; what was done until then is kept"
+                         : "interrupted");
         return exitCodeOf(interruptedBy);
     }
     return kBadInput;
