@@ -11,17 +11,19 @@ namespace ob = ompl::base;
 
 namespace {
 
-void grow(BeliefPlanner& planner, PlanningProblem& problem, const std::atomic<bool>& interrupted,
-          TreeStage& stage) {
+TreeStage grow(BeliefPlanner& planner, PlanningProblem& problem,
+               const std::atomic<bool>& interrupted) {
+    TreeStage stage;
     const InterruptionScope scope = problem.interruptedBy(interrupted);
     planner.solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
     stage.vertices = planner.vertices();
     stage.tree = drawnEdges(planner);
-    if (planner.bestPath().empty()) return;
+    if (planner.bestPath().empty()) return stage;
     for (const ob::State* state : planner.bestPath()) {
         stage.path.push_back(planner.model().space().position(state));
     }
     stage.cost = problem.evaluate(planner).cost;
+    return stage;
 }
 
 }  // namespace
@@ -33,14 +35,13 @@ TreeEvolution growInStages(PlanningProblem& problem, const std::string& name,
     TreeEvolution evolution{planner->getName(), {}};
     for (const std::size_t stop : vertices) {
         planner->params().setParam("max_vertices", std::to_string(stop));
-        TreeStage stage;
         try {
-            grow(*planner, problem, interrupted, stage);
+            TreeStage stage = grow(*planner, problem, interrupted);
+            if (interrupted) break;
+            evolution.stages.push_back(std::move(stage));
         } catch (const RenderingStopped&) {
             break;
         }
-        if (interrupted) break;
-        evolution.stages.push_back(std::move(stage));
     }
     return evolution;
 }

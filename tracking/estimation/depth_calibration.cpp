@@ -11,6 +11,7 @@
 
 #include "alignment/normal_equations.hpp"
 #include "geometry/se3.hpp"
+#include "photometry/opencv_image.hpp"
 
 namespace photonav {
 namespace {
@@ -40,12 +41,6 @@ struct Pair {
     Pose T_second_first;
     double gain = 1., offset = 0.;
 };
-
-cv::Mat matOf(const ImageF& image) {
-    return cv::Mat(static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()),
-                   CV_32FC1, image.bitmap)
-        .clone();
-}
 
 /// A blurred image and its gradient.
 struct Smooth {
@@ -236,7 +231,7 @@ void DepthCalibrator::Problem::add(const ImageF& first, const ImageF& depth_d, c
     if (!fits(first, colour_) || !fits(second, colour_) || !fits(depth_d, depth_.camera)) {
         throw std::invalid_argument("depth calibration: image and camera differ in size");
     }
-    Pair pair{matOf(first), matOf(second), {}, T_second_first};
+    Pair pair{asMat(first).clone(), asMat(second).clone(), {}, T_second_first};
     const auto stride = static_cast<unsigned>(options_.stride);
     for (unsigned v = kReach; v + kReach < depth_d.getHeight(); v += stride) {
         for (unsigned u = kReach; u + kReach < depth_d.getWidth(); u += stride) {

@@ -9,6 +9,7 @@
 
 #include "alignment/hole_margin.hpp"
 #include "geometry/constants.hpp"
+#include "photometry/opencv_image.hpp"
 
 namespace photonav {
 namespace {
@@ -20,20 +21,15 @@ struct DepthRange {
     ImageF least, most;
 };
 
-cv::Mat wrapped(ImageF& image) {
-    return {static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_32F,
-            image.bitmap};
-}
-
 DepthRange rangeOf(ImageF depth, const HoleMargin& margin) {
     DepthRange range{ImageF(depth.getHeight(), depth.getWidth()),
                      ImageF(depth.getHeight(), depth.getWidth())};
     const cv::Mat around = cv::Mat::ones(2 * margin.rows + 1, 2 * margin.columns + 1, CV_8U);
-    cv::dilate(wrapped(depth), wrapped(range.most), around);
+    cv::dilate(asMat(depth), asMat(range.most), around);
     for (unsigned i = 0; i < depth.getSize(); ++i) {
         if (!(depth.bitmap[i] > 0.F)) depth.bitmap[i] = static_cast<float>(kInfinity);
     }
-    cv::erode(wrapped(depth), wrapped(range.least), around);
+    cv::erode(asMat(depth), asMat(range.least), around);
     return range;
 }
 
