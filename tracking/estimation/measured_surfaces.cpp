@@ -14,7 +14,7 @@
 namespace photonav {
 namespace {
 
-constexpr double kWithin = 3.;  // standard deviations
+constexpr double kAgreeWithin = 3.;  // standard deviations
 
 /// Least and largest depth within the margin of each pixel; pixels without a surface do not count.
 struct DepthRange {
@@ -55,7 +55,8 @@ void MeasuredSurfaces::measure(const View& expected, const ImageF& measured, con
             const double z = measured[v][u];
             if (!(z > 0.) || !(expected.depth[v][u] > 0.F)) continue;
             const double sigma = accuracy_.sigmaAtOneMetre * z * z;
-            const double error = kWithin * std::sqrt(sigma * sigma + alongAxis) + accuracy_.ofMap;
+            const double error =
+                kAgreeWithin * std::sqrt(sigma * sigma + alongAxis) + accuracy_.ofMap;
             if (z < range.least[v][u] - error || z > range.most[v][u] + error) {
                 contradicted_.push_back({u, v});
             }
