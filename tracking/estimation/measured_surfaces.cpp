@@ -33,11 +33,37 @@ DepthRange rangeOf(ImageF depth, const HoleMargin& margin) {
     return range;
 }
 
+/// Variance along the optical axis of the surface in view of each pixel, for an uncertain pose.
+class DepthVariance {
+  public:
+    DepthVariance(const Matrix6& covariance, const Camera& camera) : camera_(camera) {
+        covariance_ = covariance({2, 3, 4}, {2, 3, 4});
+    }
+
+    /// A point X moves by rho + phi x X: along the axis by rho_z + phi_x Y - phi_y X.
+    double at(unsigned u, unsigned v, double depth) const {
+        const Eigen::Vector3d x = camera_.unproject(u, v, depth);
+        const Eigen::Vector3d J(1., x.y(), -x.x());
+        return J.dot(covariance_ * J);
+    }
+
+  private:
+    const Camera& camera_;
+    Eigen::Matrix3d covariance_;  // of (rho_z, phi_x, phi_y)
+};
+
 }  // namespace
 
 MeasuredSurfaces::MeasuredSurfaces(std::shared_ptr<const ViewSource> map,
                                    const DepthAccuracy& accuracy)
     : map_(std::move(map)), accuracy_(accuracy) {}
+
+void MeasuredSurfaces::measure(const ImageF& measured, const Camera& camera,
+                               const UncertainPose& T_c_w) {
+    View expected;
+    map_->render(camera, T_c_w.mean, expected);
+    measure(expected, measured, camera, T_c_w);
+}
 
 void MeasuredSurfaces::measure(const View& expected, const ImageF& measured, const Camera& camera,
                                const UncertainPose& T_c_w) {
@@ -49,14 +75,14 @@ void MeasuredSurfaces::measure(const View& expected, const ImageF& measured, con
     }
     const HoleMargin margin = holeMargin(T_c_w.covariance, camera, meanDepth(expected));
     const DepthRange range = rangeOf(expected.depth, margin);
-    const double alongAxis = T_c_w.covariance(2, 2);
+    const DepthVariance ofPose(T_c_w.covariance, camera);
     for (unsigned v = 0; v < measured.getHeight(); ++v) {
         for (unsigned u = 0; u < measured.getWidth(); ++u) {
             const double z = measured[v][u];
             if (!(z > 0.) || !(expected.depth[v][u] > 0.F)) continue;
             const double sigma = accuracy_.sigmaAtOneMetre * z * z;
             const double error =
-                kAgreeWithin * std::sqrt(sigma * sigma + alongAxis) + accuracy_.ofMap;
+                kAgreeWithin * std::sqrt(sigma * sigma + ofPose.at(u, v, z)) + accuracy_.ofMap;
             if (z < range.least[v][u] - error || z > range.most[v][u] + error) {
                 contradicted_.push_back({u, v});
             }

@@ -33,6 +33,8 @@ class MeasuredSurfaces : public ViewSource {
     /// @throws std::invalid_argument for a depth image of another size than the view
     void measure(const View& expected, const ImageF& measured, const Camera& camera,
                  const UncertainPose& T_c_w);
+    /// The same, with a view of the map that is rendered for it.
+    void measure(const ImageF& measured, const Camera& camera, const UncertainPose& T_c_w);
 
     /// A view of the map without depth at the contradicted pixels. Cameras may be halved versions
     /// of that of the measurement.

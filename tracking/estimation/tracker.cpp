@@ -157,8 +157,7 @@ std::optional<Tracker::Match> Tracker::find(const View& view, const Pose& stayed
         return {};
     }
     loss_.onRejected(now_, hasOdometry_, isBlack(view.intensity));
-    return map_ && hasOdometry_ && loss_.isLost() ? findInNeighbourhood(view.intensity)
-                                                  : std::nullopt;
+    return map_ && hasOdometry_ && loss_.isLost() ? findInNeighbourhood(view) : std::nullopt;
 }
 
 /// Whether an image shows what a map that is still being made does not: odometry has to do.
@@ -208,8 +207,12 @@ bool Tracker::isResolvedBy(const Alignment& alignment, const UncertainPose& prio
 }
 
 /// Perhaps it is not the image but the belief that is wrong.
-std::optional<Tracker::Match> Tracker::findInNeighbourhood(const ImageF& image) {
-    const Alignment alignment = map_->align(image, loss_.widened(priorInMap()));
+std::optional<Tracker::Match> Tracker::findInNeighbourhood(const View& view) {
+    const UncertainPose wide = loss_.widened(priorInMap());
+    if (MeasuredSurfaces* measured = map_->measured()) {
+        measured->measure(view.depth, camera_, wide);
+    }
+    const Alignment alignment = map_->align(view.intensity, wide);
     if (alignment.verdict != Verdict::converged || !agrees(alignment, options_.map)) return {};
     return Match{alignment, {alignment.T_c_w, alignment.covariance}, {}, true};
 }

@@ -105,7 +105,7 @@ class Tracker {
     Matrix6 covarianceOf(const Match& match);
     std::optional<Match> find(const View& view, const Pose& stayed, TrackedFrame& frame);
     std::optional<Match> findInMap(const ImageF& image, const Pose& stayed, TrackedFrame& frame);
-    std::optional<Match> findInNeighbourhood(const ImageF& image);
+    std::optional<Match> findInNeighbourhood(const View& view);
     std::optional<Match> findByKeyframes(const ImageF& image, const Pose& stayed,
                                          TrackedFrame& frame);
     bool isUnmapped(const TrackedFrame& frame) const;

@@ -94,21 +94,26 @@ TEST_F(BoxThatIsNotInTheMap, IsNotFoundWithoutMeasuredDepth) {
                  std::invalid_argument);
 }
 
-/// An error of the pose moves edges of the depth image, and all depths.
+/// An error of the pose moves edges of the depth image, and all depths; an error of its rotation,
+/// those at the borders of the image most.
 TEST_F(BoxThatIsNotInTheMap, AnUncertainPoseContradictsNoSurfaceThatIsThere) {
     const auto complete = std::make_shared<MeshRenderer>(withBox());
-    View shown;
-    Vector6 error;
-    error << 0.05, -0.05, 0.1, 0., 0., 0.;
-    const UncertainPose prior = known(expSE3(error) * here, 0.04);
-    complete->render(smallCamera(), prior.mean, shown);
-    MeasuredSurfaces surfaces(complete, kAccuracy);
-    surfaces.measure(shown, seen().depth, smallCamera(), prior);
-    View view;
-    surfaces.render(smallCamera(), here, view);
-    double erased = 0.;
-    for (unsigned i = 0; i < view.depth.getSize(); ++i) erased += !(view.depth.bitmap[i] > 0.F);
-    EXPECT_LT(erased / view.depth.getSize(), 0.01);
+    const auto erasedFor = [&](const Vector6& error, const Vector6& sigma) {
+        const Matrix6 covariance = sigma.cwiseAbs2().asDiagonal();
+        MeasuredSurfaces surfaces(complete, kAccuracy);
+        surfaces.measure(seen().depth, smallCamera(), {expSE3(error) * here, covariance});
+        View view;
+        surfaces.render(smallCamera(), here, view);
+        double erased = 0.;
+        for (unsigned i = 0; i < view.depth.getSize(); ++i) erased += !(view.depth.bitmap[i] > 0.F);
+        return erased / view.depth.getSize();
+    };
+    const Vector6 moved = (Vector6() << 0.05, -0.05, 0.1, 0., 0., 0.).finished();
+    EXPECT_LT(erasedFor(moved, Vector6::Constant(0.04)), 0.01);
+    const Vector6 turned = (Vector6() << 0., 0., 0., 0.05, 0.05, 0.).finished();
+    const Vector6 tilt = (Vector6() << 1e-3, 1e-3, 1e-3, 0.03, 0.03, 0.01).finished();
+    EXPECT_LT(erasedFor(turned, tilt), 0.05);  // edges of the box move farther than the margin
+    EXPECT_GT(erasedFor(turned, 0.1 * tilt), 0.1);
 }
 
 /// More of the image shows the box than the floor: without its depth the map seems to be wrong.
@@ -133,6 +138,29 @@ TEST_F(BoxThatIsNotInTheMap, DoesNotDisturbTracking) {
     const TrackedFrame blind = trackedWith({});
     EXPECT_TRUE(blind.rejected || test::neesOf(blind.alignment, here) > 3.)
         << describe(blind.alignment);
+}
+
+/// Measured depth contradicts the whole view from a height that is wrong by far more than its
+/// sigma.
+TEST_F(BoxThatIsNotInTheMap, AWrongBeliefDoesNotKeepALostCameraFromBeingFound) {
+    TrackerOptions options;
+    options.searchPrior = true;
+    options.depth = kAccuracy;
+    Vector6 error;
+    error << 0., 0., 0.25, 0., 0., 0.;
+    Tracker tracker(map, smallCamera(), known(expSE3(error) * here, 5e-3), options);
+    View image;
+    map->render(smallCamera(), here, image);
+    std::mt19937_64 random(1);
+    const UncertainPose still{Pose::Identity(), 1e-8 * Matrix6::Identity()};
+    for (int i = 1; i <= 10; ++i) {
+        const double time = 0.1 * i;
+        tracker.update(
+            {time, still, {{time, {test::noisy(image.intensity, 0.02, random), image.depth}}}});
+    }
+    EXPECT_EQ(tracker.loss().timesLost(), 1);
+    EXPECT_FALSE(tracker.loss().isLost());
+    EXPECT_LT(deviation(tracker.belief().mean, here).head<3>().norm(), 6e-3);
 }
 
 }  // namespace
