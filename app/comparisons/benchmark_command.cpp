@@ -11,6 +11,7 @@
 #include "io/stopwatch.hpp"
 #include "problem/planning_problem.hpp"
 #include "report/problem_report.hpp"
+#include "result/json_values.hpp"
 #include "shared/result_folder.hpp"
 #include "sweep/planner_benchmark.hpp"
 

@@ -50,7 +50,7 @@ FlightStore::FlightStore(fs::path folder, JournalHeader header, Page page)
         if (file_.read(onLine).name == header_.name) return;
         earlier_.clear();
     }
-    file_.create(header_, "");
+    file_.create(header_);
 }
 
 void FlightStore::add(const ExplorationMoment& moment, const FlightLog& log) {
@@ -62,10 +62,8 @@ void FlightStore::add(const ExplorationMoment& moment, const FlightLog& log) {
                         "be on another processor",
                         header_.name, log.moments.back().update.time));
         earlier_.clear();
-        std::string lines;
-        for (std::size_t i = 0; i < number; ++i) {
-            lines += jsonLine(momentJson(log, log.moments[i]));
-        }
+        std::vector<json> lines;
+        for (std::size_t i = 0; i < number; ++i) lines.push_back(momentJson(log, log.moments[i]));
         file_.create(header_, lines);
     }
     file_.append(lineOf(log, log.moments.back(), moment.planner.planner()));

@@ -54,8 +54,6 @@ std::string compactJson(const nlohmann::json& value) {
     return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-std::string jsonLine(const nlohmann::json& value) { return compactJson(value) + "\n"; }
-
 nlohmann::json cameraJson(const Camera& camera) {
     return {{"width", camera.width}, {"height", camera.height}, {"fx", camera.fx()},
             {"fy", camera.fy()},     {"cx", camera.cx()},       {"cy", camera.cy()}};

@@ -81,9 +81,6 @@ std::string jsonText(const nlohmann::json& value);
 /// not finite become null.
 std::string compactJson(const nlohmann::json& value);
 
-/// compactJson() and a line break.
-std::string jsonLine(const nlohmann::json& value);
-
 /// Image size and intrinsics [pixels].
 nlohmann::json cameraJson(const Camera& camera);
 

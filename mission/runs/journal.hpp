@@ -6,7 +6,6 @@
 #include <set>
 
 #include "io/error.hpp"
-#include "result/json_values.hpp"
 #include "runs/journal_file.hpp"
 
 namespace photonav {
@@ -38,8 +37,8 @@ class Journal {
     static Journal create(const std::filesystem::path& folder, const JournalHeader& header,
                           std::vector<Run> runs = {}) {
         Journal journal(folder);
-        std::string lines;
-        for (const Run& run : runs) lines += jsonLine(Kind::save(run, folder));
+        std::vector<nlohmann::json> lines;
+        for (const Run& run : runs) lines.push_back(Kind::save(run, folder));
         journal.file_.create(header, lines);
         journal.header_ = header;
         journal.runs_ = std::move(runs);
@@ -85,6 +84,15 @@ class Journal {
             if (const auto run = done.find(item); run != done.end()) runs.push_back(*run->second);
         }
         return runs;
+    }
+
+    /// Whether this journal has every run of another one, whose runs depend on the same values.
+    bool includes(const Journal& other) const {
+        std::vector<Item> items;
+        for (const Run& run : other.runs_) items.push_back(Kind::itemOf(run));
+        return header_.shard == other.header_.shard &&
+               Kind::runIdentity(header_.identity) == Kind::runIdentity(other.header_.identity) &&
+               missing(items).empty();
     }
 
     /// The items that have no run yet.

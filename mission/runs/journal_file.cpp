@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "io/atomic_file.hpp"
+#include "io/checksum.hpp"
 #include "io/durable_file.hpp"
 #include "io/error.hpp"
 #include "io/json_nesting.hpp"
@@ -19,7 +20,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
 
-constexpr int kJournalSchema = 1;
+constexpr int kJournalSchema = 2;
+constexpr std::string_view kChecksum = R"({"crc32":")";
+constexpr std::size_t kDigits = 8;
 
 std::string schemaKey(const RunWords& words) { return std::string("photonav_") + words.command; }
 
@@ -40,10 +43,27 @@ json lineOf(const JournalHeader& header, const RunWords& words) {
             {"shard", {header.shard.index, header.shard.count}}};
 }
 
+std::string textOf(const json& line) { return withChecksum(compactJson(line)) + "\n"; }
+
 }  // namespace
 
-void JournalFile::create(const JournalHeader& header, const std::string& lines) {
-    const std::string text = jsonLine(lineOf(header, words_)) + lines;
+std::string withChecksum(std::string_view object) {
+    object.remove_prefix(1);
+    return fmt::format("{}{:08x}\",{}", kChecksum, crc32(object), object);
+}
+
+std::string withoutChecksum(std::string_view line) {
+    constexpr std::size_t kRest = kChecksum.size() + kDigits + 2;
+    if (line.size() <= kRest || !line.starts_with(kChecksum))
+        throw std::out_of_range("no checksum");
+    const std::string object = fmt::format("{{{}", line.substr(kRest));
+    if (withChecksum(object) != line) throw std::out_of_range("checksum");
+    return object;
+}
+
+void JournalFile::create(const JournalHeader& header, const std::vector<json>& lines) {
+    std::string text = textOf(lineOf(header, words_));
+    for (const json& line : lines) text += textOf(line);
     writeFileAtomically(path_, text);
     size_ = text.size();
 }
@@ -64,7 +84,7 @@ JournalHeader JournalFile::readLines(const std::function<void(const json&)>& onL
         ++number;
         try {
             if (nestingDepth(text) > kMostJsonDepth) throw std::out_of_range("nested too deep");
-            const json line = json::parse(text);
+            const json line = json::parse(withoutChecksum(text));
             if (number == 1)
                 header = headerFrom(line, words_);
             else
@@ -80,7 +100,10 @@ JournalHeader JournalFile::readLines(const std::function<void(const json&)>& onL
         }
         size_ += text.size() + 1;
     }
-    if (number == 0) throw InputError(path_.string(), "", "empty");
+    if (number == 0) {
+        throw InputError(path_.string(), "",
+                         fs::file_size(path_) == 0 ? "empty" : "its first line is cut short");
+    }
     return header;
 }
 
@@ -90,7 +113,7 @@ void JournalFile::append(const json& line) {
         fs::resize_file(path_, size_, ignored);
         stream_.open(path_, std::ios::app);
     }
-    const std::string text = jsonLine(line);
+    const std::string text = textOf(line);
     const auto dropLine = [&] {
         stream_.close();          // tries once more
         std::error_code ignored;  // a line that was cut is dropped by readers, too

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The file of a journal: one line of JSON per finished run, written as soon as the run is done.
+// The file of a journal: one line of JSON per finished run, written as soon as the run is done,
+// with a checksum.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +8,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "runs/identity.hpp"
 #include "runs/work_items.hpp"
@@ -30,6 +33,11 @@ struct JournalHeader {
     Shard shard;
 };
 
+/// The text of a JSON object with the checksum of its further text as first key:
+/// {"crc32":"01234567","alpha":0.5}. The inverse throws std::exception for text that was changed.
+std::string withChecksum(std::string_view object);
+std::string withoutChecksum(std::string_view line);
+
 /// The lines of a journal: a header, then one line per run, in the order in which runs ended. Lines
 /// are only appended, and each is flushed: a killed program loses only the unfinished runs.
 class JournalFile {
@@ -40,12 +48,13 @@ class JournalFile {
     /// Writes a new file with a header and complete lines. An older file is replaced when the new
     /// one is complete.
     /// @throws InputError if the file cannot be written
-    void create(const JournalHeader& header, const std::string& lines);
+    void create(const JournalHeader& header, const std::vector<nlohmann::json>& lines = {});
 
     /// Reads the header and all lines. An incomplete last line is ignored.
     /// @param onLine called with each line after the header; throws if the line is no run
-    /// @throws InputError naming file and line if the file is missing, is no journal of this kind,
-    ///         or onLine throws
+    /// @throws InputError naming file and line if the file is missing, is no journal of this kind
+    /// or
+    ///         was changed, or onLine throws
     JournalHeader read(const std::function<void(const nlohmann::json&)>& onLine);
 
     /// Appends a line. @throws InputError if the file cannot be written

@@ -5,9 +5,27 @@
 #include <stdexcept>
 
 #include "geometry/constants.hpp"
+#include "result/json_values.hpp"
 
 namespace photonav {
 using nlohmann::json;
+namespace {
+
+/// Checks what holds for every path that is charged for its length: cost >= alpha length.
+/// @throws std::out_of_range for a run that cannot be
+void checkPossible(const SweepRun& run) {
+    constexpr double kRounding = 1. - 1e-6;
+    if (run.isSolved() != std::isfinite(run.cost)) throw std::out_of_range("cost");
+    if (run.isSolved() == run.path.empty()) throw std::out_of_range("path");
+    if (!run.isSolved()) return;
+    double way = 0.;
+    for (std::size_t i = 1; i < run.path.size(); ++i)
+        way += (run.path[i].position - run.path[i - 1].position).norm();
+    if (!(run.length >= kRounding * way)) throw std::out_of_range("length");
+    if (!(run.cost >= kRounding * run.item.alpha * run.length)) throw std::out_of_range("cost");
+}
+
+}  // namespace
 
 json toJson(const SweepRun& run) {
     return {{"planner", run.item.planner},
@@ -53,7 +71,6 @@ SweepRun SweepKind::load(const json& line, const std::filesystem::path& /*folder
         nonNegative(line, "seconds"),
         line.at("status"),
         {}};
-    if (run.isSolved() != std::isfinite(run.cost)) throw std::out_of_range("cost");
     for (const json& p : line.at("path")) {
         const Eigen::Vector3d place(p.at(0), p.at(1), p.at(2));
         if (!(place.norm() <= kMostOfARun)) throw std::out_of_range("path");
@@ -61,6 +78,7 @@ SweepRun SweepKind::load(const json& line, const std::filesystem::path& /*folder
         if (!(std::abs(heading) <= kLargestHeading)) throw std::out_of_range("heading");
         run.path.push_back({place, heading});
     }
+    checkPossible(run);
     return run;
 }
 

@@ -2,7 +2,6 @@
 #include "io/manifest.hpp"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "io/checksum.hpp"
 #include "io/durable_file.hpp"
 #include "io/error.hpp"
 #include "io/reading.hpp"
@@ -24,13 +24,12 @@ constexpr std::string_view kReplaces = "replaces ";
 std::uint32_t checksumOf(const fs::path& file) {
     std::ifstream stream = openIfThere(file.string());
     std::vector<char> block(1U << 20U);
-    uLong sum = crc32(0L, Z_NULL, 0);
+    std::uint32_t sum = 0;
     while (stream) {
         stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-        sum = crc32(sum, reinterpret_cast<const Bytef*>(block.data()),
-                    static_cast<uInt>(stream.gcount()));
+        sum = crc32({block.data(), static_cast<std::size_t>(stream.gcount())}, sum);
     }
-    return static_cast<std::uint32_t>(sum);
+    return sum;
 }
 
 /// Files, links and empty folders of a folder and its subfolders, relative, sorted, the manifest

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "io/error.hpp"
+#include "journal_text.hpp"
 #include "reason_of.hpp"
 #include "sweep/planner_benchmark.hpp"
 #include "sweep/sweep_summary.hpp"
@@ -178,7 +179,7 @@ TEST_F(SweepFiles, AJournalGivesBackWhatWasWritten) {
     {
         SweepJournal journal =
             SweepJournal::create(folder_, {"name", "config: text\n", {{"key", "value"}}, {2, 3}});
-        journal.append(makeRun(solved, 0.1 + 0.2, 1. / 3., 1e-300));
+        journal.append(makeRun(solved, 0.1 + 0.2, 2. / 3., 1e-300));
         journal.append(lost);
     }
     const SweepJournal journal = SweepJournal::read(folder_);
@@ -215,7 +216,7 @@ TEST_F(SweepFiles, ACutLineIsDroppedAndWrittenOver) {
     ASSERT_EQ(whole.runs().size(), 2U);
     EXPECT_EQ(whole.runs()[1].cost, 7.);
 
-    std::ofstream(file) << "{\"photonav_sweep\": 99}\n";
+    test::writeJournal(file, "{\"photonav_sweep\": 99}\n");
     EXPECT_NE(test::reasonOf([&] { SweepJournal::read(folder_); }).find("line 1"),
               std::string::npos);
     fs::remove(file);
@@ -240,24 +241,45 @@ TEST_F(SweepFiles, NumbersThatNoRunGivesAreRefused) {
     SweepJournal::create(folder_, {"name", "", {}, {}},
                          {makeRun({"rrt_star", 0.5, 7}, 1., 2., 3.)});
     const fs::path file = folder_ / SweepJournal::kFileName;
-    const std::string good = test::contentOf(file);
+    const std::string good = test::withoutChecksums(test::contentOf(file));
     for (const auto& [number, other] : {std::pair{"\"seed\":7", "\"seed\":1e308"},
                                         {"\"seed\":7", "\"seed\":4294967296"},
                                         {"\"seed\":7", "\"seed\":-1"},
                                         {"\"cost\":1.0", "\"cost\":-1.0"},
                                         {"\"cost\":1.0", "\"cost\":1e300"},
+                                        {"\"cost\":1.0", "\"cost\":0.99"},
+                                        {"\"length\":2.0", "\"length\":0.0"},
+                                        {"\"length\":2.0", "\"length\":2.01"},
+                                        {"\"path\":[", "\"path\":[],\"other\":["},
                                         {"\"vertices\":100", "\"vertices\":1e30"},
                                         {"\"views\":40", "\"views\":0.5"}}) {
         std::string bad = good;
         ASSERT_NE(bad.find(number), std::string::npos) << bad;
         bad.replace(bad.find(number), std::string(number).size(), other);
-        std::ofstream(file) << bad;
+        test::writeJournal(file, bad);
         EXPECT_NE(test::reasonOf([&] { SweepJournal::read(folder_); }).find("line 2"),
                   std::string::npos)
             << other;
     }
-    std::ofstream(file) << good;
+    test::writeJournal(file, good);
     EXPECT_EQ(SweepJournal::read(folder_).runs().size(), 1U);
+}
+
+/// Bits that flip on a disk, and numbers that somebody has typed.
+TEST_F(SweepFiles, AChangedLineIsRefused) {
+    SweepJournal::create(folder_, {"name", "", {}, {}},
+                         {makeRun({"rrt_star", 0.5, 7}, 1., 2., 3.)});
+    const fs::path file = folder_ / SweepJournal::kFileName;
+    const std::string good = test::contentOf(file);
+    for (std::size_t i = 0; i < good.size(); ++i) {
+        std::string bad = good;
+        bad[i] ^= 1;
+        if (bad[i] == '\n' || good[i] == '\n') continue;  // then it is a cut line
+        std::ofstream(file) << bad;
+        const std::string reason = test::reasonOf([&] { SweepJournal::read(folder_); });
+        EXPECT_NE(reason.find(i <= good.find('\n') ? "line 1" : "line 2"), std::string::npos)
+            << i << ": " << reason;
+    }
 }
 
 Config smallSweep() {
