@@ -85,7 +85,7 @@ int sweepAll(const ManyRunsOptions& options, const std::atomic<bool>& interrupte
         });
     }
     const bool stopped = interrupted && !journal.missing(items).empty();
-    if (stopped && leavesMoreRuns<SweepKind>(folder, journal.runs().size())) return kInterrupted;
+    if (stopped && leavesEarlierRuns(folder, journal)) return kInterrupted;
     return conclude(options, planned, world, folder,
                     {name, "", shard, journal.runsOf(items), items.size(), stopped, 0.}, reference,
                     watch);

@@ -228,15 +228,17 @@ void store(const ExploreOptions& options, const ExplorationSetup& setup, const W
 
 /// Whether an interrupted exploration leaves what was there before: a killed flight that went on
 /// longer than this one, an earlier result of more flights, or one where nothing was done.
-bool leavesEarlierWork(const FlightWatch& watch, std::size_t ended, FolderTransaction& folder) {
+bool leavesEarlierWork(const FlightWatch& watch, const TrialJournal& flights,
+                       FolderTransaction& folder) {
     if (watch.isBehindStored()) {
         printMessage(fmt::format("the killed flight in {} stays", folder.path().string()));
         return true;
     }
-    if (leavesMoreRuns<TrialKind>(folder, ended)) return true;
-    if (ended > 0 || !keepsEarlierResult(folder, watch.log().moments.empty())) return false;
-    folder.discard();
-    return true;
+    if (flights.runs().empty() && keepsEarlierResult(folder, watch.log().moments.empty())) {
+        folder.discard();
+        return true;
+    }
+    return leavesEarlierRuns(folder, flights);
 }
 
 void checkJobs(const ExploreOptions& options, const Config& config) {
@@ -287,7 +289,7 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
         flyMissing(options, setup, items, journal, recording, watch, folder.path(), interrupted);
     std::vector<ExplorationResult> flights = journal.runsOf(items);
     const std::size_t ended = flights.size();
-    if (cut && leavesEarlierWork(watch, ended, folder)) return kInterrupted;
+    if (cut && leavesEarlierWork(watch, journal, folder)) return kInterrupted;
     if (cut) watch.removeStored();
     recording.commit();
     if (!isFlown) log = watch.log();

@@ -78,8 +78,8 @@ int describeMap(InfoOptions& options) {
     if (options.out.empty()) {
         options.out = "out/info-" + std::filesystem::path(options.config).stem().string();
     }
-    const MapReport report = runMapInfo(options);
-    printOutput(options, report.result, report.summary, {"report.html"});
+    const CommandReport report = runMapInfo(options);
+    printOutput(options, report.folder, report.result, report.summary, {"report.html"});
     return kDone;
 }
 

@@ -59,15 +59,15 @@ ReportTable summaryOf(const DepthRegistration& found) {
 
 }  // namespace
 
-CalibrateDepthReport runCalibrateDepth(const CalibrateDepthOptions& options,
-                                       const std::atomic<bool>& interrupted) {
+CommandReport runCalibrateDepth(const CalibrateDepthOptions& options,
+                                const std::atomic<bool>& interrupted) {
     FolderTransaction folder = beginResult(options.out, {options.dataset, options.cameraFile});
     const DepthRegistration found = registerDepth(
         options, [&] { return interrupted.load(); }, options.progress);
     if (found.isInterrupted) throw RenderingStopped();  // half of the pairs are no calibration
-    CalibrateDepthReport report{resultOf(options, found), summaryOf(found), kDone};
+    CommandReport report{{}, resultOf(options, found), summaryOf(found), kDone};
     writeFileAtomically(folder.path() / "camera.yaml", cameraYaml(found.sequence));
-    commitResult(folder, report.result);
+    report.folder = commitResult(folder, report.result);
     return report;
 }
 

@@ -6,10 +6,9 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "recording/recording.hpp"
-#include "report/report.hpp"
+#include "shared/command_report.hpp"
 
 namespace photonav {
 
@@ -20,16 +19,10 @@ struct CalibrateDepthOptions : RecordingOptions {
     std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
-struct CalibrateDepthReport {
-    nlohmann::json result;  ///< content of result.json
-    ReportTable summary;    ///< main numbers of the result, for the terminal
-    int exitCode = 0;       ///< kDone or kInterrupted
-};
-
 /// Writes camera.yaml, with the pose of the depth camera, and result.json into options.out.
 /// @param interrupted when set, nothing is written
 /// @throws InputError as registerDepth() does, and for a folder that cannot be written
-CalibrateDepthReport runCalibrateDepth(const CalibrateDepthOptions& options,
-                                       const std::atomic<bool>& interrupted);
+CommandReport runCalibrateDepth(const CalibrateDepthOptions& options,
+                                const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

@@ -99,7 +99,7 @@ void writeMaps(const fs::path& folder, const TexturedOcTree& map, const Trajecto
 
 }  // namespace
 
-MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& interrupted) {
+CommandReport runMap(const MapCommandOptions& options, const std::atomic<bool>& interrupted) {
     Stopwatch watch;
     const Recording recording = openForMap(options);
     FolderTransaction folder = beginResult(options.out, {options.dataset, options.cameraFile});
@@ -107,6 +107,9 @@ MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& inte
 
     TexturedOcTree map(options.resolution);
     MapRun run = makeMap(options, recording, interrupted, map);
+    if (interrupted && keepsEarlierResult(folder, run.frames == 0)) {
+        return {.exitCode = kInterrupted};
+    }
     time["load_images_s"] = run.loadSeconds;
     time["fuse_s"] = run.fuseSeconds;
     time["fuse_per_frame_s"] = run.fuseSeconds / double(std::max<std::size_t>(1, run.frames));
@@ -120,7 +123,7 @@ MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& inte
     }
     time["compare_s"] = watch.lap();
     run.interrupted = interrupted;
-    MapReport report;
+    CommandReport report;
     report.result = mapResult(options, recording, run, run.compared, run.interrupted);
     report.result["voxels"] = voxelsJson(map);
     report.result["time"] = time;
@@ -129,7 +132,7 @@ MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& inte
                       : report.result["voxels"]["occupied"] == 0 ? kNoAnswer
                                                                  : kDone;
     writeMapReport(folder.path(), options, report.result, recording, map, run);
-    commitResult(folder, report.result);
+    report.folder = commitResult(folder, report.result);
     return report;
 }
 

@@ -5,11 +5,10 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "mapping/map_options.hpp"
-#include "report/report.hpp"
+#include "shared/command_report.hpp"
 
 namespace photonav {
 
@@ -21,14 +20,6 @@ struct MapCommandOptions : MapOptions {
 
     /// Called after each fused frame with the number of frames done and their total number.
     std::function<void(std::size_t done, std::size_t total)> progress;
-};
-
-/// Outcome of the commands that make or describe a map.
-struct MapReport {
-    nlohmann::json result;  ///< content of result.json
-    ReportTable summary;    ///< main numbers of the result, for terminal and page
-    int exitCode = 0;       ///< kNoAnswer if a recording gave an empty map, kInterrupted when
-                            ///< interrupted
 };
 
 /// Makes a map from a dataset and writes into options.out:
@@ -45,9 +36,10 @@ struct MapReport {
 /// world frame.
 /// @param interrupted when set, the map of the frames so far is written, and no more frames are
 ///        compared
+/// @return exit code kNoAnswer if the map is empty
 /// @throws InputError for a dataset that cannot be used, for an option out of range, and for a
 ///         folder that cannot be written. The folder is checked before any frame is fused; no new
 ///         folder is left.
-MapReport runMap(const MapCommandOptions& options, const std::atomic<bool>& interrupted);
+CommandReport runMap(const MapCommandOptions& options, const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

@@ -53,13 +53,13 @@ ReportTable factsOf(const json& result) {
 
 }  // namespace
 
-MapReport runMapInfo(const CommandOptions& options) {
+CommandReport runMapInfo(const CommandOptions& options) {
     if (!options.overrides.empty()) {
         throw InputError("--set", "", "is for a planning problem, not for a map");
     }
     const auto map = loadTexturedOcTree(options.config);
     FolderTransaction folder = beginResult(options, "info");
-    MapReport report;
+    CommandReport report;
     report.result =
         resultJson("info", {{"map", fs::absolute(options.config).lexically_normal().string()},
                             {"resolution", map->getResolution()},
@@ -77,7 +77,7 @@ MapReport runMapInfo(const CommandOptions& options) {
     if (report.result["voxels"]["occupied"] > 0)
         figures.push_back(reading(options.config, [&] { return overview(*map, page.title); }));
     writeResultFolder(folder.path(), page, figures);
-    commitResult(folder, report.result);
+    report.folder = commitResult(folder, report.result);
     return report;
 }
 

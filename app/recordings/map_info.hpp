@@ -11,6 +11,6 @@ namespace photonav {
 /// cells with grey values. Writes result.json, overview.png (unless the map is empty), report.json
 /// and report.html.
 /// @throws InputError for a file that is no map, and for overrides, because a map has no keys
-MapReport runMapInfo(const CommandOptions& options);
+CommandReport runMapInfo(const CommandOptions& options);
 
 }  // namespace photonav

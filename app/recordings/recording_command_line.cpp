@@ -55,8 +55,8 @@ int runOnDataset(Options& options, const std::string& command, const std::string
     };
     const auto report = run();
     line.clear();
-    const std::vector<std::string> files = filesOf(report.exitCode);
-    if (!files.empty()) printOutput(options, report.result, report.summary, files);
+    if (report.folder.empty()) return report.exitCode;
+    printOutput(options, report.folder, report.result, report.summary, filesOf(report.exitCode));
     return report.exitCode;
 }
 
@@ -171,10 +171,7 @@ int calibrateDepth(CalibrateDepthArguments& options, const std::atomic<bool>& in
     return runOnDataset(
         options, "calibrate-depth", options.dataset, "images",
         [&] { return runCalibrateDepth(options, interrupted); },
-        [](int exitCode) -> std::vector<std::string> {
-            if (exitCode != kDone) return {};
-            return {"camera.yaml"};
-        });
+        [](int) -> std::vector<std::string> { return {"camera.yaml"}; });
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ KeyTable keysOf(ReplayCommandOptions& options) {
     return keys;
 }
 
-ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bool>& interrupted) {
+CommandReport runReplay(const ReplayCommandOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
     const Replay replay(options);
     FolderTransaction folder = beginResult(
@@ -79,13 +79,11 @@ ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bo
                                              options.progress(done, sequence.frames.size());
                                      });
     if (run.interrupted && keepsEarlierResult(folder, run.frames.empty())) {
-        ReplayReport nothing;
-        nothing.exitCode = kInterrupted;
-        return nothing;
+        return {.exitCode = kInterrupted};
     }
     const ReplayErrors errors = evaluate(run);
 
-    ReplayReport report;
+    CommandReport report;
     report.exitCode = run.interrupted ? kInterrupted : isLostForGood(run) ? kNoAnswer : kDone;
     json& result = report.result;
     result = resultJson("replay", replayResult(sequence, run, errors));
@@ -106,7 +104,7 @@ ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bo
     writeColmap(folder.path(), replay, run);
     writeReplayReport(folder.path(), options, configOf(options, replay), result, replay, run,
                       errors);
-    commitResult(folder, result);
+    report.folder = commitResult(folder, result);
     return report;
 }
 

@@ -5,12 +5,11 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "config/key_table.hpp"
 #include "replay/replay_options.hpp"
-#include "report/report.hpp"
+#include "shared/command_report.hpp"
 
 namespace photonav {
 
@@ -28,20 +27,14 @@ struct ReplayCommandOptions : ReplayOptions {
 /// @param options are set through the table, and must outlive it
 KeyTable keysOf(ReplayCommandOptions& options);
 
-struct ReplayReport {
-    nlohmann::json result;  ///< content of result.json
-    ReportTable summary;    ///< main numbers of the result, for terminal and page
-    int exitCode = 0;       ///< kNoAnswer if tracking was lost until the end, kInterrupted when
-                            ///< interrupted
-};
-
 /// Replays a dataset and writes into options.out: result.json, config.yaml (complete), frames.csv
 /// (one row per frame), trajectory.tum, .kitti, .cov and .ov, groundtruth.tum (T_w_c), cameras.txt,
 /// images.txt and points3D.txt (a COLMAP model), errors.png, strips.png, top_view.png, report.json
 /// and report.html; with options.calibrate also calibration.yaml.
 /// @param interrupted when set, the results contain the frames so far
+/// @return exit code kNoAnswer if tracking was lost until the end
 /// @throws InputError for a dataset or map that cannot be used, for an option out of range, and,
 ///         before any frame is tracked, for a folder that cannot be written
-ReplayReport runReplay(const ReplayCommandOptions& options, const std::atomic<bool>& interrupted);
+CommandReport runReplay(const ReplayCommandOptions& options, const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

@@ -68,7 +68,7 @@ long peakMegabytes() {
 
 }  // namespace
 
-MapReport runScanMap(const ScanCommandOptions& options, const std::atomic<bool>& interrupted) {
+CommandReport runScanMap(const ScanCommandOptions& options, const std::atomic<bool>& interrupted) {
     const std::vector<Scan> scans = openScans(options);  // all headers, before any work
     FolderTransaction folder = beginResult(options.out, {options.scans});
 
@@ -76,7 +76,10 @@ MapReport runScanMap(const ScanCommandOptions& options, const std::atomic<bool>&
     TexturedOcTree map(options.resolution);
     const auto isStopped = [&] { return interrupted.load(); };
     const json stations = stationsJson(fuseScans(map, scans, options, isStopped, options.progress));
-    MapReport report;
+    if (interrupted && keepsEarlierResult(folder, stations.empty())) {
+        return {.exitCode = kInterrupted};
+    }
+    CommandReport report;
     report.exitCode = interrupted ? kInterrupted : kDone;
     report.result = resultJson("map", {{"interrupted", report.exitCode == kInterrupted},
                                        {"scans", options.scans},
@@ -93,7 +96,7 @@ MapReport runScanMap(const ScanCommandOptions& options, const std::atomic<bool>&
     const long peak = peakMegabytes();  // all work is done, the report is written
     report.result["peak_memory_mb"] = peak;
     report.summary.rows.emplace_back("peak memory", fmt::format("{} MB", peak));
-    commitResult(folder, report.result);
+    report.folder = commitResult(folder, report.result);
     return report;
 }
 

@@ -20,6 +20,6 @@ struct ScanCommandOptions : ScanMapOptions {
 /// @param interrupted when set, the map of the stations so far is written
 /// @throws InputError for a file that is no coloured point cloud, for a cloud that is too large for
 ///         the size of the cells, and for a folder that cannot be written
-MapReport runScanMap(const ScanCommandOptions& options, const std::atomic<bool>& interrupted);
+CommandReport runScanMap(const ScanCommandOptions& options, const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

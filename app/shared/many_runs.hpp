@@ -97,7 +97,7 @@ std::optional<Journal<Kind>> earlierRuns(const ManyRunsOptions& options,
         if (options.resume) return journal;
         if (journal.runs().empty()) return {};
         throw InputError(folder.path().string(), "",
-                         fmt::format("holds {} {}s of {} that was killed: go on with --resume, or "
+                         fmt::format("holds {} {}s of {} that did not end: go on with --resume, or "
                                      "remove that folder",
                                      journal.runs().size(), Kind::kWords.run, Kind::kWords.aWhole));
     }
@@ -131,18 +131,20 @@ std::vector<typename Kind::Run> runsSoFar(const ManyRunsOptions& options,
     return journal->runs();
 }
 
-/// Whether an interrupted command leaves an earlier result in its place, because that has more
-/// runs. Its own runs then stay in the working folder for --resume, as a line on standard error
-/// says.
+/// Whether an interrupted command leaves an earlier result in its place, because not every run of
+/// that is one of its own. These then stay in the working folder for --resume, as a line on
+/// standard error says.
 template <typename Kind>
-bool leavesMoreRuns(const FolderTransaction& folder, std::size_t ownRuns) {
-    if (!std::filesystem::exists(folder.target() / Journal<Kind>::kFileName)) return false;
-    const std::size_t earlier = Journal<Kind>::read(folder.target()).runs().size();
-    if (earlier <= ownRuns) return false;
+bool leavesEarlierRuns(const FolderTransaction& folder, const Journal<Kind>& own) {
+    if (!folder.hasEarlier()) return false;
+    if (std::filesystem::exists(folder.target() / Journal<Kind>::kFileName) &&
+        own.includes(Journal<Kind>::read(folder.target()))) {
+        return false;
+    }
     printMessage(
-        fmt::format("the earlier result in {} has more {}s than the {} that ended now, and stays; "
-                    "--resume goes on with these",
-                    folder.target().string(), Kind::kWords.run, ownRuns));
+        fmt::format("the earlier result in {} stays; --resume goes on with the {} {}s that "
+                    "have ended now",
+                    folder.target().string(), own.runs().size(), Kind::kWords.run));
     return true;
 }
 

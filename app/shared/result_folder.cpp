@@ -13,6 +13,15 @@
 
 namespace photonav {
 namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kInterruptedSuffix = "-interrupted";
+
+bool isInterrupted(const nlohmann::json& result) {
+    return result.value("interrupted", false) || result.value("status", "") == "interrupted";
+}
+
+}  // namespace
 
 void checkInputsApart(const std::string& option, const fs::path& folder, const InputPaths& inputs) {
     for (const fs::path& input : inputs) {
@@ -30,7 +39,7 @@ InputPaths inputsOf(const Config& config, InputPaths others) {
 }
 
 bool keepsEarlierResult(const FolderTransaction& folder, bool isNothingDone) {
-    if (!isNothingDone || Manifest::read(folder.target()).empty()) return false;
+    if (!isNothingDone || !folder.hasEarlier()) return false;
     printMessage(
         fmt::format("nothing was done; the earlier result in {} stays", folder.target().string()));
     return true;
@@ -39,6 +48,7 @@ bool keepsEarlierResult(const FolderTransaction& folder, bool isNothingDone) {
 FolderTransaction beginResult(const fs::path& folder, const InputPaths& inputs,
                               FolderTransaction::Unfinished unfinished) {
     checkInputsApart("--out", folder, inputs);
+    checkInputsApart("--out", (folder / "").parent_path().string() + kInterruptedSuffix, inputs);
     return FolderTransaction(folder, unfinished);
 }
 
@@ -52,9 +62,17 @@ FolderTransaction beginResult(const CommandOptions& options, const std::string& 
     return beginResult(folder, inputs);
 }
 
-void commitResult(FolderTransaction& folder, const nlohmann::json& result) {
+fs::path commitResult(FolderTransaction& folder, const nlohmann::json& result) {
     writeFileAtomically(folder.path() / "result.json", jsonText(result));
-    folder.commit();
+    if (!isInterrupted(result) || folder.isKept() || !folder.hasEarlier()) {
+        folder.commit();
+        return folder.target();
+    }
+    const std::string earlier = folder.target().string();
+    folder.commitBeside(kInterruptedSuffix);
+    printMessage(fmt::format("the earlier result in {} stays; what was done is in {}", earlier,
+                             folder.target().string()));
+    return folder.target();
 }
 
 void concludeResult(FolderTransaction& folder, const CommandOptions& options,
@@ -68,13 +86,13 @@ void concludeResult(FolderTransaction& folder, const CommandOptions& options,
     }
 }
 
-void printOutput(const OutputOptions& output, const nlohmann::json& result,
+void printOutput(const OutputOptions& output, const fs::path& folder, const nlohmann::json& result,
                  const ReportTable& summary, const std::vector<std::string>& files) {
     if (output.json) {
         fmt::print("{}", jsonText(result));
     } else if (!output.quiet) {
         printTable(summary);
-        for (const std::string& file : files) printFile(output.out / file);
+        for (const std::string& file : files) printFile(folder / file);
     }
 }
 

@@ -39,8 +39,11 @@ FolderTransaction beginResult(
 FolderTransaction beginResult(const CommandOptions& options, const std::string& command,
                               InputPaths inputs = {});
 
-/// Writes result.json, the last file of a result, and commits the folder.
-void commitResult(FolderTransaction& folder, const nlohmann::json& result);
+/// Writes result.json, the last file of a result, and commits the folder. What an interrupted
+/// command has done does not replace an earlier result, but goes to NAME-interrupted, as it says,
+/// unless its work is kept for --resume (FolderTransaction::isKept()).
+/// @return the folder of the result
+std::filesystem::path commitResult(FolderTransaction& folder, const nlohmann::json& result);
 
 /// Whether an interrupted command that has done nothing leaves an earlier result where it is; it
 /// says so, and must not commit then.
@@ -52,9 +55,11 @@ void concludeResult(FolderTransaction& folder, const CommandOptions& options,
                     const nlohmann::json& result, const std::function<void()>& printSummary);
 
 /// Prints result.json (--json), or the summary and the paths of `files`, or nothing (--quiet).
-/// @param files names of files in the result folder
-void printOutput(const OutputOptions& output, const nlohmann::json& result,
-                 const ReportTable& summary, const std::vector<std::string>& files);
+/// @param folder of the result
+/// @param files names of files in it
+void printOutput(const OutputOptions& output, const std::filesystem::path& folder,
+                 const nlohmann::json& result, const ReportTable& summary,
+                 const std::vector<std::string>& files);
 
 /// Prints the rows of a table with aligned values.
 void printTable(const ReportTable& table);

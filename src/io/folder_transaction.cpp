@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -29,6 +30,15 @@ bool hasFiles(const fs::path& folder) {
         return !fs::is_directory(entry.symlink_status()) &&
                entry.path() != folder / Manifest::kFileName;
     });
+}
+
+/// Files and folders beside the manifest.
+std::vector<fs::path> filesIn(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        if (entry.path().filename() != Manifest::kFileName) files.push_back(entry.path());
+    }
+    return files;
 }
 
 void removeEmptyFolders(const fs::path& folder) {
@@ -98,6 +108,13 @@ fs::path workingFolderOf(const fs::path& resolved) { return resolved.string() + 
 /// Where a result is during an exchange in two steps: no result can have this name.
 fs::path asideOf(const fs::path& resolved) { return workingFolderOf(workingFolderOf(resolved)); }
 
+/// As the target was given, unless its path leads elsewhere through a link.
+fs::path besideOf(const fs::path& target, const fs::path& resolved, const std::string& suffix) {
+    const fs::path given = (target / "").parent_path().string() + suffix;
+    const bool isBeside = resolvedFolder(given).parent_path() == resolved.parent_path();
+    return isBeside ? given : fs::path(resolved.string() + suffix);
+}
+
 /// Removes what a manifest lists; other files stay.
 void removeResult(const fs::path& folder) {
     Manifest::read(folder).removeFiles(folder);
@@ -138,7 +155,7 @@ void checkLeftNoWork(const fs::path& working, const Manifest& left) {
     const bool isWork = left.empty() && fs::file_size(working / Manifest::kFileName) > 0;
     if (!isWork || !hasFiles(working)) return;
     refuse(working,
-           "holds the work of a command that was killed; go on with that command's --resume, "
+           "holds the work of a command that did not end; go on with that command's --resume, "
            "remove that folder, or give another one");
 }
 
@@ -241,9 +258,7 @@ void FolderTransaction::endExchange() const {
 }
 
 void FolderTransaction::removeLeftovers() const {
-    for (const auto& entry : fs::directory_iterator(working_)) {
-        if (entry.path().filename() != Manifest::kFileName) fs::remove_all(entry.path());
-    }
+    for (const fs::path& file : filesIn(working_)) fs::remove_all(file);
 }
 
 void FolderTransaction::discard() { removeLeftovers(); }
@@ -282,6 +297,25 @@ void FolderTransaction::commit() {
     isOpen_ = false;
     synchronise(resolved_.parent_path(), target_);
     removeReplaced();
+}
+
+void FolderTransaction::commitBeside(const std::string& suffix) {
+    const fs::path place = besideOf(target_, resolved_, suffix);
+    std::optional<FolderTransaction> beside;
+    try {
+        beside.emplace(place);
+    } catch (const InputError& error) {
+        unfinished_ = Unfinished::kept;
+        throw InputError(place.string(), "",
+                         fmt::format("cannot be made: {}; what was done is in {} until the next "
+                                     "run with {}",
+                                     error.what(), working_.string(), target_.string()));
+    }
+    for (const fs::path& file : filesIn(working_)) {
+        fs::rename(file, beside->path() / file.filename());
+    }
+    beside->commit();
+    target_ = place;
 }
 
 /// In one step where the file system can, else in two with the earlier folder aside.

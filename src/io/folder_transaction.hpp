@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <string>
 
 #include "io/file_lock.hpp"
 #include "io/manifest.hpp"
@@ -44,6 +45,17 @@ class FolderTransaction {
     /// Writes everything to the disk, then puts the working folder in the target's place.
     /// @throws InputError when that cannot be done; the working folder is kept then
     void commit();
+
+    /// As commit(), but as the folder NAME + suffix beside the target, which stays as it is;
+    /// target() is that folder from then on.
+    /// @throws InputError as the constructor does for that folder, and as commit() does; what was
+    ///         written is kept then
+    void commitBeside(const std::string& suffix);
+
+    /// Whether the target holds an earlier result.
+    bool hasEarlier() const { return !Manifest::read(resolved_).empty(); }
+    /// Whether work that was not committed is kept.
+    bool isKept() const { return unfinished_ == Unfinished::kept; }
 
     /// Removes what was written so far: nothing of it is worth keeping.
     void discard();

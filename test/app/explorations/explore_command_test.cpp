@@ -168,7 +168,7 @@ TEST_F(ExploreCommand, AKilledExplorationResumesWhereItWas) {
         const std::string kept = fileOf("out.unfinished", "trials.jsonl");
         if (ended == 2) {
             expectBadInput(explore("out", kThreeFlights),
-                           "out.unfinished: holds 2 flights of an exploration that was killed");
+                           "out.unfinished: holds 2 flights of an exploration that did not end");
         }
         const Execution resumed = explore("out", kThreeFlights + "--resume --jobs 2");
         ASSERT_EQ(resumed.exitCode, 1) << resumed.output;

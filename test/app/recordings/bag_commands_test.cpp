@@ -38,7 +38,7 @@ TEST_F(BagCommands, ReplayTheFlightThatTheFolderHolds) {
     options.dataset = bag_;
     options.depthScale = 5000.;
     options.out = folder_.path() / "of_bag";
-    const ReplayReport report = runReplay(options, interrupted_);
+    const CommandReport report = runReplay(options, interrupted_);
     EXPECT_EQ(report.result["dataset"]["layout"], "ROS bag");
     for (const char* name : {"trajectory.tum", "groundtruth.tum"}) {
         const Trajectory expected = readTrajectory(folder_.file("of_folder/") + name);

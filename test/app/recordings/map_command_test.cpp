@@ -46,7 +46,7 @@ TEST_F(MapCommand, MapsATexturedFloorAndPredictsItsImages) {
         EXPECT_EQ(done, ++calls);
         EXPECT_EQ(total, 6U);
     };
-    const MapReport report = runMap(options, running);
+    const CommandReport report = runMap(options, running);
     EXPECT_EQ(report.exitCode, 0);
     EXPECT_EQ(calls, 6U);
     const auto& result = report.result;
@@ -64,7 +64,7 @@ TEST_F(MapCommand, MapsATexturedFloorAndPredictsItsImages) {
 }
 
 TEST_F(MapCommand, WritesWhatOtherProgramsRead) {
-    const MapReport report = runMap(options, running);
+    const CommandReport report = runMap(options, running);
     for (const char* name : {"comparison_0.png", "comparison_2.png", "report.html"}) {
         EXPECT_TRUE(test::fs::exists(options.out / name)) << name;
     }
@@ -87,7 +87,7 @@ TEST_F(MapCommand, WritesWhatOtherProgramsRead) {
 
 TEST_F(MapCommand, TurnsTheRecordedWorldUpright) {
     options.up = "-y";  // the recorded floor becomes a wall
-    const MapReport report = runMap(options, running);
+    const CommandReport report = runMap(options, running);
     const auto& bounds = report.result["voxels"]["bounds"];
     EXPECT_LE(bounds[1][0].get<double>() - bounds[0][0].get<double>(), 0.1 + 1e-9);
     EXPECT_GT(bounds[1][1].get<double>() - bounds[0][1].get<double>(), 1.5);
@@ -100,7 +100,7 @@ TEST_F(MapCommand, LevelsATiltedWorldByItsFloor) {
     dataset.tilt = Eigen::AngleAxisd(0.35, Eigen::Vector3d(1., 2., 0.).normalized());
     dataset.write(data);
     options.up = "floor";
-    const MapReport report = runMap(options, running);
+    const CommandReport report = runMap(options, running);
     const auto& bounds = report.result["voxels"]["bounds"];
     EXPECT_LE(bounds[1][2].get<double>() - bounds[0][2].get<double>(), 0.1 + 1e-9);
     EXPECT_NEAR(report.result["dataset"]["tilt_degrees"].get<double>(), 20.05, 0.1);
@@ -115,14 +115,14 @@ TEST_F(MapCommand, ItsConfigMakesTheSameMapAgain) {
     options.up = "-y";
     options.every = 2;
     options.resolution = 0.1;
-    const MapReport first = runMap(options, running);
+    const CommandReport first = runMap(options, running);
     const auto config = (options.out / "config.yaml").string();
     EXPECT_TRUE(isMapConfig(config));
     MapCommandOptions again;
     again.compareEvery = 2;
     again.out = folder.path() / "again";
     readMapConfig(config, again);
-    const MapReport second = runMap(again, running);
+    const CommandReport second = runMap(again, running);
     for (const char* key : {"dataset", "frames", "voxels", "comparison", "resolution"}) {
         EXPECT_EQ(first.result[key], second.result[key]) << key;
     }
@@ -133,7 +133,7 @@ TEST_F(MapCommand, ItsConfigMakesTheSameMapAgain) {
 TEST_F(MapCommand, UsesEveryNthFrameAndListsTheSkipped) {
     options.every = 3;
     std::ofstream(data / "rgb.txt", std::ios::app) << "900 rgb/0.png\n";
-    const MapReport report = runMap(options, running);
+    const CommandReport report = runMap(options, running);
     EXPECT_EQ(report.result["frames"]["recorded"], 7);
     EXPECT_EQ(report.result["frames"]["used"], 2);
     ASSERT_EQ(report.result["frames"]["skipped"].size(), 1U);
@@ -142,7 +142,7 @@ TEST_F(MapCommand, UsesEveryNthFrameAndListsTheSkipped) {
 
 TEST_F(MapCommand, InterruptedItKeepsWhatItHas) {
     options.progress = [&](std::size_t done, std::size_t) { running = done == 2; };
-    const MapReport report = runMap(options, running);
+    const CommandReport report = runMap(options, running);
     EXPECT_EQ(report.exitCode, 130);
     EXPECT_TRUE(report.result["interrupted"].get<bool>());
     EXPECT_EQ(report.result["frames"]["used"], 2);
@@ -152,7 +152,7 @@ TEST_F(MapCommand, InterruptedItKeepsWhatItHas) {
 
 TEST_F(MapCommand, InterruptedBeforeTheFirstFrameItStillEndsInOrder) {
     running = true;
-    const MapReport report = runMap(options, running);
+    const CommandReport report = runMap(options, running);
     EXPECT_EQ(report.exitCode, 130);
     EXPECT_EQ(report.result["frames"]["used"], 0);
     EXPECT_TRUE(test::fs::exists(options.out / "result.json"));
@@ -197,7 +197,7 @@ TEST_F(MapCommand, WithoutDepthImages) {
     test::fs::remove(data / "depth.txt");
     expectRejected({"depth.txt: no such file", "map --depth monocular"});
     options.depth = "monocular";
-    const MapReport report = runMap(options, running);
+    const CommandReport report = runMap(options, running);
     EXPECT_EQ(report.result["frames"]["used"], 6);
     const auto& depth = report.result["monocular"];
     EXPECT_GE(depth["references"], 1);
@@ -222,7 +222,7 @@ TEST_F(MapCommand, WithoutDepthImages) {
 TEST_F(MapCommand, DepthOfOneImageCannotBeHad) {
     options.depth = "monocular";
     options.frames = ":1";
-    const MapReport report = runMap(options, running);
+    const CommandReport report = runMap(options, running);
     EXPECT_EQ(report.exitCode, 1);
     EXPECT_EQ(report.summary.rows[0].second,
               "the map is empty: depth is measured from image to image, and there is only one");
@@ -235,7 +235,7 @@ TEST_F(MapCommand, BlackImagesAreNotCompared) {
     };
     const auto full = runMap(options, running).result;
     blacken(2);
-    const MapReport some = runMap(options, running);
+    const CommandReport some = runMap(options, running);
     EXPECT_EQ(some.result["frames"]["used"], 5);
     EXPECT_EQ(some.result["frames"]["black"], 1);
     EXPECT_EQ(some.result["frames"]["skipped"][0]["reason"], "black");
@@ -243,7 +243,7 @@ TEST_F(MapCommand, BlackImagesAreNotCompared) {
     EXPECT_NEAR(some.result["comparison"]["mean"]["mean_abs_intensity"].get<double>(),
                 full["comparison"]["mean"]["mean_abs_intensity"].get<double>(), 0.01);
     for (int i = 0; i < dataset.frames; ++i) blacken(i);
-    const MapReport none = runMap(options, running);
+    const CommandReport none = runMap(options, running);
     EXPECT_EQ(none.exitCode, 1);
     EXPECT_EQ(none.summary.rows[0].second, "the map is empty: all images are black");
 }

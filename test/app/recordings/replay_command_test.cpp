@@ -33,7 +33,7 @@ class ReplayCommand : public testing::Test {
         options.mapFile = (folder.path() / "room.yaml").string();
     }
 
-    ReplayReport run() { return runReplay(options, running); }
+    CommandReport run() { return runReplay(options, running); }
     std::vector<std::vector<double>> numbers(const char* name) const {
         std::vector<std::vector<double>> rows;
         std::ifstream in(options.out / name);
@@ -54,7 +54,7 @@ class ReplayCommand : public testing::Test {
 };
 
 TEST_F(ReplayCommand, WritesWhatOtherProgramsRead) {
-    const ReplayReport report = run();
+    const CommandReport report = run();
     for (const char* name : {"report.html", "errors.png", "strips.png", "top_view.png"}) {
         EXPECT_TRUE(test::fs::exists(options.out / name)) << name;
     }
@@ -175,7 +175,7 @@ TEST_F(ReplayCommand, ItsConfigRepeatsTheRun) {
 
 TEST_F(ReplayCommand, EndingLostIsNoAnswer) {
     for (int i = 9; i < flight.frames; ++i) flight.blacken(data, i);
-    const ReplayReport report = run();
+    const CommandReport report = run();
     EXPECT_EQ(report.exitCode, 1);
     EXPECT_EQ(report.result["tracked"], 9);
     EXPECT_NE(report.result["verdict"].get<std::string>().find("for good from 50.900 s"),
@@ -198,12 +198,22 @@ TEST_F(ReplayCommand, WhatIsRefusedLeavesAnEarlierResultWhole) {
 
 TEST_F(ReplayCommand, InterruptedItKeepsWhatItHas) {
     options.progress = [&](std::size_t done, std::size_t) { running = done == 4; };
-    const ReplayReport report = run();
+    const CommandReport report = run();
     EXPECT_EQ(report.exitCode, 130);
     EXPECT_TRUE(report.result["interrupted"].get<bool>());
     EXPECT_EQ(report.result["frames"], 4);
     EXPECT_EQ(readTrajectory((options.out / "trajectory.tum").string()).size(), 4U);
     EXPECT_TRUE(test::fs::exists(options.out / "report.html"));
+}
+
+TEST_F(ReplayCommand, InterruptedItLeavesAnEarlierResultWhole) {
+    run();
+    const std::string whole = test::contentOf(options.out / "result.json");
+    options.progress = [&](std::size_t done, std::size_t) { running = done == 4; };
+    const CommandReport report = run();
+    EXPECT_EQ(test::contentOf(options.out / "result.json"), whole);
+    EXPECT_EQ(report.folder, options.out.string() + "-interrupted");
+    EXPECT_EQ(readTrajectory((report.folder / "trajectory.tum").string()).size(), 4U);
 }
 
 /// Folders that were there before, and links to them, are the user's.

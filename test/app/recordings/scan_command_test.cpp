@@ -52,7 +52,7 @@ TEST_F(ScanCommand, MapsAFolderOfStations) {
     writeText(scans / "1.ply", floorScan(true));
     writeText(scans / "2.ply", floorScan(true));
     ASSERT_TRUE(isScan(options.scans));
-    const MapReport report = runScanMap(options, running);
+    const CommandReport report = runScanMap(options, running);
     EXPECT_EQ(report.exitCode, 0);
     EXPECT_EQ(report.result["stations"].size(), 2U);
     EXPECT_EQ(report.result["stations"][0]["points"], 2500);

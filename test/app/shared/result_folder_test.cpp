@@ -55,6 +55,68 @@ TEST(ResultFolder, ACommandRefusesAFolderOfSomeoneElse) {
     EXPECT_EQ(test::contentOf(folder.path() / "mine/trace.png"), "mine");
 }
 
+/// Results of a command, interrupted or not, in a folder.
+class InterruptedResult : public testing::Test {
+  protected:
+    fs::path commit(const std::string& note, bool isInterrupted,
+                    FolderTransaction::Unfinished unfinished = {}) const {
+        FolderTransaction folder = beginResult(given_, {}, unfinished);
+        write(folder.path() / "figures/note.txt", note);
+        return commitResult(folder, {{"interrupted", isInterrupted}});
+    }
+
+    std::string noteIn(const std::string& name) const {
+        return test::contentOf(folder_.path() / name / "figures/note.txt");
+    }
+
+    const TemporaryFolder folder_;
+    fs::path given_ = folder_.path() / "out";
+};
+
+TEST_F(InterruptedResult, ReplacesNoEarlierOne) {
+    EXPECT_EQ(commit("first", true), given_);
+    EXPECT_EQ(commit("second", false), given_);
+    EXPECT_EQ(commit("third", true), given_.string() + "-interrupted");
+    EXPECT_EQ(commit("fourth", true), given_.string() + "-interrupted");
+    EXPECT_EQ(noteIn("out"), "second");
+    EXPECT_EQ(noteIn("out-interrupted"), "fourth");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 2);
+    commit("fifth", true, FolderTransaction::Unfinished::kept);  // all runs so far, and more
+    EXPECT_EQ(noteIn("out"), "fifth");
+}
+
+TEST_F(InterruptedResult, IsBesideTheFolderThatALinkLeadsTo) {
+    fs::create_directories(folder_.path() / "disk");
+    fs::create_directory_symlink(folder_.path() / "disk", folder_.path() / "link");
+    given_ = folder_.path() / "link/out/";
+    commit("whole", false);
+    EXPECT_EQ(commit("part", true), folder_.path() / "link/out-interrupted");
+    fs::create_directory_symlink(folder_.path() / "disk/out", folder_.path() / "here");
+    given_ = folder_.path() / "here";
+    commit("another", true);
+    EXPECT_EQ(noteIn("disk/out"), "whole");
+    EXPECT_EQ(noteIn("disk/out-interrupted"), "another");
+}
+
+TEST_F(InterruptedResult, IsNotLostWhereItCannotBe) {
+    commit("whole", false);
+    write(folder_.path() / "out-interrupted/mine.txt", "mine");
+    try {
+        commit("part", true);
+        FAIL() << "mine.txt is in the way";
+    } catch (const InputError& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find("out-interrupted/mine.txt: is not of an earlier result"),
+                  std::string::npos)
+            << text;
+        EXPECT_NE(text.find("what was done is in "), std::string::npos) << text;
+    }
+    EXPECT_EQ(noteIn("out"), "whole");
+    EXPECT_EQ(noteIn("out.unfinished"), "part");
+    EXPECT_EQ(commit("next", false), given_);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 2);
+}
+
 TEST(ResultFolder, ARunWithFewerFilesLeavesNoneOfAnEarlierOne) {
     const TemporaryFolder folder;
     const std::string plan = "plan " PHOTONAV_SOURCE_DIR
