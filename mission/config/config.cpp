@@ -10,6 +10,7 @@
 #include "geometry/constants.hpp"
 #include "io/reading.hpp"
 #include "map/octree_file.hpp"
+#include "scene/mesh_check.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -58,16 +59,22 @@ void applyOverride(const KeyTable& keys, const YAML::Node& root, const std::stri
 /// Whether a message names a key whose value is not the file's.
 bool isAboutOverride(const InputError& error, const std::vector<std::string>& overrides) {
     return std::ranges::any_of(overrides, [&](const std::string& text) {
-        return error.reason().starts_with(text.substr(0, text.find('=')) + ": ");
+        const std::string path = text.substr(0, text.find('='));
+        const std::string key = error.reason().substr(0, error.reason().find(": "));
+        return path == key || path.starts_with(key + ".");
     });
 }
 
-/// Throws for files of other commands, which are often given in place of a planning problem.
+/// Throws for files, which are often given in place of a planning problem.
 void checkIsPlanningProblem(const std::string& file) {
     if (isOcTreeFile(file)) {
         throw InputError(file, "",
                          "is a map, not a planning problem: name it as map.file in a config "
                          "(photonav info shows what it holds)");
+    }
+    if (isMeshFile(file)) {
+        throw InputError(file, "",
+                         "is a mesh, not a planning problem: name it as scene.file in a config");
     }
 }
 

@@ -190,7 +190,7 @@ void addNoise(KeyTable& keys, Config& c) {
                  "contrast of a corner; for `feature_reprojection` and `feature_count`"},
                 c.viewModel.features.threshold, {1. / 255., 1.});
     keys.number({"pixel_sigma", "pixels", "standard deviation of a tracked corner"},
-                c.viewModel.features.pixelSigma, {kTiny, kLargest});
+                c.viewModel.features.pixelSigma, {kTiny, 1e4});
     keys.number(
         {"reference_count", "corners", "number of corners that halves the penalty of a view"},
         c.viewModel.features.referenceCount, {kTiny, kLargest});
@@ -239,13 +239,13 @@ void addObjective(KeyTable& keys, Config& c) {
     keys.number({"rotation_weight", "m/rad",
                  "turning by 1 rad costs as much as flying so many metres "
                  "([with a heading](concepts/cost.md#with-a-heading))"},
-                c.rotationWeight, {0., kLargest});
+                c.rotationWeight, {0., kFarthest});
     keys.number(
         {"penalty_kappa", "", "replaces `planner.kappa` for `feature_count` and `map_uncertainty`"},
         c.viewModel.kappa, {0., kLargest});
     keys.number({"map_prior_sigma", "",
                  "standard deviation of log depth before the first view (`map_uncertainty`)"},
-                c.viewModel.mapPriorSigma, {0., kLargest});
+                c.viewModel.mapPriorSigma, {0., 100.});
     keys.number({"view_pitch", "m", "edge of a cell of the grid of views, see below"},
                 c.field.positionPitch, {kTiny, kFarthest});
     keys.number({"view_rotation_pitch", "rad", "edge of a cell of the grid of views in rotation"},
@@ -268,7 +268,7 @@ void addSearch(KeyTable& keys, Config& c) {
     keys.count({"shortcut", "", "changes tried by the descent; 0: none (`belief_rrt_star`)"},
                c.search.shortcut, {0., 1e9});
     keys.number({"range", "m", "longest motion added; 0: a fifth of the space's extent"},
-                c.growth.range, {0., kFarthest});
+                c.growth.range, {1e-3, kFarthest, true});
     keys.number({"goal_bias", "", "share of samples drawn at the goal until it is reached"},
                 c.growth.goalBias, {1e-4, 1.});
     keys.number({"rewire_factor", "", "factor on the connection radius of RRT*"},

@@ -20,7 +20,14 @@ std::string textOf(Range range) {
     if (range.min == 0. && std::isinf(range.max)) return ">= 0";
     if (std::isinf(range.min)) return "";
     if (std::isinf(range.max)) return fmt::format(">= {}", range.min);
-    return fmt::format("{} to {}", numberText(range.min), numberText(range.max));
+    return fmt::format("{}{} to {}", range.orZero ? "0, " : "", numberText(range.min),
+                       numberText(range.max));
+}
+
+void readInRange(YamlMap& map, const std::string& name, double& value, Range range) {
+    double found = value;
+    map.read(name, found);
+    map.readNumber(name, value, range.orZero && found == 0. ? 0. : range.min, range.max);
 }
 
 /// For a cell of a Markdown table.
@@ -84,8 +91,8 @@ void ConfigKey::set(const std::string& text) const {
 void KeyTable::number(const KeyWords& words, double& value, Range range) {
     add({.words = words,
          .allowed = textOf(range),
-         .read = [&value, range, name = words.name](
-                     YamlMap& map) { map.readNumber(name, value, range.min, range.max); },
+         .read = [&value, range,
+                  name = words.name](YamlMap& map) { readInRange(map, name, value, range); },
          .value = [&value] { return yamlNumber(value); }});
 }
 
@@ -95,7 +102,7 @@ void KeyTable::number(const KeyWords& words, std::optional<double>& value, Range
          .read =
              [&value, range, name = words.name](YamlMap& map) {
                  double number = value.value_or(range.min);
-                 map.readNumber(name, number, range.min, range.max);
+                 readInRange(map, name, number, range);
                  if (map.has(name)) value = number;
              },
          .value = [&value] { return value ? yamlNumber(*value) : YAML::Node(); }});
@@ -151,9 +158,9 @@ void KeyTable::choice(const KeyWords& words, std::string& value,
 
 void KeyTable::variances(const KeyWords& words, Matrix6& value) {
     static const Vector6 kLargest =
-        (Vector6() << Eigen::Vector3d::Constant(1e6), Eigen::Vector3d::Constant(10.)).finished();
+        (Vector6() << Eigen::Vector3d::Constant(1e4), Eigen::Vector3d::Constant(10.)).finished();
     add({.words = words,
-         .allowed = "0 to 1e6 m^2, 0 to 10 rad^2",
+         .allowed = "0 to 1e4 m^2, 0 to 10 rad^2",
          .read =
              [&value, name = words.name](YamlMap& map) {
                  Vector6 variances = value.diagonal();
@@ -161,7 +168,7 @@ void KeyTable::variances(const KeyWords& words, Matrix6& value) {
                  if ((variances.array() < 0.).any()) map.fail(name, "negative variance");
                  if ((variances.array() > kLargest.array()).any()) {
                      map.fail(name,
-                              "variance above 1e6 m^2 (position) or 10 rad^2 (rotation: any "
+                              "variance above 1e4 m^2 (position) or 10 rad^2 (rotation: any "
                               "heading at all)");
                  }
                  value = variances.asDiagonal();
@@ -181,7 +188,7 @@ void KeyTable::addCount(const KeyWords& words, Range range,
          .read =
              [=, name = words.name](YamlMap& map) {
                  double number = get().value_or(range.min);
-                 map.readNumber(name, number, range.min, range.max);
+                 readInRange(map, name, number, range);
                  if (number != std::floor(number)) map.fail(name, "not a whole number");
                  if (map.has(name)) set(number);
              },

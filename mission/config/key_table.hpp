@@ -20,6 +20,7 @@ namespace photonav {
 struct Range {
     double min = -kInfinity;
     double max = kInfinity;
+    bool orZero = false;  ///< 0 is allowed as well
 };
 
 /// Name, unit and meaning of a key, as shown to users.

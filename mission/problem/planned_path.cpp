@@ -101,7 +101,10 @@ PlannedPath readPlannedPath(const fs::path& resultFile, const Config& config) {
     } catch (const std::exception&) {
         throw InputError(resultFile.string(), "path", "not as photonav plan writes it");
     }
-    if (waypoints.size() < 2) throw InputError(resultFile.string(), "path", "no path was found");
+    if (waypoints.size() < 2) {
+        throw InputError(resultFile.string(), "path",
+                         waypoints.empty() ? "no path was found" : "one waypoint is no path");
+    }
     checkPlaces(waypoints, resultFile.string(), config);
     return path;
 }

@@ -4,12 +4,6 @@
 #include "recording/recording_config.hpp"
 
 namespace photonav {
-namespace {
-
-constexpr Range kPositive{1e-12, 1e12};
-constexpr Range kNotNegative{0., 1e6};
-
-}  // namespace
 
 void addKeys(KeyTable& keys, ReplayOptions& o) {
     addKeys(keys, static_cast<RecordingOptions&>(o));
@@ -20,16 +14,16 @@ void addKeys(KeyTable& keys, ReplayOptions& o) {
         o.start);
     keys.number(
         {"start_sigma", "m, rad", "standard deviation of the start pose in a map; none: 0.05"},
-        o.startSigma, kPositive);
+        o.startSigma, {1e-12, 100.});
     keys.number({"sigma", "grey value", "standard deviation of the image noise"}, o.sigma,
-                kPositive);
+                {1e-12, 1.});
     keys.number({"scale", "", "factor on the information of an alignment; none: 1"}, o.scale,
-                kPositive);
+                {1e-12, 1e12});
     keys.number({"least_sigma", "m", "least standard deviation of an aligned position; none: 0"},
-                o.leastSigma, kNotNegative);
+                o.leastSigma, {0., 100.});
     keys.number(
         {"least_sigma_rotation", "rad", "least standard deviation of an aligned rotation; none: 0"},
-        o.leastSigmaRotation, kNotNegative);
+        o.leastSigmaRotation, {0., 3.2});
     keys.number({"min_overlap", "", "least share of an image that the model must cover"},
                 o.minOverlap, {1e-12, 1. - 1e-12});
     keys.count({"max_width", "pixels",

@@ -155,8 +155,7 @@ std::string numberText(double value) {
 void YamlMap::readNumber(const std::string& key, double& value, double least, double most) {
     read(key, value);
     if (!(value >= least && value <= most)) {
-        fail(key,
-             fmt::format("{} is outside [{}, {}]", value, numberText(least), numberText(most)));
+        fail(key, fmt::format("{} is outside [{:g}, {:g}]", value, least, most));
     }
     if (!std::isfinite(value)) fail(key, "not a finite number");
 }

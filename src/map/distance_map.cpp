@@ -55,9 +55,8 @@ ObstacleLayout layOutCells(const Eigen::AlignedBox3d& bounds, double resolution,
         double fits = resolution;
         while (bytes(fits) > kMaxBytes && std::isfinite(fits)) fits *= 1.1;
         throw std::invalid_argument(
-            fmt::format("distance map: {:.1f} GB at a resolution of {} m; {:.2g} m would fit, "
-                        "or "
-                        "smaller bounds",
+            fmt::format("distance map: {:.3g} GB at a resolution of {} m; {:.2g} m would fit, "
+                        "or smaller bounds",
                         1e-9 * bytes(resolution), resolution, std::ceil(fits * 100.) / 100.));
     }
     if (maxDistance / resolution > kMaxReach - 1) {

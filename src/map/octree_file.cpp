@@ -129,7 +129,9 @@ class NodeReader {
     }
 
     void checkEnd() const {
-        if (map_.size() != promised_) failCount();
+        if (map_.size() != promised_) {
+            failCount(fmt::format("damaged: its number of nodes is {}", map_.size()));
+        }
         if (stream_.peek() != std::istream::traits_type::eof()) {
             fail("damaged: goes on after its last node");
         }
@@ -143,11 +145,12 @@ class NodeReader {
     /// Before a child is made of a node at this depth.
     void checkNext(unsigned depth) const {
         if (depth >= map_.getTreeDepth()) fail("damaged: nodes below the cells");
-        if (map_.size() >= promised_) failCount();
+        if (map_.size() >= promised_)
+            failCount(fmt::format("damaged: it has more than {} nodes", map_.size()));
     }
 
-    [[noreturn]] void failCount() const {
-        fail(fmt::format("damaged: its header promises {} nodes", promised_));
+    [[noreturn]] void failCount(const std::string& found) const {
+        throw InputError(file_, "", fmt::format("{}, in its header {}", found, promised_));
     }
 
     std::istream& stream_;

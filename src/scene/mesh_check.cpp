@@ -224,6 +224,25 @@ class GltfAmount {
     double corners_ = 0.;
 };
 
+/// Assimp computes with these as they are.
+void checkLayout(const std::string& file, const json& root) {
+    constexpr double kMostStride = 252.;  // glTF 2.0, 5.11
+    constexpr double kMostBytes = 4e9;
+    for (const char* list : {"bufferViews", "accessors"}) {
+        for (const json& entry : memberOf(root, list)) {
+            for (const char* name : {"byteOffset", "byteLength", "byteStride", "count"}) {
+                const json& value = memberOf(entry, name);
+                const double most = name == std::string("byteStride") ? kMostStride : kMostBytes;
+                if (value.is_null()) continue;
+                if (value.is_number_unsigned() && value.get<double>() <= most) continue;
+                throw InputError(file, list,
+                                 fmt::format("{} {} is no whole number from 0 to {:g}", name,
+                                             value.dump(), most));
+            }
+        }
+    }
+}
+
 /// A pipe would never end.
 void checkUris(const std::string& file, const json& root) {
     for (const char* list : {"buffers", "images"}) {
@@ -250,13 +269,13 @@ void checkGltf(const std::string& file, bool isBinary) {
         throw InputError(file, "asset.version", fmt::format("{} is not \"2.0\"", version.dump()));
     }
     checkNodes(file, root);
+    checkLayout(file, root);
     GltfAmount(file, root).check();
     checkUris(file, root);
 }
 
-}  // namespace
-
-MeshFormat meshFormatOf(const std::string& file) {
+/// As the name of a file says.
+std::optional<MeshFormat> formatIn(const std::string& file) {
     std::string extension = fs::path(file).extension().string();
     for (char& c : extension) {
         c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -265,9 +284,18 @@ MeshFormat meshFormatOf(const std::string& file) {
     if (extension == ".obj") return MeshFormat::obj;
     if (extension == ".gltf") return MeshFormat::gltf;
     if (extension == ".glb") return MeshFormat::glb;
-    throw InputError(
-        file, "",
-        fmt::format("'{}' is no mesh that can be read; known: .gltf, .glb, .obj, .ply", extension));
+    return {};
+}
+
+}  // namespace
+
+bool isMeshFile(const std::string& file) { return formatIn(file).has_value(); }
+
+MeshFormat meshFormatOf(const std::string& file) {
+    if (const auto format = formatIn(file)) return *format;
+    throw InputError(file, "",
+                     fmt::format("'{}' is no mesh that can be read; known: .gltf, .glb, .obj, .ply",
+                                 fs::path(file).extension().string()));
 }
 
 void checkMeshFile(const std::string& file) {

@@ -9,6 +9,9 @@ namespace photonav {
 
 enum class MeshFormat { ply, obj, gltf, glb };
 
+/// Whether a file is a mesh, as its extension says.
+bool isMeshFile(const std::string& file);
+
 /// The format of a mesh file by its extension.
 /// @throws InputError for any other extension
 MeshFormat meshFormatOf(const std::string& file);
