@@ -8,6 +8,7 @@
 #include "fuzz_input.hpp"
 #include "io/folder_transaction.hpp"
 #include "report/report.hpp"
+#include "result/json_values.hpp"
 #include "sweep/reference_table.hpp"
 #include "sweep/sweep_journal.hpp"
 
