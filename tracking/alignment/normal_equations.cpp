@@ -134,7 +134,12 @@ ViewComparison::ViewComparison(const Camera& camera, const PhotometricOptions& p
     }
     const std::size_t vectors = (camera.width - 2 + kWidth - 1) / kWidth;
     pitch_ = vectors * kWidth + 2;
-    const std::size_t size = pitch_ * camera.height + kWidth;  // blocks read beyond the last row
+}
+
+/// With the first views, not before: an aligner has many sizes and kinds of comparison, and most of
+/// its images need few of them.
+void ViewComparison::allocate() {
+    const std::size_t size = pitch_ * camera_.height + kWidth;  // blocks read beyond the last row
     intensity_.assign(size, 0.F);
     inverseDepth_.assign(size, kNoSurface);
     observed_.assign(size, 0.F);
@@ -150,6 +155,7 @@ void ViewComparison::load(const View& predicted, const ImageF& observed) {
     if (!fits(predicted.intensity) || !fits(predicted.depth) || !fits(observed)) {
         throw std::invalid_argument("alignment: image and camera differ in size");
     }
+    if (intensity_.empty()) allocate();
     double sum = 0.;
     std::size_t surfaces = 0;
     for (unsigned v = 0; v < camera_.height; ++v) {

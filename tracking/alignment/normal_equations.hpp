@@ -115,6 +115,7 @@ class ViewComparison {
     std::vector<GradientTile> tiles(const Exposure& exposure) const;
 
   private:
+    void allocate();
     void load(const View& predicted, const ImageF& observed);
     GradientTile tileAt(unsigned left, unsigned top, double gain) const;
     Eigen::Vector3d normalAt(unsigned u, unsigned v) const;
