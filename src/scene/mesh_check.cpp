@@ -224,6 +224,30 @@ class GltfAmount {
     double corners_ = 0.;
 };
 
+/// What a reader must know to read the file at all; assimp reads it all the same.
+void checkExtensions(const std::string& file, const json& root) {
+    for (const json& name : memberOf(root, "extensionsRequired")) {
+        const std::string known = name.is_string() ? name.get<std::string>() : "";
+        if (known.starts_with("KHR_materials_") || known == "KHR_lights_punctual") continue;
+        throw InputError(file, "extensionsRequired", name.dump() + " is not known");
+    }
+}
+
+/// A rotation of length 0 turns nothing; the mesh would be a point.
+void checkRotations(const std::string& file, const json& root) {
+    for (const json& node : memberOf(root, "nodes")) {
+        const json& rotation = memberOf(node, "rotation");
+        if (rotation.is_null()) continue;
+        double square = 0.;
+        for (const json& number : rotation) {
+            if (number.is_number()) square += std::pow(number.get<double>(), 2);
+        }
+        if (rotation.size() == 4 && std::abs(square - 1.) <= 0.1) continue;
+        throw InputError(file, "nodes",
+                         fmt::format("rotation {} is no unit quaternion", rotation.dump()));
+    }
+}
+
 /// Assimp computes with these as they are.
 void checkLayout(const std::string& file, const json& root) {
     constexpr double kMostStride = 252.;  // glTF 2.0, 5.11
@@ -269,6 +293,8 @@ void checkGltf(const std::string& file, bool isBinary) {
         throw InputError(file, "asset.version", fmt::format("{} is not \"2.0\"", version.dump()));
     }
     checkNodes(file, root);
+    checkExtensions(file, root);
+    checkRotations(file, root);
     checkLayout(file, root);
     GltfAmount(file, root).check();
     checkUris(file, root);

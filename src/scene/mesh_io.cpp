@@ -10,11 +10,14 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -313,6 +316,34 @@ class MeshReader {
     std::optional<std::uint32_t> ramp_;
 };
 
+/// Hears of triangles that assimp's reader of glTF drops, which it says in its log only.
+class DroppedFaces : public Assimp::LogStream {
+  public:
+    DroppedFaces() : isOurs_(Assimp::DefaultLogger::isNullLogger()) {
+        if (isOurs_) Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
+        Assimp::DefaultLogger::get()->attachStream(this, Assimp::Logger::Warn);
+    }
+    ~DroppedFaces() override {
+        Assimp::DefaultLogger::get()->detachStream(this, Assimp::Logger::Warn);
+        if (isOurs_) Assimp::DefaultLogger::kill();
+    }
+    DroppedFaces(const DroppedFaces&) = delete;
+    DroppedFaces& operator=(const DroppedFaces&) = delete;
+
+    void write(const char* message) override {
+        if (std::string_view(message).find("out-of-range indices") != std::string_view::npos) {
+            any_ = true;
+        }
+    }
+    bool any() const { return any_; }
+
+  private:
+    static inline std::mutex mutex_;  // of the logger, of which a process has one
+    std::scoped_lock<std::mutex> lock_{mutex_};
+    bool isOurs_;
+    bool any_ = false;
+};
+
 Scene readMesh(const std::string& file, const MeshOptions& options) {
     openToRead(file);
     if (std::filesystem::file_size(file) == 0) throw InputError(file, "", "the file is empty");
@@ -322,6 +353,7 @@ Scene readMesh(const std::string& file, const MeshOptions& options) {
     Assimp::Importer& importer = *single;
     // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): the importer owns it
     importer.SetIOHandler(new RememberingFiles(file, files));
+    const DroppedFaces dropped;
     const aiScene* input = importer.ReadFile(
         file, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType);
     if (input == nullptr || input->mRootNode == nullptr) {
@@ -330,6 +362,7 @@ Scene readMesh(const std::string& file, const MeshOptions& options) {
         if (reason == std::bad_alloc().what()) throw std::bad_alloc();
         throw InputError(file, "", reason.empty() ? "cannot read the mesh" : reason);
     }
+    if (dropped.any()) throw InputError(file, "", "a triangle has a vertex that is not there");
     return MeshReader(file, options, *input, files).read();
 }
 

@@ -250,6 +250,41 @@ TEST(MeshIo, IndicesAndNodesAreNotTrusted) {
     EXPECT_EQ(complaint(brackets), brackets + ": JSON nested deeper than 200");
 }
 
+/// Assimp leaves out triangles that it cannot make, and knows no extension that it does not read.
+TEST(MeshIo, GltfIsReadWholeOrNotAtAll) {
+    const TemporaryFolder folder;
+    folder.write("mesh.bin", triangleBytes() + std::string("\0\0\1\0\2\0\0\0\1\0\x9\0", 12));
+    const auto with = [&](const std::string& place, const std::string& text) {
+        std::string mesh = gltf(R"("materials": [{}])", 12);
+        const auto at = mesh.find(place);
+        EXPECT_NE(at, std::string::npos) << place;
+        return folder.write("mesh.gltf", mesh.replace(at, place.size(), text));
+    };
+    const auto complaintOf = [&](const std::string& place, const std::string& text) {
+        const std::string file = with(place, text);
+        return complaint(file).substr(file.size() + 2);
+    };
+    std::string indexed = with(R"("material": 0)", R"("material": 0, "indices": 2)");
+    std::string text = test::contentOf(indexed);
+    const std::string last = R"("count": 3, "type": "VEC2"})";
+    text.replace(
+        text.find(last), last.size(),
+        last + R"(, {"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"})");
+    indexed = folder.write("mesh.gltf", text);
+    EXPECT_EQ(complaint(indexed), indexed + ": a triangle has a vertex that is not there");
+    text.replace(text.find(R"("count": 6)"), 10, R"("count": 3)");
+    EXPECT_EQ(loadMesh(folder.write("mesh.gltf", text)).triangles.size(), 1U);
+
+    EXPECT_EQ(complaintOf(R"("scale": [2, 2, 2])", R"("rotation": [0, 0, 0, 0])"),
+              "nodes: rotation [0,0,0,0] is no unit quaternion");
+    EXPECT_EQ(complaintOf(R"("scene": 0)", R"("scene": 0, "extensionsRequired": ["KHR_draco"])"),
+              R"(extensionsRequired: "KHR_draco" is not known)");
+    EXPECT_EQ(complaintOf(R"("byteOffset": 36)", R"("byteOffset": -36)"),
+              "bufferViews: byteOffset -36 is no whole number from 0 to 4e+09");
+    EXPECT_EQ(complaintOf(R"("byteLength": 24)", R"("byteLength": 24, "byteStride": 2147483648)"),
+              "bufferViews: byteStride 2147483648 is no whole number from 0 to 252");
+}
+
 /// What is checked must be what assimp reads: it takes text that is no UTF-8, the first of two
 /// equal keys, and nodes by name in version 1.
 TEST(MeshIo, GltfIsReadInOneWayOnly) {
