@@ -44,6 +44,21 @@ std::vector<Eigen::Vector3d> believedOffsets(const UncertainPose& T_c_w, const P
     return offsets_w;
 }
 
+/// As isLineFree(), in longer steps where nothing is near: lines to all places within a wide belief
+/// are long and many.
+bool touchesNothingOn(const Eigen::Vector3d& from_w, const Eigen::Vector3d& way_w,
+                      const PilotOptions& options) {
+    constexpr double kStep = 0.05;  // [m]
+    const double length = way_w.norm();
+    for (double s = 0.;;) {
+        const Eigen::Vector3d p_w = length > 0. ? from_w + s / length * way_w : from_w;
+        const double free = options.clearance(p_w) - options.bodyRadius;
+        if (free < 0.) return false;
+        if (s >= length) return true;
+        s = std::min(length, s + std::max(kStep, free - kStep));
+    }
+}
+
 }  // namespace
 
 Pilot::Pilot(std::vector<PlannedView> plan, std::shared_ptr<const ViewSource> map,
@@ -157,12 +172,9 @@ Route::Reference Pilot::advance(Route& route, const Tracker& tracker, double dt)
 
 /// Whether the body touches nothing at any place within three standard deviations.
 IsFree Pilot::untouchedBy(const UncertainPose& belief) const {
-    const auto touchesNothing = [this](const Eigen::Vector3d& p_w) {
-        return options_.clearance(p_w) >= options_.bodyRadius;
-    };
-    return [=, offsets_w = believedOffsets(belief, T_b_c_)](const Eigen::Vector3d& p_w) {
+    return [this, offsets_w = believedOffsets(belief, T_b_c_)](const Eigen::Vector3d& p_w) {
         return std::all_of(offsets_w.begin(), offsets_w.end(), [&](const Eigen::Vector3d& offset) {
-            return isLineFree(p_w, p_w + offset, touchesNothing);
+            return touchesNothingOn(p_w, offset, options_);
         });
     };
 }
