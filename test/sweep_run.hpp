@@ -10,7 +10,7 @@ namespace photonav::test {
 
 inline SweepRun makeRun(const SweepItem& item, double cost, double length, double meanTrace) {
     SweepRun run{item, cost, length, meanTrace, 0.5 * meanTrace, 100, 40, 0.25, "done", {}};
-    run.path = {{{0., 0., 2.}, 0.}, {{1. / 3., 0.1, 2.}, 0.5}};
+    run.path = {{{0., 0., 2.}, 0.}, {{length, 0., 2.}, 0.5}};
     return run;
 }
 

@@ -43,6 +43,10 @@ json lineOf(const JournalHeader& header, const RunWords& words) {
             {"shard", {header.shard.index, header.shard.count}}};
 }
 
+struct DamagedLine : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
 std::string textOf(const json& line) { return withChecksum(compactJson(line)) + "\n"; }
 
 }  // namespace
@@ -57,7 +61,9 @@ std::string withoutChecksum(std::string_view line) {
     if (line.size() <= kRest || !line.starts_with(kChecksum))
         throw std::out_of_range("no checksum");
     const std::string object = fmt::format("{{{}", line.substr(kRest));
-    if (withChecksum(object) != line) throw std::out_of_range("checksum");
+    if (withChecksum(object) != line) {
+        throw DamagedLine("its checksum does not fit: it was changed, or is damaged");
+    }
     return object;
 }
 
@@ -93,6 +99,8 @@ JournalHeader JournalFile::readLines(const std::function<void(const json&)>& onL
             throw;
         } catch (const std::bad_alloc&) {
             throw;
+        } catch (const DamagedLine& damage) {
+            throw InputError(path_.string(), fmt::format("line {}", number), damage.what());
         } catch (const std::exception&) {
             throw InputError(
                 path_.string(), fmt::format("line {}", number),

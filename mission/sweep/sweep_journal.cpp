@@ -21,7 +21,9 @@ void checkPossible(const SweepRun& run) {
     double way = 0.;
     for (std::size_t i = 1; i < run.path.size(); ++i)
         way += (run.path[i].position - run.path[i - 1].position).norm();
-    if (!(run.length >= kRounding * way)) throw std::out_of_range("length");
+    if (!(run.length >= kRounding * way) || run.length > 1.01 * way + 0.01) {
+        throw std::out_of_range("length");
+    }
     if (!(run.cost >= kRounding * run.item.alpha * run.length)) throw std::out_of_range("cost");
 }
 

@@ -191,7 +191,7 @@ TEST_F(SweepFiles, AJournalGivesBackWhatWasWritten) {
     EXPECT_EQ(journal.runs()[0].item, solved);
     EXPECT_EQ(journal.runs()[0].cost, 0.1 + 0.2);  // to the last bit
     EXPECT_EQ(journal.runs()[0].meanTrace, 1e-300);
-    EXPECT_EQ(journal.runs()[0].path[1].position.x(), 1. / 3.);
+    EXPECT_EQ(journal.runs()[0].path[1].position.x(), 2. / 3.);
     EXPECT_EQ(journal.runs()[0].path[1].yaw, 0.5);
     EXPECT_TRUE(std::isnan(journal.runs()[1].cost));
     EXPECT_EQ(journal.runs()[1].status, "no path");
@@ -230,7 +230,7 @@ TEST_F(SweepFiles, ARunThatIsThereTwiceMustBeTheSame) {
     run.seconds *= 2.;
     journal.append(run);
     EXPECT_EQ(SweepJournal::read(folder_).runs().size(), 1U);
-    run.length = 2.5;
+    run.goalTrace = 2.5;
     journal.append(run);
     const std::string file = (folder_ / SweepJournal::kFileName).string();
     EXPECT_EQ(test::reasonOf([&] { SweepJournal::read(folder_); }),
@@ -250,6 +250,8 @@ TEST_F(SweepFiles, NumbersThatNoRunGivesAreRefused) {
                                         {"\"cost\":1.0", "\"cost\":0.99"},
                                         {"\"length\":2.0", "\"length\":0.0"},
                                         {"\"length\":2.0", "\"length\":2.01"},
+                                        {"\"cost\":1.0,\"goal_trace\":1.5,\"length\":2.0",
+                                         "\"cost\":5e3,\"goal_trace\":1.5,\"length\":5e3"},
                                         {"\"path\":[", "\"path\":[],\"other\":["},
                                         {"\"vertices\":100", "\"vertices\":1e30"},
                                         {"\"views\":40", "\"views\":0.5"}}) {
@@ -280,6 +282,11 @@ TEST_F(SweepFiles, AChangedLineIsRefused) {
         EXPECT_NE(reason.find(i <= good.find('\n') ? "line 1" : "line 2"), std::string::npos)
             << i << ": " << reason;
     }
+    std::string typed = good;
+    typed.replace(typed.find("\"cost\":1.0"), 10, "\"cost\":1.5");
+    std::ofstream(file) << typed;
+    EXPECT_EQ(test::reasonOf([&] { SweepJournal::read(folder_); }),
+              file.string() + ": line 2: its checksum does not fit: it was changed, or is damaged");
 }
 
 Config smallSweep() {
