@@ -65,10 +65,10 @@ void addKeys(KeyTable& keys, FlyConfig& c) {
     keys.number({"scale", "", "factor on the information of an alignment; none: 1"}, c.scale,
                 {1e-12, 1e12});
     keys.number({"least_sigma", "m", "least standard deviation of an aligned position; none: 0"},
-                c.leastSigma, {0., 100.});
+                c.leastSigma, {0., 1.});
     keys.number(
         {"least_sigma_rotation", "rad", "least standard deviation of an aligned rotation; none: 0"},
-        c.leastSigmaRotation, {0., 3.2});
+        c.leastSigmaRotation, {0., 1.});
 }
 
 }  // namespace photonav

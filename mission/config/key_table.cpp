@@ -158,9 +158,9 @@ void KeyTable::choice(const KeyWords& words, std::string& value,
 
 void KeyTable::variances(const KeyWords& words, Matrix6& value) {
     static const Vector6 kLargest =
-        (Vector6() << Eigen::Vector3d::Constant(1e4), Eigen::Vector3d::Constant(10.)).finished();
+        (Vector6() << Eigen::Vector3d::Constant(100.), Eigen::Vector3d::Constant(10.)).finished();
     add({.words = words,
-         .allowed = "0 to 1e4 m^2, 0 to 10 rad^2",
+         .allowed = "0 to 100 m^2, 0 to 10 rad^2",
          .read =
              [&value, name = words.name](YamlMap& map) {
                  Vector6 variances = value.diagonal();
@@ -168,7 +168,7 @@ void KeyTable::variances(const KeyWords& words, Matrix6& value) {
                  if ((variances.array() < 0.).any()) map.fail(name, "negative variance");
                  if ((variances.array() > kLargest.array()).any()) {
                      map.fail(name,
-                              "variance above 1e4 m^2 (position) or 10 rad^2 (rotation: any "
+                              "variance above 100 m^2 (position) or 10 rad^2 (rotation: any "
                               "heading at all)");
                  }
                  value = variances.asDiagonal();

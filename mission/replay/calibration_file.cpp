@@ -37,8 +37,8 @@ CalibrationFile readFile(YamlMap& yaml) {
         yaml.readChoice("mode", file.mode, kModes);
     }
     yaml.readNumber("scale", c.scale, 1e-12, 1e12);
-    yaml.readNumber("least_sigma", c.leastSigma, 0., 100.);
-    yaml.readNumber("least_sigma_rotation", c.leastSigmaRotation, 0., 3.2);
+    yaml.readNumber("least_sigma", c.leastSigma, 0., 1.);
+    yaml.readNumber("least_sigma_rotation", c.leastSigmaRotation, 0., 1.);
     yaml.readNumber("correlation_time", c.correlationTime, 1., 1e9);
     yaml.finish();
     return file;

@@ -20,10 +20,10 @@ void addKeys(KeyTable& keys, ReplayOptions& o) {
     keys.number({"scale", "", "factor on the information of an alignment; none: 1"}, o.scale,
                 {1e-12, 1e12});
     keys.number({"least_sigma", "m", "least standard deviation of an aligned position; none: 0"},
-                o.leastSigma, {0., 100.});
+                o.leastSigma, {0., 1.});
     keys.number(
         {"least_sigma_rotation", "rad", "least standard deviation of an aligned rotation; none: 0"},
-        o.leastSigmaRotation, {0., 3.2});
+        o.leastSigmaRotation, {0., 1.});
     keys.number({"min_overlap", "", "least share of an image that the model must cover"},
                 o.minOverlap, {1e-12, 1. - 1e-12});
     keys.count({"max_width", "pixels",

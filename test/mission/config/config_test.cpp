@@ -185,7 +185,7 @@ TEST(Config, ComplaintsNameKeyAndReason) {
     expectComplaint("planner.vertices=2.5", "planner.vertices", "whole number");
     expectComplaint("planner.ds=0", "planner.ds", "outside");
     expectComplaint("noise.initial=[-1, 0, 0, 0, 0, 0]", "noise.initial", "negative variance");
-    expectComplaint("noise.motion=[0, 0, 0, 0, 0, 11]", "noise.motion", "above 1e4 m^2");
+    expectComplaint("noise.motion=[0, 0, 0, 0, 0, 11]", "noise.motion", "above 100 m^2");
     expectComplaint("noise.motion=[0, 0, 2e6, 0, 0, 0]", "noise.motion", "10 rad^2 (rotation");
     expectComplaint("sweep.planners=[,,,]", "sweep.planners", "cannot read the value");
     expectComplaint("noise.motion=[1, 0, 0]", "noise.motion", "6 numbers, found 3");
