@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "exploration/real_time_json.hpp"
 #include "exploration/trial_journal.hpp"
@@ -29,9 +30,11 @@ void printFlight(const ExplorationResult& flight, const ExplorationSummary& s) {
                flight.duration, flight.reason.empty() ? "" : ": " + flight.reason);
     fmt::print(
         "position error (rms) {}, NEES {:.2f} (1: consistent), goal error {}\n"
-        "{} keyframes, update {:.0f} ms (95 %: {:.0f} ms)\n",
+        "{} keyframes{}\n",
         lengthText(s.positionRmse), s.nees, lengthText(flight.goalError), flight.keyframes,
-        1e3 * s.updateMedian, 1e3 * s.update95);
+        std::isfinite(s.updateMedian) ? fmt::format(", update {:.0f} ms (95 %: {:.0f} ms)",
+                                                    1e3 * s.updateMedian, 1e3 * s.update95)
+                                      : "");
     if (!flight.realTime) return;
     for (const auto& [what, value] : realTimeRows(*flight.realTime)) {
         fmt::print("{}: {}\n", what, value);

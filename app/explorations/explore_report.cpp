@@ -23,7 +23,7 @@ namespace {
 
 ReportTable tableOf(const ExplorationSummary& s) {
     const auto text = [](const char* format, double value) {
-        return fmt::format(fmt::runtime(format), value);
+        return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "none";
     };
     return {"Flights of " + s.planner,
             {{"arrived", fmt::format("{} of {}", s.arrived, s.flights)},

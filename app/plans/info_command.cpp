@@ -142,7 +142,7 @@ int runInfo(const InfoOptions& options) {
     const Place place = placeOf(options.at, config.start, config);
     const World world(config);
     PlanningProblem problem(config, world);
-    FolderTransaction folder = beginResult(options, "info", inputsOf(config));
+    beginResult(options, "info", inputsOf(config));  // refuses a folder before the work
 
     const Grids grids = lookAround(options, config, height, place.yaw.value_or(0.), problem);
     const Camera camera = config.camera.camera();
@@ -154,6 +154,8 @@ int runInfo(const InfoOptions& options) {
     auto figures = heatMaps(grids, placeText(config, height, place.yaw.value_or(0.)));
     for (NamedFigure& figure : viewFigures(view, config)) figures.push_back(std::move(figure));
     ReportData report = reportOf(options, config, world, place, result);
+    // Not before: Ctrl-C ends this command at once, and would leave the working folder.
+    FolderTransaction folder = beginResult(options, "info", inputsOf(config));
     writeResultFolder(folder.path(), report, figures);
     result["time"]["total_s"] = watch.seconds();
     concludeResult(folder, options, result, [&] {

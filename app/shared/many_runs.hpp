@@ -142,8 +142,8 @@ bool leavesEarlierRuns(const FolderTransaction& folder, const Journal<Kind>& own
         return false;
     }
     printMessage(
-        fmt::format("the earlier result in {} stays; --resume goes on with the {} {}s that "
-                    "have ended now",
+        fmt::format("the earlier result in {} stays; --resume goes on with this one ({} {}s "
+                    "have ended)",
                     folder.target().string(), own.runs().size(), Kind::kWords.run));
     return true;
 }

@@ -47,8 +47,14 @@ bool keepsEarlierResult(const FolderTransaction& folder, bool isNothingDone) {
 
 FolderTransaction beginResult(const fs::path& folder, const InputPaths& inputs,
                               FolderTransaction::Unfinished unfinished) {
+    const std::string name = (folder / "").parent_path().string();
+    if (name.ends_with(kInterruptedSuffix)) {
+        throw InputError(
+            "--out", folder.string(),
+            fmt::format("ends in {}, as folders of interrupted commands do", kInterruptedSuffix));
+    }
     checkInputsApart("--out", folder, inputs);
-    checkInputsApart("--out", (folder / "").parent_path().string() + kInterruptedSuffix, inputs);
+    checkInputsApart("--out", name + kInterruptedSuffix, inputs);
     return FolderTransaction(folder, unfinished);
 }
 

@@ -11,8 +11,8 @@ Durations summaryOf(std::vector<double> durations) {
     if (durations.empty()) return {};
     std::sort(durations.begin(), durations.end());
     const std::size_t last = durations.size() - 1;
-    return {durations.size(), durations[durations.size() / 2], durations[last * 95 / 100],
-            durations[last]};
+    return {durations.size(), durations[durations.size() / 2],
+            durations[(durations.size() * 95 + 99) / 100 - 1], durations[last]};
 }
 
 void RealTimeMonitor::onArrival(double time) {

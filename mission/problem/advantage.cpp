@@ -28,7 +28,7 @@ std::string reasonOf(const EvaluatedPath& path, const EvaluatedPath& shortest, d
         return fmt::format(
             "uncertainty is only {:.2g} % of the cost of the shortest path; with a larger kappa, "
             "or kappa: auto, it counts more",
-            100. * uncertainty);
+            100. * std::max(0., uncertainty));
     }
     if (!isInformed(path) && !isInformed(shortest)) {
         return "no view along either path has information";

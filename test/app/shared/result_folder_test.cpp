@@ -85,6 +85,11 @@ TEST_F(InterruptedResult, ReplacesNoEarlierOne) {
     EXPECT_EQ(noteIn("out"), "fifth");
 }
 
+TEST_F(InterruptedResult, NoOtherResultHasItsName) {
+    EXPECT_NE(complaint(given_.string() + "-interrupted/").find("ends in -interrupted"),
+              std::string::npos);
+}
+
 TEST_F(InterruptedResult, IsBesideTheFolderThatALinkLeadsTo) {
     fs::create_directories(folder_.path() / "disk");
     fs::create_directory_symlink(folder_.path() / "disk", folder_.path() / "link");
