@@ -230,7 +230,7 @@ TEST_F(FlyCommand, RejectsBadInput) {
     expect(fly("x", "--blackout [3]"), "--blackout: expected 2 numbers, found 1");
     expect(fly("x", "--flights 0"), "--flights");
     expect(fly("x", "--scale 0"), "--scale: 0 is outside [1e-12, 1e+12]");
-    expect(fly("x", "--least-sigma -1"), "--least-sigma: -1 is outside [0, 1000]");
+    expect(fly("x", "--least-sigma -1"), "--least-sigma: -1 is outside [0, 1]");
     expect(fly("x", "--record /proc/x"), "/proc/x: cannot be made");
     fs::create_directories(folder_ / "old" / "rgb");
     expect(fly("x", "--record " + at("old")), "old: holds a recording already");
