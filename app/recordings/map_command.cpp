@@ -108,7 +108,7 @@ CommandReport runMap(const MapCommandOptions& options, const std::atomic<bool>& 
     TexturedOcTree map(options.resolution);
     MapRun run = makeMap(options, recording, interrupted, map);
     if (interrupted && keepsEarlierResult(folder, run.frames == 0)) {
-        return {.exitCode = kInterrupted};
+        return {{}, {}, {}, kInterrupted};
     }
     time["load_images_s"] = run.loadSeconds;
     time["fuse_s"] = run.fuseSeconds;

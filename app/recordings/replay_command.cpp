@@ -79,7 +79,7 @@ CommandReport runReplay(const ReplayCommandOptions& options, const std::atomic<b
                                              options.progress(done, sequence.frames.size());
                                      });
     if (run.interrupted && keepsEarlierResult(folder, run.frames.empty())) {
-        return {.exitCode = kInterrupted};
+        return {{}, {}, {}, kInterrupted};
     }
     const ReplayErrors errors = evaluate(run);
 

@@ -77,7 +77,7 @@ CommandReport runScanMap(const ScanCommandOptions& options, const std::atomic<bo
     const auto isStopped = [&] { return interrupted.load(); };
     const json stations = stationsJson(fuseScans(map, scans, options, isStopped, options.progress));
     if (interrupted && keepsEarlierResult(folder, stations.empty())) {
-        return {.exitCode = kInterrupted};
+        return {{}, {}, {}, kInterrupted};
     }
     CommandReport report;
     report.exitCode = interrupted ? kInterrupted : kDone;

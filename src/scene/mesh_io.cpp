@@ -12,7 +12,7 @@
 
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
-#include <assimp/LogStream.hpp>
+#include <assimp/Logger.hpp>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -316,32 +316,47 @@ class MeshReader {
     std::optional<std::uint32_t> ramp_;
 };
 
-/// Hears of triangles that assimp's reader of glTF drops, which it says in its log only.
-class DroppedFaces : public Assimp::LogStream {
+/// Hears of triangles that assimp's reader of glTF drops, which it says in its log only. A log of
+/// the program's own stays, and is told instead.
+class DroppedFaces {
   public:
     DroppedFaces() : isOurs_(Assimp::DefaultLogger::isNullLogger()) {
-        if (isOurs_) Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
-        Assimp::DefaultLogger::get()->attachStream(this, Assimp::Logger::Warn);
+        // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): kill() deletes it
+        if (isOurs_) Assimp::DefaultLogger::set(new Log(any_));
     }
-    ~DroppedFaces() override {
-        Assimp::DefaultLogger::get()->detachStream(this, Assimp::Logger::Warn);
+    ~DroppedFaces() {
         if (isOurs_) Assimp::DefaultLogger::kill();
     }
     DroppedFaces(const DroppedFaces&) = delete;
     DroppedFaces& operator=(const DroppedFaces&) = delete;
 
-    void write(const char* message) override {
-        if (std::string_view(message).find("out-of-range indices") != std::string_view::npos) {
-            any_ = true;
-        }
-    }
     bool any() const { return any_; }
 
   private:
+    class Log : public Assimp::Logger {
+      public:
+        explicit Log(bool& any) : any_(any) {}
+        bool attachStream(Assimp::LogStream*, unsigned) override { return false; }
+        bool detachStream(Assimp::LogStream*, unsigned) override { return false; }
+
+      protected:
+        void OnDebug(const char*) override {}
+        void OnVerboseDebug(const char*) override {}
+        void OnInfo(const char*) override {}
+        void OnError(const char*) override {}
+        void OnWarn(const char* message) override {
+            constexpr const char* kDropped = "out-of-range indices";
+            any_ = any_ || std::string_view(message).find(kDropped) != std::string_view::npos;
+        }
+
+      private:
+        bool& any_;
+    };
+
     static inline std::mutex mutex_;  // of the logger, of which a process has one
     std::scoped_lock<std::mutex> lock_{mutex_};
-    bool isOurs_;
     bool any_ = false;
+    bool isOurs_;
 };
 
 Scene readMesh(const std::string& file, const MeshOptions& options) {

@@ -254,7 +254,7 @@ SweepRun runOf(std::uint32_t seed) {
             6,
             7.,
             "done",
-            {{Eigen::Vector3d(1., 2., 3.), 0.}}};
+            {{Eigen::Vector3d(1., 2., 3.), 0.}, {Eigen::Vector3d(3., 2., 3.), 0.}}};
 }
 
 /// A line that was written, but could neither be brought to the disk nor be removed again, as where
