@@ -38,6 +38,7 @@ class Journal {
                           std::vector<Run> runs = {}) {
         Journal journal(folder);
         std::vector<nlohmann::json> lines;
+        lines.reserve(runs.size());
         for (const Run& run : runs) lines.push_back(Kind::save(run, folder));
         journal.file_.create(header, lines);
         journal.header_ = header;
@@ -89,6 +90,7 @@ class Journal {
     /// Whether this journal has every run of another one, whose runs depend on the same values.
     bool includes(const Journal& other) const {
         std::vector<Item> items;
+        items.reserve(other.runs_.size());
         for (const Run& run : other.runs_) items.push_back(Kind::itemOf(run));
         return header_.shard == other.header_.shard &&
                Kind::runIdentity(header_.identity) == Kind::runIdentity(other.header_.identity) &&
