@@ -230,7 +230,7 @@ void store(const ExploreOptions& options, const ExplorationSetup& setup, const W
 }
 
 /// Whether an interrupted exploration leaves what was there before: a killed flight that went on
-/// longer than this one, an earlier result of more flights, or one where nothing was done.
+/// longer than this one, or an earlier result of other flights or where nothing was done now.
 bool leavesEarlierWork(const FlightWatch& watch, const TrialJournal& flights,
                        FolderTransaction& folder) {
     if (watch.isBehindStored()) {

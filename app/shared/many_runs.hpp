@@ -132,7 +132,7 @@ std::vector<typename Kind::Run> runsSoFar(const ManyRunsOptions& options,
 }
 
 /// Whether an interrupted command leaves an earlier result in its place, because not every run of
-/// that is one of its own. These then stay in the working folder for --resume, as a line on
+/// that is one of its own. Its own runs then stay in the working folder for --resume, as a line on
 /// standard error says.
 template <typename Kind>
 bool leavesEarlierRuns(const FolderTransaction& folder, const Journal<Kind>& own) {

@@ -51,7 +51,8 @@ FolderTransaction beginResult(const fs::path& folder, const InputPaths& inputs,
     if (name.ends_with(kInterruptedSuffix)) {
         throw InputError(
             "--out", folder.string(),
-            fmt::format("ends in {}, as folders of interrupted commands do", kInterruptedSuffix));
+            fmt::format("ends in {}, as folders of interrupted commands do; give another folder",
+                        kInterruptedSuffix));
     }
     checkInputsApart("--out", folder, inputs);
     checkInputsApart("--out", name + kInterruptedSuffix, inputs);

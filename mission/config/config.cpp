@@ -65,7 +65,7 @@ bool isAboutOverride(const InputError& error, const std::vector<std::string>& ov
     });
 }
 
-/// Throws for files, which are often given in place of a planning problem.
+/// Throws for maps and meshes, which are often given in place of a planning problem.
 void checkIsPlanningProblem(const std::string& file) {
     if (isOcTreeFile(file)) {
         throw InputError(file, "",

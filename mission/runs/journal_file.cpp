@@ -58,8 +58,9 @@ std::string withChecksum(std::string_view object) {
 
 std::string withoutChecksum(std::string_view line) {
     constexpr std::size_t kRest = kChecksum.size() + kDigits + 2;
-    if (line.size() <= kRest || !line.starts_with(kChecksum))
+    if (line.size() <= kRest || !line.starts_with(kChecksum)) {
         throw std::out_of_range("no checksum");
+    }
     const std::string object = fmt::format("{{{}", line.substr(kRest));
     if (withChecksum(object) != line) {
         throw DamagedLine("its checksum does not fit: it was changed, or is damaged");

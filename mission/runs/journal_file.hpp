@@ -52,8 +52,7 @@ class JournalFile {
 
     /// Reads the header and all lines. An incomplete last line is ignored.
     /// @param onLine called with each line after the header; throws if the line is no run
-    /// @throws InputError naming file and line if the file is missing, is no journal of this kind
-    /// or
+    /// @throws InputError naming file and line if the file is missing, is no journal of this kind,
     ///         was changed, or onLine throws
     JournalHeader read(const std::function<void(const nlohmann::json&)>& onLine);
 
