@@ -15,9 +15,31 @@ namespace {
 constexpr int kEdge = MapChange::kBrickEdge;
 constexpr double kBelow = 3., kAbove = 1.;  // heights outside the bounds that matter [m]
 
+// Free cells in a row between occupied ones of a wall: where a few depths are wrong or missing,
+// rays to other places clear one.
+constexpr int kHole = 1;
+
 enum class CellState : char { unknown, free, occupied };
 
 using Brick = std::array<CellState, kEdge * kEdge * kEdge>;
+
+/// The wall in a column of cells, from below up to the last cell that was added.
+class WallInColumn {
+  public:
+    void add(CellState state) {
+        if (state == CellState::free) ++free_;
+        if (state != CellState::occupied) return;
+        if (free_ > kHole) cells_ = 0;
+        free_ = 0;
+        ++cells_;
+    }
+    /// Whether unknown cells right above belong to it.
+    bool goesOn() const { return free_ == 0 && cells_ >= kWallCells; }
+
+  private:
+    int cells_ = 0;  // that are occupied, with no more than a hole between two
+    int free_ = 0;   // above the last of them
+};
 
 Brick statesOf(const TexturedOcTree& map, const Eigen::Array3i& brick) {
     Brick states{};
@@ -94,7 +116,7 @@ bool ObstacleMap::set(const octomap::OcTreeKey& key, bool isOccupied) {
 /// All heights of the 4 x 4 columns of cells of a column of bricks.
 void ObstacleMap::updateColumn(const TexturedOcTree& map, const Eigen::Array2i& column,
                                MapChange& changed) {
-    std::array<int, kEdge * kEdge> walls{};  // occupied cells without a free one between
+    std::array<WallInColumn, kEdge * kEdge> walls;
     for (int height = lowest_; height <= highest_; ++height) {
         const Eigen::Array3i brick(column.x(), column.y(), height);
         Brick states = statesOf(map, brick);
@@ -106,13 +128,12 @@ void ObstacleMap::updateColumn(const TexturedOcTree& map, const Eigen::Array2i& 
             if (states[i] == CellState::free && forgotten_.contains(key)) {
                 states[i] = CellState::unknown;
             }
-            int& wall = walls[i % (kEdge * kEdge)];
-            if (states[i] == CellState::occupied) ++wall;
-            if (states[i] == CellState::free) wall = 0;
+            WallInColumn& wall = walls[i % (kEdge * kEdge)];
+            wall.add(states[i]);
             const bool isUnknown = states[i] == CellState::unknown;
             if (isUnknown && unknown_ == UnknownSpace::pessimistic) continue;
             const bool isOccupied =
-                states[i] == CellState::occupied || (isUnknown && wall >= kWallCells);
+                states[i] == CellState::occupied || (isUnknown && wall.goesOn());
             hasChanged |= set(key, isOccupied);
         }
         if (hasChanged) changed.occupancy.push_back(brick);

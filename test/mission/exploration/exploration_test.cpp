@@ -209,10 +209,13 @@ TEST_F(RoomToExplore, ArrivesThroughABlackoutWithFewDepths) {
     config.fly.blackout = {3., 4.};
     config.fly.drop = 0.2;
     config.explore.depthMissing = 0.5;
-    const ExplorationResult flight = flown(test::roomToExplore(), 2);
-    EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason;
-    EXPECT_GT(flight.rejectedImages, 10);
-    EXPECT_GT(flight.leastClearance, 0.125);
+    // With 27 a free cell in a wall of which half the depths are missing ended it below the robot.
+    for (const std::uint32_t seed : {2U, 27U}) {
+        const ExplorationResult flight = flown(test::roomToExplore(), seed);
+        EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason << ", seed " << seed;
+        EXPECT_GT(flight.rejectedImages, 10);
+        EXPECT_GT(flight.leastClearance, 0.125);
+    }
 }
 
 TEST_F(RoomToExplore, SaysThatTheGoalIsWalledOff) {
