@@ -67,7 +67,11 @@ struct StereoDepth::Impl {
     Pose T_r_c = Pose::Identity();
     double baseline = 0.;
     std::array<std::array<cv::Mat, 2>, 2> maps;  ///< of left and right
-    std::array<cv::Mat, 2> small, rectified;
+    int count = 0;                               ///< of disparities
+    std::array<cv::Mat, 2> small;
+    /// Rectified images with `count` black columns before them: OpenCV gives no disparity to as
+    /// many first columns, although far surfaces are seen there by the right camera as well.
+    std::array<cv::Mat, 2> padded;
     cv::Mat disparity;
     cv::Ptr<cv::StereoMatcher> matcher;
 
@@ -122,7 +126,9 @@ StereoDepth::Impl::Impl(const DistortedCamera& left, const DistortedCamera& righ
                                 maps[0][1]);
     cv::initUndistortRectifyMap(matrixOf(smallRight), dRight, R2, P2, size, CV_16SC2, maps[1][0],
                                 maps[1][1]);
-    matcher = makeMatcher(o, size, disparities(baseline * camera.fx(), o.minDepth));
+    count = disparities(baseline * camera.fx(), o.minDepth);
+    for (cv::Mat& image : padded) image = cv::Mat::zeros(size.height, count + size.width, CV_8UC1);
+    matcher = makeMatcher(o, size, count);
 }
 
 /// Halves first: averaging pixels is sharp enough and leaves a quarter of the work.
@@ -138,7 +144,8 @@ void StereoDepth::Impl::rectify(const vpImage<unsigned char>& image, std::size_t
     } else {
         small[side] = whole;
     }
-    cv::remap(small[side], rectified[side], maps[side][0], maps[side][1], cv::INTER_LINEAR);
+    cv::Mat rectified = padded[side].colRange(count, padded[side].cols);
+    cv::remap(small[side], rectified, maps[side][0], maps[side][1], cv::INTER_LINEAR);
 }
 
 StereoDepth::StereoDepth(const DistortedCamera& left, const DistortedCamera& right,
@@ -156,18 +163,21 @@ void StereoDepth::operator()(const StereoImages& images, View& view) {
     Impl& m = *impl_;
     m.rectify(images.left, 0);
     m.rectify(images.right, 1);
-    m.matcher->compute(m.rectified[0], m.rectified[1], m.disparity);
+    m.matcher->compute(m.padded[0], m.padded[1], m.disparity);
     view.intensity.resize(m.camera.height, m.camera.width);
     view.depth.resize(m.camera.height, m.camera.width);
     const auto numerator = static_cast<float>(kDisparityUnit * m.camera.fx() * m.baseline);
     const auto least =
         static_cast<std::int16_t>(std::max(1., std::ceil(numerator / m.options.maxDepth)));
+    const int halfBlock = m.matcher->getBlockSize() / 2;  // is in the right image, too
     for (unsigned v = 0; v < m.camera.height; ++v) {
-        const auto* grey = m.rectified[0].ptr<std::uint8_t>(static_cast<int>(v));
-        const auto* shift = m.disparity.ptr<std::int16_t>(static_cast<int>(v));
+        const auto* grey = m.padded[0].ptr<std::uint8_t>(static_cast<int>(v)) + m.count;
+        const auto* shift = m.disparity.ptr<std::int16_t>(static_cast<int>(v)) + m.count;
         for (unsigned u = 0; u < m.camera.width; ++u) {
             view.intensity[v][u] = static_cast<float>(grey[u]) / 255.F;
-            view.depth[v][u] = shift[u] >= least ? numerator / static_cast<float>(shift[u]) : 0.F;
+            const int most = kDisparityUnit * (static_cast<int>(u) - halfBlock);
+            const bool isFound = shift[u] >= least && shift[u] <= most;
+            view.depth[v][u] = isFound ? numerator / static_cast<float>(shift[u]) : 0.F;
         }
     }
 }

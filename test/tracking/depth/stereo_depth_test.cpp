@@ -50,17 +50,17 @@ class StereoWall : public testing::Test {
 };
 
 TEST_F(StereoWall, BlockMatchingFindsItsDepthThroughDistortionAndTwist) {
-    expectDepths({.halvings = 0, .minDepth = 1.2, .blockSize = 11}, 0.5);
+    expectDepths({.halvings = 0, .minDepth = 1.2, .blockSize = 11}, 0.85);
 }
 
 TEST_F(StereoWall, SemiGlobalMatchingFindsMore) {
     expectDepths(
         {.method = StereoMethod::semiGlobal, .halvings = 0, .minDepth = 1.2, .blockSize = 15},
-        0.65);
+        0.9);
 }
 
 TEST_F(StereoWall, AtHalfTheSizeAsWell) {
-    expectDepths({.halvings = 1, .minDepth = 1.2, .blockSize = 9}, 0.4);
+    expectDepths({.halvings = 1, .minDepth = 1.2, .blockSize = 9}, 0.8);
 }
 
 TEST_F(StereoWall, TheIntensityIsThatOfTheWall) {
