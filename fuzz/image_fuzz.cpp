@@ -25,7 +25,7 @@ void photonav::fuzz::run(std::string_view input) {
         } else if (choice == 1) {
             require(readGrey8(write("grey", input), camera, "camera").getWidth() == 8, "8 columns");
         } else {
-            readDepth16(write("depth", input), camera, "camera");
+            readDepth16(write("depth", input), camera, "camera", 1e-3);
         }
     });
 }

@@ -27,8 +27,11 @@ vpCameraParameters readIntrinsics(YamlMap& yaml, const Camera& camera) {
 
 void readSize(YamlMap& yaml, Camera& camera) {
     const auto readPixels = [&](const std::string& key, unsigned& value) {
+        constexpr unsigned kMost = 65535;  // of the formats that are read
         yaml.read(key, value);
-        if (value == 0) yaml.fail(key, "is zero");
+        if (value == 0 || value > kMost) {
+            yaml.fail(key, fmt::format("{} is not from 1 to {} pixels", value, kMost));
+        }
     };
     readPixels("width", camera.width);
     readPixels("height", camera.height);

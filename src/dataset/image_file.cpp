@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -30,12 +31,13 @@ cv::Mat readImage(const std::string& file, int flags, const Camera& camera,
     return image;
 }
 
-template <class Value>
-vpImage<Value> copied(const cv::Mat& image) {
-    vpImage<Value> result(static_cast<unsigned>(image.rows), static_cast<unsigned>(image.cols));
-    for (int v = 0; v < image.rows; ++v) {
-        const Value* row = image.ptr<Value>(v);
-        std::copy(row, row + image.cols, result[v]);
+/// An image whose values are functions of the levels of a decoded one.
+template <class Value, class Level, class Convert>
+vpImage<Value> converted(const cv::Mat& levels, const Convert& convert) {
+    vpImage<Value> result(static_cast<unsigned>(levels.rows), static_cast<unsigned>(levels.cols));
+    for (int v = 0; v < levels.rows; ++v) {
+        const Level* row = levels.ptr<Level>(v);
+        std::transform(row, row + levels.cols, result[v], convert);
     }
     return result;
 }
@@ -45,16 +47,23 @@ vpImage<Value> copied(const cv::Mat& image) {
 vpImage<unsigned char> readGrey8(const std::string& file, const Camera& camera,
                                  const std::string& source) {
     constexpr int kFlags = cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION;
-    return reading(file,
-                   [&] { return copied<unsigned char>(readImage(file, kFlags, camera, source)); });
+    return reading(file, [&] {
+        const cv::Mat levels = readImage(file, kFlags, camera, source);
+        return converted<unsigned char, unsigned char>(levels, std::identity());
+    });
 }
 
-vpImage<std::uint16_t> readDepth16(const std::string& file, const Camera& camera,
-                                   const std::string& source) {
+ImageF readDepth16(const std::string& file, const Camera& camera, const std::string& source,
+                   double unit) {
     return reading(file, [&] {
-        const cv::Mat image = readImage(file, cv::IMREAD_UNCHANGED, camera, source);
-        if (image.type() != CV_16UC1) throw InputError(file, "", "expected one channel of 16 bits");
-        return copied<std::uint16_t>(image);
+        const cv::Mat levels = readImage(file, cv::IMREAD_UNCHANGED, camera, source);
+        if (levels.type() != CV_16UC1) {
+            throw InputError(file, "", "expected one channel of 16 bits");
+        }
+        const auto metres = [unit = static_cast<float>(unit)](std::uint16_t level) {
+            return unit * static_cast<float>(level);
+        };
+        return converted<float, std::uint16_t>(levels, metres);
     });
 }
 

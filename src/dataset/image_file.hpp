@@ -24,9 +24,12 @@ struct StampedFile {
 vpImage<unsigned char> readGrey8(const std::string& file, const Camera& camera,
                                  const std::string& source);
 
+/// Reads a depth image of 16 bits.
+/// @param unit depth of one level [m]
+/// @return depth z [m]; 0: none
 /// @throws InputError as readGrey8(), and unless the image has one channel of 16 bits
-vpImage<std::uint16_t> readDepth16(const std::string& file, const Camera& camera,
-                                   const std::string& source);
+ImageF readDepth16(const std::string& file, const Camera& camera, const std::string& source,
+                   double unit);
 
 /// The bytes of a PNG file of a grey image in [0, 1], reduced to at most `maxSide` pixels a side.
 /// @throws std::invalid_argument if the image is empty

@@ -171,15 +171,10 @@ Sequence readTumSequence(const std::string& folder, const TumOptions& options) {
 ImageF loadDepth(const Sequence& sequence, std::size_t index) {
     const bool isOther = sequence.depthCamera.has_value();
     const Camera& camera = isOther ? sequence.depthCamera->camera : sequence.camera;
-    const vpImage<std::uint16_t> values = readDepth16(
+    return readDepth16(
         sequence.frames.at(index).depthFile, camera,
-        sourceOfSize(sequence, isOther ? "depth_camera.width, height" : "width, height"));
-    const auto unit = static_cast<float>(1. / sequence.depthScale);
-    ImageF metres(values.getHeight(), values.getWidth());
-    for (unsigned i = 0; i < values.getSize(); ++i) {
-        metres.bitmap[i] = unit * static_cast<float>(values.bitmap[i]);
-    }
-    return metres;
+        sourceOfSize(sequence, isOther ? "depth_camera.width, height" : "width, height"),
+        1. / sequence.depthScale);
 }
 
 RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
@@ -189,18 +184,17 @@ RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
         readGrey8(entry.colourFile, camera, sourceOfSize(sequence, "width, height"));
     RecordedFrame frame{entry.T_c_w, {}, entry.timestamp};
     frame.view.intensity.resize(camera.height, camera.width);
-    frame.view.depth.resize(camera.height, camera.width, 0.F);
     for (unsigned i = 0; i < grey.getSize(); ++i) {
         frame.view.intensity.bitmap[i] = static_cast<float>(grey.bitmap[i]) / 255.F;
     }
-    if (entry.depthFile.empty()) return frame;
     try {
-        frame.view.depth = loadDepth(sequence, index);
+        if (!entry.depthFile.empty()) frame.view.depth = loadDepth(sequence, index);
     } catch (const InputError&) {
         if (sequence.needsDepth) throw;
-        return frame;
     }
-    if (sequence.depthCamera) {
+    if (frame.view.depth.getSize() == 0) {
+        frame.view.depth.resize(camera.height, camera.width, 0.F);
+    } else if (sequence.depthCamera) {
         frame.view.depth = registeredDepth(frame.view.depth, *sequence.depthCamera, camera);
     }
     return frame;

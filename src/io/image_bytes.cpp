@@ -7,8 +7,8 @@
 #include <array>
 #include <cctype>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string_view>
 
 #include "io/error.hpp"
@@ -140,18 +140,21 @@ std::optional<ImageSize> declaredSize(Bytes encoded) {
 
 std::vector<std::uint8_t> readBytes(const std::string& file) {
     std::ifstream in = openToRead(file);
-    return {std::istreambuf_iterator<char>(in), {}};
+    std::vector<std::uint8_t> bytes(std::filesystem::file_size(file));
+    in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    bytes.resize(static_cast<std::size_t>(in.gcount()));  // it may have been cut since
+    return bytes;
 }
 
-std::vector<std::uint8_t> soundImage(Bytes encoded) {
-    if (startsWith(encoded, kPng)) return soundPng(encoded);
+Bytes soundImage(Bytes encoded, std::vector<std::uint8_t>& rewritten) {
+    if (startsWith(encoded, kPng)) return rewritten = soundPng(encoded);
     if (startsWith(encoded, kJpeg)) {
         const Bytes last = encoded.last(std::min<std::size_t>(encoded.size(), 1024));
         if (std::search(last.begin(), last.end(), kJpegEnd.begin(), kJpegEnd.end()) == last.end()) {
             return {};
         }
     }
-    return {encoded.begin(), encoded.end()};
+    return encoded;
 }
 
 }  // namespace photonav

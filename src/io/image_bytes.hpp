@@ -18,7 +18,9 @@ std::vector<std::uint8_t> readBytes(const std::string& file);
 /// The bytes that a decoder needs. Of a PNG: the chunks that make up the picture, if all checksums
 /// are right and the last chunk is present. Of a JPEG: all bytes, if its end marker is present. Of
 /// other formats: all bytes. Empty if the image is empty, cut short or damaged.
-std::vector<std::uint8_t> soundImage(std::span<const std::uint8_t> encoded);
+/// @param rewritten where they are if they are not those of `encoded`
+std::span<const std::uint8_t> soundImage(std::span<const std::uint8_t> encoded,
+                                         std::vector<std::uint8_t>& rewritten);
 
 struct ImageSize {
     std::uint64_t width, height;  ///< [pixels]

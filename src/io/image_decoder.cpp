@@ -41,12 +41,14 @@ class QuietDecoding {
 
 cv::Mat decodedImage(std::span<const std::uint8_t> encoded, int flags,
                      const std::function<bool(const ImageSize&)>& wanted) {
-    const auto bytes = soundImage(encoded);
+    std::vector<std::uint8_t> rewritten;
+    const auto bytes = soundImage(encoded, rewritten);
     const auto size = declaredSize(bytes);
     if (!size || !wanted(*size)) return {};
     const QuietDecoding quiet;
     try {
-        return cv::imdecode(bytes, flags);
+        const cv::_InputArray input(bytes.data(), static_cast<int>(bytes.size()));
+        return cv::imdecode(input, flags);
     } catch (const cv::Exception&) {  // the decoder reads another size from a damaged header
         return {};
     }

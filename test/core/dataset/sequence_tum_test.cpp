@@ -190,6 +190,7 @@ TEST_F(TumSequence, RejectsBadCameraFiles) {
     };
     rejected("width: 80\nheight: 60\nfx: 0\nfy: 60\n" + centre, {"camera.yaml", "fx"});
     rejected("width: 0\nheight: 60\nfx: 60\nfy: 60\n" + centre, {"camera.yaml", "width"});
+    rejected("width: 100000\nheight: 60\nfx: 60\nfy: 60\n" + centre, {"camera.yaml", "width"});
     rejected("width: 80\nheight: 60\nfx: 60\n" + centre, {"camera.yaml", "fy", "missing"});
     rejected("width: 80\nheight: 60\nfx: 60\nfy: 60\nfz: 60\n" + centre, {"fz", "camera.yaml"});
     rejected("width: 80\nheight: 60\nfx: 60\nfy: 60\ndepth_scale: 0\n" + centre,

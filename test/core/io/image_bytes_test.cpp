@@ -21,11 +21,17 @@ std::vector<std::uint8_t> encoded(const char* extension) {
     return bytes;
 }
 
+std::vector<std::uint8_t> sound(std::span<const std::uint8_t> image) {
+    std::vector<std::uint8_t> rewritten;
+    const auto bytes = soundImage(image, rewritten);
+    return {bytes.begin(), bytes.end()};
+}
+
 TEST(ImageBytes, WhatIsWholeDecodesToTheSamePixels) {
     for (const char* extension : {".png", ".jpg", ".bmp"}) {
         const auto bytes = encoded(extension);
         const cv::Mat expected = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-        const cv::Mat image = cv::imdecode(soundImage(bytes), cv::IMREAD_UNCHANGED);
+        const cv::Mat image = cv::imdecode(sound(bytes), cv::IMREAD_UNCHANGED);
         EXPECT_EQ(cv::norm(image, expected, cv::NORM_INF), 0.) << extension;
     }
 }
@@ -33,14 +39,14 @@ TEST(ImageBytes, WhatIsWholeDecodesToTheSamePixels) {
 TEST(ImageBytes, NothingIsLeftOfWhatIsCutOrDamaged) {
     const auto png = encoded(".png");
     for (std::size_t length : {9UL, 20UL, png.size() / 2, png.size() - 1}) {
-        EXPECT_TRUE(soundImage(std::span(png).first(length)).empty()) << length;
+        EXPECT_TRUE(sound(std::span(png).first(length)).empty()) << length;
     }
     auto damaged = png;
     damaged[damaged.size() / 2] ^= 1;
-    EXPECT_TRUE(soundImage(damaged).empty());
+    EXPECT_TRUE(sound(damaged).empty());
     const auto jpeg = encoded(".jpg");
-    EXPECT_TRUE(soundImage(std::span(jpeg).first(jpeg.size() / 2)).empty());
-    EXPECT_TRUE(soundImage({}).empty());
+    EXPECT_TRUE(sound(std::span(jpeg).first(jpeg.size() / 2)).empty());
+    EXPECT_TRUE(sound({}).empty());
 }
 
 TEST(ImageBytes, SizesAreReadFromHeaders) {
@@ -91,8 +97,8 @@ TEST(ImageBytes, ChunksThatAreNoPictureAreLeftOut) {
     const std::string chunk = std::string("\0\0\0\4tEXtphot", 12) + "\x2F\x72\x2E\x01";
     auto talkative = png;
     talkative.insert(talkative.begin() + 33, chunk.begin(), chunk.end());
-    EXPECT_FALSE(soundImage(png).empty());
-    EXPECT_EQ(soundImage(talkative), soundImage(png));
+    EXPECT_FALSE(sound(png).empty());
+    EXPECT_EQ(sound(talkative), sound(png));
 }
 
 /// One line of ours, nothing by the libraries.
