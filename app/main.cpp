@@ -18,9 +18,9 @@
 #include "io/error.hpp"
 #include "io/folder_transaction.hpp"
 #include "io/image_decoder.hpp"
+#include "io/interrupted.hpp"
 #include "io/stopwatch.hpp"
 #include "io/yaml_reader.hpp"
-#include "render/interruptible_views.hpp"
 #include "shared/command_io.hpp"
 #include "shared/command_line.hpp"
 
@@ -79,7 +79,7 @@ void onInterrupt(int signal) {
     interrupted = true;
     const bool hasResults = reaction == OnInterrupt::finishAlways ||
                             FolderTransaction::isAnyOpen() || FolderTransaction::isAnyCommitted();
-    if (reaction == OnInterrupt::endAtOnce || !hasResults) {
+    if (!hasResults) {
         say("photonav: ");
         say(saidWhenEnded());
         say("\n");
@@ -215,7 +215,7 @@ int main(int argc, char** argv) {
         return fail(kBadInput, error.what());
     } catch (const std::filesystem::filesystem_error& error) {
         return fail(kBadInput, error.path1().string() + ": " + error.code().message());
-    } catch (const RenderingStopped&) {
+    } catch (const Interrupted&) {
         return fail(exitCodeOf(interruptedBy), saidWhenEnded());
     } catch (const std::bad_alloc&) {
         return fail(kNoAnswer, command + ": needs more memory than there is");

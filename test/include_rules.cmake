@@ -9,13 +9,13 @@ set(folders_src_geometry "")
 set(folders_src_photometry geometry)
 set(folders_src_scene io geometry)
 set(folders_src_map io geometry photometry scene)
-set(folders_src_render geometry photometry scene map)
+set(folders_src_render io geometry photometry scene map)
 set(folders_src_bag io geometry)
 set(folders_src_dataset io geometry photometry bag)
 set(folders_src_evaluation geometry)
 set(folders_planning_space geometry map)
 set(folders_planning_belief geometry photometry map space)
-set(folders_planning_planners io geometry map render space belief)
+set(folders_planning_planners io geometry map space belief)
 set(folders_tracking_alignment geometry photometry render)
 set(folders_tracking_depth geometry photometry dataset evaluation)
 set(folders_tracking_estimation geometry photometry map dataset alignment)
@@ -23,9 +23,9 @@ set(folders_tracking_control geometry photometry alignment estimation)
 set(folders_mission_result geometry)
 set(folders_mission_config io geometry photometry scene map render belief planners)
 set(folders_mission_problem io geometry photometry scene map render belief planners result config)
-set(folders_mission_servo geometry render evaluation control result simulation)
+set(folders_mission_servo io geometry render evaluation control result simulation)
 set(folders_mission_runs io scene result config)
-set(folders_mission_sweep io geometry render space belief planners result problem runs)
+set(folders_mission_sweep io geometry space belief planners result problem runs)
 set(folders_mission_recording io geometry photometry bag dataset evaluation alignment depth result config
     problem)
 set(folders_mission_mapping io map dataset evaluation depth result config recording)
@@ -40,7 +40,7 @@ set(folders_mission_check io geometry photometry render dataset alignment estima
 set(folders_mission_posters io geometry scene render planners alignment result problem runs check
     servo)
 set(folders_mission_onlinemap io geometry photometry map belief alignment depth estimation config problem)
-set(folders_mission_replanning io geometry render planners alignment control result config problem flight
+set(folders_mission_replanning io geometry planners alignment control result config problem flight
     onlinemap)
 set(folders_mission_exploration io geometry map render evaluation result runs robot flight onlinemap replanning)
 set(folders_drawing_plot io planners)
@@ -59,11 +59,11 @@ set(folders_app_explorations io map render dataset result config problem runs fl
     flightlog figures live report shared flights)
 set(folders_app_recordings io geometry map render dataset result config recording mapping replay figures
     report shared)
-set(folders_app_plans io geometry map render dataset planners result problem recording mapping flight check
+set(folders_app_plans io geometry map dataset planners result problem recording mapping flight check
     figures report shared recordings)
-set(folders_app_comparisons io geometry render planners result config problem sweep figures report shared)
+set(folders_app_comparisons io geometry planners result config problem sweep figures report shared)
 set(folders_app_tools io bag config problem mapping interchange shared recordings)
-set(folders_app_ io render shared)
+set(folders_app_ io shared)
 
 foreach(part src planning tracking mission drawing app)
     file(GLOB_RECURSE found RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/${part}/*.?pp)

@@ -8,7 +8,7 @@
 
 #include "comparisons/compare_report.hpp"
 #include "io/error.hpp"
-#include "render/interruptible_views.hpp"
+#include "io/interrupted.hpp"
 #include "result/json_values.hpp"
 #include "shared/result_folder.hpp"
 
@@ -30,7 +30,7 @@ std::vector<CompareRun> runMethods(const Config& config, const World& world,
                 CompareRun run = runMethod(config, world, method, seed, interrupted);
                 if (interrupted) return runs;
                 runs.push_back(std::move(run));
-            } catch (const RenderingStopped&) {
+            } catch (const Interrupted&) {
                 return runs;
             }
         }
@@ -92,7 +92,7 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
         }
         if (interrupted) break;
     }
-    if (interrupted && result["scenarios"].empty()) throw RenderingStopped();
+    if (interrupted && result["scenarios"].empty()) throw Interrupted();
     result["interrupted"] = interrupted.load();
     report.write(result);
     commitResult(folder, result);

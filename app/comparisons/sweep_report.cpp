@@ -9,7 +9,7 @@
 #include "figures/sweep_figures.hpp"
 #include "geometry/constants.hpp"
 #include "io/atomic_file.hpp"
-#include "render/interruptible_views.hpp"
+#include "io/interrupted.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 #include "result/text_table.hpp"
@@ -39,7 +39,7 @@ std::vector<DrawnPath> pathsByAlpha(const Config& config, const World& world,
             const EvaluatedPath path =
                 PlanningProblem(problem, alpha).evaluate("", run->path, interrupted);
             paths.push_back(drawnPath(path, config.camera.T_b_c()));
-        } catch (const RenderingStopped&) {
+        } catch (const Interrupted&) {
             return {};
         }
         paths.back().name = fmt::format("alpha {}", alpha);

@@ -7,11 +7,11 @@
 #include "flight/flight_setup.hpp"
 #include "geometry/constants.hpp"
 #include "io/error.hpp"
+#include "io/interrupted.hpp"
 #include "io/number.hpp"
 #include "io/stopwatch.hpp"
 #include "map/octree_file.hpp"
 #include "plans/check_report.hpp"
-#include "render/interruptible_views.hpp"
 #include "result/json_values.hpp"
 #include "shared/result_folder.hpp"
 
@@ -157,7 +157,7 @@ int runCheck(const CheckCommandOptions& options, const std::atomic<bool>& interr
             try {
                 report.turned = checkLocalisation(withBestHeadings(report.checked), config,
                                                   report.world, same, interrupted);
-            } catch (const RenderingStopped&) {  // before its first place
+            } catch (const Interrupted&) {  // before its first place
             }
         }
         report.flights = flightsAlong(report, options, line, interrupted);

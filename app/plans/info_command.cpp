@@ -135,14 +135,14 @@ ReportData reportOf(const InfoOptions& options, const Config& config, const Worl
 
 }  // namespace
 
-int runInfo(const InfoOptions& options) {
+int runInfo(const InfoOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
     const Config config = loadConfig(options.config, options.overrides);
     const double height = heightOf(options, config);
     const Place place = placeOf(options.at, config.start, config);
     const World world(config);
     PlanningProblem problem(config, world);
-    beginResult(options, "info", inputsOf(config));  // refuses a folder before the work
+    checkResultFolder(options, "info", interrupted, inputsOf(config));
 
     const Grids grids = lookAround(options, config, height, place.yaw.value_or(0.), problem);
     const Camera camera = config.camera.camera();
@@ -154,7 +154,6 @@ int runInfo(const InfoOptions& options) {
     auto figures = heatMaps(grids, placeText(config, height, place.yaw.value_or(0.)));
     for (NamedFigure& figure : viewFigures(view, config)) figures.push_back(std::move(figure));
     ReportData report = reportOf(options, config, world, place, result);
-    // Not before: Ctrl-C ends this command at once, and would leave the working folder.
     FolderTransaction folder = beginResult(options, "info", inputsOf(config));
     writeResultFolder(folder.path(), report, figures);
     result["time"]["total_s"] = watch.seconds();

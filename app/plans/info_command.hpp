@@ -2,6 +2,7 @@
 // `photonav info`: shows the information of views, and of the pixels of one view.
 #pragma once
 
+#include <atomic>
 #include <optional>
 
 #include "shared/command_io.hpp"
@@ -21,6 +22,6 @@ struct InfoOptions : CommandOptions {
 /// contribution_<direction>.png, report.json and report.html.
 /// @return the exit code: kDone
 /// @throws InputError for bad input, before anything is written
-int runInfo(const InfoOptions& options);
+int runInfo(const InfoOptions& options, const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

@@ -68,7 +68,7 @@ void addCheckOptions(CLI::App& parser, CheckCommandOptions& options) {
     addOutput(parser, options, "out/check-<trajectory>");
 }
 
-int describeMap(InfoOptions& options) {
+int describeMap(InfoOptions& options, const std::atomic<bool>& interrupted) {
     const auto refuse = [](const char* option, bool isTyped) {
         if (isTyped) throw InputError(option, "", "is for a planning problem, not for a map");
     };
@@ -78,31 +78,29 @@ int describeMap(InfoOptions& options) {
     if (options.out.empty()) {
         options.out = "out/info-" + std::filesystem::path(options.config).stem().string();
     }
-    const CommandReport report = runMapInfo(options);
+    const CommandReport report = runMapInfo(options, interrupted);
     printOutput(options, report.folder, report.result, report.summary, {"report.html"});
     return kDone;
 }
 
-int info(InfoOptions& options, const std::atomic<bool>& /*interrupted*/) {
-    return isOcTreeFile(options.config) ? describeMap(options) : runInfo(options);
+int info(InfoOptions& options, const std::atomic<bool>& interrupted) {
+    return isOcTreeFile(options.config) ? describeMap(options, interrupted)
+                                        : runInfo(options, interrupted);
 }
 
 }  // namespace
 
 Commands planCommands(CLI::App& app, const Invocation& invocation) {
-    Commands commands{
-        makeCommand<PlanOptions>(app, invocation, "plan",
-                                 "Plan a perception-aware path in a known scene or map.",
-                                 addPlanOptions, runPlan),
-        makeCommand<InfoOptions>(app, invocation, "info",
-                                 "Show how much information views give, and what a map holds.",
-                                 addInfoOptions, info),
-        makeCommand<CheckCommandOptions>(
-            app, invocation, "check",
-            "Check whether the camera stays localised along a trajectory of another program.",
-            addCheckOptions, runCheck)};
-    commands[1].onInterrupt = OnInterrupt::endAtOnce;
-    return commands;
+    return {makeCommand<PlanOptions>(app, invocation, "plan",
+                                     "Plan a perception-aware path in a known scene or map.",
+                                     addPlanOptions, runPlan),
+            makeCommand<InfoOptions>(app, invocation, "info",
+                                     "Show how much information views give, and what a map holds.",
+                                     addInfoOptions, info),
+            makeCommand<CheckCommandOptions>(
+                app, invocation, "check",
+                "Check whether the camera stays localised along a trajectory of another program.",
+                addCheckOptions, runCheck)};
 }
 
 }  // namespace photonav

@@ -10,7 +10,7 @@
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
 #include "io/atomic_file.hpp"
-#include "render/interruptible_views.hpp"
+#include "io/interrupted.hpp"
 #include "replay/depth_registration.hpp"
 #include "result/json_values.hpp"
 #include "shared/command_io.hpp"
@@ -64,7 +64,7 @@ CommandReport runCalibrateDepth(const CalibrateDepthOptions& options,
     FolderTransaction folder = beginResult(options.out, {options.dataset, options.cameraFile});
     const DepthRegistration found = registerDepth(
         options, [&] { return interrupted.load(); }, options.progress);
-    if (found.isInterrupted) throw RenderingStopped();  // half of the pairs are no calibration
+    if (found.isInterrupted) throw Interrupted();  // half of the pairs are no calibration
     CommandReport report{{}, resultOf(options, found), summaryOf(found), kDone};
     writeFileAtomically(folder.path() / "camera.yaml", cameraYaml(found.sequence));
     report.folder = commitResult(folder, report.result);

@@ -119,7 +119,7 @@ CommandReport runMap(const MapCommandOptions& options, const std::atomic<bool>& 
 
     try {
         compareFrames(options, recording, map, interrupted, run);
-    } catch (const RenderingStopped&) {  // the map is whole
+    } catch (const Interrupted&) {  // the map is whole
     }
     time["compare_s"] = watch.lap();
     run.interrupted = interrupted;

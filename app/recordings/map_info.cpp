@@ -53,12 +53,12 @@ ReportTable factsOf(const json& result) {
 
 }  // namespace
 
-CommandReport runMapInfo(const CommandOptions& options) {
+CommandReport runMapInfo(const CommandOptions& options, const std::atomic<bool>& interrupted) {
     if (!options.overrides.empty()) {
         throw InputError("--set", "", "is for a planning problem, not for a map");
     }
     const auto map = loadTexturedOcTree(options.config);
-    FolderTransaction folder = beginResult(options, "info");
+    checkResultFolder(options, "info", interrupted);
     CommandReport report;
     report.result =
         resultJson("info", {{"map", fs::absolute(options.config).lexically_normal().string()},
@@ -76,6 +76,7 @@ CommandReport runMapInfo(const CommandOptions& options) {
     std::vector<NamedFigure> figures;
     if (report.result["voxels"]["occupied"] > 0)
         figures.push_back(reading(options.config, [&] { return overview(*map, page.title); }));
+    FolderTransaction folder = beginResult(options, "info");
     writeResultFolder(folder.path(), page, figures);
     report.folder = commitResult(folder, report.result);
     return report;

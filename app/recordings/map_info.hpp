@@ -2,6 +2,8 @@
 // `photonav info MAP`: describes a map file.
 #pragma once
 
+#include <atomic>
+
 #include "recordings/map_command.hpp"
 #include "shared/command_io.hpp"
 
@@ -11,6 +13,6 @@ namespace photonav {
 /// cells with grey values. Writes result.json, overview.png (unless the map is empty), report.json
 /// and report.html.
 /// @throws InputError for a file that is no map, and for overrides, because a map has no keys
-CommandReport runMapInfo(const CommandOptions& options);
+CommandReport runMapInfo(const CommandOptions& options, const std::atomic<bool>& interrupted);
 
 }  // namespace photonav

@@ -20,9 +20,8 @@ namespace photonav {
 
 /// The reaction of a command to Ctrl-C and SIGTERM.
 enum class OnInterrupt {
-    finish,        ///< ends with the results so far, or at once if no result folder is begun
-    finishAlways,  ///< always ends by itself: it writes files without a result folder
-    endAtOnce      ///< ends at once: there is nothing to keep
+    finish,       ///< ends with the results so far, or at once if no result folder is begun
+    finishAlways  ///< always ends by itself: it writes files without a result folder
 };
 
 /// A subcommand: its parser and its function.

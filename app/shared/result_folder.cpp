@@ -7,6 +7,7 @@
 
 #include "io/atomic_file.hpp"
 #include "io/error.hpp"
+#include "io/interrupted.hpp"
 #include "result/json_values.hpp"
 #include "shared/command_io.hpp"
 #include "shared/path_inside.hpp"
@@ -67,6 +68,12 @@ FolderTransaction beginResult(const CommandOptions& options, const std::string& 
     }
     inputs.emplace_back(options.config);
     return beginResult(folder, inputs);
+}
+
+void checkResultFolder(const CommandOptions& options, const std::string& command,
+                       const std::atomic<bool>& interrupted, InputPaths inputs) {
+    beginResult(options, command, std::move(inputs));
+    throwIfStopped([&] { return interrupted.load(); });
 }
 
 fs::path commitResult(FolderTransaction& folder, const nlohmann::json& result) {

@@ -2,6 +2,7 @@
 // Writes the result folder of a command and prints its summary.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -38,6 +39,12 @@ FolderTransaction beginResult(
 /// @param inputs files and folders that the command reads, without the config
 FolderTransaction beginResult(const CommandOptions& options, const std::string& command,
                               InputPaths inputs = {});
+
+/// Refuses the result folder of beginResult() before the work, for a command that begins it only
+/// after the work: Ctrl-C ends that at once and leaves nothing behind.
+/// @throws InputError as beginResult() does; Interrupted if Ctrl-C came in between
+void checkResultFolder(const CommandOptions& options, const std::string& command,
+                       const std::atomic<bool>& interrupted, InputPaths inputs = {});
 
 /// Writes result.json, the last file of a result, and commits the folder. What an interrupted
 /// command has done does not replace an earlier result, but goes to NAME-interrupted, as it says,

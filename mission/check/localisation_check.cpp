@@ -282,7 +282,7 @@ CheckedTrajectory checkLocalisation(const GivenTrajectory& trajectory, const Con
             if (onProgress)
                 onProgress(static_cast<double>(i) / static_cast<double>(places.size() - 1));
         }
-    } catch (const RenderingStopped&) {  // the places so far are whole
+    } catch (const Interrupted&) {  // the places so far are whole
     }
     checked.length = checked.places.back().length;
     checked.meanTrace = meanTraceOf(checked.places);

@@ -96,7 +96,7 @@ double stepsOf(const GivenTrajectory& trajectory, const Config& config);
 /// cells.
 /// @param interrupted when it is set, the places so far are returned
 /// @param onProgress called with the share done, in [0, 1]
-/// @throws RenderingStopped when it is interrupted inside a large view at the first place
+/// @throws Interrupted when it is interrupted inside a large view at the first place
 CheckedTrajectory checkLocalisation(const GivenTrajectory& trajectory, const Config& config,
                                     const World& world, const CheckOptions& options = {},
                                     const std::atomic<bool>& interrupted = kNotInterrupted,

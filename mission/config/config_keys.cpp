@@ -151,8 +151,8 @@ void addCamera(KeyTable& keys, Config& c) {
                       map.read("mount", c.camera.mount);
                       if (mountDegrees(c.camera.mount)) return;
                       map.fail("mount", "'" + c.camera.mount +
-                                            "' is not down, front45, forward or degrees below the "
-                                            "horizon");
+                                            "' is not down, front45, forward, or -90 to 90 degrees "
+                                            "below the horizon");
                   },
               .value = [&c] { return YAML::Node(c.camera.mount); }});
     keys.count({"width", "pixels", "width of the predicted views"}, c.camera.width, {16., 8192.});

@@ -134,7 +134,7 @@ bool Explorer::fly(Robot& robot, double timeStep, const OnFlightStep& onStep) {
     bool isInterrupted = false;
     try {
         flyLoop(background_ ? timed : robot, tracker_, pilot_, timeStep, onStep);
-    } catch (const RenderingStopped&) {
+    } catch (const Interrupted&) {
         isInterrupted = true;
     } catch (const MapTooLarge& error) {
         endAs(FlightEnd::noWay, fmt::format("{}; cells: explore.resolution", error.what()));
@@ -167,7 +167,7 @@ bool Explorer::onStep(const Observation& observation, const std::vector<TrackedF
 
 /// Between the steps that take long where images are large.
 void Explorer::stopIfInterrupted() const {
-    if (interrupted_) throw RenderingStopped();
+    if (interrupted_) throw Interrupted();
 }
 
 /// Whether the robot is where its present plan ends, short of the goal, and no other one is made.

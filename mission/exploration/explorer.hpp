@@ -102,7 +102,7 @@ class Explorer {
   public:
     /// @param robot gives camera, mount and blur
     /// @param planner a name for explorePlanner()
-    /// @param interrupted rendering and planning end with RenderingStopped when it becomes true;
+    /// @param interrupted rendering and planning end with Interrupted when it becomes true;
     ///        must outlive the explorer
     /// @throws std::invalid_argument for a robot whose camera or mount is not that of the config
     Explorer(const ExplorerOptions& options, const Robot& robot, const std::string& planner,

@@ -26,7 +26,7 @@ std::vector<FlightResult> flyMany(const std::vector<PlannedView>& plan, const Fl
         FlightResult& flight = flights[number];
         try {
             flight = fly(plan, stoppable, own, isStopped, number == 0 ? onExposure : OnExposure{});
-        } catch (const RenderingStopped&) {
+        } catch (const Interrupted&) {
             return false;
         }
         flight.number = number;

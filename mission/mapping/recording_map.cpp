@@ -52,10 +52,12 @@ void checkPosition(const MapOptions& options, const RecordedFrame& frame) {
                     farthest, options.resolution, reach));
 }
 
-/// Looks at one frame with recorded depth. @returns whether it had any
+/// Looks at some pixels of a frame with recorded depth. @returns whether any had one
 bool checkDepths(const MapOptions& options, const Sequence& sequence, const View& view) {
+    constexpr unsigned kPixels = 100000;
+    const unsigned step = 1 + view.depth.getSize() / kPixels;
     std::vector<float> depths;
-    for (unsigned k = 0; k < view.depth.getSize(); ++k) {
+    for (unsigned k = 0; k < view.depth.getSize(); k += step) {
         if (view.depth.bitmap[k] > 0.F) depths.push_back(view.depth.bitmap[k]);
     }
     if (depths.empty()) return false;
@@ -74,20 +76,25 @@ Recording openForMap(const MapOptions& options) {
 }
 
 FusedRecording fuseRecording(TexturedOcTree& map, const Recording& recording,
-                             const MapOptions& options, const std::function<bool()>& isStopped,
+                             const MapOptions& options, const IsStopped& isStopped,
                              const FusionCalls& calls) {
     const Sequence& sequence = recording.sequence;
+    FusionOptions fusion = options.fusion;
+    fusion.isStopped = isStopped;
     std::optional<MonocularFusion> monocular;
     if (options.depth == "monocular") {
         monocular.emplace(map, sequence.camera, options.fusion, calls.onReference);
     }
-    const auto add = [&](const RecordedFrame& frame) {
+    const auto add = [&](const RecordedFrame& frame) {  // returns whether it was not stopped
         try {
             if (monocular) {
                 monocular->add(frame);
             } else {
-                fuse(map, frame.view, sequence.camera, frame.T_c_w, options.fusion);
+                fuse(map, frame.view, sequence.camera, frame.T_c_w, fusion);
             }
+            return true;
+        } catch (const Interrupted&) {
+            return false;
         } catch (const std::invalid_argument& error) {  // sizes are checked: cells are too small
             throw InputError("--resolution", "", error.what());
         }
@@ -103,8 +110,8 @@ FusedRecording fuseRecording(TexturedOcTree& map, const Recording& recording,
         if (!isDepthChecked) isDepthChecked = checkDepths(options, sequence, frame.view);
         if (isBlack(frame.view.intensity)) {
             fused.black.push_back({sequence.frames[fused.frames].colourFile, "black"});
-        } else {
-            add(frame);
+        } else if (!add(frame)) {
+            break;
         }
         fused.trajectory.push_back({frame.timestamp, frame.T_c_w.inverse()});
         fused.fuseSeconds += watch.lap();

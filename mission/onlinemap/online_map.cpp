@@ -74,18 +74,21 @@ void OnlineMap::compare(const View& shown, const ImageF& image, const Camera& ca
     if (unseen_) unseen_->observe(shown, noise_.model(camera, photometric_)(shown));
 }
 
-MapChange OnlineMap::add(const MapInput& input, const Camera& camera) {
+MapChange OnlineMap::add(const MapInput& input, const Camera& camera, const IsStopped& isStopped) {
     MapChange change;
     if (input.isMapInconsistent) change.join(forget(input.shown, camera, input.T_c_w.mean));
     if (!input.keyframe) return change;
     compare(input.shown, input.image.intensity, camera);
-    change.join(fuse(input.keyframe->view, camera, input.keyframe->T_c_w));
+    change.join(fuse(input.keyframe->view, camera, input.keyframe->T_c_w, isStopped));
     return change;
 }
 
-MapChange OnlineMap::fuse(const View& image, const Camera& camera, const Pose& T_c_w) {
+MapChange OnlineMap::fuse(const View& image, const Camera& camera, const Pose& T_c_w,
+                          const IsStopped& isStopped) {
+    FusionOptions fusion = fusion_;
+    fusion.isStopped = isStopped;
     const ObstaclesInView seen(image.depth, camera, T_c_w, states_, range_);
-    MapChange change = photonav::fuse(*cells_, image, camera, T_c_w, fusion_);
+    MapChange change = photonav::fuse(*cells_, image, camera, T_c_w, fusion);
     updateKnown(change);
     change.join(obstacles_.update(*cells_, change));
     change.join(obstacles_.forget(*cells_, seen.aboveNewWalls()));

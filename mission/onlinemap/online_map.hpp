@@ -55,7 +55,8 @@ class OnlineMap {
 
     /// Applies compare(), fuse() and forget() as an image requires.
     /// @return the change of map and obstacles
-    MapChange add(const MapInput& input, const Camera& camera);
+    /// @throws Interrupted when `isStopped` says so
+    MapChange add(const MapInput& input, const Camera& camera, const IsStopped& isStopped = {});
 
     /// Updates the estimate of the map's noise (MapNoise), and of the information expected of
     /// unknown space (UnseenInformation) if the config asks for it.
@@ -65,7 +66,9 @@ class OnlineMap {
     /// Fuses an image.
     /// @param T_c_w believed pose of the camera
     /// @return the change of map and obstacles
-    MapChange fuse(const View& image, const Camera& camera, const Pose& T_c_w);
+    /// @throws Interrupted when `isStopped` says so
+    MapChange fuse(const View& image, const Camera& camera, const Pose& T_c_w,
+                   const IsStopped& isStopped = {});
     /// Removes the surfaces that a view of the map shows. They count as free until they are
     /// observed again. @return the change of map and obstacles
     MapChange forget(const View& shown, const Camera& camera, const Pose& T_c_w);

@@ -87,7 +87,7 @@ std::optional<PosterSet> studySet(const PosterProblem& problem, const PosterIndi
         const ServoGoal goal{views, halved(camera), config.camera.T_b_c(), problem.T_w_goal,
                              config.photometric};
         set.servo = studyServo(goal, problem.options.servo, interrupted, [](double) {});
-    } catch (const RenderingStopped&) {
+    } catch (const Interrupted&) {
     }
     if (interrupted) return {};
     const auto view = std::make_shared<View>();
@@ -242,7 +242,7 @@ PosterRanking rankPosters(const PosterProblem& given, const std::atomic<bool>& i
         for (PosterSet& set : studies.of(next, before ? &*before : nullptr)) {
             ranking.sets.push_back(std::move(set));
         }
-        if (ranking.sets.empty()) throw RenderingStopped();
+        if (ranking.sets.empty()) throw Interrupted();
         std::ranges::stable_sort(ranking.sets, isBefore);
         const PosterIndices& best = ranking.sets.front().posters;
         const bool goesOn = !interrupted && size < options.most && best.size() == size;

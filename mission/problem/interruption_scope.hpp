@@ -8,7 +8,7 @@ namespace photonav {
 
 inline const std::atomic<bool> kNotInterrupted{false};
 
-/// As long as this object exists, the rendering of large views ends with RenderingStopped when a
+/// As long as this object exists, the rendering of large views ends with Interrupted when a
 /// flag is set.
 class InterruptionScope {
   public:

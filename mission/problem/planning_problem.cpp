@@ -152,7 +152,7 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
     const InterruptionScope scope = interruptedBy(interrupted);
     try {
         judge(*planner, outcome);
-    } catch (const RenderingStopped&) {  // views that the planner has not rendered
+    } catch (const Interrupted&) {  // views that the planner has not rendered
         outcome.path.reset();
     }
     return outcome;

@@ -97,7 +97,7 @@ class PlanningProblem {
     /// per requested vertex.
     /// @param planner one of plannerNames()
     /// @param onProgress called every 50 vertices, every 0.5 s without new vertices, and at the end
-    /// @throws RenderingStopped when it is interrupted inside a large view, without a path so far
+    /// @throws Interrupted when it is interrupted inside a large view, without a path so far
     PlanOutcome solve(const std::string& planner,
                       const std::atomic<bool>& interrupted = kNotInterrupted,
                       const OnPlanProgress& onProgress = {});
@@ -122,12 +122,12 @@ class PlanningProblem {
     /// (on the straight line if rrt_star finds no path): it is the path's distance, including
     /// turns, divided by the charged trace (0 if no trace is charged). It is computed when first
     /// needed and does not change afterwards, also if the map changes.
-    /// @throws RenderingStopped when it is interrupted inside a large view
+    /// @throws Interrupted when it is interrupted inside a large view
     double kappa(const std::atomic<bool>& interrupted = kNotInterrupted);
 
     /// Evaluates a path given by its waypoints.
     /// @param planner name of the planner, stored in the result
-    /// @throws RenderingStopped when it is interrupted inside a large view
+    /// @throws Interrupted when it is interrupted inside a large view
     EvaluatedPath evaluate(const std::string& planner, const std::vector<Place>& waypoints,
                            const std::atomic<bool>& interrupted = kNotInterrupted);
 
@@ -152,7 +152,7 @@ class PlanningProblem {
     std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
                                                std::optional<std::uint32_t> seed = {});
     /// As long as the result exists, rendering large views for planners and evaluations ends with
-    /// RenderingStopped when the flag is set.
+    /// Interrupted when the flag is set.
     [[nodiscard]] InterruptionScope interruptedBy(const std::atomic<bool>& interrupted) {
         return {*interruption_, interrupted};
     }
@@ -160,7 +160,7 @@ class PlanningProblem {
     /// the planners made here; before, they use the old map. Planners keep what is still valid, and
     /// solve() continues from there. Problems that share cached views: call it for all of them
     /// before any of them solves, or views are rendered twice.
-    /// @throws RenderingStopped when it is interrupted inside a large view; the next call then
+    /// @throws Interrupted when it is interrupted inside a large view; the next call then
     ///        applies the same changes again, so that no planner misses them
     void followMap();
     const Config& config() const { return config_; }

@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-#include "render/interruptible_views.hpp"
+#include "io/interrupted.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
@@ -39,7 +39,7 @@ TreeEvolution growInStages(PlanningProblem& problem, const std::string& name,
             TreeStage stage = grow(*planner, problem, interrupted);
             if (interrupted) break;
             evolution.stages.push_back(std::move(stage));
-        } catch (const RenderingStopped&) {
+        } catch (const Interrupted&) {
             break;
         }
     }

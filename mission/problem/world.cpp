@@ -76,7 +76,8 @@ World::World(const Config& config) {
         if (!isScene) throw;
         throw InputError(config.file, "scene.file", error.what());
     } catch (const std::invalid_argument& error) {  // too large a grid for these bounds
-        throw InputError(config.file, "bounds", error.what());
+        const char* key = isScene ? " (robot.clearance_resolution, at most 10 m)" : "";
+        throw InputError(config.file, "bounds", std::string(error.what()) + key);
     } catch (const std::bad_alloc&) {
         throw InputError(config.file, "bounds",
                          "the world within them needs more memory than there is");

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "render/interruptible_views.hpp"
+#include "io/interrupted.hpp"
 
 namespace photonav {
 
@@ -52,7 +52,7 @@ void BackgroundReplanner::stop() {
     isStopped_ = true;
     try {
         running_.get();
-    } catch (const RenderingStopped&) {  // by isStopped_
+    } catch (const Interrupted&) {  // by isStopped_
     }
 }
 

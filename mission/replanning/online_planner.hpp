@@ -52,7 +52,7 @@ class OnlinePlanner {
     /// @param change everything that changed in map and obstacles since the last call
     /// @param T_c_w the robot's present belief
     /// @param update receives all values except `time` and `fuseSeconds`
-    /// @throws RenderingStopped when it is interrupted inside a large view
+    /// @throws Interrupted when it is interrupted inside a large view
     void update(const MapChange& change, const UncertainPose& T_c_w, PlanUpdate& update,
                 const PlanningLimits& limits);
 

@@ -2,8 +2,8 @@
 #include "replanning/replanner.hpp"
 
 #include "flight/flight_setup.hpp"
+#include "io/interrupted.hpp"
 #include "io/stopwatch.hpp"
-#include "render/interruptible_views.hpp"
 
 namespace photonav {
 namespace {
@@ -46,8 +46,8 @@ Replanner::Replanner(const Config& config, const TexturedOcTree* known, const Ex
 
 Replanned Replanner::replan(ReplanRequest request, const PlanningLimits& limits) {
     Replanned replanned{std::move(request), {}};
-    fuse(replanned);
-    if (limits.interrupted) throw RenderingStopped();
+    fuse(replanned, limits);
+    if (limits.interrupted) throw Interrupted();
     planner_.update(replanned.change, replanned.request.T_c_w, replanned.update, limits);
     if (isFirst_) replanned.change.join(map_.whole());  // for those who saw no earlier change
     isFirst_ = false;
@@ -57,10 +57,12 @@ Replanned Replanner::replan(ReplanRequest request, const PlanningLimits& limits)
     return replanned;
 }
 
-void Replanner::fuse(Replanned& replanned) {
+void Replanner::fuse(Replanned& replanned, const PlanningLimits& limits) {
     const Stopwatch watch;
     MapChange& change = replanned.change;
-    for (const MapInput& image : replanned.request.images) change.join(map_.add(image, camera_));
+    for (const MapInput& image : replanned.request.images) {
+        change.join(map_.add(image, camera_, [&] { return limits.interrupted.load(); }));
+    }
     replanned.hasMapGrown = !change.occupancy.empty();
     replanned.cells = CellStates::bricksOf(*map_.cells(), change.occupancy);
     const Pose& T_c_w = replanned.request.T_c_w.mean;

@@ -51,7 +51,7 @@ class Replanner {
     Replanner(const Replanner&) = delete;
     Replanner& operator=(const Replanner&) = delete;
 
-    /// @throws RenderingStopped when it is interrupted
+    /// @throws Interrupted when it is interrupted
     Replanned replan(ReplanRequest request, const PlanningLimits& limits);
 
     const OnlineMap& map() const { return map_; }
@@ -63,7 +63,7 @@ class Replanner {
     }
 
   private:
-    void fuse(Replanned& replanned);
+    void fuse(Replanned& replanned, const PlanningLimits& limits);
     std::optional<FlyablePart> flyableWay(const ReplanRequest& request) const;
 
     Config config_;

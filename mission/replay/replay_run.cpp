@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "io/error.hpp"
+#include "io/interrupted.hpp"
 #include "io/stopwatch.hpp"
 #include "recording/halved_view.hpp"
 #include "recording/view_difference.hpp"
-#include "render/interruptible_views.hpp"
 
 namespace photonav {
 namespace {
@@ -94,12 +94,12 @@ struct Counts {
 };
 
 /// Loads and tracks the next frame.
-/// @throws RenderingStopped when it is stopped in between, also by the views of a map; the frames
+/// @throws Interrupted when it is stopped in between, also by the views of a map; the frames
 ///         so far are whole
 void addFrame(const Recording& recording, const ReplayTracker& tracker,
               const std::function<bool()>& isStopped, ReplayRun& run, Counts& counts) {
     const auto stopWhenAsked = [&] {
-        if (isStopped && isStopped()) throw RenderingStopped();
+        if (isStopped && isStopped()) throw Interrupted();
     };
     stopWhenAsked();
     const std::vector<Sequence::Entry>& entries = recording.sequence.frames;
@@ -140,7 +140,7 @@ ReplayRun replay(const Recording& recording, const ReplayTracker& tracker,
     while (run.frames.size() < recording.sequence.frames.size()) {
         try {
             addFrame(recording, tracker, isStopped, run, counts);
-        } catch (const RenderingStopped&) {
+        } catch (const Interrupted&) {
             run.interrupted = true;
             break;
         }

@@ -12,8 +12,8 @@
 #include "geometry/constants.hpp"
 #include "geometry/gaussian.hpp"
 #include "geometry/se3.hpp"
+#include "io/interrupted.hpp"
 #include "render/area_sensor.hpp"
-#include "render/interruptible_views.hpp"
 #include "simulation/camera_noise.hpp"
 
 namespace photonav {
@@ -53,9 +53,9 @@ View photographed(const AreaSensor& sensor, const Camera& camera, const Pose& T_
     return view;
 }
 
-/// @throws RenderingStopped when the study is interrupted
+/// @throws Interrupted when the study is interrupted
 void throwIfSet(const std::atomic<bool>& interrupted) {
-    if (interrupted) throw RenderingStopped();
+    if (interrupted) throw Interrupted();
 }
 
 /// The servo at a goal, with what is needed to simulate it.
@@ -94,7 +94,7 @@ struct Simulation {
     }
 
     /// One image and the motion it commands. @param random null: without noise
-    /// @throws RenderingStopped when the study is interrupted
+    /// @throws Interrupted when the study is interrupted
     void step(Pose& T_c_w, View& view, Random* random) const {
         throwIfSet(interrupted);
         photograph(sensor, goal.camera, T_c_w, view);
@@ -191,7 +191,7 @@ Eigen::VectorXd randomOffset(double distance, double angle, bool hasTilt, Random
 }
 
 /// Seconds until it is at the goal and stays there; negative: it does not come.
-/// @throws RenderingStopped as Simulation::step() does
+/// @throws Interrupted as Simulation::step() does
 double trial(const Simulation& simulation, const Eigen::VectorXd& offset, Random& random) {
     constexpr int kStays = 5;  // images
     const ServoStudyOptions& options = simulation.options;
@@ -236,7 +236,7 @@ BasinCell basinCell(const Simulation& simulation, double distance, double angle,
             const double needed = trial(simulation, offset, random);
             if (needed >= 0.) seconds.push_back(needed);
         }
-    } catch (const RenderingStopped&) {  // the trials so far are whole
+    } catch (const Interrupted&) {  // the trials so far are whole
     }
     cell.converged = static_cast<int>(seconds.size());
     cell.seconds = median(seconds, 0.);

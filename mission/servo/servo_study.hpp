@@ -81,7 +81,7 @@ inline constexpr double kServoAngle = 0.01;     // [rad]
 /// the seed, not on the goal. Collisions are not modelled. An interruption drops the trial in
 /// progress.
 /// @param progress called after each cell of the basin with the share done, in (0, 1]
-/// @throws RenderingStopped when interrupted before the first trial
+/// @throws Interrupted when interrupted before the first trial
 ServoStudy studyServo(const ServoGoal& goal, const ServoStudyOptions& options,
                       const std::atomic<bool>& interrupted,
                       const std::function<void(double share)>& progress);

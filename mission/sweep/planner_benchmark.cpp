@@ -9,16 +9,16 @@
 #include <sstream>
 
 #include "geometry/constants.hpp"
+#include "io/interrupted.hpp"
 #include "io/number.hpp"
 #include "problem/planning_problem.hpp"
-#include "render/interruptible_views.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
 namespace {
 
 /// Thrown out of OMPL's loop over runs; no std::exception, which it would swallow.
-struct Interrupted {};
+struct LoopLeft {};
 
 /// OMPL's benchmark, with the last value of the progress, which its sampling misses.
 class Benchmark : public ompl::tools::Benchmark {
@@ -70,7 +70,7 @@ class Session {
         const InterruptionScope scope = plan_.interruptedBy(interrupted_);
         try {
             benchmark_.benchmark(request);
-        } catch (const Interrupted&) {
+        } catch (const LoopLeft&) {
         }
         addLastSamples();
         outcome_.curves = curves();
@@ -90,7 +90,7 @@ class Session {
 
     /// Prepares a run from scratch: no cached views, its own seed, goals offered from the first on.
     void prepare(ob::Planner& planner) {
-        if (interrupted_) throw Interrupted();
+        if (interrupted_) throw LoopLeft();
         const SweepItem next = item(outcome_.runs.size());
         onRun_(next);
         planner.params().setParam("seed", std::to_string(next.seed));
@@ -102,8 +102,8 @@ class Session {
     void record(ob::Planner& planner, ompl::tools::Benchmark::RunProperties& properties) {
         const auto& ours = dynamic_cast<const BeliefPlanner&>(planner);
         const bool hasPath = planner.getProblemDefinition()->hasExactSolution();
-        if (interrupted_) throw Interrupted();  // a run that was cut is no measurement
-        PlanOutcome noPath;                     // unless one is found below
+        if (interrupted_) throw LoopLeft();  // a run that was cut is no measurement
+        PlanOutcome noPath;                  // unless one is found below
         noPath.vertices = ours.vertices();
         noPath.iterations = ours.iterations();
         SweepRun run{item(outcome_.runs.size()),
@@ -138,8 +138,8 @@ class Session {
     EvaluatedPath evaluated(const BeliefPlanner& planner) {
         try {
             return plan_.evaluate(planner);
-        } catch (const RenderingStopped&) {
-            throw Interrupted();
+        } catch (const Interrupted&) {
+            throw LoopLeft();
         }
     }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sweep/reference_search.hpp"
 
-#include "render/interruptible_views.hpp"
+#include "io/interrupted.hpp"
 
 namespace photonav {
 namespace {
@@ -38,7 +38,7 @@ void ReferenceSearch::plan(const std::string& planner, std::uint32_t seed) {
     PlanOutcome outcome;
     try {
         outcome = problem_.solve(problem_.makePlanner(planner, seed), interrupted_);
-    } catch (const RenderingStopped&) {
+    } catch (const Interrupted&) {
         return;
     }
     if (!outcome.path) return;

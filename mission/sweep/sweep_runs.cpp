@@ -5,7 +5,7 @@
 
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
-#include "render/interruptible_views.hpp"
+#include "io/interrupted.hpp"
 
 namespace photonav {
 namespace {
@@ -15,7 +15,7 @@ std::optional<SweepRun> runUnlessStopped(const Config& config, const World& worl
                                          const std::atomic<bool>& interrupted) {
     try {
         return runItem(config, world, item, interrupted);
-    } catch (const RenderingStopped&) {
+    } catch (const Interrupted&) {
         return std::nullopt;
     }
 }

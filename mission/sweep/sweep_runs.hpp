@@ -15,7 +15,7 @@ namespace photonav {
 /// runs. The path is evaluated by the photometric beliefs with the item's alpha, whatever its
 /// planner.
 /// @return nothing when interrupted
-/// @throws RenderingStopped when it is interrupted inside a large view
+/// @throws Interrupted when it is interrupted inside a large view
 std::optional<SweepRun> runItem(const Config& config, const World& world, const SweepItem& item,
                                 const std::atomic<bool>& interrupted);
 

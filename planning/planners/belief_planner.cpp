@@ -10,9 +10,9 @@
 #include <cmath>
 
 #include "geometry/constants.hpp"
+#include "io/interrupted.hpp"
 #include "io/stopwatch.hpp"
 #include "planners/ompl_objective.hpp"
-#include "render/interruptible_views.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
@@ -114,7 +114,7 @@ ob::PlannerStatus BeliefPlanner::solveUntil(const ob::PlannerTerminationConditio
         }
         growUntil(ob::plannerOrTerminationCondition(
             ptc, ob::PlannerTerminationCondition(isInterrupted_)));
-    } catch (const RenderingStopped&) {
+    } catch (const Interrupted&) {
         if (best_.states.empty() && !isInterrupted_()) throw;
     }
     countRewired();

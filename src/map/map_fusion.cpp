@@ -155,6 +155,7 @@ std::optional<Quad> sparseQuad(const View& seen, const CellFrame& frame,
 void fillBetween(CellScan& scan, const View& seen, const CellFrame& frame,
                  const FusionOptions& options, DepthNormals& normals) {
     for (unsigned v = 1; v + 2 < frame.camera.height; ++v) {
+        throwIfStopped(options.isStopped);
         bool hasNormals = false;
         for (unsigned u = 1; u + 2 < frame.camera.width; ++u) {
             const auto quad = sparseQuad(seen, frame, options, u, v);
@@ -212,6 +213,7 @@ MapChange fuse(TexturedOcTree& map, const View& observed, const Camera& camera, 
     Array3i cell = Array3i::Constant(std::numeric_limits<int>::max());
     CellPixels* pixels = nullptr;  // of the cell: neighbouring pixels often share it
     for (unsigned v = 0; v < camera.height; ++v) {
+        throwIfStopped(options.isStopped);
         if (options.surfaces) normals.computeRow(v);
         const Vector3d row = frame.rowDirection(v);
         for (unsigned u = 0; u < camera.width; ++u) {

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "io/interrupted.hpp"
 #include "map/map_change.hpp"
 #include "map/point_cloud.hpp"
 #include "map/textured_octree.hpp"
@@ -27,6 +28,8 @@ struct FusionOptions {
     /// Whether cells store the surfaces inside them; otherwise views show surfaces at the faces of
     /// the cells.
     bool surfaces = true;
+    /// Asked for every row of an image before the map is changed: fusing a large one takes seconds.
+    IsStopped isStopped = {};
 };
 
 /// Fuses one image with depth into the map.
@@ -53,6 +56,7 @@ struct FusionOptions {
 /// @returns what changed
 /// @throws std::invalid_argument when image, depth and camera differ in size, the pose is not
 ///        finite, or the space in view is too large for the map (see maxRange)
+/// @throws Interrupted when FusionOptions::isStopped says so; the map is as before
 MapChange fuse(TexturedOcTree& map, const View& observed, const Camera& camera, const Pose& T_c_w,
                const FusionOptions& options = {});
 

@@ -5,16 +5,11 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <stdexcept>
 
+#include "io/interrupted.hpp"
 #include "photometry/view.hpp"
 
 namespace photonav {
-
-/// Thrown when the rendering of a view was stopped.
-struct RenderingStopped : std::runtime_error {
-    RenderingStopped() : std::runtime_error("interrupted while rendering a view") {}
-};
 
 /// Size above which views are rendered in bands [pixels].
 inline constexpr std::size_t kBandPixels = std::size_t{1} << 21U;
@@ -31,19 +26,19 @@ inline std::size_t pixelsOf(const Camera& camera) {
 void renderInBands(const Camera& camera, std::size_t pixels,
                    const std::function<void(const Camera& band, View& view)>& render, View& view);
 
-/// The views of another source, which can be stopped. A large view throws RenderingStopped before
+/// The views of another source, which can be stopped. A large view throws Interrupted before
 /// its next band when `isStopped` returns true. Views of at most kBandPixels, which take
 /// milliseconds, are never stopped.
 class InterruptibleViews : public ViewSource {
   public:
-    InterruptibleViews(std::shared_ptr<const ViewSource> views, std::function<bool()> isStopped)
+    InterruptibleViews(std::shared_ptr<const ViewSource> views, IsStopped isStopped)
         : views_(std::move(views)), isStopped_(std::move(isStopped)) {}
 
     void render(const Camera& camera, const Pose& T_c_w, View& view) const override;
 
   private:
     std::shared_ptr<const ViewSource> views_;
-    std::function<bool()> isStopped_;
+    IsStopped isStopped_;
 };
 
 }  // namespace photonav

@@ -66,6 +66,21 @@ TEST(MapFusion, FreesSpaceUpToTheRangeAndNoneWhereDepthIsMissing) {
     }
 }
 
+TEST(MapFusion, AnImageIsFusedWholeOrNotAtAll) {
+    const auto [camera, T_c_w, view] = overCarpet(0.01, 1.52);
+    int asked = 0;
+    FusionOptions options;
+    options.isStopped = [&] { return ++asked == 100; };
+    TexturedOcTree map(0.05);
+    EXPECT_THROW(fuse(map, view, camera, T_c_w, options), Interrupted);
+    EXPECT_EQ(asked, 100);
+    EXPECT_EQ(map.size(), 0U);
+    fuse(map, view, camera, T_c_w, options);  // it is not stopped any more
+    TexturedOcTree whole(0.05);
+    fuse(whole, view, camera, T_c_w);
+    EXPECT_EQ(map.size(), whole.size());
+}
+
 TEST(MapFusion, FacesTowardTheCameraTakeTheMeanGrey) {
     const Camera camera = makeCamera(160, 120, 1.2);
     TexturedOcTree map(0.05);

@@ -71,7 +71,7 @@ TEST(InterruptibleViews, ALargeViewEndsWithinABand) {
     const auto counted = std::make_shared<CountedViews>();
     const InterruptibleViews views(counted, [&] { return counted->count == 2; });
     View view;
-    EXPECT_THROW(views.render(makeCamera(8000, 6000, 1.2), kOblique, view), RenderingStopped);
+    EXPECT_THROW(views.render(makeCamera(8000, 6000, 1.2), kOblique, view), Interrupted);
     EXPECT_EQ(counted->count, 2);
 }
 

@@ -6,7 +6,7 @@
 #include "check/obstruction.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
-#include "render/interruptible_views.hpp"
+#include "io/interrupted.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {
@@ -242,7 +242,7 @@ TEST(LocalisationCheck, IsInterruptedInsideALargeView) {
     const std::atomic<bool> interrupted{true};
     EXPECT_THROW(checkLocalisation(through({{6., 3., 2., 0.}, {7., 3., 2., 0.}}), config, world,
                                    kWithoutHeadings, interrupted),
-                 RenderingStopped);
+                 Interrupted);
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 // Views of planners that are run by programs of their own, while a flag is watched.
 #include <gtest/gtest.h>
 
+#include "io/interrupted.hpp"
 #include "problem/planning_problem.hpp"
-#include "render/interruptible_views.hpp"
 
 namespace photonav {
 namespace {
@@ -23,7 +23,7 @@ TEST(InterruptionScope, EndsLargeViewsWhileItIsThere) {
             EXPECT_GT(problem.informationAt(T_w_b).trace(), 0.);
         }
         T_w_b.translation().x() += 1.;
-        EXPECT_THROW(problem.informationAt(T_w_b), RenderingStopped);
+        EXPECT_THROW(problem.informationAt(T_w_b), Interrupted);
     }
     EXPECT_GT(problem.informationAt(T_w_b).trace(), 0.);
 }

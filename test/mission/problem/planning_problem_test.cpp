@@ -8,9 +8,9 @@
 #include "geometry/camera.hpp"
 #include "geometry/constants.hpp"
 #include "io/error.hpp"
+#include "io/interrupted.hpp"
 #include "map/map_fusion.hpp"
 #include "planners/planner_table.hpp"
-#include "render/interruptible_views.hpp"
 #include "render/mesh_renderer.hpp"
 #include "temporary_folder.hpp"
 
@@ -216,7 +216,7 @@ TEST(PlanningProblem, FollowsAgainWhatWasInterrupted) {
     PlanningProblem problem(
         config, world, {}, [&](const Camera& camera, const PhotometricOptions& options) {
             return [&, model = photometricModel(camera, options)](const View& view) {
-                if (isStopped) throw RenderingStopped();
+                if (isStopped) throw Interrupted();
                 return model(view);
             };
         });
@@ -227,7 +227,7 @@ TEST(PlanningProblem, FollowsAgainWhatWasInterrupted) {
 
     world.mapChanged(fuseWall(*map, config));
     isStopped = true;
-    EXPECT_THROW(problem.followMap(), RenderingStopped);
+    EXPECT_THROW(problem.followMap(), Interrupted);
     isStopped = false;
     problem.followMap();
     for (const auto& planner : {first, second}) {

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "io/interrupted.hpp"
 #include "mission/replay/replay_fixture.hpp"
-#include "render/interruptible_views.hpp"
 #include "replay/replay_calibration.hpp"
 
 namespace photonav {
@@ -51,7 +51,7 @@ ReplayTracker stoppedTracker(const Camera& camera) {
     ReplayTracker tracker;
     tracker.camera = camera;
     tracker.track = [count = 0](const View&, double) mutable -> TrackedFrame {
-        if (++count == 3) throw RenderingStopped();
+        if (++count == 3) throw Interrupted();
         return {};
     };
     tracker.predict = [](const TrackedView& frame, const auto&) { return frame.view; };

@@ -9,8 +9,8 @@
 
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
+#include "io/interrupted.hpp"
 #include "render/area_sensor.hpp"
-#include "render/interruptible_views.hpp"
 #include "render/mesh_renderer.hpp"
 #include "scene/scene.hpp"
 #include "simulation/camera_noise.hpp"
@@ -133,7 +133,7 @@ TEST(ServoStudy, EndsWithinATrial) {
     EXPECT_EQ(most.rendered, all.rendered - 1);
     for (const int first : {1, 2}) {  // the goal, and a mode
         const InterruptingViews few(floor, first);
-        EXPECT_THROW(studied(few), RenderingStopped);
+        EXPECT_THROW(studied(few), Interrupted);
         EXPECT_EQ(few.rendered, first);
     }
 }

@@ -5,9 +5,9 @@
 
 #include <random>
 
+#include "io/interrupted.hpp"
 #include "planning/planners/changing_world.hpp"
 #include "planning/solution_checks.hpp"
-#include "render/interruptible_views.hpp"
 
 namespace photonav::test {
 namespace {
@@ -20,7 +20,7 @@ INSTANTIATE_TEST_SUITE_P(Planners, InterruptedViews,
 /// Counts the views, and stops at one of them.
 InformationFormula stoppedAt(int last, int& views) {
     return [last, &views](const Pose& T_c_w) {
-        if (views++ == last) throw RenderingStopped();
+        if (views++ == last) throw Interrupted();
         return stripesThenTexture(T_c_w);
     };
 }
@@ -32,7 +32,7 @@ TEST_P(InterruptedViews, EndASearchThatKnowsOfTheInterruption) {
     Problem problem;
     problem.information = [&](const Pose& T_c_w) {
         isInterrupted = ++views > 3;
-        if (isInterrupted) throw RenderingStopped();
+        if (isInterrupted) throw Interrupted();
         return stripesThenTexture(T_c_w);
     };
     const auto planner = problem.planner(GetParam());
@@ -55,7 +55,7 @@ TEST_P(InterruptedViews, LeaveThePathThatWasFoundBefore) {
             EXPECT_TRUE(std::isfinite(planner->bestCost())) << last;
             ++paths;
             static_cast<void>(planner->tree());
-        } catch (const RenderingStopped&) {
+        } catch (const Interrupted&) {
             EXPECT_FALSE(std::isfinite(planner->bestCost())) << last;
             ++stops;
         }
@@ -89,7 +89,7 @@ TEST_P(InterruptedViews, SearchesGoOnWhereTheyWereStopped) {
             setGoals(*planner, problem, goals);
             try {
                 grow(*planner, 150);
-            } catch (const RenderingStopped&) {
+            } catch (const Interrupted&) {
             }
             if (views <= last) break;
             ++stops;
@@ -119,7 +119,7 @@ TEST_P(InterruptedViews, LeaveNothingOfTheMapBeforeAnUpdate) {
             const auto field = std::make_shared<InformationField>(
                 world.freshViews(), camera,
                 [&, model = photometricModel(camera, {})](const View& view) {
-                    if (left-- == 0) throw RenderingStopped();
+                    if (left-- == 0) throw Interrupted();
                     return model(view);
                 },
                 problem.mount, InformationField::Options{});
@@ -139,7 +139,7 @@ TEST_P(InterruptedViews, LeaveNothingOfTheMapBeforeAnUpdate) {
                 else
                     planner->mapChanged(change);
                 break;
-            } catch (const RenderingStopped&) {
+            } catch (const Interrupted&) {
                 ++stops;
             }
             EXPECT_EQ(grow(*planner, 100), ob::PlannerStatus::EXACT_SOLUTION);
