@@ -55,8 +55,7 @@ TEST_F(StereoWall, BlockMatchingFindsItsDepthThroughDistortionAndTwist) {
 
 TEST_F(StereoWall, SemiGlobalMatchingFindsMore) {
     expectDepths(
-        {.method = StereoMethod::semiGlobal, .halvings = 0, .minDepth = 1.2, .blockSize = 15},
-        0.9);
+        {.method = StereoMethod::semiGlobal, .halvings = 0, .minDepth = 1.2, .blockSize = 15}, 0.9);
 }
 
 TEST_F(StereoWall, AtHalfTheSizeAsWell) {
