@@ -77,9 +77,7 @@ void onInterrupt(int signal) {
     }
     interruptedBy = signal;
     interrupted = true;
-    const bool hasResults = reaction == OnInterrupt::finishAlways ||
-                            FolderTransaction::isAnyOpen() || FolderTransaction::isAnyCommitted();
-    if (!hasResults) {
+    if (reaction != OnInterrupt::finishAlways && !FolderTransaction::isAnyOpen()) {
         say("photonav: ");
         say(saidWhenEnded());
         say("\n");

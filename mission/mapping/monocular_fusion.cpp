@@ -23,7 +23,9 @@ MonocularFusion::MonocularFusion(TexturedOcTree& map, const Camera& camera,
       camera_(camera),
       options_(options),
       onReference_(std::move(onReference)),
-      depth_(camera, optionsFor(options)) {}
+      depth_(camera, optionsFor(options)) {
+    options_.isStopped = {};  // the last reference is fused after the end
+}
 
 void MonocularFusion::add(const RecordedFrame& frame) {
     const auto finished = depth_.add(frame.view.intensity, frame.T_c_w);

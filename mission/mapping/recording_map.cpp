@@ -55,10 +55,12 @@ void checkPosition(const MapOptions& options, const RecordedFrame& frame) {
 /// Looks at some pixels of a frame with recorded depth. @returns whether any had one
 bool checkDepths(const MapOptions& options, const Sequence& sequence, const View& view) {
     constexpr unsigned kPixels = 100000;
-    const unsigned step = 1 + view.depth.getSize() / kPixels;
     std::vector<float> depths;
-    for (unsigned k = 0; k < view.depth.getSize(); k += step) {
-        if (view.depth.bitmap[k] > 0.F) depths.push_back(view.depth.bitmap[k]);
+    for (unsigned step = 1 + view.depth.getSize() / kPixels; depths.empty(); step = 1) {
+        for (unsigned k = 0; k < view.depth.getSize(); k += step) {
+            if (view.depth.bitmap[k] > 0.F) depths.push_back(view.depth.bitmap[k]);
+        }
+        if (step == 1) break;
     }
     if (depths.empty()) return false;
     requirePlausibleDepth(median(std::move(depths), 0.), options, sequence.cameraFile);

@@ -36,9 +36,8 @@ struct FusionCalls {
 
 /// Fuses all frames into a map.
 /// @param map empty, with the resolution of the options
-/// @param isStopped asked before every frame, and for every row of pixels; a frame is fused whole
-/// or
-///        not at all
+/// @param isStopped asked before every frame and, with recorded depth, for every row of pixels: a
+///        frame is fused whole or not at all. FusionOptions::isStopped is not used.
 /// @throws InputError for images that cannot be used, for implausible depths, and for cells that
 ///         are too small for the extent of the recording
 FusedRecording fuseRecording(TexturedOcTree& map, const Recording& recording,

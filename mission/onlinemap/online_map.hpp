@@ -55,7 +55,7 @@ class OnlineMap {
 
     /// Applies compare(), fuse() and forget() as an image requires.
     /// @return the change of map and obstacles
-    /// @throws Interrupted when `isStopped` says so
+    /// @throws Interrupted when `isStopped` says so; what has changed until then is not told
     MapChange add(const MapInput& input, const Camera& camera, const IsStopped& isStopped = {});
 
     /// Updates the estimate of the map's noise (MapNoise), and of the information expected of

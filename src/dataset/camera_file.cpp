@@ -27,7 +27,7 @@ vpCameraParameters readIntrinsics(YamlMap& yaml, const Camera& camera) {
 
 void readSize(YamlMap& yaml, Camera& camera) {
     const auto readPixels = [&](const std::string& key, unsigned& value) {
-        constexpr unsigned kMost = 65535;  // of the formats that are read
+        constexpr unsigned kMost = 65535;  // more is a mistake, such as two numbers in one
         yaml.read(key, value);
         if (value == 0 || value > kMost) {
             yaml.fail(key, fmt::format("{} is not from 1 to {} pixels", value, kMost));

@@ -2,7 +2,6 @@
 // Reads recorded images, with their size checked against the camera's, and writes grey ones.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "geometry/camera.hpp"

@@ -188,7 +188,6 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
         if (isNew) fs::remove(working_, error);
         throw;
     }
-    ++open_;
 }
 
 /// Ends what a killed process has left, and keeps its work if it is to be gone on with.
@@ -264,7 +263,6 @@ void FolderTransaction::removeLeftovers() const {
 void FolderTransaction::discard() { removeLeftovers(); }
 
 FolderTransaction::~FolderTransaction() {
-    --open_;
     if (!isOpen_) return;
     try {
         if (unfinished_ == Unfinished::removed || !hasFiles(working_)) {
@@ -297,6 +295,7 @@ void FolderTransaction::commit() {
     isOpen_ = false;
     synchronise(resolved_.parent_path(), target_);
     removeReplaced();
+    counted_.reset();
 }
 
 void FolderTransaction::commitBeside(const std::string& suffix) {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "io/file_lock.hpp"
@@ -60,8 +61,8 @@ class FolderTransaction {
     /// Removes what was written so far: nothing of it is worth keeping.
     void discard();
 
-    /// Whether this process has an open transaction. Without one, an interrupted process has no
-    /// results to keep. May be called in a signal handler.
+    /// Whether this process has a transaction that is not committed. Without one, an interrupted
+    /// process has nothing to keep, and no working folder. May be called in a signal handler.
     static bool isAnyOpen() { return open_ > 0; }
 
     /// Whether this process has put a result in its place. May be called in a signal handler.
@@ -78,14 +79,22 @@ class FolderTransaction {
     void exchange();
     void removeReplaced() const;
 
-    std::filesystem::path target_;    // as given
-    std::filesystem::path resolved_;  // absolute, links followed
-    std::filesystem::path working_;   // beside it
-    Unfinished unfinished_;
-    FileDescriptor lock_;  // of the working folder's manifest
-    bool isOpen_ = true;
+    struct Counted {
+        Counted() { ++open_; }
+        ~Counted() { --open_; }
+        Counted(const Counted&) = delete;
+        Counted& operator=(const Counted&) = delete;
+    };
+
     static inline std::atomic<bool> isAnyCommitted_{false};
     static inline std::atomic<int> open_{0};
+    std::optional<Counted> counted_{std::in_place};  // first: ends after the working folder
+    std::filesystem::path target_;                   // as given
+    std::filesystem::path resolved_;                 // absolute, links followed
+    std::filesystem::path working_;                  // beside it
+    Unfinished unfinished_;
+    bool isOpen_ = true;
+    FileDescriptor lock_;  // of the working folder's manifest
 };
 
 }  // namespace photonav

@@ -7,7 +7,6 @@
 #include <array>
 #include <cctype>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <string_view>
 
@@ -140,7 +139,10 @@ std::optional<ImageSize> declaredSize(Bytes encoded) {
 
 std::vector<std::uint8_t> readBytes(const std::string& file) {
     std::ifstream in = openToRead(file);
-    std::vector<std::uint8_t> bytes(std::filesystem::file_size(file));
+    in.seekg(0, std::ios::end);
+    const std::streamoff size = in.tellg();
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::max<std::streamoff>(0, size)));
+    in.seekg(0);
     in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     bytes.resize(static_cast<std::size_t>(in.gcount()));  // it may have been cut since
     return bytes;

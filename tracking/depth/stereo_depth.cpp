@@ -169,13 +169,15 @@ void StereoDepth::operator()(const StereoImages& images, View& view) {
     const auto numerator = static_cast<float>(kDisparityUnit * m.camera.fx() * m.baseline);
     const auto least =
         static_cast<std::int16_t>(std::max(1., std::ceil(numerator / m.options.maxDepth)));
-    const int halfBlock = m.matcher->getBlockSize() / 2;  // is in the right image, too
+    // Half a block, and what its edge filter and the comparison with the next disparity need, are
+    // in the right image, too.
+    const int margin = m.matcher->getBlockSize() / 2 + 2;
     for (unsigned v = 0; v < m.camera.height; ++v) {
         const auto* grey = m.padded[0].ptr<std::uint8_t>(static_cast<int>(v)) + m.count;
         const auto* shift = m.disparity.ptr<std::int16_t>(static_cast<int>(v)) + m.count;
         for (unsigned u = 0; u < m.camera.width; ++u) {
             view.intensity[v][u] = static_cast<float>(grey[u]) / 255.F;
-            const int most = kDisparityUnit * (static_cast<int>(u) - halfBlock);
+            const int most = kDisparityUnit * (static_cast<int>(u) - margin);
             const bool isFound = shift[u] >= least && shift[u] <= most;
             view.depth[v][u] = isFound ? numerator / static_cast<float>(shift[u]) : 0.F;
         }

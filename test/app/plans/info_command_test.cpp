@@ -51,6 +51,7 @@ TEST_F(InfoCommand, EndsAtOnceAndSaysSo) {
     EXPECT_EQ(run.exitCode, 143);
     EXPECT_EQ(run.output, "photonav: interrupted before there was any result\n");
     EXPECT_FALSE(fs::exists(folder_));
+    EXPECT_FALSE(fs::exists(folder_.string() + ".unfinished"));
 }
 
 }  // namespace

@@ -142,7 +142,8 @@ TEST_F(PlanCommand, CtrlCWhileTheEvolutionIsDrawnKeepsThePath) {
     options.quiet = true;
     options.evolution = true;
     int kept = 0, code = kInterrupted;
-    for (double seconds = 0.1; code == kInterrupted; seconds *= 1.5) {  // later, until it has ended
+    for (double seconds = 0.1; code == kInterrupted && seconds < 100.;
+         seconds *= 1.5) {  // later, until it has ended
         fs::remove_all(folder_);
         std::atomic<bool> interrupted{false};
         const std::jthread timer([&] {
