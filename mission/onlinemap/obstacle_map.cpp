@@ -15,9 +15,10 @@ namespace {
 constexpr int kEdge = MapChange::kBrickEdge;
 constexpr double kBelow = 3., kAbove = 1.;  // heights outside the bounds that matter [m]
 
-// A hole in a wall: where a few depths are wrong or missing, rays to other places clear a cell.
-// More than one wrong depth is above it, not as above a table.
-constexpr int kHole = 1, kAboveHole = 2;
+// Free cells in a row between occupied ones of a wall: where a few depths are wrong or missing,
+// rays to other places clear one. So one wrong depth above a table makes it a wall until it is seen
+// again; with two in a row asked for, robots came nearer to walls.
+constexpr int kHole = 1;
 
 enum class CellState : char { unknown, free, occupied };
 
@@ -27,23 +28,18 @@ using Brick = std::array<CellState, kEdge * kEdge * kEdge>;
 class WallInColumn {
   public:
     void add(CellState state) {
-        if (state == CellState::occupied) ++above_;
-        if (state != CellState::free) return;
-        if (above_ > 0) {
-            below_ = cells();
-            above_ = free_ = 0;
-        }
-        ++free_;
+        if (state == CellState::free) ++free_;
+        if (state != CellState::occupied) return;
+        if (free_ > kHole) cells_ = 0;
+        free_ = 0;
+        ++cells_;
     }
     /// Whether unknown cells right above belong to it.
-    bool goesOn() const { return above_ > 0 && cells() >= kWallCells; }
+    bool goesOn() const { return free_ == 0 && cells_ >= kWallCells; }
 
   private:
-    int cells() const { return above_ + (free_ <= kHole && above_ >= kAboveHole ? below_ : 0); }
-
-    int below_ = 0;  // occupied cells below the last free one
-    int free_ = 0;   // free cells in a row between
-    int above_ = 0;  // occupied cells above
+    int cells_ = 0;  // that are occupied, with no more than a hole between two
+    int free_ = 0;   // above the last of them
 };
 
 Brick statesOf(const TexturedOcTree& map, const Eigen::Array3i& brick) {

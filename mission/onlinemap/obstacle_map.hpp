@@ -19,8 +19,8 @@ inline constexpr int kWallCells = 4;
 /// A camera that looks down observes the foot of a wall, but seldom the wall at the height at which
 /// the robot flies. Walls are therefore continued upward: above at least four occupied cells of a
 /// column, unknown cells count as occupied, up to the first cell that is known to be free. Above
-/// the top of a box, for example, that is the next cell. A single free cell with two or more
-/// occupied ones above it is a hole in the wall and does not end it.
+/// the top of a box, for example, that is the next cell. A single free cell between occupied ones
+/// is a hole in the wall and does not end it.
 ///
 /// Other unknown cells are free (optimistic) or occupied (pessimistic), except at the body.
 ///

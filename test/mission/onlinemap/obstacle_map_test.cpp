@@ -44,8 +44,7 @@ TEST(ObstacleMap, WallsGoOnAboveWhatWasSeenOfThem) {
     EXPECT_EQ(ObservedColumn("?ooooo??????").obstacles(UnknownSpace::optimistic), "?ooooooooooo");
     EXPECT_EQ(ObservedColumn("ooooo.??????").obstacles(UnknownSpace::optimistic), "ooooo???????");
     EXPECT_EQ(ObservedColumn("o???????????").obstacles(UnknownSpace::optimistic), "o???????????");
-    // A wrong depth makes a hole, or is above a table, which is no wall.
-    EXPECT_EQ(ObservedColumn("oooo.o??????").obstacles(UnknownSpace::optimistic), "oooo?o??????");
+    // A wrong depth makes a hole, but a table is no wall.
     EXPECT_EQ(ObservedColumn("ooo.oo??????").obstacles(UnknownSpace::optimistic), "ooo?oooooooo");
     EXPECT_EQ(ObservedColumn("ooo..oo?????").obstacles(UnknownSpace::optimistic), "ooo??oo?????");
     ObservedColumn column("?ooooo??????");
