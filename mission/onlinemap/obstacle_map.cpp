@@ -15,9 +15,8 @@ namespace {
 constexpr int kEdge = MapChange::kBrickEdge;
 constexpr double kBelow = 3., kAbove = 1.;  // heights outside the bounds that matter [m]
 
-// Free cells in a row between occupied ones of a wall: where a few depths are wrong or missing,
-// rays to other places clear one. So one wrong depth above a table makes it a wall until it is seen
-// again; with two in a row asked for, robots came nearer to walls.
+// Free cells in a row that do not end a wall. A ray to a place beside it clears one, at its top
+// where the view ends as well.
 constexpr int kHole = 1;
 
 enum class CellState : char { unknown, free, occupied };
@@ -35,7 +34,7 @@ class WallInColumn {
         ++cells_;
     }
     /// Whether unknown cells right above belong to it.
-    bool goesOn() const { return free_ == 0 && cells_ >= kWallCells; }
+    bool goesOn() const { return free_ <= kHole && cells_ >= kWallCells; }
 
   private:
     int cells_ = 0;  // that are occupied, with no more than a hole between two

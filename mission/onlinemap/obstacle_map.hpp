@@ -18,9 +18,9 @@ inline constexpr int kWallCells = 4;
 
 /// A camera that looks down observes the foot of a wall, but seldom the wall at the height at which
 /// the robot flies. Walls are therefore continued upward: above at least four occupied cells of a
-/// column, unknown cells count as occupied, up to the first cell that is known to be free. Above
-/// the top of a box, for example, that is the next cell. A single free cell between occupied ones
-/// is a hole in the wall and does not end it.
+/// column, unknown cells count as occupied, up to the first two cells that are known to be
+/// free, such as those above the top of a box. A single free cell does not end a wall: rays to
+/// places beside it clear one, where the view ends for example.
 ///
 /// Other unknown cells are free (optimistic) or occupied (pessimistic), except at the body.
 ///

@@ -142,11 +142,13 @@ InformationModel OnlineMap::information(const Camera& camera,
 
 bool OnlineMap::isSeen(const Eigen::Vector3d& p_w) const {
     if (doubted_.contains(p_w)) return false;
+    if (cells_->search(p_w.x(), p_w.y(), p_w.z()) != nullptr) return true;
     const double cell = cells_->getResolution();
-    for (double below = 0.; below <= fusion_.maxRange; below += cell) {
-        if (cells_->search(p_w.x(), p_w.y(), p_w.z() - below) != nullptr) return true;
+    int known = 0;
+    for (double below = cell; below <= fusion_.maxRange && known < kWallCells; below += cell) {
+        known += cells_->search(p_w.x(), p_w.y(), p_w.z() - below) != nullptr ? 1 : 0;
     }
-    return false;
+    return known == kWallCells;
 }
 
 }  // namespace photonav

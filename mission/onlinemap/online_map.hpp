@@ -78,8 +78,9 @@ class OnlineMap {
         return obstacles_.addBody(*cells_, body_w, ahead_w, radius_);
     }
 
-    /// Whether a surface or free space was observed at a place, or below it within explore.range,
-    /// and the column of the place is not doubted (DoubtedColumns).
+    /// Whether surfaces or free space were observed at a place, or below it within explore.range in
+    /// as many cells as a wall there needs to be noticed (kWallCells), and the column of the place
+    /// is not doubted (DoubtedColumns).
     bool isSeen(const Eigen::Vector3d& p_w) const;
 
     const std::shared_ptr<TexturedOcTree>& cells() const { return cells_; }

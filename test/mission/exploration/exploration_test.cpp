@@ -209,8 +209,9 @@ TEST_F(RoomToExplore, ArrivesThroughABlackoutWithFewDepths) {
     config.fly.blackout = {3., 4.};
     config.fly.drop = 0.2;
     config.explore.depthMissing = 0.5;
-    // With 27 a free cell in a wall of which half the depths are missing ended it below the robot.
-    for (const std::uint32_t seed : {2U, 27U}) {
+    // Single free cells in walls, of which half the depths are missing, ended them below the robot
+    // (27), and walls of which three cells had been seen were none (7).
+    for (const std::uint32_t seed : {2U, 7U, 27U}) {
         const ExplorationResult flight = flown(test::roomToExplore(), seed);
         EXPECT_EQ(nameOf(flight.end), "arrived") << flight.reason << ", seed " << seed;
         EXPECT_GT(flight.rejectedImages, 10);

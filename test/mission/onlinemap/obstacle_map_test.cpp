@@ -42,9 +42,10 @@ struct ObservedColumn {
 
 TEST(ObstacleMap, WallsGoOnAboveWhatWasSeenOfThem) {
     EXPECT_EQ(ObservedColumn("?ooooo??????").obstacles(UnknownSpace::optimistic), "?ooooooooooo");
-    EXPECT_EQ(ObservedColumn("ooooo.??????").obstacles(UnknownSpace::optimistic), "ooooo???????");
+    EXPECT_EQ(ObservedColumn("ooooo..?????").obstacles(UnknownSpace::optimistic), "ooooo???????");
     EXPECT_EQ(ObservedColumn("o???????????").obstacles(UnknownSpace::optimistic), "o???????????");
-    // A wrong depth makes a hole, but a table is no wall.
+    // Rays to places beside it clear a cell, but a table is no wall.
+    EXPECT_EQ(ObservedColumn("ooooo.??????").obstacles(UnknownSpace::optimistic), "ooooo?oooooo");
     EXPECT_EQ(ObservedColumn("ooo.oo??????").obstacles(UnknownSpace::optimistic), "ooo?oooooooo");
     EXPECT_EQ(ObservedColumn("ooo..oo?????").obstacles(UnknownSpace::optimistic), "ooo??oo?????");
     ObservedColumn column("?ooooo??????");
