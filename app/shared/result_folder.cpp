@@ -73,7 +73,7 @@ FolderTransaction beginResult(const CommandOptions& options, const std::string& 
 void checkResultFolder(const CommandOptions& options, const std::string& command,
                        const std::atomic<bool>& interrupted, InputPaths inputs) {
     beginResult(options, command, std::move(inputs));
-    throwIfStopped([&] { return interrupted.load(); });
+    throwIfStopped(interrupted);
 }
 
 fs::path commitResult(FolderTransaction& folder, const nlohmann::json& result) {

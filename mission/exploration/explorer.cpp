@@ -11,6 +11,7 @@
 
 #include "geometry/gaussian.hpp"
 #include "geometry/se3.hpp"
+#include "io/interrupted.hpp"
 #include "render/interruptible_views.hpp"
 #include "render/voxel_grid.hpp"
 
@@ -157,17 +158,12 @@ bool Explorer::onStep(const Observation& observation, const std::vector<TrackedF
         if (auto replanned = background_->poll()) takeOver(std::move(*replanned));
     }
     for (std::size_t i = 0; i < tracked.size(); ++i) {
-        stopIfInterrupted();
+        throwIfStopped(interrupted_);  // and between other steps that take long with large images
         corrections_.add(tracked[i]);
         onImage(tracked[i], observation.frames[i].view);
     }
     if (background_) background_->goOn(tracker_.belief());
     return !hasEnded();
-}
-
-/// Between the steps that take long where images are large.
-void Explorer::stopIfInterrupted() const {
-    if (interrupted_) throw Interrupted();
 }
 
 /// Whether the robot is where its present plan ends, short of the goal, and no other one is made.
@@ -186,7 +182,7 @@ void Explorer::onImage(const TrackedFrame& tracked, const View& image) {
     if (background_ && isStopped) notInMap_.emplace_back(tracked.time, inView_);
     auto input = mapper_.choose(tracked, image, shown, isWaiting() || isNews);
     record_.keyframes = mapper_.keyframes();
-    stopIfInterrupted();
+    throwIfStopped(interrupted_);
     if (!input && isNews) input = MapInput{image, shown, tracked.T_c_w};  // for the plan alone
     if (!input) return;
     ReplanRequest request{{std::move(*input)}, inView_, tracker_.belief(), tracked.time};
@@ -359,7 +355,7 @@ bool Explorer::isStuckAtGoal() {
 }
 
 bool Explorer::hasEnded() {
-    stopIfInterrupted();
+    throwIfStopped(interrupted_);
     if (tracker_.loss().isLost() && pilot_.hasGivenUp(tracker_, time_)) {
         return endAs(FlightEnd::lost, "tracking was lost and not regained");
     }

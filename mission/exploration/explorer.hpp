@@ -132,7 +132,6 @@ class Explorer {
     const std::optional<BelievedArrival>& arrival() const { return arrival_; }
 
   private:
-    void stopIfInterrupted() const;
     void onImage(const TrackedFrame& tracked, const View& image);
     bool isInTheWay(const TrackedFrame& tracked, const View& image);
     std::vector<PlannedView> wayAhead() const;

@@ -145,7 +145,7 @@ void FlightEvaluator::finish(const Tracker& tracker) {
 }
 
 FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
-                 const FlightOptions& options, const std::function<bool()>& isStopped,
+                 const FlightOptions& options, const IsStopped& isStopped,
                  const OnExposure& onExposure) {
     check(plan, world);
     const UncertainPose start = beliefAtStart(plan, world, options);

@@ -10,6 +10,7 @@
 #include "control/pilot.hpp"
 #include "flight/arrival.hpp"
 #include "flight/flight_end.hpp"
+#include "io/interrupted.hpp"
 #include "simulation/simulated_robot.hpp"
 
 namespace photonav {
@@ -125,7 +126,7 @@ using OnExposure = std::function<void(const Exposed& exposed)>;
 ///        FlightEnd::stopped
 /// @throws std::invalid_argument for a shorter plan, or a world without truth, map or clearance
 FlightResult fly(const std::vector<PlannedView>& plan, const FlightWorld& world,
-                 const FlightOptions& options, const std::function<bool()>& isStopped = {},
+                 const FlightOptions& options, const IsStopped& isStopped = {},
                  const OnExposure& onExposure = {});
 
 }  // namespace photonav

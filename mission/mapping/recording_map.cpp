@@ -12,6 +12,7 @@
 
 #include "evaluation/averages.hpp"
 #include "io/error.hpp"
+#include "io/interrupted.hpp"
 #include "io/stopwatch.hpp"
 #include "map/textured_octree.hpp"
 
@@ -55,13 +56,15 @@ void checkPosition(const MapOptions& options, const RecordedFrame& frame) {
 /// Looks at some pixels of a frame with recorded depth. @returns whether any had one
 bool checkDepths(const MapOptions& options, const Sequence& sequence, const View& view) {
     constexpr unsigned kPixels = 100000;
-    std::vector<float> depths;
-    for (unsigned step = 1 + view.depth.getSize() / kPixels; depths.empty(); step = 1) {
+    const auto everyNth = [&](unsigned step) {
+        std::vector<float> depths;
         for (unsigned k = 0; k < view.depth.getSize(); k += step) {
             if (view.depth.bitmap[k] > 0.F) depths.push_back(view.depth.bitmap[k]);
         }
-        if (step == 1) break;
-    }
+        return depths;
+    };
+    std::vector<float> depths = everyNth(1 + view.depth.getSize() / kPixels);
+    if (depths.empty()) depths = everyNth(1);
     if (depths.empty()) return false;
     requirePlausibleDepth(median(std::move(depths), 0.), options, sequence.cameraFile);
     return true;
@@ -87,16 +90,13 @@ FusedRecording fuseRecording(TexturedOcTree& map, const Recording& recording,
     if (options.depth == "monocular") {
         monocular.emplace(map, sequence.camera, options.fusion, calls.onReference);
     }
-    const auto add = [&](const RecordedFrame& frame) {  // returns whether it was not stopped
+    const auto add = [&](const RecordedFrame& frame) {
         try {
             if (monocular) {
                 monocular->add(frame);
             } else {
                 fuse(map, frame.view, sequence.camera, frame.T_c_w, fusion);
             }
-            return true;
-        } catch (const Interrupted&) {
-            return false;
         } catch (const std::invalid_argument& error) {  // sizes are checked: cells are too small
             throw InputError("--resolution", "", error.what());
         }
@@ -104,21 +104,26 @@ FusedRecording fuseRecording(TexturedOcTree& map, const Recording& recording,
     FusedRecording fused;
     Stopwatch watch;
     bool isDepthChecked = false;
-    while (fused.frames < sequence.frames.size() && !(isStopped && isStopped())) {
+    const auto addNext = [&] {
+        throwIfStopped(isStopped);
         const RecordedFrame frame = recording.load(fused.frames);
         fused.loadSeconds += watch.lap();
-        if (isStopped && isStopped()) break;
+        throwIfStopped(isStopped);
         checkPosition(options, frame);
         if (!isDepthChecked) isDepthChecked = checkDepths(options, sequence, frame.view);
         if (isBlack(frame.view.intensity)) {
             fused.black.push_back({sequence.frames[fused.frames].colourFile, "black"});
-        } else if (!add(frame)) {
-            break;
+        } else {
+            add(frame);
         }
         fused.trajectory.push_back({frame.timestamp, frame.T_c_w.inverse()});
         fused.fuseSeconds += watch.lap();
         ++fused.frames;
         if (calls.progress) calls.progress(fused.frames, sequence.frames.size());
+    };
+    try {
+        while (fused.frames < sequence.frames.size()) addNext();
+    } catch (const Interrupted&) {  // the frames so far are whole
     }
     if (monocular) {
         monocular->finish();

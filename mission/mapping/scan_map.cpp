@@ -89,8 +89,7 @@ std::vector<Scan> openScans(const ScanMapOptions& options) {
 }
 
 std::vector<FusedScan> fuseScans(TexturedOcTree& map, const std::vector<Scan>& scans,
-                                 const ScanMapOptions& options,
-                                 const std::function<bool()>& isStopped,
+                                 const ScanMapOptions& options, const IsStopped& isStopped,
                                  const std::function<void(std::size_t, std::size_t)>& progress) {
     map.setProbHit(kHit);
     map.setProbMiss(kMiss);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "io/interrupted.hpp"
 #include "map/point_cloud.hpp"
 #include "map/textured_octree.hpp"
 #include "mapping/map_options.hpp"
@@ -44,7 +45,7 @@ struct FusedScan {
 ///         the cells
 std::vector<FusedScan> fuseScans(
     TexturedOcTree& map, const std::vector<Scan>& scans, const ScanMapOptions& options,
-    const std::function<bool()>& isStopped = {},
+    const IsStopped& isStopped = {},
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
 }  // namespace photonav

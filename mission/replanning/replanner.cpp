@@ -47,7 +47,7 @@ Replanner::Replanner(const Config& config, const TexturedOcTree* known, const Ex
 Replanned Replanner::replan(ReplanRequest request, const PlanningLimits& limits) {
     Replanned replanned{std::move(request), {}};
     fuse(replanned, limits);
-    if (limits.interrupted) throw Interrupted();
+    throwIfStopped(limits.interrupted);
     planner_.update(replanned.change, replanned.request.T_c_w, replanned.update, limits);
     if (isFirst_) replanned.change.join(map_.whole());  // for those who saw no earlier change
     isFirst_ = false;

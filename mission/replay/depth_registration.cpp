@@ -80,7 +80,7 @@ Sequence openSequence(const RecordingOptions& options) {
 }  // namespace
 
 DepthRegistration registerDepth(
-    const RecordingOptions& options, const std::function<bool()>& isStopped,
+    const RecordingOptions& options, const IsStopped& isStopped,
     const std::function<void(std::size_t done, std::size_t all)>& progress) {
     DepthRegistration result;
     result.sequence = openSequence(options);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "estimation/depth_calibration.hpp"
+#include "io/interrupted.hpp"
 #include "recording/recording.hpp"
 
 namespace photonav {
@@ -26,7 +27,7 @@ struct DepthRegistration {
 /// @throws InputError for a recording without depth images, or with too little motion for
 ///         DepthCalibrator::kLeastPairs pairs
 DepthRegistration registerDepth(
-    const RecordingOptions& options, const std::function<bool()>& isStopped = {},
+    const RecordingOptions& options, const IsStopped& isStopped = {},
     const std::function<void(std::size_t done, std::size_t all)>& progress = {});
 
 }  // namespace photonav

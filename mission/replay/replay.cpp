@@ -230,7 +230,7 @@ Replay::Replay(const ReplayOptions& options) : options_(options) {
     options_.leastSigmaRotation = alignment_.trust.leastSigmaRotation;
 }
 
-ReplayTracker Replay::makeTracker(const std::function<bool()>& isStopped) const {
+ReplayTracker Replay::makeTracker(const IsStopped& isStopped) const {
     const Camera& camera = recording_.sequence.camera;
     if (options_.odometry) {
         KeyframeChainOptions odometry;
@@ -249,7 +249,7 @@ ReplayTracker Replay::makeTracker(const std::function<bool()>& isStopped) const 
     return share > 0. ? inDisplacedMap(inMap, share, makers_) : inMap;
 }
 
-ReplayRun Replay::run(const std::function<bool()>& isStopped,
+ReplayRun Replay::run(const IsStopped& isStopped,
                       const std::function<void(std::size_t)>& progress) const {
     ReplayRun run = replay(recording_, makeTracker(isStopped), isStopped, progress);
     if (options_.odometry) alignToTruth(run);

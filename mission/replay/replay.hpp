@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "dataset/trajectory.hpp"
+#include "io/interrupted.hpp"
 #include "problem/tracking_map.hpp"
 #include "replay/depth_sensor.hpp"
 #include "replay/replay_options.hpp"
@@ -44,11 +45,11 @@ class Replay {
     /// @param progress called after every frame with the number of frames done
     /// @throws InputError if none of the first ten frames can be loaded, with the reason for the
     ///         first of them
-    ReplayRun run(const std::function<bool()>& isStopped = {},
+    ReplayRun run(const IsStopped& isStopped = {},
                   const std::function<void(std::size_t done)>& progress = {}) const;
 
   private:
-    ReplayTracker makeTracker(const std::function<bool()>& isStopped) const;
+    ReplayTracker makeTracker(const IsStopped& isStopped) const;
 
     ReplayOptions options_;
     Recording recording_;

@@ -96,12 +96,9 @@ struct Counts {
 /// Loads and tracks the next frame.
 /// @throws Interrupted when it is stopped in between, also by the views of a map; the frames
 ///         so far are whole
-void addFrame(const Recording& recording, const ReplayTracker& tracker,
-              const std::function<bool()>& isStopped, ReplayRun& run, Counts& counts) {
-    const auto stopWhenAsked = [&] {
-        if (isStopped && isStopped()) throw Interrupted();
-    };
-    stopWhenAsked();
+void addFrame(const Recording& recording, const ReplayTracker& tracker, const IsStopped& isStopped,
+              ReplayRun& run, Counts& counts) {
+    throwIfStopped(isStopped);
     const std::vector<Sequence::Entry>& entries = recording.sequence.frames;
     const std::size_t i = run.frames.size();
     ReplayedFrame frame;
@@ -111,14 +108,14 @@ void addFrame(const Recording& recording, const ReplayTracker& tracker,
     Stopwatch watch;
     std::optional<View> view = tryToLoad(recording, frame);
     run.loadSeconds += watch.seconds();
-    stopWhenAsked();
+    throwIfStopped(isStopped);
     if (view) track(tracker, *view, frame, run);
     run.frames.push_back(frame);
     if (!view) return;
     const bool isFirstLoss = frame.tracked.rejected && counts.lost == 0;
     counts.lost += frame.tracked.rejected;
     counts.notFound += frame.tracked.rejected && !frame.isBlack;
-    stopWhenAsked();
+    throwIfStopped(isStopped);
     const bool isSample = isFirstLoss || isOneOf(kSamples, i, entries.size());
     if (isSample || isOneOf(kStrips, i, entries.size())) {
         run.strips.push_back(stripOf(recording, tracker, run, std::move(*view)));
@@ -129,8 +126,7 @@ void addFrame(const Recording& recording, const ReplayTracker& tracker,
 }  // namespace
 
 ReplayRun replay(const Recording& recording, const ReplayTracker& tracker,
-                 const std::function<bool()>& isStopped,
-                 const std::function<void(std::size_t)>& progress) {
+                 const IsStopped& isStopped, const std::function<void(std::size_t)>& progress) {
     ReplayRun run;
     run.odometry = tracker.odometry;
     run.scale = tracker.scale;

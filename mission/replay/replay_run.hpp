@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/interrupted.hpp"
 #include "recording/recording.hpp"
 #include "replay/replay_tracker.hpp"
 
@@ -59,8 +60,7 @@ struct ReplayRun {
 /// @param progress called after every frame with the number of frames done
 /// @throws InputError if none of the first ten frames can be loaded, with the reason for the first
 ReplayRun replay(const Recording& recording, const ReplayTracker& tracker,
-                 const std::function<bool()>& isStopped,
-                 const std::function<void(std::size_t)>& progress);
+                 const IsStopped& isStopped, const std::function<void(std::size_t)>& progress);
 
 /// The frame with this time stamp. The run must contain it.
 const ReplayedFrame& frameAt(const ReplayRun& run, double timestamp);

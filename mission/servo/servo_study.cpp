@@ -53,11 +53,6 @@ View photographed(const AreaSensor& sensor, const Camera& camera, const Pose& T_
     return view;
 }
 
-/// @throws Interrupted when the study is interrupted
-void throwIfSet(const std::atomic<bool>& interrupted) {
-    if (interrupted) throw Interrupted();
-}
-
 /// The servo at a goal, with what is needed to simulate it.
 struct Simulation {
     ServoGoal goal;
@@ -80,7 +75,7 @@ struct Simulation {
           // The body moves by exp(V dt) on the right of T_w_b: T_c_w by -Ad(T_c_b) V on its left.
           servo(photographed(sensor, at.camera, T_goal), at.camera,
                 -adjoint(Pose(at.T_b_c.inverse())) * body,
-                {at.photometric, o.gain, o.damping, [&flag] { throwIfSet(flag); }}),
+                {at.photometric, o.gain, o.damping, [&flag] { throwIfStopped(flag); }}),
           depth(medianDepth(servo.goal())),
           interrupted(flag) {}
 
@@ -96,7 +91,7 @@ struct Simulation {
     /// One image and the motion it commands. @param random null: without noise
     /// @throws Interrupted when the study is interrupted
     void step(Pose& T_c_w, View& view, Random* random) const {
-        throwIfSet(interrupted);
+        throwIfStopped(interrupted);
         photograph(sensor, goal.camera, T_c_w, view);
         if (random) noise(view.intensity, *random);
         const Eigen::VectorXd q = servo.velocity(view.intensity) / options.rate;

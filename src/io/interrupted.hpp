@@ -2,6 +2,7 @@
 // The end of a long computation that was interrupted.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <stdexcept>
 
@@ -18,6 +19,9 @@ using IsStopped = std::function<bool()>;
 /// @throws Interrupted when it is time to stop
 inline void throwIfStopped(const IsStopped& isStopped) {
     if (isStopped && isStopped()) throw Interrupted();
+}
+inline void throwIfStopped(const std::atomic<bool>& isStopped) {
+    if (isStopped) throw Interrupted();
 }
 
 }  // namespace photonav

@@ -39,7 +39,7 @@ void renderInBands(const Camera& camera, std::size_t pixels,
 void InterruptibleViews::render(const Camera& camera, const Pose& T_c_w, View& view) const {
     if (pixelsOf(camera) <= kBandPixels) return views_->render(camera, T_c_w, view);
     const auto renderBand = [&](const Camera& band, View& part) {
-        if (isStopped_()) throw Interrupted();
+        throwIfStopped(isStopped_);
         views_->render(band, T_c_w, part);
     };
     renderInBands(camera, kBandPixels, renderBand, view);
