@@ -213,7 +213,7 @@ void repeatFlight(const std::string& name, const std::string& scene) {
     PhotometricOptions photometric;
     photometric.scale = recorded.informationScale.value_or(1.);
     flight.expose = [noise = assumedNoise(photometric)](ImageF image, std::mt19937_64& random) {
-        noise(image, random);
+        noise(image, random, {});
         for (unsigned i = 0; i < image.getSize(); ++i) {
             image.bitmap[i] = static_cast<float>(greyLevel(image.bitmap[i])) / 255.F;
         }

@@ -57,7 +57,7 @@ std::vector<double> squaredErrors(const ViewSource& model, const Camera& camera,
     for (int i = 0; i < kImages; ++i) {
         View view;
         model.render(camera, trueCamera(), view);
-        addNoise(view.intensity, random);
+        addNoise(view.intensity, random, {});
         const Pose T_start_w = expSE3(0.005 * Vector6::Ones()) * trueCamera();
         const Alignment a = aligner.align(view.intensity, T_start_w);
         const auto squared = squaredNormalisedError({a.T_c_w, a.covariance}, trueCamera());
@@ -84,7 +84,7 @@ struct Case {
 std::vector<Case> cases() {
     const ImageNoise independent = assumedNoise({.sigma = 0.02});
     const ImageNoise correlated = assumedNoise({.sigma = 0.02, .scale = 0.08});
-    const ImageNoise camera = [](ImageF& image, std::mt19937_64& random) {
+    const ImageNoise camera = [](ImageF& image, std::mt19937_64& random, const IsStopped&) {
         CameraNoiseOptions options;
         options.blur = 0.2;
         image = takePicture(image, options, random);

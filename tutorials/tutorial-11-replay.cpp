@@ -37,7 +37,7 @@ void record(const ViewSource& room, const Camera& camera, const std::string& fol
     for (int i = 0; i < kFrames; ++i) {
         const Pose T_c_w = flight(i).inverse();
         room.render(camera, T_c_w, view);
-        addNoise(view.intensity, random);
+        addNoise(view.intensity, random, {});
         recorder.add({i / 15., T_c_w, view.intensity, view.depth});
     }
     recorder.finish();

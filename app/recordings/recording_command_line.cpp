@@ -112,6 +112,7 @@ int map(MapArguments& options, const std::atomic<bool>& interrupted) {
     if (isAgain) refuseOptionsBeside(options.dataset, *options.parser);
     const bool isOfScans = isAgain ? isScanConfig(options.dataset) : isScan(options.dataset);
     isOfScans ? readScanOptions(options) : readImageOptions(options);
+    options.isStopped = [&] { return interrupted.load(); };
     const auto run = [&] {
         if (!isOfScans) return runMap(options, interrupted);
         options.scan.out = options.out;
@@ -149,6 +150,7 @@ int replay(ReplayArguments& options, const std::atomic<bool>& interrupted) {
         refuseOptionsBeside(options.dataset, *options.parser);
         options.keys.read(std::string(options.dataset));
     }
+    options.isStopped = [&] { return interrupted.load(); };
     return runOnDataset(
         options, "replay", options.dataset, "frames",
         [&] { return runReplay(options, interrupted); },

@@ -24,9 +24,16 @@ class Exploration {
     void enterEnd();
     const ExplorationResult& resultSoFar();
     OnExplorer onExplorer();
+    IsStopped isStopped() const {
+        return [&flag = interrupted_] { return flag.load(); };
+    }
     std::shared_ptr<const ViewSource> truth() const {
-        return std::make_shared<InterruptibleViews>(setup_.truth.truth,
-                                                    [this] { return interrupted_.load(); });
+        return std::make_shared<InterruptibleViews>(setup_.truth.truth, isStopped());
+    }
+    SimulatedRobotOptions robotOptions() const {
+        SimulatedRobotOptions options = setup_.flight.robot;
+        options.camera.isStopped = isStopped();
+        return options;
     }
 
     const ExplorationSetup& setup_;
@@ -47,7 +54,7 @@ Exploration::Exploration(const ExplorationSetup& setup, const std::string& plann
       on_(on),
       robot_(truth(), setup.truth.camera, setup.truth.T_b_c,
              drawStart(beliefAtTakeOff(setup.config), setup.truth.T_b_c, seed), setup.truth.noise,
-             setup.flight.robot, seed),
+             robotOptions(), seed),
       evaluator_(setup.truth, robot_, setup.config.goal.position),
       explorer_(explorerOptions(setup), robot_, planner, seed, interrupted, onExplorer()) {}
 

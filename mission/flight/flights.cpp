@@ -22,6 +22,7 @@ std::vector<FlightResult> flyMany(const std::vector<PlannedView>& plan, const Fl
     const auto flyOne = [&](std::size_t number) {
         if (interrupted) return false;
         FlightOptions own = options;
+        own.robot.camera.isStopped = isStopped;
         own.seed = (options.seed << 32) + number;
         FlightResult& flight = flights[number];
         try {

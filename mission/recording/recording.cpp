@@ -129,7 +129,9 @@ Recording readDepthRecording(const RecordingOptions& options) {
     if (options.depthScale && !recording.sequence.hasDepth()) {
         throw InputError("--depth-scale", "", "the recording has no depth images");
     }
-    recording.view = [all = recording.sequence](std::size_t i) { return loadFrame(all, i).view; };
+    recording.view = [all = recording.sequence, isStopped = options.isStopped](std::size_t i) {
+        return loadFrame(all, i, isStopped).view;
+    };
     return recording;
 }
 

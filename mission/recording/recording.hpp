@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dataset/sequence.hpp"
+#include "io/interrupted.hpp"
 #include "io/reading.hpp"
 
 namespace photonav {
@@ -31,6 +32,8 @@ struct RecordingOptions {
                          ///< occurs more than once must be named
     std::string mount;   ///< bags: "x,y,z,qx,qy,qz,qw", pose of the camera in the frame whose poses
                          ///< the bag holds; empty: the poses are the camera's
+    IsStopped isStopped;  ///< asked between the two images of a frame; Recording::view then throws
+                          ///< Interrupted
 };
 
 struct Recording {

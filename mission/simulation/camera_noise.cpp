@@ -37,8 +37,8 @@ ImageF blurred(const ImageF& image, double sigma) {
 
 }  // namespace
 
-ImageF takePicture(const ImageF& ideal, const CameraNoiseOptions& options,
-                   std::mt19937_64& random) {
+ImageF takePicture(const ImageF& ideal, const CameraNoiseOptions& options, std::mt19937_64& random,
+                   const IsStopped& isStopped) {
     ImageF image = options.blur > 0. ? blurred(ideal, options.blur) : ideal;
     const double cx = 0.5 * (image.getWidth() - 1.);
     const double cy = 0.5 * (image.getHeight() - 1.);
@@ -46,6 +46,7 @@ ImageF takePicture(const ImageF& ideal, const CameraNoiseOptions& options,
     const double steps = options.bits > 0 ? std::ldexp(1., options.bits) - 1. : 0.;
     std::normal_distribution<double> normal;
     for (unsigned v = 0; v < image.getHeight(); ++v) {
+        throwIfStopped(isStopped);
         for (unsigned u = 0; u < image.getWidth(); ++u) {
             const double radius = (u - cx) * (u - cx) + (v - cy) * (v - cy);
             const double light = std::max(0., options.exposure.gain * image[v][u] *
@@ -70,12 +71,15 @@ ImageNoise assumedNoise(const PhotometricOptions& options) {
         kernel = unitPowerKernel(std::sqrt(area / (4. * std::numbers::pi)));
     }
     const auto sigma = static_cast<float>(options.sigma);
-    return [kernel, sigma](ImageF& image, std::mt19937_64& random) {
+    return [kernel, sigma](ImageF& image, std::mt19937_64& random, const IsStopped& isStopped) {
         std::normal_distribution<float> normal(0.F, sigma);
         const auto border = static_cast<int>(kernel.size()) - 1;
         cv::Mat pixels = asMat(image);
         cv::Mat1f noise(pixels.rows + border, pixels.cols + border);
-        for (float& value : noise) value = normal(random);
+        for (int v = 0; v < noise.rows; ++v) {
+            throwIfStopped(isStopped);
+            std::generate_n(noise[v], noise.cols, [&] { return normal(random); });
+        }
         cv::Mat1f smooth;
         cv::sepFilter2D(noise, smooth, CV_32F, kernel, kernel);
         // Only where the kernel lies inside.
@@ -84,21 +88,23 @@ ImageNoise assumedNoise(const PhotometricOptions& options) {
 }
 
 ImageNoise realNoise(const CameraNoiseOptions& options, const WanderingExposure& wandering) {
-    return [options, wandering, state = std::optional<double>{}](ImageF& image,
-                                                                 std::mt19937_64& random) mutable {
+    return [options, wandering, state = std::optional<double>{}](
+               ImageF& image, std::mt19937_64& random, const IsStopped& isStopped) mutable {
         std::normal_distribution<double> normal;
         const double c = wandering.correlation;
         state = state ? c * *state + std::sqrt(1. - c * c) * normal(random) : normal(random);
         CameraNoiseOptions now = options;
         now.exposure.gain *= 1. + wandering.gainSigma * std::clamp(*state, -2., 2.);
-        image = takePicture(image, now, random);
+        image = takePicture(image, now, random, isStopped);
     };
 }
 
-void addDepthNoise(ImageF& depth, const DepthNoiseOptions& options, std::mt19937_64& random) {
+void addDepthNoise(ImageF& depth, const DepthNoiseOptions& options, std::mt19937_64& random,
+                   const IsStopped& isStopped) {
     std::normal_distribution<double> normal;
     std::bernoulli_distribution missing(options.missing);
     for (unsigned i = 0; i < depth.getSize(); ++i) {
+        if (i % depth.getWidth() == 0) throwIfStopped(isStopped);
         const double z = depth.bitmap[i];
         const double noisy = z + options.sigmaAtOneMetre * z * z * normal(random);
         depth.bitmap[i] =

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "alignment/normal_equations.hpp"
+#include "io/interrupted.hpp"
 #include "photometry/photometric.hpp"
 #include "photometry/view.hpp"
 
@@ -23,10 +24,14 @@ struct CameraNoiseOptions {
 
 /// The image that a camera takes of an ideal image: blur, vignetting, gain, shot and read noise,
 /// offset, clipping to [0, 1] and quantisation are applied in this order.
-ImageF takePicture(const ImageF& ideal, const CameraNoiseOptions& options, std::mt19937_64& random);
+/// @param isStopped asked at every row @throws Interrupted when it returns true
+ImageF takePicture(const ImageF& ideal, const CameraNoiseOptions& options, std::mt19937_64& random,
+                   const IsStopped& isStopped = {});
 
-/// Adds the noise of one exposure to the noise-free image.
-using ImageNoise = std::function<void(ImageF& image, std::mt19937_64& random)>;
+/// Adds the noise of one exposure to the noise-free image. Very large images take seconds:
+/// `isStopped` is asked now and then; when it returns true, Interrupted is thrown.
+using ImageNoise =
+    std::function<void(ImageF& image, std::mt19937_64& random, const IsStopped& isStopped)>;
 
 /// The noise that PhotometricOptions assume: Gaussian with standard deviation sigma, correlated
 /// over an area of 1 / scale pixels, so that photometricInformation() is the true information of an
@@ -51,6 +56,8 @@ struct DepthNoiseOptions {
     double missing = 0.02;            ///< share of pixels without a measurement
 };
 /// Adds noise to a depth image [m]; missing measurements become 0.
-void addDepthNoise(ImageF& depth, const DepthNoiseOptions& options, std::mt19937_64& random);
+/// @param isStopped asked at every row @throws Interrupted when it returns true
+void addDepthNoise(ImageF& depth, const DepthNoiseOptions& options, std::mt19937_64& random,
+                   const IsStopped& isStopped = {});
 
 }  // namespace photonav

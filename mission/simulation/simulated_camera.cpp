@@ -45,7 +45,7 @@ std::optional<Exposed> SimulatedCamera::expose(double time, const Pose& T_c_w) {
     View view;
     sensor_.render(camera_, T_c_w, view);
     Exposed exposed{time, T_c_w, view.intensity, view.depth};
-    if (noise_) noise_(exposed.image, random_);
+    if (noise_) noise_(exposed.image, random_, options_.isStopped);
     const bool isBlackNow = isBlack(time);
     if (isBlackNow) exposed.image = view.intensity = 0.F;
     const bool isDropped = std::bernoulli_distribution(options_.dropRate)(random_);
@@ -71,7 +71,7 @@ void SimulatedCamera::measureDepth(const Pose& T_c_w, View& view) {
             view.depth.resize(0, 0);
             return;
         case DepthSensor::rgbd:
-            return addDepthNoise(view.depth, options_.depthNoise, depthRandom_);
+            return addDepthNoise(view.depth, options_.depthNoise, depthRandom_, options_.isStopped);
         case DepthSensor::stereo:
             (*stereo_)({pictureOf(view.intensity), rightImage(T_c_w)}, view);
     }
@@ -79,7 +79,7 @@ void SimulatedCamera::measureDepth(const Pose& T_c_w, View& view) {
 
 /// A picture of the pair.
 vpImage<unsigned char> SimulatedCamera::pictureOf(ImageF ideal) {
-    if (options_.pairNoise) options_.pairNoise(ideal, depthRandom_);
+    if (options_.pairNoise) options_.pairNoise(ideal, depthRandom_, options_.isStopped);
     vpImage<unsigned char> bytes(ideal.getHeight(), ideal.getWidth());
     std::transform(ideal.bitmap, ideal.bitmap + ideal.getSize(), bytes.bitmap, greyLevel);
     return bytes;

@@ -40,6 +40,8 @@ struct SimulatedCameraOptions {
     double blackRate = 0.;       ///< share of the images that are black
     double blackoutStart = 0.;   ///< start of a time in which all images are black [s]
     double blackoutLength = 0.;  ///< length of this time [s]; 0: none
+    /// Asked while noise is added to an image; when it returns true, Interrupted is thrown.
+    IsStopped isStopped = {};
 };
 
 /// An exposure. Its image may arrive late or never.

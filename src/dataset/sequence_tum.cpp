@@ -177,7 +177,7 @@ ImageF loadDepth(const Sequence& sequence, std::size_t index) {
         1. / sequence.depthScale);
 }
 
-RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
+RecordedFrame loadFrame(const Sequence& sequence, std::size_t index, const IsStopped& isStopped) {
     const Sequence::Entry& entry = sequence.frames.at(index);
     const Camera& camera = sequence.camera;
     const vpImage<unsigned char> grey =
@@ -187,6 +187,7 @@ RecordedFrame loadFrame(const Sequence& sequence, std::size_t index) {
     for (unsigned i = 0; i < grey.getSize(); ++i) {
         frame.view.intensity.bitmap[i] = static_cast<float>(grey.bitmap[i]) / 255.F;
     }
+    throwIfStopped(isStopped);
     try {
         if (!entry.depthFile.empty()) frame.view.depth = loadDepth(sequence, index);
     } catch (const InputError&) {

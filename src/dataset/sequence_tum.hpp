@@ -6,6 +6,7 @@
 #include <string>
 
 #include "dataset/sequence.hpp"
+#include "io/interrupted.hpp"
 
 namespace photonav {
 
@@ -40,8 +41,11 @@ Sequence readTumSequence(const std::string& folder, const TumOptions& options = 
 /// depth to metres along the optical axis, as the colour camera sees it (registeredDepth()); 0
 /// everywhere in a frame without depth image, or, where the sequence needs none, without a usable
 /// one.
+/// @param isStopped asked between the two images
 /// @throws InputError for a file that is missing, damaged or of another size than the camera's
-RecordedFrame loadFrame(const Sequence& sequence, std::size_t index);
+/// @throws Interrupted when isStopped returns true
+RecordedFrame loadFrame(const Sequence& sequence, std::size_t index,
+                        const IsStopped& isStopped = {});
 
 /// The depth image of frame `index` as it was recorded, in the depth camera's frame [m].
 /// @throws InputError as loadFrame(), and for a frame without depth image

@@ -12,16 +12,19 @@
 #include <system_error>
 
 #include "io/error.hpp"
+#include "io/interrupted.hpp"
 
 namespace photonav {
 
 /// Calls a function that reads a file. Exceptions of libraries, and std::bad_alloc, become an
-/// InputError that names the file.
+/// InputError that names the file; InputError and Interrupted are passed on.
 template <typename Read>
 auto reading(const std::string& file, const Read& read) {
     try {
         return read();
     } catch (const InputError&) {
+        throw;
+    } catch (const Interrupted&) {
         throw;
     } catch (const std::bad_alloc&) {
         throw InputError(file, "", "needs more memory than there is");

@@ -23,6 +23,7 @@ TEST(Reading, NamesTheFileWhateverIsThrown) {
     EXPECT_EQ(complaint([]() -> int { throw InputError("b.png", "", "damaged"); }),
               "b.png: damaged");
     EXPECT_EQ(reading("a.ot", [] { return 3; }), 3);
+    EXPECT_THROW(reading("a.ot", []() -> int { throw Interrupted(); }), Interrupted);
 }
 
 TEST(Reading, OpensFilesOnly) {

@@ -40,6 +40,20 @@ class ColmapRecording : public testing::Test {
     RecordingOptions options_;
 };
 
+/// An image of 48 million pixels takes a second to read.
+TEST(DepthRecording, IsStoppedBetweenTheImagesOfAFrame) {
+    const test::TemporaryFolder folder;
+    test::FloorDataset().write(folder.path());
+    bool isStopped = false;
+    RecordingOptions options;
+    options.dataset = folder.path().string();
+    options.isStopped = [&] { return isStopped; };
+    const Recording recording = readRecording(options);
+    EXPECT_GT(recording.load(1).view.depth.getSize(), 0U);
+    isStopped = true;
+    EXPECT_THROW(recording.load(1), Interrupted);
+}
+
 TEST_F(ColmapRecording, HasItsImagesInAnUprightWorld) {
     const Recording recording = readRecording(options_);
     EXPECT_EQ(recording.layout, "COLMAP");

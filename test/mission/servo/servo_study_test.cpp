@@ -80,7 +80,7 @@ TEST(ServoStudy, StandardDeviationsAreThoseOfOneImage) {
     Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
     for (int i = 0; i < kImages; ++i) {
         ImageF image = view.intensity;
-        noise(image, random);
+        noise(image, random, {});
         const Eigen::VectorXd q = servo.velocity(image);
         covariance += q * q.transpose() / kImages;
     }

@@ -69,8 +69,8 @@ TEST(CameraNoise, ExposureWandersSlowly) {
     for (int k = 0; k < kCameras; ++k) {
         ImageNoise camera = original;
         ImageF first(3, 3, 0.5F), second(3, 3, 0.5F);
-        camera(first, random);
-        camera(second, random);
+        camera(first, random, {});
+        camera(second, random, {});
         const double gain = first[1][1] / 0.5 - 1.;
         const double step = second[1][1] / 0.5 - 1. - gain;
         EXPECT_LE(std::abs(gain), 0.2 + 1e-5);
@@ -107,7 +107,7 @@ TEST(AssumedNoise, HasTheVarianceAndTheInformationAssumed) {
     int pixels = 0, count = 0;
     for (int i = 0; i < 40; ++i) {
         ImageF image(64, 64, 0.F);
-        noise(image, random);
+        noise(image, random, {});
         for (unsigned v = 0; v < 64; v += 16) {
             for (unsigned u = 0; u < 64; u += 16) {
                 double sum = 0.;
@@ -143,6 +143,25 @@ TEST(CameraNoise, DepthErrorsGrowWithDepthSquared) {
     for (unsigned i = 0; i < depth.getSize(); ++i) missing += depth.bitmap[i] == 0.F ? 1 : 0;
     EXPECT_NEAR(missing / double(depth.getSize()), 0.25, 0.02);
     EXPECT_EQ(depth[3][3], 0.F);
+}
+
+/// The noise of an image of 48 million pixels takes seconds.
+TEST(CameraNoise, IsInterruptedWithinAnImage) {
+    std::mt19937_64 random(5);
+    unsigned asked = 0;
+    const IsStopped inTheMiddle = [&] { return ++asked > kSize / 2; };
+    const auto expectInterrupted = [&](const char* what, const auto& add) {
+        asked = 0;
+        ImageF image = grey(0.5F);
+        EXPECT_THROW(add(image), Interrupted) << what;
+        EXPECT_EQ(asked, kSize / 2 + 1) << what;
+    };
+    expectInterrupted("assumed", [&](ImageF& image) {
+        assumedNoise({.sigma = 0.02})(image, random, inTheMiddle);
+    });
+    expectInterrupted("real", [&](ImageF& image) { realNoise()(image, random, inTheMiddle); });
+    expectInterrupted("depth",
+                      [&](ImageF& image) { addDepthNoise(image, {}, random, inTheMiddle); });
 }
 
 }  // namespace
