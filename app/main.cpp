@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <ompl/util/Console.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -64,10 +65,10 @@ std::string_view saidWhenEnded() {
                                                : "interrupted before there was any result";
 }
 
-/// The first Ctrl-C, or SIGTERM as Slurm and systemd send it, lets the command finish its files, or
-/// ends it at once where there are none yet; the second one always does. timeout(1) sends its
-/// signal twice, to the process and to its group: that is one. A command that has not ended a
-/// second later says so.
+/// The first Ctrl-C, SIGTERM as Slurm and systemd send it, or SIGHUP of a terminal that is closed
+/// lets the command finish its files, or ends it at once where there are none yet; the second one
+/// always does. timeout(1) sends its signal twice, to the process and to its group: that is one. A
+/// command that has not ended a second later says so.
 void onInterrupt(int signal) {
     const double now = running.seconds();
     double first = 0.;
@@ -167,7 +168,7 @@ int run(int argc, char** argv) {
         "photonav COMMAND --help lists the options of a command, photonav keys lists the\n"
         "keys of a config.\n"
         "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by\n"
-        "Ctrl-C, 143 stopped by SIGTERM, both with the results so far.");
+        "Ctrl-C, 143 by SIGTERM, 129 by SIGHUP, all with the results so far.");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -188,6 +189,17 @@ int run(int argc, char** argv) {
     return kBadInput;
 }
 
+/// Whether standard output is a pipe whose other end was closed, as by head(1).
+bool isReaderGone() {
+    pollfd output{STDOUT_FILENO, POLLOUT, 0};
+    return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
+}
+
+/// Where a signal is ignored already, it stays so: nohup(1) ignores SIGHUP.
+void onHangUp() {
+    if (std::signal(SIGHUP, onInterrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -196,8 +208,11 @@ int main(int argc, char** argv) {
     std::set_terminate(onTerminate);
     std::signal(SIGINT, onInterrupt);
     std::signal(SIGTERM, onInterrupt);
+    onHangUp();
     std::signal(SIGALRM, onAlarm);
-    std::signal(SIGXFSZ, SIG_IGN);  // writing fails, and says so
+    // Writing fails, and says so. In a pipeline Ctrl-C ends the reader of our messages as well:
+    // that must not end us before the results so far are written.
+    for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
     ompl::msg::noOutputHandler();
     quietDecoders = true;
     const std::string command = argc > 1 ? argv[1] : "";
@@ -205,10 +220,14 @@ int main(int argc, char** argv) {
         printMessage(oneLine(reason));
         return code;
     };
+    const auto failToPrint = [&] {
+        if (!isReaderGone()) return fail(kNoAnswer, kNoOutput);
+        return exitCodeOf(interrupted ? int{interruptedBy} : SIGPIPE);
+    };
     try {
         const int code = run(argc, argv);
         if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-        return fail(kNoAnswer, kNoOutput);
+        return failToPrint();
     } catch (const InputError& error) {
         return fail(kBadInput, error.what());
     } catch (const std::filesystem::filesystem_error& error) {
@@ -218,7 +237,7 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return fail(kNoAnswer, command + ": needs more memory than there is");
     } catch (const std::exception& error) {
-        if (std::ferror(stdout) != 0) return fail(kNoAnswer, kNoOutput);
+        if (std::ferror(stdout) != 0) return failToPrint();
         return fail(kNoAnswer, command + ": " + reasonOf(error));
     }
 }

@@ -38,8 +38,8 @@ bool isLoopback(const std::string& host) {
 
 /// The host of "host:port" or "[host]:port".
 std::string hostOf(const std::string& text) {
-    if (text.starts_with('[')) return text.substr(1, text.find(']') - 1);
-    return text.substr(0, text.rfind(':'));
+    const std::string host = text.substr(0, text.rfind(':'));
+    return host.starts_with('[') && host.ends_with(']') ? host.substr(1, host.size() - 2) : host;
 }
 
 /// Unlike the library's default: without SO_REUSEPORT, with which two servers share a port.
@@ -126,7 +126,8 @@ ServerAddress parseServerAddress(const std::string& text) {
         address.host = hostOf(text);
         port = text.substr(colon + 1);
         const bool isPlain = address.host.find(':') == std::string::npos;
-        if (address.host.empty() || (!isPlain && !text.starts_with('['))) {
+        const bool isBracketed = text.starts_with('[') && !address.host.starts_with('[');
+        if (address.host.empty() || (!isPlain && !isBracketed)) {
             refuse("is not PORT, ADDRESS:PORT or [IPV6]:PORT");
         }
     }

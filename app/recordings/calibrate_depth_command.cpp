@@ -21,6 +21,9 @@ namespace {
 
 using nlohmann::json;
 
+constexpr DepthCalibrationOptions kPrior;
+constexpr double kOpen = 0.7;  // standard deviation of a direction that images leave open [prior's]
+
 json resultOf(const CalibrateDepthOptions& options, const DepthRegistration& found) {
     const DepthCalibration& c = found.calibration;
     const Eigen::Quaterniond q(c.T_c_d.linear());
@@ -31,6 +34,7 @@ json resultOf(const CalibrateDepthOptions& options, const DepthRegistration& fou
         "calibrate-depth",
         {{"dataset", options.dataset},
          {"pairs", found.pairs},
+         {"unreadable", found.unreadable},
          {"T_colour_depth", {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}},
          {"sigma", sigmas},
          {"sigma_is_of", "left perturbation (rho, phi), colour camera's frame [m, rad]"},
@@ -47,9 +51,15 @@ ReportTable summaryOf(const DepthRegistration& found) {
     for (int i = 0; i < 6; ++i) {
         const bool isTurn = i >= 3;
         const double unit = isTurn ? kDegree : 1e-3;
-        table.rows.emplace_back(kNames.at(std::size_t(i)),
-                                fmt::format("{:.2f} +- {:.2f} {}", xi[i] / unit, sigma[i] / unit,
-                                            isTurn ? "deg" : "mm"));
+        const double prior = isTurn ? kPrior.rotationSigma : kPrior.translationSigma;
+        table.rows.emplace_back(
+            kNames.at(std::size_t(i)),
+            fmt::format("{:.2f} +- {:.2f} {}{}", xi[i] / unit, sigma[i] / unit,
+                        isTurn ? "deg" : "mm",
+                        sigma[i] > kOpen * prior ? ", not determined by these images" : ""));
+    }
+    if (found.unreadable > 0) {
+        table.rows.emplace_back("frames that cannot be used", std::to_string(found.unreadable));
     }
     table.rows.emplace_back("pairs of images", std::to_string(found.pairs));
     table.rows.emplace_back("median residual", fmt::format("{:.5f} (before {:.5f})",

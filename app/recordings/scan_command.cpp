@@ -35,13 +35,20 @@ json stationsJson(const std::vector<FusedScan>& scans) {
 ReportTable summaryOf(const json& result) {
     std::uint64_t points = 0;
     for (const json& station : result["stations"]) points += station["used"].get<std::uint64_t>();
-    return {"Map",
-            {{"stations", std::to_string(result["stations"].size())},
-             {"points", std::to_string(points)},
-             {"cell", fmt::format("{} m", result["resolution"].get<double>())},
-             {"occupied cells", result["voxels"]["occupied"].dump()},
-             {"free cells", result["voxels"]["free"].dump()},
-             {"fusion", fmt::format("{:.1f} s", result["time"]["fuse_s"].get<double>())}}};
+    ReportTable table{
+        "Map",
+        {{"stations", std::to_string(result["stations"].size())},
+         {"points", std::to_string(points)},
+         {"cell", fmt::format("{} m", result["resolution"].get<double>())},
+         {"occupied cells", result["voxels"]["occupied"].dump()},
+         {"free cells", result["voxels"]["free"].dump()},
+         {"fusion", fmt::format("{:.1f} s", result["time"]["fuse_s"].get<double>())}}};
+    if (result["voxels"]["occupied"] == 0) {
+        table.rows.emplace(table.rows.begin(), "verdict",
+                           fmt::format("the map is empty: no surface within --max-range {} m",
+                                       result["max_range"].get<double>()));
+    }
+    return table;
 }
 
 void writeScanReport(const fs::path& folder, const ScanCommandOptions& options, const json& result,
@@ -80,8 +87,7 @@ CommandReport runScanMap(const ScanCommandOptions& options, const std::atomic<bo
         return {{}, {}, {}, kInterrupted};
     }
     CommandReport report;
-    report.exitCode = interrupted ? kInterrupted : kDone;
-    report.result = resultJson("map", {{"interrupted", report.exitCode == kInterrupted},
+    report.result = resultJson("map", {{"interrupted", interrupted.load()},
                                        {"scans", options.scans},
                                        {"stations", stations},
                                        {"resolution", options.resolution},
@@ -89,6 +95,9 @@ CommandReport runScanMap(const ScanCommandOptions& options, const std::atomic<bo
                                        {"voxels", voxelsJson(map)},
                                        {"time", {{"fuse_s", watch.seconds()}}}});
     report.summary = summaryOf(report.result);
+    report.exitCode = interrupted                                ? kInterrupted
+                      : report.result["voxels"]["occupied"] == 0 ? kNoAnswer
+                                                                 : kDone;
     saveTexturedOcTree(map, (folder.path() / "map.ot").string());
     saveColorOcTree(map, (folder.path() / "map_color.ot").string());
     saveBinaryOcTree(map, (folder.path() / "map.bt").string());

@@ -48,15 +48,14 @@ bool keepsEarlierResult(const FolderTransaction& folder, bool isNothingDone) {
 
 FolderTransaction beginResult(const fs::path& folder, const InputPaths& inputs,
                               FolderTransaction::Unfinished unfinished) {
-    const std::string name = (folder / "").parent_path().string();
-    if (name.ends_with(kInterruptedSuffix)) {
+    if (resolvedFolder(folder).string().ends_with(kInterruptedSuffix)) {
         throw InputError(
             "--out", folder.string(),
             fmt::format("ends in {}, as folders of interrupted commands do; give another folder",
                         kInterruptedSuffix));
     }
     checkInputsApart("--out", folder, inputs);
-    checkInputsApart("--out", name + kInterruptedSuffix, inputs);
+    checkInputsApart("--out", FolderTransaction::placeBeside(folder, kInterruptedSuffix), inputs);
     return FolderTransaction(folder, unfinished);
 }
 

@@ -7,6 +7,7 @@
 #include "interchange/result_export.hpp"
 #include "io/atomic_file.hpp"
 #include "io/durable_file.hpp"
+#include "io/folder_transaction.hpp"
 #include "mapping/map_config.hpp"
 #include "recordings/replay_command.hpp"
 #include "shared/command_line.hpp"
@@ -79,6 +80,7 @@ void checkIsOwnReport(const fs::path& folder, const fs::path& file) {
 
 int rebuildReport(const ReportOptions& options, const std::atomic<bool>& /*interrupted*/) {
     const fs::path file = options.folder / "report.html";
+    const FolderLock lock(options.folder);
     checkIsOwnReport(options.folder, file);
     writeReport(file, readReportOf(options.folder));
     Manifest::renew(options.folder, "report.html");

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "exploration/real_time_json.hpp"
 #include "geometry/constants.hpp"
+#include "geometry/uncertain_pose.hpp"
 #include "map/octree_file.hpp"
 #include "replanning/plan_update_json.hpp"
 #include "result/json_values.hpp"
@@ -46,7 +48,7 @@ json lineOf(const FlightSample& sample) {
 
 FlightSample sampleFrom(const json& line) {
     const auto covariance = matrixFrom<6, 6>(line.at("covariance"));
-    require(covariance.diagonal().minCoeff() >= 0., "covariance");
+    require(isCovariance(covariance), "covariance");
     return {nonNegative(line, "time"),
             nonNegative(line, "distance"),
             poseFrom(line.at("T_c_w")),
@@ -59,6 +61,17 @@ FlightEnd endFrom(const std::string& name) {
         if (nameOf(static_cast<FlightEnd>(i)) == name) return static_cast<FlightEnd>(i);
     }
     throw std::out_of_range("end");
+}
+
+/// @throws std::out_of_range for a flight that cannot be
+void checkPossible(const ExplorationResult& flight) {
+    const auto isBefore = [](const FlightSample& a, const FlightSample& b) {
+        return a.time < b.time;
+    };
+    require(!flight.samples.empty(), "samples");
+    require(std::is_sorted(flight.samples.begin(), flight.samples.end(), isBefore), "time");
+    require(flight.rejectedImages <= flight.images, "rejected_images");
+    require(!flight.hasArrived() || flight.arrivalProbability > 0., "end");
 }
 
 template <typename Element>
@@ -137,6 +150,7 @@ ExplorationResult TrialKind::load(const json& line, const fs::path& folder) {
     flight.blindSteps = countOf(line, "blind_steps");
     flight.wallSeconds = nonNegative(line, "wall_s");
     for (const json& sample : line.at("samples")) flight.samples.push_back(sampleFrom(sample));
+    checkPossible(flight);
     for (const json& update : line.at("updates")) flight.updates.push_back(planUpdateFrom(update));
     if (line.contains("real_time")) flight.realTime = realTimeFrom(line.at("real_time"));
     if (line.at("has_map").get<bool>() && fs::exists(folder / kMapFile)) {

@@ -2,6 +2,7 @@
 #include "problem/planned_path.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <fstream>
@@ -17,6 +18,7 @@ using nlohmann::json;
 namespace {
 
 constexpr double kMostSteps = 1e5;
+constexpr double kSamePlace = 1e-3;  // [m]
 
 Place placeFrom(const json& point) {
     const auto& p = point.at("position");
@@ -33,7 +35,8 @@ std::string textAt(const json& result, const char* key, const std::string& other
     return value != result.end() && value->is_string() ? value->get<std::string>() : otherwise;
 }
 
-/// A plan is within the bounds of its config. All of its steps are kept, with their beliefs.
+/// A plan leads from the start to the goal of its config, within its bounds. All of its steps are
+/// kept, with their beliefs.
 void checkPlaces(const std::vector<Place>& waypoints, const std::string& file,
                  const Config& config) {
     constexpr double kRounding = 1e-6;  // [m]
@@ -59,6 +62,14 @@ void checkPlaces(const std::vector<Place>& waypoints, const std::string& file,
         fail(fmt::format("{:.3g} steps of planner.ds = {} m; at most {}", steps, config.belief.ds,
                          kMostSteps));
     }
+    const auto requireEnd = [&](const char* what, const Place& end, const Place& ofConfig) {
+        if ((end.position - ofConfig.position).norm() <= kSamePlace) return;
+        fail(fmt::format("{} ({}), but the {} of the config is ({})",
+                         &end == &waypoints.front() ? "begins at" : "ends at",
+                         fmt::join(end.position, ", "), what, fmt::join(ofConfig.position, ", ")));
+    };
+    requireEnd("start", waypoints.front(), config.start);
+    requireEnd("goal", waypoints.back(), config.goal);
 }
 
 }  // namespace

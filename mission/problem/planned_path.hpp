@@ -28,7 +28,8 @@ struct PlannedPath {
 /// Reads the waypoints of a result.json.
 /// @param config that of the plan
 /// @throws InputError naming file and key for a result of another command, one without a path, a
-///         waypoint out of the config's bounds, or a path of more than 1e5 steps of planner.ds
+///         waypoint out of the config's bounds, a path of more than 1e5 steps of planner.ds, or one
+///         that does not lead from the config's start to its goal
 PlannedPath readPlannedPath(const std::filesystem::path& resultFile, const Config& config);
 
 }  // namespace photonav

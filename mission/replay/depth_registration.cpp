@@ -36,7 +36,8 @@ class Pairing {
         View view;
         try {
             view = loadFrame(sequence_, i).view;
-        } catch (const InputError&) {
+        } catch (const InputError& error) {
+            if (unreadable_++ == 0) firstReason_ = error;
             return;
         }
         if (!open_) {
@@ -58,11 +59,18 @@ class Pairing {
     }
 
     DepthCalibrator& calibrator() { return calibrator_; }
+    std::size_t unreadable() const { return unreadable_; }
+    /// @throws InputError of the first frame that cannot be used, if more than half cannot
+    void checkReadable() const {
+        if (2 * unreadable_ > sequence_.frames.size()) throw InputError(*firstReason_);
+    }
 
   private:
     const Sequence& sequence_;
     DepthCalibrator calibrator_;
     std::optional<Open> open_;
+    std::size_t unreadable_ = 0;
+    std::optional<InputError> firstReason_;
 };
 
 Sequence openSequence(const RecordingOptions& options) {
@@ -93,6 +101,8 @@ DepthRegistration registerDepth(
         if (progress) progress(i + 1, count);
     }
     result.pairs = pairing.calibrator().pairs();
+    result.unreadable = pairing.unreadable();
+    pairing.checkReadable();
     if (result.pairs < DepthCalibrator::kLeastPairs) {
         throw InputError(
             options.dataset, "",

@@ -14,7 +14,8 @@ namespace photonav {
 struct DepthRegistration {
     Sequence sequence;  ///< the recording's sequence, with the calibrated depth camera
     DepthCalibration calibration;
-    std::size_t pairs = 0;  ///< image pairs used for the calibration
+    std::size_t pairs = 0;       ///< image pairs used for the calibration
+    std::size_t unreadable = 0;  ///< frames left out because an image of theirs cannot be used
     bool isInterrupted = false;
 };
 
@@ -25,7 +26,8 @@ struct DepthRegistration {
 /// @param isStopped asked before every image
 /// @param progress called after every image with the number of processed and of all images
 /// @throws InputError for a recording without depth images, or with too little motion for
-///         DepthCalibrator::kLeastPairs pairs
+///         DepthCalibrator::kLeastPairs pairs; of the first image that cannot be used, if most
+///         cannot
 DepthRegistration registerDepth(
     const RecordingOptions& options, const IsStopped& isStopped = {},
     const std::function<void(std::size_t done, std::size_t all)>& progress = {});

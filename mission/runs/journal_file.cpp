@@ -27,12 +27,20 @@ constexpr std::size_t kDigits = 8;
 std::string schemaKey(const RunWords& words) { return std::string("photonav_") + words.command; }
 
 JournalHeader headerFrom(const json& line, const RunWords& words) {
-    if (line.at(schemaKey(words)) != kJournalSchema) throw std::out_of_range("another version");
-    return {line.at("name"),
-            line.at("config"),
-            line.at("identity"),
-            {wholeNumber<unsigned>(line.at("shard").at(0)),
-             wholeNumber<unsigned>(line.at("shard").at(1))}};
+    const auto require = [](bool holds, const char* what) {
+        if (!holds) throw std::out_of_range(what);
+    };
+    require(line.at(schemaKey(words)) == kJournalSchema, "another version");
+    JournalHeader header{line.at("name"),
+                         line.at("config"),
+                         line.at("identity"),
+                         {wholeNumber<unsigned>(line.at("shard").at(0)),
+                          wholeNumber<unsigned>(line.at("shard").at(1))}};
+    // A result folder may be named by it.
+    require(header.name == fs::path(header.name).filename() && oneLine(header.name) == header.name,
+            "name");
+    require(header.shard.index >= 1 && header.shard.index <= header.shard.count, "shard");
+    return header;
 }
 
 json lineOf(const JournalHeader& header, const RunWords& words) {

@@ -18,6 +18,9 @@ void checkPossible(const SweepRun& run) {
     if (run.isSolved() != std::isfinite(run.cost)) throw std::out_of_range("cost");
     if (run.isSolved() == run.path.empty()) throw std::out_of_range("path");
     if (!run.isSolved()) return;
+    if (!(std::isfinite(run.meanTrace) && std::isfinite(run.goalTrace))) {
+        throw std::out_of_range("trace");
+    }
     double way = 0.;
     for (std::size_t i = 1; i < run.path.size(); ++i)
         way += (run.path[i].position - run.path[i - 1].position).norm();

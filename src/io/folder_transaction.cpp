@@ -69,8 +69,8 @@ void removeTemporaryFiles(const fs::path& folder) {
     for (const fs::path& file : found) fs::remove(file);
 }
 
-/// Refuses a folder that cannot be replaced.
-void checkTarget(const fs::path& target, const fs::path& resolved) {
+/// Refuses what is no folder that could be replaced, whatever it holds.
+void checkPlace(const fs::path& target, const fs::path& resolved) {
     std::error_code error;
     const fs::file_status status = fs::status(resolved, error);
     if (status.type() == fs::file_type::not_found) {
@@ -90,7 +90,14 @@ void checkTarget(const fs::path& target, const fs::path& resolved) {
         own.st_dev != parent.st_dev) {
         refuse(target, "is a mount point; give a folder in it");
     }
-    const auto file = Manifest::read(resolved).foreignFile(resolved);
+}
+
+/// Refuses a folder with files that no manifest of ours lists.
+void checkFiles(const fs::path& target, const fs::path& resolved) {
+    if (!fs::exists(resolved)) return;
+    const Manifest earlier = Manifest::read(resolved);
+    if (!earlier.empty()) removeTemporaryFiles(resolved);
+    const auto file = earlier.foreignFile(resolved);
     if (!file) return;
     if (file->filename() == Manifest::kFileName) {
         refuse(target / file->parent_path(),
@@ -108,18 +115,16 @@ fs::path workingFolderOf(const fs::path& resolved) { return resolved.string() + 
 /// Where a result is during an exchange in two steps: no result can have this name.
 fs::path asideOf(const fs::path& resolved) { return workingFolderOf(workingFolderOf(resolved)); }
 
-/// As the target was given, unless its path leads elsewhere through a link.
-fs::path besideOf(const fs::path& target, const fs::path& resolved, const std::string& suffix) {
-    const fs::path given = (target / "").parent_path().string() + suffix;
-    const bool isBeside = resolvedFolder(given).parent_path() == resolved.parent_path();
-    return isBeside ? given : fs::path(resolved.string() + suffix);
-}
-
-/// Removes what a manifest lists; other files stay.
+/// Removes what a manifest lists; other files stay. The manifest, which is the lock, is the last to
+/// go: from then on another process may write here.
 void removeResult(const fs::path& folder) {
     Manifest::read(folder).removeFiles(folder);
+    for (const fs::path& left : filesIn(folder)) {
+        if (fs::is_directory(fs::symlink_status(left))) removeEmptyFolders(left);
+    }
     fs::remove(folder / Manifest::kFileName);
-    removeEmptyFolders(folder);
+    std::error_code ignored;
+    fs::remove(folder, ignored);  // fails unless it is empty
 }
 
 /// Refuses a folder beside which something else is than a working folder. The lock is the first
@@ -159,6 +164,33 @@ void checkLeftNoWork(const fs::path& working, const Manifest& left) {
            "remove that folder, or give another one");
 }
 
+/// The lock is on the manifest, which moves with the folder: a folder that another process has just
+/// put in place is not ours, and the next try makes a new one.
+/// @return whether the working folder was made
+bool lockWorkingFolder(FileDescriptor& lock, const fs::path& working, const fs::path& target) {
+    const fs::path file = working / Manifest::kFileName;
+    for (;;) {
+        std::error_code error;
+        const bool isNew = fs::create_directories(working, error);
+        if (error) refuse(target, "cannot be made: " + error.message());
+        lock.reset(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
+        if (lock.get() < 0 && errno == ENOENT) continue;
+        if (lock.get() < 0) {
+            const int reason = errno;
+            if (isNew) fs::remove(working, error);
+            refuse(target, std::string("cannot be made: ") + std::strerror(reason));
+        }
+        if (lockOpenFile(lock, file, target)) return isNew;
+    }
+}
+
+/// Of a working folder with nothing else in it.
+void removeLock(const fs::path& working) {
+    std::error_code ignored;
+    fs::remove(working / Manifest::kFileName, ignored);
+    fs::remove(working, ignored);
+}
+
 }  // namespace
 
 fs::path resolvedFolder(const fs::path& path) {
@@ -177,15 +209,14 @@ FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinish
         refuse(target,
                fmt::format("ends in {}, as folders do that are being written", kWorkingSuffix));
     }
-    checkTarget(target_, resolved_);
+    checkPlace(target_, resolved_);
     checkWorkingFolder(target_, working_);
-    const bool isNew = lock();
+    const bool isNew = lockWorkingFolder(lock_, working_, target_);
     try {
+        checkFiles(target_, resolved_);  // nobody else replaces it any more
         takeUp();
     } catch (...) {
-        std::error_code error;
-        if (isNew) fs::remove(working_ / Manifest::kFileName, error);
-        if (isNew) fs::remove(working_, error);
+        if (isNew) removeLock(working_);
         throw;
     }
 }
@@ -212,6 +243,17 @@ void FolderTransaction::takeUp() {
     }
 }
 
+FolderLock::FolderLock(const fs::path& folder) : working_(workingFolderOf(resolvedFolder(folder))) {
+    const bool isReplaceable = access(working_.parent_path().c_str(), W_OK) == 0;
+    if (!isReplaceable || !fs::is_directory(folder)) return;
+    checkWorkingFolder(folder, working_);
+    isNew_ = lockWorkingFolder(lock_, working_, folder);
+}
+
+FolderLock::~FolderLock() {
+    if (isNew_) removeLock(working_);
+}
+
 bool FolderTransaction::isBeingWritten(const fs::path& target) {
     const fs::path file = workingFolderOf(resolvedFolder(target)) / Manifest::kFileName;
     const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
@@ -219,26 +261,6 @@ bool FolderTransaction::isBeingWritten(const fs::path& target) {
     const bool isLocked = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     close(descriptor);
     return isLocked;
-}
-
-/// The lock is on the manifest, which moves with the folder: a folder that another process has just
-/// put in place is not ours, and the next try makes a new one.
-/// @return whether the working folder was made
-bool FolderTransaction::lock() {
-    const fs::path file = working_ / Manifest::kFileName;
-    for (;;) {
-        std::error_code error;
-        const bool isNew = fs::create_directories(working_, error);
-        if (error) refuse(target_, "cannot be made: " + error.message());
-        lock_.reset(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
-        if (lock_.get() < 0 && errno == ENOENT) continue;
-        if (lock_.get() < 0) {
-            const int reason = errno;
-            if (isNew) fs::remove(working_, error);
-            refuse(target_, std::string("cannot be made: ") + std::strerror(reason));
-        }
-        if (lockOpenFile(lock_, file, target_)) return isNew;
-    }
 }
 
 /// The process ended within an exchange in two steps: before the second, the earlier result is put
@@ -265,9 +287,9 @@ void FolderTransaction::discard() { removeLeftovers(); }
 FolderTransaction::~FolderTransaction() {
     if (!isOpen_) return;
     try {
-        if (unfinished_ == Unfinished::removed || !hasFiles(working_)) {
-            fs::remove_all(working_);
-        }
+        if (unfinished_ == Unfinished::kept && hasFiles(working_)) return;
+        removeLeftovers();
+        removeLock(working_);
     } catch (const std::exception&) {  // the next one at this place removes it
     }
 }
@@ -281,8 +303,11 @@ void FolderTransaction::commit() {
     }
     synchroniseAll(working_);
     const Unfinished before = std::exchange(unfinished_, Unfinished::kept);
+    FileDescriptor lockOfReplaced;
     try {
-        checkTarget(target_, resolved_);  // as it was at the beginning?
+        checkPlace(target_, resolved_);  // as it was at the beginning?
+        checkFiles(target_, resolved_);
+        lockReplaced(lockOfReplaced);
         exchange();
     } catch (const InputError& error) {
         throw InputError(target_.string(), "",
@@ -298,8 +323,16 @@ void FolderTransaction::commit() {
     counted_.reset();
 }
 
+/// As the target was given, unless its path leads elsewhere through a link.
+fs::path FolderTransaction::placeBeside(const fs::path& target, const std::string& suffix) {
+    const fs::path given = (target / "").parent_path().string() + suffix;
+    const fs::path place = resolvedFolder(target).string() + suffix;
+    static_cast<void>(resolvedFolder(workingFolderOf(place)));
+    return resolvedFolder(given) == place ? given : place;
+}
+
 void FolderTransaction::commitBeside(const std::string& suffix) {
-    const fs::path place = besideOf(target_, resolved_, suffix);
+    const fs::path place = placeBeside(target_, suffix);
     std::optional<FolderTransaction> beside;
     try {
         beside.emplace(place);
@@ -317,10 +350,17 @@ void FolderTransaction::commitBeside(const std::string& suffix) {
     target_ = place;
 }
 
+/// The earlier result will be where the working folder is, and is removed there. Until then, nobody
+/// may write there.
+void FolderTransaction::lockReplaced(FileDescriptor& lock) const {
+    lock.reset(open((resolved_ / Manifest::kFileName).c_str(), O_RDONLY | O_CLOEXEC));
+    if (lock.get() >= 0) static_cast<void>(flock(lock.get(), LOCK_EX | LOCK_NB));
+}
+
 /// In one step where the file system can, else in two with the earlier folder aside.
 void FolderTransaction::exchange() {
     const auto fail = [&](int reason) { refuse(resolved_, std::strerror(reason)); };
-    if (!fs::exists(resolved_)) {
+    if (!fs::exists(resolved_ / Manifest::kFileName)) {  // or an empty folder
         if (std::rename(working_.c_str(), resolved_.c_str()) != 0) fail(errno);
         return;
     }

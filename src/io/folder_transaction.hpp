@@ -53,6 +53,11 @@ class FolderTransaction {
     ///         written is kept then
     void commitBeside(const std::string& suffix);
 
+    /// The folder of commitBeside(). @throws InputError where it cannot be made, as its name is too
+    ///         long
+    static std::filesystem::path placeBeside(const std::filesystem::path& target,
+                                             const std::string& suffix);
+
     /// Whether the target holds an earlier result.
     bool hasEarlier() const { return !Manifest::read(resolved_).empty(); }
     /// Whether work that was not committed is kept.
@@ -72,10 +77,12 @@ class FolderTransaction {
     static bool isBeingWritten(const std::filesystem::path& target);
 
   private:
-    bool lock();
+    friend class FolderLock;
+
     void takeUp();
     void endExchange() const;
     void removeLeftovers() const;
+    void lockReplaced(FileDescriptor& lock) const;
     void exchange();
     void removeReplaced() const;
 
@@ -95,6 +102,25 @@ class FolderTransaction {
     Unfinished unfinished_;
     bool isOpen_ = true;
     FileDescriptor lock_;  // of the working folder's manifest
+};
+
+/// Keeps other processes from writing a result folder while one of its files is replaced: as long
+/// as this object lives, they are refused as a FolderTransaction refuses them. Does nothing for a
+/// folder that does not exist, or that nobody may replace.
+class FolderLock {
+  public:
+    /// @throws InputError when another process writes the folder, and when the working folder
+    ///         beside it, which holds the lock, cannot be made or is none of ours
+    explicit FolderLock(const std::filesystem::path& folder);
+    ~FolderLock();
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+  private:
+    FolderTransaction::Counted counted_;
+    std::filesystem::path working_;
+    bool isNew_ = false;
+    FileDescriptor lock_;
 };
 
 }  // namespace photonav

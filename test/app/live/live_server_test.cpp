@@ -44,7 +44,8 @@ TEST(ServerAddress, IsAPortOrAnAddressWithOne) {
     EXPECT_EQ(parseServerAddress("0.0.0.0:65535").host, "0.0.0.0");
     EXPECT_EQ(parseServerAddress("[::1]:80").host, "::1");
     EXPECT_EQ(parseServerAddress("[::1]:80").port, 80);
-    for (const char* bad : {"", "x", "80x", ":80", "host:", "-1", "::1:80", "1 2"}) {
+    for (const char* bad :
+         {"", "x", "80x", ":80", "host:", "-1", "::1:80", "1 2", "[::1", "[::1:80", "::1]:80"}) {
         EXPECT_THROW(parseServerAddress(bad), InputError) << bad;
     }
     for (const char* large : {"65536", "host:99999999999999999999"}) {

@@ -65,6 +65,16 @@ TEST_F(ScanCommand, MapsAFolderOfStations) {
         EXPECT_TRUE(test::fs::exists(options.out / name)) << name;
 }
 
+TEST_F(ScanCommand, AnEmptyMapIsNoAnswer) {
+    writeText(scans / "1.ply", floorScan(true));
+    options.maxRange = 1e-3;
+    const CommandReport report = runScanMap(options, running);
+    EXPECT_EQ(report.exitCode, 1);
+    EXPECT_EQ(report.summary.rows[0].second,
+              "the map is empty: no surface within --max-range 0.001 m");
+    EXPECT_TRUE(test::fs::exists(options.out / "report.html"));
+}
+
 TEST_F(ScanCommand, AStationThatMissesASurfaceDoesNotEraseIt) {
     writeText(scans / "1.ply", floorScan(true));
     // Three more stations look through a bar of the floor at points below it.

@@ -86,6 +86,19 @@ TEST_F(CommandLine, AStandardErrorThatCannotBeWrittenChangesNoExitCode) {
     }
 }
 
+/// As by `photonav keys | head`. In `photonav ... 2>&1 | tee`, Ctrl-C ends the reader, too.
+TEST_F(CommandLine, AReaderThatEndsEarlyChangesNothingButWhatIsRead) {
+    EXPECT_EQ(execute(fmt::format("{{ {{ sleep 0.3; {} keys; echo $? >&2; }} | true; }}",
+                                  PHOTONAV_BINARY))
+                  .output,
+              "141\n");
+    EXPECT_EQ(execute(fmt::format("{{ {{ {{ sleep 0.3; {} plan none.yaml; echo $? >&3; }} 2>&1 | "
+                                  "true; }} 3>&1; }}",
+                                  PHOTONAV_BINARY))
+                  .output,
+              "2\n");
+}
+
 /// From too little for the program to what the command needs. (Libraries may say more.)
 TEST_F(CommandLine, TooLittleMemoryIsSaid) {
     constexpr int kNotLoaded = 127;  // by the system's loader

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/command_test.hpp"
+#include "io/folder_transaction.hpp"
 
 namespace photonav {
 namespace {
@@ -21,6 +22,14 @@ TEST_F(ReportCommand, ReportIsRebuiltFromItsFolder) {
     fs::remove(folder_ / "report.html");
     EXPECT_EQ(photonav("report " + folder_.string()).exitCode, 0);
     EXPECT_TRUE(fs::exists(folder_ / "report.html"));
+    {
+        const FolderTransaction other(folder_);
+        const Execution run = photonav("report " + folder_.string());
+        EXPECT_EQ(run.exitCode, 2);
+        EXPECT_EQ(run.output,
+                  "photonav: " + folder_.string() + ": another photonav is writing it\n");
+    }
+    EXPECT_FALSE(fs::exists(folder_.string() + ".unfinished"));
     std::ofstream(folder_ / "report.json") << "{";
     EXPECT_EQ(photonav("report " + folder_.string()).exitCode, 2);
 }

@@ -2,6 +2,7 @@
 // A folder is replaced as a whole or not at all, and only what was written before is replaced.
 #include "io/folder_transaction.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -10,6 +11,7 @@
 #include <csignal>
 #include <fstream>
 #include <functional>
+#include <thread>
 
 #include "io/error.hpp"
 #include "reason_of.hpp"
@@ -205,6 +207,53 @@ TEST_F(FolderTransactionTest, OneProcessWritesAFolderAtATime) {
     const FolderTransaction first(target_);
     EXPECT_NE(complaint(target_).find("another photonav is writing it"), std::string::npos);
     EXPECT_TRUE(fs::exists(first.path()));
+}
+
+/// An earlier result is removed after the exchange, at the place where the next one begins.
+TEST_F(FolderTransactionTest, ManyAtOnceAreWholeOrRefused) {
+    commit(target_, "begin/0.txt", "0");
+    const auto writeAgain = [&](int writer) {
+        for (int round = 0; round < 100; ++round) {
+            try {
+                commit(target_, fmt::format("{}/{}.txt", writer, round), "text");
+            } catch (const InputError& error) {
+                const std::string reason = error.what();
+                EXPECT_NE(reason.find("another photonav is writing it"), std::string::npos)
+                    << reason;
+            }
+        }
+    };
+    std::vector<std::thread> writers;
+    for (int writer = 0; writer < 3; ++writer) writers.emplace_back(writeAgain, writer);
+    for (std::thread& writer : writers) writer.join();
+    EXPECT_FALSE(Manifest::read(target_).empty());
+    EXPECT_FALSE(Manifest::read(target_).foreignFile(target_));
+    EXPECT_EQ(entries(temporary_.path()), 1U);
+    EXPECT_EQ(complaint(target_), "");
+}
+
+TEST_F(FolderTransactionTest, WaitsForNoneWhileAFileIsReplaced) {
+    { const FolderLock nothing(target_ / "missing"); }
+    EXPECT_EQ(entries(temporary_.path()), 0U);
+    commit(target_, "old.txt", "old");
+    {
+        const FolderLock lock(target_);
+        EXPECT_TRUE(FolderTransaction::isAnyOpen());
+        EXPECT_NE(complaint(target_).find("another photonav is writing it"), std::string::npos);
+        const auto second = [&] { const FolderLock again(target_); };
+        EXPECT_NE(reasonOf(second).find("another photonav"), std::string::npos);
+    }
+    EXPECT_EQ(entries(temporary_.path()), 1U);
+    EXPECT_EQ(complaint(target_), "");
+}
+
+/// `photonav report` may have been killed.
+TEST_F(FolderTransactionTest, UnfinishedFilesInAResultAreOurs) {
+    commit(target_, "old.txt", "old");
+    write(target_ / ".photonav.tmp-1-2-3", "half a list");
+    write(target_ / "report.html.tmp-1-2-3", "half a page");
+    commit(target_, "new.txt", "new");
+    EXPECT_EQ(entries(target_), 2U);  // with the manifest
 }
 
 TEST_F(FolderTransactionTest, IsSeenByOthersUntilItEnds) {

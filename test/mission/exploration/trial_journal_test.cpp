@@ -151,6 +151,10 @@ TEST_F(TrialFiles, NumbersThatNoFlightGivesAreRefused) {
                                       {"\"images\":30", "\"images\":1e30"},
                                       {"\"images\":30", "\"images\":4294967296"},
                                       {"\"end\":\"no way\"", "\"end\":\"stopped\""},
+                                      {"\"end\":\"no way\"", "\"end\":\"arrived\""},
+                                      {"\"rejected_images\":4", "\"rejected_images\":31"},
+                                      {"\"covariance\":[", "\"covariance\":[-"},
+                                      {"\"time\":0.2", "\"time\":0.05"},
                                       {"\"lost_s\":0.04", "\"lost_s\":-1"},
                                       {"\"lost_s\":0.04", "\"lost_s\":1e999"},
                                       {"\"lost_s\":0.04", "\"lost_s\":null"},
@@ -172,6 +176,20 @@ TEST_F(TrialFiles, NumbersThatNoFlightGivesAreRefused) {
     mirrored.insert(pose, "-");
     test::writeJournal(file(), mirrored);
     EXPECT_NE(test::reasonOf([&] { read(); }).find("line 2"), std::string::npos);
+    std::string untracked = good;
+    const std::size_t samples = untracked.find("\"samples\":[") + 11;
+    untracked.erase(samples, untracked.find("\"seed\"") - 2 - samples);
+    test::writeJournal(file(), untracked);
+    EXPECT_NE(test::reasonOf([&] { read(); }).find("line 2"), std::string::npos) << untracked;
+    for (const auto& [text, other] : {std::pair{"\"name\":\"name\"", "\"name\":\"../name\""},
+                                      {"\"shard\":[1,1]", "\"shard\":[0,0]"},
+                                      {"\"shard\":[1,1]", "\"shard\":[2,1]"}}) {
+        std::string bad = good;
+        ASSERT_NE(bad.find(text), std::string::npos) << text << " in " << bad;
+        bad.replace(bad.find(text), std::string(text).size(), other);
+        test::writeJournal(file(), bad);
+        EXPECT_NE(test::reasonOf([&] { read(); }).find("line 1"), std::string::npos) << other;
+    }
     test::writeJournal(file(), "{\"photonav_sweep\":2}\n");
     EXPECT_NE(test::reasonOf([&] { read(); }).find("line 1"), std::string::npos);
 }

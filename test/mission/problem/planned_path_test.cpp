@@ -12,6 +12,10 @@ namespace {
 
 class PlannedPathTest : public testing::Test {
   protected:
+    PlannedPathTest() {
+        config_.start.position = {1., 2., 2.};
+        config_.goal.position = {3., 4., 2.};
+    }
     PlannedPath read(const std::string& result) const {
         return readPlannedPath(folder_.write("result.json", result), config_);
     }
@@ -60,6 +64,20 @@ TEST_F(PlannedPathTest, HasNoMoreStepsThanAFlight) {
             readPoints({{"1, 2, 2", "0"}, {"3, 2, 2", "0"}});
         },
         "path: 2e+05 steps of planner.ds");
+}
+
+/// `fly PLAN --set goal=...` would report its arrival at another goal.
+TEST_F(PlannedPathTest, LeadsFromTheStartToTheGoalOfItsConfig) {
+    expectReason(
+        [&] {
+            readPoints({{"3, 4, 2", "0"}, {"1, 2, 2", "0"}});
+        },
+        "path: begins at (3, 4, 2), but the start of the config is (1, 2, 2)");
+    expectReason(
+        [&] {
+            readPoints({{"1, 2, 2", "0"}, {"3, 3.9, 2", "0"}});
+        },
+        "path: ends at (3, 3.9, 2), but the goal of the config is (3, 4, 2)");
 }
 
 TEST_F(PlannedPathTest, OtherFilesAreRefused) {
