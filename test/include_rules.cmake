@@ -32,7 +32,7 @@ set(folders_mission_mapping io map dataset evaluation depth result config record
 set(folders_mission_replay io geometry photometry render dataset evaluation alignment estimation result config
     problem recording mapping)
 set(folders_mission_robot render estimation control)
-set(folders_mission_simulation geometry photometry render alignment depth estimation control robot)
+set(folders_mission_simulation io geometry photometry render alignment depth estimation control robot)
 set(folders_mission_flight io geometry photometry render dataset evaluation belief estimation control result
     config problem runs robot simulation)
 set(folders_mission_check io geometry photometry render dataset alignment estimation result config problem
