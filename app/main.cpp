@@ -68,12 +68,14 @@ std::string_view saidWhenEnded() {
 /// The first Ctrl-C, SIGTERM as Slurm and systemd send it, or SIGHUP of a terminal that is closed
 /// lets the command finish its files, or ends it at once where there are none yet; the second one
 /// always does. timeout(1) sends its signal twice, to the process and to its group: that is one. A
-/// command that has not ended a second later says so.
+/// shell that ends sends SIGHUP, and so does the system to what it leaves: that is never a second.
+/// A command that has not ended a second later says so.
 void onInterrupt(int signal) {
     const double now = running.seconds();
     double first = 0.;
     if (!interruptedAt.compare_exchange_strong(first, now)) {
-        if (now - first > kSameInterrupt) std::_Exit(exitCodeOf(signal));
+        const bool isAgain = signal != SIGHUP && now - first > kSameInterrupt;
+        if (isAgain) std::_Exit(exitCodeOf(signal));
         return;
     }
     interruptedBy = signal;
@@ -189,13 +191,13 @@ int run(int argc, char** argv) {
     return kBadInput;
 }
 
-/// Whether standard output is a pipe whose other end was closed, as by head(1).
+/// Whether standard output is a pipe or a socket whose other end was closed, as by head(1).
 bool isReaderGone() {
     pollfd output{STDOUT_FILENO, POLLOUT, 0};
-    return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
+    return poll(&output, 1, 0) > 0 && (output.revents & (POLLERR | POLLHUP)) != 0;
 }
 
-/// Where a signal is ignored already, it stays so: nohup(1) ignores SIGHUP.
+/// SIGHUP stays ignored where it is: nohup(1) ignores it.
 void onHangUp() {
     if (std::signal(SIGHUP, onInterrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }

@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
     }
     plot.curve(chiSquare, {.name = "consistent: chi-square", .dashed = true});
 
-    std::puts("                                          images  NEES / 6");
+    std::puts("                                          images      NEES");
     for (const Case& c : cases()) {
         const std::vector<double> errors = squaredErrors(model, camera, c.noise, c.options);
         std::printf("%-40s %7zu  %8.2f\n", c.name, errors.size(), mean(errors));

@@ -145,7 +145,7 @@ int main(int argc, char** argv) {
     const Result byOdometry = follow(odometry());
     if (const auto code = checkAnswers(argc, argv, exercises(byOdometry.errors))) return *code;
     const Result inMap = follow(localisation(sceneFile(argc, argv, "room.yaml")));
-    std::puts("           found  lost  keyframes  absolute [mm]  in a second [mm, deg]  NEES / 6");
+    std::puts("           found  lost  keyframes  absolute [mm]  in a second [mm, deg]      NEES");
     print("odometry", byOdometry);
     print("map", inMap);
     draw(byOdometry, inMap);

@@ -38,7 +38,7 @@ bool isLoopback(const std::string& host) {
 
 /// The host of "host:port" or "[host]:port".
 std::string hostOf(const std::string& text) {
-    const std::string host = text.substr(0, text.rfind(':'));
+    const std::string host = text.ends_with(']') ? text : text.substr(0, text.rfind(':'));
     return host.starts_with('[') && host.ends_with(']') ? host.substr(1, host.size() - 2) : host;
 }
 

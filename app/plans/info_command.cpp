@@ -92,7 +92,7 @@ std::vector<NamedFigure> heatMaps(const Grids& grids, const std::string& place) 
     };
     return {{"information.png",
              {"Trace of the Fisher information of one view.",
-              heatMap("Information of one view", "trace of the Fisher information",
+              heatMap("Information of one view", "trace of the Fisher information [1/m², 1/rad²]",
                       grids.information)}},
             {"uncertainty.png",
              {"Standard deviation of the position after one view.",

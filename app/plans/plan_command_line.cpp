@@ -45,10 +45,15 @@ void addCheckOptions(CLI::App& parser, CheckCommandOptions& options) {
                     "those named in its first line")
         ->required();
     CLI::Option* map = parser.add_option("--map", options.map, "textured OctoMap (.ot, .bt)");
-    parser.add_option("--scene", options.scene, "scene (.yaml) or mesh")->excludes(map);
-    parser.add_option("--config", options.config,
-                      "YAML file of a planning problem: its camera, noise, robot, bounds and, "
-                      "unless given here, its map or scene");
+    map->type_name("FILE");
+    parser.add_option("--scene", options.scene, "scene (.yaml) or mesh")
+        ->type_name("FILE")
+        ->excludes(map);
+    parser
+        .add_option("--config", options.config,
+                    "YAML file of a planning problem: its camera, noise, robot, bounds and, "
+                    "unless given here, its map or scene")
+        ->type_name("FILE");
     parser
         .add_option("--heading", options.heading,
                     "heading of a table without headings: forward (along the motion), or an "

@@ -91,7 +91,7 @@ HeatMap heatMap(const Config& config, PlanningProblem& problem) {
     const double yaw = config.start.yaw.value_or(0.);
     HeatMap map;
     map.title = "Information of one view at " + placeText(config, height, yaw);
-    map.label = "trace of the Fisher information";
+    map.label = "trace of the Fisher information [1/m², 1/rad²]";
     map.area = areaOf(config);
     map.values = viewGrid(problem, map.area, height, yaw, kHeatMapCells,
                           [](const Matrix6& information) { return information.trace(); });

@@ -43,7 +43,7 @@ ReportTable summaryOf(const json& result) {
          {"occupied cells", result["voxels"]["occupied"].dump()},
          {"free cells", result["voxels"]["free"].dump()},
          {"fusion", fmt::format("{:.1f} s", result["time"]["fuse_s"].get<double>())}}};
-    if (result["voxels"]["occupied"] == 0) {
+    if (result["voxels"]["occupied"] == 0 && !result["interrupted"]) {
         table.rows.emplace(table.rows.begin(), "verdict",
                            fmt::format("the map is empty: no surface within --max-range {} m",
                                        result["max_range"].get<double>()));

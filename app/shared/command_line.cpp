@@ -144,6 +144,15 @@ void addKeyOptions(CLI::App& parser, const KeyTable& keys, const std::set<std::s
 void addKeyOverrides(CLI::App& parser, const KeyTable& keys, const std::set<std::string>& without,
                      std::vector<std::string>& overrides) {
     addKeyOptions(parser, keys, without);
+    for (const ConfigKey& key : keys.keys()) {
+        CLI::Option* option = parser.get_option_no_throw(optionOf(key));
+        if (option == nullptr || without.contains(key.words.name)) continue;
+        constexpr std::string_view kDefault = "(default: ";
+        std::string description = option->get_description();
+        const std::size_t place = description.find(kDefault);
+        if (place == std::string::npos) continue;
+        option->description(description.insert(place + kDefault.size(), "the config's, else "));
+    }
     parser.parse_complete_callback([&parser, &keys, without, &overrides] {
         std::vector<std::string> typed;
         for (const ConfigKey& key : keys.keys()) {

@@ -2,6 +2,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "bag/mcap_writer.hpp"
 #include "config/config_keys.hpp"
 #include "interchange/result_export.hpp"
@@ -32,6 +37,42 @@ std::string withoutLinks(const std::string& markdown) {
     return text + markdown.substr(end);
 }
 
+/// Words in lines of at most `width` characters, indented.
+std::string wrapped(const std::string& text, std::size_t indent, std::size_t width) {
+    std::istringstream words(text);
+    std::string lines, line;
+    for (std::string word; words >> word;) {
+        if (!line.empty() && indent + line.size() + 1 + word.size() > width) {
+            lines += std::string(indent, ' ') + std::exchange(line, "") + "\n";
+        }
+        line += (line.empty() ? "" : " ") + word;
+    }
+    return line.empty() ? lines : lines + std::string(indent, ' ') + line + "\n";
+}
+
+/// A table of keys in Markdown for a terminal of 80 columns: the key, its default and its unit,
+/// below them the values and what it does.
+std::string asText(const std::string& table) {
+    std::istringstream rows(withoutLinks(table));
+    std::string text;
+    for (std::string row; std::getline(rows, row);) {
+        std::erase(row, '`');
+        std::vector<std::string> cells;
+        std::istringstream stream(row);
+        for (std::string cell; std::getline(stream, cell, '|');) {
+            cells.push_back(CLI::detail::trim_copy(cell));
+        }
+        constexpr std::size_t kCells = 6;  // with the empty one before the first bar
+        const bool isKey =
+            cells.size() >= kCells && row.starts_with("| ") && !row.starts_with("| key");
+        if (!isKey) continue;
+        const std::string unit = cells[3].empty() ? "" : fmt::format(" [{}]", cells[3]);
+        text += wrapped(fmt::format("{} = {}{}", cells[1], cells[2], unit), 0, 80);
+        text += wrapped(cells[4], 4, 80) + wrapped(cells[5], 4, 80);
+    }
+    return text;
+}
+
 struct KeysOptions {
     std::vector<std::string> names;
     std::string of = "plan";
@@ -58,7 +99,7 @@ int printKeys(const KeysOptions& options, const std::atomic<bool>& /*interrupted
                                                    : keysOf(config);
     const std::string table = keys.toMarkdown(options.names);
     const bool isTerminal = isatty(STDOUT_FILENO) == 1;
-    fmt::print("{}", isTerminal ? withoutLinks(table) : table);
+    fmt::print("{}", isTerminal ? asText(table) : table);
     return kDone;
 }
 

@@ -120,7 +120,7 @@ class Sketch {
             add(shadow, below(a), below(b));
             add(isVisible(0.5 * (a + b)) ? visible : hidden, a, b);
         }
-        plot_.segments(shadow, {.color = kShadow, .width = 1.4});
+        plot_.segments(shadow, {.color = kShadow, .width = 1.4, .name = "below the paths"});
         plot_.segments(hidden, {.color = path.color, .width = 1.6});
         plot_.segments(visible, {.color = path.color, .width = 4., .name = path.name});
     }

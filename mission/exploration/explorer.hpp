@@ -104,7 +104,7 @@ class Explorer {
     /// @param planner a name for explorePlanner()
     /// @param interrupted rendering and planning end with Interrupted when it becomes true;
     ///        must outlive the explorer
-    /// @throws std::invalid_argument for a robot whose camera or mount is not that of the config
+    /// @throws std::invalid_argument for a robot whose camera or mount differs from the config's
     Explorer(const ExplorerOptions& options, const Robot& robot, const std::string& planner,
              std::uint32_t seed, const std::atomic<bool>& interrupted, OnExplorer on = {});
     Explorer(const Explorer&) = delete;

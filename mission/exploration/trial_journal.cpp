@@ -71,7 +71,6 @@ void checkPossible(const ExplorationResult& flight) {
     require(!flight.samples.empty(), "samples");
     require(std::is_sorted(flight.samples.begin(), flight.samples.end(), isBefore), "time");
     require(flight.rejectedImages <= flight.images, "rejected_images");
-    require(!flight.hasArrived() || flight.arrivalProbability > 0., "end");
 }
 
 template <typename Element>

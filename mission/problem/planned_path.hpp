@@ -26,7 +26,7 @@ struct PlannedPath {
 };
 
 /// Reads the waypoints of a result.json.
-/// @param config that of the plan
+/// @param config the plan's
 /// @throws InputError naming file and key for a result of another command, one without a path, a
 ///         waypoint out of the config's bounds, a path of more than 1e5 steps of planner.ds, or one
 ///         that does not lead from the config's start to its goal

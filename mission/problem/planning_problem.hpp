@@ -191,7 +191,7 @@ class PlanningProblem {
     std::shared_ptr<const ViewSource> interruptibleViews() const;
     std::shared_ptr<BeliefModel> plannersModel();
     void judge(const BeliefPlanner& planner, PlanOutcome& outcome);
-    /// @param root belief at the first state; none: that of the config
+    /// @param root belief at the first state; none: the config's
     EvaluatedPath evaluate(const std::string& planner,
                            const std::vector<const ompl::base::State*>& path,
                            const std::optional<Belief>& root = {});

@@ -70,7 +70,7 @@ class OnlinePlanner {
     const BeliefPlanner& planner() const { return *planner_; }
     const Config& config() const { return config_; }
     double clearance(const Eigen::Vector3d& p_w) const { return world_.clearance(p_w); }
-    /// clearance() for another thread than that of update(). It waits while update() changes the
+    /// clearance() for another thread than update()'s. It waits while update() changes the
     /// clearances, which takes milliseconds; not while update() plans.
     double clearanceBeside(const Eigen::Vector3d& p_w) const {
         const std::lock_guard lock(worldMutex_);

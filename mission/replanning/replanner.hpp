@@ -57,7 +57,7 @@ class Replanner {
     const OnlineMap& map() const { return map_; }
     const OnlinePlanner& planner() const { return planner_; }
 
-    /// Clearance in the map of the last update, for another thread than that of replan() [m].
+    /// Clearance in the map of the last update, for another thread than replan()'s [m].
     double clearanceBeside(const Eigen::Vector3d& p_w) const {
         return planner_.clearanceBeside(p_w);
     }

@@ -21,7 +21,7 @@ struct BlurEstimate {
 };
 
 /// The median over the images that converged. Views of a mesh have a known point spread, so that
-/// the residuals show that of the images. In a map of cells they do not: its texture is as blurred
+/// the residuals show the images' blur. In a map of cells they do not: its texture is as blurred
 /// as the images that it was made of.
 /// @param run a replay in a mesh
 /// @return nothing for fewer than five images whose texture shows it

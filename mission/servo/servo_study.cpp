@@ -93,7 +93,7 @@ struct Simulation {
     void step(Pose& T_c_w, View& view, Random* random) const {
         throwIfStopped(interrupted);
         photograph(sensor, goal.camera, T_c_w, view);
-        if (random) noise(view.intensity, *random, {});
+        if (random) noise(view.intensity, *random, [&] { return interrupted.load(); });
         const Eigen::VectorXd q = servo.velocity(view.intensity) / options.rate;
         T_c_w = expSE3(Vector6(servo.freedom() * q)) * T_c_w;
     }

@@ -40,7 +40,7 @@ struct BeliefOptions {
 /// The belief at a vertex: covariance of T_c_w and cost-to-come.
 ///
 /// The perturbation is about the camera centre in world-oriented axes: with T_c_w = exp(xi^) mean,
-/// xi = (rho, phi) in the camera frame, the covariance is that of xi' = diag(R_w_c, R_w_c) xi. It
+/// xi = (rho, phi) in the camera frame, the covariance is one of xi' = diag(R_w_c, R_w_c) xi. It
 /// has the same trace as the covariance in the camera frame. In these axes the adjoint of a motion
 /// is [1 t^; 0 1] for any rotation of the camera.
 struct Belief {

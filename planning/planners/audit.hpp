@@ -9,7 +9,7 @@ namespace photonav {
 /// Largest errors of the beliefs that a planner stores.
 struct Audit {
     double maxCostError = 0.;  ///< |stored - recomputed| / (1 + recomputed)
-    /// Frobenius norm of the difference, divided by that of the recomputed covariance.
+    /// Frobenius norm of the difference, divided by the norm of the recomputed covariance.
     double maxCovarianceError = 0.;
     std::size_t nodes = 0;  ///< number of beliefs recomputed
 };

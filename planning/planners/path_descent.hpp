@@ -25,9 +25,9 @@ struct DescentOptions {
 
 /// Lowers the cost of a path by random local changes: a vertex is removed or shifted, a leg is
 /// shifted or bent at a new vertex, a corner is cut. A change is accepted if it lowers the cost,
-/// which is that of BeliefModel. This cost is not a smooth function of the path, so no derivatives
-/// are used. Only the beliefs after a change are propagated again. The path stays free of collision
-/// and keeps its ends. Deterministic for a given seed.
+/// which is the cost of BeliefModel. This cost is not a smooth function of the path, so no
+/// derivatives are used. Only the beliefs after a change are propagated again. The path stays free
+/// of collision and keeps its ends. Deterministic for a given seed.
 class PathDescent {
   public:
     PathDescent(ompl::base::SpaceInformationPtr si, std::shared_ptr<BeliefModel> model,
@@ -38,7 +38,7 @@ class PathDescent {
     /// Starts from a path with a given belief at its first state, instead of BeliefModel::root().
     void begin(const std::vector<const ompl::base::State*>& path, const Belief& root);
 
-    /// Descends until the condition holds, or until this number of changes or that of the options,
+    /// Descends until the condition holds, or until this number of changes or the options' number,
     /// counted since begin(), was tried. Continues where the last call ended.
     void descend(const ompl::base::PlannerTerminationCondition& ptc,
                  unsigned moves = std::numeric_limits<unsigned>::max());

@@ -60,7 +60,7 @@ class FlightSpace {
     int dimension() const { return positionDimensions() + rotationDimensions(); }
     /// Volume of the space over these dimensions, in the metric [m^dimension].
     double measure() const;
-    /// Volume of the metric's unit ball. It is smaller than that of the Euclidean ball, because the
+    /// Volume of the metric's unit ball. It is smaller than the Euclidean ball's, because the
     /// metric is the sum of two distances.
     double unitBallMeasure() const;
 

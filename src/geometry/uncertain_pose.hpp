@@ -49,7 +49,7 @@ UncertainPose compound(const UncertainPose& T_c_b, const UncertainPose& T_b_a,
                        PropagationOrder order = PropagationOrder::fourth);
 
 /// The covariance of a perturbation in frame a, expressed in frame b: Ad(T_b_a) covariance
-/// Ad(T_b_a)^T. With T_b_a = T_c_b it turns that of body axes into that of the camera.
+/// Ad(T_b_a)^T. With T_b_a = T_c_b it turns a covariance in body axes into one in camera axes.
 Matrix6 inOtherFrame(const Matrix6& covariance, const Pose& T_b_a);
 
 /// T_a_b from T_b_a: the covariance is transformed to frame a by the adjoint.

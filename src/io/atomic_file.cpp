@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -21,6 +22,7 @@ namespace photonav {
 namespace {
 
 constexpr const char* kTemporary = ".tmp";
+constexpr int kParts = 3;  // numbers behind it
 
 /// A name beside the file that no other writer has, be it in this process, in another, or on
 /// another machine that shares the folder.
@@ -101,9 +103,15 @@ void writeFileAtomically(const std::filesystem::path& file, std::string_view con
 
 bool isTemporaryFile(const std::filesystem::path& file) {
     const std::string extension = file.extension().string();
-    return extension.starts_with(std::string(kTemporary) + "-") &&
-           extension.find_first_not_of("-0123456789", std::string(kTemporary).size()) ==
-               std::string::npos;
+    if (!extension.starts_with(kTemporary)) return false;
+    std::string_view rest = std::string_view(extension).substr(std::strlen(kTemporary));
+    for (int part = 0; part < kParts; ++part) {
+        if (!rest.starts_with('-')) return false;
+        const std::size_t end = std::min(rest.size(), rest.find_first_not_of("0123456789", 1));
+        if (end == 1) return false;
+        rest.remove_prefix(end);
+    }
+    return rest.empty();
 }
 
 void replaceFile(const std::filesystem::path& file, std::string_view content) {

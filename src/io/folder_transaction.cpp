@@ -95,9 +95,7 @@ void checkPlace(const fs::path& target, const fs::path& resolved) {
 /// Refuses a folder with files that no manifest of ours lists.
 void checkFiles(const fs::path& target, const fs::path& resolved) {
     if (!fs::exists(resolved)) return;
-    const Manifest earlier = Manifest::read(resolved);
-    if (!earlier.empty()) removeTemporaryFiles(resolved);
-    const auto file = earlier.foreignFile(resolved);
+    const auto file = Manifest::read(resolved).foreignFile(resolved);
     if (!file) return;
     if (file->filename() == Manifest::kFileName) {
         refuse(target / file->parent_path(),
@@ -142,6 +140,7 @@ void checkWorkingFolder(const fs::path& target, const fs::path& working) {
     if (!fs::is_directory(status)) refuse(working, reason);
     if (fs::exists(lock, error)) return;
     for (const auto& entry : fs::recursive_directory_iterator(working, error)) {
+        if (fs::exists(lock, error)) return;  // another process has just made it
         if (!fs::is_directory(entry.symlink_status())) refuse(working, reason);
     }
 }
@@ -184,11 +183,25 @@ bool lockWorkingFolder(FileDescriptor& lock, const fs::path& working, const fs::
     }
 }
 
-/// Of a working folder with nothing else in it.
+/// Of a working folder with nothing else in it; its lock must be held.
 void removeLock(const fs::path& working) {
     std::error_code ignored;
     fs::remove(working / Manifest::kFileName, ignored);
     fs::remove(working, ignored);
+}
+
+/// Keeps other processes from writing where the earlier result will be until it is removed there.
+/// @return whether there is a lock
+bool lockReplaced(FileDescriptor& lock, const fs::path& resolved) {
+    const fs::path file = resolved / Manifest::kFileName;
+    lock.reset(open(file.c_str(), O_RDWR | O_CLOEXEC));  // for writing, as NFS needs it
+    if (lock.get() < 0) lock.reset(open(file.c_str(), O_RDONLY | O_CLOEXEC));
+    if (lock.get() < 0) return false;
+    int failed = 0;
+    do {  // others have it for a moment only
+        failed = flock(lock.get(), LOCK_EX);
+    } while (failed != 0 && errno == EINTR);
+    return failed == 0;
 }
 
 }  // namespace
@@ -243,15 +256,22 @@ void FolderTransaction::takeUp() {
     }
 }
 
-FolderLock::FolderLock(const fs::path& folder) : working_(workingFolderOf(resolvedFolder(folder))) {
-    const bool isReplaceable = access(working_.parent_path().c_str(), W_OK) == 0;
-    if (!isReplaceable || !fs::is_directory(folder)) return;
+FolderLock::FolderLock(const fs::path& folder) {
+    const fs::path resolved = resolvedFolder(folder);
+    const bool isReplaceable = access(resolved.parent_path().c_str(), W_OK) == 0;
+    if (!isReplaceable || !fs::is_directory(resolved)) return;
+    working_ = resolved.extension() == kWorkingSuffix ? resolved : workingFolderOf(resolved);
     checkWorkingFolder(folder, working_);
-    isNew_ = lockWorkingFolder(lock_, working_, folder);
+    lockWorkingFolder(lock_, working_, folder);
 }
 
 FolderLock::~FolderLock() {
-    if (isNew_) removeLock(working_);
+    if (lock_.get() < 0) return;
+    try {
+        const bool isNoWork = fs::is_empty(working_ / Manifest::kFileName);
+        if (isNoWork && filesIn(working_).empty()) removeLock(working_);
+    } catch (const std::exception&) {  // the next one at this place removes it
+    }
 }
 
 bool FolderTransaction::isBeingWritten(const fs::path& target) {
@@ -304,11 +324,13 @@ void FolderTransaction::commit() {
     synchroniseAll(working_);
     const Unfinished before = std::exchange(unfinished_, Unfinished::kept);
     FileDescriptor lockOfReplaced;
+    std::optional<fs::path> replaced;
     try {
         checkPlace(target_, resolved_);  // as it was at the beginning?
         checkFiles(target_, resolved_);
-        lockReplaced(lockOfReplaced);
-        exchange();
+        const bool isLocked = lockReplaced(lockOfReplaced, resolved_);
+        replaced = exchange();
+        if (!isLocked) replaced.reset();  // the next one at this place removes it
     } catch (const InputError& error) {
         throw InputError(target_.string(), "",
                          fmt::format("cannot be replaced: {}; the result is in {} until the next "
@@ -318,8 +340,14 @@ void FolderTransaction::commit() {
     isAnyCommitted_ = true;
     unfinished_ = before;
     isOpen_ = false;
+    lock_.reset();  // it has moved with the folder, which others may replace now
     synchronise(resolved_.parent_path(), target_);
-    removeReplaced();
+    if (replaced) {
+        removeReplaced(*replaced);
+        lockOfReplaced.reset();
+        std::error_code ignored;  // on NFS, a file that was open has kept the folder
+        fs::remove(*replaced, ignored);
+    }
     counted_.reset();
 }
 
@@ -350,24 +378,19 @@ void FolderTransaction::commitBeside(const std::string& suffix) {
     target_ = place;
 }
 
-/// The earlier result will be where the working folder is, and is removed there. Until then, nobody
-/// may write there.
-void FolderTransaction::lockReplaced(FileDescriptor& lock) const {
-    lock.reset(open((resolved_ / Manifest::kFileName).c_str(), O_RDONLY | O_CLOEXEC));
-    if (lock.get() >= 0) static_cast<void>(flock(lock.get(), LOCK_EX | LOCK_NB));
-}
-
 /// In one step where the file system can, else in two with the earlier folder aside.
-void FolderTransaction::exchange() {
+/// @return where the earlier result is now; nothing if there was none
+std::optional<fs::path> FolderTransaction::exchange() const {
     const auto fail = [&](int reason) { refuse(resolved_, std::strerror(reason)); };
     if (!fs::exists(resolved_ / Manifest::kFileName)) {  // or an empty folder
         if (std::rename(working_.c_str(), resolved_.c_str()) != 0) fail(errno);
-        return;
+        return {};
     }
     if (renameat2(AT_FDCWD, working_.c_str(), AT_FDCWD, resolved_.c_str(), RENAME_EXCHANGE) == 0) {
-        return;
+        return working_;
     }
     if (errno != EINVAL && errno != ENOSYS) fail(errno);
+    endExchange();
     const fs::path aside = asideOf(resolved_);
     if (std::rename(resolved_.c_str(), aside.c_str()) != 0) fail(errno);
     if (std::rename(working_.c_str(), resolved_.c_str()) != 0) {
@@ -375,13 +398,12 @@ void FolderTransaction::exchange() {
         static_cast<void>(std::rename(aside.c_str(), resolved_.c_str()));
         fail(reason);
     }
-    static_cast<void>(std::rename(aside.c_str(), working_.c_str()));
+    return aside;
 }
 
-/// The folder that was the target is now where the working folder was.
-void FolderTransaction::removeReplaced() const {
+void FolderTransaction::removeReplaced(const fs::path& place) {
     try {
-        if (fs::exists(working_)) removeResult(working_);
+        removeResult(place);
     } catch (const std::exception&) {  // the new one is in place; the next one removes this
     }
 }

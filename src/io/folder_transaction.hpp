@@ -66,8 +66,9 @@ class FolderTransaction {
     /// Removes what was written so far: nothing of it is worth keeping.
     void discard();
 
-    /// Whether this process has a transaction that is not committed. Without one, an interrupted
-    /// process has nothing to keep, and no working folder. May be called in a signal handler.
+    /// Whether this process has a transaction that is not committed, or a FolderLock. Without one,
+    /// an interrupted process has nothing to keep, and no working folder. May be called in a signal
+    /// handler.
     static bool isAnyOpen() { return open_ > 0; }
 
     /// Whether this process has put a result in its place. May be called in a signal handler.
@@ -82,9 +83,8 @@ class FolderTransaction {
     void takeUp();
     void endExchange() const;
     void removeLeftovers() const;
-    void lockReplaced(FileDescriptor& lock) const;
-    void exchange();
-    void removeReplaced() const;
+    std::optional<std::filesystem::path> exchange() const;
+    static void removeReplaced(const std::filesystem::path& place);
 
     struct Counted {
         Counted() { ++open_; }
@@ -106,7 +106,7 @@ class FolderTransaction {
 
 /// Keeps other processes from writing a result folder while one of its files is replaced: as long
 /// as this object lives, they are refused as a FolderTransaction refuses them. Does nothing for a
-/// folder that does not exist, or that nobody may replace.
+/// folder that does not exist, or that this user may not replace.
 class FolderLock {
   public:
     /// @throws InputError when another process writes the folder, and when the working folder
@@ -119,7 +119,6 @@ class FolderLock {
   private:
     FolderTransaction::Counted counted_;
     std::filesystem::path working_;
-    bool isNew_ = false;
     FileDescriptor lock_;
 };
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "io/atomic_file.hpp"
 #include "io/checksum.hpp"
 #include "io/durable_file.hpp"
 #include "io/error.hpp"
@@ -108,9 +109,23 @@ std::vector<Manifest::File>::const_iterator Manifest::placeOf(const fs::path& na
 
 std::optional<fs::path> Manifest::foreignFile(const fs::path& folder) const {
     for (const fs::path& name : namesIn(folder)) {
-        if (!lists(folder, name)) return name;
+        if (!lists(folder, name) && !isUnfinished(folder, name)) return name;
     }
     return {};
+}
+
+bool Manifest::isListed(const fs::path& name) const {
+    const auto listed = placeOf(name);
+    return listed != files_.end() && listed->name == name;
+}
+
+/// Whether it is a temporary file of a listed file, or of the manifest.
+bool Manifest::isUnfinished(const fs::path& folder, const fs::path& name) const {
+    if (!isTemporaryFile(name) || !fs::is_regular_file(fs::symlink_status(folder / name))) {
+        return false;
+    }
+    const fs::path whole = name.parent_path() / name.stem();
+    return isListed(whole) || (!empty() && whole == kFileName);
 }
 
 /// A folder in which listed files were is listed, too.
@@ -140,8 +155,7 @@ void Manifest::renew(const fs::path& folder, const fs::path& name) {
 void Manifest::removeFiles(const fs::path& folder) const {
     std::error_code ignored;
     for (const fs::path& name : namesIn(folder)) {
-        const auto listed = placeOf(name);
-        if (listed != files_.end() && listed->name == name) fs::remove(folder / name, ignored);
+        if (isListed(name) || isUnfinished(folder, name)) fs::remove(folder / name, ignored);
     }
 }
 

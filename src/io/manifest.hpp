@@ -33,11 +33,11 @@ class Manifest {
     bool empty() const { return files_.empty(); }
 
     /// A file or an empty folder that is not listed or was changed since; nothing when all are
-    /// listed.
+    /// listed. Unfinished new versions of listed files, which a killed process left, do not count.
     std::optional<std::filesystem::path> foreignFile(const std::filesystem::path& folder) const;
 
-    /// Removes the listed files of the folder. Links are not followed, and files outside of the
-    /// folder are not removed even if a line names them.
+    /// Removes the listed files of the folder, and unfinished new versions of them. Links are not
+    /// followed, and files outside of the folder are not removed even if a line names them.
     void removeFiles(const std::filesystem::path& folder) const;
 
     /// Updates the entry of a file that the program has written again. Does nothing if the folder
@@ -51,6 +51,8 @@ class Manifest {
         std::uint32_t checksum;      // CRC-32
         bool operator==(const File&) const = default;
     };
+    bool isListed(const std::filesystem::path& name) const;
+    bool isUnfinished(const std::filesystem::path& folder, const std::filesystem::path& name) const;
     bool lists(const std::filesystem::path& folder, const std::filesystem::path& name) const;
     /// Position of the first file whose name is not before this one in the sorted list.
     std::vector<File>::const_iterator placeOf(const std::filesystem::path& name) const;

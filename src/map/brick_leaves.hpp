@@ -48,8 +48,8 @@ void visitCells(const Eigen::Array3i& lowest, int edge, const Visit& visit) {
 }
 
 /// Calls visit(leaf, lowest, edge) for every leaf at and below the node of a brick, with the first
-/// cell (relative to that of the brick) and the edge [cells] of the leaf.
-/// @param lowest the first cell of the node, relative to that of the brick
+/// cell (relative to the brick's first) and the edge [cells] of the leaf.
+/// @param lowest the first cell of the node, relative to the brick's first
 /// @param edge of the node [cells]
 template <class Visit>
 void visitLeaves(const TexturedOcTree& map, const TexturedOcTreeNode& node, const Visit& visit,

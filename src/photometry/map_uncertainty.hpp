@@ -8,7 +8,7 @@
 namespace photonav {
 
 struct MapUncertaintyOptions {
-    /// Standard deviation of log depth before the view: 30 % of the depth.
+    /// Standard deviation of log depth before the view: 30 % of the depth. Configs have 1.
     double priorSigma = 0.3;
     double baseline = 0.25;  ///< distance between the two images that a depth is measured from [m]
     int stride = 2;          ///< use every stride-th row and column

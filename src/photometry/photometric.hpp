@@ -26,7 +26,7 @@ struct PhotometricOptions {
 /// Fisher information of the camera pose from one view, in the camera frame, for the left
 /// perturbation T_c_w = exp(xi^) mean:
 ///     Lambda = scale / sigma^2 * sum J^T J,   J = grad I * dpi/dp * [1 | -p^]
-/// (the paper's eqs. (19) and (20)). The gradient is that of the predicted image
+/// (the paper's eqs. (19) and (20)). The gradient is the gradient of the predicted image
 /// (`options.gradient`); a border of one pixel is left out. A pixel is used if it and its four
 /// neighbours have depth, none of them lies across a depth discontinuity, and it is not saturated.
 /// Nothing is stored per pixel. Sums are single precision within 16 rows and double across them,

@@ -123,7 +123,7 @@ struct Alignment {
     int iterations = 0;  ///< number of views compared, over all levels
     ResidualStatistics residual;
     double overlap = 0.;  ///< share of the image's pixels that were used
-    /// Variance of the image's point spread less that of the model's views, by the residuals, and
+    /// Variance of the image's point spread less the model views' variance, by the residuals, and
     /// its standard deviation by their noise; infinite: not estimated (keyframes) [pixels^2].
     double blur = 0., blurSigma = kInfinity;
     /// Eigenvalues of `information` with translations in units of the mean depth [1/rad^2],

@@ -59,8 +59,8 @@ class PointSet {
     std::vector<float> x_, y_, w_, intensity_, gx_, gy_;
     std::vector<std::size_t> blockBegin_;  ///< first point of each ImageBlock; the end at the back
     std::vector<Eigen::Array2i> blockIndex_;
-    /// From the perturbation of the last comparison to that of its sums: what GradientNoise leaves
-    /// of them, on the right.
+    /// From the perturbation of the last comparison to the one of its sums: what GradientNoise
+    /// leaves of them, on the right.
     Matrix6 ofPoints_ = Matrix6::Identity();
     std::vector<float> residualSample_;
 };

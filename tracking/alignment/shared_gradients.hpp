@@ -51,7 +51,7 @@ struct SharedTexture {
 /// the noise has the same weight, whatever its contrast. (The variance of the whole image is
 /// explained by an object of high contrast, even if that has moved and everything else disagrees.)
 /// @param sigma standard deviation of the image noise [grey value]
-/// @param isModelNoisy tiles whose gradients may be noise as large as that of images are left out
+/// @param isModelNoisy tiles whose gradients may be noise as large as the images' are left out
 /// @return none: no tile counts, or the share depends on a single one
 std::optional<SharedTexture> sharedTexture(const std::vector<GradientTile>& tiles, double sigma,
                                            bool isModelNoisy);

@@ -37,7 +37,7 @@ class MeasuredSurfaces : public ViewSource {
     void measure(const ImageF& measured, const Camera& camera, const UncertainPose& T_c_w);
 
     /// A view of the map without depth at the contradicted pixels. Cameras may be halved versions
-    /// of that of the measurement.
+    /// of the measurement's.
     void render(const Camera& camera, const Pose& T_c_w, View& view) const override;
 
   private:

@@ -71,7 +71,7 @@ class Tracker {
 
     /// Processes the next image of a camera without odometry.
     /// @param view of the camera's size
-    /// @param time time of the image, later than that of the last one [s]
+    /// @param time time of the image, later than the time of the last image [s]
     /// @throws std::invalid_argument for a view of another size
     TrackedFrame track(const View& view, double time) { return track({time, view}); }
 

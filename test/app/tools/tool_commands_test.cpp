@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -32,6 +33,21 @@ TEST_F(ReportCommand, ReportIsRebuiltFromItsFolder) {
     EXPECT_FALSE(fs::exists(folder_.string() + ".unfinished"));
     std::ofstream(folder_ / "report.json") << "{";
     EXPECT_EQ(photonav("report " + folder_.string()).exitCode, 2);
+}
+
+/// script(1) makes a terminal.
+TEST(KeysCommand, FitIntoEightyColumnsOfATerminal) {
+    const Execution run =
+        execute(fmt::format("script -qec '{} keys' /dev/null < /dev/null", PHOTONAV_BINARY));
+    EXPECT_EQ(run.exitCode, 0) << run.output;
+    EXPECT_NE(run.output.find("planner.alpha = 0.1"), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("    1: the shortest path, 0: the most certain one"),
+              std::string::npos);
+    std::istringstream lines(run.output);
+    for (std::string line; std::getline(lines, line);) {
+        EXPECT_LE(line.size(), 81U) << line;  // with the carriage return
+        EXPECT_EQ(line.find('|'), std::string::npos) << line;
+    }
 }
 
 TEST(KeysCommand, ListsThoseOfMapsAndReplaysAsDocumented) {

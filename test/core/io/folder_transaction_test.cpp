@@ -211,7 +211,6 @@ TEST_F(FolderTransactionTest, OneProcessWritesAFolderAtATime) {
 
 /// An earlier result is removed after the exchange, at the place where the next one begins.
 TEST_F(FolderTransactionTest, ManyAtOnceAreWholeOrRefused) {
-    commit(target_, "begin/0.txt", "0");
     const auto writeAgain = [&](int writer) {
         for (int round = 0; round < 100; ++round) {
             try {
@@ -251,9 +250,16 @@ TEST_F(FolderTransactionTest, WaitsForNoneWhileAFileIsReplaced) {
 TEST_F(FolderTransactionTest, UnfinishedFilesInAResultAreOurs) {
     commit(target_, "old.txt", "old");
     write(target_ / ".photonav.tmp-1-2-3", "half a list");
-    write(target_ / "report.html.tmp-1-2-3", "half a page");
+    write(target_ / "old.txt.tmp-1-2-3", "half a page");
     commit(target_, "new.txt", "new");
     EXPECT_EQ(entries(target_), 2U);  // with the manifest
+    EXPECT_EQ(entries(temporary_.path()), 1U);
+    for (const char* mine : {"notes.tmp-1-2-3", "new.txt.tmp-2024", "new.txt.tmp-1-2-"}) {
+        write(target_ / mine, "");
+        EXPECT_NE(complaint(target_).find("is not of an earlier result"), std::string::npos)
+            << mine;
+        fs::remove(target_ / mine);
+    }
 }
 
 TEST_F(FolderTransactionTest, IsSeenByOthersUntilItEnds) {
