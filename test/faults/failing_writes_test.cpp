@@ -293,6 +293,7 @@ ExplorationResult flightOf(std::uint32_t seed) {
     flight.planner = "rrt_star";
     flight.seed = seed;
     flight.end = FlightEnd::noWay;
+    flight.samples.emplace_back();
     return flight;
 }
 
