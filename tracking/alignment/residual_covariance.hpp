@@ -42,7 +42,7 @@ struct MeasuredInformation {
 
 /// The information of an image by its residuals. With A_b and g_b the normal equations of block b
 /// at the minimum, H = sum A_b, and x the step to the minimum of the image alone, the covariance is
-///     C = H^-1 (sum s_b s_b^T) H^-1 + C_repeating,   s_b = (1 - A_b H^-1)^-1 (g_b - A_b x).
+///     C = n/(n-7) H^-1 (sum s_b s_b^T) H^-1 + C_repeating,  s_b = (1 - A_b H^-1)^-1 (g_b - A_b x).
 /// This is the variance by leaving out one block at a time ("jackknife", the cluster-robust "CR3").
 /// Blocks count as independent; the pixels of a block may be correlated. It follows from residuals
 /// of any size and cause, and does not depend on an assumed image noise. The exposure is eliminated
