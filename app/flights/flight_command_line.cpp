@@ -19,8 +19,7 @@ void addFlyOptions(CLI::App& parser, FlyArguments& options) {
     addCommon(parser, options);
     parser.get_option("config")->description(
         "YAML file of the planning problem, or result folder of photonav plan (or the result.json "
-        "or "
-        "path.tum in it)");
+        "or path.tum in it)");
     addJobs(parser, options.jobs);
     addSeed(parser, options.overrides, "seed of all random numbers");
     addKeys(options.keys, options.typed);

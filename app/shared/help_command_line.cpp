@@ -9,23 +9,6 @@ namespace {
 
 constexpr std::size_t kWidth = 80, kColumn = 26;  // of the text, and where descriptions begin
 
-/// Words in lines of at most kWidth columns, the later ones from `indent` on.
-std::string wrapped(const std::string& text, std::size_t indent) {
-    std::istringstream words(text);
-    std::string word, lines;
-    std::size_t column = indent;
-    while (words >> word) {
-        if (column > indent && column + 1 + word.size() > kWidth) {
-            lines += "\n" + std::string(indent, ' ');
-            column = indent;
-        }
-        if (column > indent) lines += ' ', ++column;
-        lines += word;
-        column += word.size();
-    }
-    return lines;
-}
-
 std::string row(const std::string& name, const std::string& description) {
     std::string line = "  " + name;
     if (line.size() + 1 < kColumn) {
@@ -73,6 +56,22 @@ class HelpFormat : public CLI::Formatter {
 };
 
 }  // namespace
+
+std::string wrapped(const std::string& text, std::size_t indent) {
+    std::istringstream words(text);
+    std::string word, lines;
+    std::size_t column = indent;
+    while (words >> word) {
+        if (column > indent && column + 1 + word.size() > kWidth) {
+            lines += "\n" + std::string(indent, ' ');
+            column = indent;
+        }
+        if (column > indent) lines += ' ', ++column;
+        lines += word;
+        column += word.size();
+    }
+    return lines;
+}
 
 std::shared_ptr<CLI::FormatterBase> helpFormat() { return std::make_shared<HelpFormat>(); }
 

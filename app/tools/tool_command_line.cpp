@@ -4,7 +4,6 @@
 
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "bag/mcap_writer.hpp"
@@ -37,19 +36,6 @@ std::string withoutLinks(const std::string& markdown) {
     return text + markdown.substr(end);
 }
 
-/// Words in lines of at most `width` characters, indented.
-std::string wrapped(const std::string& text, std::size_t indent, std::size_t width) {
-    std::istringstream words(text);
-    std::string lines, line;
-    for (std::string word; words >> word;) {
-        if (!line.empty() && indent + line.size() + 1 + word.size() > width) {
-            lines += std::string(indent, ' ') + std::exchange(line, "") + "\n";
-        }
-        line += (line.empty() ? "" : " ") + word;
-    }
-    return line.empty() ? lines : lines + std::string(indent, ' ') + line + "\n";
-}
-
 /// A table of keys in Markdown for a terminal of 80 columns: the key, its default and its unit,
 /// below them the values and what it does.
 std::string asText(const std::string& table) {
@@ -67,8 +53,10 @@ std::string asText(const std::string& table) {
             cells.size() >= kCells && row.starts_with("| ") && !row.starts_with("| key");
         if (!isKey) continue;
         const std::string unit = cells[3].empty() ? "" : fmt::format(" [{}]", cells[3]);
-        text += wrapped(fmt::format("{} = {}{}", cells[1], cells[2], unit), 0, 80);
-        text += wrapped(cells[4], 4, 80) + wrapped(cells[5], 4, 80);
+        text += wrapped(fmt::format("{} = {}{}", cells[1], cells[2], unit), 0) + "\n";
+        for (const std::string& words : {cells[4], cells[5]}) {
+            if (!words.empty()) text += "    " + wrapped(words, 4) + "\n";
+        }
     }
     return text;
 }
