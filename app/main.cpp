@@ -80,7 +80,7 @@ void onInterrupt(int signal) {
     }
     interruptedBy = signal;
     interrupted = true;
-    if (reaction != OnInterrupt::finishAlways && !FolderTransaction::isAnyOpen()) {
+    if (reaction != OnInterrupt::finishAlways && !WorkingFolder::isAnyOpen()) {
         say("photonav: ");
         say(saidWhenEnded());
         say("\n");

@@ -109,7 +109,7 @@ void checkIsSame(const JournalHeader& found, const JournalHeader& wanted, const 
 }
 
 void checkIsNotWritten(const std::string& folder) {
-    if (!FolderTransaction::isBeingWritten(folder)) return;
+    if (!WorkingFolder::isLocked(folder)) return;
     throw InputError("--merge", folder, "another photonav is writing it");
 }
 

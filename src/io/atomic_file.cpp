@@ -4,13 +4,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <locale>
 #include <random>
+#include <regex>
 #include <string>
 #include <system_error>
 
@@ -21,15 +21,12 @@ namespace photonav {
 
 namespace {
 
-constexpr const char* kTemporary = ".tmp";
-constexpr int kParts = 3;  // numbers behind it
-
 /// A name beside the file that no other writer has, be it in this process, in another, or on
-/// another machine that shares the folder.
+/// another machine that shares the folder. isTemporaryFile() knows it.
 std::filesystem::path temporaryFor(const std::filesystem::path& file) {
     static const unsigned random = std::random_device{}();
     static std::atomic<unsigned> count{0};
-    std::string name = file.string() + kTemporary;
+    std::string name = file.string() + ".tmp";
     for (const auto part : {static_cast<unsigned>(getpid()), random, count++}) {
         name.append("-").append(std::to_string(part));
     }
@@ -102,16 +99,8 @@ void writeFileAtomically(const std::filesystem::path& file, std::string_view con
 }
 
 bool isTemporaryFile(const std::filesystem::path& file) {
-    const std::string extension = file.extension().string();
-    if (!extension.starts_with(kTemporary)) return false;
-    std::string_view rest = std::string_view(extension).substr(std::strlen(kTemporary));
-    for (int part = 0; part < kParts; ++part) {
-        if (!rest.starts_with('-')) return false;
-        const std::size_t end = std::min(rest.size(), rest.find_first_not_of("0123456789", 1));
-        if (end == 1) return false;
-        rest.remove_prefix(end);
-    }
-    return rest.empty();
+    static const std::regex kName{R"(\.tmp(-\d+){3})"};
+    return std::regex_match(file.extension().string(), kName);
 }
 
 void replaceFile(const std::filesystem::path& file, std::string_view content) {

@@ -7,15 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "io/file_lock.hpp"
 #include "io/manifest.hpp"
+#include "io/working_folder.hpp"
 
 namespace photonav {
-
-/// The file or folder that a path leads to, absolute, links followed, without a closing slash; it
-/// and its last parents need not exist.
-/// @throws InputError for a path that the system refuses, such as one that is too long
-std::filesystem::path resolvedFolder(const std::filesystem::path& path);
 
 /// Replaces a folder as a whole. Files are written into a working folder beside it,
 /// NAME.unfinished; commit() exchanges the two in one step. Until then, and when the program is
@@ -41,7 +36,7 @@ class FolderTransaction {
     /// Where results will be, as it was given.
     const std::filesystem::path& target() const { return target_; }
     /// Where to write until commit().
-    const std::filesystem::path& path() const { return working_; }
+    const std::filesystem::path& path() const { return path_; }
 
     /// Writes everything to the disk, then puts the working folder in the target's place.
     /// @throws InputError when that cannot be done; the working folder is kept then
@@ -66,60 +61,22 @@ class FolderTransaction {
     /// Removes what was written so far: nothing of it is worth keeping.
     void discard();
 
-    /// Whether this process has a transaction that is not committed, or a FolderLock. Without one,
-    /// an interrupted process has nothing to keep, and no working folder. May be called in a signal
-    /// handler.
-    static bool isAnyOpen() { return open_ > 0; }
-
     /// Whether this process has put a result in its place. May be called in a signal handler.
     static bool isAnyCommitted() { return isAnyCommitted_; }
 
-    /// Whether another process is writing this folder.
-    static bool isBeingWritten(const std::filesystem::path& target);
-
   private:
-    friend class FolderLock;
-
     void takeUp();
     void endExchange() const;
-    void removeLeftovers() const;
     std::optional<std::filesystem::path> exchange() const;
     static void removeReplaced(const std::filesystem::path& place);
 
-    struct Counted {
-        Counted() { ++open_; }
-        ~Counted() { --open_; }
-        Counted(const Counted&) = delete;
-        Counted& operator=(const Counted&) = delete;
-    };
-
     static inline std::atomic<bool> isAnyCommitted_{false};
-    static inline std::atomic<int> open_{0};
-    std::optional<Counted> counted_{std::in_place};  // first: ends after the working folder
-    std::filesystem::path target_;                   // as given
-    std::filesystem::path resolved_;                 // absolute, links followed
-    std::filesystem::path working_;                  // beside it
+    std::filesystem::path target_;          // as given
+    std::filesystem::path resolved_;        // absolute, links followed
+    std::optional<WorkingFolder> working_;  // beside it, until commit() ends
+    std::filesystem::path path_;            // of the working folder
     Unfinished unfinished_;
     bool isOpen_ = true;
-    FileDescriptor lock_;  // of the working folder's manifest
-};
-
-/// Keeps other processes from writing a result folder while one of its files is replaced: as long
-/// as this object lives, they are refused as a FolderTransaction refuses them. Does nothing for a
-/// folder that does not exist, or that this user may not replace.
-class FolderLock {
-  public:
-    /// @throws InputError when another process writes the folder, and when the working folder
-    ///         beside it, which holds the lock, cannot be made or is none of ours
-    explicit FolderLock(const std::filesystem::path& folder);
-    ~FolderLock();
-    FolderLock(const FolderLock&) = delete;
-    FolderLock& operator=(const FolderLock&) = delete;
-
-  private:
-    FolderTransaction::Counted counted_;
-    std::filesystem::path working_;
-    FileDescriptor lock_;
 };
 
 }  // namespace photonav

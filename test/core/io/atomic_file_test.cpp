@@ -107,7 +107,7 @@ TEST_F(AtomicFile, KnowsWhatAKilledWriterLeaves) {
         ASSERT_EQ(names().size(), 1U);
         EXPECT_TRUE(isTemporaryFile(names().front()));
     });
-    for (const char* name : {"a", "a.tmp", "a.tmp-b", "tmp-1-2-3"}) {
+    for (const char* name : {"a", "a.tmp", "a.tmp-b", "a.tmp-1-2", "a.tmp-1-2-3-4", "tmp-1-2-3"}) {
         EXPECT_FALSE(isTemporaryFile(name)) << name;
     }
 }

@@ -237,7 +237,7 @@ TEST_F(FolderTransactionTest, WaitsForNoneWhileAFileIsReplaced) {
     commit(target_, "old.txt", "old");
     {
         const FolderLock lock(target_);
-        EXPECT_TRUE(FolderTransaction::isAnyOpen());
+        EXPECT_TRUE(WorkingFolder::isAnyOpen());
         EXPECT_NE(complaint(target_).find("another photonav is writing it"), std::string::npos);
         const auto second = [&] { const FolderLock again(target_); };
         EXPECT_NE(reasonOf(second).find("another photonav"), std::string::npos);
@@ -264,8 +264,8 @@ TEST_F(FolderTransactionTest, UnfinishedFilesInAResultAreOurs) {
 
 TEST_F(FolderTransactionTest, IsSeenByOthersUntilItEnds) {
     const auto isSeen = [&] {
-        EXPECT_EQ(FolderTransaction::isAnyOpen(), FolderTransaction::isBeingWritten(target_));
-        return FolderTransaction::isAnyOpen();
+        EXPECT_EQ(WorkingFolder::isAnyOpen(), WorkingFolder::isLocked(target_));
+        return WorkingFolder::isAnyOpen();
     };
     EXPECT_FALSE(isSeen());
     {
