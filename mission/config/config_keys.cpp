@@ -265,7 +265,9 @@ void addSearch(KeyTable& keys, Config& c) {
     keys.flag(
         {"informed", "", "reject most samples where no better path can pass (`belief_rrt_star`)"},
         c.search.informed);
-    keys.count({"shortcut", "", "changes tried by the descent; 0: none (`belief_rrt_star`)"},
+    keys.count({"shortcut", "",
+                "changes tried by the descent; 0: none (`belief_rrt_star`; `rrt_star`: to shorten "
+                "its path)"},
                c.search.shortcut, {0., 1e9});
     keys.number({"range", "m", "longest motion added; 0: a fifth of the space's extent"},
                 c.growth.range, {1e-3, kFarthest, true});

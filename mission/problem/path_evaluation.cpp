@@ -7,6 +7,7 @@
 
 #include "geometry/se3.hpp"
 #include "planners/path_descent.hpp"
+#include "planners/planner_traits.hpp"
 #include "problem/planning_problem.hpp"
 
 namespace photonav {
@@ -55,16 +56,23 @@ std::optional<EvaluatedPath> PlanningProblem::descend(const std::vector<Pose>& w
     return evaluate("descent", descent.path());
 }
 
-EvaluatedPath PlanningProblem::evaluate(const BeliefPlanner& planner) {
+EvaluatedPath PlanningProblem::evaluate(const BeliefPlanner& planner,
+                                        const std::atomic<bool>& interrupted) {
+    const PlannerTraits* traits = findPlanner(planner.getName());
+    if (traits != nullptr && !traits->usesViews) {
+        ompl::geometric::PathGeometric shortest = shortestPath(planner, interrupted);
+        return evaluate(planner.getName(), shortest, planner.movedRoot());
+    }
     const auto& path = planner.bestPath();
     return evaluate(planner.getName(), std::vector<const ob::State*>(path.begin(), path.end()),
                     planner.movedRoot());
 }
 
 EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
-                                        ompl::geometric::PathGeometric& path) {
+                                        ompl::geometric::PathGeometric& path,
+                                        const std::optional<Belief>& root) {
     const auto& states = path.getStates();
-    return evaluate(planner, std::vector<const ob::State*>(states.begin(), states.end()));
+    return evaluate(planner, std::vector<const ob::State*>(states.begin(), states.end()), root);
 }
 
 EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
@@ -125,12 +133,16 @@ double PlanningProblem::balancedKappa(const std::atomic<bool>& interrupted) {
     const InterruptionScope scope = interruptedBy(interrupted);
     const auto planner = makePlanner("rrt_star", evaluator_, config_.seed);
     planner->solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
-    std::vector<const ob::State*> path(planner->bestPath().begin(), planner->bestPath().end());
-    const auto line = definition();
-    if (path.empty()) {
-        path = {line->getStartState(0), line->getGoal()->as<ob::GoalStates>()->getState(0)};
+    ompl::geometric::PathGeometric path(si_);
+    if (planner->bestPath().empty()) {
+        const auto line = definition();
+        path.append(line->getStartState(0));
+        path.append(line->getGoal()->as<ob::GoalStates>()->getState(0));
+    } else {
+        path = shortestPath(*planner, interrupted);
     }
-    const std::vector<BeliefPoint> points = evaluator_->evaluate(path);
+    const auto& states = path.getStates();
+    const std::vector<BeliefPoint> points = evaluator_->evaluate({states.begin(), states.end()});
     const double charged = chargeOf(points, config_.belief.cost);
     return charged > 0. ? std::min(points.back().distance / charged, kMostKappa) : 0.;
 }

@@ -11,6 +11,7 @@
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "planners/planner_table.hpp"
+#include "planners/shortened_path.hpp"
 #include "problem/tree_evolution.hpp"
 #include "render/interruptible_views.hpp"
 
@@ -151,7 +152,7 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
     outcome.tree = drawnEdges(*planner);
     const InterruptionScope scope = interruptedBy(interrupted);
     try {
-        judge(*planner, outcome);
+        judge(*planner, outcome, interrupted);
     } catch (const Interrupted&) {  // views that the planner has not rendered
         outcome.path.reset();
     }
@@ -159,14 +160,22 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
 }
 
 /// Checks the tree, and evaluates the path.
-void PlanningProblem::judge(const BeliefPlanner& planner, PlanOutcome& outcome) {
+void PlanningProblem::judge(const BeliefPlanner& planner, PlanOutcome& outcome,
+                            const std::atomic<bool>& interrupted) {
     outcome.audit = auditTree(planner);
     const auto& path = planner.bestPath();
     if (path.empty()) return;
-    outcome.path = evaluate(planner);
     outcome.plannerCost = planner.bestCost();
     const auto replayed = planner.model().evaluate({path.begin(), path.end()}, planner.movedRoot());
     includePath(outcome.audit, outcome.plannerCost, replayed.back().cost);
+    outcome.path = evaluate(planner, interrupted);
+}
+
+/// The path of rrt_star without most of the corners that depend on its samples.
+ompl::geometric::PathGeometric PlanningProblem::shortestPath(
+    const BeliefPlanner& planner, const std::atomic<bool>& interrupted) const {
+    return shortenPath(si_, space_, planner.bestPath(), config_.search.shortcut,
+                       ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
 }
 
 std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& name,

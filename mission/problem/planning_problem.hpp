@@ -49,8 +49,9 @@ using TreeSegment = std::array<Eigen::Vector3f, 2>;  ///< end points of an edge,
 struct PlanOutcome {
     /// None: the goal was not reached, or the path's evaluation was interrupted in a large view.
     std::optional<EvaluatedPath> path;
-    double plannerCost = 0.;  ///< cost of the path by the planner's own model [m]
-    double alpha = 0.;        ///< alpha with which the planner searched
+    /// Cost of the planner's path by its own model [m]; of rrt_star: before it is shortened.
+    double plannerCost = 0.;
+    double alpha = 0.;  ///< alpha with which the planner searched
     /// Vertices of the tree or roadmap, samples drawn, views rendered, views taken from the cache,
     /// and steps at which compounding of fourth order was replaced by second order.
     std::size_t vertices = 0, iterations = 0, views = 0, cacheHits = 0, fallbacks = 0;
@@ -94,7 +95,9 @@ class PlanningProblem {
     void checkPlaces() const;
 
     /// Makes a planner and grows it to the config's number of vertices. Gives up after 200 samples
-    /// per requested vertex.
+    /// per requested vertex. The path of rrt_star is then shortened by as many changes as
+    /// belief_rrt_star tries on its own (planner.shortcut): else its corners, which depend on its
+    /// samples, would make the comparison easy.
     /// @param planner one of plannerNames()
     /// @param onProgress called every 50 vertices, every 0.5 s without new vertices, and at the end
     /// @throws Interrupted when it is interrupted inside a large view, without a path so far
@@ -118,7 +121,7 @@ class PlanningProblem {
                                          const std::atomic<bool>& interrupted);
 
     /// The kappa of all costs [1/m^2]: the config's, or the automatic one. Automatic kappa gives
-    /// both terms of the cost the same weight on the path of rrt_star with the seed of the config
+    /// both terms of the cost the same weight on the path of rrt_star that solve() gives
     /// (on the straight line if rrt_star finds no path): it is the path's distance, including
     /// turns, divided by the charged trace (0 if no trace is charged). It is computed when first
     /// needed and does not change afterwards, also if the map changes.
@@ -167,11 +170,14 @@ class PlanningProblem {
     const World& world() const { return world_; }
     /// The belief model by which paths are evaluated.
     BeliefModel& evaluator();
-    /// Evaluates the solution of a planner, from the belief that moveRoot() has set, if it has. The
-    /// planner must have a solution.
-    EvaluatedPath evaluate(const BeliefPlanner& planner);
+    /// Evaluates the solution of a planner, that of rrt_star shortened as in solve(), from the
+    /// belief that moveRoot() has set, if it has. The planner must have a solution.
+    EvaluatedPath evaluate(const BeliefPlanner& planner,
+                           const std::atomic<bool>& interrupted = kNotInterrupted);
     /// Evaluates a path of any OMPL planner.
-    EvaluatedPath evaluate(const std::string& planner, ompl::geometric::PathGeometric& path);
+    /// @param root belief at the first state; none: the config's
+    EvaluatedPath evaluate(const std::string& planner, ompl::geometric::PathGeometric& path,
+                           const std::optional<Belief>& root = {});
     /// Clears the cached views. Planners made before must be cleared before they are used again.
     void forgetViews() {
         field_->clear();
@@ -190,8 +196,10 @@ class PlanningProblem {
     bool hasQuickViews() const;
     std::shared_ptr<const ViewSource> interruptibleViews() const;
     std::shared_ptr<BeliefModel> plannersModel();
-    void judge(const BeliefPlanner& planner, PlanOutcome& outcome);
-    /// @param root belief at the first state; none: the config's
+    void judge(const BeliefPlanner& planner, PlanOutcome& outcome,
+               const std::atomic<bool>& interrupted);
+    ompl::geometric::PathGeometric shortestPath(const BeliefPlanner& planner,
+                                                const std::atomic<bool>& interrupted) const;
     EvaluatedPath evaluate(const std::string& planner,
                            const std::vector<const ompl::base::State*>& path,
                            const std::optional<Belief>& root = {});

@@ -22,7 +22,9 @@ TreeStage grow(BeliefPlanner& planner, PlanningProblem& problem,
     for (const ob::State* state : planner.bestPath()) {
         stage.path.push_back(planner.model().space().position(state));
     }
-    stage.cost = problem.evaluate(planner).cost;
+    const auto& path = planner.bestPath();
+    stage.cost =
+        problem.evaluator().evaluate({path.begin(), path.end()}, planner.movedRoot()).back().cost;
     return stage;
 }
 

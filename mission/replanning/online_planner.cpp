@@ -198,16 +198,16 @@ bool OnlinePlanner::solveFrom(const ob::State* state, const Belief& belief, cons
 OnlinePlanner::States OnlinePlanner::solution(const Limits& limits) const {
     const auto& best = planner_->bestPath();
     if (best.empty()) return {};
-    std::vector<const ob::State*> states(best.begin(), best.end());
     const auto& si = problem_.spaceInformation();
-    States plan;
-    if (usesViews(kind_.name)) {
+    const auto withOurHeadings = [&](const auto& states) {
+        States plan;
         for (const ob::State* state : states) plan.push_back(copyOf(si, state));
-    } else {
-        plan = shortenPath(si, problem_.space(), states, kChangesWithoutViews,
-                           ob::PlannerTerminationCondition([&] { return limits.isOver(true); }));
-    }
-    return withHeadings(std::move(plan));
+        return withHeadings(std::move(plan));
+    };
+    if (usesViews(kind_.name)) return withOurHeadings(best);
+    const ob::PlannerTerminationCondition isOver([&] { return limits.isOver(true); });
+    return withOurHeadings(
+        shortenPath(si, problem_.space(), best, kChangesWithoutViews, isOver).getStates());
 }
 
 /// From the root to where the goal is near and the way there is not long, and a turn toward the

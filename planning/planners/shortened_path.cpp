@@ -6,11 +6,10 @@
 namespace photonav {
 namespace ob = ompl::base;
 
-std::vector<std::shared_ptr<ob::State>> shortenPath(const ob::SpaceInformationPtr& si,
-                                                    const FlightSpace& space,
-                                                    const std::vector<const ob::State*>& path,
-                                                    unsigned changes,
-                                                    const ob::PlannerTerminationCondition& ptc) {
+ompl::geometric::PathGeometric shortenPath(const ob::SpaceInformationPtr& si,
+                                           const FlightSpace& space,
+                                           const std::vector<ob::State*>& path, unsigned changes,
+                                           const ob::PlannerTerminationCondition& ptc) {
     const auto blind = std::make_shared<InformationField>(InformationFormula{}, Pose::Identity(),
                                                           InformationField::Options{});
     BeliefOptions byLength;
@@ -18,13 +17,11 @@ std::vector<std::shared_ptr<ob::State>> shortenPath(const ob::SpaceInformationPt
     byLength.order = PropagationOrder::second;
     PathDescent descent(si, std::make_shared<BeliefModel>(space, blind, byLength),
                         {.moves = changes});
-    descent.begin(path, Belief{});
+    descent.begin({path.begin(), path.end()}, Belief{});
     descent.descend(ptc);
-    std::vector<std::shared_ptr<ob::State>> states;
-    for (const ob::State* state : descent.path()) {
-        states.emplace_back(si->cloneState(state), [si](ob::State* copy) { si->freeState(copy); });
-    }
-    return states;
+    ompl::geometric::PathGeometric shortened(si);
+    for (const ob::State* state : descent.path()) shortened.append(state);
+    return shortened;
 }
 
 }  // namespace photonav

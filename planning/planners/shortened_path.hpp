@@ -4,8 +4,8 @@
 
 #include <ompl/base/PlannerTerminationCondition.h>
 #include <ompl/base/SpaceInformation.h>
+#include <ompl/geometric/PathGeometric.h>
 
-#include <memory>
 #include <vector>
 
 #include "space/flight_space.hpp"
@@ -17,10 +17,11 @@ namespace photonav {
 /// Without them, a comparison with belief_rrt_star is fair.
 /// @param path at least one state; the motions must be free
 /// @param changes approximate number of changes that are tried
-/// @return the new states, from the same start to the same end; the motions are free
-std::vector<std::shared_ptr<ompl::base::State>> shortenPath(
-    const ompl::base::SpaceInformationPtr& si, const FlightSpace& space,
-    const std::vector<const ompl::base::State*>& path, unsigned changes,
-    const ompl::base::PlannerTerminationCondition& ptc);
+/// @return copies of the states, from the same start to the same end; the motions are free
+ompl::geometric::PathGeometric shortenPath(const ompl::base::SpaceInformationPtr& si,
+                                           const FlightSpace& space,
+                                           const std::vector<ompl::base::State*>& path,
+                                           unsigned changes,
+                                           const ompl::base::PlannerTerminationCondition& ptc);
 
 }  // namespace photonav
