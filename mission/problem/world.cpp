@@ -2,13 +2,13 @@
 #include "problem/world.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
 
 #include "io/error.hpp"
 #include "problem/map_of_config.hpp"
+#include "problem/picture_from_above.hpp"
 #include "render/mesh_renderer.hpp"
 #include "render/voxel_renderer.hpp"
 #include "scene/scene.hpp"
@@ -19,20 +19,6 @@ namespace {
 /// Range of the clearance [m]: beyond the robot, but at most 150 cells.
 double reach(double robotRadius, double cell) {
     return std::min(std::max(1., 2. * robotRadius), 150. * cell);
-}
-
-/// Darkens the lower side of a step between surfaces, which separates objects of one grey.
-void outlineSteps(ImageF& picture, const ImageF& depth) {
-    constexpr float kStep = 0.15F, kShade = 0.45F;  // [m], of the brightness
-    const auto isStep = [&](float a, float b) { return a > 0.F && b > 0.F && a - b > kStep; };
-    for (unsigned v = 1; v + 1 < depth.getHeight(); ++v) {
-        for (unsigned u = 1; u + 1 < depth.getWidth(); ++u) {
-            const float here = depth[v][u];
-            if (isStep(here, depth[v][u - 1]) || isStep(here, depth[v][u + 1]) ||
-                isStep(here, depth[v - 1][u]) || isStep(here, depth[v + 1][u]))
-                picture[v][u] *= kShade;
-        }
-    }
 }
 
 bool isTextured(const TexturedOcTree& map) {
@@ -141,37 +127,7 @@ Eigen::AlignedBox3d World::extent() const {
 }
 
 ImageF World::pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const {
-    // Small tiles, each rendered by a camera right above it, scaled for the lowest surface.
-    constexpr unsigned kTile = 16;
-    const auto pixels = [&](double extent) {
-        return static_cast<unsigned>(std::ceil(extent / pixelSize / kTile)) * kTile;
-    };
-    const unsigned width = std::max(kTile, pixels(area.sizes().x()));
-    const unsigned height = std::max(kTile, pixels(area.sizes().y()));
-    const double step = area.sizes().x() / width;
-    const double depth = std::max(z - extent().min().z(), pixelSize);
-    const Camera camera = makeCamera(kTile, kTile, 2. * std::atan(0.5 * kTile * step / depth));
-    Pose T_w_c = Pose::Identity();  // image right is world x, image down is world -y
-    T_w_c.linear() = Eigen::Vector3d(1., -1., -1.).asDiagonal();
-    ImageF picture(height, width);
-    ImageF depths(height, width);
-    View view;
-    for (unsigned v = 0; v < height; v += kTile) {
-        for (unsigned u = 0; u < width; u += kTile) {
-            T_w_c.translation() << area.min().x() + (u + 0.5 * kTile) * step,
-                area.max().y() - (v + 0.5 * kTile) * area.sizes().y() / height, z;
-            views_->render(camera, T_w_c.inverse(), view);
-            for (unsigned row = 0; row < kTile; ++row) {
-                for (unsigned column = 0; column < kTile; ++column) {
-                    const bool isSeen = view.depth[row][column] > 0.F;
-                    picture[v + row][u + column] = isSeen ? view.intensity[row][column] : 1.F;
-                    depths[v + row][u + column] = view.depth[row][column];
-                }
-            }
-        }
-    }
-    outlineSteps(picture, depths);
-    return picture;
+    return photonav::pictureFromAbove(*views_, area, z, extent().min().z(), pixelSize);
 }
 
 }  // namespace photonav

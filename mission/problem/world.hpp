@@ -58,11 +58,7 @@ class World {
     /// The map from which the world was made; null if it was made from a scene.
     const TexturedOcTree* map() const { return map_.get(); }
 
-    /// A nearly orthographic picture from above, grey values in [0, 1]. Image right is x, the first
-    /// row is at the largest y. Places without surface are white, edges of objects are darkened.
-    /// @param area part of the world in x and y [m]
-    /// @param z only surfaces below this height are shown [m]
-    /// @param pixelSize edge of a pixel [m]
+    /// The surfaces below a height z [m] from above: see problem/picture_from_above.hpp.
     ImageF pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const;
 
   private:
