@@ -146,7 +146,11 @@ bool OnlineMap::isSeen(const Eigen::Vector3d& p_w) const {
     const double cell = cells_->getResolution();
     int known = 0;
     for (double below = cell; below <= fusion_.maxRange && known < kWallCells; below += cell) {
-        known += cells_->search(p_w.x(), p_w.y(), p_w.z() - below) != nullptr ? 1 : 0;
+        const auto* node = cells_->search(p_w.x(), p_w.y(), p_w.z() - below);
+        if (node == nullptr) continue;
+        // Something may stand on a surface above which nothing is known.
+        if (known == 0 && cells_->isNodeOccupied(*node)) return false;
+        ++known;
     }
     return known == kWallCells;
 }

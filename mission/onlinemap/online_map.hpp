@@ -79,8 +79,8 @@ class OnlineMap {
     }
 
     /// Whether surfaces or free space were observed at a place, or below it within explore.range in
-    /// as many cells as a wall there needs to be noticed (kWallCells), and the column of the place
-    /// is not doubted (DoubtedColumns).
+    /// as many cells as a wall there needs to be noticed (kWallCells), the nearest of them free.
+    /// The column of the place must not be doubted (DoubtedColumns).
     bool isSeen(const Eigen::Vector3d& p_w) const;
 
     const std::shared_ptr<TexturedOcTree>& cells() const { return cells_; }

@@ -153,6 +153,20 @@ TEST_F(MapOfABox, IsSeenAboveSurfacesWithinRange) {
     EXPECT_FALSE(OnlineMap(config).isSeen({0., -0.5, 1.}));
 }
 
+/// What is below a shelf says nothing of what stands on it.
+TEST_F(MapOfABox, IsNotSeenAboveASurfaceWithUnknownSpaceOnIt) {
+    TexturedOcTree known(config.explore.resolution);
+    for (double z = 0.35; z < 1.2; z += config.explore.resolution) {
+        known.setNodeValue(0.05, 0.05, z, -1.F);
+        known.setNodeValue(1.05, 0.05, z, -1.F);
+    }
+    known.setNodeValue(1.05, 0.05, 1.15, 3.F);  // the shelf
+    OnlineMap map(config, &known);
+    EXPECT_TRUE(map.isSeen({0.05, 0.05, 1.55}));
+    EXPECT_TRUE(map.isSeen({1.05, 0.05, 0.85}));
+    EXPECT_FALSE(map.isSeen({1.05, 0.05, 1.55}));
+}
+
 TEST_F(MapOfABox, SurfacesOutOfRangeAreNotMapped) {
     config.explore.range = 0.4;
     EXPECT_FALSE(isObstacle(fused(), 0.05, -0.45, 0.05));
