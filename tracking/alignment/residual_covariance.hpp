@@ -46,7 +46,8 @@ struct MeasuredInformation {
 /// This is the variance by leaving out one block at a time ("jackknife", the cluster-robust "CR3").
 /// Blocks count as independent; the pixels of a block may be correlated. It follows from residuals
 /// of any size and cause, and does not depend on an assumed image noise. The exposure is eliminated
-/// first.
+/// first. A direction about which one block says more than all others together counts as not
+/// observed: such a block fits nearly exactly, wherever it leads.
 ///
 /// A gain that varies slowly over the image (shading, changed light) repeats from image to image.
 /// Its variance is estimated by the covariance of the gains of neighbouring blocks. Over little

@@ -304,6 +304,37 @@ TEST(ResidualCovariance, FewBlocksDoNotMakeItSingular) {
     }
 }
 
+/// A white wall fills the view. Beyond its end, just outside of the view, the corner of a grey
+/// floor may be seen from poses within the prior: a few pixels that fit exactly once they are out
+/// of view.
+TEST(ResidualCovariance, ACornerAtTheBorderDoesNotDetermineThePose) {
+    Scene scene = test::floorOf(uniformTexture(0.6F));
+    const auto white = addTexture(scene, uniformTexture(0.85F));
+    addBox(scene, {2.5, 1.5, 0.}, {3.3, 4.5, 2.8}, white);
+    addPlane(scene, {0., 6., 0.}, {7., 0., 0.}, {0., 0., 5.}, white);
+    const MeshRenderer world(std::move(scene));
+    const Camera camera = makeCamera(160, 120, 1.22);
+    WideAligner aligner(world, camera, forPhotographs());
+    Vector6 sigma;
+    sigma << 0.05, 0.03, 0.05, 0.01, 0.04, 0.01;
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> normal;
+    for (const double yaw : {0.52, 0.55, 0.58}) {
+        const Pose truth = lookFrom({1.5, 1.7, 1.1}, 0., yaw);
+        const ImageF image = test::photographed(world, camera, truth).intensity;
+        double nees = 0.;
+        for (int i = 0; i < 30; ++i) {
+            const Vector6 error = sigma.unaryExpr([&](double s) { return s * normal(random); });
+            const UncertainPose prior{expSE3(error) * truth,
+                                      Matrix6(sigma.cwiseAbs2().asDiagonal())};
+            const Alignment a = aligner.align(test::noisy(image, 0.03, random), prior);
+            nees += test::neesOf(a, truth) / 30.;
+        }
+        std::cout << "NEES per dof, yaw " << yaw << ": " << nees << '\n';
+        EXPECT_LT(nees, 2.) << yaw;
+    }
+}
+
 TEST(ResidualCovariance, RepeatingErrorsDoNotAverageOut) {
     std::mt19937_64 random(5);
     std::normal_distribution<double> normal;
