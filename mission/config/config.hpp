@@ -14,6 +14,7 @@
 #include "config/sweep_config.hpp"
 #include "geometry/camera.hpp"
 #include "map/textured_octree.hpp"
+#include "photometry/map_uncertainty.hpp"
 #include "photometry/photometric.hpp"
 #include "planners/belief_rrt_star.hpp"
 #include "render/area_sensor.hpp"
@@ -46,7 +47,7 @@ struct CameraConfig {
 struct ViewModelConfig {
     std::string name = "photometric";  ///< a name of makeViewModel()
     FeatureOptions features;
-    double mapPriorSigma = 1.;  ///< MapUncertaintyOptions::priorSigma
+    double mapPriorSigma = MapUncertaintyOptions{}.priorSigma;
     /// Weight of penalties, for models that give a penalty instead of an information matrix [1/m]:
     /// metres of detour that 1 m of flight at a penalty of 1 is worth.
     double kappa = 2.5;

@@ -8,8 +8,8 @@
 namespace photonav {
 
 struct MapUncertaintyOptions {
-    /// Standard deviation of log depth before the view: 30 % of the depth. Configs have 1.
-    double priorSigma = 0.3;
+    /// Standard deviation of log depth before the view: its order of magnitude is known.
+    double priorSigma = 1.;
     double baseline = 0.25;  ///< distance between the two images that a depth is measured from [m]
     int stride = 2;          ///< use every stride-th row and column
 };
