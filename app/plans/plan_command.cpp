@@ -21,8 +21,10 @@
 namespace photonav {
 namespace {
 
-void printSummary(const PlanOutcome& outcome, const std::optional<EvaluatedPath>& baseline,
-                  double kappa, bool audit, double seconds) {
+/// @param status PlanningProblem::statusOf()
+void printSummary(const PlanOutcome& outcome, const std::string& status,
+                  const std::optional<EvaluatedPath>& baseline, double kappa, bool audit,
+                  double seconds) {
     const auto row = [](const EvaluatedPath& path) {
         fmt::print("{:<16} {:>8.2f} m {:>12.3g} {:>12.3g} {:>10.4g}\n", path.planner, path.length,
                    path.meanTrace, path.goalTrace, path.cost);
@@ -30,10 +32,9 @@ void printSummary(const PlanOutcome& outcome, const std::optional<EvaluatedPath>
     const bool isFound = !outcome.progress.empty() && std::isfinite(outcome.progress.back().cost);
     if (!outcome.path && isFound) {
         fmt::print("interrupted before the path was evaluated\n");
-    } else if (!outcome.path) {
-        fmt::print("no path found with {} vertices\n", outcome.vertices);
+    } else if (!outcome.isSolved()) {
+        fmt::print("{}\n", status);
     }
-    if (outcome.path && !outcome.isSolved()) fmt::print("failed: the cost is not finite\n");
     if (outcome.path || baseline) {
         fmt::print("{:<16} {:>10} {:>12} {:>12} {:>10}\n", "planner", "length", "mean trace",
                    "goal trace", "cost");
@@ -138,7 +139,8 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
                     options.commandLine, result);
     result["time"]["total_s"] = watch.seconds();
     concludeResult(folder, options, result, [&] {
-        printSummary(outcome, baseline, problem.kappa(), options.audit, watch.seconds());
+        printSummary(outcome, problem.statusOf(outcome), baseline, problem.kappa(), options.audit,
+                     watch.seconds());
     });
     if (stopped) return kInterrupted;
     return outcome.isSolved() ? kDone : kNoAnswer;
