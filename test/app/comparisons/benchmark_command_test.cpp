@@ -76,8 +76,10 @@ TEST_F(BenchmarkCommand, ItsLogIsReadByOmplsOwnTool) {
     ASSERT_EQ(progress.size(), 4U);
     for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_GT(progress[i][1].get<int>(), i < 2 ? 10 : 0);  // samples
-        const char* own = i < 2 ? "cost" : "length";           // what the planner minimises
-        EXPECT_NEAR(progress[i][2].get<double>(), runs[i][own].get<double>(), 1e-6);
+        // What the planner minimises: of rrt_star the length, before the path is shortened.
+        const auto best = progress[i][2].get<double>();
+        if (i < 2) EXPECT_NEAR(best, runs[i]["cost"].get<double>(), 1e-6);
+        if (i >= 2) EXPECT_GT(best, runs[i]["length"].get<double>());
         EXPECT_EQ(progress[i][3], 150);
         EXPECT_EQ(progress[i][4], runs[i]["views"]);
     }
