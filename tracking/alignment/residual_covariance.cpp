@@ -64,25 +64,30 @@ struct Observed {
 /// minimum it fits nearly exactly, so that its residuals show nothing of its errors.
 constexpr double kOneBlock = 0.5;
 
-/// Adds the covariance of directions in which a block outvotes all others, as of directions that
-/// are not observed.
-/// @param share of the block in the information, in y / Observed::scale
-void openByOneBlock(const MatrixXd& share, const Observed& seen, MatrixXd& covariance) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(share);
-    for (Eigen::Index i = 0; i < share.rows(); ++i) {
-        if (solver.eigenvalues()[i] < kOneBlock) continue;
-        const auto direction = solver.eigenvectors().col(i);
-        const double length = (seen.V * seen.scale.asDiagonal() * direction).norm();
-        covariance += std::pow(kOpenSigma / length, 2) * direction * direction.transpose();
+/// Covariance of directions in which a block outvotes all others, as of directions that are not
+/// observed, in y / Observed::scale.
+MatrixXd openByOneBlock(const std::vector<ImageBlock>& blocks, const Observed& seen) {
+    const Matrix8 inverse = seen.root * seen.root.transpose();
+    MatrixXd covariance = MatrixXd::Zero(seen.root.cols(), seen.root.cols());
+    for (const ImageBlock& block : blocks) {
+        if (block.AtA.cwiseProduct(inverse).sum() < kOneBlock) continue;  // trace of its share
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> share(seen.root.transpose() * block.AtA *
+                                                            seen.root);
+        for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+            if (share.eigenvalues()[i] < kOneBlock) continue;
+            const auto direction = share.eigenvectors().col(i);
+            const double length = (seen.V * seen.scale.asDiagonal() * direction).norm();
+            covariance += std::pow(kOpenSigma / length, 2) * direction * direction.transpose();
+        }
     }
+    return covariance;
 }
 
 /// Columns: H^-1 s_b with s_b = (1 - A_b H^-1)^-1 (g_b - A_b x), in y / Observed::scale, in which H
 /// is the identity: how much it changes without a block. With H^-1 = L L^T it is
 /// L (1 - L^T A_b L)^-1 L^T (...), which is symmetric and smaller.
-/// @param byOneBlock if not null, increased by the covariance of openByOneBlock()
 MatrixXd changesWithout(const std::vector<ImageBlock>& blocks, const Observed& seen,
-                        const Vector8& x, MatrixXd* byOneBlock = nullptr) {
+                        const Vector8& x) {
     using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
     using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;  // not on the heap
     const Eigen::Index size = seen.root.cols();
@@ -90,8 +95,6 @@ MatrixXd changesWithout(const std::vector<ImageBlock>& blocks, const Observed& s
     for (std::size_t b = 0; b < blocks.size(); ++b) {
         const Root weighted = blocks[b].AtA.lazyProduct(seen.root);
         const Small share = seen.root.transpose().lazyProduct(weighted);
-        const double trace = weighted.cwiseProduct(seen.root).sum();  // of the share
-        if (byOneBlock != nullptr && trace > kOneBlock) openByOneBlock(share, seen, *byOneBlock);
         const Small rest = (1. + kOpen) * Small::Identity(size, size) - share;
         const Vector8 gradient = blocks[b].Atr - blocks[b].AtA * x;
         const Few seenGradient = seen.root.transpose().lazyProduct(gradient);
@@ -357,8 +360,8 @@ MeasuredInformation measuredInformation(const std::vector<ImageBlock>& blocks,
                    scatterByBlur(blocks, size, errors.blur) +
                    scatterBySurface(blocks, errors.surface)) +
         seen.toY * covarianceByScale(errors.depthScale, toModel) * seen.toY.transpose();
-    MatrixXd byOneBlock = MatrixXd::Zero(seen.V.cols(), seen.V.cols());
-    const MatrixXd changes = changesWithout(blocks, seen, x, &byOneBlock);
+    const MatrixXd changes = changesWithout(blocks, seen, x);
+    const MatrixXd byOneBlock = openByOneBlock(blocks, seen);
     const MatrixXd scatter =
         seen.scale.asDiagonal() * (covarianceOf(changes) + byOneBlock) * seen.scale.asDiagonal();
     const MatrixXd whole =
