@@ -56,11 +56,10 @@ std::optional<EvaluatedPath> PlanningProblem::descend(const std::vector<Pose>& w
     return evaluate("descent", descent.path());
 }
 
-EvaluatedPath PlanningProblem::evaluate(const BeliefPlanner& planner,
-                                        const std::atomic<bool>& interrupted) {
+EvaluatedPath PlanningProblem::evaluate(const BeliefPlanner& planner) {
     const PlannerTraits* traits = findPlanner(planner.getName());
     if (traits != nullptr && !traits->usesViews) {
-        ompl::geometric::PathGeometric shortest = shortestPath(planner, interrupted);
+        ompl::geometric::PathGeometric shortest = shortestPath(planner);
         return evaluate(planner.getName(), shortest, planner.movedRoot());
     }
     const auto& path = planner.bestPath();
@@ -139,7 +138,7 @@ double PlanningProblem::balancedKappa(const std::atomic<bool>& interrupted) {
         path.append(line->getStartState(0));
         path.append(line->getGoal()->as<ob::GoalStates>()->getState(0));
     } else {
-        path = shortestPath(*planner, interrupted);
+        path = shortestPath(*planner);
     }
     const auto& states = path.getStates();
     const std::vector<BeliefPoint> points = evaluator_->evaluate({states.begin(), states.end()});

@@ -152,7 +152,7 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
     outcome.tree = drawnEdges(*planner);
     const InterruptionScope scope = interruptedBy(interrupted);
     try {
-        judge(*planner, outcome, interrupted);
+        judge(*planner, outcome);
     } catch (const Interrupted&) {  // views that the planner has not rendered
         outcome.path.reset();
     }
@@ -160,22 +160,21 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
 }
 
 /// Checks the tree, and evaluates the path.
-void PlanningProblem::judge(const BeliefPlanner& planner, PlanOutcome& outcome,
-                            const std::atomic<bool>& interrupted) {
+void PlanningProblem::judge(const BeliefPlanner& planner, PlanOutcome& outcome) {
     outcome.audit = auditTree(planner);
     const auto& path = planner.bestPath();
     if (path.empty()) return;
     outcome.plannerCost = planner.bestCost();
     const auto replayed = planner.model().evaluate({path.begin(), path.end()}, planner.movedRoot());
     includePath(outcome.audit, outcome.plannerCost, replayed.back().cost);
-    outcome.path = evaluate(planner, interrupted);
+    outcome.path = evaluate(planner);
 }
 
 /// The path of rrt_star without most of the corners that depend on its samples.
-ompl::geometric::PathGeometric PlanningProblem::shortestPath(
-    const BeliefPlanner& planner, const std::atomic<bool>& interrupted) const {
-    return shortenPath(si_, space_, planner.bestPath(), config_.search.shortcut,
-                       ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+ompl::geometric::PathGeometric PlanningProblem::shortestPath(const BeliefPlanner& planner) const {
+    return shortenPath(
+        si_, space_, planner.bestPath(), config_.search.shortcut,
+        ob::PlannerTerminationCondition([this] { return (*interruption_)->load(); }));
 }
 
 std::shared_ptr<BeliefPlanner> PlanningProblem::makePlanner(const std::string& name,

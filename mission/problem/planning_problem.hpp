@@ -172,8 +172,7 @@ class PlanningProblem {
     BeliefModel& evaluator();
     /// Evaluates the solution of a planner, that of rrt_star shortened as in solve(), from the
     /// belief that moveRoot() has set, if it has. The planner must have a solution.
-    EvaluatedPath evaluate(const BeliefPlanner& planner,
-                           const std::atomic<bool>& interrupted = kNotInterrupted);
+    EvaluatedPath evaluate(const BeliefPlanner& planner);
     /// Evaluates a path of any OMPL planner.
     /// @param root belief at the first state; none: the config's
     EvaluatedPath evaluate(const std::string& planner, ompl::geometric::PathGeometric& path,
@@ -196,10 +195,8 @@ class PlanningProblem {
     bool hasQuickViews() const;
     std::shared_ptr<const ViewSource> interruptibleViews() const;
     std::shared_ptr<BeliefModel> plannersModel();
-    void judge(const BeliefPlanner& planner, PlanOutcome& outcome,
-               const std::atomic<bool>& interrupted);
-    ompl::geometric::PathGeometric shortestPath(const BeliefPlanner& planner,
-                                                const std::atomic<bool>& interrupted) const;
+    void judge(const BeliefPlanner& planner, PlanOutcome& outcome);
+    ompl::geometric::PathGeometric shortestPath(const BeliefPlanner& planner) const;
     EvaluatedPath evaluate(const std::string& planner,
                            const std::vector<const ompl::base::State*>& path,
                            const std::optional<Belief>& root = {});

@@ -6,31 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "alignment/alignment.hpp"
+#include "alignment/repeating_errors.hpp"
 
 namespace photonav {
-
-/// Standard deviations of errors that repeat from image to image. The pose absorbs them, so that
-/// they do not appear in the residuals, and they do not average out over many images.
-struct ModelErrors {
-    /// Displacement of the image content, smooth over the image: remaining lens distortion after
-    /// calibration, and the difference between rendered views and the average over a sensor's
-    /// pixels [pixels].
-    double displacement = 0.05;
-    /// Additional variance of the images' point spread compared with rendered views [pixels^2]. Its
-    /// mean over the image is eliminated like the exposure (withoutBlur()); its variation over the
-    /// image is smooth.
-    double blur = 0.;
-    /// Share of the light that is lost in the corners of the image, after correction. It grows with
-    /// the square of the distance to the principal point.
-    double vignetting = 0.;
-    double surface = 0.;     ///< displacement of the surfaces along their normals [m]
-    double depthScale = 0.;  ///< relative error of a depth sensor's scale and registration
-};
-
-/// Covariance of a motion whose translation and rotation are wrong by a share of their lengths, in
-/// any direction (ModelErrors::depthScale).
-Matrix6 covarianceByScale(double share, const Pose& motion);
 
 /// The information of an image about the pose: left perturbation, camera frame.
 struct MeasuredInformation {
@@ -48,11 +26,7 @@ struct MeasuredInformation {
 /// of any size and cause, and does not depend on an assumed image noise. The exposure is eliminated
 /// first. A direction about which one block says more than all others together counts as not
 /// observed: such a block fits nearly exactly, wherever it leads.
-///
-/// A gain that varies slowly over the image (shading, changed light) repeats from image to image.
-/// Its variance is estimated by the covariance of the gains of neighbouring blocks. Over little
-/// texture the pose absorbs vignetting, and these gains show nothing of it:
-/// ModelErrors::vignetting.
+/// Errors that repeat from image to image: scatterOfRepeatingErrors().
 ///
 /// Blocks are not independent if an object has moved since the model was made: all of its blocks
 /// lead to the same wrong pose. The pose is estimated a second time with weights by which every
