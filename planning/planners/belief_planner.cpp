@@ -105,7 +105,7 @@ ob::PlannerStatus BeliefPlanner::solveUntil(const ob::PlannerTerminationConditio
     if (dynamic_cast<ob::GoalSampleableRegion*>(pdef_->getGoal().get()) == nullptr) {
         return ob::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
     }
-    dropBlocked();
+    growAroundBlocked();
     try {
         if (!addStarts()) return ob::PlannerStatus::INVALID_START;
         if (!sampler_) {
@@ -146,7 +146,7 @@ double BeliefPlanner::range() const {
 }
 
 bool BeliefPlanner::isGrown() const {
-    return (growth_.maxVertices > 0 && samples() >= growth_.maxVertices) ||
+    return (growth_.maxVertices > 0 && samples() >= growth_.maxVertices + forBlocked_) ||
            (growth_.maxIterations > 0 &&
             iterations_ - iterationsAtChange_ >= growth_.maxIterations);
 }
@@ -159,7 +159,7 @@ bool BeliefPlanner::isTimeToFinish() const {
 /// more vertices toward it.
 void BeliefPlanner::growToGoal(ob::State* goal, const ob::PlannerTerminationCondition& ptc) {
     const auto& region = *pdef_->getGoal()->as<ob::GoalSampleableRegion>();
-    const std::size_t full = growth_.maxVertices;
+    const std::size_t full = growth_.maxVertices + (growth_.maxVertices > 0 ? forBlocked_ : 0);
     for (int i = 0; i < kGoalReserve && goals_.empty() && region.canSample() && !ptc; ++i) {
         if (full == 0 || samples() < full || samples() >= full + kGoalReserve) return;
         region.sampleGoal(goal);
@@ -190,7 +190,13 @@ void BeliefPlanner::growToward(const ob::State* target, bool isGoalSample,
     connect(fresh, near(fresh, extension->nearest), ptc);
     if (isReached) goalSamples_.push_back(&fresh);  // unless a view has thrown: then once more
     neighbours_->add(&fresh);
-    if (++update_.verticesAdded == update_.verticesInvalidated) updated_.clear();
+    ++update_.verticesAdded;
+    if (update_.verticesAdded == verticesToAdd()) updated_.clear();
+}
+
+/// In the parts of the space that the present update has affected.
+std::size_t BeliefPlanner::verticesToAdd() const {
+    return update_.verticesInvalidated + forBlockedNow_;
 }
 
 void BeliefPlanner::publishProgress() {
@@ -352,6 +358,7 @@ void BeliefPlanner::clear() {
     iterations_ = iterationsAtChange_ = 0;
     goalSamples_.clear();
     movedRoots_.clear();
+    forBlocked_ = forBlockedNow_ = 0;
     unused_.clear();
     updated_.clear();
     update_ = {};

@@ -32,7 +32,8 @@ struct GrowthOptions {
     double rewireFactor = 1.1;  ///< factor on the connection radius of Karaman and Frazzoli 2011
     std::uint32_t seed = 1;     ///< seed of the samples
     /// Largest number of vertices. Growth ends when it is reached; 0: no limit. A graph without a
-    /// goal, which may have become free, gets up to 20 more.
+    /// goal, which may have become free, gets up to 20 more; where a change of the map has blocked
+    /// the best path, belief_rrt_star adds some as well, up to as many again in all.
     unsigned maxVertices = 0;
     /// Largest number of samples since the map or the root last changed; 0: no limit.
     std::size_t maxIterations = 0;
@@ -175,6 +176,10 @@ class BeliefPlanner : public ompl::base::Planner {
     /// removed or too many samples in a row have added none.
     virtual SampleShares sampleShares() const { return {}; }
 
+    /// How many vertices an update adds beyond those that it has removed, if it has blocked the
+    /// best path: the graph around that path may be too sparse to show the next best one.
+    virtual std::size_t verticesForBlocked() const { return 0; }
+
     /// Called when solve() begins.
     virtual void begin(const ompl::base::PlannerTerminationCondition&) {}
 
@@ -291,6 +296,9 @@ class BeliefPlanner : public ompl::base::Planner {
     void joinRootToBest();
     void reevaluateBest();
     void dropBlocked();
+    void growAroundBlocked();
+    void addBlocked(const ompl::base::State* from, const ompl::base::State* to);
+    std::size_t verticesToAdd() const;
     void reportUpdate();
     void clearIfInterrupted(const std::function<void()>& update);
     std::optional<double> costOf(const std::vector<ompl::base::State*>& path);
@@ -312,6 +320,8 @@ class BeliefPlanner : public ompl::base::Planner {
     Solution best_;
     /// A best path that a change blocked: what is left of it after moveRoot() may be free.
     std::vector<ompl::base::State*> blocked_;
+    std::size_t forBlocked_ = 0;     // vertices added for such paths, in all
+    std::size_t forBlockedNow_ = 0;  // in this update
     std::optional<Belief> movedRoot_;
     double deadline_ = kInfinity;  // by the clock [s]
     double budget_ = 0.;           // of the solve() that has a deadline [s]

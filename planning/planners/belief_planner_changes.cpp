@@ -68,8 +68,9 @@ void BeliefPlanner::removeColliding(const ChangedSpace& changed) {
 void BeliefPlanner::beginUpdate() {
     if (!isSolved_) return;
     isSolved_ = false;
-    if (update_.verticesAdded >= update_.verticesInvalidated) updated_.clear();
+    if (update_.verticesAdded >= verticesToAdd()) updated_.clear();
     update_ = {};
+    forBlockedNow_ = 0;
     parentsBefore_ = parents();
 }
 
@@ -185,6 +186,28 @@ void BeliefPlanner::reevaluateBest() {
     dropBlocked();
     blocked_ = std::move(best_.states);
     best_ = {kInfinity, {}};
+}
+
+/// The next samples are drawn around the motions of the best path that a change has blocked.
+void BeliefPlanner::growAroundBlocked() {
+    const std::size_t more = verticesForBlocked();
+    const bool isRoom = growth_.maxVertices == 0 || forBlocked_ + more <= growth_.maxVertices;
+    if (more > 0 && isRoom && !blocked_.empty()) {
+        for (std::size_t i = 1; i < blocked_.size(); ++i) addBlocked(blocked_[i - 1], blocked_[i]);
+        forBlocked_ += more;
+        forBlockedNow_ = more;
+    }
+    dropBlocked();
+}
+
+void BeliefPlanner::addBlocked(const ob::State* from, const ob::State* to) {
+    if (si_->checkMotion(from, to)) return;
+    const int steps = 1 + static_cast<int>(si_->distance(from, to) / connectionRadius());
+    ob::ScopedState<> between(si_);
+    for (int i = 0; i <= steps; ++i) {
+        si_->getStateSpace()->interpolate(from, to, static_cast<double>(i) / steps, between.get());
+        updated_.addRemoved(between.get());
+    }
 }
 
 void BeliefPlanner::dropBlocked() {

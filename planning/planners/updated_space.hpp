@@ -27,7 +27,8 @@ class UpdatedSpace {
   public:
     UpdatedSpace(ompl::base::SpaceInformationPtr si, const FlightSpace& space);
 
-    /// Stores a copy of the state of a removed vertex. Only the latest 20000 are kept.
+    /// Stores a copy of the state of a removed vertex, or of a blocked motion. Only the latest
+    /// 20000 are kept.
     void addRemoved(const ompl::base::State* state);
     /// Stores the bricks in which occupancy changed.
     void addChange(const MapChange& change);
