@@ -105,7 +105,6 @@ ob::PlannerStatus BeliefPlanner::solveUntil(const ob::PlannerTerminationConditio
     if (dynamic_cast<ob::GoalSampleableRegion*>(pdef_->getGoal().get()) == nullptr) {
         return ob::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
     }
-    growAroundBlocked();
     try {
         if (!addStarts()) return ob::PlannerStatus::INVALID_START;
         if (!sampler_) {
@@ -125,6 +124,7 @@ ob::PlannerStatus BeliefPlanner::solveUntil(const ob::PlannerTerminationConditio
 /// RRT* in one page, with grow(); compare the paper's Algorithm 1.
 void BeliefPlanner::growUntil(const ob::PlannerTerminationCondition& ptc) {
     begin(ptc);
+    growAroundBlocked();
     ob::ScopedState<> goalOrSample(si_);
     growToGoal(goalOrSample.get(), ptc);
     for (bool isTimeLeft = true; isTimeLeft;) {

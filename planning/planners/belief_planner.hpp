@@ -176,9 +176,10 @@ class BeliefPlanner : public ompl::base::Planner {
     /// removed or too many samples in a row have added none.
     virtual SampleShares sampleShares() const { return {}; }
 
-    /// How many vertices an update adds beyond those that it has removed, if it has blocked the
-    /// best path: the graph around that path may be too sparse to show the next best one.
-    virtual std::size_t verticesForBlocked() const { return 0; }
+    /// How many vertices an update that has blocked the best path adds beyond those that it has
+    /// removed, for a detour over the rest of the graph that costs twice as much; a share of the
+    /// vertices. The graph around the blocked path may be too sparse to show the next best one.
+    virtual double growthPerDetour() const { return 0.; }
 
     /// Called when solve() begins.
     virtual void begin(const ompl::base::PlannerTerminationCondition&) {}
@@ -320,6 +321,7 @@ class BeliefPlanner : public ompl::base::Planner {
     Solution best_;
     /// A best path that a change blocked: what is left of it after moveRoot() may be free.
     std::vector<ompl::base::State*> blocked_;
+    double blockedCost_ = kInfinity;
     std::size_t forBlocked_ = 0;     // vertices added for such paths, in all
     std::size_t forBlockedNow_ = 0;  // in this update
     std::optional<Belief> movedRoot_;

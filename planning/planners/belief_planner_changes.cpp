@@ -7,6 +7,12 @@
 
 namespace photonav {
 namespace ob = ompl::base;
+namespace {
+
+/// Detours that cost more, relative to the blocked path, count as this one; so does none at all.
+constexpr double kMostDetour = 2.;
+
+}  // namespace
 
 void BeliefPlanner::mapChanged(const MapChange& change) {
     // Entries of the field may become stale without a change, see updatesUntilStale.
@@ -185,12 +191,16 @@ void BeliefPlanner::reevaluateBest() {
     }
     dropBlocked();
     blocked_ = std::move(best_.states);
+    if (best_.cost < kInfinity) blockedCost_ = best_.cost;
     best_ = {kInfinity, {}};
 }
 
-/// The next samples are drawn around the motions of the best path that a change has blocked.
+/// The next samples are drawn around the motions of the best path that a change has blocked, the
+/// more of them the costlier the detour is over what is left of the graph.
 void BeliefPlanner::growAroundBlocked() {
-    const std::size_t more = verticesForBlocked();
+    const double detour = std::clamp(bestCost() / blockedCost_ - 1., 0., kMostDetour);
+    const auto more =
+        static_cast<std::size_t>(growthPerDetour() * detour * static_cast<double>(samples()));
     const bool isRoom = growth_.maxVertices == 0 || forBlocked_ + more <= growth_.maxVertices;
     if (more > 0 && isRoom && !blocked_.empty()) {
         for (std::size_t i = 1; i < blocked_.size(); ++i) addBlocked(blocked_[i - 1], blocked_[i]);

@@ -24,8 +24,6 @@ constexpr double kForgetting = 0.995;       // and after an update without one
 constexpr double kChangesOfUpdate = 0.01;   // share of the descent from the first plan
 constexpr double kFirstStepOfUpdate = 0.5;  // of that descent [m, rad]
 
-constexpr std::size_t kMoreForBlocked = 20;  // one vertex per so many in the graph
-
 constexpr double kDominanceSlack = 0.02;  // see isDominated()
 constexpr double kMinLever = 1.;          // [m]
 constexpr double kMaxLever = 100.;        // [m]
@@ -162,8 +160,6 @@ void BeliefRRTstar::compareWithKept(const ob::PlannerTerminationCondition& ptc) 
     if (before && other && *other <= (1. - options_.commitment) * *before) return;
     replaceBest(keptCost_, {kept.begin(), kept.end()});
 }
-
-std::size_t BeliefRRTstar::verticesForBlocked() const { return vertices() / kMoreForBlocked; }
 
 /// The path that an update has kept comes from a descent, which lowers the cost of a path over the
 /// roadmap by a factor, the gain of the last descent. A path over the roadmap is of interest if

@@ -96,7 +96,7 @@ class BeliefRRTstar : public BeliefPlanner {
     bool isPromising(const Vertex& nearest) override;
     void finish(const ompl::base::PlannerTerminationCondition& ptc) override;
     SampleShares sampleShares() const override { return {.removed = 0.6, .changed = 0.2}; }
-    std::size_t verticesForBlocked() const override;
+    double growthPerDetour() const override { return 0.1; }
     double timeToFinish() const override;
     std::vector<const Vertex*> parents() const override;
     Invalid invalidate(const ChangedSpace& changed, std::vector<Vertex*> colliding) override;
