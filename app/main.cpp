@@ -65,16 +65,18 @@ std::string_view saidWhenEnded() {
                                                : "interrupted before there was any result";
 }
 
-/// The first Ctrl-C, SIGTERM as Slurm and systemd send it, or SIGHUP of a terminal that is closed
-/// lets the command finish its files, or ends it at once where there are none yet; the second one
-/// always does. timeout(1) sends its signal twice, to the process and to its group: that is one. A
-/// shell that ends sends SIGHUP, and so does the system to what it leaves: that is never a second.
+/// The first Ctrl-C, SIGTERM as Slurm and systemd send it, SIGHUP of a terminal that is closed, or
+/// SIGXCPU lets the command finish its files, or ends it at once where there are none yet; the
+/// second one always does. timeout(1) sends its signal twice, to the process and to its group: that
+/// is one. A shell that ends sends SIGHUP, and so does the system to what it leaves: that is never
+/// a second, nor is SIGXCPU, which the system sends every second beyond a limit of processor time.
 /// A command that has not ended a second later says so.
 void onInterrupt(int signal) {
     const double now = running.seconds();
     double first = 0.;
     if (!interruptedAt.compare_exchange_strong(first, now)) {
-        const bool isAgain = signal != SIGHUP && now - first > kSameInterrupt;
+        const bool isOnce = signal == SIGHUP || signal == SIGXCPU;
+        const bool isAgain = !isOnce && now - first > kSameInterrupt;
         if (isAgain) std::_Exit(exitCodeOf(signal));
         return;
     }
@@ -170,7 +172,8 @@ int run(int argc, char** argv) {
         "photonav COMMAND --help lists the options of a command, photonav keys lists the\n"
         "keys of a config.\n"
         "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by\n"
-        "Ctrl-C, 143 by SIGTERM, 129 by SIGHUP, all with the results so far.");
+        "Ctrl-C, 143 by SIGTERM, 129 by SIGHUP, 152 by a limit of processor time, all with the "
+        "results so far.");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -210,6 +213,7 @@ int main(int argc, char** argv) {
     std::set_terminate(onTerminate);
     std::signal(SIGINT, onInterrupt);
     std::signal(SIGTERM, onInterrupt);
+    std::signal(SIGXCPU, onInterrupt);
     onHangUp();
     std::signal(SIGALRM, onAlarm);
     // Writing fails, and says so. In a pipeline Ctrl-C ends the reader of our messages as well:

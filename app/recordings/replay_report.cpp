@@ -153,15 +153,19 @@ TableRows errorRows(const json& result) {
                                  ? "not known: the first image has no true pose (--frames)"
                                  : "not known";
     const std::string aligned = result["ate_alignment"] == "none" ? "not aligned" : "SE(3) aligned";
-    return {{fmt::format("absolute error ({}), rms", aligned),
-             number(result["ate_rmse_m"], 1e3, "{:.2f} mm")},
-            {"absolute error, largest", number(result["ate_max_m"], 1e3, "{:.2f} mm")},
-            {"absolute error of orientation, rms",
-             number(result["ate_rotation_rmse_deg"], 1., "{:.3f} deg")},
-            {"relative error over a frame", relative(rpe["frame"])},
-            {"relative error over a second", relative(rpe["second"])},
-            {"relative error over a metre", relative(rpe["metre"])},
-            {"NEES per degree of freedom (1: consistent), mean, median", nees}};
+    const auto absolute = [&](const char* key, double factor, const char* format) {
+        return number(result[key], factor, format,
+                      "not known: fewer than 3 images with true poses");
+    };
+    return {
+        {fmt::format("absolute error ({}), rms", aligned),
+         absolute("ate_rmse_m", 1e3, "{:.2f} mm")},
+        {"absolute error, largest", absolute("ate_max_m", 1e3, "{:.2f} mm")},
+        {"absolute error of orientation, rms", absolute("ate_rotation_rmse_deg", 1., "{:.3f} deg")},
+        {"relative error over a frame", relative(rpe["frame"])},
+        {"relative error over a second", relative(rpe["second"])},
+        {"relative error over a metre", relative(rpe["metre"])},
+        {"NEES per degree of freedom (1: consistent), mean, median", nees}};
 }
 
 std::string degenerateText(const json& result) {

@@ -18,7 +18,7 @@
 
 namespace photonav {
 
-/// The reaction of a command to Ctrl-C, SIGTERM and SIGHUP.
+/// The reaction of a command to Ctrl-C, SIGTERM, SIGHUP and SIGXCPU.
 enum class OnInterrupt {
     finish,       ///< ends with the results so far, or at once if no result folder is begun
     finishAlways  ///< always ends by itself: it writes files without a result folder
@@ -34,7 +34,7 @@ struct Command {
 /// Input of every command in addition to its own options.
 struct Invocation {
     std::string commandLine;               ///< the command as typed, for reports
-    const std::atomic<bool>& interrupted;  ///< set by Ctrl-C, SIGTERM, SIGHUP
+    const std::atomic<bool>& interrupted;  ///< set by the same
 };
 
 /// Adds a subcommand to `app`. Its options are stored in a value of type `Options`.

@@ -97,17 +97,28 @@ void checkShape(const YamlMap& root, const CameraConfig& camera) {
                                            camera.width, camera.height, kLongestShape));
 }
 
+/// A path of as many steps is never found within a lifetime, and drawn for minutes.
+void checkStep(const YamlMap& root, const Config& config) {
+    constexpr double kMostSteps = 1e4;
+    const double steps = (config.goal.position - config.start.position).norm() / config.belief.ds;
+    if (steps <= kMostSteps) return;
+    root.fail("planner.ds", fmt::format("{} m: {:.3g} steps from start to goal; at most {}",
+                                        config.belief.ds, steps, kMostSteps));
+}
+
 Config configOf(const YAML::Node& node, const std::string& file,
                 const std::vector<std::string>& overrides) {
     Config config;
     config.file = file;
     const KeyTable keys = keysOf(config);
+    YamlMap(file, node);  // what is wrong with the file itself, before values are overridden
     for (const auto& text : overrides) applyOverride(keys, node, text);
     try {
         YamlMap root(file, node);
         checkSource(root);
         keys.read(root);
         checkShape(root, config.camera);
+        checkStep(root, config);
     } catch (const InputError& error) {
         if (!isAboutOverride(error, overrides)) throw;
         throw InputError("command line", "", error.reason());

@@ -247,9 +247,9 @@ void addObjective(KeyTable& keys, Config& c) {
                  "standard deviation of log depth before the first view (`map_uncertainty`)"},
                 c.viewModel.mapPriorSigma, {0., 100.});
     keys.number({"view_pitch", "m", "edge of a cell of the grid of views, see below"},
-                c.field.positionPitch, {kTiny, kFarthest});
+                c.field.positionPitch, {kTiny, 1.});
     keys.number({"view_rotation_pitch", "rad", "edge of a cell of the grid of views in rotation"},
-                c.field.rotationPitch, {kTiny, 3.2});
+                c.field.rotationPitch, {kTiny, 0.5});
     keys.flag({"quick_views", "",
                "rank paths by views of half the size, and evaluate the best ones by full views at "
                "their exact poses ([quick views](planner.md#quick-views))"},

@@ -132,6 +132,12 @@ std::string whyLostAtOnce(const ReplayRun& run, std::size_t lost) {
     return text;
 }
 
+/// Whether an alignment of the trajectory would hide its errors.
+bool isTooShortToAlign(const ReplayRun& run, const ReplayErrors& errors) {
+    constexpr std::size_t kLeast = 3;  // fewer poses are aligned nearly exactly, wherever they are
+    return run.odometry && errors.frames.size() < kLeast;
+}
+
 }  // namespace
 
 std::vector<TimeInterval> lostIntervals(const ReplayRun& run) {
@@ -192,7 +198,7 @@ json replayResult(const Sequence& sequence, const ReplayRun& run, const ReplayEr
     const auto lost = count(run, FrameStatus::lost);
     const double looked = tracked > 0 ? double(tracked + lost) : 0.;
     const ErrorSummary absolute = summarise(errors.absolute.translation);
-    const bool evaluated = !errors.frames.empty();
+    const bool evaluated = !errors.frames.empty() && !isTooShortToAlign(run, errors);
     const std::vector<double> nees = neesOf(errors, &NormalisedError::pose);
     const double none = std::numeric_limits<double>::quiet_NaN();
     const auto degenerate = std::count_if(run.frames.begin(), run.frames.end(), [](const auto& f) {

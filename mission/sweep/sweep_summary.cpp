@@ -20,6 +20,7 @@ using nlohmann::json;
 namespace {
 
 constexpr double kSameAlpha = 1e-6;
+constexpr double kLeastCost = 1e-9, kMostCost = 1e12;  // of a reference
 
 std::vector<std::string> fieldsOf(std::string line) {
     if (line.ends_with('\r')) line.pop_back();
@@ -78,8 +79,17 @@ ReferenceCosts::ReferenceCosts(const std::string& file) {
         if (line.empty()) continue;
         const auto fields = fieldsOf(line);
         const double value = numberOf(fields, cost, file, number);
-        if (value <= 0.) throw InputError(file, fmt::format("line {}", number), "cost <= 0");
-        costs_[numberOf(fields, alpha, file, number)] = value;
+        const auto fail = [&](const std::string& reason) {
+            throw InputError(file, fmt::format("line {}", number), reason);
+        };
+        if (!(value >= kLeastCost && value <= kMostCost)) {
+            fail(fmt::format("the cost is not between {:g} and {:g}", kLeastCost, kMostCost));
+        }
+        const double key = numberOf(fields, alpha, file, number);
+        if (const auto known = at(key); known && *known != value) {
+            fail(fmt::format("alpha {} is there twice, with different costs", key));
+        }
+        costs_[key] = value;
     }
 }
 

@@ -67,7 +67,9 @@ Manifest Manifest::read(const fs::path& folder) {
     std::string line;
     if (!stream || !std::getline(stream, line)) return manifest;
     const auto fail = [&] { throw InputError(file.string(), "", "is damaged"); };
-    if (line != kFirstLine) fail();
+    if (line != kFirstLine) {
+        throw InputError(file.string(), "", "is damaged, or of another version of photonav");
+    }
     while (std::getline(stream, line)) {
         const bool isReplaces = line.starts_with(kReplaces);
         std::istringstream fields = wordsOf(isReplaces ? line.substr(kReplaces.size()) : line);

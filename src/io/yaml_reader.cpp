@@ -131,6 +131,10 @@ YamlMap::YamlMap(std::string file, const YAML::Node& node, std::string prefix)
         if (!entry.first.IsScalar()) throw InputError(file_, prefix_, "a key is not a word");
         const auto& key = entry.first.Scalar();
         if (!keys.insert(key).second) fail(key, "is there twice");
+        const bool isText = entry.second.IsScalar();
+        if (isText && entry.second.Scalar().find('\0') != std::string::npos) {
+            fail(key, "holds a zero byte");
+        }
     }
 }
 

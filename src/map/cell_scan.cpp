@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 
 namespace photonav {
 namespace {
@@ -18,6 +19,8 @@ constexpr float kLeastShare = 0.15F;
 constexpr double kPoseNoise = 3e-3;
 // Least weight of the past: about as many views of full weight.
 constexpr float kMostSurfaceWeight = 50.F / (kPoseNoise * kPoseNoise);
+
+constexpr std::size_t kBricksAtOnce = 1 << 14;  // between two looks at FusionOptions::isStopped
 
 /// A change in parts of what is tolerated.
 float share(float change, double tolerance) {
@@ -163,7 +166,12 @@ MapChange CellScan::apply(TexturedOcTree& map, const std::optional<Vector3d>& ey
         }
         return false;
     };
-    map.updateBricks(bricks, texture, keep);
+    for (std::span<BrickObservation> rest = bricks; !rest.empty();) {
+        throwIfStopped(options.isStopped);
+        const std::size_t count = std::min(kBricksAtOnce, rest.size());
+        map.updateBricks(rest.first(count), texture, keep);
+        rest = rest.subspan(count);
+    }
 
     MapChange change;
     change.resolution = map.getResolution();

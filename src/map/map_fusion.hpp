@@ -28,7 +28,8 @@ struct FusionOptions {
     /// Whether cells store the surfaces inside them; otherwise views show surfaces at the faces of
     /// the cells.
     bool surfaces = true;
-    /// Asked for every row of an image before the map is changed: fusing a large one takes seconds.
+    /// Asked for every row of an image, and while the map is changed: fusing a large image, or one
+    /// into small cells, takes seconds.
     IsStopped isStopped = {};
 };
 
@@ -56,7 +57,9 @@ struct FusionOptions {
 /// @returns what changed
 /// @throws std::invalid_argument when image, depth and camera differ in size, the pose is not
 ///        finite, or the space in view is too large for the map (see maxRange)
-/// @throws Interrupted when FusionOptions::isStopped says so; the map is as before
+/// @throws Interrupted when FusionOptions::isStopped says so; the map has nothing of the image, or
+/// a
+///         part of it
 MapChange fuse(TexturedOcTree& map, const View& observed, const Camera& camera, const Pose& T_c_w,
                const FusionOptions& options = {});
 

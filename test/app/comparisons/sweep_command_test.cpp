@@ -291,19 +291,23 @@ TEST_F(SweepCommand, AResumedSweepMayAskForOtherRuns) {
     EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 1 + 4 + 5);
 }
 
-TEST_F(SweepCommand, CtrlCKeepsTheRunsDone) {
-    // Interrupted as soon as the header and two runs are there.
-    const Execution run = interrupt(
-        fmt::format("{} sweep {} --set planner.vertices=150 --alpha 0.5 --runs 1000000"
-                    " --planners rrt_star --quiet --out {}",
-                    PHOTONAV_BINARY, config("two_textures"), at("out")),
-        fmt::format("[ $(cat {}.unfinished/runs.jsonl 2>/dev/null | wc -l) -gt 2 ]", at("out")));
-    EXPECT_EQ(run.exitCode, 130) << run.output;
-    const json r = result("out");
-    EXPECT_EQ(r["status"], "interrupted");
-    EXPECT_EQ(r["runs"].size(), r["runs_done"]);
-    EXPECT_GE(r["runs"].size(), 2U);
-    EXPECT_LT(r["runs"].size(), 1000000U);
+TEST_F(SweepCommand, CtrlCAndALimitOfProcessorTimeKeepTheRunsDone) {
+    for (const auto& [signal, exitCode] : {std::pair{"INT", 130}, {"XCPU", 152}}) {
+        // Interrupted as soon as the header and two runs are there.
+        const std::string out = at(signal);
+        const Execution run = interrupt(
+            fmt::format("{} sweep {} --set planner.vertices=150 --alpha 0.5 --runs 1000000"
+                        " --planners rrt_star --quiet --out {}",
+                        PHOTONAV_BINARY, config("two_textures"), out),
+            fmt::format("[ $(cat {}.unfinished/runs.jsonl 2>/dev/null | wc -l) -gt 2 ]", out), 0.,
+            signal);
+        EXPECT_EQ(run.exitCode, exitCode) << run.output;
+        const json r = result(signal);
+        EXPECT_EQ(r["status"], "interrupted");
+        EXPECT_EQ(r["runs"].size(), r["runs_done"]);
+        EXPECT_GE(r["runs"].size(), 2U);
+        EXPECT_LT(r["runs"].size(), 1000000U);
+    }
 }
 
 TEST_F(SweepCommand, CtrlCLeavesAnEarlierResultOfMoreRuns) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -64,6 +65,23 @@ TEST(MapFusion, FreesSpaceUpToTheRangeAndNoneWhereDepthIsMissing) {
         fuse(untouched, view, camera, T_c_w);
         EXPECT_EQ(untouched.size(), 0U) << depth;
     }
+}
+
+/// Fusing it takes seconds: it can be stopped between bricks as well.
+TEST(MapFusion, AnImageInManyBricksCanBeFusedInPart) {
+    const auto [camera, T_c_w, view] = overCarpet(0.01, 1.52);
+    int asked = 0, most = std::numeric_limits<int>::max();
+    FusionOptions options;
+    options.isStopped = [&] { return ++asked >= most; };
+    TexturedOcTree whole(0.005), plain(0.005), part(0.005);
+    fuse(whole, view, camera, T_c_w, options);
+    fuse(plain, view, camera, T_c_w);
+    EXPECT_EQ(whole.size(), plain.size());
+    most = asked;
+    asked = 0;
+    EXPECT_THROW(fuse(part, view, camera, T_c_w, options), Interrupted);
+    EXPECT_GT(part.size(), 0U);
+    EXPECT_LT(part.size(), whole.size());
 }
 
 TEST(MapFusion, AnImageIsFusedWholeOrNotAtAll) {

@@ -184,6 +184,9 @@ TEST(Config, ComplaintsNameKeyAndReason) {
     expectComplaint("planner.penalty_kappa=-1", "planner.penalty_kappa", "outside");
     expectComplaint("planner.vertices=2.5", "planner.vertices", "whole number");
     expectComplaint("planner.ds=0", "planner.ds", "outside");
+    expectComplaint("planner.ds=0.0005", "planner.ds", "steps from start to goal; at most 10000");
+    expectComplaint("planner.view_pitch=1.5", "planner.view_pitch", "outside");
+    expectComplaint("planner.view_rotation_pitch=0.6", "planner.view_rotation_pitch", "outside");
     expectComplaint("noise.initial=[-1, 0, 0, 0, 0, 0]", "noise.initial", "negative variance");
     expectComplaint("noise.motion=[0, 0, 0, 0, 0, 11]", "noise.motion", "above 100 m^2");
     expectComplaint("noise.motion=[0, 0, 2e6, 0, 0, 0]", "noise.motion", "10 rad^2 (rotation");
@@ -250,8 +253,13 @@ TEST(Config, ComplaintsAboutTheFileItself) {
     EXPECT_NE(complaint({}, file.string()).find("robot.radius: is there twice"), std::string::npos);
     std::ofstream(file) << "seed: 1\nseed: 2\n" << kRest;
     EXPECT_NE(complaint({}, file.string()).find("seed: is there twice"), std::string::npos);
+    std::ofstream(file) << "planner: {ds: 1}\nplanner: {}\n" << kRest;
+    EXPECT_TRUE(complaint({"planner.ds=1"}, file.string()).starts_with(file.string()));
+    std::ofstream(file) << "map: {file: \"a.ot\\0.old\"}\n" << kRest;
+    EXPECT_NE(complaint({}, file.string()).find("map.file: holds a zero byte"), std::string::npos);
     std::ofstream(file) << "just a word\n";
     EXPECT_NE(complaint({}, file.string()).find("key: value"), std::string::npos);
+    EXPECT_TRUE(complaint({"planner.ds=1"}, file.string()).starts_with(file.string()));
     fs::remove(file);
 }
 

@@ -187,6 +187,20 @@ TEST_F(ReplayFixture, TheStartCanBeGiven) {
     EXPECT_FALSE(fs::exists(folder.path() / "groundtruth.tum"));
 }
 
+/// An alignment to one or two poses has hardly an error, wherever the trajectory is.
+TEST_F(ReplayFixture, OdometryIsNotJudgedByTwoPoses) {
+    const std::string poses = test::contentOf(data / "groundtruth.txt");
+    for (const int known : {2, 3}) {
+        std::size_t end = 0;
+        for (int line = 0; line < known; ++line) end = poses.find('\n', end) + 1;
+        writeText(data / "groundtruth.txt", poses.substr(0, end));
+        const json result = run();
+        EXPECT_EQ(result["judged"], known);
+        EXPECT_EQ(result["ate_rmse_m"].is_null(), known < 3);
+        EXPECT_EQ(result["ate_rotation_rmse_deg"].is_null(), known < 3);
+    }
+}
+
 /// What it begins with is nowhere near the truth, and must not count.
 TEST_F(ReplayFixture, OdometryIsAlignedToTheGroundTruthWhereItBegins) {
     const std::string poses = test::contentOf(data / "groundtruth.txt");

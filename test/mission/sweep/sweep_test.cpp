@@ -357,6 +357,15 @@ TEST_F(SweepFiles, ReferencesGiveTheExcess) {
               std::string::npos);
     std::ofstream(file) << "alpha,cost\n0.05\n";
     EXPECT_NE(test::reasonOf([&] { ReferenceCosts r(file); }).find("line 2"), std::string::npos);
+    for (const char* cost : {"0", "-1", "1e-308", "1e308"}) {
+        std::ofstream(file) << "alpha,cost\n0.05," << cost << "\n";
+        EXPECT_NE(test::reasonOf([&] { ReferenceCosts r(file); }).find("line 2: the cost is not"),
+                  std::string::npos)
+            << cost;
+    }
+    std::ofstream(file) << "alpha,cost\n0.05,2\n0.05,3\n";
+    EXPECT_NE(test::reasonOf([&] { ReferenceCosts r(file); }).find("line 3: alpha 0.05 is there"),
+              std::string::npos);
 }
 
 TEST(SweepTables, HaveThePapersRowBesideOurs) {
