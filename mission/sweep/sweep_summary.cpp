@@ -20,7 +20,7 @@ using nlohmann::json;
 namespace {
 
 constexpr double kSameAlpha = 1e-6;
-constexpr double kLeastCost = 1e-9, kMostCost = 1e12;  // of a reference
+constexpr double kLeastReference = 1e-9, kMostReference = 1e12;  // of a reference
 
 std::vector<std::string> fieldsOf(std::string line) {
     if (line.ends_with('\r')) line.pop_back();
@@ -82,8 +82,9 @@ ReferenceCosts::ReferenceCosts(const std::string& file) {
         const auto fail = [&](const std::string& reason) {
             throw InputError(file, fmt::format("line {}", number), reason);
         };
-        if (!(value >= kLeastCost && value <= kMostCost)) {
-            fail(fmt::format("the cost is not between {:g} and {:g}", kLeastCost, kMostCost));
+        if (!(value >= kLeastReference && value <= kMostReference)) {
+            fail(fmt::format("the cost is not between {:g} and {:g}", kLeastReference,
+                             kMostReference));
         }
         const double key = numberOf(fields, alpha, file, number);
         if (const auto known = at(key); known && *known != value) {
