@@ -172,8 +172,8 @@ int run(int argc, char** argv) {
         "photonav COMMAND --help lists the options of a command, photonav keys lists the\n"
         "keys of a config.\n"
         "Exit codes: 0 done; 1 ran, but found no answer; 2 bad input; 130 stopped by\n"
-        "Ctrl-C, 143 by SIGTERM, 129 by SIGHUP, 152 by a limit of processor time, all with the "
-        "results so far.");
+        "Ctrl-C, 143 by SIGTERM, 129 by SIGHUP, 152 by SIGXCPU, all with the results so\n"
+        "far.");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
