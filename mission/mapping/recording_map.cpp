@@ -123,7 +123,7 @@ FusedRecording fuseRecording(TexturedOcTree& map, const Recording& recording,
     };
     try {
         while (fused.frames < sequence.frames.size()) addNext();
-    } catch (const Interrupted&) {  // the frames so far are whole
+    } catch (const Interrupted&) {  // the frames so far are in the map
     }
     if (monocular) {
         monocular->finish();

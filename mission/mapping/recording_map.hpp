@@ -36,8 +36,8 @@ struct FusionCalls {
 
 /// Fuses all frames into a map.
 /// @param map empty, with the resolution of the options
-/// @param isStopped asked before every frame and, with recorded depth, for every row of pixels: a
-///        frame is fused whole or not at all. FusionOptions::isStopped is not used.
+/// @param isStopped asked before every frame and, with recorded depth, as FusionOptions::isStopped,
+///        which is not used; a part of a frame that is not counted may be in the map, see fuse()
 /// @throws InputError for images that cannot be used, for implausible depths, and for cells that
 ///         are too small for the extent of the recording
 FusedRecording fuseRecording(TexturedOcTree& map, const Recording& recording,

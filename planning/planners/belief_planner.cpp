@@ -145,8 +145,12 @@ double BeliefPlanner::range() const {
     return growth_.range > 0. ? growth_.range : 0.2 * si_->getMaximumExtent();
 }
 
+std::size_t BeliefPlanner::mostVertices() const {
+    return growth_.maxVertices + std::min<std::size_t>(forBlocked_, growth_.maxVertices);
+}
+
 bool BeliefPlanner::isGrown() const {
-    return (growth_.maxVertices > 0 && samples() >= growth_.maxVertices + forBlocked_) ||
+    return (growth_.maxVertices > 0 && samples() >= mostVertices()) ||
            (growth_.maxIterations > 0 &&
             iterations_ - iterationsAtChange_ >= growth_.maxIterations);
 }
@@ -159,7 +163,7 @@ bool BeliefPlanner::isTimeToFinish() const {
 /// more vertices toward it.
 void BeliefPlanner::growToGoal(ob::State* goal, const ob::PlannerTerminationCondition& ptc) {
     const auto& region = *pdef_->getGoal()->as<ob::GoalSampleableRegion>();
-    const std::size_t full = growth_.maxVertices + (growth_.maxVertices > 0 ? forBlocked_ : 0);
+    const std::size_t full = mostVertices();
     for (int i = 0; i < kGoalReserve && goals_.empty() && region.canSample() && !ptc; ++i) {
         if (full == 0 || samples() < full || samples() >= full + kGoalReserve) return;
         region.sampleGoal(goal);
@@ -359,6 +363,7 @@ void BeliefPlanner::clear() {
     goalSamples_.clear();
     movedRoots_.clear();
     forBlocked_ = forBlockedNow_ = 0;
+    blockedCost_ = kInfinity;
     unused_.clear();
     updated_.clear();
     update_ = {};

@@ -273,6 +273,7 @@ class BeliefPlanner : public ompl::base::Planner {
     };
     void publishProgress();
     bool addStarts();
+    std::size_t mostVertices() const;  // 0: no limit
     bool isGrown() const;
     bool isTimeToFinish() const;
     double range() const;
@@ -298,7 +299,7 @@ class BeliefPlanner : public ompl::base::Planner {
     void reevaluateBest();
     void dropBlocked();
     void growAroundBlocked();
-    void addBlocked(const ompl::base::State* from, const ompl::base::State* to);
+    bool addBlocked();
     std::size_t verticesToAdd() const;
     void reportUpdate();
     void clearIfInterrupted(const std::function<void()>& update);
@@ -322,7 +323,7 @@ class BeliefPlanner : public ompl::base::Planner {
     /// A best path that a change blocked: what is left of it after moveRoot() may be free.
     std::vector<ompl::base::State*> blocked_;
     double blockedCost_ = kInfinity;
-    std::size_t forBlocked_ = 0;     // vertices added for such paths, in all
+    std::size_t forBlocked_ = 0;     // vertices allowed for such paths, in all
     std::size_t forBlockedNow_ = 0;  // in this update
     std::optional<Belief> movedRoot_;
     double deadline_ = kInfinity;  // by the clock [s]

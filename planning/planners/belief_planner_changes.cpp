@@ -9,7 +9,8 @@ namespace photonav {
 namespace ob = ompl::base;
 namespace {
 
-/// Detours that cost more, relative to the blocked path, count as this one; so does none at all.
+/// Extra cost of a detour, as a share of the blocked path's cost: larger ones, and no detour at
+/// all, count as this.
 constexpr double kMostDetour = 2.;
 
 }  // namespace
@@ -198,26 +199,34 @@ void BeliefPlanner::reevaluateBest() {
 /// The next samples are drawn around the motions of the best path that a change has blocked, the
 /// more of them the costlier the detour is over what is left of the graph.
 void BeliefPlanner::growAroundBlocked() {
-    const double detour = std::clamp(bestCost() / blockedCost_ - 1., 0., kMostDetour);
+    const double ratio = bestCost() / blockedCost_;
+    const double detour = ratio > 1. ? std::min(ratio - 1., kMostDetour) : 0.;
     const auto more =
         static_cast<std::size_t>(growthPerDetour() * detour * static_cast<double>(samples()));
-    const bool isRoom = growth_.maxVertices == 0 || forBlocked_ + more <= growth_.maxVertices;
-    if (more > 0 && isRoom && !blocked_.empty()) {
-        for (std::size_t i = 1; i < blocked_.size(); ++i) addBlocked(blocked_[i - 1], blocked_[i]);
+    const bool isRoom = forBlocked_ + more <= growth_.maxVertices;
+    if (more > 0 && isRoom && addBlocked()) {
         forBlocked_ += more;
         forBlockedNow_ = more;
     }
     dropBlocked();
 }
 
-void BeliefPlanner::addBlocked(const ob::State* from, const ob::State* to) {
-    if (si_->checkMotion(from, to)) return;
-    const int steps = 1 + static_cast<int>(si_->distance(from, to) / connectionRadius());
+/// @return whether a motion of the path is blocked
+bool BeliefPlanner::addBlocked() {
+    bool isAny = false;
     ob::ScopedState<> between(si_);
-    for (int i = 0; i <= steps; ++i) {
-        si_->getStateSpace()->interpolate(from, to, static_cast<double>(i) / steps, between.get());
-        updated_.addRemoved(between.get());
+    for (std::size_t i = 1; i < blocked_.size(); ++i) {
+        const ob::State *from = blocked_[i - 1], *to = blocked_[i];
+        if (si_->checkMotion(from, to)) continue;
+        isAny = true;
+        const int steps = 1 + static_cast<int>(si_->distance(from, to) / connectionRadius());
+        for (int k = 0; k <= steps; ++k) {
+            const double share = static_cast<double>(k) / steps;
+            si_->getStateSpace()->interpolate(from, to, share, between.get());
+            updated_.addRemoved(between.get());
+        }
     }
+    return isAny;
 }
 
 void BeliefPlanner::dropBlocked() {

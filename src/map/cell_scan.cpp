@@ -20,7 +20,7 @@ constexpr double kPoseNoise = 3e-3;
 // Least weight of the past: about as many views of full weight.
 constexpr float kMostSurfaceWeight = 50.F / (kPoseNoise * kPoseNoise);
 
-constexpr std::size_t kBricksAtOnce = 1 << 14;  // between two looks at FusionOptions::isStopped
+constexpr std::size_t kBricksAtOnce = 1 << 16;  // between two looks at FusionOptions::isStopped
 
 /// A change in parts of what is tolerated.
 float share(float change, double tolerance) {

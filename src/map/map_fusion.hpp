@@ -57,9 +57,8 @@ struct FusionOptions {
 /// @returns what changed
 /// @throws std::invalid_argument when image, depth and camera differ in size, the pose is not
 ///        finite, or the space in view is too large for the map (see maxRange)
-/// @throws Interrupted when FusionOptions::isStopped says so; the map has nothing of the image, or
-/// a
-///         part of it
+/// @throws Interrupted when FusionOptions::isStopped says so; the map has nothing of the image, or,
+///         of one that changes more than 65536 bricks of 4 x 4 x 4 cells, a part
 MapChange fuse(TexturedOcTree& map, const View& observed, const Camera& camera, const Pose& T_c_w,
                const FusionOptions& options = {});
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "alignment/repeating_errors.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/se3.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "alignment/residual_covariance.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/eigensystem.hpp"

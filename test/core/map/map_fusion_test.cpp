@@ -84,7 +84,7 @@ TEST(MapFusion, AnImageInManyBricksCanBeFusedInPart) {
     EXPECT_LT(part.size(), whole.size());
 }
 
-TEST(MapFusion, AnImageIsFusedWholeOrNotAtAll) {
+TEST(MapFusion, AnImageInFewBricksIsFusedWholeOrNotAtAll) {
     const auto [camera, T_c_w, view] = overCarpet(0.01, 1.52);
     int asked = 0;
     FusionOptions options;

@@ -184,8 +184,9 @@ TEST(Config, ComplaintsNameKeyAndReason) {
     expectComplaint("planner.penalty_kappa=-1", "planner.penalty_kappa", "outside");
     expectComplaint("planner.vertices=2.5", "planner.vertices", "whole number");
     expectComplaint("planner.ds=0", "planner.ds", "outside");
-    EXPECT_NE(complaint({"planner.ds=0.001", "goal=[9, 9.4, 2]"}).find("1.3e+04 steps from start"),
-              std::string::npos);
+    const std::vector<std::string> far{"planner.ds=0.001", "goal=[30, 9, 2]",
+                                       "bounds=[[0, 0, 2], [30, 9, 2]]"};
+    EXPECT_NE(complaint(far).find("3.13e+04 steps from start"), std::string::npos);
     expectComplaint("planner.view_pitch=1.5", "planner.view_pitch", "outside");
     expectComplaint("planner.view_rotation_pitch=0.6", "planner.view_rotation_pitch", "outside");
     expectComplaint("noise.initial=[-1, 0, 0, 0, 0, 0]", "noise.initial", "negative variance");
