@@ -112,7 +112,7 @@ Config configOf(const YAML::Node& node, const std::string& file,
     Config config;
     config.file = file;
     const KeyTable keys = keysOf(config);
-    YamlMap(file, node);  // what is wrong with the file itself, before values are overridden
+    const YamlMap unchanged(file, node);  // reports what is wrong with the file itself
     for (const auto& text : overrides) applyOverride(keys, node, text);
     try {
         YamlMap root(file, node);
