@@ -34,7 +34,7 @@ struct Command {
 /// Input of every command in addition to its own options.
 struct Invocation {
     std::string commandLine;               ///< the command as typed, for reports
-    const std::atomic<bool>& interrupted;  ///< set by the same
+    const std::atomic<bool>& interrupted;  ///< set by the signals of OnInterrupt
 };
 
 /// Adds a subcommand to `app`. Its options are stored in a value of type `Options`.

@@ -198,11 +198,6 @@ void BeliefPlanner::growToward(const ob::State* target, bool isGoalSample,
     if (update_.verticesAdded == verticesToAdd()) updated_.clear();
 }
 
-/// In the parts of the space that the present update has affected.
-std::size_t BeliefPlanner::verticesToAdd() const {
-    return update_.verticesInvalidated + forBlockedNow_;
-}
-
 void BeliefPlanner::publishProgress() {
     progress_.cost = bestCost();
     progress_.vertices = vertices();

@@ -81,6 +81,11 @@ void BeliefPlanner::beginUpdate() {
     parentsBefore_ = parents();
 }
 
+/// In the parts of the space that the present update has affected.
+std::size_t BeliefPlanner::verticesToAdd() const {
+    return update_.verticesInvalidated + forBlockedNow_;
+}
+
 /// Removed vertices are used again for other states: neither they nor their children keep the
 /// parent that they had before the update.
 void BeliefPlanner::forgetParents(const std::vector<Vertex*>& removed) {
