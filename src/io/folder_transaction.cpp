@@ -38,10 +38,6 @@ void synchroniseAll(const fs::path& folder) {
     synchronise(folder, folder);
 }
 
-[[noreturn]] void refuse(const fs::path& folder, const std::string& reason) {
-    throw InputError(folder.string(), "", reason);
-}
-
 /// Removes the unfinished files that a killed process left.
 void removeTemporaryFiles(const fs::path& folder) {
     std::vector<fs::path> found;
@@ -57,20 +53,20 @@ void checkPlace(const fs::path& target, const fs::path& resolved) {
     const fs::file_status status = fs::status(resolved, error);
     if (status.type() == fs::file_type::not_found) {
         if (fs::is_symlink(fs::symlink_status(resolved, error))) {
-            refuse(target, "is a link to a folder that does not exist");
+            refuseFolder(target, "is a link to a folder that does not exist");
         }
         return;
     }
-    if (!fs::is_directory(status)) refuse(target, "is no folder");
+    if (!fs::is_directory(status)) refuseFolder(target, "is no folder");
     const fs::path here = fs::current_path(error);
     if (!error && resolved.lexically_relative(here) == ".") {
-        refuse(target, "is the current directory; give a folder in it");
+        refuseFolder(target, "is the current directory; give a folder in it");
     }
     struct stat own {};
     struct stat parent {};
     if (stat(resolved.c_str(), &own) == 0 && stat(resolved.parent_path().c_str(), &parent) == 0 &&
         own.st_dev != parent.st_dev) {
-        refuse(target, "is a mount point; give a folder in it");
+        refuseFolder(target, "is a mount point; give a folder in it");
     }
 }
 
@@ -80,11 +76,11 @@ void checkFiles(const fs::path& target, const fs::path& resolved) {
     const auto file = Manifest::read(resolved).foreignFile(resolved);
     if (!file) return;
     if (file->filename() == Manifest::kFileName) {
-        refuse(target / file->parent_path(),
-               "is a result within the one to replace; move it away, or give another folder");
+        refuseFolder(target / file->parent_path(),
+                     "is a result within the one to replace; move it away, or give another folder");
     }
-    refuse(target / *file,
-           "is not of an earlier result, or was changed since; give another folder");
+    refuseFolder(target / *file,
+                 "is not of an earlier result, or was changed since; give another folder");
 }
 
 /// Where a result is during an exchange in two steps: no result can have this name.
@@ -107,9 +103,10 @@ void removeResult(const fs::path& folder) {
 void checkLeftNoWork(const WorkingFolder& working, const Manifest& left) {
     const bool isWork = left.empty() && fs::file_size(working.path() / Manifest::kFileName) > 0;
     if (!isWork || !working.hasFiles()) return;
-    refuse(working.path(),
-           "holds the work of a command that did not end; go on with that command's --resume, "
-           "remove that folder, or give another one");
+    refuseFolder(
+        working.path(),
+        "holds the work of a command that did not end; go on with that command's --resume, "
+        "remove that folder, or give another one");
 }
 
 /// Keeps other processes from writing where the earlier result will be until it is removed there.
@@ -131,8 +128,8 @@ bool lockReplaced(FileDescriptor& lock, const fs::path& resolved) {
 FolderTransaction::FolderTransaction(const fs::path& target, Unfinished unfinished)
     : target_(target), resolved_(resolvedFolder(target)), unfinished_(unfinished) {
     if (resolved_.extension() == WorkingFolder::kSuffix) {
-        refuse(target, fmt::format("ends in {}, as folders do that are being written",
-                                   WorkingFolder::kSuffix));
+        refuseFolder(target, fmt::format("ends in {}, as folders do that are being written",
+                                         WorkingFolder::kSuffix));
     }
     checkPlace(target_, resolved_);
     working_.emplace(resolved_, target_);
@@ -153,7 +150,8 @@ void FolderTransaction::takeUp() {
     const Manifest left = Manifest::read(path_);
     if (!left.empty()) {
         if (const auto file = left.foreignFile(path_)) {
-            refuse(path_ / *file, "is in the way of a result that is being written; move it away");
+            refuseFolder(path_ / *file,
+                         "is in the way of a result that is being written; move it away");
         }
     }
     const bool isReplaced = !left.empty() && Manifest::read(resolved_).hasReplaced(path_);
@@ -260,7 +258,7 @@ void FolderTransaction::commitBeside(const std::string& suffix) {
 /// In one step where the file system can, else in two with the earlier folder aside.
 /// @return where the earlier result is now; nothing if there was none
 std::optional<fs::path> FolderTransaction::exchange() const {
-    const auto fail = [&](int reason) { refuse(resolved_, std::strerror(reason)); };
+    const auto fail = [&](int reason) { refuseFolder(resolved_, std::strerror(reason)); };
     if (!fs::exists(resolved_ / Manifest::kFileName)) {  // or an empty folder
         if (std::rename(path_.c_str(), resolved_.c_str()) != 0) fail(errno);
         return {};

@@ -15,26 +15,22 @@ namespace photonav {
 namespace fs = std::filesystem;
 namespace {
 
-[[noreturn]] void refuse(const fs::path& folder, const std::string& reason) {
-    throw InputError(folder.string(), "", reason);
-}
-
 /// Refuses a folder beside which something else is than a working folder.
 void checkWorkingFolder(const fs::path& working, const fs::path& target) {
     std::error_code error;
     // As of the longest path that is made before there are results.
     const fs::path lock = working / Manifest::kFileName;
     if (fs::symlink_status(lock, error).type() == fs::file_type::none) {
-        refuse(target, error.message());
+        refuseFolder(target, error.message());
     }
     const fs::file_status status = fs::symlink_status(working, error);
     if (status.type() == fs::file_type::not_found) return;
     const char* reason = "is in the way of a result that is being written; rename or remove it";
-    if (!fs::is_directory(status)) refuse(working, reason);
+    if (!fs::is_directory(status)) refuseFolder(working, reason);
     if (fs::exists(lock, error)) return;
     for (const auto& entry : fs::recursive_directory_iterator(working, error)) {
         if (fs::exists(lock, error)) return;  // another process has just made it
-        if (!fs::is_directory(entry.symlink_status())) refuse(working, reason);
+        if (!fs::is_directory(entry.symlink_status())) refuseFolder(working, reason);
     }
 }
 
@@ -45,13 +41,13 @@ bool lockWorkingFolder(FileDescriptor& lock, const fs::path& working, const fs::
     for (;;) {
         std::error_code error;
         const bool isNew = fs::create_directories(working, error);
-        if (error) refuse(target, "cannot be made: " + error.message());
+        if (error) refuseFolder(target, "cannot be made: " + error.message());
         lock.reset(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
         if (lock.get() < 0 && errno == ENOENT) continue;
         if (lock.get() < 0) {
             const int reason = errno;
             if (isNew) fs::remove(working, error);
-            refuse(target, std::string("cannot be made: ") + std::strerror(reason));
+            refuseFolder(target, std::string("cannot be made: ") + std::strerror(reason));
         }
         if (lockOpenFile(lock, file, target)) return isNew;
     }
@@ -59,10 +55,14 @@ bool lockWorkingFolder(FileDescriptor& lock, const fs::path& working, const fs::
 
 }  // namespace
 
+void refuseFolder(const fs::path& folder, const std::string& reason) {
+    throw InputError(folder.string(), "", reason);
+}
+
 fs::path resolvedFolder(const fs::path& path) {
     std::error_code error;
     const fs::path whole = fs::weakly_canonical(fs::absolute(path) / "", error);
-    if (error) refuse(path, error.message());
+    if (error) refuseFolder(path, error.message());
     return whole.has_filename() ? whole : whole.parent_path();
 }
 

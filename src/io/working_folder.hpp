@@ -14,6 +14,9 @@
 
 namespace photonav {
 
+/// Throws the InputError of a folder that cannot be written.
+[[noreturn]] void refuseFolder(const std::filesystem::path& folder, const std::string& reason);
+
 /// The file or folder that a path leads to, absolute, links followed, without a closing slash; it
 /// and its last parents need not exist.
 /// @throws InputError for a path that the system refuses, such as one that is too long
