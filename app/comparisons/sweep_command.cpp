@@ -43,7 +43,7 @@ ReferenceCosts referenceOf(const Config& config) {
         return reading(config.sweep.reference,
                        [&] { return ReferenceCosts(config.sweep.reference); });
     } catch (const InputError& error) {
-        throw InputError(config.file, "sweep.reference", error.what());
+        throw config.invalid("sweep.reference", error.what());
     }
 }
 

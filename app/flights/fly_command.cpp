@@ -28,7 +28,7 @@ std::vector<FlightSet> planAll(const Config& config, PlanningProblem& problem, P
     std::vector<FlightSet> sets;
     const auto add = [&](EvaluatedPath path) {
         std::vector<PlannedView> plan = plannedViews(path.points);
-        if (plan.size() < 2) throw InputError(config.file, "goal", "is the start: nothing to fly");
+        if (plan.size() < 2) throw config.invalid("goal", "is the start: nothing to fly");
         sets.push_back({std::move(path), std::move(plan), {}});
     };
     const auto solve = [&](const std::string& name) {

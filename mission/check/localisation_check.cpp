@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "alignment/search_grid.hpp"
 #include "check/predicted_image.hpp"
@@ -103,12 +104,13 @@ class Walk {
   public:
     /// @param views of the world
     Walk(const Config& config, const World& world, const ViewSource& views,
-         const CheckOptions& options)
+         const CheckOptions& options, IsStopped isStopped)
         : config_(config),
           options_(options),
           camera_(config.camera.camera()),
           T_b_c_(config.camera.T_b_c()),
-          images_(views, camera_, config.photometric, alignmentIn(config, world)),
+          images_(views, camera_, config.photometric, alignmentIn(config, world),
+                  std::move(isStopped)),
           loss_(options_, camera_) {
         const Pose T_c_b = T_b_c_.inverse();
         belief_.covariance = inOtherFrame(config.belief.initialCovariance, T_c_b);
@@ -271,8 +273,9 @@ CheckedTrajectory checkLocalisation(const GivenTrajectory& trajectory, const Con
                                     const std::function<void(double)>& onProgress) {
     const std::vector<WayPlace> places =
         placesAlong(trajectory, config.belief.ds, config.rotationWeight);
-    const InterruptibleViews views(world.sharedViews(), [&] { return interrupted.load(); });
-    Walk walk(config, world, views, options);
+    const IsStopped isStopped = [&] { return interrupted.load(); };
+    const InterruptibleViews views(world.sharedViews(), isStopped);
+    Walk walk(config, world, views, options, isStopped);
     CheckedTrajectory checked;
     checked.places.push_back(walk.begin(places.front()));
     try {

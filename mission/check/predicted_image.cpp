@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/predicted_image.hpp"
 
+#include <utility>
+
 #include "alignment/conclusion.hpp"
 
 namespace photonav {
 
 ImagePredictor::ImagePredictor(const ViewSource& map, const Camera& camera,
                                const PhotometricOptions& photometric,
-                               const AlignmentOptions& alignment)
+                               const AlignmentOptions& alignment, IsStopped isStopped)
     : map_(map),
       camera_(camera),
       photometric_(photometric),
       alignment_(alignment),
-      comparison_(camera, alignment.photometric) {}
+      comparison_(camera, alignment.photometric, std::move(isStopped)) {}
 
 PredictedImage ImagePredictor::at(const Pose& T_c_w) {
     map_.render(camera_, T_c_w, view_);

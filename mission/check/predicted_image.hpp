@@ -21,9 +21,12 @@ class ImagePredictor {
     /// @param map must outlive the predictor
     /// @param photometric options of the planner's information
     /// @param alignment options of the tracker; noise and stride must be those of `photometric`
+    /// @param isStopped asked now and then with large images
     ImagePredictor(const ViewSource& map, const Camera& camera,
-                   const PhotometricOptions& photometric, const AlignmentOptions& alignment);
+                   const PhotometricOptions& photometric, const AlignmentOptions& alignment,
+                   IsStopped isStopped);
 
+    /// @throws Interrupted
     PredictedImage at(const Pose& T_c_w);
 
   private:

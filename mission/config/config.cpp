@@ -56,11 +56,10 @@ void applyOverride(const KeyTable& keys, const YAML::Node& root, const std::stri
     }
 }
 
-/// Whether a message names a key whose value is not the file's.
-bool isAboutOverride(const InputError& error, const std::vector<std::string>& overrides) {
+/// Whether the value of a key is not the file's.
+bool isOverridden(const std::string& key, const std::vector<std::string>& overrides) {
     return std::ranges::any_of(overrides, [&](const std::string& text) {
         const std::string path = text.substr(0, text.find('='));
-        const std::string key = error.reason().substr(0, error.reason().find(": "));
         return path == key || path.starts_with(key + ".");
     });
 }
@@ -111,6 +110,7 @@ Config configOf(const YAML::Node& node, const std::string& file,
                 const std::vector<std::string>& overrides) {
     Config config;
     config.file = file;
+    config.overrides = overrides;
     const KeyTable keys = keysOf(config);
     const YamlMap unchanged(file, node);  // reports what is wrong with the file itself
     for (const auto& text : overrides) applyOverride(keys, node, text);
@@ -121,13 +121,18 @@ Config configOf(const YAML::Node& node, const std::string& file,
         checkShape(root, config.camera);
         checkStep(root, config);
     } catch (const InputError& error) {
-        if (!isAboutOverride(error, overrides)) throw;
+        const std::string key = error.reason().substr(0, error.reason().find(": "));
+        if (!isOverridden(key, overrides)) throw;
         throw InputError("command line", "", error.reason());
     }
     return config;
 }
 
 }  // namespace
+
+InputError Config::invalid(const std::string& key, const std::string& reason) const {
+    return {isOverridden(key, overrides) ? "command line" : file, key, reason};
+}
 
 Camera CameraConfig::camera() const { return makeCamera(width, height, hfov * kDegree); }
 

@@ -13,6 +13,7 @@
 #include "config/fly_config.hpp"
 #include "config/sweep_config.hpp"
 #include "geometry/camera.hpp"
+#include "io/error.hpp"
 #include "map/textured_octree.hpp"
 #include "photometry/map_uncertainty.hpp"
 #include "photometry/photometric.hpp"
@@ -67,7 +68,12 @@ BeliefOptions defaultBelief();
 inline constexpr double kSmoothedNoiseScale = 0.08;
 
 struct Config {
-    std::string file;  ///< the file that the config was read from
+    std::string file;                         ///< the file that the config was read from
+    std::vector<std::string> overrides = {};  ///< "key.path=value" of --set
+
+    /// The error of a key whose value cannot be used. It names the file, or the command line if the
+    /// value was given there.
+    InputError invalid(const std::string& key, const std::string& reason) const;
 
     // Either sceneFile or mapFile is given; for explorations also both, see knowsMap().
     std::string sceneFile;  ///< procedural scene (.yaml) or mesh; absolute path

@@ -27,12 +27,12 @@ DepthSensor depthSensorOf(ExploreSensor sensor) {
 
 void checkHeadings(const Config& config) {
     if (config.space == StateKind::se3) {
-        throw InputError(config.file, "space", "se3: a robot that explores flies level");
+        throw config.invalid("space", "se3: a robot that explores flies level");
     }
     for (const std::string& name : config.explore.planners) {
         if (explorePlanner(name).headings && config.space != StateKind::positionYaw) {
-            throw InputError(config.file, "explore.planners",
-                             fmt::format("{}: the robot's heading is not free", name));
+            throw config.invalid("explore.planners",
+                                 fmt::format("{}: the robot's heading is not free", name));
         }
     }
 }
@@ -59,10 +59,11 @@ void checkMap(const ExplorationSetup& setup) {
     const double resolution = config.explore.resolution;
     const double reach = kKeyOfZero * resolution;
     if (farthest + kSeenBeyond > reach) {
-        throw InputError(config.file, "explore.resolution",
-                         fmt::format("{} m: a map of such cells ends {:.0f} m from the origin, the "
-                                     "bounds at {:.0f} m",
-                                     resolution, reach, farthest));
+        throw config.invalid(
+            "explore.resolution",
+            fmt::format("{} m: a map of such cells ends {:.0f} m from the origin, the "
+                        "bounds at {:.0f} m",
+                        resolution, reach, farthest));
     }
     try {
         const OnlineMap map(config, setup.known.get());
@@ -71,13 +72,13 @@ void checkMap(const ExplorationSetup& setup) {
         const World world(map.cells(), map.obstacles(), optimistic);
         const double clearance = world.clearance(config.start.position);
         if (setup.known && clearance < setup.flight.bodyRadius) {
-            throw InputError(config.file, "map.file",
-                             fmt::format("{}: the start is in an obstacle of this map: clearance "
-                                         "{:.3f} m, the body's radius is {} m",
-                                         config.mapFile, clearance, setup.flight.bodyRadius));
+            throw config.invalid(
+                "map.file", fmt::format("{}: the start is in an obstacle of this map: clearance "
+                                        "{:.3f} m, the body's radius is {} m",
+                                        config.mapFile, clearance, setup.flight.bodyRadius));
         }
     } catch (const std::invalid_argument& error) {  // too large a grid for these bounds
-        throw InputError(config.file, "explore.resolution", error.what());
+        throw config.invalid("explore.resolution", error.what());
     }
 }
 
@@ -104,8 +105,8 @@ ExplorationSetup setUpExploration(const PlanningProblem& problem) {
     const Config& config = problem.config();
     checkHeadings(config);
     if (!problem.isFlyable(config.start.position)) {
-        throw InputError(
-            config.file, "start",
+        throw config.invalid(
+            "start",
             fmt::format("in collision: clearance {:.3f} m, robot.radius {} m",
                         problem.world().clearance(config.start.position), config.robotRadius));
     }

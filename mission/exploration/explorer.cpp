@@ -18,20 +18,10 @@
 namespace photonav {
 namespace {
 
-/// Number of updates in a row without a flyable plan after which the flight ends; for one camera
-/// also the limit of steps, see kMostBlindSteps.
-constexpr int kMostWithoutWay = 6;
-/// Least time without a flyable plan after which the flight ends, at whatever rate images come [s].
-constexpr double kLeastWithoutWay = 2.;
 /// Number of steps in a row into unobserved space that may leave the map unchanged; then the robot
-/// hovers.
+/// hovers. One camera sees nothing before it moves.
 constexpr int kMostBlindSteps = 1;
-/// Longest stop before an obstacle in view that does not enter the map; then the flight ends [s].
-constexpr double kMostStopped = 10.;
-/// Longest time around the goal without an arrival; then the flight ends with its belief [s].
-constexpr double kMostAtGoal = 30.;
-/// Distance to the goal that counts as around it [m].
-constexpr double kAroundGoal = 2.;
+constexpr int kMostMonocularSteps = 6;
 /// Time without an update, while the plan is only a part of the way, after which the next image
 /// becomes a keyframe [s].
 constexpr double kWait = 1.;
@@ -194,7 +184,7 @@ void Explorer::onImage(const TrackedFrame& tracked, const View& image) {
 /// flies only as far as it is, until it has another plan.
 bool Explorer::isInTheWay(const TrackedFrame& tracked, const View& image) {
     if (image.depth.getSize() == 0) return false;
-    inView_ = {image.depth, camera_, tracked.T_c_w.mean, states_,
+    inView_ = {image.depth, camera_, tracked.T_c_w, states_,
                obstacleRange(config_, toStop_ + tube_)};
     const std::vector<PlannedView> ahead = wayAhead();
     std::vector<Eigen::Vector3d> way;
@@ -284,10 +274,7 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
     if (way->isStopped && !hasPath_) return hover();
     if (way->isLook && isLooking()) return;
     if (way->isBlind && !mayStepBlindly()) return hover();
-    withoutWay_ = 0;
-    withoutWaySince_.reset();
-    if (!way->isStopped) stoppedSince_.reset();
-    if (way->isStopped && !stoppedSince_) stoppedSince_ = time_;
+    patience_.onWay(way->isStopped, time_);
     blindInARow_ += way->isBlind;
     record_.blindSteps += way->isBlind;
     follow(std::move(*way));
@@ -308,15 +295,13 @@ bool Explorer::isLooking() const {
     return std::abs(turn) > kLooksThere;
 }
 
-/// A camera without a depth sensor has to move before it sees anything.
 bool Explorer::mayStepBlindly() const {
     const bool isMonocular = config_.explore.sensor == ExploreSensor::monocular;
-    return blindInARow_ < (isMonocular ? kMostWithoutWay : kMostBlindSteps);
+    return blindInARow_ < (isMonocular ? kMostMonocularSteps : kMostBlindSteps);
 }
 
 void Explorer::hover() {
-    ++withoutWay_;
-    if (!withoutWaySince_) withoutWaySince_ = time_;
+    patience_.onNoWay(time_);
     follow({.plan = stayingAt(tracker_.belief(), T_b_c_)});
 }
 
@@ -346,29 +331,25 @@ std::string Explorer::reasonForNoWay() const {
     return "the map shows no way to the goal";
 }
 
-/// Whether the robot was at its goal and is still around it, but too often lost to arrive.
-bool Explorer::isStuckAtGoal() {
-    const Eigen::Vector3d p_w = here().translation();
-    if ((p_w - config_.goal.position).norm() > kAroundGoal) atGoalSince_.reset();
-    if (!atGoalSince_ && isWhole_ && pilot_.route().isAtGoal()) atGoalSince_ = time_;
-    return atGoalSince_ && time_ - *atGoalSince_ > kMostAtGoal;
-}
-
 bool Explorer::hasEnded() {
     throwIfStopped(interrupted_);
     if (tracker_.loss().isLost() && pilot_.hasGivenUp(tracker_, time_)) {
         return endAs(FlightEnd::lost, "tracking was lost and not regained");
     }
-    if (withoutWay_ >= kMostWithoutWay && time_ - *withoutWaySince_ >= kLeastWithoutWay) {
+    if (patience_.hasNoWay(time_)) {
         return endAs(FlightEnd::noWay, reasonForNoWay());
     }
-    if (stoppedSince_ && time_ - *stoppedSince_ > kMostStopped) {
+    if (patience_.isStopped(time_)) {
         return endAs(FlightEnd::noWay, "an obstacle in view that is not in the map");
     }
     if (time_ > config_.explore.timeLimit) {
         return endAs(FlightEnd::outOfTime, "the time limit was reached");
     }
-    if (isStuckAtGoal() || (isWhole_ && pilot_.hasArrived(tracker_, time_))) return endAtGoal();
+    const double toGoal = (here().translation() - config_.goal.position).norm();
+    patience_.onStep(toGoal, isWhole_ && pilot_.route().isAtGoal(), time_);
+    if (patience_.isStuckAtGoal(time_) || (isWhole_ && pilot_.hasArrived(tracker_, time_))) {
+        return endAtGoal();
+    }
     return false;
 }
 

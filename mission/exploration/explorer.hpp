@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "exploration/patience.hpp"
 #include "exploration/real_time_monitor.hpp"
 #include "flight/arrival.hpp"
 #include "flight/flight_end.hpp"
@@ -144,7 +145,6 @@ class Explorer {
     void follow(FlyablePart part);
     void hover();
     bool isWaiting() const;
-    bool isStuckAtGoal();
     bool hasEnded();
     bool endAtGoal();
     bool endAs(FlightEnd end, const std::string& reason);
@@ -172,20 +172,17 @@ class Explorer {
     ObstaclesInView inView_;  // in the last image
     /// In images before that have stopped the robot, until its map has them: time, obstacles.
     std::vector<std::pair<double, ObstaclesInView>> notInMap_;
-    double time_ = 0.;                       // [s]
-    bool hasPath_ = false;                   // the planner has found one at the last update
-    bool isWhole_ = false;                   // the part of the plan being flown leads to the goal
-    int withoutWay_ = 0;                     // updates in a row without a path
-    std::optional<double> withoutWaySince_;  // [s]
-    std::optional<double> stoppedSince_;     // time of the stop before an obstacle in view [s]
+    double time_ = 0.;      // [s]
+    bool hasPath_ = false;  // the planner has found one at the last update
+    bool isWhole_ = false;  // the part of the plan being flown leads to the goal
+    Patience patience_;
     struct Look {
         double yaw = 0.;    // [rad]
         double since = 0.;  // [s]
     };
-    std::optional<Look> look_;           // that the robot turns to
-    int blindInARow_ = 0;                // blind steps since the map last grew
-    double lastUpdate_ = 0.;             // time of the last update [s]
-    std::optional<double> atGoalSince_;  // time of reaching the goal, if still near it [s]
+    std::optional<Look> look_;  // that the robot turns to
+    int blindInARow_ = 0;       // blind steps since the map last grew
+    double lastUpdate_ = 0.;    // time of the last update [s]
     Corrections corrections_;
     ExplorationRecord record_;
     std::optional<FlightEnd> end_;

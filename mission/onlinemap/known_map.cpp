@@ -17,7 +17,7 @@ constexpr double kMostCells = 2147483648.;  // of a map's bounding box, as in vi
 
 void check(const TexturedOcTree& map, const Config& config) {
     const auto refuse = [&](const std::string& reason) {
-        throw InputError(config.file, "map.file", config.mapFile + ": " + reason);
+        throw config.invalid("map.file", config.mapFile + ": " + reason);
     };
     if (map.size() == 0) refuse("is empty");
     const double cell = map.getResolution();

@@ -10,14 +10,14 @@ namespace photonav {
 
 std::shared_ptr<TexturedOcTree> loadMapOf(const Config& config) {
     if (!config.mapMadeBy.empty() && !std::filesystem::exists(config.mapFile)) {
-        throw InputError(
-            config.file, "map.file",
+        throw config.invalid(
+            "map.file",
             config.mapFile + ": not there; this config's map is made by " + config.mapMadeBy);
     }
     try {
         return loadTexturedOcTree(config.mapFile);
     } catch (const InputError& error) {
-        throw InputError(config.file, "map.file", error.what());
+        throw config.invalid("map.file", error.what());
     }
 }
 

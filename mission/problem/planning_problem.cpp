@@ -87,9 +87,8 @@ bool PlanningProblem::isFlyable(const Eigen::Vector3d& p_w) const {
 
 void PlanningProblem::checkPlace(const std::string& key, const Place& place) const {
     if (isFlyable(place.position)) return;
-    throw InputError(config_.file, key,
-                     fmt::format("in collision: clearance {:.3f} m, robot.radius {} m",
-                                 world_.clearance(place.position), config_.robotRadius));
+    throw config_.invalid(key, fmt::format("in collision: clearance {:.3f} m, robot.radius {} m",
+                                           world_.clearance(place.position), config_.robotRadius));
 }
 
 std::string PlanningProblem::statusOf(const PlanOutcome& outcome) const {

@@ -44,9 +44,10 @@ struct World::Collectors {
 
 World::World(const Config& config) {
     if (!config.sceneFile.empty() && !config.mapFile.empty()) {
-        throw InputError(config.file, "map.file",
-                         "not together with scene.file: only `photonav explore` takes both, the "
-                         "scene as the world and the map as what the robot knows of it");
+        throw config.invalid(
+            "map.file",
+            "not together with scene.file: only `photonav explore` takes both, the "
+            "scene as the world and the map as what the robot knows of it");
     }
     const bool isScene = config.mapFile.empty();
     try {
@@ -60,13 +61,12 @@ World::World(const Config& config) {
         }
     } catch (const InputError& error) {
         if (!isScene) throw;
-        throw InputError(config.file, "scene.file", error.what());
+        throw config.invalid("scene.file", error.what());
     } catch (const std::invalid_argument& error) {  // too large a grid for these bounds
         const char* key = isScene ? " (robot.clearance_resolution, at most 10 m)" : "";
-        throw InputError(config.file, "bounds", std::string(error.what()) + key);
+        throw config.invalid("bounds", std::string(error.what()) + key);
     } catch (const std::bad_alloc&) {
-        throw InputError(config.file, "bounds",
-                         "the world within them needs more memory than there is");
+        throw config.invalid("bounds", "the world within them needs more memory than there is");
     }
 }
 

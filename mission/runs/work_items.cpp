@@ -35,9 +35,8 @@ void refuseEmptyShard(const Shard& shard, std::size_t items) {
 void checkSeeds(const Config& config, unsigned runs) {
     constexpr std::uint64_t kLast = std::numeric_limits<std::uint32_t>::max();
     if (std::uint64_t{config.seed} + runs - 1 <= kLast) return;
-    throw InputError(
-        config.file, "seed",
-        fmt::format("{} runs from {} on go beyond the last seed, {}", runs, config.seed, kLast));
+    throw config.invalid("seed", fmt::format("{} runs from {} on go beyond the last seed, {}", runs,
+                                             config.seed, kLast));
 }
 
 void workInOrder(std::size_t count, unsigned jobs, const std::function<bool(std::size_t)>& work) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "alignment/product_sums.hpp"
 #include "photometry/simd.hpp"
@@ -124,8 +125,9 @@ std::vector<ImageBlock> withoutBlur(std::vector<ImageBlock> blocks, double sigma
     return blocks;
 }
 
-ViewComparison::ViewComparison(const Camera& camera, const PhotometricOptions& photometric)
-    : camera_(camera), photometric_(photometric) {
+ViewComparison::ViewComparison(const Camera& camera, const PhotometricOptions& photometric,
+                               IsStopped isStopped)
+    : camera_(camera), photometric_(photometric), isStopped_(std::move(isStopped)) {
     if (photometric.stride != 1) {
         throw std::invalid_argument("alignment: uses every pixel, stride must be 1");
     }
@@ -140,10 +142,14 @@ ViewComparison::ViewComparison(const Camera& camera, const PhotometricOptions& p
 /// its images need few of them.
 void ViewComparison::allocate() {
     const std::size_t size = pitch_ * camera_.height + kWidth;  // blocks read beyond the last row
-    intensity_.assign(size, 0.F);
-    inverseDepth_.assign(size, kNoSurface);
-    observed_.assign(size, 0.F);
-    residual_.assign(size, kUnused);
+    const auto make = [&](std::vector<float>& image, float value) {
+        throwIfStopped(isStopped_);  // memory takes longer than what is done with it
+        image.assign(size, value);
+    };
+    make(residual_, kUnused);
+    make(inverseDepth_, kNoSurface);
+    make(observed_, 0.F);
+    make(intensity_, 0.F);
 }
 
 double ViewComparison::robustSigma() const { return robustSigmaOf(residual_); }
@@ -159,6 +165,7 @@ void ViewComparison::load(const View& predicted, const ImageF& observed) {
     double sum = 0.;
     std::size_t surfaces = 0;
     for (unsigned v = 0; v < camera_.height; ++v) {
+        throwIfStopped(isStopped_);
         std::copy_n(predicted.intensity[v], camera_.width, &intensity_[v * pitch_]);
         std::copy_n(observed[v], camera_.width, &observed_[v * pitch_]);
         const float* depth = predicted.depth[v];
@@ -282,6 +289,7 @@ NormalEquations ViewComparison::operator()(const View& predicted, const ImageF& 
 
     ProductSums<true> sums(loss, pitch_ / kWidth);
     for (unsigned v = 1; v + 1 < camera_.height; ++v) {
+        throwIfStopped(isStopped_);
         sums.beginRow();
         for (unsigned u = 1; u + 1 < camera_.width; u += kWidth) {
             const std::size_t i = v * pitch_ + u;

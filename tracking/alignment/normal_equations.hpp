@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "alignment/shared_gradients.hpp"
+#include "io/interrupted.hpp"
 #include "photometry/photometric.hpp"
 
 namespace photonav {
@@ -97,11 +98,13 @@ std::vector<ImageBlock> withoutBlur(std::vector<ImageBlock> blocks, double sigma
 /// photometricInformation(): without weights, the pose block of AtA is Lambda * sigma^2 / scale.
 class ViewComparison {
   public:
+    /// @param isStopped asked at every row, for the sake of large images
     /// @throws std::invalid_argument for images below 3 x 3 pixels or a stride other than 1
-    ViewComparison(const Camera& camera, const PhotometricOptions& photometric);
+    ViewComparison(const Camera& camera, const PhotometricOptions& photometric,
+                   IsStopped isStopped = {});
 
     /// The normal equations of a predicted view and an observed image.
-    /// @throws std::invalid_argument when the images and the camera differ in size
+    /// @throws std::invalid_argument when the images and the camera differ in size, and Interrupted
     NormalEquations operator()(const View& predicted, const ImageF& observed,
                                const Exposure& exposure, const Loss& loss);
 
@@ -122,6 +125,7 @@ class ViewComparison {
 
     Camera camera_;
     PhotometricOptions photometric_;
+    IsStopped isStopped_;
     std::size_t pitch_;  ///< of the padded copies: a column before and whole vectors after
     std::vector<float> intensity_, inverseDepth_, observed_;
     std::vector<float> residual_;  ///< kUnused where a pixel does not count

@@ -223,6 +223,16 @@ TEST(Config, ComplaintsSayWhereAValueWasGiven) {
     fs::remove(file);
 }
 
+/// Whether a value can be used often shows only when the world is there.
+TEST(Config, ComplaintsOfOthersSayWhereAValueWasGiven) {
+    const std::string file = PHOTONAV_SOURCE_DIR "/config/two_textures.yaml";
+    const Config config = loadConfig(file, {"goal=[2, 9, 2]", "scene.file=nowhere.yaml"});
+    EXPECT_STREQ(config.invalid("goal", "in collision").what(), "command line: goal: in collision");
+    EXPECT_STREQ(config.invalid("start", "in collision").what(),
+                 (file + ": start: in collision").c_str());
+    EXPECT_STREQ(config.invalid("scene", "empty").what(), "command line: scene: empty");
+}
+
 TEST(Config, AMapThatIsNotThereYetIsMadeBySomething) {
     const std::vector<std::string> room{"map.file=no #1: nowhere.ot",
                                         "map.made_by=scripts/make it"};
@@ -237,7 +247,7 @@ TEST(Config, AMapThatIsNotThereYetIsMadeBySomething) {
         ADD_FAILURE() << "nothing was thrown";
     } catch (const InputError& error) {
         const std::string text = error.what();
-        EXPECT_NE(text.find("scan_room_1.yaml: map.file: "), std::string::npos) << text;
+        EXPECT_NE(text.find("command line: map.file: "), std::string::npos) << text;
         EXPECT_NE(text.find("nowhere.ot: not there; this config's map is made by scripts/make it"),
                   std::string::npos)
             << text;
