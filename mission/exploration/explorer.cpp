@@ -184,7 +184,7 @@ void Explorer::onImage(const TrackedFrame& tracked, const View& image) {
 /// flies only as far as it is, until it has another plan.
 bool Explorer::isInTheWay(const TrackedFrame& tracked, const View& image) {
     if (image.depth.getSize() == 0) return false;
-    inView_ = {image.depth, camera_, tracked.T_c_w, states_,
+    inView_ = {image.depth, camera_, tracked.T_c_w.mean, states_,
                obstacleRange(config_, toStop_ + tube_)};
     const std::vector<PlannedView> ahead = wayAhead();
     std::vector<Eigen::Vector3d> way;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "onlinemap/cell_states.hpp"
 
-#include <limits>
-
 #include "map/brick_leaves.hpp"
 #include "onlinemap/known_map.hpp"
 
@@ -16,27 +14,10 @@ OcTreeKey firstCellBeside(const OcTreeKey& cell) {
     return {first(0), first(1), first(2)};
 }
 
-OcTreeKey cellKey(const Eigen::Array3i& cell) {
-    const auto key = [&](int axis) { return static_cast<octomap::key_type>(cell[axis]); };
-    return {key(0), key(1), key(2)};
-}
-
 OcTreeKey firstCellOf(const Eigen::Array3i& brick) {
-    return cellKey(MapChange::kBrickEdge * brick + kKeyOfZero);
-}
-
-/// Whether a condition holds for a cell of a box, or for one of every `step` cells.
-template <typename Condition>
-bool anyOfCells(const Eigen::Array3i& least, const Eigen::Array3i& most, int step,
-                const Condition& holds) {
-    for (int z = least.z(); z <= most.z(); z += step) {
-        for (int y = least.y(); y <= most.y(); y += step) {
-            for (int x = least.x(); x <= most.x(); x += step) {
-                if (holds(Eigen::Array3i(x, y, z))) return true;
-            }
-        }
-    }
-    return false;
+    const Eigen::Array3i first = MapChange::kBrickEdge * brick + kKeyOfZero;
+    const auto key = [&](int axis) { return static_cast<octomap::key_type>(first[axis]); };
+    return {key(0), key(1), key(2)};
 }
 
 std::uint64_t maskOf(const OcTreeKey& cell) {
@@ -90,21 +71,6 @@ bool CellStates::isFree(const Key& key) const {
 bool CellStates::isOccupied(const Key& key) const {
     const Brick* brick = brickAt(key);
     return brick != nullptr && (brick->occupied & maskOf(key)) != 0;
-}
-
-bool CellStates::isOccupiedAround(const Key& key, int reach) const {
-    constexpr int kEdge = MapChange::kBrickEdge;
-    const Eigen::Array3i middle(key[0], key[1], key[2]);
-    const Eigen::Array3i least = (middle - reach).max(0);
-    const Eigen::Array3i most = (middle + reach).min(std::numeric_limits<octomap::key_type>::max());
-    return anyOfCells(least / kEdge * kEdge, most, kEdge, [&](const Eigen::Array3i& first) {
-        const Brick* brick = brickAt(cellKey(first));
-        if (brick == nullptr || brick->occupied == 0) return false;
-        return anyOfCells(first.max(least), (first + kEdge - 1).min(most), 1,
-                          [&](const Eigen::Array3i& cell) {
-                              return (brick->occupied & maskOf(cellKey(cell))) != 0;
-                          });
-    });
 }
 
 }  // namespace photonav

@@ -38,8 +38,6 @@ class CellStates {
 
     bool isFree(const Key& key) const;
     bool isOccupied(const Key& key) const;
-    /// Whether a cell is occupied that is at most `reach` cells away along each axis.
-    bool isOccupiedAround(const Key& key, int reach) const;
     /// An empty map with the same cells, for their keys and coordinates.
     const TexturedOcTree& grid() const { return *grid_; }
 

@@ -8,8 +8,6 @@
 #include <unordered_map>
 
 #include "geometry/constants.hpp"
-#include "geometry/gaussian.hpp"
-#include "geometry/se3.hpp"
 #include "onlinemap/obstacle_map.hpp"
 
 namespace photonav {
@@ -19,7 +17,6 @@ constexpr double kLeastDepth = 0.2;   // depths below are not trusted, as in fus
 constexpr double kPixelShare = 0.25;  // of the pixels of a cell that faces the camera
 constexpr std::size_t kFewCells = 3;  // as many are an obstacle
 constexpr double kWaySlack = 0.02;    // of clearances along a way [m]
-constexpr int kMostOff = 8;           // that errors of the pose put a surface [cells]
 
 using octomap::OcTreeKey;
 
@@ -52,11 +49,18 @@ std::vector<OcTreeKey> cellsHit(const ImageF& depth, const Camera& camera, const
     return hit;
 }
 
-/// How far off a point may be shown because of the pose: three standard deviations [m].
-double errorByPose(const Eigen::Vector3d& p_c, const Matrix6& covariance) {
-    Eigen::Matrix<double, 3, 6> J;  // of exp(xi^) p_c
-    J << Eigen::Matrix3d::Identity(), -hat(p_c);
-    return 3. * largestSigma(J * covariance * J.transpose());
+/// Whether the map shows a cell free, and no surface right beside it, where errors of depth or
+/// pose would show it.
+bool isFreeAround(const CellStates& cells, const OcTreeKey& key) {
+    if (!cells.isFree(key)) return false;
+    for (int i = 0; i < 27; ++i) {
+        OcTreeKey beside = key;
+        beside[0] = static_cast<octomap::key_type>(beside[0] + i % 3 - 1);
+        beside[1] = static_cast<octomap::key_type>(beside[1] + i / 3 % 3 - 1);
+        beside[2] = static_cast<octomap::key_type>(beside[2] + i / 9 - 1);
+        if (cells.isOccupied(beside)) return false;
+    }
+    return true;
 }
 
 }  // namespace
@@ -71,11 +75,9 @@ bool isSeenThrough(const Eigen::Vector3d& p_w, const ImageF& depth, const Camera
     return depth[static_cast<unsigned>(v)][static_cast<unsigned>(u)] > p_c.z() + margin;
 }
 
-ObstaclesInView::ObstaclesInView(const ImageF& depth, const Camera& camera,
-                                 const UncertainPose& believed, const CellStates& cells,
-                                 const ObstacleRange& range)
+ObstaclesInView::ObstaclesInView(const ImageF& depth, const Camera& camera, const Pose& T_c_w,
+                                 const CellStates& cells, const ObstacleRange& range)
     : cell_(cells.grid().getResolution()) {
-    const Pose& T_c_w = believed.mean;
     const TexturedOcTree& map = cells.grid();
     const auto add = [&](const OcTreeKey& key) {
         const Eigen::Vector3d p_w = middleOf(map, key);
@@ -90,10 +92,7 @@ ObstaclesInView::ObstaclesInView(const ImageF& depth, const Camera& camera,
         return isSeenThrough(middleOf(map, key), depth, camera, T_c_w, cell_);
     };
     const auto isNew = [&](const OcTreeKey& key) {
-        const Eigen::Vector3d p_c = T_c_w * middleOf(map, key);
-        if (p_c.z() > range.precise || !cells.isFree(key)) return false;
-        const double byPose = errorByPose(p_c, believed.covariance) / cell_;
-        return !cells.isOccupiedAround(key, 1 + std::min(kMostOff, static_cast<int>(byPose)));
+        return (T_c_w * middleOf(map, key)).z() <= range.precise && isFreeAround(cells, key);
     };
     for (auto& [column, keys] : columns) {
         if (keys.size() < kWallCells) continue;

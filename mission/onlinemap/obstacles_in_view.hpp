@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "geometry/uncertain_pose.hpp"
 #include "onlinemap/cell_states.hpp"
 #include "photometry/view.hpp"
 
@@ -21,8 +20,7 @@ struct ObstacleRange {
 
 /// The obstacles in one depth image, as cells of the map's size: cells that contain surface points,
 /// and cells above new walls. A wall is new if at least four cells of a column contain surface
-/// points but are free in the map, with no surface of the map so near that errors of depth and pose
-/// could account for it. The cells above a new wall, which the map may show as free, too,
+/// points but are free in the map. The cells above a new wall, which the map may show as free, too,
 /// count as occupied up to the first one that the image shows to be free: a camera that looks down
 /// does not observe how high the wall is.
 ///
@@ -32,7 +30,7 @@ class ObstaclesInView {
     ObstaclesInView() = default;  ///< no obstacles
     /// @param depth depth image [m]; 0: not measured
     /// @param cells those of the map before this image is fused
-    ObstaclesInView(const ImageF& depth, const Camera& camera, const UncertainPose& T_c_w,
+    ObstaclesInView(const ImageF& depth, const Camera& camera, const Pose& T_c_w,
                     const CellStates& cells, const ObstacleRange& range);
 
     /// Distance from a place to the obstacles [m]. It is measured to the third nearest cell,

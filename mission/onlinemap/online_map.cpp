@@ -79,17 +79,15 @@ MapChange OnlineMap::add(const MapInput& input, const Camera& camera, const IsSt
     if (input.isMapInconsistent) change.join(forget(input.shown, camera, input.T_c_w.mean));
     if (!input.keyframe) return change;
     compare(input.shown, input.image.intensity, camera);
-    const UncertainPose T_c_w{input.keyframe->T_c_w, input.T_c_w.covariance};
-    change.join(fuse(input.keyframe->view, camera, T_c_w, isStopped));
+    change.join(fuse(input.keyframe->view, camera, input.keyframe->T_c_w, isStopped));
     return change;
 }
 
-MapChange OnlineMap::fuse(const View& image, const Camera& camera, const UncertainPose& believed,
+MapChange OnlineMap::fuse(const View& image, const Camera& camera, const Pose& T_c_w,
                           const IsStopped& isStopped) {
-    const Pose& T_c_w = believed.mean;
     FusionOptions fusion = fusion_;
     fusion.isStopped = isStopped;
-    const ObstaclesInView seen(image.depth, camera, believed, states_, range_);
+    const ObstaclesInView seen(image.depth, camera, T_c_w, states_, range_);
     MapChange change = photonav::fuse(*cells_, image, camera, T_c_w, fusion);
     updateKnown(change);
     change.join(obstacles_.update(*cells_, change));

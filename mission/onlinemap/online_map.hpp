@@ -64,10 +64,10 @@ class OnlineMap {
     void compare(const View& shown, const ImageF& image, const Camera& camera);
 
     /// Fuses an image.
-    /// @param T_c_w belief of the camera's pose
+    /// @param T_c_w believed pose of the camera
     /// @return the change of map and obstacles
     /// @throws Interrupted when `isStopped` says so
-    MapChange fuse(const View& image, const Camera& camera, const UncertainPose& T_c_w,
+    MapChange fuse(const View& image, const Camera& camera, const Pose& T_c_w,
                    const IsStopped& isStopped = {});
     /// Removes the surfaces that a view of the map shows. They count as free until they are
     /// observed again. @return the change of map and obstacles

@@ -20,14 +20,9 @@ constexpr double kSlack = 0.02;      // of clearances, which are interpolated [m
 constexpr double kRetreat = 0.002;   // nearer to an obstacle [m]
 constexpr double kSide = 0.8;        // of the radius must be seen: a wall may be beyond
 
-/// A place on a path.
-struct Stop {
-    double length = kInfinity;  // of the path until there [m]
-    Eigen::Vector3d p_w = Eigen::Vector3d::Zero();
-};
-
+/// Length of a path up to the first place where a condition holds [m].
 template <typename Condition>
-Stop firstWhere(const std::vector<PlannedView>& plan, const Condition& holds) {
+double lengthUntil(const std::vector<PlannedView>& plan, const Condition& holds) {
     for (std::size_t i = 1; i < plan.size(); ++i) {
         const Eigen::Vector3d from = plan[i - 1].T_w_b.translation();
         const Eigen::Vector3d leg = plan[i].T_w_b.translation() - from;
@@ -35,10 +30,10 @@ Stop firstWhere(const std::vector<PlannedView>& plan, const Condition& holds) {
         for (int k = 1; k <= steps; ++k) {
             const double share = static_cast<double>(k) / steps;
             const double length = plan[i - 1].distance + share * leg.norm();
-            if (holds(from + share * leg, leg)) return {length, from + share * leg};
+            if (holds(from + share * leg, leg)) return length;
         }
     }
-    return {};
+    return kInfinity;
 }
 
 /// The first `length` metres of a plan.
@@ -121,26 +116,30 @@ FlyablePart flyablePart(const std::vector<PlannedView>& plan, const SpaceAhead& 
     // A robot that is nearer to an obstacle than plans are first flies away from it. It is given no
     // slack: from update to update it would come nearer and nearer.
     double least = std::min(space.radius - kSlack, space.clearance(here) - kRetreat);
-    const Stop obstacle = firstWhere(plan, [&](const Eigen::Vector3d& p_w, const Eigen::Vector3d&) {
-        const double now = space.clearance(p_w);
-        least = std::max(least, std::min(space.radius, now) - kSlack);
-        return now < least;
-    });
+    const double obstacle =
+        lengthUntil(plan, [&](const Eigen::Vector3d& p_w, const Eigen::Vector3d&) {
+            const double now = space.clearance(p_w);
+            least = std::max(least, std::min(space.radius, now) - kSlack);
+            return now < least;
+        });
     // What a camera that can be turned there does not see of its own surroundings, it looks at.
     const double near = space.radius + (space.canLook ? 0. : space.hidden);
+    Eigen::Vector3d newPlace = here;  // the first one, on the path or beside it
     const auto isNew = [&](const Eigen::Vector3d& p_w) {
-        return (p_w - here).norm() > near && !space.isSeen(p_w);
+        if ((p_w - here).norm() <= near || space.isSeen(p_w)) return false;
+        newPlace = p_w;
+        return true;
     };
-    const Stop unseen =
-        firstWhere(plan, [&](const Eigen::Vector3d& p_w, const Eigen::Vector3d& leg) {
+    const double unseen =
+        lengthUntil(plan, [&](const Eigen::Vector3d& p_w, const Eigen::Vector3d& leg) {
             const Eigen::Vector3d side =
                 kSide * space.radius * leg.cross(Eigen::Vector3d::UnitZ()).normalized();
             return isNew(p_w) || isNew(p_w + side) || isNew(p_w - side);
         });
     FlyablePart way;
     const double whole = plan.back().distance;
-    const double seen = unseen.length - space.radius;
-    const double free = obstacle.length - space.radius;
+    const double seen = unseen - space.radius;
+    const double free = obstacle - space.radius;
     const bool isToLook = space.canLook && seen < std::min(space.hidden + kStep, free);
     if (std::min(seen, free) > whole) {
         way.plan = plan;
@@ -148,7 +147,7 @@ FlyablePart flyablePart(const std::vector<PlannedView>& plan, const SpaceAhead& 
     } else if (free < kShort) {
         way.isStopped = true;
         way.plan = hovering(plan.front().T_w_b, plan.front().covariance);
-    } else if (auto look = isToLook ? lookAt(unseen.p_w, plan.front()) : std::nullopt) {
+    } else if (auto look = isToLook ? lookAt(newPlace, plan.front()) : std::nullopt) {
         way.isLook = true;
         way.plan = std::move(*look);
     } else if (std::min(seen, free) >= kShort) {

@@ -55,38 +55,6 @@ class RandomCells : public testing::Test {
     TexturedOcTree map{0.1};
 };
 
-TEST_F(RandomCells, AreOccupiedAroundWhereOneOfThemIs) {
-    change();
-    const CellStates states(map);
-    int occupied = 0;
-    for (int i = 0; i < 300; ++i) {
-        const OcTreeKey key = any();
-        const int reach = i % 7;
-        bool expected = false;
-        for (int k = 0, edge = 2 * reach + 1; k < edge * edge * edge; ++k) {
-            const auto beside = [&](unsigned index, int offset) {
-                return static_cast<octomap::key_type>(key[index] + offset % edge - reach);
-            };
-            expected = expected || states.isOccupied({beside(0, k), beside(1, k / edge),
-                                                      beside(2, k / edge / edge)});
-        }
-        ASSERT_EQ(states.isOccupiedAround(key, reach), expected);
-        occupied += expected;
-    }
-    EXPECT_GT(occupied, 30);
-    EXPECT_LT(occupied, 270);
-}
-
-/// Keys do not wrap around.
-TEST(CellStates, EndWhereTheirKeysEnd) {
-    TexturedOcTree map(0.1);
-    map.updateNode(OcTreeKey(65535, 65535, 65535), 3.5F);
-    const CellStates states(map);
-    EXPECT_FALSE(states.isOccupiedAround({0, 0, 0}, 2));
-    EXPECT_TRUE(states.isOccupiedAround({65533, 65534, 65535}, 2));
-    EXPECT_FALSE(states.isOccupiedAround({65532, 65534, 65535}, 2));
-}
-
 TEST_F(RandomCells, HaveTheStatesOfTheMap) {
     change();
     expectSame(CellStates(map));

@@ -27,7 +27,7 @@ class MapOfABox : public testing::Test {
 
     OnlineMap fused() const {
         OnlineMap map(config);
-        map.fuse(image, camera, {T_c_w});
+        map.fuse(image, camera, T_c_w);
         return map;
     }
     static bool isObstacle(const OnlineMap& map, double x, double y, double z) {
@@ -102,14 +102,14 @@ TEST_F(MapOfABox, FollowsWhatMoves) {
         .render(camera, T_c_w, empty);
     OnlineMap map(config);
     const auto isOccupied = [&] { return isObstacle(map, 0.05, 0.35, 1.05); };
-    for (int i = 0; i < 20; ++i) map.fuse(empty, camera, {T_c_w});
+    for (int i = 0; i < 20; ++i) map.fuse(empty, camera, T_c_w);
     EXPECT_TRUE(map.isSeen({0., -1.2, 1.}));
-    map.fuse(image, camera, {T_c_w});
+    map.fuse(image, camera, T_c_w);
     EXPECT_FALSE(isOccupied());
-    map.fuse(image, camera, {T_c_w});
+    map.fuse(image, camera, T_c_w);
     EXPECT_TRUE(isOccupied());
-    for (int i = 0; i < 20; ++i) map.fuse(image, camera, {T_c_w});
-    for (int i = 0; i < 4; ++i) map.fuse(empty, camera, {T_c_w});
+    for (int i = 0; i < 20; ++i) map.fuse(image, camera, T_c_w);
+    for (int i = 0; i < 4; ++i) map.fuse(empty, camera, T_c_w);
     EXPECT_FALSE(isOccupied());
 }
 
@@ -121,13 +121,13 @@ TEST_F(MapOfABox, DoubtsWhatIsNotInViewAroundANewOne) {
     const auto look = [&](double x) {
         const Pose there = lookFrom({x, 0., 2.}, test::kDown);
         floor.render(camera, there, empty);
-        map.fuse(empty, camera, {there});
+        map.fuse(empty, camera, there);
     };
     look(1.2);
     look(0.);
     const Eigen::Vector3d beyond(1.05, 0.35, 1.2), farBeyond(1.5, 0.35, 1.2);
     ASSERT_TRUE(map.isSeen(beyond) && map.isSeen(farBeyond));
-    map.fuse(image, camera, {T_c_w});
+    map.fuse(image, camera, T_c_w);
     EXPECT_FALSE(map.isSeen(beyond));
     EXPECT_TRUE(map.isSeen(farBeyond));
     EXPECT_TRUE(map.isSeen({0., -0.5, 1.2}));   // in view

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "geometry/se3.hpp"
 
 namespace photonav {
@@ -87,6 +89,18 @@ TEST(FlyablePart, TurnsToLookFirst) {
     EXPECT_NEAR(endOf(flyablePart(straightPath(0.), space)), 0.12, 0.02);
     space.canLook = false;
     EXPECT_NEAR(endOf(flyablePart(straightPath(2.), space)), 0.3, 0.06);
+}
+
+/// A camera that looks along the path does not see what is right beside its first metre.
+TEST(FlyablePart, LooksAtThePlaceThatWasNotSeen) {
+    SpaceAhead space = openSpace();
+    for (const double side : {-1., 1.}) {
+        space.isSeen = [&](const Vector3d& p_w) { return side * p_w.y() < 0.2 || p_w.x() > 0.4; };
+        const FlyablePart way = flyablePart(straightPath(0.), space);
+        EXPECT_TRUE(way.isLook);
+        EXPECT_NEAR(yawOf(way.plan.back().T_w_b), side * std::atan2(0.24, 0.2), 0.1);
+        EXPECT_TRUE(flyablePart(straightPath(side * 0.9), space).isBlind);
+    }
 }
 
 TEST(FlyablePart, DoesNotLookBeyondAnObstacle) {
