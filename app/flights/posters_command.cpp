@@ -19,7 +19,7 @@ PosterProblem problemOf(const PostersOptions& options) {
                           .file = options.candidates};
     const Config& config = problem.config;
     if (config.sceneFile.empty()) {
-        throw InputError(options.config, "map.file", "posters need a scene: give scene.file");
+        throw config.invalid("map.file", "posters need a scene: give scene.file");
     }
     PosterStudyOptions& study = problem.options;
     study.servo = studyOf(options, config);

@@ -15,8 +15,6 @@ namespace {
 
 constexpr double kPicturePixel = 0.025;     // of the top view's background [m]
 constexpr double kMaxPicturePixels = 800.;  // along its longer side
-/// Of a path beside its waypoints; pictures have no more pixels along it.
-constexpr std::size_t kMostPoints = 2000;
 
 UncertainPose belief(const BeliefPoint& point, const Pose& T_b_c) {
     return {(point.T_w_b * T_b_c).inverse(), point.covariance};
@@ -38,10 +36,7 @@ std::string placeText(const Config& config, double height, double yaw) {
 
 DrawnPath drawnPath(const EvaluatedPath& path, const Pose& T_b_c) {
     DrawnPath result{path.planner, plannerColor(path.planner)};
-    const std::size_t stride = 1 + path.points.size() / kMostPoints;
-    for (std::size_t i = 0; i < path.points.size(); ++i) {
-        const BeliefPoint& point = path.points[i];
-        if (i % stride != 0 && !point.isWaypoint && i + 1 != path.points.size()) continue;
+    for (const BeliefPoint& point : path.points) {
         result.points.push_back(
             makePathPoint(belief(point, T_b_c), point.trace, point.length, point.cost));
     }

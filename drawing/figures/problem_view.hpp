@@ -14,8 +14,7 @@ namespace photonav {
 /// The bounds of the config in x and y, enlarged by the robot's radius [m].
 Eigen::AlignedBox2d areaOf(const Config& config);
 
-/// A path with its beliefs, for drawing: its waypoints, and of its other points as many as can be
-/// told apart.
+/// A path with its beliefs, for drawing.
 /// @param T_b_c camera mount
 DrawnPath drawnPath(const EvaluatedPath& path, const Pose& T_b_c);
 

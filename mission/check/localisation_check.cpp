@@ -278,10 +278,12 @@ CheckedTrajectory checkLocalisation(const GivenTrajectory& trajectory, const Con
     Walk walk(config, world, views, options, isStopped);
     CheckedTrajectory checked;
     checked.places.push_back(walk.begin(places.front()));
+    UncertainPose atLast = walk.belief();  // of the places that are whole
     try {
         for (std::size_t i = 1; i < places.size() && !interrupted; ++i) {
             checked.places.push_back(
                 walk.next(places[i], places[i].distance - places[i - 1].distance));
+            atLast = walk.belief();
             if (onProgress)
                 onProgress(static_cast<double>(i) / static_cast<double>(places.size() - 1));
         }
@@ -291,7 +293,7 @@ CheckedTrajectory checkLocalisation(const GivenTrajectory& trajectory, const Con
     checked.meanTrace = meanTraceOf(checked.places);
     checked.arrivalTolerance = arrivalTolerance(config);
     checked.arrivalProbability =
-        probabilityWithin(bodyPosition(walk.belief(), config.camera.T_b_c()),
+        probabilityWithin(bodyPosition(atLast, config.camera.T_b_c()),
                           checked.places.back().T_w_b.translation(), checked.arrivalTolerance);
     return checked;
 }

@@ -56,11 +56,11 @@ void applyOverride(const KeyTable& keys, const YAML::Node& root, const std::stri
     }
 }
 
-/// Whether the value of a key is not the file's.
+/// Whether the value of a key, or of a part of it, is not the file's.
 bool isOverridden(const std::string& key, const std::vector<std::string>& overrides) {
     return std::ranges::any_of(overrides, [&](const std::string& text) {
         const std::string path = text.substr(0, text.find('='));
-        return path == key || path.starts_with(key + ".");
+        return path == key || path.starts_with(key + ".") || key.starts_with(path + ".");
     });
 }
 
@@ -131,7 +131,8 @@ Config configOf(const YAML::Node& node, const std::string& file,
 }  // namespace
 
 InputError Config::invalid(const std::string& key, const std::string& reason) const {
-    return {isOverridden(key, overrides) ? "command line" : file, key, reason};
+    const bool isChanged = isOverridden(key, overrides);
+    return {isChanged ? file + ", changed on the command line" : file, key, reason};
 }
 
 Camera CameraConfig::camera() const { return makeCamera(width, height, hfov * kDegree); }

@@ -71,8 +71,8 @@ struct Config {
     std::string file;                         ///< the file that the config was read from
     std::vector<std::string> overrides = {};  ///< "key.path=value" of --set
 
-    /// The error of a key whose value cannot be used. It names the file, or the command line if the
-    /// value was given there.
+    /// The error of a key whose value cannot be used. It names the file, and the command line if
+    /// the value was given there.
     InputError invalid(const std::string& key, const std::string& reason) const;
 
     // Either sceneFile or mapFile is given; for explorations also both, see knowsMap().

@@ -19,7 +19,7 @@ namespace photonav {
 namespace {
 
 /// Number of steps in a row into unobserved space that may leave the map unchanged; then the robot
-/// hovers. One camera sees nothing before it moves.
+/// hovers. A single camera without depth sees nothing until it has moved.
 constexpr int kMostBlindSteps = 1;
 constexpr int kMostMonocularSteps = 6;
 /// Time without an update, while the plan is only a part of the way, after which the next image

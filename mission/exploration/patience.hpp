@@ -18,7 +18,7 @@ class Patience {
     /// @param isAtGoal the plan was flown to its end, at the goal
     void onStep(double toGoal, bool isAtGoal, double time);
 
-    /// Whether several updates in a row gave no way.
+    /// Whether six updates in a row gave no way, for two seconds or longer.
     bool hasNoWay(double time) const;
     /// Whether the obstacle right ahead does not become part of the map.
     bool isStopped(double time) const;

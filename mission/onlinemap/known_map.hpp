@@ -23,8 +23,8 @@ inline bool knowsMap(const Config& config) {
 World trueWorld(Config config);
 
 /// The map that the robot knows at take-off; null: none.
-/// @throws InputError naming the config, the key and the reason for a map that cannot be read, is
-///         empty, has cells of another size than explore.resolution, is farther than
+/// @throws InputError, as of Config::invalid(), for a map that cannot be read, is empty, has cells
+/// of another size than explore.resolution, is farther than
 ///         explore.range from the bounds, or is too large for views
 std::shared_ptr<const TexturedOcTree> loadKnownMap(const Config& config);
 

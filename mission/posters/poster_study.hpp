@@ -68,7 +68,7 @@ std::string nameOf(const PosterIndices& set, const std::vector<Poster>& posters)
 /// The scene with a set of posters.
 World worldWith(const PosterProblem& problem, const PosterIndices& set);
 
-/// @throws InputError naming file and key: for a start or goal in collision, for a poster that puts
+/// @throws InputError with the key: for a start or goal in collision, for a poster that puts
 ///         the given trajectory in collision, and for a poster that coincides with a surface of the
 ///         scene (the renderer could not decide which of the two is in front)
 void checkPosters(const PosterProblem& problem);

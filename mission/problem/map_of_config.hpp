@@ -10,8 +10,9 @@
 namespace photonav {
 
 /// Loads map.file of a config.
-/// @throws InputError naming the config and the reason; where the file is missing, also the command
-///         that makes it
+/// @throws InputError, as of Config::invalid(); where the file is missing, it names the command
+/// that
+///         makes it
 std::shared_ptr<TexturedOcTree> loadMapOf(const Config& config);
 
 }  // namespace photonav

@@ -125,7 +125,7 @@ FlyablePart flyablePart(const std::vector<PlannedView>& plan, const SpaceAhead& 
     // What a camera that can be turned there does not see of its own surroundings, it looks at.
     const double near = space.radius + (space.canLook ? 0. : space.hidden);
     Eigen::Vector3d newPlace = here;  // the first one, on the path or beside it
-    const auto isNew = [&](const Eigen::Vector3d& p_w) {
+    const auto findsNew = [&](const Eigen::Vector3d& p_w) {
         if ((p_w - here).norm() <= near || space.isSeen(p_w)) return false;
         newPlace = p_w;
         return true;
@@ -134,7 +134,7 @@ FlyablePart flyablePart(const std::vector<PlannedView>& plan, const SpaceAhead& 
         lengthUntil(plan, [&](const Eigen::Vector3d& p_w, const Eigen::Vector3d& leg) {
             const Eigen::Vector3d side =
                 kSide * space.radius * leg.cross(Eigen::Vector3d::UnitZ()).normalized();
-            return isNew(p_w) || isNew(p_w + side) || isNew(p_w - side);
+            return findsNew(p_w) || findsNew(p_w + side) || findsNew(p_w - side);
         });
     FlyablePart way;
     const double whole = plan.back().distance;

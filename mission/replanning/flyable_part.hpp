@@ -25,13 +25,15 @@ struct FlyablePart {
     std::vector<PlannedView> plan;  ///< at least two views; equal poses: the robot hovers
     bool isWhole = false;           ///< the part is the whole plan
     bool isStopped = false;         ///< the obstacle is right ahead: the robot hovers
-    bool isLook = false;            ///< the robot only turns, to look where the plan leads
-    bool isBlind = false;           ///< the part leads into space that could not be observed before
+    /// The robot only turns, to look at what it has not seen on its plan or beside it.
+    bool isLook = false;
+    bool isBlind = false;  ///< the part leads into space that could not be observed before
 };
 
-/// The part of a plan up to unobserved space or to an obstacle. If the space right ahead was not
-/// observed, the robot first turns its camera there. If it cannot (the camera looks down, or the
-/// heading is fixed), it makes a short blind step, from which it observes the next one.
+/// The part of a plan up to unobserved space or to an obstacle. If the space right ahead, or right
+/// beside it, was not observed, the robot first turns its camera there. If it cannot (the camera
+/// looks down, or the heading is fixed), it makes a short blind step, from which it observes the
+/// next one.
 /// @param plan from the robot's position on, at least two views
 FlyablePart flyablePart(const std::vector<PlannedView>& plan, const SpaceAhead& space);
 

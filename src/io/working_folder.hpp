@@ -14,7 +14,7 @@
 
 namespace photonav {
 
-/// Throws the InputError of a folder that cannot be written.
+/// @throws InputError always: of a folder that cannot be used, and why
 [[noreturn]] void refuseFolder(const std::filesystem::path& folder, const std::string& reason);
 
 /// The file or folder that a path leads to, absolute, links followed, without a closing slash; it

@@ -149,7 +149,7 @@ void ViewComparison::allocate() {
     make(residual_, kUnused);
     make(inverseDepth_, kNoSurface);
     make(observed_, 0.F);
-    make(intensity_, 0.F);
+    make(intensity_, 0.F);  // the last one: load() takes it as the sign that all are there
 }
 
 double ViewComparison::robustSigma() const { return robustSigmaOf(residual_); }

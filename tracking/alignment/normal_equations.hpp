@@ -104,7 +104,8 @@ class ViewComparison {
                    IsStopped isStopped = {});
 
     /// The normal equations of a predicted view and an observed image.
-    /// @throws std::invalid_argument when the images and the camera differ in size, and Interrupted
+    /// @throws std::invalid_argument when the images and the camera differ in size
+    /// @throws Interrupted when `isStopped` says so; then there is no last call until the next one
     NormalEquations operator()(const View& predicted, const ImageF& observed,
                                const Exposure& exposure, const Loss& loss);
 

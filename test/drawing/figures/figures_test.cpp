@@ -11,7 +11,6 @@
 #include "drawing/plot/decoded.hpp"
 #include "figures/heat_map.hpp"
 #include "figures/images.hpp"
-#include "figures/problem_view.hpp"
 #include "figures/top_view.hpp"
 #include "figures/trace.hpp"
 #include "geometry/camera.hpp"
@@ -54,23 +53,6 @@ TEST(Figures, TopViewShowsPathsTreeAndEllipses) {
     view.trees.clear();
     const cv::Mat3b bare = decoded(topViewFigure(view).png(), "top_view_bare");
     EXPECT_LT(countOf(bare, kFirst), countOf(image, kFirst));
-}
-
-/// A picture does not show more of them, and a page would take seconds to write and to open.
-TEST(Figures, ALongPathIsDrawnWithItsWaypointsAndSomeOtherPoints) {
-    EvaluatedPath path;
-    for (int i = 0; i < 50000; ++i) {
-        path.points.push_back({.length = 1e-3 * i, .isWaypoint = i == 0 || i == 7});
-        path.points.back().T_w_b.translation().x() = 1e-3 * i;
-    }
-    const DrawnPath drawn = drawnPath(path, Pose::Identity());
-    EXPECT_GT(drawn.points.size(), 1500U);
-    EXPECT_LT(drawn.points.size(), 2100U);
-    EXPECT_EQ(drawn.points[1].distance, 7e-3);
-    EXPECT_EQ(drawn.points.back().distance, 49.999);
-
-    path.points.resize(300);
-    EXPECT_EQ(drawnPath(path, Pose::Identity()).points.size(), 300U);
 }
 
 TEST(Figures, PathIsDrawnWhereItIs) {

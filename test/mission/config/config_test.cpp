@@ -227,10 +227,15 @@ TEST(Config, ComplaintsSayWhereAValueWasGiven) {
 TEST(Config, ComplaintsOfOthersSayWhereAValueWasGiven) {
     const std::string file = PHOTONAV_SOURCE_DIR "/config/two_textures.yaml";
     const Config config = loadConfig(file, {"goal=[2, 9, 2]", "scene.file=nowhere.yaml"});
-    EXPECT_STREQ(config.invalid("goal", "in collision").what(), "command line: goal: in collision");
-    EXPECT_STREQ(config.invalid("start", "in collision").what(),
-                 (file + ": start: in collision").c_str());
-    EXPECT_STREQ(config.invalid("scene", "empty").what(), "command line: scene: empty");
+    const auto complaintAbout = [&](const char* key) {
+        return std::string(config.invalid(key, "bad").what());
+    };
+    EXPECT_EQ(complaintAbout("goal"), file + ", changed on the command line: goal: bad");
+    EXPECT_EQ(complaintAbout("scene"), file + ", changed on the command line: scene: bad");
+    EXPECT_EQ(complaintAbout("start"), file + ": start: bad");
+    const Config section = loadConfig(file, {"explore={resolution: 0.2}"});
+    EXPECT_STREQ(section.invalid("explore.resolution", "bad").what(),
+                 (file + ", changed on the command line: explore.resolution: bad").c_str());
 }
 
 TEST(Config, AMapThatIsNotThereYetIsMadeBySomething) {
@@ -247,7 +252,9 @@ TEST(Config, AMapThatIsNotThereYetIsMadeBySomething) {
         ADD_FAILURE() << "nothing was thrown";
     } catch (const InputError& error) {
         const std::string text = error.what();
-        EXPECT_NE(text.find("command line: map.file: "), std::string::npos) << text;
+        EXPECT_NE(text.find("scan_room_1.yaml, changed on the command line: map.file: "),
+                  std::string::npos)
+            << text;
         EXPECT_NE(text.find("nowhere.ot: not there; this config's map is made by scripts/make it"),
                   std::string::npos)
             << text;

@@ -91,7 +91,7 @@ TEST(FlyablePart, TurnsToLookFirst) {
     EXPECT_NEAR(endOf(flyablePart(straightPath(2.), space)), 0.3, 0.06);
 }
 
-/// A camera that looks along the path does not see what is right beside its first metre.
+/// A camera that looks along the path does not see what is right beside its begin.
 TEST(FlyablePart, LooksAtThePlaceThatWasNotSeen) {
     SpaceAhead space = openSpace();
     for (const double side : {-1., 1.}) {

@@ -188,6 +188,20 @@ TEST(NormalEquations, RobustSigmaIgnoresOutliers) {
     EXPECT_EQ(robustSigmaOf(residuals), 0.);
 }
 
+/// Wherever the first comparison is stopped, the next one is that of a new object.
+TEST(NormalEquations, CanBeStoppedAtEveryRow) {
+    const View view = viewAt(kViewpoint);
+    const NormalEquations expected = ViewComparison(tinyCamera(), {})(view, view.intensity, {}, {});
+    for (const int stopAt : {1, 2, 3, 4, 5, 60, 66, 120}) {
+        int asked = 0;
+        ViewComparison comparison(tinyCamera(), {}, [&] { return ++asked == stopAt; });
+        EXPECT_THROW(comparison(view, view.intensity, {}, {}), Interrupted) << stopAt;
+        const NormalEquations equations = comparison(view, view.intensity, {}, {});
+        EXPECT_EQ(equations.AtA, expected.AtA) << stopAt;
+        EXPECT_EQ(equations.count, expected.count) << stopAt;
+    }
+}
+
 TEST(NormalEquations, RefuseWhatDoesNotFit) {
     EXPECT_THROW(ViewComparison(makeCamera(2, 9, 1.), {}), std::invalid_argument);
     PhotometricOptions sparse;
