@@ -130,8 +130,6 @@ class Walk {
         return see(at, step / config_.belief.ds);
     }
 
-    const UncertainPose& belief() const { return belief_; }
-
   private:
     /// How flights align images; the map itself counts as what is seen.
     static AlignmentOptions alignmentIn(const Config& config, const World& world) {
@@ -278,23 +276,24 @@ CheckedTrajectory checkLocalisation(const GivenTrajectory& trajectory, const Con
     Walk walk(config, world, views, options, isStopped);
     CheckedTrajectory checked;
     checked.places.push_back(walk.begin(places.front()));
-    UncertainPose atLast = walk.belief();  // of the places that are whole
     try {
         for (std::size_t i = 1; i < places.size() && !interrupted; ++i) {
             checked.places.push_back(
                 walk.next(places[i], places[i].distance - places[i - 1].distance));
-            atLast = walk.belief();
             if (onProgress)
                 onProgress(static_cast<double>(i) / static_cast<double>(places.size() - 1));
         }
     } catch (const Interrupted&) {  // the places so far are whole
     }
-    checked.length = checked.places.back().length;
+    const CheckedPlace& last = checked.places.back();
+    checked.length = last.length;
     checked.meanTrace = meanTraceOf(checked.places);
     checked.arrivalTolerance = arrivalTolerance(config);
-    checked.arrivalProbability =
-        probabilityWithin(bodyPosition(atLast, config.camera.T_b_c()),
-                          checked.places.back().T_w_b.translation(), checked.arrivalTolerance);
+    // Where it was interrupted, the walk may be on the way to the next place.
+    const Pose T_b_c = config.camera.T_b_c();
+    const UncertainPose T_c_w{(last.T_w_b * T_b_c).inverse(), last.covariance};
+    checked.arrivalProbability = probabilityWithin(
+        bodyPosition(T_c_w, T_b_c), last.T_w_b.translation(), checked.arrivalTolerance);
     return checked;
 }
 

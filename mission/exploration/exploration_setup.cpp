@@ -104,12 +104,7 @@ ExplorerOptions explorerOptions(const ExplorationSetup& setup) {
 ExplorationSetup setUpExploration(const PlanningProblem& problem) {
     const Config& config = problem.config();
     checkHeadings(config);
-    if (!problem.isFlyable(config.start.position)) {
-        throw config.invalid(
-            "start",
-            fmt::format("in collision: clearance {:.3f} m, robot.radius {} m",
-                        problem.world().clearance(config.start.position), config.robotRadius));
-    }
+    problem.checkPlace("start", config.start);
     const auto known = loadKnownMap(config);
     ExplorationSetup setup{config, setUpFlight(problem).world, flightOf(config, known.get()),
                            known};

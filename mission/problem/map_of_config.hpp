@@ -11,8 +11,7 @@ namespace photonav {
 
 /// Loads map.file of a config.
 /// @throws InputError, as of Config::invalid(); where the file is missing, it names the command
-/// that
-///         makes it
+///         that makes it
 std::shared_ptr<TexturedOcTree> loadMapOf(const Config& config);
 
 }  // namespace photonav

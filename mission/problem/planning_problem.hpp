@@ -93,6 +93,9 @@ class PlanningProblem {
 
     /// @throws InputError for a start or goal in collision
     void checkPlaces() const;
+    /// @param key key of the config that gives the place
+    /// @throws InputError if the place is in collision
+    void checkPlace(const std::string& key, const Place& place) const;
 
     /// Makes a planner and grows it to the config's number of vertices. Gives up after 200 samples
     /// per requested vertex. The path of rrt_star is then shortened by as many changes as
@@ -184,7 +187,6 @@ class PlanningProblem {
     }
 
   private:
-    void checkPlace(const std::string& key, const Place& place) const;
     double balancedKappa(const std::atomic<bool>& interrupted);
     BeliefOptions optionsWith(double kappa) const;
     std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,

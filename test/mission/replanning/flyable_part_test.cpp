@@ -70,6 +70,7 @@ TEST(FlyablePart, NeedNotBeSeenRightAroundARobotThatCannotLook) {
     const FlyablePart look = flyablePart(straightPath(2.), space);
     EXPECT_EQ(endOf(look), 0.);
     EXPECT_TRUE(look.isLook);
+    EXPECT_NEAR(yawOf(look.plan.back().T_w_b), -std::atan2(0.24, 0.18), 0.02);
     space.canLook = false;
     EXPECT_TRUE(flyablePart(straightPath(0.), space).isWhole);
     space.hidden = 0.2;
