@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "geometry/se3.hpp"
-#include "map/brick_leaves.hpp"
+#include "onlinemap/known_map.hpp"
 
 namespace photonav {
 namespace {
@@ -23,29 +23,6 @@ MonocularOptions monocularFor(const PhotometricOptions& photometric) {
     return options;
 }
 
-/// The cells of a map, or, where these are smaller, the distance of neighbouring pixels on the
-/// farthest surface, seen at a right angle: so blocks in view have pixels.
-double edgeOfBlocks(const ExploreConfig& explore, const Camera& camera) {
-    return std::max(explore.resolution, explore.range / std::min(camera.fx(), camera.fy()));
-}
-
-/// Cells with texture, of leaves that may be larger than a cell.
-std::vector<MapErrors::KnownSurface> surfacesOf(const TexturedOcTree& map) {
-    std::vector<MapErrors::KnownSurface> surfaces;
-    for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
-        if (!map.isNodeOccupied(*leaf) || !leaf->meanGrey()) continue;
-        float pixels = 0.F;
-        for (const FaceTexture& face : leaf->faces) pixels = std::max(pixels, face.weight);
-        const octomap::OcTreeKey first = leaf.getIndexKey();
-        const int edge = 1 << (map.getTreeDepth() - leaf.getDepth());
-        visitCells({first[0], first[1], first[2]}, edge, [&](int x, int y, int z) {
-            const Eigen::Array3d cell = Eigen::Array3i(x, y, z).cast<double>() - kKeyOfZero + 0.5;
-            surfaces.push_back({map.getResolution() * cell.matrix(), pixels});
-        });
-    }
-    return surfaces;
-}
-
 /// Depths that are fused; the others are 0.
 ImageF fusedDepth(const ImageF& depth, double range) {
     const double least = FusionOptions{}.minRange;
@@ -61,7 +38,7 @@ ImageF fusedDepth(const ImageF& depth, double range) {
 
 Mapper::Mapper(const Config& config, const TexturedOcTree* known)
     : camera_(config.camera.camera()),
-      errors_(std::make_shared<MapErrors>(edgeOfBlocks(config.explore, camera_))),
+      errors_(std::make_shared<MapErrors>(config.explore.resolution)),
       choice_(config.explore, camera_),
       range_(config.explore.range) {
     if (known != nullptr) addKnown(*known, config.start);
@@ -71,8 +48,11 @@ Mapper::Mapper(const Config& config, const TexturedOcTree* known)
 
 /// All of it has one error.
 void Mapper::addKnown(const TexturedOcTree& known, const Place& start) {
+    const auto hasTexture = [&](const TexturedOcTreeNode& leaf) {
+        return known.isNodeOccupied(leaf) && leaf.meanGrey().has_value();
+    };
     const Pose T_w_b = levelPose(start.position, start.yaw.value_or(0.));
-    errors_->addMap(T_w_b.inverse(), kKnownVariances.asDiagonal(), surfacesOf(known));
+    errors_->addMap(T_w_b.inverse(), kKnownVariances.asDiagonal(), bricksWith(known, hasTexture));
 }
 
 std::optional<MapInput> Mapper::choose(const TrackedFrame& tracked, const View& image,
@@ -111,9 +91,6 @@ std::optional<MapInput::Keyframe> Mapper::addToFilter(const TrackedFrame& tracke
 }
 
 void Mapper::setFused(const MapInput& fused) {
-    if (fused.isMapInconsistent) {
-        errors_->removeSurfaces(fused.shown.depth, camera_, fused.T_c_w.mean);
-    }
     if (!fused.keyframe) return;
     const auto& [view, T_c_w, number] = *fused.keyframe;
     choice_.setFused(number);

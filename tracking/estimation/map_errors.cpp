@@ -3,28 +3,35 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "alignment/residual_covariance.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/eigensystem.hpp"
 #include "geometry/se3.hpp"
-#include "map/map_fusion.hpp"
+#include "map/map_change.hpp"
 #include "photometry/photometric.hpp"
 
 namespace photonav {
 namespace {
 
-constexpr unsigned kStride = 3;       // of the pixels looked at
-constexpr float kLeastShare = 0.01F;  // of a block's grey values; keyframes with less are forgotten
-constexpr double kBeside = 0.02;      // of a surface that lies on the border of two blocks [blocks]
-constexpr double kWeakSigma = 0.005;  // standard deviation of an image alone that is too much
-                                      // [rad], translations in mean depths
-constexpr double kNegligible = 1e-6;  // share of the mean information
-constexpr double kOpenVariance = 1e3;  // of directions that an image leaves open [m^2], [rad^2]
+constexpr unsigned kStride = 3;          // of the pixels looked at
+constexpr std::size_t kMostMakers = 12;  // keyframes remembered of a brick: the first ones
+constexpr double kWeakSigma = 0.005;     // standard deviation of an image alone that is too much
+                                         // [rad], translations in mean depths
+constexpr double kNegligible = 1e-6;     // share of the mean information
+constexpr double kOpenVariance = 1e3;    // of directions that an image leaves open [m^2], [rad^2]
 
 /// Unlike an alignment, a map is displaced at its edges and where it is saturated as well.
 constexpr PhotometricOptions kEveryPixel{.depthJump = kInfinity, .saturation = -1.};
+
+/// A brick, by its index along each axis.
+std::uint64_t keyOf(const Eigen::Array3i& brick) {
+    std::uint64_t key = 0;
+    for (const int index : brick) {
+        key = key << 21U | (static_cast<std::uint64_t>(index + (1 << 20)) & 0x1fffffU);
+    }
+    return key;
+}
 
 Matrix6 symmetric(const Matrix6& A) { return 0.5 * (A + A.transpose()); }
 
@@ -48,84 +55,47 @@ struct MapErrors::Shares {
     double inverseDepth = 0.;  // sum [1/m]
 };
 
-MapErrors::MapErrors(double edge) : edge_(edge) {}
+MapErrors::MapErrors(double resolution) : brick_(MapChange::kBrickEdge * resolution) {}
 
-/// A block, by its index along each axis.
-std::uint64_t MapErrors::blockAt(const Eigen::Vector3d& p_w) const {
-    std::uint64_t key = 0;
-    for (const double x : p_w) {
-        const auto index = static_cast<std::int64_t>(std::floor(x / edge_));
-        key = key << 21U | (static_cast<std::uint64_t>(index + (1 << 20)) & 0x1fffffU);
-    }
-    return key;
-}
-
-/// About as FaceTexture::observe(), but that counts pixels of each face, by their angle.
-void MapErrors::Block::add(int keyframe, float pixels) {
-    weight += pixels;
-    const float share = pixels / weight;
-    weight = std::min(weight, static_cast<float>(FusionOptions{}.maxFaceWeight));
-    for (Maker& maker : makers) maker.share *= 1.F - share;
-    if (makers.empty() || makers.back().keyframe != keyframe) makers.push_back({keyframe, 0.F});
-    makers.back().share += share;
-    // The errors of successive keyframes are nearly the same: the next one takes a small share.
-    float small = 0.F;
-    for (Maker& maker : makers) {
-        maker.share += small;
-        small = maker.share < kLeastShare ? std::exchange(maker.share, 0.F) : 0.F;
-    }
-    makers.back().share += small;
-    std::erase_if(makers, [](const Maker& maker) { return maker.share == 0.F; });
-}
-
-/// The block of a surface in a view, which may lie on the border of two blocks.
-const MapErrors::Block* MapErrors::findBlock(const Camera& camera, const Pose& T_w_c, unsigned u,
-                                             unsigned v, double depth) const {
-    for (const double beside : {kBeside, -kBeside}) {
-        const auto found =
-            blocks_.find(blockAt(T_w_c * camera.unproject(u, v, depth + beside * edge_)));
-        if (found != blocks_.end()) return &found->second;
-    }
-    return nullptr;
+std::uint64_t MapErrors::brickOf(const Eigen::Vector3d& p_w) const {
+    return keyOf((p_w / brick_).array().floor().cast<int>());
 }
 
 void MapErrors::propagate(const Pose& T_next_now) {
     if (!poses_.empty()) cross_ = (adjoint(T_next_now) * cross_).eval();
 }
 
-void MapErrors::observe(const Matrix6& left) { cross_ = (left * cross_).eval(); }
-
-Matrix6 MapErrors::withLatestKeyframe(const UncertainPose& T_c_w) const {
-    if (latest_ < 0) return Matrix6::Zero();
-    const Matrix6 withCamera = cross_.middleCols<6>(6 * latest_).transpose();
-    return adjoint(T_c_w.mean * poses_[latest_].inverse()) * withCamera;
+void MapErrors::observe(const Matrix6& covariance, const Matrix6& information) {
+    const Matrix6 left = Matrix6::Identity() + covariance * information;
+    cross_ = left.partialPivLu().solve(cross_).eval();
 }
 
 MapErrors::Shares MapErrors::sharesOf(const View& map, const Camera& camera,
                                       const Pose& T_c_w) const {
     Shares shares;
-    if (blocks_.empty()) return shares;
+    if (makers_.empty()) return shares;
     std::vector<int> at(poses_.size(), -1);  // index of a keyframe in shares.of
     const Pose T_w_c = T_c_w.inverse();
     for (unsigned v = 1; v + 1 < camera.height; v += kStride) {
         for (unsigned u = 1; u + 1 < camera.width; u += kStride) {
             if (!hasDepthAround(map, u, v)) continue;
-            const Block* block = findBlock(camera, T_w_c, u, v, map.depth[v][u]);
-            if (block == nullptr) continue;
+            const Eigen::Vector3d p_w = T_w_c * camera.unproject(u, v, map.depth[v][u]);
+            const auto found = makers_.find(brickOf(p_w));
+            if (found == makers_.end()) continue;
+            const std::vector<int>& makers = found->second;
+            const double part = 1. / static_cast<double>(makers.size());
             const Vector6 J = pixelJacobian(map, camera, u, v, kEveryPixel);
-            const Matrix6 information = J * J.transpose();
-            double squares = 0.;
-            for (const auto& [k, share] : block->makers) {
+            const Matrix6 information = part * J * J.transpose();
+            for (const int k : makers) {
                 if (at[k] < 0) {
                     at[k] = static_cast<int>(shares.of.size());
                     shares.of.push_back({k});
                 }
-                shares.of[at[k]].information += share * information;
-                shares.of[at[k]].pixels += share;
-                squares += share * share;
+                shares.of[at[k]].information += information;
+                shares.of[at[k]].pixels += part;
             }
             shares.pixels += 1.;
-            shares.makers += 1. / squares;
+            shares.makers += static_cast<double>(makers.size());
             shares.inverseDepth += 1. / map.depth[v][u];
         }
     }
@@ -221,10 +191,9 @@ int MapErrors::addPose(const UncertainPose& T_c_w) {
 }
 
 void MapErrors::addMap(const Pose& T_k_w, const Matrix6& covariance,
-                       const std::vector<KnownSurface>& surfaces) {
+                       const std::vector<Eigen::Array3i>& bricks) {
     const int k = add(T_k_w, covariance, Wide::Zero(6, cross_.cols()), Matrix6::Zero());
-    for (const auto& [centre_w, pixels] : surfaces) blocks_[blockAt(centre_w)].add(k, pixels);
-    latest_ = k;
+    for (const Eigen::Array3i& brick : bricks) makers_[keyOf(brick)].push_back(k);
 }
 
 /// @param withOthers cross-covariance with the errors of the keyframes so far
@@ -244,26 +213,12 @@ int MapErrors::add(const Pose& T_k_w, const Matrix6& covariance, const Wide& wit
 
 void MapErrors::addSurfaces(int k, const ImageF& depth, const Camera& camera) {
     const Pose T_w_c = poses_[k].inverse();
-    std::unordered_map<std::uint64_t, float> pixels;  // by block
     for (unsigned v = 0; v < depth.getHeight(); ++v) {
         for (unsigned u = 0; u < depth.getWidth(); ++u) {
             if (!(depth[v][u] > 0.F)) continue;
-            pixels[blockAt(T_w_c * camera.unproject(u, v, depth[v][u]))] += 1.F;
-        }
-    }
-    for (const auto& [block, count] : pixels) blocks_[block].add(k, count);
-    if (!pixels.empty()) latest_ = k;
-}
-
-void MapErrors::removeSurfaces(const ImageF& depth, const Camera& camera, const Pose& T_c_w) {
-    const Pose T_w_c = T_c_w.inverse();
-    for (unsigned v = 0; v < depth.getHeight(); ++v) {
-        for (unsigned u = 0; u < depth.getWidth(); ++u) {
-            if (!(depth[v][u] > 0.F)) continue;
-            for (const double beside : {kBeside, -kBeside}) {
-                blocks_.erase(
-                    blockAt(T_w_c * camera.unproject(u, v, depth[v][u] + beside * edge_)));
-            }
+            auto& makers = makers_[brickOf(T_w_c * camera.unproject(u, v, depth[v][u]))];
+            const bool isNew = makers.empty() || makers.back() != k;
+            if (isNew && makers.size() < kMostMakers) makers.push_back(k);
         }
     }
 }

@@ -20,22 +20,14 @@ namespace photonav {
 /// is not fused again. With xi_c the error of the camera pose and xi_k the error of keyframe k
 /// (left perturbations, in the frame of each camera), the part of the map in view is displaced by
 ///     m = sum_k M_k xi_k,   M_k = (sum_j Lambda_j)^-1 Lambda_k Ad(T_c_k),
-/// where Lambda_k is the information of the pixels whose cells were fused by keyframe k. Between
-/// several keyframes it is divided about as the cell's grey value is, which is their mean: by the
-/// number of their pixels in this cell. An alignment reduces the covariance of xi_c - m alone. So
+/// where Lambda_k is the information of the pixels whose cells were fused by keyframe k (divided
+/// equally between several keyframes). An alignment reduces the covariance of xi_c - m alone. So
 /// the belief does not become more certain than the part of the map in view was when it was fused;
 /// the covariance falls when the start comes into view again.
 class MapErrors {
   public:
-    /// @param edge of the blocks of space whose keyframes are remembered [m]: the map's cells, or,
-    ///        where these are smaller, the distance of neighbouring pixels at the map's range
-    explicit MapErrors(double edge);
-
-    /// A cell of a map that was known before the flight.
-    struct KnownSurface {
-        Eigen::Vector3d centre_w;  ///< [m]
-        float pixels;              ///< number of pixels that its grey values were made of
-    };
+    /// @param resolution edge of the map's cells [m]
+    explicit MapErrors(double resolution);
 
     /// The joint covariance of the camera pose and the displacement m of the map in view.
     struct Relation {
@@ -44,8 +36,7 @@ class MapErrors {
         Matrix6 withMap = Matrix6::Zero();   ///< cross-covariance of xi_c - m with m
         /// Cross-covariance of m with the errors of all keyframes.
         Eigen::Matrix<double, 6, Eigen::Dynamic> mapWithKeyframes;
-        /// Mean over the pixels of the effective number of keyframes that were fused into the map
-        /// there, 1 / (sum of squared shares); 0: none in view.
+        /// Mean number of keyframes that were fused into the map at a pixel; 0: none in view.
         double views = 0.;
     };
 
@@ -53,13 +44,9 @@ class MapErrors {
     void propagate(const Pose& T_next_now);
 
     /// Updates by a measurement of the pose in the world that does not come from the map.
-    /// @param left I - K J of the measurement: the error xi_c of the camera pose before becomes
-    ///        left xi_c plus noise
-    void observe(const Matrix6& left);
-
-    /// Cross-covariance of the displacement of the map near the camera, which is taken to be that
-    /// of the keyframe that was fused last, with the error of the camera pose; zero without a map.
-    Matrix6 withLatestKeyframe(const UncertainPose& T_c_w) const;
+    /// @param covariance of the pose before the measurement
+    /// @param information of the measurement; both for the left perturbation, camera frame
+    void observe(const Matrix6& covariance, const Matrix6& information);
 
     /// Relates the belief of the camera pose to the map in view.
     /// @param map view of the map from the mean of the belief
@@ -89,32 +76,17 @@ class MapErrors {
     /// @param depth depth of the fused surfaces [m]; 0: none
     void addSurfaces(int keyframe, const ImageF& depth, const Camera& camera);
 
-    /// Reports that surfaces were removed from the map.
-    /// @param depth view of these surfaces [m]; 0: none
-    void removeSurfaces(const ImageF& depth, const Camera& camera, const Pose& T_c_w);
-
     /// Adds a map that was known before the flight, as one keyframe: it may be displaced as a
     /// whole, by a motion that has nothing to do with the error of the camera's pose.
     /// @param T_k_w a frame, in which the motion is small
     /// @param covariance of the motion, left perturbation of T_k_w
-    /// @param surfaces cells of the map that have surfaces
+    /// @param bricks with surfaces, see MapChange
     void addMap(const Pose& T_k_w, const Matrix6& covariance,
-                const std::vector<KnownSurface>& surfaces);
+                const std::vector<Eigen::Array3i>& bricks);
 
     std::size_t keyframes() const { return poses_.size(); }
 
   private:
-    /// The keyframes whose images a block of the map was made of.
-    struct Block {
-        struct Maker {
-            int keyframe;
-            float share;  ///< of the grey values
-        };
-        float weight = 0.F;         ///< number of pixels
-        std::vector<Maker> makers;  ///< oldest first; their shares add up to 1
-
-        void add(int keyframe, float pixels);
-    };
     using Wide = Eigen::Matrix<double, 6, Eigen::Dynamic>;
     struct Shares;
     Shares sharesOf(const View& map, const Camera& camera, const Pose& T_c_w) const;
@@ -122,16 +94,13 @@ class MapErrors {
 
     int add(const Pose& T_k_w, const Matrix6& covariance, const Wide& withOthers,
             const Matrix6& withCamera);
-    std::uint64_t blockAt(const Eigen::Vector3d& p_w) const;
-    const Block* findBlock(const Camera& camera, const Pose& T_w_c, unsigned u, unsigned v,
-                           double depth) const;
+    std::uint64_t brickOf(const Eigen::Vector3d& p_w) const;
 
-    double edge_;                 // of a block [m]
+    double brick_;                // edge of a brick of cells, whose keyframes are kept [m]
     std::vector<Pose> poses_;     // T_k_w
     Eigen::MatrixXd covariance_;  // of all keyframes
     Wide cross_ = Wide(6, 0);     // of the camera's error with theirs
-    std::unordered_map<std::uint64_t, Block> blocks_;
-    int latest_ = -1;  // keyframe that was fused last
+    std::unordered_map<std::uint64_t, std::vector<int>> makers_;  // keyframes of a brick
 };
 
 }  // namespace photonav

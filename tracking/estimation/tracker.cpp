@@ -2,20 +2,12 @@
 #include "estimation/tracker.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "geometry/se3.hpp"
 
 namespace photonav {
-namespace {
-
-/// Of the motion: a camera that the vertical moves farther in its map was not moved by an error of
-/// its motion.
-constexpr double kMostSigmas = 3.;
-
-}  // namespace
 
 class Tracker::MapAligner {
   public:
@@ -118,36 +110,12 @@ void Tracker::correctByVertical(const MeasuredVertical& measured) {
     const Eigen::Vector3d up_c = belief_.mean.linear().col(2);
     Eigen::Matrix<double, 3, 6> J = Eigen::Matrix<double, 3, 6>::Zero();
     J.rightCols<3>() = -hat(up_c);
-    const double variance = measured.sigma * measured.sigma;
-    const Eigen::Matrix3d S =
-        J * belief_.covariance * J.transpose() + variance * Eigen::Matrix3d::Identity();
-    const Vector6 standardised = J.transpose() * S.ldlt().solve(measured.up_c - up_c);
-    const Matrix6 moved = belief_.covariance - notMovedWithMap(up_c, standardised);
-    const Eigen::Matrix<double, 6, 3> K = moved * J.transpose() * S.inverse();
-    const Matrix6 left = Matrix6::Identity() - K * J;
-    belief_.mean = expSE3(moved * standardised) * belief_.mean;
-    const Matrix6 after =
-        left * belief_.covariance * left.transpose() + variance * K * K.transpose();
-    belief_.covariance = 0.5 * (after + after.transpose());
-    if (options_.mapErrors) options_.mapErrors->observe(left);
-}
-
-/// The error of the vertical is correlated with that of the position by errors that the map near
-/// the camera has as well. To correct the position would move the camera away from this map, which
-/// stays where it is. The part of such a correction that exceeds three standard deviations of
-/// the motion is left out. Roll and pitch are corrected wholly.
-/// @param up_c vertical
-/// @param standardised the correction is the covariance times this
-/// @return the part of the covariance that does not count for the correction
-Matrix6 Tracker::notMovedWithMap(const Eigen::Vector3d& up_c, const Vector6& standardised) const {
-    if (!options_.mapErrors) return Matrix6::Zero();
-    Matrix6 others = Matrix6::Identity();
-    others.bottomRightCorner<3, 3>() = up_c * up_c.transpose();
-    const Matrix6 shared = others * options_.mapErrors->withLatestKeyframe(belief_);
-    const Vector6 jump = shared * standardised;
-    const double distance =
-        std::sqrt(squaredDistance(jump, others * sinceTracked_ * others.transpose()));
-    return (1. - kMostSigmas / std::max(kMostSigmas, distance)) * shared;
+    const double weight = 1. / (measured.sigma * measured.sigma);
+    const Matrix6 information = weight * J.transpose() * J;
+    const Vector6 right = weight * J.transpose() * (measured.up_c - up_c);
+    if (options_.mapErrors) options_.mapErrors->observe(belief_.covariance, information);
+    belief_.covariance = updateCovariance(belief_.covariance, information);
+    belief_.mean = expSE3(belief_.covariance * right) * belief_.mean;
 }
 
 /// Finds the keyframes that the map in view was made of: their errors are errors of this map. Then

@@ -40,11 +40,7 @@ struct TrackerOptions {
 /// image is aligned to the map or to keyframes with the belief as prior; the result is the next
 /// belief.
 ///
-/// A measured vertical corrects the belief before the image of the same time is aligned. Through
-/// the correlation of the errors it corrects the position and the heading as well. With a map made
-/// on the same flight, the part of this correction that the map would need, too, is limited, at
-/// each image, to three standard deviations of the motion since the image tracked last: the camera
-/// would leave its place in the map.
+/// A measured vertical corrects the belief before the image of the same time is aligned.
 ///
 /// After a rejected image the belief is the prediction. Tracking counts as lost after several
 /// rejected images (LossOptions). Images are then aligned in a wider neighbourhood of the belief as
@@ -104,7 +100,6 @@ class Tracker {
     TrackedFrame track(const CameraFrame& image);
     void predict(double time);
     void correctByVertical(const MeasuredVertical& measured);
-    Matrix6 notMovedWithMap(const Eigen::Vector3d& up_c, const Vector6& standardised) const;
     void relateToMap(const ImageF& measuredDepth);
     UncertainPose priorInMap() const;
     Matrix6 covarianceOf(const Match& match);

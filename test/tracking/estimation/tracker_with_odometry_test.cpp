@@ -84,59 +84,6 @@ TEST(TrackerWithOdometry, TheVerticalCorrectsRollAndPitchAlone) {
     EXPECT_NEAR(belief.covariance(0, 0), 1e-3, 1e-5);
 }
 
-/// A map made on the flight leans with the camera that has made it, and is displaced as far. The
-/// vertical shows that both lean; if it moved the camera alone, this would leave its place in the
-/// map.
-TEST(TrackerWithOdometry, TheVerticalDoesNotMoveACameraAwayFromItsOwnMap) {
-    const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
-    const Pose truth = lookFrom({0., 0., 2.}, test::kDown);
-    constexpr double kLean = 0.01, kLever = 20.;  // [rad], [m]
-    const Eigen::Vector3d up_c = truth.linear().col(2);
-    Vector6 error;
-    error.tail<3>() = kLean * up_c.unitOrthogonal();
-    error.head<3>() = kLever * error.tail<3>().cross(up_c);
-    const UncertainPose start{expSE3(error) * truth,
-                              error * error.transpose() + 1e-8 * Matrix6::Identity()};
-    constexpr double kStep = 0.01;  // standard deviation of the motion [m]
-    Matrix6 step = 1e-6 * Matrix6::Identity();
-    step.topLeftCorner<3, 3>() *= kStep * kStep / 1e-6;
-    // Since the keyframe the camera has moved and turned.
-    const Pose T_now_start =
-        expSE3(Vector6{{0.1, -0.2, 0., 0., 0., 0.}}) * Pose(Eigen::AngleAxisd(0.5, up_c));
-    const Pose now = T_now_start * truth;
-    const Eigen::Vector3d upNow_c = now.linear().col(2);
-    const auto after = [&](std::shared_ptr<MapErrors> errors) {
-        Tracker tracker(white, hoverCamera(), start, {.mapErrors = std::move(errors)});
-        View view;
-        white->render(hoverCamera(), now, view);
-        Observation observation;
-        observation.time = 0.25;
-        observation.T_next_now = UncertainPose{T_now_start, step};
-        observation.frames.push_back({0.25, {view.intensity, {}}, MeasuredVertical{upNow_c, 1e-4}});
-        return tracker.update(observation).front().T_c_w;
-    };
-    const auto distance = [&](const UncertainPose& belief) {
-        return deviation(belief.mean, T_now_start * start.mean).head<3>().norm();
-    };
-    const auto lean = [&](const UncertainPose& belief) {
-        return (belief.mean.linear().col(2) - upNow_c).norm();
-    };
-    const UncertainPose inExactMap = after({});
-    EXPECT_LT(lean(inExactMap), 0.1 * kLean);
-    EXPECT_GT(distance(inExactMap), 0.4 * kLever * kLean);
-    auto errors = std::make_shared<MapErrors>(0.05);
-    View first;
-    white->render(hoverCamera(), start.mean, first);
-    errors->addSurfaces(errors->addPose(start), first.depth, hoverCamera());
-    const UncertainPose inOwnMap = after(errors);
-    EXPECT_LT(lean(inOwnMap), 0.1 * kLean);
-    EXPECT_LE(distance(inOwnMap), 3.01 * kStep);
-    EXPECT_GT(distance(inOwnMap), 1.5 * kStep);
-    // The error that remains is within the covariance.
-    const Vector6 left = deviation(inOwnMap.mean, now);
-    EXPECT_LT(left.dot(inOwnMap.covariance.ldlt().solve(left)) / 6., 2.);
-}
-
 /// A plan may lead over a surface without texture: such an image agrees with the map.
 TEST(TrackerWithOdometry, AnImageThatDoesNotInformIsNoLoss) {
     const auto white = std::make_shared<MeshRenderer>(test::floorOf(uniformTexture(0.9F)));
