@@ -41,18 +41,28 @@ class WallInColumn {
     int free_ = 0;   // above the last of them
 };
 
+CellState stateOf(const TexturedOcTree& map, const TexturedOcTreeNode& leaf) {
+    return map.isNodeOccupied(leaf) ? CellState::occupied : CellState::free;
+}
+
 Brick statesOf(const TexturedOcTree& map, const Eigen::Array3i& brick) {
     Brick states{};
     const TexturedOcTreeNode* node = findBrick(map, brick);
     if (node == nullptr) return states;
     visitLeaves(
         map, *node, [&](const TexturedOcTreeNode& leaf, const Eigen::Array3i& at, int edge) {
-            const CellState state =
-                map.isNodeOccupied(leaf) ? CellState::occupied : CellState::free;
+            const CellState state = stateOf(map, leaf);
             visitCells(at, edge,
                        [&](int x, int y, int z) { states[(z * kEdge + y) * kEdge + x] = state; });
         });
     return states;
+}
+
+/// Whether a cell has to be set to become occupied or free. Unknown cells are free where unknown
+/// space is.
+bool differs(CellState before, bool isOccupied, UnknownSpace unknown) {
+    if (before != CellState::unknown) return (before == CellState::occupied) != isOccupied;
+    return isOccupied || unknown == UnknownSpace::pessimistic;
 }
 
 octomap::OcTreeKey keyOfCell(int x, int y, int z) {
@@ -102,15 +112,16 @@ ObstacleMap::ObstacleMap(double resolution, const Eigen::AlignedBox3d& bounds, U
 /// @return whether this changed anything
 bool ObstacleMap::set(const octomap::OcTreeKey& key, bool isOccupied) {
     const TexturedOcTreeNode* known = cells_->search(key);
-    const bool keepsFree = unknown_ == UnknownSpace::pessimistic;
-    if (known == nullptr ? !isOccupied && !keepsFree
-                         : cells_->isNodeOccupied(*known) == isOccupied) {
-        return false;
-    }
+    const CellState before = known != nullptr ? stateOf(*cells_, *known) : CellState::unknown;
+    if (!differs(before, isOccupied, unknown_)) return false;
+    store(key, isOccupied);
+    return true;
+}
+
+void ObstacleMap::store(const octomap::OcTreeKey& key, bool isOccupied) {
     const float value =
         isOccupied ? cells_->getClampingThresMaxLog() : cells_->getClampingThresMinLog();
     cells_->setNodeValue(key, value, true);
-    return true;
 }
 
 /// All heights of the 4 x 4 columns of cells of a column of bricks.
@@ -120,12 +131,15 @@ void ObstacleMap::updateColumn(const TexturedOcTree& map, const Eigen::Array2i& 
     for (int height = lowest_; height <= highest_; ++height) {
         const Eigen::Array3i brick(column.x(), column.y(), height);
         Brick states = statesOf(map, brick);
+        const Brick before = statesOf(*cells_, brick);
         bool hasChanged = false;
         for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
-            const Eigen::Array3i cell =
-                kEdge * brick + Eigen::Array3i(i % kEdge, i / kEdge % kEdge, i / (kEdge * kEdge));
-            const octomap::OcTreeKey key = keyOfCell(cell.x(), cell.y(), cell.z());
-            if (states[i] == CellState::free && forgotten_.contains(key)) {
+            const auto key = [&, i] {
+                return keyOfCell(kEdge * brick.x() + i % kEdge,
+                                 kEdge * brick.y() + i / kEdge % kEdge,
+                                 kEdge * brick.z() + i / (kEdge * kEdge));
+            };
+            if (states[i] == CellState::free && forgotten_.contains(key())) {
                 states[i] = CellState::unknown;
             }
             WallInColumn& wall = walls[i % (kEdge * kEdge)];
@@ -134,7 +148,9 @@ void ObstacleMap::updateColumn(const TexturedOcTree& map, const Eigen::Array2i& 
             if (isUnknown && unknown_ == UnknownSpace::pessimistic) continue;
             const bool isOccupied =
                 states[i] == CellState::occupied || (isUnknown && wall.goesOn());
-            hasChanged |= set(key, isOccupied);
+            if (!differs(before[i], isOccupied, unknown_)) continue;
+            store(key(), isOccupied);
+            hasChanged = true;
         }
         if (hasChanged) changed.occupancy.push_back(brick);
     }

@@ -61,6 +61,7 @@ class ObstacleMap {
 
   private:
     bool set(const octomap::OcTreeKey& key, bool isOccupied);
+    void store(const octomap::OcTreeKey& key, bool isOccupied);
     void updateColumn(const TexturedOcTree& map, const Eigen::Array2i& column, MapChange& changed);
 
     std::shared_ptr<TexturedOcTree> cells_;
