@@ -58,8 +58,8 @@ Brick statesOf(const TexturedOcTree& map, const Eigen::Array3i& brick) {
     return states;
 }
 
-/// Whether a cell has to be set to become occupied or free. Unknown cells are free where unknown
-/// space is.
+/// Whether a cell has to be set to become occupied or free. With optimistic plans an unknown cell
+/// counts as free and stays unknown.
 bool differs(CellState before, bool isOccupied, UnknownSpace unknown) {
     if (before != CellState::unknown) return (before == CellState::occupied) != isOccupied;
     return isOccupied || unknown == UnknownSpace::pessimistic;
