@@ -20,37 +20,32 @@ OcTreeKey firstCellOf(const Eigen::Array3i& brick) {
     return {key(0), key(1), key(2)};
 }
 
-std::uint64_t maskOf(const OcTreeKey& cell) {
-    return std::uint64_t{1} << brickBit(cell[0], cell[1], cell[2]);
-}
-
-CellStates::Brick stateOf(const TexturedOcTree& map, const Eigen::Array3i& index) {
-    CellStates::Brick brick{index};
-    const TexturedOcTreeNode* node = findBrick(map, index);
-    if (node == nullptr) return brick;
-    visitLeaves(map, *node,
-                [&](const TexturedOcTreeNode& leaf, const Eigen::Array3i& lowest, int edge) {
-                    std::uint64_t& mask = map.isNodeOccupied(leaf) ? brick.occupied : brick.free;
-                    visitCells(lowest, edge, [&](int x, int y, int z) {
-                        mask |= std::uint64_t{1}
-                                << brickBit(static_cast<unsigned>(x), static_cast<unsigned>(y),
-                                            static_cast<unsigned>(z));
-                    });
-                });
-    return brick;
-}
-
 }  // namespace
 
 CellStates::CellStates(const TexturedOcTree& map) : CellStates(map.getResolution()) {
     set(bricksOf(map, bricksWith(map, [](const TexturedOcTreeNode&) { return true; })));
 }
 
+CellStates::Brick CellStates::brickOf(const TexturedOcTree& map, const Eigen::Array3i& index) {
+    Brick brick{index};
+    const TexturedOcTreeNode* node = findBrick(map, index);
+    if (node == nullptr) return brick;
+    visitLeaves(map, *node,
+                [&](const TexturedOcTreeNode& leaf, const Eigen::Array3i& lowest, int edge) {
+                    std::uint64_t& mask = map.isNodeOccupied(leaf) ? brick.occupied : brick.free;
+                    // The bits of a cube are consecutive: brickBit() has OctoMap's order.
+                    const Eigen::Array3<unsigned> first = lowest.cast<unsigned>();
+                    const std::uint64_t cube = ~std::uint64_t{0} >> (64 - edge * edge * edge);
+                    mask |= cube << brickBit(first.x(), first.y(), first.z());
+                });
+    return brick;
+}
+
 std::vector<CellStates::Brick> CellStates::bricksOf(const TexturedOcTree& map,
                                                     const std::vector<Eigen::Array3i>& bricks) {
     std::vector<Brick> states;
     states.reserve(bricks.size());
-    for (const Eigen::Array3i& index : bricks) states.push_back(stateOf(map, index));
+    for (const Eigen::Array3i& index : bricks) states.push_back(brickOf(map, index));
     return states;
 }
 
@@ -65,12 +60,12 @@ const CellStates::Brick* CellStates::brickAt(const Key& key) const {
 
 bool CellStates::isFree(const Key& key) const {
     const Brick* brick = brickAt(key);
-    return brick != nullptr && (brick->free & maskOf(key)) != 0;
+    return brick != nullptr && brick->at(key) == CellState::free;
 }
 
 bool CellStates::isOccupied(const Key& key) const {
     const Brick* brick = brickAt(key);
-    return brick != nullptr && (brick->occupied & maskOf(key)) != 0;
+    return brick != nullptr && brick->at(key) == CellState::occupied;
 }
 
 }  // namespace photonav

@@ -11,6 +11,8 @@
 
 namespace photonav {
 
+enum class CellState : char { unknown, free, occupied };
+
 /// The states of a map's cells, without texture. A thread that must not wait while another one
 /// writes the map keeps such a copy, and is sent the bricks (blocks of 4 x 4 x 4 cells) that have
 /// changed.
@@ -23,6 +25,13 @@ class CellStates {
     struct Brick {
         Eigen::Array3i index;  ///< in the world, as in MapChange
         std::uint64_t free = 0, occupied = 0;
+
+        /// The state of a cell of the brick.
+        CellState at(const Key& key) const {
+            const unsigned bit = brickBit(key[0], key[1], key[2]);
+            if ((occupied >> bit & 1U) != 0) return CellState::occupied;
+            return (free >> bit & 1U) != 0 ? CellState::free : CellState::unknown;
+        }
     };
 
     /// All cells are unknown. @param resolution edge of a cell [m]
@@ -30,6 +39,9 @@ class CellStates {
     /// The cells of a map. Visits all of them.
     explicit CellStates(const TexturedOcTree& map);
 
+    /// The present state of a map's brick.
+    /// @param index in the world, as in MapChange
+    static Brick brickOf(const TexturedOcTree& map, const Eigen::Array3i& index);
     /// The present states of some of a map's bricks.
     /// @param bricks indices in the world, as in MapChange
     static std::vector<Brick> bricksOf(const TexturedOcTree& map,

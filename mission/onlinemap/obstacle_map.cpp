@@ -7,6 +7,7 @@
 
 #include "geometry/segment.hpp"
 #include "map/brick_leaves.hpp"
+#include "onlinemap/cell_states.hpp"
 #include "onlinemap/obstacles_in_view.hpp"
 
 namespace photonav {
@@ -18,10 +19,6 @@ constexpr double kBelow = 3., kAbove = 1.;  // heights outside the bounds that m
 // Free cells in a row that do not end a wall. A ray to a place beside it clears one, at its top
 // where the view ends as well.
 constexpr int kHole = 1;
-
-enum class CellState : char { unknown, free, occupied };
-
-using Brick = std::array<CellState, kEdge * kEdge * kEdge>;
 
 /// The wall in a column of cells, from below up to the last cell that was added.
 class WallInColumn {
@@ -40,23 +37,6 @@ class WallInColumn {
     int cells_ = 0;  // that are occupied, with no more than a hole between two
     int free_ = 0;   // above the last of them
 };
-
-CellState stateOf(const TexturedOcTree& map, const TexturedOcTreeNode& leaf) {
-    return map.isNodeOccupied(leaf) ? CellState::occupied : CellState::free;
-}
-
-Brick statesOf(const TexturedOcTree& map, const Eigen::Array3i& brick) {
-    Brick states{};
-    const TexturedOcTreeNode* node = findBrick(map, brick);
-    if (node == nullptr) return states;
-    visitLeaves(
-        map, *node, [&](const TexturedOcTreeNode& leaf, const Eigen::Array3i& at, int edge) {
-            const CellState state = stateOf(map, leaf);
-            visitCells(at, edge,
-                       [&](int x, int y, int z) { states[(z * kEdge + y) * kEdge + x] = state; });
-        });
-    return states;
-}
 
 /// Whether a cell has to be set to become occupied or free. With optimistic plans an unknown cell
 /// counts as free and stays unknown.
@@ -111,9 +91,8 @@ ObstacleMap::ObstacleMap(double resolution, const Eigen::AlignedBox3d& bounds, U
 
 /// @return whether this changed anything
 bool ObstacleMap::set(const octomap::OcTreeKey& key, bool isOccupied) {
-    const TexturedOcTreeNode* known = cells_->search(key);
-    const CellState before = known != nullptr ? stateOf(*cells_, *known) : CellState::unknown;
-    if (!differs(before, isOccupied, unknown_)) return false;
+    const CellStates::Brick before = CellStates::brickOf(*cells_, brickOf(key));
+    if (!differs(before.at(key), isOccupied, unknown_)) return false;
     store(key, isOccupied);
     return true;
 }
@@ -130,26 +109,22 @@ void ObstacleMap::updateColumn(const TexturedOcTree& map, const Eigen::Array2i& 
     std::array<WallInColumn, kEdge * kEdge> walls;
     for (int height = lowest_; height <= highest_; ++height) {
         const Eigen::Array3i brick(column.x(), column.y(), height);
-        Brick states = statesOf(map, brick);
-        const Brick before = statesOf(*cells_, brick);
+        const CellStates::Brick inMap = CellStates::brickOf(map, brick);
+        const CellStates::Brick before = CellStates::brickOf(*cells_, brick);
         bool hasChanged = false;
         for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
-            const auto key = [&, i] {
-                return keyOfCell(kEdge * brick.x() + i % kEdge,
-                                 kEdge * brick.y() + i / kEdge % kEdge,
-                                 kEdge * brick.z() + i / (kEdge * kEdge));
-            };
-            if (states[i] == CellState::free && forgotten_.contains(key())) {
-                states[i] = CellState::unknown;
-            }
+            const octomap::OcTreeKey key =
+                keyOfCell(kEdge * brick.x() + i % kEdge, kEdge * brick.y() + i / kEdge % kEdge,
+                          kEdge * brick.z() + i / (kEdge * kEdge));
+            CellState state = inMap.at(key);
+            if (state == CellState::free && forgotten_.contains(key)) state = CellState::unknown;
             WallInColumn& wall = walls[i % (kEdge * kEdge)];
-            wall.add(states[i]);
-            const bool isUnknown = states[i] == CellState::unknown;
+            wall.add(state);
+            const bool isUnknown = state == CellState::unknown;
             if (isUnknown && unknown_ == UnknownSpace::pessimistic) continue;
-            const bool isOccupied =
-                states[i] == CellState::occupied || (isUnknown && wall.goesOn());
-            if (!differs(before[i], isOccupied, unknown_)) continue;
-            store(key(), isOccupied);
+            const bool isOccupied = state == CellState::occupied || (isUnknown && wall.goesOn());
+            if (!differs(before.at(key), isOccupied, unknown_)) continue;
+            store(key, isOccupied);
             hasChanged = true;
         }
         if (hasChanged) changed.occupancy.push_back(brick);

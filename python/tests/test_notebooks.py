@@ -11,15 +11,14 @@ import unittest
 
 NOTEBOOKS = sorted((pathlib.Path(__file__).parent.parent / "notebooks").glob("*.ipynb"))
 
+needs_matplotlib = unittest.skipIf(importlib.util.find_spec("matplotlib") is None, "matplotlib is not installed")
+
 
 class Notebooks(unittest.TestCase):
-    def setUp(self):
-        if importlib.util.find_spec("matplotlib") is None:
-            self.skipTest("matplotlib is not installed")
-
     def test_there_are_two(self):
         self.assertEqual(len(NOTEBOOKS), 2)
 
+    @needs_matplotlib
     def test_their_cells_run(self):
         for notebook in NOTEBOOKS:
             with self.subTest(notebook.name):
@@ -28,6 +27,7 @@ class Notebooks(unittest.TestCase):
                 run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
                 self.assertEqual(run.returncode, 0, run.stderr)
 
+    @needs_matplotlib
     def test_nbconvert_executes_them(self):
         if shutil.which("jupyter-nbconvert") is None:
             self.skipTest("jupyter-nbconvert is not installed")
