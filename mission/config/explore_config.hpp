@@ -22,6 +22,9 @@ enum class UnknownInformation {
     predicted  ///< the average over the latest views of the flight (UnseenInformation)
 };
 
+/// Smallest and largest edge of the cells of an exploration's map [m].
+inline constexpr double kLeastExploreCell = 0.01, kMostExploreCell = 0.5;
+
 struct ExploreConfig {
     ExploreConfig();
 
@@ -33,8 +36,10 @@ struct ExploreConfig {
     /// Standard deviation of the vertical that the accelerometer measures with every image [rad];
     /// 0: the vertical is not measured.
     double verticalSigma = 0.01;
-    double range = 4.;         ///< surfaces farther away are not mapped [m]
-    double resolution = 0.05;  ///< edge of the map's cells [m]
+    double range = 4.;  ///< surfaces farther away are not mapped [m]
+    /// Edge of the map's cells [m]. Smaller cells make positions more exact and updates slower.
+    double resolution = 0.035;
+    bool resolutionIsAuto = true;  ///< a known map's cells have the size of this map's cells
     UnknownSpace unknown = UnknownSpace::optimistic;
     UnknownInformation unknownInformation = UnknownInformation::none;
     // An image is fused if one of the three conditions holds.

@@ -89,11 +89,20 @@ FlightOptions flightOf(const Config& config, const TexturedOcTree* known) {
                          config.explore.resolution);
 }
 
+/// With explore.resolution, if it is auto.
+Config withCellsOf(const TexturedOcTree* known, Config config) {
+    if (known != nullptr && config.explore.resolutionIsAuto) {
+        config.explore.resolution = known->getResolution();
+    }
+    return config;
+}
+
 }  // namespace
 
-ExplorerOptions explorerOptions(const Config& config) {
-    checkHeadings(config);
-    const auto known = loadKnownMap(config);
+ExplorerOptions explorerOptions(const Config& given) {
+    checkHeadings(given);
+    const auto known = loadKnownMap(given);
+    const Config config = withCellsOf(known.get(), given);
     return explorerOf(config, flightOf(config, known.get()), known, Timing::realTime);
 }
 
@@ -102,10 +111,10 @@ ExplorerOptions explorerOptions(const ExplorationSetup& setup) {
 }
 
 ExplorationSetup setUpExploration(const PlanningProblem& problem) {
-    const Config& config = problem.config();
-    checkHeadings(config);
-    problem.checkPlace("start", config.start);
-    const auto known = loadKnownMap(config);
+    checkHeadings(problem.config());
+    problem.checkPlace("start", problem.config().start);
+    const auto known = loadKnownMap(problem.config());
+    const Config config = withCellsOf(known.get(), problem.config());
     ExplorationSetup setup{config, setUpFlight(problem).world, flightOf(config, known.get()),
                            known};
     checkMap(setup);

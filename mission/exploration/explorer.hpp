@@ -42,8 +42,8 @@ struct ExplorerOptions {
     /// missing [s].
     double imageAge = 0.55;
     double bodyRadius = 0.1;  ///< radius kept free of obstacles in the last image [m]
-    /// What the robot knows of the world at take-off, with cells of explore.resolution; null:
-    /// nothing.
+    /// What the robot knows of the world at take-off, with cells of config.explore.resolution;
+    /// null: nothing.
     std::shared_ptr<const TexturedOcTree> known = {};
     Timing timing = Timing::byWork;
 };

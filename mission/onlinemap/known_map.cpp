@@ -21,9 +21,15 @@ void check(const TexturedOcTree& map, const Config& config) {
     };
     if (map.size() == 0) refuse("is empty");
     const double cell = map.getResolution();
-    if (std::abs(cell / config.explore.resolution - 1.) > 1e-6) {
-        refuse(fmt::format("has cells of {} m, explore.resolution is {} m: give the same", cell,
-                           config.explore.resolution));
+    const ExploreConfig& explore = config.explore;
+    if (explore.resolutionIsAuto) {
+        if (cell < kLeastExploreCell || cell > kMostExploreCell) {
+            refuse(fmt::format("has cells of {} m, explore.resolution may be {} to {} m", cell,
+                               kLeastExploreCell, kMostExploreCell));
+        }
+    } else if (std::abs(cell / explore.resolution - 1.) > 1e-6) {
+        refuse(fmt::format("has cells of {} m, explore.resolution is {} m: give the same, or auto",
+                           cell, explore.resolution));
     }
     Eigen::AlignedBox3d box;
     map.getMetricMin(box.min().x(), box.min().y(), box.min().z());

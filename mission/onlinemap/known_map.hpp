@@ -24,7 +24,8 @@ World trueWorld(Config config);
 
 /// The map that the robot knows at take-off; null: none.
 /// @throws InputError, as of Config::invalid(), for a map that cannot be read, is empty, has cells
-///         of another size than explore.resolution, is farther than explore.range from the
+///         of another size than explore.resolution (or, if this is auto, of a size that it may not
+///         be), is farther than explore.range from the
 ///         bounds, or is too large for views
 std::shared_ptr<const TexturedOcTree> loadKnownMap(const Config& config);
 

@@ -91,6 +91,9 @@ std::optional<MapInput::Keyframe> Mapper::addToFilter(const TrackedFrame& tracke
 }
 
 void Mapper::setFused(const MapInput& fused) {
+    if (fused.isMapInconsistent) {
+        errors_->removeSurfaces(fused.shown.depth, camera_, fused.T_c_w.mean);
+    }
     if (!fused.keyframe) return;
     const auto& [view, T_c_w, number] = *fused.keyframe;
     choice_.setFused(number);

@@ -16,6 +16,8 @@ namespace {
 
 constexpr unsigned kStride = 3;          // of the pixels looked at
 constexpr std::size_t kMostMakers = 12;  // keyframes remembered of a brick: the first ones
+constexpr double kBeside = 0.02;         // of a surface that may lie on the border of two bricks
+                                         // [bricks]
 constexpr double kWeakSigma = 0.005;     // standard deviation of an image alone that is too much
                                          // [rad], translations in mean depths
 constexpr double kNegligible = 1e-6;     // share of the mean information
@@ -61,6 +63,17 @@ std::uint64_t MapErrors::brickOf(const Eigen::Vector3d& p_w) const {
     return keyOf((p_w / brick_).array().floor().cast<int>());
 }
 
+/// The keyframes of a surface in a view, which may lie on the border of two bricks.
+const std::vector<int>* MapErrors::findMakers(const Camera& camera, const Pose& T_w_c, unsigned u,
+                                              unsigned v, double depth) const {
+    for (const double beside : {kBeside, -kBeside}) {
+        const auto found =
+            makers_.find(brickOf(T_w_c * camera.unproject(u, v, depth + beside * brick_)));
+        if (found != makers_.end()) return &found->second;
+    }
+    return nullptr;
+}
+
 void MapErrors::propagate(const Pose& T_next_now) {
     if (!poses_.empty()) cross_ = (adjoint(T_next_now) * cross_).eval();
 }
@@ -79,14 +92,12 @@ MapErrors::Shares MapErrors::sharesOf(const View& map, const Camera& camera,
     for (unsigned v = 1; v + 1 < camera.height; v += kStride) {
         for (unsigned u = 1; u + 1 < camera.width; u += kStride) {
             if (!hasDepthAround(map, u, v)) continue;
-            const Eigen::Vector3d p_w = T_w_c * camera.unproject(u, v, map.depth[v][u]);
-            const auto found = makers_.find(brickOf(p_w));
-            if (found == makers_.end()) continue;
-            const std::vector<int>& makers = found->second;
-            const double part = 1. / static_cast<double>(makers.size());
+            const std::vector<int>* makers = findMakers(camera, T_w_c, u, v, map.depth[v][u]);
+            if (makers == nullptr) continue;
+            const double part = 1. / static_cast<double>(makers->size());
             const Vector6 J = pixelJacobian(map, camera, u, v, kEveryPixel);
             const Matrix6 information = part * J * J.transpose();
-            for (const int k : makers) {
+            for (const int k : *makers) {
                 if (at[k] < 0) {
                     at[k] = static_cast<int>(shares.of.size());
                     shares.of.push_back({k});
@@ -95,7 +106,7 @@ MapErrors::Shares MapErrors::sharesOf(const View& map, const Camera& camera,
                 shares.of[at[k]].pixels += part;
             }
             shares.pixels += 1.;
-            shares.makers += static_cast<double>(makers.size());
+            shares.makers += static_cast<double>(makers->size());
             shares.inverseDepth += 1. / map.depth[v][u];
         }
     }
@@ -219,6 +230,19 @@ void MapErrors::addSurfaces(int k, const ImageF& depth, const Camera& camera) {
             auto& makers = makers_[brickOf(T_w_c * camera.unproject(u, v, depth[v][u]))];
             const bool isNew = makers.empty() || makers.back() != k;
             if (isNew && makers.size() < kMostMakers) makers.push_back(k);
+        }
+    }
+}
+
+void MapErrors::removeSurfaces(const ImageF& depth, const Camera& camera, const Pose& T_c_w) {
+    const Pose T_w_c = T_c_w.inverse();
+    for (unsigned v = 0; v < depth.getHeight(); ++v) {
+        for (unsigned u = 0; u < depth.getWidth(); ++u) {
+            if (!(depth[v][u] > 0.F)) continue;
+            for (const double beside : {kBeside, -kBeside}) {
+                makers_.erase(
+                    brickOf(T_w_c * camera.unproject(u, v, depth[v][u] + beside * brick_)));
+            }
         }
     }
 }

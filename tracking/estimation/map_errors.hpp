@@ -76,6 +76,11 @@ class MapErrors {
     /// @param depth depth of the fused surfaces [m]; 0: none
     void addSurfaces(int keyframe, const ImageF& depth, const Camera& camera);
 
+    /// Reports that surfaces were removed from the map. What else is in their bricks has the errors
+    /// of the images that are fused there next.
+    /// @param depth view of these surfaces [m]; 0: none
+    void removeSurfaces(const ImageF& depth, const Camera& camera, const Pose& T_c_w);
+
     /// Adds a map that was known before the flight, as one keyframe: it may be displaced as a
     /// whole, by a motion that has nothing to do with the error of the camera's pose.
     /// @param T_k_w a frame, in which the motion is small
@@ -95,6 +100,8 @@ class MapErrors {
     int add(const Pose& T_k_w, const Matrix6& covariance, const Wide& withOthers,
             const Matrix6& withCamera);
     std::uint64_t brickOf(const Eigen::Vector3d& p_w) const;
+    const std::vector<int>* findMakers(const Camera& camera, const Pose& T_w_c, unsigned u,
+                                       unsigned v, double depth) const;
 
     double brick_;                // edge of a brick of cells, whose keyframes are kept [m]
     std::vector<Pose> poses_;     // T_k_w

@@ -114,6 +114,19 @@ TEST_F(KnownMap, IsNotMoreCertainThanAMapOfThisFlight) {
     EXPECT_EQ(map.whole().occupancy.size(), 1U);
 }
 
+/// Unless explore.resolution is set.
+TEST_F(KnownMap, DecidesTheSizeOfTheCells) {
+    const test::TemporaryFolder folder;
+    config.sceneFile = "scene.yaml";
+    config.mapFile = (folder.path() / "map.ot").string();
+    TexturedOcTree map(0.08);
+    map.setNodeValue(3., 2., 1.1, 1.F);
+    saveTexturedOcTree(map, config.mapFile);
+    const World world(test::roomToExplore(), config);
+    EXPECT_EQ(setUpExploration({config, world}).config.explore.resolution, 0.08);
+    EXPECT_EQ(explorerOptions(config).config.explore.resolution, 0.08);
+}
+
 TEST_F(KnownMap, IsRefusedWhereItDoesNotFit) {
     const test::TemporaryFolder folder;
     config.file = "c.yaml";
@@ -126,9 +139,17 @@ TEST_F(KnownMap, IsRefusedWhereItDoesNotFit) {
     };
     save(0.05, 3.);
     EXPECT_EQ(refusal(), "none");
-    save(0.1, 3.);
-    EXPECT_NE(refusal().find("has cells of 0.1 m, explore.resolution is 0.05 m"), std::string::npos)
+    save(0.005, 3.);
+    EXPECT_NE(refusal().find("has cells of 0.005 m, explore.resolution may be 0.01 to 0.5 m"),
+              std::string::npos)
         << refusal();
+    save(0.1, 3.);
+    EXPECT_EQ(refusal(), "none");
+    config.explore.resolutionIsAuto = false;
+    EXPECT_NE(refusal().find("has cells of 0.1 m, explore.resolution is 0.035 m"),
+              std::string::npos)
+        << refusal();
+    config.explore.resolutionIsAuto = true;
     save(0.05, 200.);
     EXPECT_NE(refusal().find("nothing of it is within"), std::string::npos) << refusal();
     save(0.05, 1e6);

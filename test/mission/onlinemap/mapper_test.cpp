@@ -45,6 +45,20 @@ TEST_F(MapperTest, ErrorsAreThoseOfSurfacesInRange) {
     }
 }
 
+/// What the map forgets because it contradicts the images has no errors any more.
+TEST_F(MapperTest, ErrorsOfForgottenSurfacesAreForgotten) {
+    Mapper mapper(config);
+    auto input = mapper.choose(tracked, image, empty, false);
+    ASSERT_TRUE(input);
+    mapper.setFused(*input);
+    mapper.setFused({.image = image,
+                     .shown = image,
+                     .T_c_w = tracked.T_c_w,
+                     .isMapInconsistent = true,
+                     .keyframe = {}});
+    EXPECT_EQ(mapper.errors()->relate(image, camera, tracked.T_c_w).views, 0.);
+}
+
 /// While another thread fuses the first image, the next ones do not lack the same surfaces.
 TEST_F(MapperTest, ChoosesASurfaceOnceUntilTheMapShowsIt) {
     Mapper mapper(config);

@@ -23,6 +23,14 @@ class OwnMapErrors : public ::testing::Test {
     void addKeyframe(double x, const Matrix6& covariance) {
         errors.addSurfaces(errors.addPose({poseAt(x), covariance}), viewAt(x).depth, camera);
     }
+    /// The bricks of a map around the camera that lie above (0) or below (-1) the floor's plane.
+    static std::vector<Eigen::Array3i> layerOfBricks(int z) {
+        std::vector<Eigen::Array3i> bricks;
+        for (int x = -40; x < 40; ++x) {
+            for (int y = -40; y < 40; ++y) bricks.emplace_back(x, y, z);
+        }
+        return bricks;
+    }
     /// The camera moves; its covariance grows as much.
     Matrix6 moved(double from, double to, const Matrix6& covariance, double variance) {
         const Pose motion = poseAt(to) * poseAt(from).inverse();
@@ -83,6 +91,17 @@ TEST_F(OwnMapErrors, ThePriorOfAnAlignmentIsThatOfThePoseInTheMap) {
     EXPECT_EQ(elsewhere.relative, covariance);
 }
 
+/// A surface that was forgotten and is mapped again has the errors of its new image alone.
+TEST_F(OwnMapErrors, RemovedSurfacesLoseTheirErrors) {
+    const Matrix6 small = 1e-6 * Matrix6::Identity(), large = 1e-2 * Matrix6::Identity();
+    addKeyframe(0., small);
+    errors.removeSurfaces(viewAt(0.).depth, camera, poseAt(0.));
+    EXPECT_EQ(errors.relate(viewAt(0.), camera, {poseAt(0.), large}).views, 0.);
+    addKeyframe(0., large);
+    const auto relation = errors.relate(viewAt(0.), camera, {poseAt(0.), large});
+    EXPECT_LT((relation.ofMap - large).norm(), 1e-3 * large.norm());
+}
+
 TEST_F(OwnMapErrors, WhatAnImageHardlyInformsOfStaysAsItWas) {
     const UncertainPose prior{poseAt(0.), 1e-4 * Matrix6::Identity()};
     Vector6 moved;
@@ -128,13 +147,7 @@ TEST_F(OwnMapErrors, ALossIsResolvedToTheErrorsOfTheMapInView) {
 
 /// The error of a map that was known before has nothing to do with that of the start.
 TEST_F(OwnMapErrors, AKnownMapNarrowsAPoseToItsOwnError) {
-    std::vector<Eigen::Array3i> bricks;
-    for (int x = -40; x < 40; ++x) {
-        for (int y = -40; y < 40; ++y) {
-            for (int z = -1; z <= 0; ++z) bricks.emplace_back(x, y, z);
-        }
-    }
-    errors.addMap(poseAt(0.), kFirst * Matrix6::Identity(), bricks);
+    errors.addMap(poseAt(0.), kFirst * Matrix6::Identity(), layerOfBricks(0));
     const Matrix6 start = 1e-2 * Matrix6::Identity();
     const Matrix6 there = aligned(0., start);
     EXPECT_LT(there.trace(), 1.2 * 6. * kFirst);
@@ -142,6 +155,16 @@ TEST_F(OwnMapErrors, AKnownMapNarrowsAPoseToItsOwnError) {
     addKeyframe(0., there);  // whose error is that of the map
     EXPECT_GT(aligned(0., there).trace(), 0.99 * 6. * kFirst);
     EXPECT_EQ(errors.keyframes(), 2U);
+}
+
+/// The floor is the border of two layers of bricks, and may be in either.
+TEST_F(OwnMapErrors, ASurfaceOnTheBorderOfTwoBricksHasTheErrorsOfEither) {
+    for (const int layer : {-1, 0}) {
+        MapErrors known{kResolution};
+        known.addMap(poseAt(0.), kFirst * Matrix6::Identity(), layerOfBricks(layer));
+        const auto relation = known.relate(viewAt(0.), camera, {poseAt(0.), Matrix6::Identity()});
+        EXPECT_EQ(relation.views, 1.) << "layer " << layer;
+    }
 }
 
 }  // namespace
