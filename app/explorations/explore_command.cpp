@@ -262,7 +262,7 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     const PlanningProblem problem(config, world);
     const ExplorationSetup setup = setUpExploration(problem);
     const std::string name = fs::path(options.config).stem().string();
-    FlightWatch watch(config, world, items.front(), interrupted);
+    FlightWatch watch(setup.config, world, items.front(), interrupted);
     if (address) {
         watch.serve(*address, livePage(setup, world, name, options.commandLine, watch.log()));
     }

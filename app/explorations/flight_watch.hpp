@@ -17,7 +17,7 @@ namespace photonav {
 /// The log of a flight and, on request, a store and a server for browsers.
 class FlightWatch {
   public:
-    /// @param config config of the flight
+    /// @param config config of the flight, see ExplorationSetup
     /// @param world the true world
     /// @param item the flight
     /// @param interrupted must outlive the watch. Once it is set, an update may have been cut

@@ -10,7 +10,7 @@
 namespace photonav {
 namespace {
 
-constexpr double kMostCells = 1e5;  // on the six sides of the bounds
+constexpr double kMostCells = 2e5;  // on the six sides of the bounds
 constexpr int kGreyTolerance = 6;   // of 255
 constexpr std::uint8_t kWhitest = 254;
 constexpr std::uint8_t kNeverSeen = 127;

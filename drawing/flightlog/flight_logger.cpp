@@ -63,7 +63,7 @@ FlightLogger::FlightLogger(const Config& config, const World& world, const Trial
     : characteristicLength_(config.belief.characteristicLength),
       mostPictures_(mostPictures),
       T_c_b_(config.camera.T_b_c().inverse()),
-      cells_(config.bounds, config.explore.resolution),
+      cells_(config.bounds, config.explore.cell()),
       seen_(areaAround(config)) {
     log_.planner = item.planner;
     log_.seed = item.seed;

@@ -24,28 +24,6 @@ void readExplorers(YamlMap& explore, std::vector<std::string>& planners) {
     }
 }
 
-void readResolution(YamlMap& explore, ExploreConfig& c) {
-    if (!explore.has("resolution")) return;
-    std::string word;
-    explore.read("resolution", word);
-    c.resolutionIsAuto = word == "auto";
-    c.resolution = ExploreConfig().resolution;
-    if (c.resolutionIsAuto) return;
-    explore.readNumber("resolution", c.resolution, kLeastExploreCell, kMostExploreCell);
-}
-
-void addResolution(KeyTable& keys, ExploreConfig& c) {
-    keys.add(
-        {.words = {"resolution", "m",
-                   fmt::format("edge of the map's cells; `auto`: that of the cells of "
-                               "`map.file`, {} without a known map",
-                               ExploreConfig().resolution)},
-         .allowed = fmt::format("auto, {} to {}", kLeastExploreCell, kMostExploreCell),
-         .read = [&c](YamlMap& explore) { readResolution(explore, c); },
-         .value =
-             [&c] { return c.resolutionIsAuto ? YAML::Node("auto") : yamlNumber(c.resolution); }});
-}
-
 /// The sensors, and what of their images is mapped.
 void addMappingKeys(KeyTable& keys, ExploreConfig& c) {
     keys.choice({"sensor", "",
@@ -64,7 +42,11 @@ void addMappingKeys(KeyTable& keys, ExploreConfig& c) {
                  "image; 0: it is not measured"},
                 c.verticalSigma, {0., 1.});
     keys.number({"range", "m", "surfaces farther away are not mapped"}, c.range, {0.5, 12.});
-    addResolution(keys, c);
+    keys.number({"resolution", "m",
+                 fmt::format("edge of the map's cells; none: that of the cells of a known map "
+                             "(`map.file` beside `scene.file`), {} without one",
+                             kExploreCell)},
+                c.resolution, {kLeastExploreCell, kMostExploreCell});
     keys.choice({"unknown", "",
                  "space that was never seen: `optimistic` plans lead through it, "
                  "`pessimistic` plans do not"},

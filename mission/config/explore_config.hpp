@@ -3,6 +3,7 @@
 // and speed are set in the section `fly`.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,9 @@ enum class UnknownInformation {
     predicted  ///< the average over the latest views of the flight (UnseenInformation)
 };
 
-/// Smallest and largest edge of the cells of an exploration's map [m].
-inline constexpr double kLeastExploreCell = 0.01, kMostExploreCell = 0.5;
+/// Edge of the cells of an exploration's map: the smallest, the largest, and the default. Smaller
+/// cells make positions more exact and updates slower [m].
+inline constexpr double kLeastExploreCell = 0.01, kMostExploreCell = 0.5, kExploreCell = 0.035;
 
 struct ExploreConfig {
     ExploreConfig();
@@ -37,9 +39,9 @@ struct ExploreConfig {
     /// 0: the vertical is not measured.
     double verticalSigma = 0.01;
     double range = 4.;  ///< surfaces farther away are not mapped [m]
-    /// Edge of the map's cells [m]. Smaller cells make positions more exact and updates slower.
-    double resolution = 0.035;
-    bool resolutionIsAuto = true;  ///< a known map's cells have the size of this map's cells
+    /// Edge of the map's cells [m]. None: that of a known map's cells, which setUpExploration() and
+    /// explorerOptions() put here; kExploreCell without a known map.
+    std::optional<double> resolution;
     UnknownSpace unknown = UnknownSpace::optimistic;
     UnknownInformation unknownInformation = UnknownInformation::none;
     // An image is fused if one of the three conditions holds.
@@ -61,6 +63,8 @@ struct ExploreConfig {
     bool realtime = false;        ///< a second thread plans while the robot flies by the clock
     unsigned trials = 1;          ///< flights per planner
     std::vector<std::string> planners;  ///< planners to compare; empty: planner.name alone
+
+    double cell() const { return resolution.value_or(kExploreCell); }  ///< see resolution [m]
 };
 
 }  // namespace photonav

@@ -56,14 +56,16 @@ void checkMap(const ExplorationSetup& setup) {
     constexpr double kSeenBeyond = 20.;  // what is seen beyond the bounds [m]
     const double farthest = std::max(config.bounds.min().cwiseAbs().maxCoeff(),
                                      config.bounds.max().cwiseAbs().maxCoeff());
-    const double resolution = config.explore.resolution;
-    const double reach = kKeyOfZero * resolution;
+    const auto tooFine = [&](const std::string& reason) {
+        if (setup.known) return config.invalid("map.file", config.mapFile + ": " + reason);
+        return config.invalid("explore.resolution", reason);
+    };
+    const double reach = kKeyOfZero * config.explore.cell();
     if (farthest + kSeenBeyond > reach) {
-        throw config.invalid(
-            "explore.resolution",
-            fmt::format("{} m: a map of such cells ends {:.0f} m from the origin, the "
+        throw tooFine(
+            fmt::format("a map of cells of {} m ends {:.0f} m from the origin, the "
                         "bounds at {:.0f} m",
-                        resolution, reach, farthest));
+                        config.explore.cell(), reach, farthest));
     }
     try {
         const OnlineMap map(config, setup.known.get());
@@ -78,7 +80,7 @@ void checkMap(const ExplorationSetup& setup) {
                                         config.mapFile, clearance, setup.flight.bodyRadius));
         }
     } catch (const std::invalid_argument& error) {  // too large a grid for these bounds
-        throw config.invalid("explore.resolution", error.what());
+        throw tooFine(error.what());
     }
 }
 
@@ -86,14 +88,12 @@ void checkMap(const ExplorationSetup& setup) {
 FlightOptions flightOf(const Config& config, const TexturedOcTree* known) {
     const bool isCoarse = known != nullptr && !known->hasSurfaces();
     return flightOptions(config, isCoarse ? MapKind::cells : MapKind::surfaces,
-                         config.explore.resolution);
+                         config.explore.cell());
 }
 
-/// With explore.resolution, if it is auto.
+/// The config with the size of the cells of a known map.
 Config withCellsOf(const TexturedOcTree* known, Config config) {
-    if (known != nullptr && config.explore.resolutionIsAuto) {
-        config.explore.resolution = known->getResolution();
-    }
+    if (known != nullptr) config.explore.resolution = known->getResolution();
     return config;
 }
 

@@ -53,7 +53,7 @@ double stoppingRadius(const ExplorerOptions& options, double distance) {
 TrackerOptions trackerFor(const ExplorerOptions& options, const Mapper& mapper) {
     TrackerOptions tracker = options.tracker;
     tracker.mapErrors = mapper.errors();
-    tracker.depth = {depthSigmaAtOneMetre(options.config), options.config.explore.resolution};
+    tracker.depth = {depthSigmaAtOneMetre(options.config), options.config.explore.cell()};
     return tracker;
 }
 
@@ -72,7 +72,8 @@ std::vector<PlannedView> stayingAt(const UncertainPose& T_c_w, const Pose& T_b_c
     return hovering((T_b_c * T_c_w.mean).inverse(), T_c_w.covariance);
 }
 
-const Config& checked(const Config& config, const Robot& robot) {
+const Config& checked(const ExplorerOptions& options, const Robot& robot) {
+    const Config& config = options.config;
     const Camera camera = config.camera.camera();
     if (camera.width != robot.camera().width || camera.height != robot.camera().height ||
         camera.intrinsics != robot.camera().intrinsics) {
@@ -80,6 +81,9 @@ const Config& checked(const Config& config, const Robot& robot) {
     }
     if (!config.camera.T_b_c().isApprox(robot.T_b_c(), 1e-6)) {
         throw std::invalid_argument("exploration: the camera's mount is not that of the config");
+    }
+    if (options.known && options.known->getResolution() != config.explore.cell()) {
+        throw std::invalid_argument("exploration: the known map's cells are not explore.cell()");
     }
     return config;
 }
@@ -96,7 +100,7 @@ UncertainPose beliefAtTakeOff(const Config& config) {
 
 Explorer::Explorer(const ExplorerOptions& options, const Robot& robot, const std::string& planner,
                    std::uint32_t seed, const std::atomic<bool>& interrupted, OnExplorer on)
-    : config_(checked(options.config, robot)),
+    : config_(checked(options, robot)),
       camera_(robot.camera()),
       T_b_c_(robot.T_b_c()),
       timing_(options.timing),
@@ -128,7 +132,8 @@ bool Explorer::fly(Robot& robot, double timeStep, const OnFlightStep& onStep) {
     } catch (const Interrupted&) {
         isInterrupted = true;
     } catch (const MapTooLarge& error) {
-        endAs(FlightEnd::noWay, fmt::format("{}; cells: explore.resolution", error.what()));
+        endAs(FlightEnd::noWay,
+              fmt::format("{}; cells of {} m", error.what(), config_.explore.cell()));
     }
     finishRealTime();
     return !isInterrupted;

@@ -42,14 +42,15 @@ struct ExplorerOptions {
     /// missing [s].
     double imageAge = 0.55;
     double bodyRadius = 0.1;  ///< radius kept free of obstacles in the last image [m]
-    /// What the robot knows of the world at take-off, with cells of config.explore.resolution;
+    /// What the robot knows of the world at take-off, with cells of config.explore.cell();
     /// null: nothing.
     std::shared_ptr<const TexturedOcTree> known = {};
     Timing timing = Timing::byWork;
 };
 
 /// The options that follow from a config, as `photonav explore` uses them, but for a robot whose
-/// fly() takes its time: explore.realtime is Timing::realTime.
+/// fly() takes its time: explore.realtime is Timing::realTime. Of the config in the options, the
+/// size of the cells is that of a known map.
 /// @throws InputError if explore.planners asks for headings and the space is not xyz_yaw, and as
 ///         loadKnownMap() does
 ExplorerOptions explorerOptions(const Config& config);

@@ -59,7 +59,7 @@ bool KeyframeChoice::isSurfaceOf(const Keyframe& keyframe, const Eigen::Vector3d
         return false;
     }
     const float z = depth[static_cast<unsigned>(pixel.y())][static_cast<unsigned>(pixel.x())];
-    return z > 0.F && z <= config_.range && std::abs(z - p_c.z()) < 2. * config_.resolution;
+    return z > 0.F && z <= config_.range && std::abs(z - p_c.z()) < 2. * config_.cell();
 }
 
 }  // namespace photonav

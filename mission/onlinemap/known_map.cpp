@@ -21,15 +21,15 @@ void check(const TexturedOcTree& map, const Config& config) {
     };
     if (map.size() == 0) refuse("is empty");
     const double cell = map.getResolution();
-    const ExploreConfig& explore = config.explore;
-    if (explore.resolutionIsAuto) {
-        if (cell < kLeastExploreCell || cell > kMostExploreCell) {
-            refuse(fmt::format("has cells of {} m, explore.resolution may be {} to {} m", cell,
-                               kLeastExploreCell, kMostExploreCell));
-        }
-    } else if (std::abs(cell / explore.resolution - 1.) > 1e-6) {
-        refuse(fmt::format("has cells of {} m, explore.resolution is {} m: give the same, or auto",
-                           cell, explore.resolution));
+    if (cell < kLeastExploreCell || cell > kMostExploreCell) {
+        refuse(fmt::format("has cells of {} m, an exploration may have {} to {} m", cell,
+                           kLeastExploreCell, kMostExploreCell));
+    }
+    const std::optional<double>& wanted = config.explore.resolution;
+    if (wanted && std::abs(cell / *wanted - 1.) > 1e-6) {
+        refuse(fmt::format(
+            "has cells of {} m, explore.resolution is {} m: give the same, or leave it out", cell,
+            *wanted));
     }
     Eigen::AlignedBox3d box;
     map.getMetricMin(box.min().x(), box.min().y(), box.min().z());

@@ -24,9 +24,8 @@ World trueWorld(Config config);
 
 /// The map that the robot knows at take-off; null: none.
 /// @throws InputError, as of Config::invalid(), for a map that cannot be read, is empty, has cells
-///         of another size than explore.resolution (or, if this is auto, of a size that it may not
-///         be), is farther than explore.range from the
-///         bounds, or is too large for views
+///         of a size that explorations do not have, or of another one than explore.resolution, is
+///         farther than explore.range from the bounds, or is too large for views
 std::shared_ptr<const TexturedOcTree> loadKnownMap(const Config& config);
 
 /// The bricks (see MapChange) with a leaf that a condition holds for, sorted.

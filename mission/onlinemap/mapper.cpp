@@ -38,7 +38,7 @@ ImageF fusedDepth(const ImageF& depth, double range) {
 
 Mapper::Mapper(const Config& config, const TexturedOcTree* known)
     : camera_(config.camera.camera()),
-      errors_(std::make_shared<MapErrors>(config.explore.resolution)),
+      errors_(std::make_shared<MapErrors>(config.explore.cell())),
       choice_(config.explore, camera_),
       range_(config.explore.range) {
     if (known != nullptr) addKnown(*known, config.start);

@@ -16,22 +16,26 @@ namespace {
 constexpr int kEdge = MapChange::kBrickEdge;
 constexpr double kBelow = 3., kAbove = 1.;  // heights outside the bounds that matter [m]
 
-// Free cells in a row that do not end a wall. A ray to a place beside it clears one, at its top
-// where the view ends as well.
-constexpr int kHole = 1;
-
 /// The wall in a column of cells, from below up to the last cell that was added.
 class WallInColumn {
   public:
-    void add(CellState state) {
+    /// How many cells make a wall, and how many free ones in a row do not end it: a ray to a place
+    /// beside it clears some, at its top where the view ends as well.
+    struct Sizes {
+        int wall, hole;
+        explicit Sizes(double cell)
+            : wall(wallCells(cell)), hole(cellsOver(kSurfaceBeside, cell)) {}
+    };
+
+    void add(CellState state, const Sizes& sizes) {
         if (state == CellState::free) ++free_;
         if (state != CellState::occupied) return;
-        if (free_ > kHole) cells_ = 0;
+        if (free_ > sizes.hole) cells_ = 0;
         free_ = 0;
         ++cells_;
     }
     /// Whether unknown cells right above belong to it.
-    bool goesOn() const { return free_ <= kHole && cells_ >= kWallCells; }
+    bool goesOn(const Sizes& sizes) const { return free_ <= sizes.hole && cells_ >= sizes.wall; }
 
   private:
     int cells_ = 0;  // that are occupied, with no more than a hole between two
@@ -106,6 +110,7 @@ void ObstacleMap::store(const octomap::OcTreeKey& key, bool isOccupied) {
 /// All heights of the 4 x 4 columns of cells of a column of bricks.
 void ObstacleMap::updateColumn(const TexturedOcTree& map, const Eigen::Array2i& column,
                                MapChange& changed) {
+    const WallInColumn::Sizes sizes(map.getResolution());
     std::array<WallInColumn, kEdge * kEdge> walls;
     for (int height = lowest_; height <= highest_; ++height) {
         const Eigen::Array3i brick(column.x(), column.y(), height);
@@ -119,10 +124,11 @@ void ObstacleMap::updateColumn(const TexturedOcTree& map, const Eigen::Array2i& 
             CellState state = inMap.at(key);
             if (state == CellState::free && forgotten_.contains(key)) state = CellState::unknown;
             WallInColumn& wall = walls[i % (kEdge * kEdge)];
-            wall.add(state);
+            wall.add(state, sizes);
             const bool isUnknown = state == CellState::unknown;
             if (isUnknown && unknown_ == UnknownSpace::pessimistic) continue;
-            const bool isOccupied = state == CellState::occupied || (isUnknown && wall.goesOn());
+            const bool isOccupied =
+                state == CellState::occupied || (isUnknown && wall.goesOn(sizes));
             if (!differs(before.at(key), isOccupied, unknown_)) continue;
             store(key, isOccupied);
             hasChanged = true;
@@ -174,7 +180,7 @@ MapChange ObstacleMap::addHidden(const TexturedOcTree& map, const View& image, c
     const Pose T_w_c = T_c_w.inverse();
     const Eigen::Vector3d eye = T_w_c.translation();
     const double floor = floorOf(image, camera, T_w_c);
-    const int top = (highest_ + 1) * kEdge;
+    const int top = (highest_ + 1) * kEdge, side = 2 * cellsOver(kSurfaceBeside, cell) + 1;
     const auto indexOf = [&](double x) { return static_cast<int>(std::floor(x / cell)); };
     const auto isKnown = [&](int x, int y) {
         for (int z = indexOf(eye.z()); z >= indexOf(floor); --z) {
@@ -186,8 +192,8 @@ MapChange ObstacleMap::addHidden(const TexturedOcTree& map, const View& image, c
         for (int x = indexOf(eye.x() - radius); x <= indexOf(eye.x() + radius); ++x) {
             const Eigen::Vector3d onFloor(cell * (x + 0.5), cell * (y + 0.5), floor);
             if (!isHidden(image, camera, T_c_w * onFloor, 2. * cell) || isKnown(x, y)) continue;
-            for (int i = 0; i < 9; ++i) {  // the surface that hides it is beside it
-                const int beside = x + i % 3 - 1, before = y + i / 3 - 1;
+            for (int i = 0; i < side * side; ++i) {  // the surface that hides it is beside it
+                const int beside = x + i % side - side / 2, before = y + i / side - side / 2;
                 for (int z = indexOf(eye.z() - radius); z < top; ++z) {
                     if (!set(keyOfCell(beside, before, z), true)) continue;
                     changed.occupancy.emplace_back(

@@ -2,6 +2,8 @@
 // The cells that count as occupied for collision checks in an incomplete map.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <unordered_set>
 
@@ -12,15 +14,23 @@
 
 namespace photonav {
 
-/// Least number of occupied cells above each other in a column that count as a wall. Walls are
-/// continued upward.
-inline constexpr int kWallCells = 4;
+/// The number of cells that reach over a length [m], whatever their size [m].
+inline int cellsOver(double length, double cell) {
+    return static_cast<int>(std::ceil(length / cell - 1e-6));
+}
+
+/// Least number of occupied cells above each other in a column that count as a wall: 20 cm, and
+/// four cells. Walls are continued upward.
+inline int wallCells(double cell) { return std::max(4, cellsOver(0.2, cell)); }
+
+/// Errors of depth and pose that show a surface beside its place in the map [m].
+inline constexpr double kSurfaceBeside = 0.05;
 
 /// A camera that looks down observes the foot of a wall, but seldom the wall at the height at which
-/// the robot flies. Walls are therefore continued upward: above at least four occupied cells of a
-/// column, unknown cells count as occupied, up to the first two cells that are known to be
-/// free, such as those above the top of a box. A single free cell does not end a wall: rays to
-/// places beside it clear one, where the view ends for example.
+/// the robot flies. Walls are therefore continued upward: above the occupied cells of a wall in a
+/// column, unknown cells count as occupied, up to the first ones that are known to be free over
+/// more than 5 cm, such as those above the top of a box. Less does not end a wall: rays to places
+/// beside it clear a cell, where the view ends for example.
 ///
 /// Other unknown cells are free (optimistic) or occupied (pessimistic), except at the body.
 ///
@@ -47,8 +57,8 @@ class ObstacleMap {
 
     /// For a camera that looks down: adds obstacles near the camera that the image hides. These are
     /// columns without any known cell whose floor lies within the image, but behind a nearer
-    /// surface. Each of them and its eight neighbours count as occupied from `radius` below the
-    /// camera upward.
+    /// surface. Each of them and its neighbours within 5 cm count as occupied from `radius` below
+    /// the camera upward.
     /// @param radius half the edge of the square around the camera that is searched [m]
     MapChange addHidden(const TexturedOcTree& map, const View& image, const Camera& camera,
                         const Pose& T_c_w, double radius);

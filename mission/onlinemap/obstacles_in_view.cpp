@@ -53,11 +53,13 @@ std::vector<OcTreeKey> cellsHit(const ImageF& depth, const Camera& camera, const
 /// pose would show it.
 bool isFreeAround(const CellStates& cells, const OcTreeKey& key) {
     if (!cells.isFree(key)) return false;
-    for (int i = 0; i < 27; ++i) {
+    const int reach = cellsOver(kSurfaceBeside, cells.grid().getResolution());
+    const int side = 2 * reach + 1;
+    for (int i = 0; i < side * side * side; ++i) {
         OcTreeKey beside = key;
-        beside[0] = static_cast<octomap::key_type>(beside[0] + i % 3 - 1);
-        beside[1] = static_cast<octomap::key_type>(beside[1] + i / 3 % 3 - 1);
-        beside[2] = static_cast<octomap::key_type>(beside[2] + i / 9 - 1);
+        beside[0] = static_cast<octomap::key_type>(beside[0] + i % side - reach);
+        beside[1] = static_cast<octomap::key_type>(beside[1] + i / side % side - reach);
+        beside[2] = static_cast<octomap::key_type>(beside[2] + i / (side * side) - reach);
         if (cells.isOccupied(beside)) return false;
     }
     return true;
@@ -83,6 +85,7 @@ ObstaclesInView::ObstaclesInView(const ImageF& depth, const Camera& camera, cons
         const Eigen::Vector3d p_w = middleOf(map, key);
         if (p_w.z() >= range.lowest && p_w.z() <= range.highest) occupied_.push_back(p_w);
     };
+    const auto wall = static_cast<std::size_t>(wallCells(cell_));
     std::map<std::pair<int, int>, std::vector<OcTreeKey>> columns;
     for (const OcTreeKey& key : cellsHit(depth, camera, T_c_w, map, range.distance)) {
         add(key);
@@ -95,9 +98,9 @@ ObstaclesInView::ObstaclesInView(const ImageF& depth, const Camera& camera, cons
         return (T_c_w * middleOf(map, key)).z() <= range.precise && isFreeAround(cells, key);
     };
     for (auto& [column, keys] : columns) {
-        if (keys.size() < kWallCells) continue;
+        if (keys.size() < wall) continue;
         std::erase_if(keys, [&](const OcTreeKey& key) { return !isNew(key); });
-        if (keys.size() < kWallCells) continue;
+        if (keys.size() < wall) continue;
         newWalls_.push_back(middleOf(map, keys.front()));
         const auto isHigher = [](const OcTreeKey& a, const OcTreeKey& b) { return a[2] < b[2]; };
         OcTreeKey above = *std::max_element(keys.begin(), keys.end(), isHigher);

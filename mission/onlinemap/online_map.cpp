@@ -29,19 +29,19 @@ double depthSigmaAtOneMetre(const Config& config) {
 }
 
 ObstacleRange obstacleRange(const Config& config, double distance) {
-    // There three standard deviations of depth equal a cell.
-    const double precise =
-        std::sqrt(config.explore.resolution / (3. * depthSigmaAtOneMetre(config)));
+    // There three standard deviations of depth reach a surface's neighbours.
+    const double beside = std::max(config.explore.cell(), kSurfaceBeside);
+    const double precise = std::sqrt(beside / (3. * depthSigmaAtOneMetre(config)));
     return {distance, precise, config.bounds.min().z() - config.robotRadius,
             config.bounds.max().z() + config.robotRadius};
 }
 
 OnlineMap::OnlineMap(const Config& config, const TexturedOcTree* known)
     : cells_(known != nullptr ? std::make_shared<TexturedOcTree>(*known)
-                              : std::make_shared<TexturedOcTree>(config.explore.resolution)),
-      states_(config.explore.resolution),
-      obstacles_(config.explore.resolution, config.bounds, config.explore.unknown),
-      doubted_(config.explore.resolution, config.explore.range),
+                              : std::make_shared<TexturedOcTree>(config.explore.cell())),
+      states_(config.explore.cell()),
+      obstacles_(config.explore.cell(), config.bounds, config.explore.unknown),
+      doubted_(config.explore.cell(), config.explore.range),
       photometric_(config.photometric),
       range_(obstacleRange(config, config.explore.range)),
       radius_(config.robotRadius),
@@ -144,15 +144,16 @@ bool OnlineMap::isSeen(const Eigen::Vector3d& p_w) const {
     if (doubted_.contains(p_w)) return false;
     if (cells_->search(p_w.x(), p_w.y(), p_w.z()) != nullptr) return true;
     const double cell = cells_->getResolution();
+    const int wall = wallCells(cell);
     int known = 0;
-    for (double below = cell; below <= fusion_.maxRange && known < kWallCells; below += cell) {
+    for (double below = cell; below <= fusion_.maxRange && known < wall; below += cell) {
         const auto* node = cells_->search(p_w.x(), p_w.y(), p_w.z() - below);
         if (node == nullptr) continue;
         // Something may stand on a surface above which nothing is known.
         if (known == 0 && cells_->isNodeOccupied(*node)) return false;
         ++known;
     }
-    return known == kWallCells;
+    return known == wall;
 }
 
 }  // namespace photonav

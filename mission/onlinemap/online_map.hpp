@@ -46,7 +46,7 @@ struct MapInput {
 class OnlineMap {
   public:
     /// @param config uses camera, section `explore`, bounds and robot.radius
-    /// @param known what the robot knows at take-off, with cells of explore.resolution; null:
+    /// @param known what the robot knows at take-off, with cells of explore.cell(); null:
     ///        nothing. It is corrected by what is fused.
     explicit OnlineMap(const Config& config, const TexturedOcTree* known = nullptr);
 
@@ -79,7 +79,7 @@ class OnlineMap {
     }
 
     /// Whether surfaces or free space were observed at a place, or below it within explore.range in
-    /// as many cells as a wall there needs to be noticed (kWallCells), the nearest of them free.
+    /// as many cells as a wall there needs to be noticed (wallCells()), the nearest of them free.
     /// The column of the place must not be doubted (DoubtedColumns).
     bool isSeen(const Eigen::Vector3d& p_w) const;
 

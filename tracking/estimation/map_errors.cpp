@@ -16,8 +16,7 @@ namespace {
 
 constexpr unsigned kStride = 3;          // of the pixels looked at
 constexpr std::size_t kMostMakers = 12;  // keyframes remembered of a brick: the first ones
-constexpr double kBeside = 0.02;         // of a surface that may lie on the border of two bricks
-                                         // [bricks]
+constexpr double kBeside = 0.005;        // of a surface on the border of two bricks [bricks]
 constexpr double kWeakSigma = 0.005;     // standard deviation of an image alone that is too much
                                          // [rad], translations in mean depths
 constexpr double kNegligible = 1e-6;     // share of the mean information
@@ -66,7 +65,7 @@ std::uint64_t MapErrors::brickOf(const Eigen::Vector3d& p_w) const {
 /// The keyframes of a surface in a view, which may lie on the border of two bricks.
 const std::vector<int>* MapErrors::findMakers(const Camera& camera, const Pose& T_w_c, unsigned u,
                                               unsigned v, double depth) const {
-    for (const double beside : {kBeside, -kBeside}) {
+    for (const double beside : {0., kBeside, -kBeside}) {
         const auto found =
             makers_.find(brickOf(T_w_c * camera.unproject(u, v, depth + beside * brick_)));
         if (found != makers_.end()) return &found->second;
@@ -227,7 +226,9 @@ void MapErrors::addSurfaces(int k, const ImageF& depth, const Camera& camera) {
     for (unsigned v = 0; v < depth.getHeight(); ++v) {
         for (unsigned u = 0; u < depth.getWidth(); ++u) {
             if (!(depth[v][u] > 0.F)) continue;
-            auto& makers = makers_[brickOf(T_w_c * camera.unproject(u, v, depth[v][u]))];
+            const std::uint64_t brick = brickOf(T_w_c * camera.unproject(u, v, depth[v][u]));
+            std::vector<int>& makers = makers_[brick];
+            if (removed_.erase(brick) > 0) makers.clear();
             const bool isNew = makers.empty() || makers.back() != k;
             if (isNew && makers.size() < kMostMakers) makers.push_back(k);
         }
@@ -240,7 +241,7 @@ void MapErrors::removeSurfaces(const ImageF& depth, const Camera& camera, const 
         for (unsigned u = 0; u < depth.getWidth(); ++u) {
             if (!(depth[v][u] > 0.F)) continue;
             for (const double beside : {kBeside, -kBeside}) {
-                makers_.erase(
+                removed_.insert(
                     brickOf(T_w_c * camera.unproject(u, v, depth[v][u] + beside * brick_)));
             }
         }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "alignment/alignment.hpp"
@@ -76,9 +77,10 @@ class MapErrors {
     /// @param depth depth of the fused surfaces [m]; 0: none
     void addSurfaces(int keyframe, const ImageF& depth, const Camera& camera);
 
-    /// Reports that surfaces were removed from the map. What else is in their bricks has the errors
-    /// of the images that are fused there next.
-    /// @param depth view of these surfaces [m]; 0: none
+    /// Reports that surfaces were removed from the map. The next image that is fused into their
+    /// bricks replaces the keyframes that had made them; until then, what is left there keeps its
+    /// errors.
+    /// @param depth view of these surfaces [m], from the pose T_c_w; 0: none
     void removeSurfaces(const ImageF& depth, const Camera& camera, const Pose& T_c_w);
 
     /// Adds a map that was known before the flight, as one keyframe: it may be displaced as a
@@ -108,6 +110,7 @@ class MapErrors {
     Eigen::MatrixXd covariance_;  // of all keyframes
     Wide cross_ = Wide(6, 0);     // of the camera's error with theirs
     std::unordered_map<std::uint64_t, std::vector<int>> makers_;  // keyframes of a brick
+    std::unordered_set<std::uint64_t> removed_;  // bricks whose surfaces were removed
 };
 
 }  // namespace photonav

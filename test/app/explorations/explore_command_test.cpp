@@ -36,6 +36,14 @@ class ExploreCommand : public testing::Test {
         return json::parse(std::ifstream(folder_ / name / "result.json"));
     }
 
+    /// The first line of the log says how it is drawn.
+    json log(const std::string& name) const {
+        std::ifstream file(folder_ / name / "flight.json");
+        std::string line;
+        std::getline(file, line);
+        return json::parse(line);
+    }
+
     /// All that was flown, without what depends on the machine.
     json flown(const std::string& name) const {
         json whole = result(name);
@@ -280,6 +288,11 @@ TEST_F(ExploreCommand, KnowsTheMapOfAnEarlierFlight) {
         photonav(fmt::format("explore {} --out {}", at("second/config.yaml"), at("third")));
     ASSERT_EQ(again.exitCode, 0) << again.output;
     EXPECT_EQ(flown("third"), flown("second"));
+    const Execution asMap =
+        photonav(fmt::format("explore {} {} {} --out {}", config("two_textures"), kShortExploration,
+                             known, at("cells of the map")));
+    ASSERT_EQ(asMap.exitCode, 0) << asMap.output;
+    EXPECT_EQ(log("cells of the map")["cell"], log("second")["cell"]);
     expectBadInput(explore("second", "--resume"), "map.file: nothing instead of map.ot");
     expectBadInput(explore("first", known), "which this run reads; give another folder");
     for (const char* command : {"plan", "fly", "sweep", "info"}) {

@@ -238,20 +238,6 @@ TEST(Config, ComplaintsOfOthersSayWhereAValueWasGiven) {
                  (file + ", changed on the command line: explore.resolution: bad").c_str());
 }
 
-TEST(Config, CellsOfAnExplorationMayBeThoseOfItsMap) {
-    const auto explore = [](const std::string& resolution) {
-        return loadConfig(PHOTONAV_SOURCE_DIR "/config/two_textures.yaml",
-                          {"explore.resolution=" + resolution})
-            .explore;
-    };
-    EXPECT_TRUE(explore("auto").resolutionIsAuto);
-    EXPECT_EQ(explore("auto").resolution, ExploreConfig().resolution);
-    EXPECT_FALSE(explore("0.2").resolutionIsAuto);
-    EXPECT_EQ(explore("0.2").resolution, 0.2);
-    EXPECT_THROW(explore("0.6"), InputError);
-    EXPECT_THROW(explore("fine"), InputError);
-}
-
 TEST(Config, AMapThatIsNotThereYetIsMadeBySomething) {
     const std::vector<std::string> room{"map.file=no #1: nowhere.ot",
                                         "map.made_by=scripts/make it"};

@@ -66,7 +66,7 @@ TEST_F(ExplorerTest, EndsWhenItsMapIsTooLarge) {
             return true;
         });
     EXPECT_EQ(nameOf(outcome.end), "no way");
-    EXPECT_EQ(outcome.reason, "too many cells; cells: explore.resolution");
+    EXPECT_EQ(outcome.reason, "too many cells; cells of 0.035 m");
 }
 
 /// Near the goal the robot is pushed, by as much as its odometry says, where nothing has texture:

@@ -73,8 +73,8 @@ TEST_F(KnownMap, TheFirstPlanOfTheSecondFlightKnowsTheDetour) {
 TEST_F(KnownMap, IsCorrectedWhereSomethingIsGone) {
     config.camera.mount = "forward";
     config.goal.position.x() = 4.;
-    const auto known = std::make_shared<TexturedOcTree>(config.explore.resolution);
-    const double cell = config.explore.resolution;
+    const auto known = std::make_shared<TexturedOcTree>(config.explore.cell());
+    const double cell = config.explore.cell();
     for (double y = 0.5 * cell; y < 4.; y += cell) {
         for (double z = 0.5 * cell; z < 3.; z += cell) {
             TexturedOcTreeNode* node = known->setNodeValue(3., y, z, 3.F);
@@ -104,7 +104,7 @@ TEST_F(KnownMap, IsCorrectedWhereSomethingIsNew) {
 
 /// Cells that were free for long are occupied as soon as those of a new map.
 TEST_F(KnownMap, IsNotMoreCertainThanAMapOfThisFlight) {
-    TexturedOcTree known(config.explore.resolution);
+    TexturedOcTree known(config.explore.cell());
     known.setNodeValue(2., 2., 1., -3.F);
     const OnlineMap map(config, &known);
     const TexturedOcTreeNode* cell = map.cells()->search(2., 2., 1.);
@@ -114,7 +114,6 @@ TEST_F(KnownMap, IsNotMoreCertainThanAMapOfThisFlight) {
     EXPECT_EQ(map.whole().occupancy.size(), 1U);
 }
 
-/// Unless explore.resolution is set.
 TEST_F(KnownMap, DecidesTheSizeOfTheCells) {
     const test::TemporaryFolder folder;
     config.sceneFile = "scene.yaml";
@@ -123,8 +122,8 @@ TEST_F(KnownMap, DecidesTheSizeOfTheCells) {
     map.setNodeValue(3., 2., 1.1, 1.F);
     saveTexturedOcTree(map, config.mapFile);
     const World world(test::roomToExplore(), config);
-    EXPECT_EQ(setUpExploration({config, world}).config.explore.resolution, 0.08);
-    EXPECT_EQ(explorerOptions(config).config.explore.resolution, 0.08);
+    EXPECT_EQ(setUpExploration({config, world}).config.explore.cell(), 0.08);
+    EXPECT_EQ(explorerOptions(config).config.explore.cell(), 0.08);
 }
 
 TEST_F(KnownMap, IsRefusedWhereItDoesNotFit) {
@@ -140,16 +139,15 @@ TEST_F(KnownMap, IsRefusedWhereItDoesNotFit) {
     save(0.05, 3.);
     EXPECT_EQ(refusal(), "none");
     save(0.005, 3.);
-    EXPECT_NE(refusal().find("has cells of 0.005 m, explore.resolution may be 0.01 to 0.5 m"),
+    EXPECT_NE(refusal().find("has cells of 0.005 m, an exploration may have 0.01 to 0.5 m"),
               std::string::npos)
         << refusal();
     save(0.1, 3.);
     EXPECT_EQ(refusal(), "none");
-    config.explore.resolutionIsAuto = false;
-    EXPECT_NE(refusal().find("has cells of 0.1 m, explore.resolution is 0.035 m"),
-              std::string::npos)
+    config.explore.resolution = 0.05;
+    EXPECT_NE(refusal().find("has cells of 0.1 m, explore.resolution is 0.05 m"), std::string::npos)
         << refusal();
-    config.explore.resolutionIsAuto = true;
+    config.explore.resolution = {};
     save(0.05, 200.);
     EXPECT_NE(refusal().find("nothing of it is within"), std::string::npos) << refusal();
     save(0.05, 1e6);

@@ -45,18 +45,20 @@ TEST_F(MapperTest, ErrorsAreThoseOfSurfacesInRange) {
     }
 }
 
-/// What the map forgets because it contradicts the images has no errors any more.
+/// What the map forgets because it contradicts the images has the errors of the image that is fused
+/// in its place.
 TEST_F(MapperTest, ErrorsOfForgottenSurfacesAreForgotten) {
     Mapper mapper(config);
-    auto input = mapper.choose(tracked, image, empty, false);
-    ASSERT_TRUE(input);
-    mapper.setFused(*input);
-    mapper.setFused({.image = image,
-                     .shown = image,
-                     .T_c_w = tracked.T_c_w,
-                     .isMapInconsistent = true,
-                     .keyframe = {}});
-    EXPECT_EQ(mapper.errors()->relate(image, camera, tracked.T_c_w).views, 0.);
+    const auto before = mapper.choose(tracked, image, empty, false);
+    ASSERT_TRUE(before);
+    mapper.setFused(*before);
+    tracked.isMapInconsistent = true;
+    tracked.T_c_w.covariance *= 100.;
+    const auto anew = mapper.choose(tracked, image, image, false);
+    ASSERT_TRUE(anew && anew->isMapInconsistent && anew->keyframe);
+    mapper.setFused(*anew);
+    const Matrix6 ofMap = mapper.errors()->relate(image, camera, tracked.T_c_w).ofMap;
+    EXPECT_NEAR(ofMap.trace(), tracked.T_c_w.covariance.trace(), 1e-3 * ofMap.trace());
 }
 
 /// While another thread fuses the first image, the next ones do not lack the same surfaces.

@@ -155,8 +155,8 @@ TEST_F(MapOfABox, IsSeenAboveSurfacesWithinRange) {
 
 /// What is below a shelf says nothing of what stands on it.
 TEST_F(MapOfABox, IsNotSeenAboveASurfaceWithUnknownSpaceOnIt) {
-    TexturedOcTree known(config.explore.resolution);
-    for (double z = 0.35; z < 1.2; z += config.explore.resolution) {
+    TexturedOcTree known(config.explore.cell());
+    for (double z = 0.35; z < 1.2; z += config.explore.cell()) {
         known.setNodeValue(0.05, 0.05, z, -1.F);
         known.setNodeValue(1.05, 0.05, z, -1.F);
     }

@@ -59,7 +59,7 @@ class OnlinePlannerTest : public ::testing::Test {
 
     /// A wall across the straight way, with room beside it if it is not wider than 3 m.
     MapChange seeWall(double width = 2.) {
-        MapChange change{.resolution = config_.explore.resolution};
+        MapChange change{.resolution = config_.explore.cell()};
         for (double y = -width / 2.; y < width / 2.; y += change.resolution) {
             for (double z = 0.5; z < 1.5; z += change.resolution) {
                 map_->obstacles()->updateNode(

@@ -91,15 +91,21 @@ TEST_F(OwnMapErrors, ThePriorOfAnAlignmentIsThatOfThePoseInTheMap) {
     EXPECT_EQ(elsewhere.relative, covariance);
 }
 
-/// A surface that was forgotten and is mapped again has the errors of its new image alone.
-TEST_F(OwnMapErrors, RemovedSurfacesLoseTheirErrors) {
+/// A surface that was removed and is mapped again has the errors of its new image alone. Elsewhere,
+/// and until then, errors stay as they were.
+TEST_F(OwnMapErrors, RemovedSurfacesHaveTheErrorsOfTheirNextImage) {
     const Matrix6 small = 1e-6 * Matrix6::Identity(), large = 1e-2 * Matrix6::Identity();
+    const auto ofMap = [&](double x) {
+        return errors.relate(viewAt(x), camera, {poseAt(x), large}).ofMap;
+    };
     addKeyframe(0., small);
+    addKeyframe(8., small);
     errors.removeSurfaces(viewAt(0.).depth, camera, poseAt(0.));
-    EXPECT_EQ(errors.relate(viewAt(0.), camera, {poseAt(0.), large}).views, 0.);
+    EXPECT_LT((ofMap(0.) - small).norm(), 1e-2 * small.norm());
     addKeyframe(0., large);
-    const auto relation = errors.relate(viewAt(0.), camera, {poseAt(0.), large});
-    EXPECT_LT((relation.ofMap - large).norm(), 1e-3 * large.norm());
+    addKeyframe(8., large);
+    EXPECT_LT((ofMap(0.) - large).norm(), 1e-2 * large.norm());
+    EXPECT_LT(ofMap(8.).norm(), 0.6 * large.norm());  // of both keyframes
 }
 
 TEST_F(OwnMapErrors, WhatAnImageHardlyInformsOfStaysAsItWas) {
@@ -165,6 +171,17 @@ TEST_F(OwnMapErrors, ASurfaceOnTheBorderOfTwoBricksHasTheErrorsOfEither) {
         const auto relation = known.relate(viewAt(0.), camera, {poseAt(0.), Matrix6::Identity()});
         EXPECT_EQ(relation.views, 1.) << "layer " << layer;
     }
+}
+
+/// The wall in view is before the border; the back of what is behind it is of another keyframe.
+TEST_F(OwnMapErrors, ASurfaceBesideABorderHasTheErrorsOfItsOwnBrick) {
+    const Matrix6 small = 1e-6 * Matrix6::Identity(), large = 1e-2 * Matrix6::Identity();
+    errors.addMap(poseAt(0.), small, layerOfBricks(0));
+    errors.addMap(poseAt(0.), large, layerOfBricks(-1));
+    View view = viewAt(0.);
+    for (unsigned i = 0; i < view.depth.getSize(); ++i) view.depth.bitmap[i] -= 5e-4F;
+    const auto relation = errors.relate(view, camera, {poseAt(0.), large});
+    EXPECT_LT(relation.ofMap.norm(), 0.1 * large.norm());
 }
 
 }  // namespace
