@@ -36,12 +36,9 @@ class ExploreCommand : public testing::Test {
         return json::parse(std::ifstream(folder_ / name / "result.json"));
     }
 
-    /// The first line of the log says how it is drawn.
-    json log(const std::string& name) const {
-        std::ifstream file(folder_ / name / "flight.json");
-        std::string line;
-        std::getline(file, line);
-        return json::parse(line);
+    /// Edge of the cubes of the map that a report draws.
+    json drawnCells(const std::string& name) const {
+        return json::parse(std::ifstream(folder_ / name / "flight.json"))["header"]["cell"];
     }
 
     /// All that was flown, without what depends on the machine.
@@ -290,9 +287,9 @@ TEST_F(ExploreCommand, KnowsTheMapOfAnEarlierFlight) {
     EXPECT_EQ(flown("third"), flown("second"));
     const Execution asMap =
         photonav(fmt::format("explore {} {} {} --out {}", config("two_textures"), kShortExploration,
-                             known, at("cells of the map")));
+                             known, at("cells-of-map")));
     ASSERT_EQ(asMap.exitCode, 0) << asMap.output;
-    EXPECT_EQ(log("cells of the map")["cell"], log("second")["cell"]);
+    EXPECT_EQ(drawnCells("cells-of-map"), drawnCells("second"));
     expectBadInput(explore("second", "--resume"), "map.file: nothing instead of map.ot");
     expectBadInput(explore("first", known), "which this run reads; give another folder");
     for (const char* command : {"plan", "fly", "sweep", "info"}) {

@@ -140,11 +140,12 @@ TEST(Config, AKeyIsSetAsTyped) {
 }
 
 TEST(Config, EveryKeyReadsBackWhatItWrote) {
-    const Config config = loadConfig(
-        kTwoTextures, {"fly.plan=a", "fly.map=b", "fly.scale=2", "fly.least_sigma=0",
-                       "fly.least_sigma_rotation=0.5", "fly.blackout=[1, 2]", "map.made_by=make it",
-                       "sweep.paper=[{alpha: 0.5, length: 1, "
-                       "mean_trace: 2, goal_trace: 3}]"});
+    const Config config =
+        loadConfig(kTwoTextures, {"fly.plan=a", "fly.map=b", "fly.scale=2", "fly.least_sigma=0",
+                                  "fly.least_sigma_rotation=0.5", "fly.blackout=[1, 2]",
+                                  "map.made_by=make it", "explore.resolution=0.05",
+                                  "sweep.paper=[{alpha: 0.5, length: 1, "
+                                  "mean_trace: 2, goal_trace: 3}]"});
     Config again;
     const KeyTable keys = keysOf(again);
     YamlMap root("again", YAML::Load(toYaml(config)));

@@ -16,27 +16,33 @@ constexpr double kCell = 0.1;
 
 /// Cells from x = y = 0 upward: 'o' occupied, '.' free, '?' unknown.
 struct ObservedColumn {
-    explicit ObservedColumn(const std::string& cells) {
-        change.resolution = kCell;
+    explicit ObservedColumn(const std::string& cells, double edge = kCell) : cell(edge), map(edge) {
+        change.resolution = cell;
         for (std::size_t z = 0; z < cells.size(); ++z) {
-            if (cells[z] != '?') map.updateNode(0.05, 0.05, kCell * (z + 0.5), cells[z] == 'o');
+            if (cells[z] != '?') map.updateNode(middleOf(static_cast<int>(z)), cells[z] == 'o');
             change.occupancy.emplace_back(0, 0, static_cast<int>(z) / MapChange::kBrickEdge);
         }
         change.normalize();
     }
 
     std::string obstacles(UnknownSpace unknown) {
-        ObstacleMap obstacles(kCell, {Vector3d(-1., -1., 0.), Vector3d(1., 1., 1.)}, unknown);
+        ObstacleMap obstacles(cell, {Vector3d(-1., -1., 0.), Vector3d(1., 1., 1.)}, unknown);
         changed = obstacles.update(map, change);
         std::string cells;
         for (int z = 0; z < 12; ++z) {
-            const auto* node = obstacles.cells()->search(0.05, 0.05, kCell * (z + 0.5));
+            const auto* node = obstacles.cells()->search(middleOf(z));
             cells += node == nullptr ? '?' : obstacles.cells()->isNodeOccupied(*node) ? 'o' : '.';
         }
         return cells;
     }
 
-    TexturedOcTree map{kCell};
+    octomap::point3d middleOf(int z) const {
+        const auto half = static_cast<float>(0.5 * cell);
+        return {half, half, static_cast<float>(cell * (z + 0.5))};
+    }
+
+    double cell;
+    TexturedOcTree map;
     MapChange change, changed;
 };
 
@@ -51,6 +57,17 @@ TEST(ObstacleMap, WallsGoOnAboveWhatWasSeenOfThem) {
     ObservedColumn column("?ooooo??????");
     column.obstacles(UnknownSpace::optimistic);
     EXPECT_GE(column.changed.occupancy.size(), 3U);
+}
+
+/// A wall is 20 cm, and a hole 5 cm: smaller cells do not make walls of lower things.
+TEST(ObstacleMap, WallsAndHolesHaveTheirLengthInSmallCells) {
+    const auto obstacles = [](const std::string& cells) {
+        return ObservedColumn(cells, 0.035).obstacles(UnknownSpace::optimistic);
+    };
+    EXPECT_EQ(obstacles("ooooo???????"), "ooooo???????");
+    EXPECT_EQ(obstacles("oooooo??????"), "oooooooooooo");
+    EXPECT_EQ(obstacles("oooooo..????"), "oooooo??oooo");
+    EXPECT_EQ(obstacles("oooooo...???"), "oooooo??????");
 }
 
 TEST(ObstacleMap, PessimismKeepsWhatIsKnownToBeFree) {

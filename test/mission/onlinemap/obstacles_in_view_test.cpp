@@ -15,9 +15,7 @@ using Eigen::Vector3d;
 /// empty floor.
 class EmptyFloor : public testing::Test {
   protected:
-    EmptyFloor() {
-        for (const double x : {-1.5, -1., -0.5, 0.}) fuse(map, x, render(floor(), x));
-    }
+    EmptyFloor() { fuseFloor(map); }
 
     static Scene floor() { return test::floorOf(valueNoise({.size = {20., 20.}, .seed = 3})); }
     static Pose at(double x) { return lookFrom({x, 0., 1.2}, test::kOblique); }
@@ -25,6 +23,9 @@ class EmptyFloor : public testing::Test {
         View view;
         MeshRenderer(std::move(scene)).render(camera, at(x), view);
         return view;
+    }
+    void fuseFloor(TexturedOcTree& tree) const {
+        for (const double x : {-1.5, -1., -0.5, 0.}) fuse(tree, x, render(floor(), x));
     }
     void fuse(TexturedOcTree& tree, double x, const View& view) const {
         photonav::fuse(tree, view, camera, at(x));
@@ -36,8 +37,9 @@ class EmptyFloor : public testing::Test {
                addTexture(scene, valueNoise({.seed = 4})));
         return render(std::move(scene), 0.);
     }
-    ObstaclesInView seenIn(const View& view) const {
-        return {view.depth, camera, at(0.), CellStates(map), {1.6, 3., 0.7, 1.7}};
+    ObstaclesInView seenIn(const View& view) const { return seenIn(view, map); }
+    ObstaclesInView seenIn(const View& view, const TexturedOcTree& tree) const {
+        return {view.depth, camera, at(0.), CellStates(tree), {1.6, 3., 0.7, 1.7}};
     }
 
     Camera camera = makeCamera(188, 120, 1.2);
@@ -79,6 +81,14 @@ TEST_F(EmptyFloor, ABoxIsAsHighAsItIsSeen) {
 }
 
 /// What stands above a wall that the map has was seen when that wall was.
+/// It takes 20 cm that are not the floor's, whatever the size of the cells.
+TEST_F(EmptyFloor, ALowBoxIsNoWallInSmallCells) {
+    TexturedOcTree fine(0.035);
+    fuseFloor(fine);
+    EXPECT_TRUE(seenIn(boxOf(0.22), fine).newWalls().empty());
+    EXPECT_FALSE(seenIn(boxOf(0.4), fine).newWalls().empty());
+}
+
 TEST_F(EmptyFloor, AWallOfTheMapIsNotNew) {
     const View box = boxOf(3.);
     for (int i = 0; i < 12; ++i) fuse(map, 0., box);

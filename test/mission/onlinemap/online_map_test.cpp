@@ -144,6 +144,21 @@ TEST(DepthSigma, OfStereoIsThatOfDisparities) {
     EXPECT_NEAR(depthSigmaAtOneMetre(config), 0.2 / (f * config.explore.baseline), 1e-12);
 }
 
+/// A wall of 20 cm below would have been seen, whatever the size of the cells.
+TEST_F(MapOfABox, IsSeenAboveTwentyCentimetresThatAreKnown) {
+    config.explore.resolution = 0.035;
+    const auto isSeenAbove = [&](int cells) {
+        TexturedOcTree known(config.explore.cell());
+        for (int i = 1; i <= cells; ++i) {
+            const auto z = static_cast<float>(1. - i * config.explore.cell());
+            known.setNodeValue(octomap::point3d(0.F, 0.F, z), -1.F);
+        }
+        return OnlineMap(config, &known).isSeen({0., 0., 1.});
+    };
+    EXPECT_FALSE(isSeenAbove(5));
+    EXPECT_TRUE(isSeenAbove(6));
+}
+
 TEST_F(MapOfABox, IsSeenAboveSurfacesWithinRange) {
     const OnlineMap map = fused();
     EXPECT_TRUE(map.isSeen({0., -0.5, 1.}));
