@@ -42,11 +42,12 @@ void addMappingKeys(KeyTable& keys, ExploreConfig& c) {
                  "image; 0: it is not measured"},
                 c.verticalSigma, {0., 1.});
     keys.number({"range", "m", "surfaces farther away are not mapped"}, c.range, {0.5, 12.});
-    keys.number({"resolution", "m",
-                 fmt::format("edge of the map's cells; none: that of the cells of a known map "
-                             "(`map.file` beside `scene.file`), {} without one",
-                             kExploreCell)},
-                c.resolution, {kLeastExploreCell, kMostExploreCell});
+    keys.number(
+        {"resolution", "m",
+         fmt::format("edge of the map's cells; if not given, that of the cells of a known map "
+                     "(`map.file` beside `scene.file`), {} without one",
+                     kExploreCell)},
+        c.resolution, {kLeastExploreCell, kMostExploreCell});
     keys.choice({"unknown", "",
                  "space that was never seen: `optimistic` plans lead through it, "
                  "`pessimistic` plans do not"},

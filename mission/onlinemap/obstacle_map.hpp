@@ -28,9 +28,9 @@ inline constexpr double kSurfaceBeside = 0.05;
 
 /// A camera that looks down observes the foot of a wall, but seldom the wall at the height at which
 /// the robot flies. Walls are therefore continued upward: above the occupied cells of a wall in a
-/// column, unknown cells count as occupied, up to the first ones that are known to be free over
-/// more than 5 cm, such as those above the top of a box. Less does not end a wall: rays to places
-/// beside it clear a cell, where the view ends for example.
+/// column, unknown cells count as occupied, up to the first ones that are known to be free, such as
+/// those above the top of a box. Up to 5 cm of free cells (rounded up to whole cells) do not end a
+/// wall: rays to places beside it clear a cell, where the view ends for example.
 ///
 /// Other unknown cells are free (optimistic) or occupied (pessimistic), except at the body.
 ///

@@ -16,6 +16,7 @@ namespace {
 constexpr double kLeastDepth = 0.2;   // depths below are not trusted, as in fusion [m]
 constexpr double kPixelShare = 0.25;  // of the pixels of a cell that faces the camera
 constexpr std::size_t kFewCells = 3;  // as many are an obstacle
+constexpr std::size_t kWallHits = 4;  // cells of a new wall
 constexpr double kWaySlack = 0.02;    // of clearances along a way [m]
 
 using octomap::OcTreeKey;
@@ -65,6 +66,16 @@ bool isFreeAround(const CellStates& cells, const OcTreeKey& key) {
     return true;
 }
 
+bool isHigher(const OcTreeKey& a, const OcTreeKey& b) { return a[2] < b[2]; }
+
+/// Whether the cells of a column that an image hits are a wall. Pixels may be farther apart than
+/// cells: the height counts, not the number of cells.
+bool isWall(const std::vector<OcTreeKey>& hit, double cell) {
+    if (hit.size() < kWallHits) return false;
+    const auto [lowest, highest] = std::minmax_element(hit.begin(), hit.end(), isHigher);
+    return (*highest)[2] - (*lowest)[2] + 1 >= wallCells(cell);
+}
+
 }  // namespace
 
 bool isSeenThrough(const Eigen::Vector3d& p_w, const ImageF& depth, const Camera& camera,
@@ -85,7 +96,6 @@ ObstaclesInView::ObstaclesInView(const ImageF& depth, const Camera& camera, cons
         const Eigen::Vector3d p_w = middleOf(map, key);
         if (p_w.z() >= range.lowest && p_w.z() <= range.highest) occupied_.push_back(p_w);
     };
-    const auto wall = static_cast<std::size_t>(wallCells(cell_));
     std::map<std::pair<int, int>, std::vector<OcTreeKey>> columns;
     for (const OcTreeKey& key : cellsHit(depth, camera, T_c_w, map, range.distance)) {
         add(key);
@@ -98,11 +108,10 @@ ObstaclesInView::ObstaclesInView(const ImageF& depth, const Camera& camera, cons
         return (T_c_w * middleOf(map, key)).z() <= range.precise && isFreeAround(cells, key);
     };
     for (auto& [column, keys] : columns) {
-        if (keys.size() < wall) continue;
+        if (!isWall(keys, cell_)) continue;
         std::erase_if(keys, [&](const OcTreeKey& key) { return !isNew(key); });
-        if (keys.size() < wall) continue;
+        if (!isWall(keys, cell_)) continue;
         newWalls_.push_back(middleOf(map, keys.front()));
-        const auto isHigher = [](const OcTreeKey& a, const OcTreeKey& b) { return a[2] < b[2]; };
         OcTreeKey above = *std::max_element(keys.begin(), keys.end(), isHigher);
         while (++above[2], middleOf(map, above).z() <= range.highest && !isFree(above)) {
             add(above);

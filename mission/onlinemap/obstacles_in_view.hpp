@@ -12,17 +12,18 @@ namespace photonav {
 /// The region in which obstacles are considered.
 struct ObstacleRange {
     double distance = 0.;  ///< largest horizontal distance from the camera [m]
-    /// Largest depth at which a new wall can be distinguished from a known wall in a neighbouring
-    /// cell [m]; it follows from the noise of depth.
+    /// Largest depth at which a new wall can be distinguished from a known wall beside it
+    /// (kSurfaceBeside, at least a cell) [m]; it follows from the noise of depth.
     double precise = 0.;
     double lowest = 0., highest = 0.;  ///< heights in the world frame [m]
 };
 
 /// The obstacles in one depth image, as cells of the map's size: cells that contain surface points,
-/// and cells above new walls. A wall is new if at least four cells of a column contain surface
-/// points but are free in the map. The cells above a new wall, which the map may show as free, too,
-/// count as occupied up to the first one that the image shows to be free: a camera that looks down
-/// does not observe how high the wall is.
+/// and cells above new walls. A wall is new if cells of a column contain surface points
+/// over the height of a wall (wallCells()), but are free in the map, with no surface beside. The
+/// cells above a new wall, which the map may show as free, too, count as occupied up to the first
+/// one that the image shows to be free: a camera that looks down does not observe how high the wall
+/// is.
 ///
 /// The map needs several images before a free cell becomes occupied. This class needs one image.
 class ObstaclesInView {

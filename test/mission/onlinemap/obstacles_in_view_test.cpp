@@ -30,10 +30,10 @@ class EmptyFloor : public testing::Test {
     void fuse(TexturedOcTree& tree, double x, const View& view) const {
         photonav::fuse(tree, view, camera, at(x));
     }
-    /// A box a metre ahead.
-    View boxOf(double height) const {
+    /// A box ahead.
+    View boxOf(double height, double distance = 1.) const {
         Scene scene = floor();
-        addBox(scene, {1., -0.3, 0.}, {1.3, 0.3, height},
+        addBox(scene, {distance, -0.3, 0.}, {distance + 0.3, 0.3, height},
                addTexture(scene, valueNoise({.seed = 4})));
         return render(std::move(scene), 0.);
     }
@@ -80,7 +80,6 @@ TEST_F(EmptyFloor, ABoxIsAsHighAsItIsSeen) {
     EXPECT_LT(seen.aboveNewWalls().size(), 2U * 13U);
 }
 
-/// What stands above a wall that the map has was seen when that wall was.
 /// It takes 20 cm that are not the floor's, whatever the size of the cells.
 TEST_F(EmptyFloor, ALowBoxIsNoWallInSmallCells) {
     TexturedOcTree fine(0.035);
@@ -89,6 +88,21 @@ TEST_F(EmptyFloor, ALowBoxIsNoWallInSmallCells) {
     EXPECT_FALSE(seenIn(boxOf(0.4), fine).newWalls().empty());
 }
 
+/// Of a column of such cells, pixels hit only some.
+TEST_F(EmptyFloor, AWallIsSeenInCellsSmallerThanPixels) {
+    TexturedOcTree fine(0.01);
+    fuseFloor(fine);
+    EXPECT_FALSE(seenIn(boxOf(3., 1.8), fine).newWalls().empty());
+}
+
+/// Errors of depth and pose move a wall by more than one small cell.
+TEST_F(EmptyFloor, AWallBesideItsPlaceIsNotNew) {
+    TexturedOcTree fine(0.035);
+    for (int i = 0; i < 12; ++i) fuse(fine, 0., boxOf(3.));
+    EXPECT_TRUE(seenIn(boxOf(3., 0.94), fine).newWalls().empty());
+}
+
+/// What stands above a wall that the map has was seen when that wall was.
 TEST_F(EmptyFloor, AWallOfTheMapIsNotNew) {
     const View box = boxOf(3.);
     for (int i = 0; i < 12; ++i) fuse(map, 0., box);

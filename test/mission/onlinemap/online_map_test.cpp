@@ -144,6 +144,15 @@ TEST(DepthSigma, OfStereoIsThatOfDisparities) {
     EXPECT_NEAR(depthSigmaAtOneMetre(config), 0.2 / (f * config.explore.baseline), 1e-12);
 }
 
+/// How far new walls are told from known ones does not depend on the size of small cells.
+TEST(OnlineMap, NewWallsAreSeenAsFarInSmallCells) {
+    Config config;
+    config.explore.resolution = 0.05;
+    const double precise = obstacleRange(config, 1.).precise;
+    config.explore.resolution = 0.02;
+    EXPECT_EQ(obstacleRange(config, 1.).precise, precise);
+}
+
 /// A wall of 20 cm below would have been seen, whatever the size of the cells.
 TEST_F(MapOfABox, IsSeenAboveTwentyCentimetresThatAreKnown) {
     config.explore.resolution = 0.035;
