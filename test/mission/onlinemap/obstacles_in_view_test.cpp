@@ -92,7 +92,9 @@ TEST_F(EmptyFloor, ALowBoxIsNoWallInSmallCells) {
 TEST_F(EmptyFloor, AWallIsSeenInCellsSmallerThanPixels) {
     TexturedOcTree fine(0.01);
     fuseFloor(fine);
-    EXPECT_FALSE(seenIn(boxOf(3., 1.8), fine).newWalls().empty());
+    const ObstaclesInView seen(boxOf(3., 2.).depth, camera, at(0.), CellStates(fine),
+                               {2.5, 3., 0.7, 1.7});
+    EXPECT_FALSE(seen.newWalls().empty());
 }
 
 /// Errors of depth and pose move a wall by more than one small cell.
