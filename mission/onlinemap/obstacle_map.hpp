@@ -19,9 +19,12 @@ inline int cellsOver(double length, double cell) {
     return static_cast<int>(std::ceil(length / cell - 1e-6));
 }
 
+/// Fewer cells are no wall, however large they are.
+inline constexpr int kLeastWallCells = 4;
+
 /// Least number of occupied cells above each other in a column that count as a wall: 20 cm, and
-/// four cells. Walls are continued upward.
-inline int wallCells(double cell) { return std::max(4, cellsOver(0.2, cell)); }
+/// kLeastWallCells. Walls are continued upward.
+inline int wallCells(double cell) { return std::max(kLeastWallCells, cellsOver(0.2, cell)); }
 
 /// Errors of depth and pose that show a surface beside its place in the map [m].
 inline constexpr double kSurfaceBeside = 0.05;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <unordered_map>
 
@@ -16,7 +17,6 @@ namespace {
 constexpr double kLeastDepth = 0.2;   // depths below are not trusted, as in fusion [m]
 constexpr double kPixelShare = 0.25;  // of the pixels of a cell that faces the camera
 constexpr std::size_t kFewCells = 3;  // as many are an obstacle
-constexpr std::size_t kWallHits = 4;  // cells of a new wall
 constexpr double kWaySlack = 0.02;    // of clearances along a way [m]
 
 using octomap::OcTreeKey;
@@ -71,7 +71,7 @@ bool isHigher(const OcTreeKey& a, const OcTreeKey& b) { return a[2] < b[2]; }
 /// Whether the cells of a column that an image hits are a wall. Pixels may be farther apart than
 /// cells: the height counts, not the number of cells.
 bool isWall(const std::vector<OcTreeKey>& hit, double cell) {
-    if (hit.size() < kWallHits) return false;
+    if (std::ssize(hit) < kLeastWallCells) return false;
     const auto [lowest, highest] = std::minmax_element(hit.begin(), hit.end(), isHigher);
     return (*highest)[2] - (*lowest)[2] + 1 >= wallCells(cell);
 }

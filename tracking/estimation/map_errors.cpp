@@ -16,11 +16,12 @@ namespace {
 
 constexpr unsigned kStride = 3;          // of the pixels looked at
 constexpr std::size_t kMostMakers = 12;  // keyframes remembered of a brick: the first ones
-constexpr double kBeside = 0.005;        // of a surface on the border of two bricks [bricks]
-constexpr double kWeakSigma = 0.005;     // standard deviation of an image alone that is too much
-                                         // [rad], translations in mean depths
-constexpr double kNegligible = 1e-6;     // share of the mean information
-constexpr double kOpenVariance = 1e3;    // of directions that an image leaves open [m^2], [rad^2]
+// Of a surface on the border of two bricks: 0.02 cells [bricks].
+constexpr double kBeside = 0.02 / MapChange::kBrickEdge;
+constexpr double kWeakSigma = 0.005;   // standard deviation of an image alone that is too much
+                                       // [rad], translations in mean depths
+constexpr double kNegligible = 1e-6;   // share of the mean information
+constexpr double kOpenVariance = 1e3;  // of directions that an image leaves open [m^2], [rad^2]
 
 /// Unlike an alignment, a map is displaced at its edges and where it is saturated as well.
 constexpr PhotometricOptions kEveryPixel{.depthJump = kInfinity, .saturation = -1.};
