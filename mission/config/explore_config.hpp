@@ -38,6 +38,10 @@ struct ExploreConfig {
     /// Standard deviation of the vertical that the accelerometer measures with every image [rad];
     /// 0: the vertical is not measured.
     double verticalSigma = 0.01;
+    /// Standard deviation of the rotation that the gyroscope measures over one second [rad], whose
+    /// square grows with time; 0: no gyroscope. The default is ten times that of usual gyroscopes,
+    /// so that a constant error of 0.1 mrad/s is within it for 100 s.
+    double gyroscopeNoise = 1e-3;
     double range = 4.;  ///< surfaces farther away are not mapped [m]
     /// Edge of the map's cells [m]. None: that of a known map's cells, which setUpExploration() and
     /// explorerOptions() put here; kExploreCell without a known map.

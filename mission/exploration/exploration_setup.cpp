@@ -123,6 +123,7 @@ ExplorationSetup setUpExploration(const PlanningProblem& problem) {
     camera.depthNoise = {config.explore.depthSigma, config.explore.depthMissing};
     camera.baseline = config.explore.baseline;
     camera.verticalSigma = config.explore.verticalSigma;
+    setup.flight.robot.body.gyroscopeNoise = config.explore.gyroscopeNoise;
     setup.flight.arrivalTolerance = config.explore.goalTolerance;
     PhotometricOptions ofSensor = config.photometric;
     ofSensor.scale = 1.;

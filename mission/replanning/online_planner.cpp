@@ -12,6 +12,7 @@
 #include "io/stopwatch.hpp"
 #include "planners/planner_table.hpp"
 #include "planners/shortened_path.hpp"
+#include "robot/gyroscope.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
@@ -23,6 +24,14 @@ constexpr unsigned kVerticesWithoutViews = 10;
 constexpr unsigned kChangesWithoutViews = 1000;
 /// After so many updates without a way the tree is grown anew, which takes as long as ten of them.
 constexpr int kAnew = 3;
+
+/// Covariance of the motion that odometry and gyroscope measure, per metre of flight.
+Matrix6 motionNoiseOf(const Config& config) {
+    const double noise = config.explore.gyroscopeNoise;
+    if (noise == 0.) return config.belief.motionNoise;
+    return updateCovariance(config.belief.motionNoise,
+                            gyroscopeInformation(noise, 1. / config.fly.speed));
+}
 
 /// The config of plans in a map that grows. A view stands for a cell of twice the size: most views
 /// are seen once before the map changes again.
@@ -36,6 +45,7 @@ Config configOf(Config config, const std::string& planner) {
     config.field.rotationPitch *= 2.;
     config.field.updatesUntilStale = config.explore.viewTurns;
     config.belief.initialCovariance = config.explore.initialCovariance;
+    config.belief.motionNoise = motionNoiseOf(config);
     config.unknownToCamera = UnknownPolicy::free;
     config.unknownToPlanner = config.explore.unknown == UnknownSpace::optimistic
                                   ? UnknownPolicy::free

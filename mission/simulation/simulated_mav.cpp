@@ -6,11 +6,13 @@
 
 #include "geometry/gaussian.hpp"
 #include "geometry/se3.hpp"
+#include "robot/gyroscope.hpp"
 
 namespace photonav {
 namespace {
 
-constexpr std::uint64_t kDriftSeed = 0x9e3779b97f4a7c15;  // for random numbers of its own
+// For random numbers of their own.
+constexpr std::uint64_t kDriftSeed = 0x9e3779b97f4a7c15, kGyroscopeSeed = 0xbf58476d1ce4e5b9;
 
 }  // namespace
 
@@ -19,9 +21,13 @@ SimulatedMav::SimulatedMav(const Pose& T_w_b, const MavOptions& options, std::ui
       options_(options),
       noiseRoot_(rootOf(options.odometryFactor * options.odometryNoise)),
       random_(seed),
-      driftRandom_(seed ^ kDriftSeed) {
+      driftRandom_(seed ^ kDriftSeed),
+      gyroscopeRandom_(seed ^ kGyroscopeSeed) {
     if (!(options.lag >= 0.) || !(options.odometryFactor >= 0.)) {
         throw std::invalid_argument("simulated MAV: negative lag or odometry factor");
+    }
+    if (!(options.gyroscopeNoise >= 0.)) {
+        throw std::invalid_argument("simulated MAV: negative noise of the gyroscope");
     }
     if (!(options.drift >= 0.) || !(options.driftTime > 0.)) {
         throw std::invalid_argument("simulated MAV: negative drift, or no time of drift");
@@ -35,6 +41,17 @@ void SimulatedMav::changeDrift(double dt) {
     for (double& component : drift_w_) {
         component = kept * component + std::sqrt(1. - kept * kept) * normal(driftRandom_);
     }
+}
+
+/// The weighted mean of odometry and gyroscope.
+void SimulatedMav::fuseGyroscope(double dt, Vector6& error, Matrix6& covariance) {
+    const Matrix6 information = gyroscopeInformation(options_.gyroscopeNoise, dt);
+    std::normal_distribution<double> normal(0., options_.gyroscopeNoise * std::sqrt(dt));
+    Vector6 rotation = Vector6::Zero();
+    for (double& component : rotation.tail<3>()) component = normal(gyroscopeRandom_);
+    const Matrix6 left = Matrix6::Identity() + covariance * information;
+    error = left.partialPivLu().solve(error + covariance * information * rotation).eval();
+    covariance = updateCovariance(covariance, information);
 }
 
 UncertainPose SimulatedMav::step(const BodyVelocity& command, double dt) {
@@ -57,8 +74,10 @@ UncertainPose SimulatedMav::step(const BodyVelocity& command, double dt) {
     T_w_b_ = T_w_b_ * T_next_now.inverse();
     const double way = motion.head<3>().norm() + options_.rotationWeight * std::abs(motion[5]);
     // The true motion is exp(xi^) times the measured one.
-    const Vector6 xi = std::sqrt(way) * draw(noiseRoot_, random_);
-    return {expSE3(-xi) * T_next_now, way * options_.odometryNoise};
+    Vector6 xi = std::sqrt(way) * draw(noiseRoot_, random_);
+    Matrix6 covariance = way * options_.odometryNoise;
+    if (options_.gyroscopeNoise > 0.) fuseGyroscope(dt, xi, covariance);
+    return {expSE3(-xi) * T_next_now, covariance};
 }
 
 }  // namespace photonav

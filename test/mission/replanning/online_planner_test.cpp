@@ -77,6 +77,22 @@ class OnlinePlannerTest : public ::testing::Test {
     std::unique_ptr<OnlineMap> map_;
 };
 
+/// What a heading that drifts does to the position: the gyroscope limits it.
+TEST_F(OnlinePlannerTest, PlansWithTheGyroscopeThatTheRobotHas) {
+    config_.belief.motionNoise.diagonal() << 1e-6, 1e-6, 1e-6, 1e-4, 1e-4, 1e-2;
+    const auto varianceAtGoal = [&](double noise, double speed) {
+        config_.explore.gyroscopeNoise = noise;
+        config_.fly.speed = speed;
+        OnlinePlanner straight = planner("rrt_star");
+        updateAt(straight, config_.start.position);
+        return straight.path().back().covariance.topLeftCorner<3, 3>().trace();
+    };
+    const double without = varianceAtGoal(0., 1.), with = varianceAtGoal(1e-3, 1.);
+    EXPECT_GT(without, 0.1);
+    EXPECT_LT(with, 1e-3 * without);
+    EXPECT_GT(varianceAtGoal(1e-3, 0.1), 2. * with) << "it drifts for longer";
+}
+
 TEST_F(OnlinePlannerTest, HeadingsAreThoseOfThePolicy) {
     OnlinePlanner fixed = planner("rrt_star/fixed"), forward = planner("rrt_star/forward");
     updateAt(fixed, {0., 0., 1.});
