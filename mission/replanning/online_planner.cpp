@@ -317,9 +317,9 @@ std::vector<BeliefPoint> OnlinePlanner::pathFrom(const Pose& T_w_b, const Matrix
     return path;
 }
 
-/// Beliefs along the plan. A view of the map that the robot made itself never makes its pose
-/// better than the map is, of which the belief here is a bound. The cost is that by which the
-/// planner chose: relative to the map.
+/// Beliefs along the plan. A view of the map that the robot made itself is not counted as making
+/// its pose better than it is now. The cost is that by which the planner chose: relative to the
+/// map.
 void OnlinePlanner::evaluatePath(const Pose& T_w_b, const Matrix6& covariance) {
     path_ = pathFrom(T_w_b, covariance);
     const std::vector<BeliefPoint> inMap = pathFrom(T_w_b, config_.belief.initialCovariance);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimation/map_errors.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "alignment/residual_covariance.hpp"
 #include "geometry/constants.hpp"
-#include "geometry/eigensystem.hpp"
 #include "geometry/se3.hpp"
 #include "map/map_change.hpp"
 #include "photometry/photometric.hpp"
@@ -18,10 +18,12 @@ constexpr unsigned kStride = 3;          // of the pixels looked at
 constexpr std::size_t kMostMakers = 12;  // keyframes remembered of a brick: the first ones
 // Of a surface on the border of two bricks: 0.02 cells [bricks].
 constexpr double kBeside = 0.02 / MapChange::kBrickEdge;
-constexpr double kWeakSigma = 0.005;   // standard deviation of an image alone that is too much
-                                       // [rad], translations in mean depths
-constexpr double kNegligible = 1e-6;   // share of the mean information
-constexpr double kOpenVariance = 1e3;  // of directions that an image leaves open [m^2], [rad^2]
+constexpr double kWeakSigma = 0.005;  // standard deviation of an image alone that is too much
+                                      // [rad], translations in mean depths
+constexpr double kNegligible = 1e-6;  // share of the mean information
+// The pose in the map is never known better than to 1 % of the standard deviation in the world:
+// errors are not exactly linear.
+constexpr double kLeastRelative = 1e-4;
 
 /// Unlike an alignment, a map is displaced at its edges and where it is saturated as well.
 constexpr PhotometricOptions kEveryPixel{.depthJump = kInfinity, .saturation = -1.};
@@ -35,12 +37,15 @@ std::uint64_t keyOf(const Eigen::Array3i& brick) {
     return key;
 }
 
+using Matrix12 = Eigen::Matrix<double, 12, 12>;
+
 Matrix6 symmetric(const Matrix6& A) { return 0.5 * (A + A.transpose()); }
 
-/// Differences of covariances may lose definiteness by rounding.
-Matrix6 nonNegative(const Matrix6& A) {
-    const auto [values, vectors] = eigensystem(symmetric(A));
-    return vectors * values.cwiseMax(1e-14).asDiagonal() * vectors.transpose();
+/// Covariances that are computed in different ways may together be a little indefinite.
+Matrix12 nonNegative(const Matrix12& A) {
+    const Eigen::SelfAdjointEigenSolver<Matrix12> solver(A);
+    return solver.eigenvectors() * solver.eigenvalues().cwiseMax(1e-14).asDiagonal() *
+           solver.eigenvectors().transpose();
 }
 
 }  // namespace
@@ -53,7 +58,7 @@ struct MapErrors::Shares {
         double pixels = 0.;
     };
     std::vector<Share> of;
-    double pixels = 0., makers = 0.;
+    double pixels = 0.;
     double inverseDepth = 0.;  // sum [1/m]
 };
 
@@ -106,7 +111,6 @@ MapErrors::Shares MapErrors::sharesOf(const View& map, const Camera& camera,
                 shares.of[at[k]].pixels += part;
             }
             shares.pixels += 1.;
-            shares.makers += static_cast<double>(makers->size());
             shares.inverseDepth += 1. / map.depth[v][u];
         }
     }
@@ -120,14 +124,14 @@ MapErrors::Relation MapErrors::relate(const View& map, const Camera& camera,
     relation.relative = T_c_w.covariance;
     relation.mapWithKeyframes = Wide::Zero(6, cross_.cols());
     if (shares.of.empty()) return relation;
-    relation.views = shares.makers / shares.pixels;
+    relation.isMapped = true;
 
     // In directions without information every pixel counts the same.
     Matrix6 all = Matrix6::Zero();
     for (const auto& share : shares.of) all += share.information;
-    const double depth = shares.pixels / shares.inverseDepth;
+    relation.depth = shares.pixels / shares.inverseDepth;
     Vector6 unit;
-    unit << Eigen::Vector3d::Constant(1. / depth), Eigen::Vector3d::Ones();
+    unit << Eigen::Vector3d::Constant(1. / relation.depth), Eigen::Vector3d::Ones();
     const double mean = std::max(1e-12, unit.cwiseInverse().cwiseAbs2().dot(all.diagonal()) / 6.);
     const Matrix6 least = Matrix6(kNegligible * mean * unit.cwiseAbs2().asDiagonal());
     const Eigen::LDLT<Matrix6> solver(all + least);
@@ -144,17 +148,16 @@ MapErrors::Relation MapErrors::relate(const View& map, const Camera& camera,
         relation.ofMap +=
             relation.mapWithKeyframes.middleCols<6>(6 * shares.of[i].keyframe) * M[i].transpose();
     }
-    relation.ofMap = nonNegative(relation.ofMap);
-    relation.withMap = cameraWithMap - relation.ofMap;
-    relation.relative =
-        nonNegative(T_c_w.covariance - cameraWithMap - cameraWithMap.transpose() + relation.ofMap);
+    Matrix12 joint;  // of xi_c and m
+    joint << (1. + kLeastRelative) * T_c_w.covariance, cameraWithMap, cameraWithMap.transpose(),
+        relation.ofMap;
+    joint = nonNegative(joint);
+    relation.ofCamera = joint.topLeftCorner<6, 6>();
+    relation.ofMap = joint.bottomRightCorner<6, 6>();
+    const Matrix6 withMap = joint.topRightCorner<6, 6>();
+    relation.withRelative = relation.ofCamera - withMap;
+    relation.relative = symmetric(relation.withRelative - withMap.transpose() + relation.ofMap);
     return relation;
-}
-
-/// Covariance of a sum of two dependent errors.
-Matrix6 MapErrors::joined(const Relation& relation, const Matrix6& relative,
-                          const Matrix6& withMap) const {
-    return nonNegative(relation.ofMap + relative + withMap + withMap.transpose());
 }
 
 Alignment MapErrors::withoutWeak(const Alignment& alignment, const UncertainPose& T_c_w) {
@@ -177,28 +180,48 @@ Alignment MapErrors::withoutWeak(const Alignment& alignment, const UncertainPose
     return strong;
 }
 
-Matrix6 MapErrors::align(const Relation& relation, const Alignment& alignment) {
-    if (relation.views == 0.) return alignment.covariance;
-    // The noise of the few images in the map is the same in every alignment to it.
-    const Matrix6 alone =
-        (alignment.information + Matrix6::Identity() / kOpenVariance).inverse() / relation.views;
-    const Matrix6 tiny = 1e-12 * Matrix6::Identity();
-    const Matrix6 relative =
-        larger(alignment.covariance + tiny, smaller(relation.relative + tiny, symmetric(alone)));
-    const Matrix6 left =
-        (Matrix6::Identity() + relation.relative * alignment.information).inverse();
-    cross_ = (relation.mapWithKeyframes + left * (cross_ - relation.mapWithKeyframes)).eval();
-    return joined(relation, relative, left * relation.withMap);
+UncertainPose MapErrors::align(const Relation& relation, const UncertainPose& T_c_w,
+                               const Alignment& alignment) {
+    if (!relation.isMapped) return {alignment.T_c_w, alignment.covariance};
+    if (isUninformative(alignment)) return T_c_w;
+    setImageNoise(alignment.information, relation.depth);
+    const Matrix6& prior = relation.relative;
+    // What a change of xi_c - m says about xi_c: P_cd P_d^-1.
+    const Matrix6 share = prior.ldlt().solve(relation.withRelative.transpose()).transpose();
+    const Matrix6 left = (Matrix6::Identity() + prior * alignment.information).inverse();
+    const Matrix6 gain = share * (Matrix6::Identity() - left);
+    cross_ -= (gain * (cross_ - relation.mapWithKeyframes)).eval();
+    // Errors that repeat are in the covariance of the alignment, not in its information.
+    const Matrix6 found =
+        transported(alignment.covariance, -deviation(alignment.T_c_w, T_c_w.mean));
+    const Matrix6 relative = smaller(larger(symmetric(left * prior), found), prior);
+    const Pose moved = expSE3(share * logSE3(alignment.T_c_w * T_c_w.mean.inverse()));
+    return {moved * T_c_w.mean,
+            symmetric(relation.ofCamera - share * (prior - relative) * share.transpose())};
 }
 
 Matrix6 MapErrors::relocalize(const Relation& relation, const Alignment& alignment) {
-    if (relation.views == 0.) return alignment.covariance;
+    if (!relation.isMapped) return alignment.covariance;
+    setImageNoise(alignment.information, relation.depth);
     cross_ = relation.mapWithKeyframes;
-    return joined(relation, alignment.covariance, Matrix6::Zero());
+    return symmetric(relation.ofMap + alignment.covariance);
+}
+
+/// The noise of an image displaces it as it does an alignment, at most by kWeakSigma. An image that
+/// was not aligned has the noise of the last one that was; one before the first alignment, of that.
+void MapErrors::setImageNoise(const Matrix6& information, double depth) {
+    const Spectrum s = spectrum(information, depth);
+    const Vector6 variances = s.values.cwiseMax(1. / (kWeakSigma * kWeakSigma)).cwiseInverse();
+    const Matrix6 axes = s.unit.asDiagonal() * s.directions;
+    imageNoise_ = symmetric(axes * variances.asDiagonal() * axes.transpose());
+    for (const int k : withoutNoise_) covariance_.block<6, 6>(6 * k, 6 * k) += *imageNoise_;
+    withoutNoise_.clear();
 }
 
 int MapErrors::addPose(const UncertainPose& T_c_w) {
-    return add(T_c_w.mean, T_c_w.covariance, cross_, T_c_w.covariance);
+    if (!imageNoise_) withoutNoise_.push_back(static_cast<int>(poses_.size()));
+    const Matrix6 noise = imageNoise_.value_or(Matrix6::Zero());
+    return add(T_c_w.mean, T_c_w.covariance + noise, cross_, T_c_w.covariance);
 }
 
 void MapErrors::addMap(const Pose& T_k_w, const Matrix6& covariance,

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -16,15 +17,23 @@ namespace photonav {
 /// gives the pose relative to the keyframes whose images were fused into the part in view, not the
 /// pose in the world.
 ///
-/// Therefore the joint covariance of the camera pose and of all keyframe poses is kept in a
+/// Therefore the joint covariance of the camera pose and of all keyframes is kept in a
 /// Schmidt-Kalman filter: the errors of keyframes are considered but not corrected, because the map
-/// is not fused again. With xi_c the error of the camera pose and xi_k the error of keyframe k
-/// (left perturbations, in the frame of each camera), the part of the map in view is displaced by
+/// is not fused again. With xi_c the error of the camera pose and xi_k the displacement of the
+/// image of keyframe k in the map (left perturbations, in the frame of each camera), the part of
+/// the map in view is displaced by
 ///     m = sum_k M_k xi_k,   M_k = (sum_j Lambda_j)^-1 Lambda_k Ad(T_c_k),
 /// where Lambda_k is the information of the pixels whose cells were fused by keyframe k (divided
-/// equally between several keyframes). An alignment reduces the covariance of xi_c - m alone. So
-/// the belief does not become more certain than the part of the map in view was when it was fused;
-/// the covariance falls when the start comes into view again.
+/// equally between several keyframes). xi_k is the error of the keyframe's pose and the noise of
+/// its image, which is the same in every alignment to it. The two count as independent.
+///
+/// An alignment measures d = xi_c - m. If it changes d by delta, it changes xi_c by
+///     P_cd P_d^-1 delta,   P_cd covariance of xi_c with d, P_d covariance of d.
+/// So an alignment adds what is known of the error of this part of the map, and no more: without
+/// other measurements the pose does not become more certain than it was when the part was made.
+/// The covariance falls when the start comes into view again.
+/// Where the gyroscope and the vertical know the rotation better than the map does, the map does
+/// not turn the camera.
 class MapErrors {
   public:
     /// @param resolution edge of the map's cells [m]
@@ -32,13 +41,14 @@ class MapErrors {
 
     /// The joint covariance of the camera pose and the displacement m of the map in view.
     struct Relation {
-        Matrix6 relative = Matrix6::Zero();  ///< covariance of xi_c - m
-        Matrix6 ofMap = Matrix6::Zero();     ///< covariance of m
-        Matrix6 withMap = Matrix6::Zero();   ///< cross-covariance of xi_c - m with m
-        /// Cross-covariance of m with the errors of all keyframes.
+        bool isMapped = false;  ///< whether surfaces that a keyframe has made are in view
+        double depth = 0.;      ///< mean depth of these surfaces [m]
+        Matrix6 relative = Matrix6::Zero();      ///< covariance of d = xi_c - m
+        Matrix6 ofCamera = Matrix6::Zero();      ///< covariance of xi_c
+        Matrix6 withRelative = Matrix6::Zero();  ///< cross-covariance of xi_c with d
+        Matrix6 ofMap = Matrix6::Zero();         ///< covariance of m
+        /// Cross-covariance of m with the displacements of all keyframes.
         Eigen::Matrix<double, 6, Eigen::Dynamic> mapWithKeyframes;
-        /// Mean number of keyframes that were fused into the map at a pixel; 0: none in view.
-        double views = 0.;
     };
 
     /// Propagates the errors over a motion of the camera.
@@ -60,8 +70,10 @@ class MapErrors {
     static Alignment withoutWeak(const Alignment& alignment, const UncertainPose& T_c_w);
 
     /// Updates by an image that was aligned with the prior covariance `relation.relative`.
-    /// @return covariance of the camera pose in the world
-    Matrix6 align(const Relation& relation, const Alignment& alignment);
+    /// @param T_c_w belief of the pose in the world before the image
+    /// @return belief after it
+    UncertainPose align(const Relation& relation, const UncertainPose& T_c_w,
+                        const Alignment& alignment);
 
     /// Updates by an image that was aligned while tracking was lost: the pose in the map follows
     /// from the alignment alone.
@@ -97,7 +109,7 @@ class MapErrors {
     using Wide = Eigen::Matrix<double, 6, Eigen::Dynamic>;
     struct Shares;
     Shares sharesOf(const View& map, const Camera& camera, const Pose& T_c_w) const;
-    Matrix6 joined(const Relation& relation, const Matrix6& relative, const Matrix6& withMap) const;
+    void setImageNoise(const Matrix6& information, double depth);
 
     int add(const Pose& T_k_w, const Matrix6& covariance, const Wide& withOthers,
             const Matrix6& withCamera);
@@ -107,9 +119,11 @@ class MapErrors {
 
     double brick_;                // edge of a brick of cells, whose keyframes are kept [m]
     std::vector<Pose> poses_;     // T_k_w
-    Eigen::MatrixXd covariance_;  // of all keyframes
+    Eigen::MatrixXd covariance_;  // of the displacements of all keyframes' images
     Wide cross_ = Wide(6, 0);     // of the camera's error with theirs
     std::unordered_map<std::uint64_t, std::vector<int>> makers_;  // keyframes of a brick
+    std::optional<Matrix6> imageNoise_;  // of the last image that was aligned; none: not one was
+    std::vector<int> withoutNoise_;      // keyframes from before it
     std::unordered_set<std::uint64_t> removed_;  // bricks whose surfaces were removed
 };
 

@@ -135,11 +135,13 @@ UncertainPose Tracker::priorInMap() const {
     return {belief_.mean, relation_ ? relation_->relative : belief_.covariance};
 }
 
-/// Covariance in the world of a pose found in the map.
-Matrix6 Tracker::covarianceOf(const Match& match) {
-    if (!relation_ || match.keyframe) return match.T_c_w.covariance;
-    return match.isRelocalized ? options_.mapErrors->relocalize(*relation_, match.alignment)
-                               : options_.mapErrors->align(*relation_, match.alignment);
+/// The belief in the world after a pose was found in the map.
+UncertainPose Tracker::beliefAfter(const Match& match) {
+    if (!relation_ || match.keyframe) return match.T_c_w;
+    if (!match.isRelocalized) {
+        return options_.mapErrors->align(*relation_, belief_, match.alignment);
+    }
+    return {match.T_c_w.mean, options_.mapErrors->relocalize(*relation_, match.alignment)};
 }
 
 /// @param stayed where the camera was at the last image
@@ -260,7 +262,7 @@ void Tracker::onMatched(const View& view, const Match& match, const Pose& before
                         TrackedFrame& frame) {
     frame.alignment = match.alignment;
     frame.keyframe = match.keyframe;
-    belief_ = {match.T_c_w.mean, covarianceOf(match)};
+    belief_ = beliefAfter(match);
     // The pose before is that of the last image tracked, images lost since then or not.
     velocity_.observe(belief_.mean * before.inverse(),
                       trackedTime_ ? frame.time - *trackedTime_ : 0.);

@@ -102,7 +102,7 @@ class Tracker {
     void correctByVertical(const MeasuredVertical& measured);
     void relateToMap(const ImageF& measuredDepth);
     UncertainPose priorInMap() const;
-    Matrix6 covarianceOf(const Match& match);
+    UncertainPose beliefAfter(const Match& match);
     std::optional<Match> find(const View& view, const Pose& stayed, TrackedFrame& frame);
     std::optional<Match> findInMap(const ImageF& image, const Pose& stayed, TrackedFrame& frame);
     std::optional<Match> findInNeighbourhood(const View& view);

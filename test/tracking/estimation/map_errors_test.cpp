@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
+#include "geometry/gaussian.hpp"
+#include "geometry/se3.hpp"
 #include "tracking/rooms.hpp"
 
 namespace photonav {
@@ -45,7 +49,8 @@ class OwnMapErrors : public ::testing::Test {
         Alignment alignment;
         alignment.information = 1e6 * Matrix6::Identity();
         alignment.covariance = updateCovariance(relation.relative, alignment.information);
-        return errors.align(relation, alignment);
+        alignment.T_c_w = poseAt(x);
+        return errors.align(relation, {poseAt(x), covariance}, alignment).covariance;
     }
 
     Camera camera = makeCamera(94, 60, 1.2);
@@ -87,8 +92,142 @@ TEST_F(OwnMapErrors, ThePriorOfAnAlignmentIsThatOfThePoseInTheMap) {
     const auto relation = errors.relate(viewAt(0.1), camera, {poseAt(0.1), covariance});
     EXPECT_NEAR(relation.relative.trace(), 6e-4, 1e-4);
     const auto elsewhere = errors.relate(viewAt(8.), camera, {poseAt(8.), covariance});
-    EXPECT_EQ(elsewhere.views, 0.);
+    EXPECT_FALSE(elsewhere.isMapped);
     EXPECT_EQ(elsewhere.relative, covariance);
+}
+
+/// The errors of a camera that hovers where it has mapped its first keyframe. It measures its
+/// rotation by other means as well.
+class HoverAtAKeyframe : public OwnMapErrors {
+  protected:
+    void begin(const Matrix6& covariance) {
+        errors = MapErrors{kResolution};
+        covariance_ = covariance;
+        xi_ = draw(rootOf(covariance), random_);
+        displaced_ = xi_ + draw(rootOf(noise_), random_);
+        addKeyframe(0., covariance);
+    }
+    void hover() {
+        errors.propagate(Pose::Identity());
+        covariance_ += motion_ * Matrix6::Identity();
+        xi_ += std::sqrt(motion_) * draw(Matrix6::Identity(), random_);
+    }
+    void measureRotation() {
+        Matrix6 information = Matrix6::Zero();
+        information.bottomRightCorner<3, 3>().diagonal().setConstant(1e6);
+        Vector6 measured = xi_;
+        measured.tail<3>() += 1e-3 * draw(Matrix6::Identity(), random_).tail<3>();
+        errors.observe(covariance_, information);
+        covariance_ = updateCovariance(covariance_, information);
+        xi_ -= covariance_ * information * measured;
+    }
+    void align() {
+        const UncertainPose before{poseAt(0.), covariance_};
+        const auto relation = errors.relate(view_, camera, before);
+        Alignment alignment;
+        alignment.information = noise_.inverse();
+        alignment.covariance = updateCovariance(relation.relative, alignment.information);
+        const Vector6 measured = xi_ - displaced_ + draw(rootOf(noise_), random_);
+        const Vector6 moved = alignment.covariance * alignment.information * measured;
+        alignment.T_c_w = expSE3(moved) * before.mean;
+        const UncertainPose after = errors.align(relation, before, alignment);
+        xi_ -= deviation(after.mean, before.mean);
+        covariance_ = after.covariance;
+    }
+    double nees() const { return xi_.dot(covariance_.ldlt().solve(xi_)) / 6.; }
+
+    std::mt19937_64 random_{1};
+    View view_ = viewAt(0.);
+    const Matrix6 noise_ =
+        Vector6{{4e-6, 9e-6, 4e-6, 1e-6, 1e-6, 1e-6}}.asDiagonal();  // of an image
+    double motion_ = 1e-5;                                           // variance between two images
+    Matrix6 covariance_;
+    Vector6 xi_;         // error of the pose
+    Vector6 displaced_;  // the keyframe's image: by the error of its pose, and by its noise
+};
+
+/// With odometry that is worse than the images, and with one that is far better.
+TEST_F(HoverAtAKeyframe, ItsBeliefIsConsistent) {
+    for (const double motion : {1e-5, 1e-7}) {
+        motion_ = motion;
+        double sum = 0.;
+        constexpr int kFlights = 200;
+        for (int i = 0; i < kFlights; ++i) {
+            begin(1e-5 * Matrix6::Identity());
+            for (int k = 0; k < 20; ++k) {
+                hover();
+                if (k % 4 == 0) measureRotation();
+                align();
+            }
+            sum += nees() / kFlights;
+        }
+        EXPECT_NEAR(sum, 1., 0.15) << "variance of the motion " << motion;
+    }
+}
+
+TEST_F(HoverAtAKeyframe, AMapThatIsTurnedDoesNotTurnACameraThatKnowsBetter) {
+    begin(Vector6{{1e-5, 1e-5, 1e-5, 1e-4, 1e-4, 1e-4}}.asDiagonal());
+    xi_ << 0., 0., 0., 0.02, 0., 0.;
+    displaced_ = xi_;
+    for (int k = 0; k < 20; ++k) {
+        hover();
+        measureRotation();
+        align();
+        EXPECT_LT(xi_.tail<3>().norm(), 5e-3) << k;
+    }
+    EXPECT_LT((covariance_.bottomRightCorner<3, 3>().trace()), 3. * 1e-6);
+}
+
+/// Back at a start that is known to millimetres, after a long way: its pose is that of the image.
+TEST_F(HoverAtAKeyframe, ALongWayIsForgottenWhereTheStartIsSeenAgain) {
+    begin(1e-6 * Matrix6::Identity());
+    align();  // for the noise of the keyframe's image
+    errors.propagate(Pose::Identity());
+    const UncertainPose lost{poseAt(0.), 0.5 * Matrix6::Identity()};
+    const auto relation = errors.relate(view_, camera, lost);
+    Vector6 moved;
+    moved << 0.3, 0., 0.1, 0., 0.02, 0.;
+    Alignment alignment;
+    alignment.information = noise_.inverse();
+    alignment.covariance = updateCovariance(relation.relative, alignment.information);
+    alignment.T_c_w = expSE3(moved) * lost.mean;
+    const UncertainPose found = errors.align(relation, lost, alignment);
+    EXPECT_LT(deviation(found.mean, alignment.T_c_w).norm(), 1e-4);
+    // Of the start, of its image, and of this one.
+    const Matrix6 expected = 1e-6 * Matrix6::Identity() + 2. * noise_;
+    EXPECT_NEAR(found.covariance.trace(), expected.trace(), 0.05 * expected.trace());
+}
+
+/// A keyframe that is added after an alignment has the noise of this image; the next one, whose
+/// image is not aligned, too.
+TEST_F(HoverAtAKeyframe, KeyframesHaveTheNoiseOfTheirImages) {
+    begin(1e-6 * Matrix6::Identity());
+    align();
+    for (const double x : {8., -8.}) {
+        errors.propagate(Pose::Identity());
+        addKeyframe(x, 1e-4 * Matrix6::Identity());
+        const UncertainPose far{poseAt(x), 1e-2 * Matrix6::Identity()};
+        const Matrix6 expected = 1e-4 * Matrix6::Identity() + noise_;
+        EXPECT_LT((errors.relate(viewAt(x), camera, far).ofMap - expected).norm(),
+                  0.02 * noise_.norm());
+    }
+}
+
+/// An image that does not inform, seen after a keyframe, must not hide that the pose has the error
+/// of this keyframe.
+TEST_F(HoverAtAKeyframe, AnImageThatDoesNotInformChangesNothing) {
+    begin(1e-6 * Matrix6::Identity());
+    const UncertainPose there{poseAt(0.), 1e-2 * Matrix6::Identity()};
+    addKeyframe(8., there.covariance);
+    Alignment open;
+    open.T_c_w = there.mean;
+    open.covariance = there.covariance;
+    open.information = noise_.inverse();
+    open.openDirections.assign(kTwistAxes.begin(), kTwistAxes.end());
+    const auto before = errors.relate(view_, camera, there);
+    const UncertainPose after = errors.align(before, there, open);
+    EXPECT_EQ(after.covariance, there.covariance);
+    EXPECT_EQ(errors.relate(view_, camera, there).relative, before.relative);
 }
 
 /// A surface that was removed and is mapped again has the errors of its new image alone. Elsewhere,
@@ -169,7 +308,7 @@ TEST_F(OwnMapErrors, ASurfaceOnTheBorderOfTwoBricksHasTheErrorsOfEither) {
         MapErrors known{kResolution};
         known.addMap(poseAt(0.), kFirst * Matrix6::Identity(), layerOfBricks(layer));
         const auto relation = known.relate(viewAt(0.), camera, {poseAt(0.), Matrix6::Identity()});
-        EXPECT_EQ(relation.views, 1.) << "layer " << layer;
+        EXPECT_TRUE(relation.isMapped) << "layer " << layer;
     }
 }
 
