@@ -7,12 +7,12 @@
 #include <numbers>
 
 #include "alignment/residual_covariance.hpp"
+#include "geometry/rotation_information.hpp"
 #include "geometry/se3.hpp"
 #include "geometry/segment.hpp"
 #include "io/stopwatch.hpp"
 #include "planners/planner_table.hpp"
 #include "planners/shortened_path.hpp"
-#include "robot/gyroscope.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
@@ -30,7 +30,7 @@ Matrix6 motionNoiseOf(const Config& config) {
     const double noise = config.explore.gyroscopeNoise;
     if (noise == 0.) return config.belief.motionNoise;
     return updateCovariance(config.belief.motionNoise,
-                            gyroscopeInformation(noise, 1. / config.fly.speed));
+                            rotationInformation(noise * noise / config.fly.speed));
 }
 
 /// The config of plans in a map that grows. A view stands for a cell of twice the size: most views

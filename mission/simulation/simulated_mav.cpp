@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "geometry/gaussian.hpp"
+#include "geometry/rotation_information.hpp"
 #include "geometry/se3.hpp"
-#include "robot/gyroscope.hpp"
 
 namespace photonav {
 namespace {
@@ -45,8 +45,9 @@ void SimulatedMav::changeDrift(double dt) {
 
 /// The weighted mean of odometry and gyroscope.
 void SimulatedMav::fuseGyroscope(double dt, Vector6& error, Matrix6& covariance) {
-    const Matrix6 information = gyroscopeInformation(options_.gyroscopeNoise, dt);
-    std::normal_distribution<double> normal(0., options_.gyroscopeNoise * std::sqrt(dt));
+    const double noise = options_.gyroscopeNoise;
+    const Matrix6 information = rotationInformation(noise * noise * dt);
+    std::normal_distribution<double> normal(0., noise * std::sqrt(dt));
     Vector6 rotation = Vector6::Zero();
     for (double& component : rotation.tail<3>()) component = normal(gyroscopeRandom_);
     const Matrix6 left = Matrix6::Identity() + covariance * information;

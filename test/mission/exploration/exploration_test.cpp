@@ -239,6 +239,16 @@ TEST_F(RoomToExplore, RefusesAStartInCollision) {
     }
 }
 
+TEST_F(RoomToExplore, TheRobotHasTheSensorsOfTheConfig) {
+    config.explore.gyroscopeNoise = 2e-3;
+    config.explore.verticalSigma = 0.02;
+    const World world(test::roomToExplore(), config);
+    const SimulatedRobotOptions robot =
+        setUpExploration(PlanningProblem(config, world)).flight.robot;
+    EXPECT_EQ(robot.body.gyroscopeNoise, 2e-3);
+    EXPECT_EQ(robot.camera.verticalSigma, 0.02);
+}
+
 TEST_F(RoomToExplore, ManyFlightsAreTheSameOnAnyNumberOfThreads) {
     config.goal.position.x() = 2.;
     const World world(test::roomToExplore(), config);
