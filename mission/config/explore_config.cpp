@@ -41,10 +41,11 @@ void addMappingKeys(KeyTable& keys, ExploreConfig& c) {
                  "standard deviation of the vertical, which the accelerometer measures with every "
                  "image; 0: it is not measured"},
                 c.verticalSigma, {0., 1.});
-    keys.number({"gyroscope_noise", "rad/sqrt(s)",
-                 "standard deviation of the rotation that the gyroscope measures over one second, beside "
-                 "the odometry of `noise.motion`; its square grows with time; 0: no gyroscope"},
-                c.gyroscopeNoise, {0., 1.});
+    keys.number(
+        {"gyroscope_noise", "rad/sqrt(s)",
+         "standard deviation of the rotation that the gyroscope measures over one second, beside "
+         "the odometry of `noise.motion`; its square grows with time; 0: no gyroscope"},
+        c.gyroscopeNoise, {0., 1.});
     keys.number({"range", "m", "surfaces farther away are not mapped"}, c.range, {0.5, 12.});
     keys.number(
         {"resolution", "m",
