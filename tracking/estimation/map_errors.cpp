@@ -20,6 +20,7 @@ constexpr std::size_t kMostMakers = 12;  // keyframes remembered of a brick: the
 constexpr double kBeside = 0.02 / MapChange::kBrickEdge;
 constexpr double kWeakSigma = 0.005;  // standard deviation of an image alone that is too much
                                       // [rad], translations in mean depths
+constexpr double kWeakInformation = 1. / (kWeakSigma * kWeakSigma);
 constexpr double kNegligible = 1e-6;  // share of the mean information
 // The pose in the map is never known better than to 1 % of the standard deviation in the world:
 // errors are not exactly linear.
@@ -162,8 +163,7 @@ MapErrors::Relation MapErrors::relate(const View& map, const Camera& camera,
 
 Alignment MapErrors::withoutWeak(const Alignment& alignment, const UncertainPose& T_c_w) {
     const Spectrum s = spectrum(alignment.information, alignment.meanDepth);
-    const Vector6 kept =
-        (s.values.array() > 1. / (kWeakSigma * kWeakSigma)).select(Vector6::Ones(), 0.);
+    const Vector6 kept = (s.values.array() > kWeakInformation).select(Vector6::Ones(), 0.);
     if (kept.minCoeff() > 0.) return alignment;
     const Matrix6 onto = s.unit.cwiseInverse().asDiagonal() * s.directions * kept.asDiagonal() *
                          s.directions.transpose() * s.unit.asDiagonal();
@@ -211,7 +211,7 @@ Matrix6 MapErrors::relocalize(const Relation& relation, const Alignment& alignme
 /// was not aligned has the noise of the last one that was; one before the first alignment, of that.
 void MapErrors::setImageNoise(const Matrix6& information, double depth) {
     const Spectrum s = spectrum(information, depth);
-    const Vector6 variances = s.values.cwiseMax(1. / (kWeakSigma * kWeakSigma)).cwiseInverse();
+    const Vector6 variances = s.values.cwiseMax(kWeakInformation).cwiseInverse();
     const Matrix6 axes = s.unit.asDiagonal() * s.directions;
     imageNoise_ = symmetric(axes * variances.asDiagonal() * axes.transpose());
     for (const int k : withoutNoise_) covariance_.block<6, 6>(6 * k, 6 * k) += *imageNoise_;

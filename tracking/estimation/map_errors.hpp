@@ -31,9 +31,8 @@ namespace photonav {
 ///     P_cd P_d^-1 delta,   P_cd covariance of xi_c with d, P_d covariance of d.
 /// So an alignment adds what is known of the error of this part of the map, and no more: without
 /// other measurements the pose does not become more certain than it was when the part was made.
-/// The covariance falls when the start comes into view again.
-/// Where the gyroscope and the vertical know the rotation better than the map does, the map does
-/// not turn the camera.
+/// The covariance falls when the start comes into view again. Where the gyroscope and the vertical
+/// know the rotation better than the map does, the map does not turn the camera.
 class MapErrors {
   public:
     /// @param resolution edge of the map's cells [m]
@@ -43,8 +42,9 @@ class MapErrors {
     struct Relation {
         bool isMapped = false;  ///< whether surfaces that a keyframe has made are in view
         double depth = 0.;      ///< mean depth of these surfaces [m]
-        Matrix6 relative = Matrix6::Zero();      ///< covariance of d = xi_c - m
-        Matrix6 ofCamera = Matrix6::Zero();      ///< covariance of xi_c
+        Matrix6 relative = Matrix6::Zero();  ///< covariance of d = xi_c - m
+        /// Covariance of xi_c, larger by a share of 1e-4: d is never known exactly.
+        Matrix6 ofCamera = Matrix6::Zero();
         Matrix6 withRelative = Matrix6::Zero();  ///< cross-covariance of xi_c with d
         Matrix6 ofMap = Matrix6::Zero();         ///< covariance of m
         /// Cross-covariance of m with the displacements of all keyframes.
