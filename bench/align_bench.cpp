@@ -21,6 +21,7 @@
 #include "geometry/se3.hpp"
 #include "image_noise.hpp"
 #include "map/map_fusion.hpp"
+#include "problem/tracking_map.hpp"
 #include "render/mesh_renderer.hpp"
 #include "render/voxel_renderer.hpp"
 #include "statistics.hpp"
@@ -45,7 +46,7 @@ struct Score {
 
     void print(const std::string& name) const {
         fmt::print(
-            "  {:<28} {:6.2f} {:6.2f} mm   {:5.3f} {:5.3f} deg   {:6.2f} {:6.2f} ms   {} lost\n",
+            "  {:<32} {:6.2f} {:6.2f} mm   {:5.3f} {:5.3f} deg   {:6.2f} {:6.2f} ms   {} lost\n",
             name, quantile(millimetres, 0.5), quantile(millimetres, 0.9), quantile(degrees, 0.5),
             quantile(degrees, 0.9), quantile(time, 0.5), quantile(time, 0.9), failed);
     }
@@ -178,8 +179,8 @@ TexturedOcTree mapOf(const MeshRenderer& mesh) {
 /// Images of the mesh, tracked in `model` from starts 2 cm and 1 degree off (standard deviations
 /// per axis, the prior's).
 void track(const std::string& name, const MeshRenderer& world, const ViewSource& model,
-           const AlignmentOptions& options, double belowHorizon) {
-    const Camera camera = trackingCamera();
+           const AlignmentOptions& options, double belowHorizon, unsigned width = 188) {
+    const Camera camera = trackingCamera(width);
     DenseAligner aligner(model, camera, options);
     std::mt19937_64 random(1);
     Vector6 sigmas;
@@ -200,21 +201,29 @@ void track(const std::string& name, const MeshRenderer& world, const ViewSource&
         iterations += a.iterations / double(poses.size());
     }
     score.print(name);
-    fmt::print("  {:<28} {:.0f} Hz (p90 {:.0f} Hz), {:.1f} comparisons an image\n", "",
+    fmt::print("  {:<32} {:.0f} Hz (p90 {:.0f} Hz), {:.1f} comparisons an image\n", "",
                1e3 / quantile(score.time, 0.5), 1e3 / quantile(score.time, 0.9), iterations);
 }
 
+/// With covariances from the residuals, as in flights and replays, and from an assumed noise.
 void trackInMaps() {
     const MeshRenderer mesh(furnishedHall());
     const TexturedOcTree map = mapOf(mesh);
     const VoxelRenderer voxels(map, UnknownPolicy::occupied);
-    AlignmentOptions inCells;
-    inCells.modelNoise = ModelNoise::measured;
+    const AlignmentOptions assumed, inMesh = photographOptions(kRenderedBlur);
+    AlignmentOptions replayed = inMesh;
+    replayed.cellSize = map.getResolution();
+    replayed.modelErrors.surface = surfaceError(MapKind::surfaces, replayed.cellSize);
+    AlignmentOptions flown = replayed;
+    flown.modelNoise = ModelNoise::measured;
     fmt::print("188x120 images in a map, starts 2 cm and 1 degree off: median and p90 of 100\n");
     for (const auto& [name, angle] : {std::pair{"45 degrees", 0.25}, {"down", 0.5}}) {
-        const double belowHorizon = angle * std::numbers::pi;
-        track(fmt::format("mesh, {}", name), mesh, mesh, {}, belowHorizon);
-        track(fmt::format("voxels, {}", name), mesh, voxels, inCells, belowHorizon);
+        const double below = angle * std::numbers::pi;
+        track(fmt::format("mesh, {}", name), mesh, mesh, inMesh, below);
+        track(fmt::format("mesh, {}, 376x240", name), mesh, mesh, inMesh, below, 376);
+        track(fmt::format("mesh, {}, noise assumed", name), mesh, mesh, assumed, below);
+        track(fmt::format("cells, {}, as replays", name), mesh, voxels, replayed, below);
+        track(fmt::format("cells, {}, as flights", name), mesh, voxels, flown, below);
     }
 }
 

@@ -116,8 +116,8 @@ struct Alignment {
     /// directions have standard deviations of at most one mean depth or one radian.
     Matrix6 covariance = Matrix6::Zero();
     /// Information of the image alone, same frame: Lambda, or measuredInformation() if
-    /// AlignmentOptions::measureCovariance is set. Corrected by measuredSlope() if the model can be
-    /// rendered.
+    /// AlignmentOptions::measureCovariance is set. Corrected as AlignmentOptions::measureSlope
+    /// says.
     Matrix6 information = Matrix6::Zero();
     Exposure exposure;
     int iterations = 0;  ///< number of views compared, over all levels

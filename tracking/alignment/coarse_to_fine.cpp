@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "alignment/certain_information.hpp"
 #include "alignment/conclusion.hpp"
 #include "alignment/measured_slope.hpp"
 #include "alignment/search_grid.hpp"
@@ -18,6 +19,7 @@ namespace {
 constexpr double kMinDamping = 1e-3;
 constexpr double kMaxDamping = 1e4;
 constexpr int kMeasurements = 3;  // of the slope, at most
+constexpr double kCertain = 0.6;  // share of the information
 /// Relative noise of the cost. The used pixels change from pose to pose, and with them the cost, by
 /// more than small steps do. (Steps by J M do not quite follow the gradient of the cost, either.)
 constexpr double kCostNoise = 1e-3;
@@ -58,6 +60,7 @@ class Search {
   private:
     bool descend();
     bool measureSlope();
+    bool isTextureCertain();
     MeasuredInformation measured();
     bool improve(double& damping);
     Iterate evaluate(const Pose& T_c_w, const Exposure& exposure);
@@ -200,19 +203,27 @@ bool Search::descend() {
 }
 
 /// Measures the slope of the image over the uncertainty of the pose: of the model, and how much of
-/// it the image shares.
+/// it the image shares. False where it is known, or cannot be measured.
 bool Search::measureSlope() {
     const auto compare = comparison_.predictionAsImage(level_, at_.T_c_w);
     if (!compare) return false;
     if (!isCompared_) at_ = evaluate(at_.T_c_w, at_.exposure);
-    const Matrix6 shared = comparison_.sharedSlope(level_, at_.exposure);
-    const Matrix6 ofModel =
-        measuredSlope(transportedPrior(), options_.trust, [&](const Pose& T_away_here) {
-            ++iterations_;
-            return scaled(compare(T_away_here * at_.T_c_w), weight());
-        });
-    slope_ = ofModel * shared;
+    if (isTextureCertain()) return false;
+    slope_ = measuredSlope(transportedPrior(), options_.trust, [&](const Pose& T_away_here) {
+        ++iterations_;
+        return scaled(compare(T_away_here * at_.T_c_w), weight());
+    });
+    if (options_.modelNoise == ModelNoise::measured) {
+        slope_ *= sharedSlope(comparison_.tiles(level_, at_.exposure));
+    }
     return true;
+}
+
+/// Whether the image changes as J says in all directions. With an assumed noise this is not known:
+/// residuals show where edges jump. Nor is it for a model whose noise looks like texture.
+bool Search::isTextureCertain() {
+    return options_.measureCovariance && options_.modelNoise == ModelNoise::none &&
+           certainShare(comparison_.resampledTiles(level_, at_.T_c_w)) > kCertain;
 }
 
 /// The information of the image by its residuals; the pose becomes that at which image, so
@@ -254,7 +265,11 @@ std::size_t Search::levelAsUncertainAs(const Alignment& a) const {
 void Search::judgeTexture(Alignment& a) {
     const std::size_t level = levelAsUncertainAs(a);
     if (level > 0) comparison_.compare(level, at_.T_c_w, at_.exposure, loss_);
-    a.residual.texture = comparison_.sharedTexture(level, at_.exposure);
+    // Halving lowers the noise by more than two.
+    const double sigma = std::ldexp(options_.photometric.sigma, -static_cast<int>(level));
+    const bool isNoisy = options_.modelNoise == ModelNoise::measured || options_.cellSize > 0.;
+    a.residual.texture =
+        sharedTexture(comparison_.tiles(level, at_.exposure), sigma / at_.exposure.gain, isNoisy);
     const bool claims = a.verdict == Verdict::converged;
     if (claims && isTextureElsewhere(a.residual, options_.trust)) a.verdict = Verdict::lostTexture;
 }
@@ -289,7 +304,7 @@ Alignment Search::run(const Pose& T_start) {
     last.prior = transportedPrior();
     conclude(result, last, options_);
     result.residual.robustSigma = comparison_.robustSigma();
-    const bool isMeasured = options_.measureCovariance && comparison_.comparesTexture();
+    const bool isMeasured = options_.measureCovariance && comparison_.hasTiles();
     if (isMeasured && !isLost(result.verdict)) judgeTexture(result);
     return result;
 }

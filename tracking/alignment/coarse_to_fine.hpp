@@ -41,7 +41,9 @@ struct AlignmentOptions {
     bool measureCovariance = false;
     /// Calibrated factor on the information by the residuals (calibration.hpp).
     double informationScale = 1.;
-    bool measureSlope = true;  ///< use measuredSlope() if the model can be rendered
+    /// Use measuredSlope() if the model can be rendered: where texture is not certain
+    /// (certainShare()), and everywhere if the noise is assumed or the model is noisy.
+    bool measureSlope = true;
 };
 
 /// An image and a model that it is compared with, at several sizes: level 0 is the finest.
@@ -68,15 +70,16 @@ class Comparison {
     virtual double finerThanModel(double /*depth*/) const { return 0.; }
     /// Robust standard deviation of the residuals of the last comparison [grey value].
     virtual double robustSigma() const = 0;
-    /// sharedSlope() of model and image in the last comparison (shared_gradients.hpp).
-    virtual Matrix6 sharedSlope(std::size_t /*level*/, const Exposure& /*exposure*/) const {
-        return Matrix6::Identity();
+    /// Whether tiles() can be known.
+    virtual bool hasTiles() const { return false; }
+    /// The gradients of model and image in the last comparison.
+    virtual std::vector<GradientTile> tiles(std::size_t /*level*/,
+                                            const Exposure& /*exposure*/) const {
+        return {};
     }
-    /// Whether sharedTexture() can be known.
-    virtual bool comparesTexture() const { return false; }
-    /// sharedTexture() of model and image in the last comparison; none: not known.
-    virtual std::optional<SharedTexture> sharedTexture(std::size_t /*level*/,
-                                                       const Exposure& /*exposure*/) const {
+    /// The gradients of the last prediction, and, as those of the image, of the view predicted for
+    /// a grid of pixels that lies between those of the camera.
+    virtual std::vector<GradientTile> resampledTiles(std::size_t /*level*/, const Pose& /*T_c_w*/) {
         return {};
     }
     /// A function that takes the view predicted at one pose as the observed image and compares it

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "alignment/certain_information.hpp"
 #include "alignment/hole_margin.hpp"
 #include "alignment/image_pyramid.hpp"
 
@@ -76,20 +77,17 @@ class DenseAligner::RenderedModel : public Comparison {
         return withUnknownBlur(level, levels_[level].compare.blocks(exposure, loss));
     }
 
-    Matrix6 sharedSlope(std::size_t level, const Exposure& exposure) const override {
-        if (options_.modelNoise == ModelNoise::none) return Matrix6::Identity();
-        return photonav::sharedSlope(levels_[level].compare.tiles(exposure));
+    bool hasTiles() const override { return true; }
+
+    std::vector<GradientTile> tiles(std::size_t level, const Exposure& exposure) const override {
+        return levels_[level].compare.tiles(exposure);
     }
 
-    bool comparesTexture() const override { return true; }
-
-    /// Halving lowers the noise by more than two.
-    std::optional<SharedTexture> sharedTexture(std::size_t level,
-                                               const Exposure& exposure) const override {
-        const double sigma = std::ldexp(options_.photometric.sigma, -static_cast<int>(level));
-        return photonav::sharedTexture(
-            levels_[level].compare.tiles(exposure), sigma / exposure.gain,
-            options_.modelNoise == ModelNoise::measured || options_.cellSize > 0.);
+    std::vector<GradientTile> resampledTiles(std::size_t level, const Pose& T_c_w) override {
+        Level& at = levels_[level];
+        render(at, betweenPixels(at.camera), T_c_w, displaced_);
+        at.comparePredictions(predicted_, atPixels(displaced_.intensity), Exposure{}, Loss{});
+        return at.comparePredictions.tiles(Exposure{});
     }
 
     AgainstPrediction predictionAsImage(std::size_t level, const Pose& T_image_w) override {
@@ -138,7 +136,12 @@ class DenseAligner::RenderedModel : public Comparison {
     }
 
     void render(const Level& level, const Pose& T_c_w, View& view) const {
-        model_.render(level.camera, T_c_w, view);
+        render(level, level.camera, T_c_w, view);
+    }
+
+    /// @param camera of the level's size
+    void render(const Level& level, const Camera& camera, const Pose& T_c_w, View& view) const {
+        model_.render(camera, T_c_w, view);
         if (&level == levels_.data() && widening() > 0.) {
             view.intensity = widened(view.intensity, widening());
         }

@@ -16,26 +16,6 @@ constexpr double kClear = 0.1;
 constexpr double kSurelyTexture = 2.;  // gradients, squared, relative to those of image noise
 constexpr double kMostOfOneTile = 0.5;
 
-/// Motion of a point in the image, in units of the focal length, with the camera's pose.
-struct TileMotion {
-    Vector6 du, dv;
-
-    explicit TileMotion(const GradientTile& t) {
-        const double x = t.x, y = t.y, w = t.inverseDepth;
-        du << -w, 0., x * w, x * y, -(x * x + 1.), y;
-        dv << 0., -w, y * w, y * y + 1., -x * y, -x;
-    }
-    Matrix6 squared(const Eigen::Matrix2d& gradients) const {
-        Eigen::Matrix<double, 6, 2> D;
-        D << du, dv;
-        return D * gradients * D.transpose();
-    }
-    double squared(const Eigen::Matrix2d& gradients, const Vector6& v) const {
-        const Eigen::Vector2d motion(du.dot(v), dv.dot(v));
-        return motion.dot(gradients * motion);
-    }
-};
-
 /// Variance of v^T (shared - kappa model) v over as many tiles, each an independent draw.
 double scatterAlong(const Vector6& v, const std::vector<GradientTile>& tiles, double kappa) {
     double variance = 0.;

@@ -6,22 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "alignment/gradient_tile.hpp"
 #include "geometry/constants.hpp"
-#include "geometry/types.hpp"
 
 namespace photonav {
-
-/// Sums of gradients over a tile of the image. A tile is so small that a motion of the camera moves
-/// all of its pixels by the same vector.
-struct GradientTile {
-    double x = 0., y = 0.;                            ///< centre, normalised coordinates
-    double inverseDepth = 0.;                         ///< mean [1/m]
-    Eigen::Matrix2d model = Eigen::Matrix2d::Zero();  ///< sum of g g^T, g gradient of the model
-    /// Symmetric part of the sum of g o^T, o gradient of the image.
-    Eigen::Matrix2d shared = Eigen::Matrix2d::Zero();
-    double observed = 0.;  ///< sum of |o|^2
-    int pixels = 0;
-};
 
 /// The slope M of the image relative to the model: the image responds to a displacement x of the
 /// camera as the model's J does to M x,
