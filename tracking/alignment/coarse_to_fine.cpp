@@ -223,7 +223,7 @@ bool Search::measureSlope() {
 /// residuals show where edges jump. Nor is it for a model whose noise looks like texture.
 bool Search::isTextureCertain() {
     return options_.measureCovariance && options_.modelNoise == ModelNoise::none &&
-           certainShare(comparison_.resampledTiles(level_, at_.T_c_w)) > kCertain;
+           certainShare(comparison_.resampledTiles()) > kCertain;
 }
 
 /// The information of the image by its residuals; the pose becomes that at which image, so

@@ -79,9 +79,7 @@ class Comparison {
     }
     /// The gradients of the last prediction, and, as those of the image, of the view predicted for
     /// a grid of pixels that lies between those of the camera.
-    virtual std::vector<GradientTile> resampledTiles(std::size_t /*level*/, const Pose& /*T_c_w*/) {
-        return {};
-    }
+    virtual std::vector<GradientTile> resampledTiles() { return {}; }
     /// A function that takes the view predicted at one pose as the observed image and compares it
     /// with the view predicted at another pose; empty if the model cannot be rendered from other
     /// poses.

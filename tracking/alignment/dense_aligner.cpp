@@ -83,9 +83,9 @@ class DenseAligner::RenderedModel : public Comparison {
         return levels_[level].compare.tiles(exposure);
     }
 
-    std::vector<GradientTile> resampledTiles(std::size_t level, const Pose& T_c_w) override {
-        Level& at = levels_[level];
-        render(at, betweenPixels(at.camera), T_c_w, displaced_);
+    std::vector<GradientTile> resampledTiles() override {
+        Level& at = levels_[last_];
+        render(at, betweenPixels(at.camera), lastPose_, displaced_);
         at.comparePredictions(predicted_, atPixels(displaced_.intensity), Exposure{}, Loss{});
         return at.comparePredictions.tiles(Exposure{});
     }

@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "alignment/normal_equations.hpp"
+#include "alignment/dense_aligner.hpp"
+#include "estimation/calibration.hpp"
 #include "tracking/rooms.hpp"
 
 namespace photonav {
@@ -55,6 +56,21 @@ TEST(CertainInformation, TextureIsCertain) {
             EXPECT_GT(certainShareOf(test::room(), T_c_w), 0.6) << below << ' ' << yaw;
         }
     }
+}
+
+/// Texture determines all directions, even without the false information of edges: half of the
+/// views are not needed.
+TEST(CertainInformation, TheSlopeOfTextureIsNotMeasured) {
+    const Camera camera = makeCamera(188, 120, 1.2);
+    AlignmentOptions assumed = photographOptions();
+    assumed.measureCovariance = false;
+    const Pose truth = lookFrom({1.5, 2., 1.5}, test::kOblique, 0.3);
+    const View view = test::photographed(test::room(), camera, truth);
+    const auto viewsWith = [&](const AlignmentOptions& options) {
+        return DenseAligner(test::room(), camera, options).align(view.intensity, truth).iterations;
+    };
+    EXPECT_LT(viewsWith(photographOptions()), 16);
+    EXPECT_GE(viewsWith(assumed), viewsWith(photographOptions()) + 13);
 }
 
 TEST(CertainInformation, FewTilesLeaveDirectionsOpen) {

@@ -118,21 +118,6 @@ TEST(ResidualCovariance, EdgesDoNotInformAlongThemselves) {
     }
 }
 
-/// Texture determines all directions, even without the false information of edges: half of the
-/// views are not needed.
-TEST(ResidualCovariance, TheSlopeOfTextureIsNotMeasured) {
-    const Camera camera = makeCamera(188, 120, 1.2);
-    AlignmentOptions assumed = photographOptions();
-    assumed.measureCovariance = false;
-    const Pose truth = lookFrom({1.5, 2., 1.5}, kOblique, 0.3);
-    const View view = test::photographed(room(), camera, truth);
-    const auto viewsWith = [&](const AlignmentOptions& options) {
-        return DenseAligner(room(), camera, options).align(view.intensity, truth).iterations;
-    };
-    EXPECT_LT(viewsWith(photographOptions()), 16);
-    EXPECT_GE(viewsWith(assumed), viewsWith(photographOptions()) + 13);
-}
-
 /// An edge that comes into view beside white, all that the image shows: how wide it is must not
 /// tell how far away it is, since no model knows the blur of an image as exactly.
 TEST(ResidualCovariance, TheWidthOfAnEdgeIsNoDistance) {
