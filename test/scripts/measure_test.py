@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""scripts/measure: tables of results, a run that ended is not run again, and the pages get the tables."""
+"""scripts/measure: tables of results, a run that ended is not run again, and the pages get the tables and pictures."""
 
 import importlib.machinery
 import importlib.util
@@ -123,6 +123,20 @@ class Measure(unittest.TestCase):
         self.assertRegex(new, r"Before.\n<!-- measured explorations -->\n\*4 flights .* Commit .*\n\n\| config \|")
         self.assertTrue(new.endswith("|\n<!-- end -->\nAfter.\n<!-- measured others -->\nstay\n<!-- end -->\n"))
         self.assertEqual(update.refreshed(new, None, tables), new)
+
+    def test_picturesOfQuotedProgramsAreReplaced(self):
+        program, pictures = self.folder / "tutorials/tutorial-1", self.folder / "images"
+        program.parent.mkdir()
+        program.write_text("#!/bin/bash\necho 7 cm; echo new > shown.png; echo new > other.png\n")
+        program.chmod(0o755)
+        pictures.mkdir()
+        (pictures / "shown.png").write_text("old\n")
+        update = moduleOf("update-docs")
+        page = update.refreshed("<!-- output tutorial-1 1-1 -->\n```\n8 cm\n```\n", self.folder, {})
+        self.assertIn("\n7 cm\n", page)
+        update.replacePictures(page, self.folder, pictures)
+        self.assertEqual((pictures / "shown.png").read_text(), "new\n")
+        self.assertFalse((pictures / "other.png").exists())
 
 
 if __name__ == "__main__":
