@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""scripts/figures: what is there with the same inputs is not made again."""
+"""scripts/figures: what is there with the same inputs is not made again, and stays in the page."""
 
 import json
 import pathlib
@@ -36,6 +36,15 @@ class Figures(unittest.TestCase):
         record = self.out / "records/clouds.json"
         record.write_text(json.dumps({**json.loads(record.read_text()), "inputs": "others"}))
         self.assertIn("tutorial-01", self.make("3").stdout)
+
+    def test_figuresOfEarlierCallsStayInThePage(self):
+        self.assertEqual(self.make("10").returncode, 0)
+        self.assertEqual(self.make("3").returncode, 0)
+        page = (self.out / "index.html").read_text()
+        self.assertLess(page.index("<h2>Figure 3</h2>"), page.index("<h2>Figure 10</h2>"))
+        for picture in ("3-clouds-pose_uncertainty.png", "10-stripes-0.1-trace.png"):
+            self.assertIn(f"src='pictures/{picture}'", page)
+            self.assertTrue((self.out / "pictures" / picture).exists())
 
     def test_thatThePaperHasNotIsRefused(self):
         unknown = self.make("3", "99")
