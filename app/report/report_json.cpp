@@ -48,7 +48,9 @@ json pointToJson(const PathPoint& point) {
 json pathToJson(const DrawnPath& path) {
     json points = json::array();
     for (const PathPoint& point : path.points) points.push_back(pointToJson(point));
-    return {{"name", path.name}, {"color", hexColor(path.color)}, {"points", points}};
+    json content{{"name", path.name}, {"color", hexColor(path.color)}, {"points", points}};
+    if (path.meanTrace) content["mean_trace"] = *path.meanTrace;
+    return content;
 }
 
 json treeToJson(const DrawnTree& tree) {

@@ -35,7 +35,7 @@ std::string placeText(const Config& config, double height, double yaw) {
 }
 
 DrawnPath drawnPath(const EvaluatedPath& path, const Pose& T_b_c) {
-    DrawnPath result{path.planner, plannerColor(path.planner)};
+    DrawnPath result{path.planner, plannerColor(path.planner), {}, path.meanTrace};
     for (const BeliefPoint& point : path.points) {
         result.points.push_back(
             makePathPoint(belief(point, T_b_c), point.trace, point.length, point.cost));

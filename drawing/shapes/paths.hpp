@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct DrawnPath {
     std::string name;  ///< name in legends, usually the planner's
     Color color = kInk;
     std::vector<PathPoint> points = {};
+    /// Mean of the trace over the length, with the beliefs between the points [m^2]; none: not
+    /// known.
+    std::optional<double> meanTrace = {};
 };
 
 /// Appends a point and sets its distance along the path.

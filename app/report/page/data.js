@@ -40,16 +40,13 @@ function worstSigma(covariance) {
   return Math.sqrt(length);
 }
 
-/// The key numbers of a path. The mean is over its length.
-function summaryOf(path) {
-  const points = path.points, last = points[points.length - 1];
-  let integral = 0;
-  for (let i = 1; i < points.length; ++i)
-    integral += (points[i].trace + points[i - 1].trace) / 2 * (points[i].distance - points[i - 1].distance);
+/// The key numbers of a path. Points are too far apart to give the mean trace, which the run wrote.
+function summaryOf({points, mean_trace: meanTrace = null}) {
+  const last = points[points.length - 1];
   return {
     length: last.distance,
     cost: last.cost,
-    meanTrace: last.distance > 0 ? integral / last.distance : last.trace,
+    meanTrace,
     goalTrace: last.trace,
     goalSigma: worstSigma(last.position_covariance),
   };
@@ -60,13 +57,6 @@ const summaries = paths.map(summaryOf);
 
 /// A recorded trajectory is a path without beliefs.
 const hasBeliefs = paths.some((path) => path.points.some((point) => point.trace > 0));
-// The planner's own and its baseline's mean, with every sub-step, not only path points; of posters, by name.
-const judgedPaths = !data.result.ranking ? [data.result, data.result.baseline]
-    : paths.map(({name}) => data.result.ranking.find((set) => set.name === name)?.path);
-judgedPaths.forEach((judged, i) => {
-  if (summaries[i] && typeof judged?.mean_trace === 'number') summaries[i].meanTrace = judged.mean_trace;
-});
-
 const hasCost = summaries.some((path) => path.cost > 0);
 
 /// Paths that were recorded, not planned: they have frames and no goal.

@@ -53,7 +53,10 @@ TEST_F(CheckCommand, ATrajectoryOverTextureKeepsTheCameraLocalised) {
     EXPECT_TRUE(r["collisions"].empty());
     EXPECT_TRUE(r["flights"].is_null());
     std::ifstream page(folder_.file("out/report.json"));
-    EXPECT_EQ(json::parse(page)["title"], "Check of way.csv");
+    const json shown = json::parse(page);
+    EXPECT_EQ(shown["title"], "Check of way.csv");
+    EXPECT_EQ(shown["paths"][0]["mean_trace"], r["mean_trace"]);
+    EXPECT_EQ(shown["paths"][1]["mean_trace"], r["with_best_headings"]["mean_trace"]);
 }
 
 /// The trajectory that was written is the one that was read.

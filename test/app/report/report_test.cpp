@@ -72,6 +72,7 @@ TEST(ReportJson, HoldsTheNumbersAsTheyAre) {
     EXPECT_EQ(point["position_covariance"][4], data.paths[0].points[7].positionCovariance(1, 1));
     EXPECT_EQ(written["planner_colors"].dump(), R"({"rrt_star":"#1c6cd6"})");
     EXPECT_EQ(written["paths"][1]["color"], hexColor(data.paths[1].color));
+    EXPECT_EQ(written["paths"][1]["mean_trace"], 0.2);
 }
 
 TEST_F(ReportTest, JsonIsReadAsItWasWritten) {

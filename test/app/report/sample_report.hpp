@@ -32,6 +32,8 @@ inline ReportData sampleReport() {
     data.mesh = drawnMesh(sampleScene(floor));
     data.trees = {sampleTree(2500)};
     data.paths = samplePaths();
+    data.paths[0].meanTrace = 0.041;
+    data.paths[1].meanTrace = 0.2;
     data.start = {0, 0, 2};
     data.goal = {2, 9, 2};
     for (std::size_t i = 0; i < data.paths[0].points.size(); i += 4) {
