@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "alignment/image_pyramid.hpp"
-#include "dataset/image_file.hpp"
+#include "figures/images.hpp"
 #include "figures/servo_figures.hpp"
 #include "geometry/constants.hpp"
 #include "recording/halved_view.hpp"
@@ -84,10 +84,11 @@ void writeServoReport(const fs::path& folder, const ServoReport& report,
     for (int i = halvingsToShow(camera.width); i > 0; --i) camera = halved(camera);
     View view;
     report.goal.views.render(camera, (report.goal.T_w_b * report.goal.T_b_c).inverse(), view);
-    std::vector<NamedFigure> figures{{"basin.png",
-                                      {"The share of starts that converge.",
-                                       servoBasinFigure(report.options, report.study).png()}},
-                                     {"goal.png", {"The goal's image.", greyPng(view.intensity)}}};
+    std::vector<NamedFigure> figures{
+        {"basin.png",
+         {"The share of starts that converge.",
+          servoBasinFigure(report.options, report.study).png()}},
+        {"goal.png", {"The goal's image.", greyFigure("The goal's image", view.intensity).png()}}};
     if (report.study.openDirections() < report.study.modes.size()) {
         figures.push_back(
             {"modes.png",

@@ -67,19 +67,25 @@ json resultOf(const Place& place, const Matrix6& Lambda, const Grids& grids) {
 /// The predicted view and its contribution images, all directions together and one by one.
 std::vector<NamedFigure> viewFigures(const View& view, const Config& config) {
     const Camera camera = config.camera.camera();
-    const auto contribution = [&](const auto&... direction) {
-        return pngOf(contributionPicture(
-            view.intensity, contributionImage(view, camera, direction..., config.photometric)));
+    const auto contribution = [&](const std::string& title, const auto&... direction) {
+        return contributionFigure(title, view.intensity,
+                                  contributionImage(view, camera, direction..., config.photometric))
+            .png();
     };
     std::vector<NamedFigure> figures{
-        {"view.png", {"The predicted view.", greyPng(view.intensity)}},
+        {"view.png",
+         {fmt::format("The predicted view, of {} x {} pixels.", camera.width, camera.height),
+          greyFigure("The predicted view", view.intensity).png()}},
         {"contribution.png",
-         {"The contribution of every pixel to the information, all directions together.",
-          contribution()}}};
+         {"The contribution of every pixel to the information, all directions together: its root, "
+          "as a share of the pixel that only 0.5 % of the pixels exceed. Over the darkened view.",
+          contribution("Contribution to the information")}}};
     for (int i = 0; i < 6; ++i) {
-        figures.push_back({fmt::format("contribution_{}.png", kDirections[i].name),
-                           {fmt::format("The pixels that inform about {}.", kDirections[i].what),
-                            contribution(Vector6(Vector6::Unit(i)))}});
+        const std::string about = kDirections[i].what;
+        figures.push_back(
+            {fmt::format("contribution_{}.png", kDirections[i].name),
+             {fmt::format("The pixels that inform about {}, on the same kind of scale.", about),
+              contribution("Contribution: " + about, Vector6(Vector6::Unit(i)))}});
     }
     return figures;
 }

@@ -7,12 +7,6 @@
 #include "recording/halved_view.hpp"
 
 namespace photonav {
-namespace {
-
-constexpr double kFullDifference = 0.5;  // grey values; brightest colour of the difference
-
-}  // namespace
-
 std::vector<CaptionedImage> comparisonImages(const View& observed, const View& predicted,
                                              const std::string& caption) {
     const ViewDifference difference = compareViews(observed, predicted);
@@ -26,7 +20,7 @@ std::vector<CaptionedImage> comparisonImages(const View& observed, const View& p
             {difference.meanIntensity ? fmt::format("difference (mean {:.3f}; yellow: ≥ {})",
                                                     *difference.meanIntensity, kFullDifference)
                                       : "no pixel is predicted",
-             differencePicture(seen.intensity, shown, kFullDifference)}};
+             differencePicture(seen.intensity, shown)}};
 }
 
 Figure recordedFramesFigure(const RecordedComparison& comparison) {

@@ -17,6 +17,18 @@ Picture pictureOf(const ImageF& shape, const ColorAt& colorAt) {
     return picture;
 }
 
+/// A picture with a colour bar, each pixel drawn as a square of a whole number of pixels.
+/// @param colorAt colour of a share in [0, 1] of the scale
+Figure pixelsFigure(const std::string& title, Picture picture, const Axis& scale,
+                    Color (*colorAt)(double)) {
+    constexpr int kWidest = 800;  // at least half of it is filled
+    if (picture.pixels.empty()) throw std::invalid_argument("pixelsFigure: the picture is empty");
+    const int columns = picture.columns;
+    Plot plot = Plot::image(std::move(picture), columns * std::max(1, kWidest / columns));
+    plot.colorBar(scale, colorAt);
+    return {.title = title, .rows = {{plot}}};
+}
+
 }  // namespace
 
 Picture greyPicture(const ImageF& image, double scale) {
@@ -30,10 +42,11 @@ Picture predictedPicture(const View& predicted) {
     });
 }
 
-Picture differencePicture(const ImageF& observed, const View& predicted, double full) {
+Picture differencePicture(const ImageF& observed, const View& predicted) {
     return pictureOf(observed, [&](unsigned i) {
         if (!(predicted.depth.bitmap[i] > 0.F)) return kUnknownColor;
-        return viridis(std::abs(predicted.intensity.bitmap[i] - observed.bitmap[i]) / full);
+        return viridis(std::abs(predicted.intensity.bitmap[i] - observed.bitmap[i]) /
+                       kFullDifference);
     });
 }
 
@@ -55,6 +68,18 @@ Picture contributionPicture(const ImageF& intensity, const ImageF& contribution)
         return Color{mixed(color.red, ground.red), mixed(color.green, ground.green),
                      mixed(color.blue, ground.blue)};
     });
+}
+
+Figure greyFigure(const std::string& title, const ImageF& image) {
+    return pixelsFigure(title, greyPicture(image), {.min = 0., .max = 1., .label = "grey value"},
+                        greyColor);
+}
+
+Figure contributionFigure(const std::string& title, const ImageF& intensity,
+                          const ImageF& contribution) {
+    return pixelsFigure(title, contributionPicture(intensity, contribution),
+                        {.min = 0., .max = 1., .label = "root of the share of the largest"},
+                        inferno);
 }
 
 Figure imagesFigure(const std::vector<std::vector<CaptionedImage>>& rows, double width) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "figures/replay_figures.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +16,6 @@ namespace {
 constexpr Color kErrorColor = kWine, kPredictedColor = kIndigo, kLostColor{178, 182, 188};
 // 95 % of the squared normalised errors of a six-dimensional Gaussian, per degree of freedom.
 constexpr double kNeesLow = 1.2373 / 6., kNeesHigh = 14.4494 / 6.;
-constexpr double kFullResidual = 0.25;  // grey values; brightest colour of the difference
 
 /// What the panels show, over time since the first frame.
 struct Curves {
@@ -116,7 +117,8 @@ std::vector<CaptionedImage> imagesOf(const ReplayStrip& strip) {
     const ImageF& observed = strip.observed.intensity;
     return {{strip.caption, greyPicture(observed)},
             {"predicted", predictedPicture(strip.predicted)},
-            {"difference", differencePicture(observed, strip.predicted, kFullResidual)}};
+            {fmt::format("difference (yellow: ≥ {})", kFullDifference),
+             differencePicture(observed, strip.predicted)}};
 }
 
 }  // namespace

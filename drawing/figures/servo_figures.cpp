@@ -45,7 +45,8 @@ Figure servoModesFigure(const ServoStudy& study) {
     Plot plot;
     plot.x = {.min = 0.5,
               .max = 0.5 + static_cast<double>(study.modes.size()),
-              .label = "direction, the slowest first"};
+              .label = "direction, the slowest first",
+              .whole = true};
     plot.y = {.min = 0., .label = "decay rate of the error [1/s]"};
     Plot::Points predicted, simulated;
     for (const ServoMode& mode : study.modes) {

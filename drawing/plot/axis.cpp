@@ -28,6 +28,7 @@ std::vector<Tick> linearTicks(const Axis& axis, int wanted) {
     double step = 10. * decade;
     for (const double nice : {5., 2., 1.})
         if (nice * decade >= 0.7 * raw) step = nice * decade;
+    if (axis.whole) step = std::max(step, 1.);
     const int digits = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
     const double slack = 1e-6 * step;
     const auto first = static_cast<long>(std::ceil((axis.min - slack) / step));

@@ -14,6 +14,7 @@ struct Axis {
     double min = kAuto, max = kAuto;  ///< limits; kAuto: from the data; positive if `log`
     bool log = false;                 ///< logarithmic axis
     std::string label = {};           ///< quantity and unit
+    bool whole = false;               ///< ticks at whole numbers only
 
     /// The position of a value: 0 at min, 1 at max. Infinite values, and on a logarithmic axis
     /// values <= 0, are at the ends.

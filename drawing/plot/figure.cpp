@@ -84,9 +84,10 @@ void drawAxes(Painter& painter, const Mapping& to) {
     drawVerticalAxis(painter, to.y, f, -1.);
 }
 
-void drawColorBar(Painter& painter, const Axis& scale, const Frame& beside) {
+void drawColorBar(Painter& painter, const Axis& scale, Color (*colorAt)(double),
+                  const Frame& beside) {
     Picture colors{{}, 1};
-    for (int i = 255; i >= 0; --i) colors.pixels.push_back(viridis(i / 255.));
+    for (int i = 255; i >= 0; --i) colors.pixels.push_back(colorAt(i / 255.));
     const Frame bar{beside.right() + kBarGap, beside.y, kBarWidth, beside.height};
     painter.picture(colors, bar, false);
     painter.outline(bar, kAxisColor, 1.3);
@@ -142,9 +143,9 @@ class FigureLayout {
             margins.right = 8.;
             margins.bottom = kTickRoom + (plot.x.label.empty() ? 0. : kLabelRoom);
         }
-        for (const Axis& scale : plot.bar_)
-            margins.right =
-                kBarGap + kBarWidth + 38. + widest(painter_, ticksAlong(scale, plot.height, 70.));
+        for (const Plot::ColorBar& bar : plot.bar_)
+            margins.right = kBarGap + kBarWidth + 38. +
+                            widest(painter_, ticksAlong(bar.scale, plot.height, 70.));
         return margins;
     }
 
@@ -225,7 +226,8 @@ class FigureLayout {
             for (const auto& mark : plot.marks_) mark(painter_, to);
         });
         if (plot.hasAxes) drawAxes(painter_, to);
-        for (const Axis& scale : plot.bar_) drawColorBar(painter_, scale, to.frame);
+        for (const auto& [scale, colorAt] : plot.bar_)
+            drawColorBar(painter_, scale, colorAt, to.frame);
         painter_.text(plot.title, {to.frame.x, to.frame.y - 9.}, Align::left,
                       {.size = kPanelTitle});
     }

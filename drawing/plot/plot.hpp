@@ -61,8 +61,11 @@ class Plot {
     void text(const Point& at, const std::string& words);
     void picture(Picture picture, const Eigen::AlignedBox2d& box, bool smooth);
     void hatched(std::vector<Eigen::AlignedBox2d> boxes, const std::string& name);
-    /// Adds a colour bar of viridis on the right of the frame.
-    void colorBar(const Axis& scale) { bar_ = {scale}; }
+    /// Adds a colour bar on the right of the frame.
+    /// @param colorAt colour of a share in [0, 1] of the scale
+    void colorBar(const Axis& scale, Color (*colorAt)(double) = viridis) {
+        bar_ = {{scale, colorAt}};
+    }
 
   private:
     friend class FigureLayout;
@@ -72,6 +75,11 @@ class Plot {
         std::function<void(Painter&, const Frame&)> draw;
     };
 
+    struct ColorBar {
+        Axis scale;
+        Color (*colorAt)(double);
+    };
+
     void add(const Points& points, const Style& style,
              std::function<void(Painter&, const Mapping&)> draw,
              std::function<void(Painter&, const Frame&)> drawSample);
@@ -79,7 +87,7 @@ class Plot {
     std::vector<std::function<void(Painter&, const Mapping&)>> marks_;
     std::vector<LegendEntry> legend_;
     std::vector<double> xs_, ys_;  ///< all coordinates, for the limits of the axes
-    std::vector<Axis> bar_;        ///< none or one
+    std::vector<ColorBar> bar_;    ///< none or one
 };
 
 /// Outline of the ellipse of `sigmas` standard deviations around a point.

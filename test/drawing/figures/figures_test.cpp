@@ -173,17 +173,32 @@ TEST(Figures, ContributionIsBrightWhereItIsLarge) {
     EXPECT_THROW(contributionPicture(grey, ImageF(5, 5, 0.F)), std::invalid_argument);
 }
 
+TEST(Figures, PixelsAreWholeSquaresBesideTheirScale) {
+    ImageF one(20, 30, 0.5F);
+    one[5][15] = 1.F;
+    const cv::Mat3b grey = decoded(greyFigure("", one).png(), "grey");
+    EXPECT_GT(grey.cols, 30 * 26);
+    EXPECT_GT(countOf(grey, greyColor(0.5)), 500 * 26 * 26);
+    ImageF weights(20, 30, 0.F);
+    for (unsigned u = 10; u < 20; ++u) weights[5][u] = 1.F;
+    const cv::Mat3b weighted = decoded(contributionFigure("", one, weights).png(), "weighted");
+    const int bright = countOf(weighted, inferno(1.));
+    EXPECT_GT(bright, 10 * 26 * 26);  // and the end of the colour bar
+    EXPECT_GT(countOf(weighted, inferno(0.5)), 10);
+    EXPECT_THROW(greyFigure("", ImageF()), std::invalid_argument);
+}
+
 TEST(Figures, PixelsWithoutASurfaceHaveTheirOwnColor) {
     View predicted;
     predicted.intensity = ImageF(2, 3, 0.4F);
     predicted.depth = ImageF(2, 3, 1.F);
     predicted.depth[1][2] = 0.F;
-    const ImageF observed(2, 3, 0.6F);
-    EXPECT_EQ(greyPicture(observed).pixels[5], greyColor(0.6F));
+    const ImageF observed(2, 3, 0.7F);
+    EXPECT_EQ(greyPicture(observed).pixels[5], greyColor(0.7F));
     EXPECT_EQ(predictedPicture(predicted).pixels[0], greyColor(0.4F));
     EXPECT_EQ(predictedPicture(predicted).pixels[5], kUnknownColor);
-    EXPECT_EQ(differencePicture(observed, predicted, 0.2F).pixels[0], viridis(1.));
-    EXPECT_EQ(differencePicture(observed, predicted, 0.2F).pixels[5], kUnknownColor);
+    EXPECT_EQ(differencePicture(observed, predicted).pixels[0], viridis(1.));
+    EXPECT_EQ(differencePicture(observed, predicted).pixels[5], kUnknownColor);
     EXPECT_THROW(imagesFigure({}).png(), std::invalid_argument);
 }
 

@@ -45,6 +45,7 @@ TEST(Axis, TicksAreRoundAndInside) {
     EXPECT_EQ(labels({1e-6, 1., true}, 5), "10⁻⁶ 10⁻⁵ 10⁻⁴ 10⁻³ 10⁻² 10⁻¹ 10⁰ ");
     EXPECT_EQ(labels({3.1e-4, 4.2e-4, true}, 3), "3.5·10⁻⁴ 4·10⁻⁴ ");
     EXPECT_EQ(labels({0.21, 0.42, true}, 4), "0.25 0.30 0.35 0.40 ");
+    EXPECT_EQ(labels({.min = 0.5, .max = 4.5, .whole = true}, 10), "1 2 3 4 ");
 }
 
 TEST(Axis, LimitsAreGivenOrFromTheData) {
