@@ -20,9 +20,9 @@ namespace {
 
 /// Planners with the photometric model, or without views, have their own colours.
 Color colorOf(const CompareMethod& method) {
-    static const std::map<std::string, Color> kColors{{"feature_reprojection", {86, 180, 233}},
-                                                      {"feature_count", {204, 121, 167}},
-                                                      {"map_uncertainty", {110, 60, 160}},
+    static const std::map<std::string, Color> kColors{{"feature_reprojection", kBrown},
+                                                      {"feature_count", kMint},
+                                                      {"map_uncertainty", kIndigo},
                                                       {"none", {90, 90, 90}}};
     const auto own = kColors.find(method.information);
     const bool isOwn = usesViews(method.planner) && own != kColors.end();

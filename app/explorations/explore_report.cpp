@@ -39,20 +39,19 @@ ReportTable tableOf(const ExplorationSummary& s) {
              {"time of an update, 95 %", text("{:.0f} ms", 1e3 * s.update95)}}};
 }
 
-ReportTable tableOfUpdates(const ExplorationResult& flight) {
-    ReportTable table{
-        "Updates of the first flight: vertices gone, new, rewired; views rendered; "
-        "fusion + clearance + planning; path to go",
-        {}};
+ReportTextTable tableOfUpdates(const ExplorationResult& flight) {
+    ReportTextTable table{"Updates of the first flight",
+                          {{"time [s]", "vertices gone", "new", "rewired", "views rendered",
+                            "fusion [ms]", "clearance [ms]", "planning [ms]", "path to go [m]"},
+                           {}}};
+    const auto ms = [](double seconds) { return fmt::format("{:.0f}", 1e3 * seconds); };
     for (const PlanUpdate& u : flight.updates) {
-        const std::string way =
-            std::isfinite(u.length) ? fmt::format("{:.2f} m", u.length) : "no way";
-        table.rows.emplace_back(
-            fmt::format("{:.2f} s", u.time),
-            fmt::format("{}, {}, {}; {}; {:.0f} + {:.0f} + {:.0f} ms; {}",
-                        u.counts.verticesInvalidated, u.counts.verticesAdded,
-                        u.counts.verticesRewired, u.viewsRendered, 1e3 * u.fuseSeconds,
-                        1e3 * u.clearanceSeconds, 1e3 * u.planSeconds, way));
+        table.table.rows.push_back(
+            {fmt::format("{:.2f}", u.time), fmt::format("{}", u.counts.verticesInvalidated),
+             fmt::format("{}", u.counts.verticesAdded), fmt::format("{}", u.counts.verticesRewired),
+             fmt::format("{}", u.viewsRendered), ms(u.fuseSeconds), ms(u.clearanceSeconds),
+             ms(u.planSeconds),
+             std::isfinite(u.length) ? fmt::format("{:.2f}", u.length) : "none"});
     }
     return table;
 }
@@ -169,7 +168,7 @@ void writeExploreReport(const fs::path& folder, const ExplorationSetup& setup, c
         report.tables.push_back(
             {"Real time: what the first flight missed", realTimeRows(*first.realTime)});
     }
-    report.tables.push_back(tableOfUpdates(first));
+    report.textTables.push_back(tableOfUpdates(first));
     writeFlownTrajectory(folder, first);
     saveTexturedOcTree(*first.map, (folder / "map.ot").string());
     writeResultFolder(folder, report, figuresOf(setup, world, outcome));

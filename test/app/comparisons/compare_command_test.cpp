@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "app/executable.hpp"
 #include "comparisons/compare_command.hpp"
+#include "plot/color.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {
@@ -48,6 +50,12 @@ TEST(Compare, EveryMethodOnceJudgedByTheSameBeliefs) {
     const std::string page = test::contentOf((folder / "report.json").string());
     const auto report = nlohmann::json::parse(page);
     EXPECT_EQ(report["paths"].size(), compareMethods().size());
+    std::set<std::string> colours{hexColor(plannerColor("rrt_star/fixed")),
+                                  hexColor(plannerColor("rrt_star/forward"))};
+    for (const auto& path : report["paths"]) {
+        EXPECT_TRUE(colours.insert(path["color"]).second) << path["name"];
+        EXPECT_EQ(path["mean_trace"], byMethod[path["name"]]["mean_trace"]);
+    }
     EXPECT_EQ(report["text_tables"][0]["rows"].size(), compareMethods().size());
     EXPECT_EQ(report["figures"].size(), 1U);
     EXPECT_TRUE(fs::exists(folder / "report.html") && fs::exists(folder / "config.yaml"));

@@ -120,6 +120,9 @@ TEST_F(ExploreCommand, ArrivesAndWritesWhatScriptsRead) {
     EXPECT_EQ(readTrajectory(at("a/trajectory.tum")).size(),
               readTrajectory(at("a/groundtruth.tum")).size());
     EXPECT_GT(loadTexturedOcTree(at("a/map.ot"))->size(), 100U);
+    const json table = json::parse(test::contentOf(at("a/report.json")))["text_tables"][0];
+    EXPECT_EQ(table["head"].size(), 9U);
+    EXPECT_EQ(table["rows"].size(), a["updates"].size());
 }
 
 TEST_F(ExploreCommand, ComparesPlannersAndRepeatsFromItsConfig) {
