@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "figures/comparison_images.hpp"
 #include "figures/convergence_figure.hpp"
 #include "io/stopwatch.hpp"
 #include "map/octree_file.hpp"
@@ -26,10 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t kCompared = 4;  // images beside their predictions
+constexpr std::size_t kMostPictures = 40;  // of images beside their predictions
 constexpr const char* kConvergence = "convergence.png";
-
-std::string comparisonName(std::size_t i) { return fmt::format("comparison_{}.png", i); }
 
 ReportFigure figureOf(const ConvergenceFigure& convergence) {
     return {fmt::format("Depth from the images: {} of {} reference images, the depth found, the "
@@ -53,7 +50,7 @@ MapRun makeMap(const MapCommandOptions& options, const Recording& recording,
     return run;
 }
 
-/// Predicts every n-th frame and evaluates the differences; pictures of a few.
+/// Predicts every n-th frame and evaluates the differences; pictures of at most kMostPictures.
 void compareFrames(const MapCommandOptions& options, const Recording& recording,
                    const TexturedOcTree& map, const std::atomic<bool>& interrupted, MapRun& run) {
     if (options.compareEvery < 1) return;
@@ -62,7 +59,7 @@ void compareFrames(const MapCommandOptions& options, const Recording& recording,
                                    [&] { return interrupted.load(); });
     const auto step = std::size_t(options.compareEvery);
     const std::size_t count = (sequence.frames.size() + step - 1) / step;
-    std::size_t pictures = 0;
+    const std::size_t stride = (count + kMostPictures - 1) / kMostPictures;  // of pictures
     View predicted;
     for (std::size_t k = 0; k < count && !interrupted; ++k) {
         const RecordedFrame frame = recording.load(k * step);
@@ -78,14 +75,7 @@ void compareFrames(const MapCommandOptions& options, const Recording& recording,
                                 {"mean_abs_depth", orNull(d.meanDepth)},
                                 {"median_abs_depth", orNull(d.medianDepth)}});
         if (interrupted) return;
-        const std::size_t every = std::max<std::size_t>(1, count / kCompared);
-        if (k % every == every / 2 && pictures < kCompared) {
-            const auto images = comparisonImages(
-                frame.view, predicted, fmt::format("observed at {:.3f} s", frame.timestamp));
-            run.figures.push_back(
-                {comparisonName(pictures++),
-                 {fmt::format("Used frame {}", k * step), imagesFigure({images}).png()}});
-        }
+        if (k % stride == stride / 2) run.pictures.push_back(pictureOf(frame, k * step, predicted));
     }
 }
 

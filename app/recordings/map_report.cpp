@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
 #include <utility>
 
+#include "figures/comparison_images.hpp"
 #include "figures/perspective.hpp"
+#include "io/atomic_file.hpp"
 #include "mapping/map_config.hpp"
 #include "render/voxel_renderer.hpp"
 #include "result/json_values.hpp"
@@ -21,6 +24,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr Color kCameraColor = kIndigo;
+constexpr std::size_t kFiles = 4;  // of pictures, in the result folder
 
 using TableRows = std::vector<std::pair<std::string, std::string>>;
 
@@ -66,7 +70,25 @@ DrawnPath cameraPath(const Trajectory& trajectory) {
     return path;
 }
 
+/// A few of the pictures as files, which the page does not show a second time.
+void writePictures(const fs::path& folder, const std::vector<ReportFrame>& pictures) {
+    const std::size_t count = std::min(kFiles, pictures.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        writeFileAtomically(folder / fmt::format("comparison_{}.png", i),
+                            pictures[i * pictures.size() / count].image);
+    }
+}
+
 }  // namespace
+
+ReportFrame pictureOf(const RecordedFrame& frame, std::size_t number, const View& predicted) {
+    const auto images = comparisonImages(frame.view, predicted,
+                                         fmt::format("observed at {:.3f} s", frame.timestamp));
+    ReportFrame picture{fmt::format("Used frame {}", number), imagesFigure({images}, 400.).png()};
+    picture.believed = makePathPoint({frame.T_c_w, Matrix6::Zero()}, 0., 0., 0.);
+    picture.color = kCameraColor;
+    return picture;
+}
 
 NamedFigure overview(const TexturedOcTree& map, const std::string& title) {
     Eigen::AlignedBox3d box;
@@ -125,6 +147,8 @@ void writeMapReport(const std::filesystem::path& folder, const MapCommandOptions
     }
     report.fieldOfView = fieldOfView(recording.sequence.camera);
     report.tables = {mapSummary(result)};
+    report.frames = run.pictures;
+    writePictures(folder, run.pictures);
     writeResultFolder(folder, report, run.figures);
 }
 

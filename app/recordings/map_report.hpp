@@ -17,8 +17,13 @@ struct MapRun : FusedRecording {
     /// Comparisons of frames with their predictions.
     nlohmann::json compared = nlohmann::json::array();
     std::vector<NamedFigure> figures;
+    std::vector<ReportFrame> pictures;  ///< of compared frames, evenly spread
     bool interrupted = false;
 };
+
+/// The image of a used frame beside the prediction of the map and their difference.
+/// @param number of the frame among the used ones
+ReportFrame pictureOf(const RecordedFrame& frame, std::size_t number, const View& predicted);
 
 /// A perspective view of the map, from above one of its corners: overview.png.
 NamedFigure overview(const TexturedOcTree& map, const std::string& title);

@@ -10,6 +10,9 @@ function viridis(share) {
 }
 
 const kObstacleColors = {0: [122, 130, 140], 85: [24, 28, 33], 170: [198, 170, 150], 255: [247, 247, 244]};
+// As kFullDifference and kUnknownColor of the executable.
+const kFullDifference = 0.25, kUnknownColor = [24, 44, 92];
+const kNotPredicted = 2;  // largest grey level of a pixel without a surface, after compression
 const kNoInformation = 255, kLevelsPerDecade = 20;
 
 /// @param flight3d null without WebGL
@@ -98,6 +101,24 @@ function createFlightPanel(flight3d) {
       const jpeg = flight.latest(part, shown);
       if (jpeg) element(id).src = `data:image/jpeg;base64,${jpeg}`;
     }
+    const images = [element('seen'), element('expected')], sources = images.map(({src}) => src);
+    Promise.all(images.map((image) => image.decode())).then(() => {
+      if (images.every(({src}, i) => src === sources[i])) drawDifference(...images);
+    }, () => {});  // replaced by the next ones, or none
+  }
+
+  function drawDifference(seen, expected) {
+    const canvas = element('difference');
+    [canvas.width, canvas.height] = [seen.naturalWidth, seen.naturalHeight];
+    const pen = canvas.getContext('2d', {willReadFrequently: true});
+    const [a, b] = [seen, expected].map((image) => {
+      pen.drawImage(image, 0, 0, canvas.width, canvas.height);
+      return pen.getImageData(0, 0, canvas.width, canvas.height);
+    });
+    for (let i = 0; i < a.data.length; i += 4)
+      a.data.set(b.data[i] <= kNotPredicted ? kUnknownColor
+          : viridis(Math.abs(a.data[i] - b.data[i]) / (255 * kFullDifference)), i);
+    pen.putImageData(a, 0, 0);
   }
 
   function showNumbers() {

@@ -43,23 +43,41 @@ function createRobot3d(view3d) {
   };
 }
 
+/// The waypoint nearest to the robot of a picture; -1 for pictures that are not of the first path,
+/// whose colour they would have.
+function waypointOf({believed, color}) {
+  if (!believed || !waypoints.length || color !== paths[0].color) return -1;
+  const squared = ({position}) => position.reduce((sum, x, i) => sum + (x - believed.position[i]) ** 2, 0);
+  return waypoints.reduce((best, {point}, i) => (squared(point) < squared(waypoints[best].point) ? i : best), 0);
+}
+
 /// @param view3d null without WebGL
+/// @param onShow called with the waypoint of the picture that was chosen
 /// @returns null without pictures
-function createFrames(view3d) {
+function createFrames(view3d, onShow) {
   element('frames').hidden = !data.frames.length;
   if (!data.frames.length) return null;
   const robot = view3d && data.frames.some(({believed}) => believed) ? createRobot3d(view3d) : null;
   const slider = element('frame-slider'), choice = element('frame-series');
   const names = [...new Set(data.frames.map(({series}) => series || ''))];
-  let frames = [];
+  let frames = [], places = [], isLeading = false;
 
   const shown = () => Number(slider.value);
-  const show = (index) => {
+  const draw = (index) => {
+    const place = places[index], caption = frames[index].caption;
     slider.value = index;
     element('frame').src = frames[index].image;
-    element('frame').alt = element('frame-caption').textContent = frames[index].caption;
+    element('frame').alt = caption;
+    element('frame-caption').textContent = `Picture ${index + 1} of ${frames.length}` +
+        `${place < 0 ? '' : `, at ${placeName.toLowerCase()} ${place} of the path`}: ${caption}`;
     if (robot) robot.show(frames[index]);
     document.documentElement.dataset.frame = index;
+  };
+  const show = (index) => {
+    draw(index);
+    isLeading = true;
+    onShow(places[index]);
+    isLeading = false;
   };
   const player = createPlayer(element('play'), element('frame-speed'), 700, {
     isAtEnd: () => shown() + 1 >= frames.length,
@@ -70,13 +88,25 @@ function createFrames(view3d) {
   const choose = (name) => {
     player.stop();
     frames = data.frames.filter(({series}) => (series || '') === name);
+    places = frames.map(waypointOf);
     slider.max = frames.length - 1;
-    show(data.result.command === 'plan' ? frames.length - 1 : 0);
+    draw(data.result.command === 'plan' ? frames.length - 1 : 0);
   };
   slider.addEventListener('input', () => { player.stop(); show(shown()); });
   choice.hidden = names.length < 2;
   choice.append(...names.map((name) => make('option', name, {value: name})));
   choice.addEventListener('change', () => choose(choice.value));
   choose(names[0]);
-  return {setExaggeration: (factor) => { if (robot) robot.setExaggeration(factor); }};
+  return {
+    setExaggeration: (factor) => { if (robot) robot.setExaggeration(factor); },
+    /// The waypoint of the picture; -1: none.
+    place: () => places[shown()],
+    /// Shows the picture nearest to a waypoint that was chosen elsewhere.
+    follow(waypoint) {
+      if (isLeading || places[0] < 0) return;
+      player.stop();
+      draw(places.reduce((best, place, i) =>
+          Math.abs(place - waypoint) < Math.abs(places[best] - waypoint) ? i : best, 0));
+    },
+  };
 }

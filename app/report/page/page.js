@@ -154,6 +154,7 @@ function addLayerSwitches() {
     chip.style.setProperty('--chip', layer.color);
     input.addEventListener('change', () => view3d.show(name, input.checked));
     box.append(input, chip, layer.label);
+  if (frames) frames.follow(index);
     element('layers').append(box);
   }
 }
@@ -257,9 +258,10 @@ const view3d = createView3d(element('scene'), select);
 const charts = createCharts(select);
 element('trace-log').checked = paths.length > 0;
 element('trace-log').addEventListener('change', redrawCharts);
+  if (selected < 0) select(frames?.place() ?? -1);
 charts.drawAll(element('trace-log').checked);
 const flight3d = flight && view3d ? createFlight3d(view3d, flight) : null;
-const frames = createFrames(view3d);
+const frames = createFrames(view3d, select);
 setUpView();
 setUpWaypoints();
 const chooseAlpha = (index) => {

@@ -78,6 +78,10 @@ TEST_F(MapCommand, WritesWhatOtherProgramsRead) {
     ASSERT_EQ(trajectory.size(), 6U);
     EXPECT_TRUE(trajectory[2].T_w_c.isApprox(dataset.T_w_c(2), 1e-5));
     EXPECT_EQ(nlohmann::json::parse(test::contentOf(file("result.json"))), report.result);
+    const auto page = nlohmann::json::parse(test::contentOf(file("report.json")));
+    ASSERT_EQ(page["frames"].size(), 3U);
+    EXPECT_EQ(page["frames"][1]["believed"]["position"], page["paths"][0]["points"][2]["position"]);
+    EXPECT_TRUE(page["figures"].empty());  // the pictures are shown once
 
     writeText(data / "groundtruth.txt",
               "100 0 5e6 1.5 1 0 0 0\n");  // refused: all is left as it is

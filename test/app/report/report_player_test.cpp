@@ -35,6 +35,11 @@ constexpr const char* kPublishFlight = R"js(
     moveTo(1.6);
     result.back = shown();
     result.numbers = text('flight-numbers');
+    setTimeout(() => {
+      const canvas = document.getElementById('difference'), pen = canvas.getContext('2d');
+      const at = (x) => [...pen.getImageData(x, canvas.height / 2, 1, 1).data].slice(0, 3).join(' ');
+      result.difference = `${canvas.width}: ${at(1)}, ${at(canvas.width - 2)}`;
+    }, 1000);
     moveTo(3.2);
     result.forth = shown();
     moveTo(0.2);
@@ -60,6 +65,8 @@ TEST_F(ReportPlayerTest, AFlightIsShownAgainAtAnyTime) {
     EXPECT_EQ(published(outcome.dom, "forth"), "17|3.2 of 3.5&nbsp;s|2");
     EXPECT_TRUE(contains(published(outcome.dom, "numbers"), "Update2 of 3, at 1.5&nbsp;s"));
     EXPECT_TRUE(contains(published(outcome.dom, "numbers"), "3, 40, 5"));
+    // Both are white on the left; on the right they differ by half of the scale of colours.
+    EXPECT_EQ(published(outcome.dom, "difference"), "94: 68 1 84, 36 137 141");
     EXPECT_EQ(published(outcome.dom, "played"), "3.5");  // to its end
     EXPECT_EQ(published(outcome.dom, "button"), "Play");
     EXPECT_GT(std::atoi(published(outcome.dom, "grid").c_str()), 3);
@@ -142,6 +149,41 @@ TEST_F(ReportPlayerTest, FlightsArePlayedWithTheirRobotIn3d) {
     EXPECT_EQ(published(outcome.dom, "second"), "b0");
     EXPECT_EQ(published(outcome.dom, "robot"), "2 0.5 2, 5");  // frustum, body, ellipsoid, truth
     EXPECT_EQ(published(outcome.dom, "later"), "3 0.5 2, 3");  // its true position is not known
+}
+
+// The picture follows the frames, and the frames follow the picture.
+constexpr const char* kMoveBoth = R"js(
+  setTimeout(() => {
+    const state = document.documentElement.dataset;
+    const said = () => `${state.waypoint} ${document.getElementById('frame-caption').textContent}`;
+    const move = (id, value) => {
+      const slider = document.getElementById(id);
+      slider.value = value;
+      slider.dispatchEvent(new Event('input'));
+      return said();
+    };
+    Object.assign(state, {before: said(), byFrame: move('waypoint', 7), byPicture: move('frame-slider', 1)});
+  }, 1500);
+)js";
+
+TEST_F(ReportPlayerTest, ThePictureOfTheNearestFrameIsShown) {
+    ReportData data = sampleReport();
+    data.result = {{"command", "map"}};
+    data.views.clear();
+    for (const std::size_t point : {2U, 5U, 9U}) {
+        ReportFrame frame{fmt::format("picture {}", point), greyPng(ImageF(4, 6, 0.5F))};
+        frame.believed = data.paths[0].points[point];
+        frame.color = data.paths[0].color;
+        data.frames.push_back(frame);
+    }
+    const Outcome outcome = open(data, "", "", kMoveBoth);
+    expectNoErrors(outcome);
+    EXPECT_EQ(published(outcome.dom, "before"),
+              "2 Picture 1 of 3, at frame 2 of the path: picture 2");
+    EXPECT_EQ(published(outcome.dom, "by-frame"),
+              "7 Picture 2 of 3, at frame 5 of the path: picture 5");
+    EXPECT_EQ(published(outcome.dom, "by-picture"),
+              "5 Picture 2 of 3, at frame 5 of the path: picture 5");
 }
 
 }  // namespace
