@@ -31,6 +31,7 @@ class Figures(unittest.TestCase):
         page = (self.out / "index.html").read_text()
         picture = "pictures/3-clouds-pose_uncertainty.png"
         self.assertIn(picture, page)
+        self.assertIn("prefers-color-scheme:dark", page)
         self.assertTrue((self.out / picture).exists())
         self.assertNotIn("tutorial-01", self.make("3").stdout)
         record = self.out / "records/clouds.json"

@@ -175,15 +175,21 @@ function setUpExaggeration() {
   apply();
 }
 
-/// Ceilings hide what is below: the map is cut above the highest path.
+/// Heights where the robot is, without paths those of start and goal. Recordings have neither.
+function robotHeights() {
+  if (flight) return [flight.header.box[1][2]];
+  if (paths.length) return paths.flatMap((path) => path.points.map((point) => point.position[2]));
+  return isRecorded ? [] : [data.start[2], data.goal[2]];
+}
+
+/// Ceilings hide what is below: the map is cut above the robot, or at three quarters of its height.
 function setUpCut() {
   const slider = element('cut'), {min, max} = view3d.mapBox;
   element('cut-box').hidden = !(max.z - min.z > 0.05);
   if (element('cut-box').hidden) return;
-  const highest = flight ? flight.header.box[1][2]
-      : Math.max(...paths.flatMap((path) => path.points.map((point) => point.position[2])));
+  const heights = robotHeights();
   Object.assign(slider, {min: min.z, max: max.z + 0.01});
-  slider.value = paths.length || flight ? Math.min(max.z + 0.01, highest + 0.3) : max.z + 0.01;
+  slider.value = Math.min(max.z + 0.01, heights.length ? Math.max(...heights) + 0.3 : min.z + 0.75 * (max.z - min.z));
   const apply = () => {
     const height = Number(slider.value);
     view3d.setCut(height);

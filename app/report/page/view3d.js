@@ -17,6 +17,7 @@ function createView3d(canvas, onPick) {
   controls.enableKeys = false;   // the arrow keys walk along the path
   controls.enableZoom = false;   // the wheel scrolls the page until the view is clicked
   controls.screenSpacePanning = true;
+  controls.maxPolarAngle = Math.PI / 2;  // from below, the floor hides everything
   scene.add(new THREE.AmbientLight(0xffffff, 0.75));
   const sun = new THREE.DirectionalLight(0xffffff, 0.45);
   sun.position.set(0.4, -0.7, 1.5);
@@ -378,7 +379,7 @@ function createView3d(canvas, onPick) {
       (point) => worstSigma(point.position_covariance))));
   return {
     layers, select, choose, setExaggeration, setCut, views, gridStep, mapBox: map.box, hidden: map.hidden,
-    drawGround, addLayer, requestRender, thick, extent,
+    drawGround, addLayer, requestRender, thick, extent, controls,
     show: (name, visible) => { layers[name].object.visible = visible; requestRender(); },
     suggestedExaggeration: [1, 2, 5, 10, 20, 50, 100].find((k) => 3 * k * largest > 0.025 * extent) || 100,
   };

@@ -76,6 +76,45 @@ TEST_F(ReportBrowserTest, MapOfVoxelsWithoutPathIsDrawn) {
     EXPECT_EQ(published(outcome.dom, "canvas"), "drawn");
 }
 
+constexpr const char* kTurnBelow = R"js(
+  setTimeout(() => {
+    const canvas = document.getElementById('scene'), drag = (type, target, y) =>
+        target.dispatchEvent(new MouseEvent(type, {button: 0, clientX: 300, clientY: y, bubbles: true}));
+    drag('mousedown', canvas, 600);
+    drag('mousemove', document, 100);
+    drag('mouseup', document, 100);
+    const {controls} = view3d;
+    Object.assign(document.documentElement.dataset, {
+      turned: controls.getPolarAngle() > 1.5, above: controls.object.position.z >= controls.target.z,
+      cut: document.getElementById('cut-value').textContent});
+  }, 1500);
+)js";
+
+TEST_F(ReportBrowserTest, WithoutAPathTheCeilingIsCutAndTheFloorIsBelow) {
+    ReportData data = sampleReport();
+    data.paths.clear();
+    data.trees.clear();
+    data.views.clear();
+    data.start.z() = data.goal.z() = 0.1;
+    const Outcome outcome = open(data, "", "", kTurnBelow);
+    expectNoErrors(outcome);
+    EXPECT_EQ(published(outcome.dom, "cut"), "z = 0.40 m");
+    EXPECT_EQ(published(outcome.dom, "turned"), "true");
+    EXPECT_EQ(published(outcome.dom, "above"), "true");
+}
+
+TEST_F(ReportBrowserTest, FiguresAreSofterInDarkMode) {
+    ReportData data = sampleReport();
+    data.figures = {{"A figure.", data.views.front().image}};
+    constexpr const char* kFilter = R"js(
+      setTimeout(() => { document.documentElement.dataset.filter =
+          getComputedStyle(document.querySelector('#figures img')).filter; }, 1500);
+    )js";
+    const std::string dark = "--blink-settings=preferredColorScheme=0";
+    EXPECT_EQ(published(open(data, "", dark, kFilter).dom, "filter"), "brightness(0.82)");
+    EXPECT_EQ(published(open(data, "", "", kFilter).dom, "filter"), "none");
+}
+
 TEST_F(ReportBrowserTest, FlightsBeginWithWhatWasFlown) {
     ReportData data = sampleReport();
     data.result = {{"command", "fly"},
