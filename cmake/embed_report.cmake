@@ -13,7 +13,7 @@ function(photonav_embed_report target)
     set(parts ${THREE_JS} ${ORBIT_CONTROLS_JS} ${CHART_JS} ${page}/page.css ${page}/data.js
         ${page}/head.js ${page}/shapes3d.js ${page}/map3d.js ${page}/view3d.js ${page}/charts.js ${page}/sweep.js
         ${page}/flight.js ${page}/flight3d.js ${page}/flightpanel.js
-        ${page}/frames.js ${page}/numbers.js ${page}/page.js)
+        ${page}/frames.js ${page}/cost.js ${page}/words.js ${page}/numbers.js ${page}/page.js)
     set(script ${PROJECT_SOURCE_DIR}/cmake/embed_report.cmake)
     set(generated ${PROJECT_BINARY_DIR}/generated/report_page.cpp)
     add_custom_command(OUTPUT ${generated}

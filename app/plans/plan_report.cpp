@@ -13,7 +13,6 @@
 #include "figures/trace.hpp"
 #include "figures/tree_evolution_figure.hpp"
 #include "geometry/se3.hpp"
-#include "problem/advantage.hpp"
 #include "shared/command_io.hpp"
 
 namespace photonav {
@@ -59,23 +58,6 @@ Figure viewsFigure(const EvaluatedPath& path, const Config& config, const World&
             {fmt::format("at {:.1f} m", point.length), predictedPicture(view)});
     }
     return imagesFigure(rows, 300.);
-}
-
-/// What the cost of each path consists of.
-ReportTable costTable(const PlanOutcome& outcome, const std::optional<EvaluatedPath>& baseline,
-                      const json& result) {
-    ReportTable table{"Cost", {}};
-    const bool isAutomatic = result.at("kappa_is_automatic");
-    table.rows = {{"alpha", fmt::format("{}", outcome.alpha)},
-                  {"kappa", fmt::format("{:.4g} 1/m²{}", result.at("kappa").get<double>(),
-                                        isAutomatic ? ", automatic" : "")}};
-    const auto add = [&](const EvaluatedPath& path) {
-        table.rows.emplace_back("J of " + path.planner,
-                                fmt::format("{:.4g}: {}", path.cost, costShares(path)));
-    };
-    add(*outcome.path);
-    if (baseline) add(*baseline);
-    return table;
 }
 
 TopView topView(const Config& config, const World& world, const PlanOutcome& outcome,
@@ -192,7 +174,6 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
         report.views = waypointViews(*outcome.path, config, world);
     }
     report.progress = outcome.progress;
-    if (outcome.isSolved()) report.tables.push_back(costTable(outcome, baseline, result));
 
     std::vector<NamedFigure> figures =
         planFigures(config, world, problem, outcome, recorded, report.paths);

@@ -13,6 +13,7 @@ function verdict() {
   if (sweep) return sweepVerdict();
   if (data.result.command === 'fly') return flyVerdict();
   if (data.result.command === 'explore') return exploreVerdict(data.result);
+  if (data.result.command === 'servo') return servoVerdict(data.result);
   if (data.result.verdict) return `${data.result.verdict[0].toUpperCase()}${data.result.verdict.slice(1)}.`;
   if (!paths.length) return data.result.command === 'plan' ? 'No path was found.' : '';
   if (!hasBeliefs) return '';
@@ -28,18 +29,22 @@ function verdict() {
         `(${percent > 0 ? '+' : '−'}${Math.abs(percent)} %)`;
   const goal = `the predicted position error at the goal is ${say(100 * ours.goalSigma, 'cm')} instead of ` +
       `${say(100 * other.goalSigma, 'cm')} (1σ, worst direction)${factorOf(ours.goalSigma, other.goalSigma)}`;
-  // What the planner lowers is the uncertainty along the path; the one at the goal may be higher.
-  const mean = ours.goalSigma < other.goalSigma ? ''
+  // What the planner lowers is the uncertainty along the path; the one at the goal may be as large.
+  const mean = ours.goalSigma < other.goalSigma && differs(ours.goalSigma, other.goalSigma) ? ''
       : `, the mean trace along the path is ${say(ours.meanTrace)} instead of ${say(other.meanTrace, 'm²')}` +
         factorOf(ours.meanTrace, other.meanTrace);
   const name = isComparison ? ` of ${paths[0].name}` : '';
   return `Compared with ${paths[rival].name}, the path${name} is ${length}${mean}, and ${goal}.`;
 }
 
+/// Whether two numbers differ by more than a twentieth.
+const differs = (a, b) => Math.max(a, b) > 1.05 * Math.min(a, b);
+
+/// ": 2.5 times smaller"; nothing for numbers that hardly differ.
 function factorOf(ours, other) {
   const ratio = other / ours;
-  return !(ratio > 0 && isFinite(ratio)) ? ''
-      : ratio >= 1 ? `: ${ratio.toPrecision(2)} times smaller` : `: ${(1 / ratio).toPrecision(2)} times larger`;
+  return !(ratio > 0 && isFinite(ratio) && differs(ours, other)) ? ''
+      : ratio > 1 ? `: ${ratio.toPrecision(2)} times smaller` : `: ${(1 / ratio).toPrecision(2)} times larger`;
 }
 
 /// Actual and predicted errors of the flights.
@@ -58,6 +63,15 @@ function exploreVerdict(r) {
   const how = r.arrived ? 'The robot arrived' : `The robot did not arrive (${r.reason || r.end})`;
   return `${how}: ${say(r.length, 'm')} flown in ${say(r.duration_s, 's')}, ` +
          `with a position error of ${say(times(100, r.position_rmse_m), 'cm')} rms (NEES ${say(r.nees_per_dof)}; 1 if consistent).`;
+}
+
+/// From where the servo converges, and how fast.
+function servoVerdict({basin = [], modes = []}) {
+  if (!basin.length) return '';
+  const sum = (key) => basin.reduce((total, cell) => total + cell[key], 0);
+  const slowest = modes[0]?.rate_per_s > 0 ? `, and small offsets in the slowest direction (${modes[0].in_words}) ` +
+      `decay with a time constant of ${say(1 / modes[0].rate_per_s, 's')}` : '; the view leaves a direction open';
+  return `${say(sum('converged'))} of ${say(sum('trials'))} starts converge to the goal’s view${slowest}.`;
 }
 
 function fillHead() {
@@ -93,6 +107,17 @@ function flyTiles({planners}) {
   ]);
 }
 
+function servoTiles({basin = [], modes = [], position_sigma_m: position, rotation_sigma_rad: rotation, condition, time}) {
+  const sum = (key) => basin.reduce((total, cell) => total + cell[key], 0);
+  return [
+    ['starts that converge', sum('converged'), `of ${sum('trials')}`],
+    ['time constant, slowest direction', modes[0]?.rate_per_s > 0 ? 1 / modes[0].rate_per_s : null, 's'],
+    ['position from one image, 1σ', times(1000, position), 'mm'],
+    ['rotation from one image, 1σ', times(180 / Math.PI, rotation), '°'],
+    ['condition of the Hessian', condition, ''], ['computing time', time?.total_s, 's'],
+  ];
+}
+
 function exploreTiles(r) {
   return [
     ['path flown', r.length, 'm'], ['time of flight', r.duration_s, 's'],
@@ -109,6 +134,7 @@ function fillTiles() {
   const seconds = (result.time || {}).total_s;
   const tiles = sweep ? sweepTiles() : result.command === 'replay' ? replayTiles(result)
       : result.command === 'fly' ? flyTiles(result)
+      : result.command === 'servo' ? servoTiles(result)
       : result.command === 'explore' ? exploreTiles(result) : [
     ['path length', ours.length ?? result.length, 'm'],
     ['goal position, 1σ', 100 * ours.goalSigma, 'cm'],

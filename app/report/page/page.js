@@ -2,10 +2,19 @@
 'use strict';
 
 // Waypoints ---------------------------------------------------------------------------------------
+/// A cell that breaks its lines only between words, and never between a number and its unit; a long
+/// word, as a path of a file, breaks anywhere.
+function cell(content) {
+  const text = String(content).replace(/(\d) (?=(?:1\/)?(?:[mkc]?m|m?s|Hz|deg|rad|m\/s|[%°])(?:[²³,;: )]|$))/g, '$1\u00a0');
+  const node = make('td', text);
+  if (/\S{24}/.test(text)) node.className = 'long';
+  return node;
+}
+
 function rows(table, pairs) {
   table.replaceChildren(...pairs.map(([name, value]) => {
     const row = make('tr');
-    row.append(make('th', name), make('td', value));
+    row.append(make('th', name), cell(value));
     return row;
   }));
 }
@@ -78,11 +87,11 @@ function addTextTable({title, head, rows, note}) {
   thead.append(top);
   body.append(...rows.map((cells) => {
     const row = make('tr');
-    row.append(...cells.map((cell) => make('td', cell)));
+    row.append(...cells.map(cell));
     return row;
   }));
   table.append(thead, body);
-  box.append(make('h2', title), table, make('p', note, {className: 'note'}));
+  box.append(make('h2', title), table, make('p', note, {className: 'note', hidden: !note}));
   element('tables').append(box);
 }
 
@@ -105,16 +114,18 @@ function addComparison() {
     body.append(row);
   });
   table.append(thead, body);
-  box.append(make('h2', 'Paths compared'), table);
+  box.append(make('h2', data.result.command === 'compare' ? 'First path of every method' : 'Paths compared'), table);
   element('tables').append(box);
 }
 
 function fillRest() {
   element('characteristic-length').textContent = data.result.characteristic_length ?? 1;
-  (data.text_tables ?? []).forEach(addTextTable);
+  const textTables = data.text_tables ?? [], isLong = ({rows}) => rows.length > 20;
+  textTables.filter((table) => !isLong(table)).forEach(addTextTable);
   addComparison();
   addAllNumbers();
   for (const table of data.tables) addTable(table.title, table.rows);
+  textTables.filter(isLong).forEach(addTextTable);
   for (const figure of data.figures) {
     const box = make('figure');
     const image = make('img', undefined, {src: figure.image, alt: figure.caption});
@@ -143,6 +154,7 @@ function select(index) {
   showWaypoint(index);
   if (view3d) view3d.select(index);
   charts.select(index);
+  if (frames) frames.follow(index);
   clearTimeout(addressTimer);  // browsers forbid many changes of the address in a row
   addressTimer = setTimeout(() => history.replaceState(null, '', `#waypoint=${index}`), 300);
 }
@@ -154,7 +166,6 @@ function addLayerSwitches() {
     chip.style.setProperty('--chip', layer.color);
     input.addEventListener('change', () => view3d.show(name, input.checked));
     box.append(input, chip, layer.label);
-  if (frames) frames.follow(index);
     element('layers').append(box);
   }
 }
@@ -247,6 +258,7 @@ function setUpWaypoints() {
   const fromHash = () => select(Number((location.hash.match(/waypoint=(\d+)/) || [])[1]));
   addEventListener('hashchange', fromHash);
   fromHash();
+  if (selected < 0) select(frames?.place() ?? -1);
   if (selected < 0) select(Math.floor(waypoints.length / 2));
 }
 
@@ -257,6 +269,7 @@ function redrawCharts() {
 
 fillHead();
 fillTiles();
+fillCost();
 fillSweep();
 fillRest();
 element('panel').hidden = !waypoints.length;
@@ -264,7 +277,6 @@ const view3d = createView3d(element('scene'), select);
 const charts = createCharts(select);
 element('trace-log').checked = paths.length > 0;
 element('trace-log').addEventListener('change', redrawCharts);
-  if (selected < 0) select(frames?.place() ?? -1);
 charts.drawAll(element('trace-log').checked);
 const flight3d = flight && view3d ? createFlight3d(view3d, flight) : null;
 const frames = createFrames(view3d, select);

@@ -167,7 +167,7 @@ TEST_F(ReportBrowserTest, AllNumbersOfOtherResultsAreGroupedByTheirObjects) {
                    {"flights", {{"mean_speed_mps", 0.5}, {"collisions", nlohmann::json::array()}}}};
     const Outcome outcome = open(data);
     expectNoErrors(outcome);
-    EXPECT_TRUE(contains(outcome.dom, "<h3>Flights</h3>"));
+    EXPECT_TRUE(contains(outcome.dom, "<h3>Simulated flights</h3>"));
     EXPECT_TRUE(contains(outcome.dom, "<th>Mean speed</th><td>0.5&nbsp;m/s</td>"));
     EXPECT_TRUE(contains(outcome.dom, "<th>Collisions</th><td>none</td>"));
 }
