@@ -54,7 +54,7 @@ set(folders_app_live io)
 set(folders_app_report io dataset result problem plot shapes figures)
 set(folders_app_shared io geometry result config runs report)
 set(folders_app_flights io geometry render dataset planners alignment result config problem servo recording replay
-    flight check posters flightlog figures report shared)
+    flight check posters flightlog figures report shared plans)
 set(folders_app_explorations io map render dataset result config problem runs flight onlinemap replanning exploration
     flightlog figures live report shared flights)
 set(folders_app_recordings io geometry map render dataset result config recording mapping replay figures

@@ -111,12 +111,9 @@ int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& inter
         outcome = benchmarkPlanners(
             config, world, {options.interval, options.timeLimit}, interrupted,
             [&](const SweepItem& item) {
-                const double seconds = watch.seconds();
-                const double rest = seconds / std::max<double>(1., static_cast<double>(done)) *
-                                    static_cast<double>(asked - done);
-                line.show(fmt::format("{} of {} runs, {} seed {}{}", done, asked, item.planner,
-                                      item.seed,
-                                      done > 0 ? fmt::format(", about {:.0f} s left", rest) : ""));
+                line.show(
+                    fmt::format("{} of {} runs, {} seed {}", done, asked, item.planner, item.seed),
+                    static_cast<double>(done) / static_cast<double>(asked));
                 ++done;
             });
     }

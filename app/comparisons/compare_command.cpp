@@ -9,27 +9,63 @@
 #include "comparisons/compare_report.hpp"
 #include "io/error.hpp"
 #include "io/interrupted.hpp"
+#include "io/stopwatch.hpp"
 #include "result/json_values.hpp"
+#include "shared/many_runs.hpp"
 #include "shared/result_folder.hpp"
 
 namespace photonav {
 using nlohmann::json;
 namespace {
 
+/// The progress of all runs of all configs on a line.
+class CompareProgress {
+  public:
+    explicit CompareProgress(const CompareOptions& options)
+        : line_(options.quiet), rest_(itemsOf(options)), asked_(itemsOf(options).size()) {}
+
+    void begin(const std::string& name, const CompareMethod& method, std::uint32_t seed) {
+        begin_ = watch_.seconds();
+        line_.show(fmt::format("{} of {} runs, {}: {}, seed {}{}", done_, asked_, name,
+                               method.label(), seed, rest_.text(begin_)));
+    }
+    void end(const CompareMethod& method) {
+        ++done_;
+        const double now = watch_.seconds();
+        rest_.count(method.label(), now - begin_, now);
+    }
+    void clear() { line_.clear(); }
+
+  private:
+    static std::vector<SweepItem> itemsOf(const CompareOptions& options) {
+        std::vector<SweepItem> items;
+        for (std::size_t i = 0; i < options.configs.size() * options.runs; ++i) {
+            for (const CompareMethod& method : compareMethods()) items.push_back({method.label()});
+        }
+        return items;
+    }
+
+    ProgressLine line_;
+    RemainingTime rest_;
+    Stopwatch watch_;
+    std::size_t asked_, done_ = 0;
+    double begin_ = 0.;  // of the present run [s]
+};
+
 std::vector<CompareRun> runMethods(const Config& config, const World& world,
-                                   const CompareOptions& options, ProgressLine& line,
+                                   const CompareOptions& options, CompareProgress& progress,
                                    const std::atomic<bool>& interrupted) {
     std::vector<CompareRun> runs;
     const std::string name = nameOf(config);
     for (const CompareMethod& method : compareMethods()) {
         for (unsigned i = 0; i < options.runs; ++i) {
             const std::uint32_t seed = config.seed + i;
-            line.show(fmt::format("{}: {}, seed {} ({} of {})", name, method.label(), seed, i + 1,
-                                  options.runs));
+            progress.begin(name, method, seed);
             try {
                 CompareRun run = runMethod(config, world, method, seed, interrupted);
                 if (interrupted) return runs;
                 runs.push_back(std::move(run));
+                progress.end(method);
             } catch (const Interrupted&) {
                 return runs;
             }
@@ -76,14 +112,14 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
     FolderTransaction folder = beginResult(options.out, inputs);
     json result = resultJson("compare", {{"scenarios", json::array()}});
     CompareReport report(folder.path(), options.commandLine, configs.size() == 1);
+    CompareProgress progress(options);
     bool anyPath = false;
     for (const Config& given : configs) {
         const World world(given);
         PlanningProblem(given, world).checkPlaces();
         ProblemRuns problem{withKappa(given, world, interrupted), options.runs, {}};
-        ProgressLine line(options.quiet);
-        problem.runs = runMethods(problem.config, world, options, line, interrupted);
-        line.clear();
+        problem.runs = runMethods(problem.config, world, options, progress, interrupted);
+        progress.clear();
         for (const CompareRun& run : problem.runs) anyPath = anyPath || run.outcome.path;
         if (!problem.runs.empty()) {
             result["scenarios"].push_back(scenarioJson(problem));

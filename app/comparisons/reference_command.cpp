@@ -10,7 +10,8 @@
 
 #include "io/error.hpp"
 #include "io/file_lock.hpp"
-#include "shared/command_io.hpp"
+#include "io/stopwatch.hpp"
+#include "shared/many_runs.hpp"
 #include "sweep/reference_search.hpp"
 
 namespace photonav {
@@ -43,9 +44,18 @@ std::string budgetOf(const ReferenceOptions& options, const Config& config) {
         config.seed + options.runs - 1, config.vertices, config.search.labels, options.moves);
 }
 
+/// All plans of a reference search.
+std::vector<SweepItem> itemsOf(const SweepConfig& sweep, unsigned runs) {
+    std::vector<SweepItem> items;
+    for (std::size_t i = 0; i < sweep.alphas.size() * runs; ++i) {
+        for (const std::string& planner : sweep.planners) items.push_back({planner});
+    }
+    return items;
+}
+
 void print(const ReferenceTable& table) {
-    fmt::print("{:>6} {:>10} {:>9} {:>11} {:>11}  {}\n", "alpha", "cost", "length", "mean trace",
-               "goal trace", "from");
+    fmt::print("traces in m²\n{:>6} {:>10} {:>9} {:>11} {:>11}  {}\n", "alpha", "cost", "length",
+               "mean trace", "goal trace", "from");
     for (const double alpha : table.alphas()) {
         const ReferencePath& row = *table.at(alpha);
         fmt::print("{:>6} {:>10.6g} {:>7.2f} m {:>11.3g} {:>11.3g}  {}, {} vertices, seed {}\n",
@@ -73,6 +83,8 @@ int runReference(const ReferenceOptions& options, const std::atomic<bool>& inter
     const Config config = withEffort(given, options, world, interrupted);
 
     ProgressLine line(options.quiet);
+    RemainingTime rest(itemsOf(config.sweep, options.runs));
+    const Stopwatch watch;
     bool isComplete = true;
     for (const double alpha : config.sweep.alphas) {
         Config own = config;
@@ -84,10 +96,12 @@ int runReference(const ReferenceOptions& options, const std::atomic<bool>& inter
         }
         for (std::uint32_t run = 0; run < options.runs && !interrupted; ++run) {
             for (const std::string& planner : config.sweep.planners) {
-                line.show(fmt::format("alpha {}: {}, run {} of {}", alpha, planner, run + 1,
-                                      options.runs));
+                const double begin = watch.seconds();
+                line.show(fmt::format("alpha {}: {}, run {} of {}{}", alpha, planner, run + 1,
+                                      options.runs, rest.text(begin)));
                 search.plan(planner, config.seed + run);
                 table.write();
+                rest.count(planner, watch.seconds() - begin, watch.seconds());
             }
         }
         if (!interrupted) table.dropAside(alpha);

@@ -88,7 +88,7 @@ void film(const ExploreOptions& options, const ExplorationSetup& setup, const Wo
     ProgressLine line(options.quiet);
     writeFilm(folder / "film.webm", *outcome.log, viewFromAbove(setup.config, world, {}),
               interrupted,
-              [&](double share) { line.show(fmt::format("film: {:.0f} %", 100. * share)); });
+              [&](double share) { line.show(fmt::format("film: {:.0f} %", 100. * share), share); });
     if (!interrupted) return;
     fs::remove(folder / "film.webm");
     outcome.interrupted = true;

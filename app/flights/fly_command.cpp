@@ -13,6 +13,7 @@
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "planners/planner_table.hpp"
+#include "plans/plan_progress.hpp"
 #include "problem/planned_path.hpp"
 #include "replay/calibration_file.hpp"
 #include "result/json_values.hpp"
@@ -33,9 +34,11 @@ std::vector<FlightSet> planAll(const Config& config, PlanningProblem& problem, P
     };
     const auto solve = [&](const std::string& name) {
         line.show("planning: " + name);
+        RemainingGrowth growth(config.vertices);
         auto outcome = problem.solve(name, interrupted, [&](const PlanProgress& progress) {
-            line.show(fmt::format("planning: {}, {} of {} vertices", name, progress.vertices,
-                                  config.vertices));
+            growth.add(progress);
+            line.show(fmt::format("planning: {}, {}", name,
+                                  progressText(progress, config.vertices, growth)));
         });
         if (outcome.path) add(std::move(*outcome.path));
     };
@@ -55,19 +58,17 @@ std::vector<ReportFrame> flyAll(std::vector<FlightSet>& sets, const FlightSetup&
                                 const FlyOptions& options, FlightRecording& recording,
                                 unsigned count, ProgressLine& line,
                                 const std::atomic<bool>& interrupted) {
-    const Stopwatch watch;
     std::vector<ReportFrame> frames;
-    std::size_t flown = 0;
-    std::size_t arrived = 0;
+    const std::size_t all = count * sets.size();
+    std::size_t flown = 0, arrived = 0;
+    line.beginPhase();
     for (FlightSet& set : sets) {
         const auto onFlight = [&](const FlightResult& result) {
             ++flown;
             arrived += result.end == FlightEnd::arrived;
-            const double each = watch.seconds() / static_cast<double>(flown);
-            const double all = static_cast<double>(count * sets.size());
-            line.show(fmt::format("{}: {} of {:.0f} flights, {} arrived, about {:.0f} s left",
-                                  set.path.planner, flown, all, arrived,
-                                  each * (all - static_cast<double>(flown))));
+            line.show(fmt::format("{}: {} of {} flights, {} arrived", set.path.planner, flown, all,
+                                  arrived),
+                      static_cast<double>(flown) / static_cast<double>(all));
         };
         const OnExposure record = &set == &sets.front() ? recording.onExposure() : OnExposure{};
         SparseExposures exposures;

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "flights/posters_report.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
@@ -37,6 +39,15 @@ PosterProblem problemOf(const PostersOptions& options) {
     return problem;
 }
 
+/// The number of sets studied if every poster added improves the best set.
+std::size_t mostSets(const PosterProblem& problem) {
+    std::size_t sets = 1;
+    const std::size_t posters = problem.posters.size();
+    for (std::size_t size = 0; size < std::min<std::size_t>(problem.options.most, posters); ++size)
+        sets += posters - size;
+    return sets;
+}
+
 bool isSolved(const PosterSet& best, const PosterStudyOptions& options) {
     return options.rankBy == RankBy::path ? best.path && !best.path->isLost()
                                           : best.servo.openDirections() == 0;
@@ -50,9 +61,12 @@ int runPosters(const PostersOptions& options, const std::atomic<bool>& interrupt
     FolderTransaction folder = beginResult(
         options, "posters", inputsOf(problem.config, {options.candidates, options.trajectory}));
     ProgressLine line(options.quiet);
+    const std::size_t most = mostSets(problem);
     const PosterRanking ranking =
         rankPosters(problem, interrupted, [&](std::size_t done, const PosterIndices& set) {
-            line.show(fmt::format("{} studied, now {}", done, nameOf(set, problem.posters)));
+            line.show(fmt::format("{} of at most {} sets studied, now {}", done, most,
+                                  nameOf(set, problem.posters)),
+                      static_cast<double>(done) / static_cast<double>(most));
         });
     line.clear();
     nlohmann::json result = postersResult(problem, ranking);

@@ -67,7 +67,7 @@ int runServo(const ServoOptions& options, const std::atomic<bool>& interrupted) 
                          bodyAt(place), config.photometric};
     ProgressLine line(options.quiet);
     const ServoStudy result = studyServo(goal, study, interrupted, [&](double share) {
-        line.show(fmt::format("{:.0f} % of the starts", 100. * share));
+        line.show(fmt::format("{:.0f} % of the starts", 100. * share), share);
     });
     line.clear();
     const ServoReport report{config, world, goal, study, result};

@@ -117,13 +117,16 @@ double heightOf(const InfoOptions& options, const Config& config) {
 Grids lookAround(const InfoOptions& options, const Config& config, double height, double yaw,
                  PlanningProblem& problem) {
     ProgressLine line(options.quiet);
-    line.show("looking around");
+    const auto show = [&](double share) {
+        line.show(fmt::format("looking around: {:.0f} %", 100. * share), share);
+    };
     const Eigen::AlignedBox2d area(config.bounds.min().head<2>(), config.bounds.max().head<2>());
     const Matrix6& prior = problem.initialCovariance();
     const int cells = options.cells.value_or(100);
     return {area, height,
-            viewGrid(problem, area, height, yaw, cells,
-                     [](const Matrix6& gain) { return gain.trace(); }),
+            viewGrid(
+                problem, area, height, yaw, cells, [](const Matrix6& gain) { return gain.trace(); },
+                show),
             viewGrid(problem, area, height, yaw, cells, [&](const Matrix6& gain) {
                 return std::sqrt(updateCovariance(prior, gain).topLeftCorner<3, 3>().trace());
             })};

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "planners/belief_rrt_star.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
 
@@ -34,8 +35,9 @@ std::string progressText(const PlanProgress& progress, unsigned vertices,
     const auto rest = growth.seconds();
     const std::string soFar = fmt::format("{:.0f} s so far", progress.seconds);
     const std::string time = progress.vertices >= vertices ? "last search and descent, " + soFar
-                             : rest ? fmt::format("about {:.0f} s to the last search", *rest)
-                                    : soFar;
+                             : rest
+                                 ? fmt::format("about {} to the last search", durationText(*rest))
+                                 : soFar;
     return fmt::format("{} of {} vertices, {}, {} views, {}", progress.vertices, vertices, cost,
                        progress.views, time);
 }

@@ -51,7 +51,8 @@ int runOnDataset(Options& options, const std::string& command, const std::string
     }
     ProgressLine line(options.quiet);
     options.progress = [&line, steps](std::size_t done, std::size_t total) {
-        line.show(fmt::format("{} of {} {}", done, total, steps));
+        line.show(fmt::format("{} of {} {}", done, total, steps),
+                  static_cast<double>(done) / static_cast<double>(total));
     };
     const auto report = run();
     line.clear();

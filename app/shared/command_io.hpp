@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/stopwatch.hpp"
+
 namespace photonav {
 
 /// Exit codes of all commands. kNoAnswer: the command found no solution, for example no path, or
@@ -36,22 +38,39 @@ struct OutputOptions {
 /// result is worth more than what is said about it.
 void printMessage(std::string_view line);
 
-/// A progress line on standard error, which is overwritten by the next one. Nothing is printed
-/// unless standard error is a terminal.
+/// A duration [s] as text: "90 s", "12 min", "3.5 h".
+std::string durationText(double seconds);
+
+/// A remaining time [s] as the end of a progress line: ", about 3 min left".
+std::string remainingText(double seconds);
+
+/// The progress of a command on standard error. On a terminal each text overwrites the last one.
+/// Otherwise at most one line is printed per period, and none by shorter commands.
 class ProgressLine {
   public:
     /// @param quiet true: nothing is printed
-    explicit ProgressLine(bool quiet);
+    /// @param period shortest time between two lines if standard error is not a terminal [s]
+    explicit ProgressLine(bool quiet, double period = 30.);
     ~ProgressLine();
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
     void show(const std::string& text);
+
+    /// Shows the text with the remaining time, if the work proceeds as fast as since the line or
+    /// its phase began.
+    /// @param share done, in [0, 1]
+    void show(const std::string& text, double share);
+
+    /// Begins another phase of the work, whose shares begin at 0.
+    void beginPhase() { phase_ = {}; }
     void clear();
 
   private:
     void write(const std::string& text);
 
-    bool enabled_;
+    bool enabled_, isTerminal_;
+    double period_, lastLine_ = 0.;
+    Stopwatch watch_, phase_;
     std::size_t width_ = 0;
 };
 

@@ -4,7 +4,6 @@
 #include "shared/path_inside.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -81,14 +80,7 @@ double RemainingTime::seconds(double wall) const {
 
 std::string RemainingTime::text(double wall) const {
     if (taken_.empty()) return "";
-    return fmt::format(", about {} left", durationText(seconds(wall)));
-}
-
-std::string durationText(double seconds) {
-    const auto total = std::lround(seconds);
-    if (total < 120) return fmt::format("{} s", total);
-    if (total < 7200) return fmt::format("{} min", (total + 30) / 60);
-    return fmt::format("{:.1f} h", static_cast<double>(total) / 3600.);
+    return remainingText(seconds(wall));
 }
 
 void checkIsSame(const JournalHeader& found, const JournalHeader& wanted, const RunWords& words,

@@ -73,9 +73,6 @@ class RemainingTime {
     double wall_ = 0.;
 };
 
-/// A duration [s] as text: "90 s", "12 min", "3.5 h".
-std::string durationText(double seconds);
-
 /// Prints that --resume finds no earlier runs and begins anew, unless --quiet is given.
 /// @throws InputError where there is a result, of another command
 void reportNewBegin(const ManyRunsOptions& options, const FolderTransaction& folder,

@@ -58,8 +58,8 @@ TopView viewFromAbove(const Config& config, const World& world,
 }
 
 Eigen::ArrayXXd viewGrid(PlanningProblem& problem, const Eigen::AlignedBox2d& area, double height,
-                         double yaw, int cells,
-                         const std::function<double(const Matrix6&)>& value) {
+                         double yaw, int cells, const std::function<double(const Matrix6&)>& value,
+                         const std::function<void(double)>& onProgress) {
     const double step = area.sizes().maxCoeff() / cells;
     const int nx = std::max(1, static_cast<int>(std::lround(area.sizes().x() / step)));
     const int ny = std::max(1, static_cast<int>(std::lround(area.sizes().y() / step)));
@@ -74,6 +74,7 @@ Eigen::ArrayXXd viewGrid(PlanningProblem& problem, const Eigen::AlignedBox2d& ar
                 values(i, j) = value(problem.informationAt(T_w_b));
             }
         }
+        if (onProgress) onProgress((i + 1.) / nx);
     }
     return values;
 }

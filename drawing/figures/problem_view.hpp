@@ -35,7 +35,9 @@ std::string placeText(const Config& config, double height, double yaw);
 /// @param yaw heading of the body [rad]
 /// @param cells number of cells along the longer side
 /// @param value computes the value from the view's Fisher information (camera frame)
+/// @param onProgress called after every row along y with the share done, in (0, 1]
 Eigen::ArrayXXd viewGrid(PlanningProblem& problem, const Eigen::AlignedBox2d& area, double height,
-                         double yaw, int cells, const std::function<double(const Matrix6&)>& value);
+                         double yaw, int cells, const std::function<double(const Matrix6&)>& value,
+                         const std::function<void(double)>& onProgress = {});
 
 }  // namespace photonav
