@@ -2,6 +2,7 @@
 #include "shared/command_line.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -26,6 +27,12 @@ std::string complaintAbout(const ConfigKey& key, const std::string& text) {
         return reason.starts_with(prefix) ? reason.substr(prefix.size()) : reason;
     }
     return "";
+}
+
+/// The name of the type of a key's value: a fixed set of values as "{a,b}".
+std::string typeNameOf(const ConfigKey& key) {
+    if (!key.choices.empty()) return fmt::format("{{{}}}", fmt::join(key.choices, ","));
+    return key.isFile ? "FILE" : "VALUE";
 }
 
 }  // namespace
@@ -60,7 +67,7 @@ void addOverrides(CLI::App& parser, std::vector<std::string>& overrides) {
                 overrides.insert(overrides.end(), typed.begin(), typed.end());
             },
             "override a value of the config; can be repeated (photonav keys lists the keys)")
-        ->type_name("KEY.PATH=VALUE")
+        ->type_name(kOverrideType)
         ->allow_extra_args(false);
 }
 
@@ -84,7 +91,8 @@ void addSeed(CLI::App& parser, std::vector<std::string>& overrides, const std::s
 
 void addPlanners(CLI::App& parser, std::vector<std::string>& overrides, const std::string& key,
                  const std::string& name) {
-    addValue(parser, overrides, name, key, "names of planners: a,b,c", asList)->type_name("NAMES");
+    addValue(parser, overrides, name, key, "names of planners: a,b,c", asList)
+        ->type_name(kPlannersType);
 }
 
 void addCommon(CLI::App& parser, CommandOptions& options, bool needsConfig) {
@@ -135,7 +143,7 @@ void addKeyOptions(CLI::App& parser, const KeyTable& keys, const std::set<std::s
                 [&key](std::int64_t count) { key.set(count > 0 ? "true" : "false"); }, description);
         } else {
             parser.add_option(option, description)
-                ->type_name(key.isFile ? "FILE" : "VALUE")
+                ->type_name(typeNameOf(key))
                 ->check([&key](const std::string& text) { return complaintAbout(key, text); });
         }
     }

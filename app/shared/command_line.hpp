@@ -68,6 +68,12 @@ Commands toolCommands(CLI::App& app, const Invocation& invocation);
 /// all commands that `app` has when the command runs.
 Command completionCommand(CLI::App& app);
 
+// Names of the types of values, from which `photonav completion` knows what to offer; a fixed set
+// of values has the name "{a,b}".
+inline constexpr const char* kPlannersType = "NAMES";
+inline constexpr const char* kKeyType = "KEY";
+inline constexpr const char* kOverrideType = "KEY.PATH=VALUE";
+
 /// Refuses an option's empty text, which would stand for its default.
 const CLI::Validator& notEmpty();
 

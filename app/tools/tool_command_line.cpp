@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <sstream>
 #include <string>
@@ -64,16 +63,19 @@ std::string asText(const std::string& table) {
 struct KeysOptions {
     std::vector<std::string> names;
     std::string of = "plan";
+    bool markdown = false;
 };
 
 void addKeysOptions(CLI::App& parser, KeysOptions& options) {
-    parser.add_option("names", options.names, "sections or keys (default: all)");
+    parser.add_option("names", options.names, "sections or keys (default: all)")
+        ->type_name(kKeyType);
     parser
         .add_option("--of", options.of,
                     "command: plan (also of sweep, fly, ...), map, scans (map of point clouds) or "
                     "replay")
         ->check(CLI::IsMember({"plan", "map", "scans", "replay"}))
         ->capture_default_str();
+    parser.add_flag("--markdown", options.markdown, "print a table of Markdown");
 }
 
 int printKeys(const KeysOptions& options, const std::atomic<bool>& /*interrupted*/) {
@@ -86,8 +88,7 @@ int printKeys(const KeysOptions& options, const std::atomic<bool>& /*interrupted
                           : options.of == "replay" ? keysOf(replay)
                                                    : keysOf(config);
     const std::string table = keys.toMarkdown(options.names);
-    const bool isTerminal = isatty(STDOUT_FILENO) == 1;
-    fmt::print("{}", isTerminal ? asText(table) : table);
+    fmt::print("{}", options.markdown ? table : asText(table));
     return kDone;
 }
 
@@ -148,8 +149,9 @@ int exportResult(const ExportOptions& options, const std::atomic<bool>& /*interr
     const McapExport result = exportMcap(folder, readReportOf(folder));
     replaceFile(file, result.content);
     if (!options.quiet) {
-        fmt::print("{}: {} messages over {:.1f} s, {:.1f} MB\n", file, result.messages,
-                   result.duration, 1e-6 * static_cast<double>(result.content.size()));
+        fmt::print("{}: {} message{} over {:.1f} s, {:.1f} MB\n", file, result.messages,
+                   result.messages == 1 ? "" : "s", result.duration,
+                   1e-6 * static_cast<double>(result.content.size()));
     }
     return kDone;
 }

@@ -149,6 +149,7 @@ void KeyTable::choice(const KeyWords& words, std::string& value,
                       const std::vector<std::string>& choices) {
     add({.words = words,
          .allowed = fmt::format("{}", fmt::join(choices, ", ")),
+         .choices = choices,
          .read =
              [&value, choices, name = words.name](YamlMap& map) {
                  if (map.has(name) || !value.empty()) map.readChoice(name, value, choices);
@@ -203,6 +204,7 @@ void KeyTable::addNamed(const KeyWords& words, const std::vector<std::string>& n
                         std::function<std::size_t()> get, std::function<void(std::size_t)> set) {
     add({.words = words,
          .allowed = fmt::format("{}", fmt::join(names, ", ")),
+         .choices = names,
          .read =
              [=, name = words.name](YamlMap& map) {
                  std::string chosen = names.at(get());
@@ -270,7 +272,9 @@ std::string KeyTable::toMarkdown(const std::vector<std::string>& names) const {
         if (isKnown) continue;
         std::vector<std::string> known;
         for (const ConfigKey& key : keys_) known.insert(known.end(), {key.section, key.path()});
-        const std::string near = nearestWord(name, known);
+        const std::vector<std::string> same = pathsOf(name, known);
+        const std::string near =
+            same.empty() ? nearestWord(name, known) : fmt::format("{}", fmt::join(same, "' or '"));
         throw InputError(name, "",
                          "is neither a key nor a section of a config" +
                              (near.empty() ? "" : ", did you mean '" + near + "'?"));

@@ -33,9 +33,10 @@ struct KeyWords {
 struct ConfigKey {
     std::string section = {};  ///< empty: a key at the top level of the file
     KeyWords words = {};
-    std::string allowed = {};  ///< allowed values in words, may be empty
-    bool isFile = false;       ///< the value is a path, relative to the file that contains it
-    bool isText = false;       ///< set() takes a text literally, not as YAML
+    std::string allowed = {};               ///< allowed values in words, may be empty
+    std::vector<std::string> choices = {};  ///< the allowed values, if they are a fixed set
+    bool isFile = false;  ///< the value is a path, relative to the file that contains it
+    bool isText = false;  ///< set() takes a text literally, not as YAML
     std::function<void(YamlMap&)> read = {};  ///< reads the value, if the section has the key
     std::function<YAML::Node()> value = {};   ///< the present value; null: none, the key is not
                                               ///< written

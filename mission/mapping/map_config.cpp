@@ -32,10 +32,10 @@ double defaultMinRange(const std::string& depth) {
 KeyTable keysOf(MapOptions& options) {
     KeyTable keys;
     addKeys(keys, static_cast<RecordingOptions&>(options));
-    keys.text({"depth", "",
-               "`recorded` (also from two cameras), or `monocular`: from the images "
-               "of one camera and their poses"},
-              options.depth);
+    keys.choice({"depth", "",
+                 "`recorded` (also from two cameras), or `monocular`: from the images "
+                 "of one camera and their poses"},
+                options.depth, {"recorded", "monocular"});
     addResolution(keys, options.resolution);
     keys.add({.words = {"min_range", "m", "nearest depth that is mapped; monocular: 0.5"},
               .allowed = fmt::format("0 to {}", kFarthestRange),

@@ -66,7 +66,8 @@ void requireOneDocument(const std::string& file, const std::string& text) {
     throw InputError(file, "", "holds several documents ('---'); only one is read");
 }
 
-/// Those of the dotted paths that end with a key.
+}  // namespace
+
 std::vector<std::string> pathsOf(const std::string& key, const std::vector<std::string>& paths) {
     std::vector<std::string> found;
     for (const std::string& path : paths) {
@@ -74,8 +75,6 @@ std::vector<std::string> pathsOf(const std::string& key, const std::vector<std::
     }
     return found;
 }
-
-}  // namespace
 
 std::string nearestWord(std::string_view word, const std::vector<std::string>& candidates) {
     std::string best;

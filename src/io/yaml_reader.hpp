@@ -18,6 +18,9 @@ namespace photonav {
 /// The candidate closest to `word` by edit distance, or "" when none is near.
 std::string nearestWord(std::string_view word, const std::vector<std::string>& candidates);
 
+/// Those of the dotted paths whose last component is a key.
+std::vector<std::string> pathsOf(const std::string& key, const std::vector<std::string>& paths);
+
 /// The shortest text of a number: "1e+12", not twelve zeros.
 std::string numberText(double value);
 
