@@ -31,6 +31,8 @@ std::string nameOf(TrajectoryFormat format) {
             return "tum";
         case TrajectoryFormat::kitti:
             return "kitti";
+        case TrajectoryFormat::csv:
+            return "csv";
         case TrajectoryFormat::table:
             return "table";
     }

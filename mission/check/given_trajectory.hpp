@@ -18,6 +18,7 @@ struct GivenPose {
 enum class TrajectoryFormat {
     tum,    ///< camera poses T_w_c: `t tx ty tz qx qy qz qw`
     kitti,  ///< camera poses T_w_c, rows of the 3x4 matrix; no times
+    csv,    ///< camera poses T_w_c: a table whose names of columns include a quaternion
     table   ///< positions of the body, optionally with times and headings
 };
 
@@ -33,14 +34,17 @@ struct GivenTrajectory {
 /// Reads a trajectory. A file with eight numbers per line without commas is a TUM file, one with
 /// twelve is a KITTI file, which has no times. Any other file is a table with the columns x, y, z
 /// and optionally t and yaw [m, s, rad], separated by blanks or commas. A first line may name the
-/// columns; other named columns are ignored. Without names the columns are x,y,z or t,x,y,z,yaw.
+/// columns, in a comment if fields are separated by commas; other named columns are ignored.
+/// Without names the columns are x,y,z or t,x,y,z,yaw. A table with the columns of a position and a
+/// quaternion, named as in TUM's files (tx, qx) or EuRoC's (p_RS_R_x, q_RS_x), has camera poses.
+/// Times are nanoseconds if the name of their column says [ns], or beyond 1e16.
 /// @param T_b_c camera mount, with which camera poses are converted into body poses
 /// @param heading heading of the body for a table without headings; nothing: the horizontal
 ///        direction of motion (during vertical motion the previous heading)
 /// @throws InputError naming file, line and reason: for a value that is not a finite number, a
 ///         position beyond 100 km, a quaternion whose norm is not within 0.1 of 1, a decreasing
-///         time, four columns without names, fewer than two poses, poses that are all the same, or
-///         a length beyond 100 km
+///         time, columns without names other than these, fewer than two poses, poses that are all
+///         the same, or a length beyond 100 km
 GivenTrajectory readGivenTrajectory(const std::string& file, const Pose& T_b_c,
                                     const GivenHeading& heading = {});
 

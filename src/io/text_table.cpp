@@ -49,18 +49,6 @@ std::vector<std::string> splitAtBlanks(std::string_view text) {
     }
 }
 
-/// A comma at the end of a line ends its last field.
-std::vector<std::string> splitAtCommas(std::string_view text) {
-    std::vector<std::string> fields;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find(','), text.size());
-        fields.push_back(fmt::format("{}", fmt::join(splitAtBlanks(text.substr(0, end)), " ")));
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    if (fields.size() == 1 && fields[0].empty()) fields.clear();
-    return fields;
-}
-
 template <class Split>
 std::vector<TextRow> readRows(const std::string& file, const Split& split, std::size_t least,
                               std::size_t most, std::vector<InputError>* badRows) {
@@ -84,15 +72,28 @@ std::vector<TextRow> readRows(const std::string& file, const Split& split, std::
 
 }  // namespace
 
+std::vector<std::string> splitAtCommas(std::string_view text) {
+    std::vector<std::string> fields;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find(','), text.size());
+        fields.push_back(fmt::format("{}", fmt::join(splitAtBlanks(text.substr(0, end)), " ")));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    if (fields.size() == 1 && fields[0].empty()) fields.clear();
+    return fields;
+}
+
 std::ifstream openText(const std::string& file) {
     constexpr std::string_view kMark = "\xEF\xBB\xBF";
     std::ifstream stream = openToRead(file);
-    std::array<char, kMark.size()> start{};
+    std::array<char, 1000> start{};
     stream.read(start.data(), start.size());
-    if (!stream || std::string_view(start.data(), start.size()) != kMark) {
-        stream.clear();
-        stream.seekg(0);
+    const std::string_view read(start.data(), static_cast<std::size_t>(stream.gcount()));
+    if (read.find('\0') != std::string_view::npos) {
+        throw InputError(file, "", "binary or UTF-16, expected plain text");
     }
+    stream.clear();
+    stream.seekg(read.starts_with(kMark) ? kMark.size() : 0);
     return stream;
 }
 

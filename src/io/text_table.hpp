@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/error.hpp"
@@ -38,8 +39,12 @@ class TextRow {
     std::vector<std::string> fields_;
 };
 
+/// The fields of a line, without the blanks around them. A comma at the end ends the last field.
+std::vector<std::string> splitAtCommas(std::string_view line);
+
 /// Opens a text file for reading as openToRead() does. A byte order mark at its beginning, as
 /// editors of Windows write it, is skipped.
+/// @throws InputError also for a file with a zero byte within its first 1000 bytes
 std::ifstream openText(const std::string& file);
 
 /// All rows of a file, without blank lines and lines that start with '#'.

@@ -87,6 +87,50 @@ TEST_F(GivenTrajectoryTest, NamesOfColumnsGiveTheirOrder) {
     EXPECT_EQ(read("t x y z\n0 1 2 3\n1 2 2 3\n").poses[1].time, 1.);
 }
 
+TEST_F(GivenTrajectoryTest, QuaternionsInACsvAreOfTheCamera) {
+    const Pose T_b_c = cameraMount(45. * kDegree);
+    const Pose T_w_c = levelPose({1., 2., 3.}, 0.7) * T_b_c;
+    const Eigen::Quaterniond q(T_w_c.linear());
+    const std::string tum =
+        fmt::format("timestamp,tx,ty,tz,qx,qy,qz,qw\n5,1,2,3,{},{},{},{}\n5.5,0,0,0,0,0,0,1\n",
+                    q.x(), q.y(), q.z(), q.w());
+    const std::string euroc = fmt::format(
+        "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+        "q_RS_z [], v_RS_R_x [m s^-1]\n1403636580838555648,1,2,3,{},{},{},{},0.1\n"
+        "1403636581338555648,0,0,0,1,0,0,0,0.1\n",
+        q.w(), q.x(), q.y(), q.z());
+    const std::string small =
+        "t [ns],px,py,pz,qw,qx,qy,qz\n5000000000,1,2,3,1,0,0,0\n5500000000,0,0,0,1,0,0,0\n";
+    for (const std::string& text : {tum, euroc, small}) {
+        const auto trajectory = readGivenTrajectory(folder_.write("poses.csv", text), T_b_c);
+        EXPECT_EQ(trajectory.format, TrajectoryFormat::csv);
+        EXPECT_TRUE(trajectory.hasHeading);
+        ASSERT_EQ(trajectory.poses.size(), 2U);
+        EXPECT_NEAR(*trajectory.poses[1].time - *trajectory.poses[0].time, 0.5, 1e-6);
+        const Pose T_w_b = trajectory.poses[0].T_w_b;
+        EXPECT_LT((T_w_b * T_b_c).translation().norm() - std::sqrt(14.), 1e-9);
+        if (text != small) EXPECT_TRUE((T_w_b * T_b_c).isApprox(T_w_c, 1e-9)) << text;
+    }
+}
+
+TEST_F(GivenTrajectoryTest, ACsvWithQuaternionsNamesItsColumns) {
+    EXPECT_NE(reasonFor("1,0,0,0,0,0,0,1\n2,1,0,0,0,0,0,1\n")
+                  .find("line 1: 8 columns; expected x,y,z, t,x,y,z,yaw or a first line with their "
+                        "names, such as t,tx,ty,tz,qx,qy,qz,qw"),
+              std::string::npos);
+    EXPECT_NE(reasonFor("x,y,z,qx,qy,qz\n1,0,0,0,0,0\n").find("must include qx, qy, qz and qw"),
+              std::string::npos);
+    EXPECT_NE(reasonFor("x,y,z,qx,qy,qz,qw\n1,0,0,0,0,0,2\n").find("line 2: quaternion of norm 2"),
+              std::string::npos);
+    EXPECT_EQ(read("# recorded in x, y, z\n1,2,3\n2,2,3\n").poses[0].T_w_b.translation(),
+              Eigen::Vector3d(1., 2., 3.));  // prose
+}
+
+TEST_F(GivenTrajectoryTest, ABinaryFileIsNoText) {
+    EXPECT_NE(reasonFor(std::string("PK\0\1 a b\n", 9)).find("given.txt: binary or UTF-16"),
+              std::string::npos);
+}
+
 TEST_F(GivenTrajectoryTest, WithoutHeadingsTheRobotLooksWhereItFlies) {
     const std::string waypoints = "0 0 1\n0 2 1\n0 2 3\n-1 2 3\n";
     const GivenTrajectory forward = read(waypoints);
