@@ -58,7 +58,7 @@ std::vector<std::string> overridesOf(const CheckCommandOptions& options) {
 
 Config configOf(const CheckCommandOptions& options) {
     if (!options.map.empty() && !isOcTreeFile(options.map)) {
-        throw InputError("--map", options.map, "not an OctoMap (.ot, .bt); meshes are scenes");
+        throw InputError("--map", options.map, "not an OctoMap (.ot); meshes are scenes");
     }
     if (!options.config.empty()) return loadConfig(options.config, overridesOf(options));
     if (options.map.empty() && options.scene.empty()) {
@@ -66,6 +66,20 @@ Config configOf(const CheckCommandOptions& options) {
     }
     const GivenTrajectory trajectory = readGivenTrajectory(options.trajectory, Pose::Identity());
     return parseConfig(configAround(trajectory), options.trajectory, overridesOf(options));
+}
+
+/// @throws InputError naming --map or --scene where the world that it names cannot be used
+World worldOf(const CheckCommandOptions& options, const Config& config) {
+    const auto isMissing = [](const std::string& file) {
+        return !file.empty() && !fs::exists(file);
+    };
+    if (isMissing(options.map)) throw InputError("--map", options.map, "no such file");
+    if (isMissing(options.scene)) throw InputError("--scene", options.scene, "no such file");
+    World world(config);
+    if (world.hasTexture()) return world;
+    throw InputError(options.map.empty() ? config.file : "--map", config.mapFile,
+                     "no cell of the map has a grey value to compare images with; give a textured "
+                     "map (.ot)");
 }
 
 /// Angle of the body's vertical axis to that of the world, at most along the trajectory.
@@ -102,9 +116,12 @@ FlightSet flightsAlong(const CheckOutcome& report, const CheckCommandOptions& op
     const PlanningProblem problem(report.config, report.world);
     const FlightSetup setup = setUpFlight(problem);
     std::size_t flown = 0;
+    line.beginPhase();
     set.flights = flyMany(set.plan, setup.world, setup.options, options.flights, options.jobs,
                           interrupted, [&](const FlightResult&) {
-                              line.show(fmt::format("{} of {} flights", ++flown, options.flights));
+                              ++flown;
+                              line.show(fmt::format("{} of {} flights", flown, options.flights),
+                                        static_cast<double>(flown) / options.flights);
                           });
     return set;
 }
@@ -136,7 +153,7 @@ int runCheck(const CheckCommandOptions& options, const std::atomic<bool>& interr
     const GivenTrajectory trajectory =
         readGivenTrajectory(options.trajectory, config.camera.T_b_c(), heading);
     CheckOutcome report{.config = config,
-                        .world = World(config),
+                        .world = worldOf(options, config),
                         .trajectory = trajectory,
                         .file = options.trajectory,
                         .tilt = tiltOf(trajectory)};
@@ -147,16 +164,22 @@ int runCheck(const CheckCommandOptions& options, const std::atomic<bool>& interr
     {
         ProgressLine line(options.quiet);
         report.obstruction = obstructionOf(trajectory, config, report.world, interrupted);
+        line.beginPhase();
         report.checked = checkLocalisation(
             trajectory, config, report.world, options.check, interrupted,
-            [&](double share) { line.show(fmt::format("{:.0f} % checked", 100. * share)); });
+            [&](double share) { line.show(fmt::format("{:.1f} % checked", 100. * share), share); });
         report.path = pathOf(report.checked, "trajectory");
         if (options.check.headings > 0 && !interrupted) {
             CheckOptions same = options.check;
             same.headings = 0;
+            line.beginPhase();
             try {
-                report.turned = checkLocalisation(withBestHeadings(report.checked), config,
-                                                  report.world, same, interrupted);
+                report.turned = checkLocalisation(
+                    withBestHeadings(report.checked), config, report.world, same, interrupted,
+                    [&](double share) {
+                        line.show(fmt::format("best headings: {:.1f} % checked", 100. * share),
+                                  share);
+                    });
             } catch (const Interrupted&) {  // before its first place
             }
         }

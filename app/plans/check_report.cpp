@@ -27,7 +27,8 @@ std::string directionText(const Eigen::Vector3d& d) {
     const double elevation = std::asin(std::clamp(d.z(), -1., 1.)) / kDegree;
     if (elevation > 80.) return "vertical";
     const double azimuth = std::remainder(std::atan2(d.y(), d.x()) / kDegree, 180.);
-    return fmt::format("azimuth {:.0f}°, elevation {:.0f}°", azimuth, elevation);
+    const auto whole = [](double degrees) { return std::lround(degrees); };  // not -0
+    return fmt::format("azimuth {}°, elevation {}°", whole(azimuth), whole(elevation));
 }
 
 std::string uncertaintyText(const CheckedPlace& place) {
@@ -53,9 +54,10 @@ std::string flightsText(const FlightSet& set) {
     const FlightSummary s = summarise(set);
     std::size_t withLoss = 0;
     for (const FlightResult& flight : set.flights) withLoss += flight.timesLost > 0;
-    return fmt::format("{} of {} arrived, {} lost track, position error {} rms (predicted {})",
-                       s.arrived, s.flights, withLoss, lengthText(s.positionRmse),
-                       lengthText(s.predictedSigma));
+    return fmt::format(
+        "{} of {} arrived, {} collided, {} lost track, position error {} rms (predicted {})",
+        s.arrived, s.flights, s.collisions, withLoss, lengthText(s.positionRmse),
+        lengthText(s.predictedSigma));
 }
 
 std::vector<ReportView> viewsAlong(const CheckOutcome& report) {
@@ -113,7 +115,10 @@ ReportTable summaryOf(const CheckOutcome& report) {
         table.rows.emplace_back(label, value);
     };
     row("verdict", verdictOf(checked));
-    row("length", fmt::format("{:.2f} m", checked.length));
+    row("length", fmt::format("{:.2f} m", checked.wholeLength));
+    if (checked.length < checked.wholeLength) {
+        row("checked", fmt::format("{:.2f} m", checked.length));
+    }
     row("lost", fmt::format("{:.2f} m", checked.lostLength()));
     row("images that leave directions open",
         fmt::format("{:.2f} m", lengthByVerdict(checked, false)));
@@ -125,11 +130,14 @@ ReportTable summaryOf(const CheckOutcome& report) {
     row("mean trace", fmt::format("{:.3g} m²", checked.meanTrace));
     if (report.turned) {
         row("with the best headings",
-            fmt::format("{:.3g}; {}", report.turned->meanTrace, verdictOf(*report.turned)));
+            fmt::format("{:.3g} m²; {}", report.turned->meanTrace, verdictOf(*report.turned)));
     }
     const bool isWithin = report.obstruction.outside.empty();
     row("in collision", stretchesText(report.obstruction.collisions) +
                             (isWithin ? "" : "; unknown where it is out of bounds"));
+    if (report.world.map() != nullptr) {
+        row("next to unknown cells", stretchesText(report.obstruction.unknown));
+    }
     row("out of bounds", stretchesText(report.obstruction.outside));
     if (!report.flights.flights.empty()) row("flights", flightsText(report.flights));
     return table;
@@ -154,7 +162,7 @@ void writeCheckReport(const fs::path& folder, const CheckOutcome& report,
     }
     if (report.checked.isLost()) page.trees.push_back(lostStretches(report.checked));
     if (!report.flights.flights.empty()) page.trees.push_back(drawnFlights(report.flights));
-    if (report.world.hasTexture()) page.views = viewsAlong(report);
+    page.views = viewsAlong(report);
     page.tables.push_back(summaryOf(report));
 
     Trajectory trajectory;  // as the places were looked at, one metre per second without times

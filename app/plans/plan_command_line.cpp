@@ -41,10 +41,10 @@ void addInfoOptions(CLI::App& parser, InfoOptions& options) {
 void addCheckOptions(CLI::App& parser, CheckCommandOptions& options) {
     parser
         .add_option("trajectory", options.trajectory,
-                    "TUM file (camera to world), or table with the columns t,x,y,z,yaw, x,y,z, or "
-                    "those named in its first line")
+                    "TUM or KITTI file, or CSV with quaternions (camera to world); or table with "
+                    "the columns t,x,y,z,yaw, x,y,z, or those named in its first line")
         ->required();
-    CLI::Option* map = parser.add_option("--map", options.map, "textured OctoMap (.ot, .bt)");
+    CLI::Option* map = parser.add_option("--map", options.map, "textured OctoMap (.ot)");
     map->type_name("FILE");
     parser.add_option("--scene", options.scene, "scene (.yaml) or mesh")
         ->type_name("FILE")

@@ -9,7 +9,7 @@
 #include "io/error.hpp"
 #include "io/interrupted.hpp"
 #include "result/json_values.hpp"
-#include "shared/command_io.hpp"
+#include "shared/command_line.hpp"
 #include "shared/path_inside.hpp"
 
 namespace photonav {
@@ -112,7 +112,9 @@ void printOutput(const OutputOptions& output, const fs::path& folder, const nloh
 void printTable(const ReportTable& table) {
     std::size_t width = 0;
     for (const auto& row : table.rows) width = std::max(width, row.first.size() + 2);
-    for (const auto& [label, value] : table.rows) fmt::print("{:<{}}{}\n", label, width, value);
+    for (const auto& [label, value] : table.rows) {
+        fmt::print("{:<{}}{}\n", label, width, wrapped(value, width));
+    }
 }
 
 void printFile(const fs::path& file) {

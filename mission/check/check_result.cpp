@@ -124,9 +124,15 @@ EvaluatedPath pathOf(const CheckedTrajectory& checked, const std::string& name) 
 
 std::string verdictOf(const CheckedTrajectory& checked) {
     const CheckedPlace* lost = checked.firstLost();
-    if (lost == nullptr) return "the camera stays localised all along the trajectory";
-    return fmt::format("the camera is lost after {:.2f} m of {:.2f} m: {}", lost->length,
-                       checked.length, nameOf(lost->loss));
+    if (lost != nullptr) {
+        return fmt::format("the camera is lost after {:.2f} m of {:.2f} m: {}", lost->length,
+                           checked.wholeLength, nameOf(lost->loss));
+    }
+    if (checked.length < checked.wholeLength) {
+        return fmt::format("interrupted: the camera stays localised for the first {:.2f} m",
+                           checked.length);
+    }
+    return "the camera stays localised all along the trajectory";
 }
 
 /// Way that ends at places whose image is of a kind [m].
@@ -144,7 +150,8 @@ json localisationJson(const CheckedTrajectory& checked) {
     json result{
         {"verdict", verdictOf(checked)},
         {"is_lost", checked.isLost()},
-        {"length", checked.length},
+        {"length", checked.wholeLength},
+        {"checked_length", checked.length},
         {"metric_length", checked.places.back().distance},
         {"mean_trace", checked.meanTrace},
         {"goal_trace", checked.places.back().trace},
@@ -174,6 +181,7 @@ json checkResult(const CheckOutcome& report) {
                                {"tilt_deg", report.tilt / kDegree}}},
                              {"characteristic_length", report.config.belief.characteristicLength},
                              {"collisions", jsonOf(report.obstruction.collisions)},
+                             {"unknown_cells", jsonOf(report.obstruction.unknown)},
                              {"out_of_bounds", jsonOf(report.obstruction.outside)},
                              {"least_clearance_m", finiteOrNull(report.obstruction.leastClearance)},
                              {"with_best_headings", turnedJson(report.turned)},

@@ -287,6 +287,7 @@ CheckedTrajectory checkLocalisation(const GivenTrajectory& trajectory, const Con
     }
     const CheckedPlace& last = checked.places.back();
     checked.length = last.length;
+    checked.wholeLength = places.back().length;
     checked.meanTrace = meanTraceOf(checked.places);
     checked.arrivalTolerance = arrivalTolerance(config);
     // Where it was interrupted, the walk may be on the way to the next place.

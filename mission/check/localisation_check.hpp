@@ -61,8 +61,9 @@ struct CheckedPlace {
 
 struct CheckedTrajectory {
     std::vector<CheckedPlace> places;
-    double length = 0.;     ///< length of the trajectory [m]
-    double meanTrace = 0.;  ///< weighted trace, averaged over the distance flown [m^2]
+    double length = 0.;       ///< length of the trajectory that was checked [m]
+    double wholeLength = 0.;  ///< also of the rest that an interruption left out [m]
+    double meanTrace = 0.;    ///< weighted trace, averaged over the distance flown [m^2]
     /// Probability, by the belief, that the body ends within arrivalTolerance of the last place.
     double arrivalProbability = 0.;
     double arrivalTolerance = 0.;  ///< [m]

@@ -31,12 +31,16 @@ class Stretches {
 Obstruction obstructionOf(const GivenTrajectory& trajectory, const Config& config,
                           const World& world, const std::atomic<bool>& interrupted) {
     Obstruction found{.leastClearance = kInfinity};
-    Stretches collisions, outside;
+    const auto known = world.distancesWithoutUnknown(config);
+    Stretches collisions, unknown, outside;
     const auto see = [&](const Eigen::Vector3d& p_w, double length) {
         const bool isOutside = !config.bounds.contains(p_w);
         outside.see(length, isOutside);
         const double clearance = isOutside ? kInfinity : world.clearance(p_w);
-        collisions.see(length, clearance <= config.robotRadius);
+        const bool isBlocked = clearance <= config.robotRadius;
+        const bool isUnknown = isBlocked && known && known->clearance(p_w) > config.robotRadius;
+        collisions.see(length, isBlocked && !isUnknown);
+        unknown.see(length, isUnknown);
         found.leastClearance = std::min(found.leastClearance, clearance);
     };
     double length = 0.;
@@ -53,6 +57,7 @@ Obstruction obstructionOf(const GivenTrajectory& trajectory, const Config& confi
         last += way;
     }
     found.collisions = collisions.take();
+    found.unknown = unknown.take();
     found.outside = outside.take();
     return found;
 }

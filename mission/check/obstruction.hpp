@@ -18,7 +18,9 @@ struct Stretch {
 
 struct Obstruction {
     std::vector<Stretch> collisions = {};  ///< parts nearer to an obstacle than the robot's radius
-    std::vector<Stretch> outside = {};     ///< parts outside of the bounds of the config
+    /// Parts as near to unknown cells that count as obstacles, but not to an obstacle.
+    std::vector<Stretch> unknown = {};
+    std::vector<Stretch> outside = {};  ///< parts outside of the bounds of the config
     /// Least clearance within the bounds, limited by the range of World::clearance() [m]; infinite
     /// if all of the trajectory is out of bounds.
     double leastClearance = 0.;

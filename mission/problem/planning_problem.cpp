@@ -87,8 +87,12 @@ bool PlanningProblem::isFlyable(const Eigen::Vector3d& p_w) const {
 
 void PlanningProblem::checkPlace(const std::string& key, const Place& place) const {
     if (isFlyable(place.position)) return;
-    throw config_.invalid(key, fmt::format("in collision: clearance {:.3f} m, robot.radius {} m",
-                                           world_.clearance(place.position), config_.robotRadius));
+    const auto known = world_.distancesWithoutUnknown(config_);
+    const bool isUnknown = known && known->clearance(place.position) > config_.robotRadius;
+    throw config_.invalid(
+        key, fmt::format("in collision: clearance {:.3f} m, robot.radius {} m{}",
+                         world_.clearance(place.position), config_.robotRadius,
+                         isUnknown ? ", next to unknown cells (map.unknown: occupied)" : ""));
 }
 
 std::string PlanningProblem::statusOf(const PlanOutcome& outcome) const {

@@ -94,7 +94,7 @@ class PlanningProblem {
     /// @throws InputError for a start or goal in collision
     void checkPlaces() const;
     /// @param key key of the config that gives the place
-    /// @throws InputError if the place is in collision
+    /// @throws InputError if the place is in collision, which says whether only with unknown cells
     void checkPlace(const std::string& key, const Place& place) const;
 
     /// Makes a planner and grows it to the config's number of vertices. Gives up after 200 samples

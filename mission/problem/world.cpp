@@ -122,6 +122,12 @@ std::shared_ptr<MapChange> World::collectChanges() const {
     return collected;
 }
 
+std::optional<DistanceMap> World::distancesWithoutUnknown(const Config& config) const {
+    if (!obstacles_ || config.unknownToPlanner == UnknownPolicy::free) return {};
+    return DistanceMap(*obstacles_, config.bounds,
+                       {.maxDistance = distances_.maxDistance(), .unknown = UnknownPolicy::free});
+}
+
 Eigen::AlignedBox3d World::extent() const {
     return scene_ != nullptr ? scene_->boundingBox() : extentOf(*map_);
 }

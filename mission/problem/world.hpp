@@ -50,6 +50,10 @@ class World {
     /// Distance from a place to the nearest obstacle [m], see DistanceMap::clearance().
     double clearance(const Eigen::Vector3d& p_w) const { return distances_.clearance(p_w); }
 
+    /// Distances to the occupied cells alone. Nothing if unknown cells are no obstacles anyway.
+    /// @param config from which the world was made
+    std::optional<DistanceMap> distancesWithoutUnknown(const Config& config) const;
+
     /// Bounding box of the scene or map, world frame [m]. For a map, visits all cells.
     Eigen::AlignedBox3d extent() const;
 

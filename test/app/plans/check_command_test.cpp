@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "app/executable.hpp"
+#include "map/octree_file.hpp"
+#include "result/text_table.hpp"
 #include "temporary_folder.hpp"
 
 namespace photonav {
@@ -104,6 +107,48 @@ TEST_F(CheckCommand, CollisionsAndBoundsAreReportedNotRefused) {
     EXPECT_NEAR(result()["collisions"][0][0].get<double>(), 1.8, 0.12);
 }
 
+/// A map whose only known cells are around the trajectory's second half.
+std::string halfKnownMap(const test::TemporaryFolder& folder) {
+    TexturedOcTree map(0.1);
+    for (double x = 1.05; x < 4.; x += 0.1) {
+        for (double y = -1.; y < 1.; y += 0.1) {
+            for (double z = 0.15; z < 2.; z += 0.1) map.updateNode(x, y, z, false);
+            map.updateNode(x, y, 0.05, true)->faces[5].observe(x < 2. ? 0.2F : 0.8F, 1.F);
+        }
+    }
+    saveTexturedOcTree(map, folder.file("half.ot"));
+    saveBinaryOcTree(map, folder.file("half.bt"));
+    return folder.file("half.ot");
+}
+
+TEST_F(CheckCommand, UnknownCellsAreNotCollisions) {
+    const std::string map = halfKnownMap(folder_);
+    const std::string way = folder_.write("way.txt", "0 0 1\n3 0 1\n");
+    const Execution run = check(way + " --headings 0 --map " + map);
+    EXPECT_NE(run.output.find("in collision                        none"), std::string::npos)
+        << run.output;
+    EXPECT_NE(run.output.find("next to unknown cells               0.00 to 1."), std::string::npos)
+        << run.output;
+    EXPECT_EQ(result()["unknown_cells"].size(), 1U);
+    EXPECT_TRUE(result()["collisions"].empty());
+}
+
+TEST_F(CheckCommand, AMapWithoutGreyValuesIsRefused) {
+    halfKnownMap(folder_);
+    const std::string way = folder_.write("way.txt", "0 0 1\n3 0 1\n");
+    expectRefused(check(way + " --map " + folder_.file("half.bt")), "half.bt: no cell of the map");
+}
+
+TEST_F(CheckCommand, LinesFitIntoEightyColumns) {
+    const std::string file = folder_.write("way.txt", "8 4 2\n16 4 2\n");
+    const Execution run = check(file + " --headings 2 --flights 1 " + scene());
+    std::istringstream lines(run.output);
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.starts_with("report: ")) EXPECT_LE(characters(line), 80U) << line;
+    }
+    EXPECT_NE(run.output.find("1 arrived, 0 collided"), std::string::npos) << run.output;
+}
+
 TEST_F(CheckCommand, FlightsAlongTheTrajectoryFollowFromTheSeed) {
     const std::string file = folder_.write("way.txt", "6 1 2\n6 4 2\n");
     const std::string arguments =
@@ -127,6 +172,8 @@ TEST_F(CheckCommand, BadInputIsOneLineAndWritesNothing) {
     expectRefused(check(way + " --heading left " + scene()), "--heading: left: expected forward");
     expectRefused(check(way + " --map " + way), "not an OctoMap");
     expectRefused(check(way + " --map a.ot --scene b.yaml"), "--map");
+    expectRefused(check(way + " --map nope.ot"), "photonav: --map: nope.ot: no such file");
+    expectRefused(check(way + " --scene nope.yaml"), "photonav: --scene: nope.yaml: no such file");
     expectRefused(check(way + " --headings -1 " + scene()), "--headings");
     const std::string tilted = folder_.write(
         "tilted.tum", "0 6 1 2 0 0 0 1\n1 6 4 2 0 0 0 1\n");  // the mount is down, the camera up

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "check/check_result.hpp"
 #include "check/obstruction.hpp"
 #include "geometry/constants.hpp"
 #include "geometry/se3.hpp"
@@ -234,6 +235,8 @@ TEST_F(Corridor, AnInterruptedCheckKeepsThePlacesSoFar) {
                                            [&](double share) { interrupted = share >= 0.5; });
     EXPECT_EQ(checked.places.size(), 21U);
     EXPECT_NEAR(checked.length, 5., 1e-9);
+    EXPECT_NEAR(checked.wholeLength, 10., 1e-9);
+    EXPECT_EQ(verdictOf(checked), "interrupted: the camera stays localised for the first 5.00 m");
 }
 
 TEST(LocalisationCheck, IsInterruptedInsideALargeView) {
