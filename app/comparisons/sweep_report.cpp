@@ -152,7 +152,7 @@ std::string sweepTable(const std::vector<SweepCell>& cells) {
     for (auto first = cells.begin(); first != cells.end();) {
         const auto last = std::find_if(
             first, cells.end(), [&](const SweepCell& c) { return c.planner != first->planner; });
-        text += "\n" + first->planner + "  (traces in m^2)\n";
+        text += "\n" + first->planner + "  (traces in m²)\n";
         text += alignedText(textTable({first, last}, decimals));
         first = last;
     }

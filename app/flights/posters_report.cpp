@@ -116,7 +116,7 @@ std::string rankingText(const PosterProblem& problem, const PosterRanking& ranki
         text.erase(text.find_last_not_of(' ') + 1);
         text += "\n";
     };
-    add("  path", "  servoing at the goal", "");
+    add("  path (traces in m²)", "  servoing at the goal", "");
     add("length   cost    mean    goal lost", "  sigma  slow   condi- conv-", "with");
     add("   [m]          trace   trace  [m]", "   [mm]   [s]     tion erged", "");
     for (const PosterSet& set : ranking.sets) {

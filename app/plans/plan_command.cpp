@@ -26,7 +26,7 @@ void printSummary(const PlanOutcome& outcome, const std::string& status,
                   const std::optional<EvaluatedPath>& baseline, double kappa, bool audit,
                   double seconds) {
     const auto row = [](const EvaluatedPath& path) {
-        fmt::print("{:<16} {:>8.2f} m {:>12.3g} {:>12.3g} {:>10.4g}\n", path.planner, path.length,
+        fmt::print("{:<16} {:>8.2f} m {:>15.3g} {:>15.3g} {:>10.4g}\n", path.planner, path.length,
                    path.meanTrace, path.goalTrace, path.cost);
     };
     const bool isFound = !outcome.progress.empty() && std::isfinite(outcome.progress.back().cost);
@@ -36,13 +36,13 @@ void printSummary(const PlanOutcome& outcome, const std::string& status,
         fmt::print("{}\n", status);
     }
     if (outcome.path || baseline) {
-        fmt::print("{:<16} {:>10} {:>12} {:>12} {:>10}\n", "planner", "length", "mean trace",
-                   "goal trace", "cost");
+        fmt::print("{:<16} {:>10} {:>15} {:>15} {:>10}\n", "planner", "length", "mean trace [m²]",
+                   "goal trace [m²]", "cost");
     }
     if (outcome.path) row(*outcome.path);
     if (baseline) row(*baseline);
     if (outcome.isSolved()) {
-        fmt::print("cost: {} (alpha {}, kappa {:.4g} 1/m^2)\n", costShares(*outcome.path),
+        fmt::print("cost: {} (alpha {}, kappa {:.4g} 1/m²)\n", costShares(*outcome.path),
                    outcome.alpha, kappa);
     }
     if (outcome.isSolved() && baseline) {

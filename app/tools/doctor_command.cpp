@@ -2,6 +2,7 @@
 #include "tools/doctor_command.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <ompl/config.h>
 #include <unistd.h>
 #include <visp3/core/vpConfig.h>
@@ -83,8 +84,8 @@ void checkProgram(const std::vector<std::string>& names, const std::string& use)
         if (!file.empty()) return print("ok", use, file.string());
     }
     print("optional", use,
-          "none of " + fmt::format("{}", names.front()) +
-              (names.size() > 1 ? ", " + names.back() : "") + " is installed");
+          names.size() == 1 ? names.front() + " is not installed"
+                            : fmt::format("none of {} is installed", fmt::join(names, ", ")));
 }
 
 void checkDisplay() {

@@ -80,6 +80,8 @@ StateKind readSpace(YamlMap& root, const Config& config) {
     return space == "xyz_yaw" ? StateKind::positionYaw : StateKind::se3;
 }
 
+constexpr const char* kSceneAsConfig = "is a scene file; name it as scene.file in a config";
+
 void addWorld(KeyTable& keys, Config& c) {
     static const std::vector<std::string> kUnknown{"free", "occupied"};
     keys.beginSection("scene");
@@ -100,6 +102,9 @@ void addWorld(KeyTable& keys, Config& c) {
               .allowed = "`[[x, y, z], [x, y, z]]`",
               .read =
                   [&c](YamlMap& root) {
+                      for (const char* key : {"textures", "planes", "boxes", "walls"}) {
+                          if (root.has(key)) root.fail("", kSceneAsConfig);
+                      }
                       if (c.sceneFile.empty() && c.mapFile.empty()) {
                           root.fail("scene.file", "give scene.file or map.file");
                       }

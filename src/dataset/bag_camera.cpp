@@ -60,7 +60,9 @@ void requireBagCamera(double fx, double fy, double cx, double cy, const CameraIn
     if (!isCamera) throw InputError(source, "", "is not calibrated: no intrinsics of a camera");
 }
 
+/// A fisheye lens distorts also where all its coefficients are 0.
 bool lensDistorts(const CameraInfoMessage& info) {
+    if (info.distortionModel == "equidistant" || info.distortionModel == "fisheye") return true;
     return std::ranges::any_of(info.D, [](double d) { return d != 0.; });
 }
 

@@ -24,8 +24,8 @@ constexpr std::size_t kImageFields = 10;
 
 std::optional<fs::path> modelIn(const fs::path& folder) {
     for (const char* name : {"", "sparse", "sparse/0"}) {
-        if (fs::exists(folder / name / "cameras.txt") && fs::exists(folder / name / "images.txt")) {
-            return folder / name;
+        for (const char* file : {"cameras.txt", "images.txt"}) {
+            if (fs::exists(folder / name / file)) return folder / name;
         }
     }
     return {};

@@ -22,11 +22,13 @@ class SceneReader {
 
     Scene read() {
         root_.read("seed", seed_);
-        for (YamlMap& map : root_.list("textures")) readTexture(map);
-        for (YamlMap& map : root_.list("planes")) readPlane(map);
-        for (YamlMap& map : root_.list("boxes")) readBox(map);
-        for (YamlMap& map : root_.list("walls")) readWall(map);
-        root_.finish();
+        auto textures = root_.list("textures"), planes = root_.list("planes"),
+             boxes = root_.list("boxes"), walls = root_.list("walls");
+        root_.finish();  // before the surfaces: a misspelt list of textures is its own mistake
+        for (YamlMap& map : textures) readTexture(map);
+        for (YamlMap& map : planes) readPlane(map);
+        for (YamlMap& map : boxes) readBox(map);
+        for (YamlMap& map : walls) readWall(map);
         if (scene_.triangles.empty()) root_.fail("", "the scene has no surfaces");
         return std::move(scene_);
     }
@@ -161,7 +163,8 @@ Texture SceneReader::readImage(YamlMap& map) {
     map.readNumber("width", width, kSmallest, kInfinity);
     const auto path = std::filesystem::path(root_.file()).parent_path() / image;
     if (!std::filesystem::is_regular_file(path)) {
-        map.fail("file", fmt::format("no such image '{}'", path.string()));
+        map.fail("file", fmt::format("no such image '{}'",
+                                     std::filesystem::absolute(path).lexically_normal().string()));
     }
     scene_.files.push_back(path.string());
     Texture texture = imageTexture(path.string(), width);

@@ -123,6 +123,11 @@ TEST_F(PlanCommand, AStartInsideAnObstacleIsRefused) {
                    "start: in collision: clearance");
 }
 
+TEST_F(PlanCommand, ASceneFileIsNoConfig) {
+    expectBadInput(plan("", "scenes/kitchen"),
+                   "scenes/kitchen.yaml: is a scene file; name it as scene.file in a config");
+}
+
 TEST_F(PlanCommand, CtrlCKeepsTheBestPathSoFar) {
     const std::string command = fmt::format(
         "{} plan {} --set planner.vertices=1000000 --set planner.view_pitch=0.5 --quiet --out {}",

@@ -92,6 +92,9 @@ TEST_F(ColmapModel, OfAnotherKindIsRefused) {
     expectReason("line 1: quaternion");
     folder_.write("sparse/0/images.txt", "1 1 0 0 0 0 0 0 7\n\n");
     expectReason("9 fields of an image");
+    std::filesystem::remove(folder_.path() / "sparse/0/images.txt");
+    EXPECT_TRUE(isColmapFolder(folder_.path().string()));
+    expectReason("images.txt: no such file");
 }
 
 }  // namespace

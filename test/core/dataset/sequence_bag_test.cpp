@@ -116,6 +116,9 @@ TEST_F(BagRecordingFile, CorrectsALens) {
     EXPECT_NE(reason({.distortionModel = "equidistant", .distortion = {0.1, 0., 0., 0.}})
                   .find("'equidistant' with 4 coefficients is not one of plumb_bob"),
               std::string::npos);
+    EXPECT_NE(reason({.distortionModel = "equidistant", .distortion = {0., 0., 0., 0.}})
+                  .find("'equidistant' with 4 coefficients is not one of plumb_bob"),
+              std::string::npos);  // a fisheye lens all the same
 }
 
 TEST_F(BagRecordingFile, NeedsItsTopics) {

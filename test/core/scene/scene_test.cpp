@@ -152,6 +152,9 @@ TEST(SceneYaml, ComplaintsNameFileKeyAndReason) {
     const std::string file = folder.file("scene.yaml");
     EXPECT_EQ(complaint(white + "plains: []\n"),
               file + ": plains: unknown key, did you mean 'planes'?");
+    EXPECT_EQ(complaint("texture: [{name: a}]\n"
+                        "boxes: [{min: [0, 0, 0], max: [1, 1, 1], texture: a}]"),
+              file + ": texture: unknown key, did you mean 'textures'?");
     EXPECT_EQ(complaint("textures: [{name: a, type: noise, cels: [1]}]"),
               file + ": textures[0].cels: unknown key, did you mean 'textures[0].cells'?");
     EXPECT_EQ(complaint(white + "boxes: [{min: [0, 0, 0], max: [1, 1, 1], texture: wite}]"),
