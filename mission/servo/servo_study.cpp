@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "servo/servo_study.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
@@ -283,15 +285,16 @@ std::string inWords(const ServoMode& mode, double depth) {
     static constexpr std::array kNames{"x", "y", "z", "roll", "pitch", "yaw"};
     Vector6 parts = mode.direction;
     parts.tail<3>() *= depth;
-    const double largest = parts.cwiseAbs().maxCoeff();
-    std::vector<std::pair<double, std::string>> named;
-    for (int i = 0; i < 6; ++i) {
-        if (std::abs(parts[i]) > largest / 3.) named.emplace_back(std::abs(parts[i]), kNames[i]);
-    }
-    std::ranges::sort(named, std::greater());
-    std::string words;
-    for (const auto& [part, name] : named) words += (words.empty() ? "" : " and ") + name;
-    return words;
+    std::array<Eigen::Index, 6> order{0, 1, 2, 3, 4, 5};
+    std::ranges::stable_sort(
+        order, [&](auto i, auto j) { return std::abs(parts[i]) > std::abs(parts[j]); });
+    const double whole = parts.cwiseAbs().sum(), sign = parts[order[0]] < 0. ? -1. : 1.;
+    const auto named = [&](Eigen::Index i) {
+        const auto share = std::lround(100. * sign * parts[i] / whole);
+        return share == 0 ? "" : fmt::format("{} {:+} %", kNames.at(std::size_t(i)), share);
+    };
+    const std::string first = named(order[0]), second = named(order[1]);
+    return second.empty() ? kNames.at(std::size_t(order[0])) : first + ", " + second;
 }
 
 }  // namespace photonav

@@ -86,8 +86,9 @@ ServoStudy studyServo(const ServoGoal& goal, const ServoStudyOptions& options,
                       const std::atomic<bool>& interrupted,
                       const std::function<void(double share)>& progress);
 
-/// The axes of a mode's direction, largest component first: "x and pitch". Components below a third
-/// of the largest are left out; rotations are compared after multiplication with the depth [m].
+/// The two largest components of a mode's direction: "x +60 %, pitch -25 %", or "x" alone. The
+/// first is positive, because the direction has no sign; rotations count after multiplication with
+/// the depth [m].
 std::string inWords(const ServoMode& mode, double depth);
 
 }  // namespace photonav

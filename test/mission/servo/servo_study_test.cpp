@@ -141,9 +141,11 @@ TEST(ServoStudy, EndsWithinATrial) {
 TEST(ServoMode, IsSaidInWords) {
     ServoMode mode;
     mode.direction << 0.1, -0.8, 0., 0.2, 0., 0.;
-    EXPECT_EQ(inWords(mode, 1.), "y");
-    EXPECT_EQ(inWords(mode, 2.), "y and roll");
-    EXPECT_EQ(inWords(mode, 8.), "roll and y");
+    EXPECT_EQ(inWords(mode, 1.), "y +73 %, roll -18 %");
+    EXPECT_EQ(inWords(mode, 2.), "y +62 %, roll -31 %");
+    EXPECT_EQ(inWords(mode, 8.), "roll +64 %, y -32 %");
+    mode.direction << 0., 0., -1., 0., 0., 0.001;
+    EXPECT_EQ(inWords(mode, 1.), "z");
 }
 
 }  // namespace
