@@ -21,11 +21,17 @@ class Camera:
     def __init__(self, width: int = 188, height: int = 120, hfov: float = 70.0) -> None:
         """hfov: horizontal field of view in degrees."""
     width: int
+    """Columns of an image."""
     height: int
+    """Rows of an image."""
     fx: float
+    """Focal length along x [pixels]."""
     fy: float
+    """Focal length along y [pixels]."""
     cx: float
+    """Principal point, column [pixels]."""
     cy: float
+    """Principal point, row [pixels]."""
 
 class Views:
     """A scene, mesh or map from which views are rendered."""
@@ -44,19 +50,25 @@ class Map:
 
     def __init__(self, resolution: float = 0.05) -> None: ...
     @staticmethod
-    def load(file: Union[str, "PathLike[str]"]) -> "Map": ...
-    def save(self, file: Union[str, "PathLike[str]"]) -> None: ...
+    def load(file: Union[str, "PathLike[str]"]) -> "Map":
+        """Reads a textured OctoMap (.ot), as save() and `photonav map` write it."""
+    def save(self, file: Union[str, "PathLike[str]"]) -> None:
+        """Writes the map as an OctoMap file (.ot); an existing file is replaced."""
     def fuse(
         self, image: ArrayLike, depth: ArrayLike, camera: Camera, T_c_w: ArrayLike, max_range: float = 4.0
     ) -> int:
         """Adds an image with depth taken at a pose. Returns in how many bricks of 4^3 cells
-        occupancy changed."""
+        occupancy changed.
+
+        image: grey values in [0, 1], or uint8, which is divided by 255. depth: [m], 0: no surface.
+        """
     def occupied(self) -> tuple[Array, Image]:
         """Centres (N, 3) and mean grey values (N,) of the occupied cells; NaN: never observed."""
     def views(self) -> Views:
         """A snapshot to render views from; later changes of the map do not change it."""
     @property
-    def resolution(self) -> float: ...
+    def resolution(self) -> float:
+        """Edge of a cell [m]."""
 
 def camera_pose(position: ArrayLike, yaw: float = 0.0, mount: Union[str, float] = "down") -> Array:
     """T_c_w of a camera on a level body at a position [m] with a heading [rad].
@@ -74,6 +86,7 @@ def information(
 ) -> Array:
     """Fisher information (6, 6) of the camera pose from one image with depth, camera frame.
 
+    image: grey values in [0, 1], or uint8, which is divided by 255. depth: [m], 0: no surface.
     image must be predicted or noise-free: gradients of noise look like information. sigma:
     standard deviation of the image noise. scale: factor, since neighbouring pixels are not
     independent: that of a config (camera.information_scale).
@@ -87,11 +100,20 @@ def contribution(
     sigma: float = 0.02,
     scale: float = 0.08,
 ) -> Image:
-    """What every pixel adds to the information about a direction (6,), or about all together."""
+    """What every pixel adds to the information about a direction (6,), or about all together.
 
-def exp_se3(xi: ArrayLike) -> Array: ...
-def log_se3(T: ArrayLike) -> Array: ...
-def adjoint(T: ArrayLike) -> Array: ...
+    image and depth: as for information().
+    """
+
+def exp_se3(xi: ArrayLike) -> Array:
+    """The rigid motion (4, 4) of a twist (6,): translation [m], then rotation [rad]."""
+
+def log_se3(T: ArrayLike) -> Array:
+    """The twist (6,) of a rigid motion (4, 4), of at most half a turn: the inverse of exp_se3()."""
+
+def adjoint(T: ArrayLike) -> Array:
+    """Ad(T) (6, 6), which maps twists between frames: T exp(xi) T^-1 = exp(Ad(T) xi)."""
+
 def compound(
     T_c_b: ArrayLike, motion: ArrayLike, T_b_a: ArrayLike, covariance: ArrayLike
 ) -> tuple[Array, Array]:
@@ -104,20 +126,32 @@ class Path:
     """A path with the beliefs along it; the arrays have a row for every point."""
 
     planner: str
+    """Name of the planner; given: of beliefs()."""
     cost: float
+    """Cost J, which planners minimise."""
     length: float
+    """Length [m]."""
     mean_trace: float
+    """Weighted trace of the covariance, averaged over the distance flown [m^2]."""
     goal_trace: float
+    """Weighted trace of the covariance at the goal [m^2]."""
     length_share: float
+    """Share of the length in the cost, in [0, 1]."""
     T_w_b: Array
+    """Poses of the body in the world (N, 4, 4)."""
     covariance: Array
+    """Of T_c_w after the view (N, 6, 6), camera frame: translation, then rotation."""
     information: Array
+    """Fisher information of the view (N, 6, 6), camera frame."""
     trace: Array
+    """Weighted trace of the covariance (N,) [m^2]."""
     distance: Array
+    """Length of the path so far (N,) [m]."""
     is_waypoint: NDArray[np.bool_]
+    """Whether a point is a waypoint of the planner (N,)."""
     @property
     def positions(self) -> Array:
-        """Of the body (N, 3) [m]."""
+        """Positions of the body (N, 3) [m]."""
     @property
     def yaw(self) -> Array:
         """Headings (N,) [rad]."""
@@ -129,12 +163,19 @@ class Plan:
     """What a planner found."""
 
     status: str
+    """done, no path, or failed (its cost is not finite)."""
     path: Optional[Path]
+    """The best path; None if there is none."""
     alpha: float
+    """Weight of the length in the cost."""
     vertices: int
+    """Number of vertices of the tree."""
     views: int
+    """Number of views rendered."""
     seconds: float
+    """Duration of the planning [s]."""
     tree: Image
+    """Edges of the tree: both ends of each (N, 2, 3) [m]."""
 
 class Problem:
     """A planning problem: a config, its world, and what can be asked about it."""
@@ -146,14 +187,17 @@ class Problem:
     def config(self) -> str:
         """The complete config as YAML."""
     @property
-    def camera(self) -> Camera: ...
+    def camera(self) -> Camera:
+        """The camera of the config."""
     @property
-    def views(self) -> Views: ...
+    def views(self) -> Views:
+        """The scene or map of the config, to render views from."""
     @property
-    def T_b_c(self) -> Array: ...
+    def T_b_c(self) -> Array:
+        """Pose of the camera on the body (4, 4)."""
     @property
     def initial_covariance(self) -> Array:
-        """Of T_c_w at the start before any view, camera frame."""
+        """Of T_c_w at the start before any view (6, 6), camera frame."""
     def kappa(self) -> float:
         """Of the cost [1/m^2]; chosen when it is needed first where the config says auto."""
     def clearance(self, position: ArrayLike) -> float:

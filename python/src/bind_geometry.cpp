@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cameras, poses and covariances.
+#include <fmt/format.h>
+
 #include "bindings.hpp"
 #include "config/config_keys.hpp"
 #include "conversions.hpp"
@@ -40,24 +42,29 @@ void bindGeometry(py::module_& module) {
              }),
              "width"_a = 188, "height"_a = 120, "hfov"_a = 70.,
              "hfov: horizontal field of view in degrees.")
-        .def_readonly("width", &Camera::width)
-        .def_readonly("height", &Camera::height)
-        .def_property_readonly("fx", &Camera::fx)
-        .def_property_readonly("fy", &Camera::fy)
-        .def_property_readonly("cx", &Camera::cx)
-        .def_property_readonly("cy", &Camera::cy);
+        .def_readonly("width", &Camera::width, "Columns of an image.")
+        .def_readonly("height", &Camera::height, "Rows of an image.")
+        .def_property_readonly("fx", &Camera::fx, "Focal length along x [pixels].")
+        .def_property_readonly("fy", &Camera::fy, "Focal length along y [pixels].")
+        .def_property_readonly("cx", &Camera::cx, "Principal point, column [pixels].")
+        .def_property_readonly("cy", &Camera::cy, "Principal point, row [pixels].")
+        .def("__repr__", [](const Camera& c) {
+            return fmt::format("<Camera {}x{}, fx {:.1f}, fy {:.1f}, cx {:.1f}, cy {:.1f}>",
+                               c.width, c.height, c.fx(), c.fy(), c.cx(), c.cy());
+        });
     module.def("camera_pose", &cameraPose, "position"_a, "yaw"_a = 0., "mount"_a = "down",
                "T_c_w of a camera on a level body at a position [m] with a heading [rad]. mount: "
                "down, front45, forward or degrees below the horizon.");
     module.def(
         "exp_se3", [](const Array& xi) { return arrayOf(expSE3(vectorOf(xi, 6, "xi"))); }, "xi"_a,
-        "The rigid motion of a twist (translation, rotation).");
+        "The rigid motion (4, 4) of a twist (6,): translation [m], then rotation [rad].");
     module.def(
         "log_se3", [](const Array& T) -> Vector6 { return logSE3(poseOf(T, "T")); }, "T"_a,
-        "The twist of a rigid motion, of at most half a turn.");
+        "The twist (6,) of a rigid motion (4, 4), of at most half a turn: the inverse of "
+        "exp_se3().");
     module.def(
         "adjoint", [](const Array& T) -> Matrix6 { return adjoint(poseOf(T, "T")); }, "T"_a,
-        "Ad(T): T exp(xi) T^-1 = exp(Ad(T) xi).");
+        "Ad(T) (6, 6), which maps twists between frames: T exp(xi) T^-1 = exp(Ad(T) xi).");
     module.def(
         "compound",
         [](const Array& T_c_b, const Array& motion, const Array& T_b_a, const Array& covariance) {

@@ -92,6 +92,16 @@ double positionSigma(const BeliefPoint& point) {
     return std::sqrt(std::max(0., solver.eigenvalues()[2]));
 }
 
+std::string pathText(const EvaluatedPath& path) {
+    return fmt::format("<Path of {}: {} points, {:.2f} m, cost {:.4g}, mean trace {:.3g} m^2>",
+                       path.planner, path.points.size(), path.length, path.cost, path.meanTrace);
+}
+
+std::string planText(const PlanOutcome& plan) {
+    return fmt::format("<Plan: {}, {} vertices, {:.1f} s, path {}>", plan.status(), plan.vertices,
+                       plan.planSeconds, plan.path ? pathText(*plan.path) : "None");
+}
+
 void bindPath(py::module_& module) {
     const auto along = [](auto value) {
         return [value](const EvaluatedPath& path) { return alongPath(path, value); };
@@ -99,30 +109,47 @@ void bindPath(py::module_& module) {
     py::class_<EvaluatedPath>(module, "Path",
                               "A path with the beliefs along it; the arrays have a row for every "
                               "point.")
-        .def_readonly("planner", &EvaluatedPath::planner)
-        .def_readonly("cost", &EvaluatedPath::cost)
-        .def_readonly("length", &EvaluatedPath::length)
-        .def_readonly("mean_trace", &EvaluatedPath::meanTrace)
-        .def_readonly("goal_trace", &EvaluatedPath::goalTrace)
-        .def_readonly("length_share", &EvaluatedPath::lengthShare)
-        .def_property_readonly("T_w_b", along([](const BeliefPoint& p) { return p.T_w_b; }))
+        .def_readonly("planner", &EvaluatedPath::planner,
+                      "Name of the planner; given: of beliefs().")
+        .def_readonly("cost", &EvaluatedPath::cost, "Cost J, which planners minimise.")
+        .def_readonly("length", &EvaluatedPath::length, "Length [m].")
+        .def_readonly("mean_trace", &EvaluatedPath::meanTrace,
+                      "Weighted trace of the covariance, averaged over the distance flown [m^2].")
+        .def_readonly("goal_trace", &EvaluatedPath::goalTrace,
+                      "Weighted trace of the covariance at the goal [m^2].")
+        .def_readonly("length_share", &EvaluatedPath::lengthShare,
+                      "Share of the length in the cost, in [0, 1].")
+        .def_property_readonly("T_w_b", along([](const BeliefPoint& p) { return p.T_w_b; }),
+                               "Poses of the body in the world (N, 4, 4).")
         .def_property_readonly("positions", along([](const BeliefPoint& p) -> Eigen::Vector3d {
                                    return p.T_w_b.translation();
-                               }))
-        .def_property_readonly("yaw", along([](const BeliefPoint& p) { return yawOf(p.T_w_b); }))
-        .def_property_readonly("covariance",
-                               along([](const BeliefPoint& p) { return p.covariance; }))
+                               }),
+                               "Positions of the body (N, 3) [m].")
+        .def_property_readonly("yaw", along([](const BeliefPoint& p) { return yawOf(p.T_w_b); }),
+                               "Headings (N,) [rad].")
+        .def_property_readonly(
+            "covariance", along([](const BeliefPoint& p) { return p.covariance; }),
+            "Of T_c_w after the view (N, 6, 6), camera frame: translation, then rotation.")
         .def_property_readonly("information",
-                               along([](const BeliefPoint& p) { return p.information; }))
-        .def_property_readonly("trace", along([](const BeliefPoint& p) { return p.trace; }))
-        .def_property_readonly("position_sigma", along(positionSigma))
-        .def_property_readonly("distance", along([](const BeliefPoint& p) { return p.length; }))
-        .def_property_readonly("is_waypoint", [](const EvaluatedPath& path) {
-            py::array_t<bool> flags(static_cast<py::ssize_t>(path.points.size()));
-            std::transform(path.points.begin(), path.points.end(), flags.mutable_data(),
-                           [](const BeliefPoint& p) { return p.isWaypoint; });
-            return flags;
-        });
+                               along([](const BeliefPoint& p) { return p.information; }),
+                               "Fisher information of the view (N, 6, 6), camera frame.")
+        .def_property_readonly("trace", along([](const BeliefPoint& p) { return p.trace; }),
+                               "Weighted trace of the covariance (N,) [m^2].")
+        .def_property_readonly(
+            "position_sigma", along(positionSigma),
+            "Standard deviation of the position along its weakest direction (N,) [m].")
+        .def_property_readonly("distance", along([](const BeliefPoint& p) { return p.length; }),
+                               "Length of the path so far (N,) [m].")
+        .def_property_readonly(
+            "is_waypoint",
+            [](const EvaluatedPath& path) {
+                py::array_t<bool> flags(static_cast<py::ssize_t>(path.points.size()));
+                std::transform(path.points.begin(), path.points.end(), flags.mutable_data(),
+                               [](const BeliefPoint& p) { return p.isWaypoint; });
+                return flags;
+            },
+            "Whether a point is a waypoint of the planner (N,).")
+        .def("__repr__", &pathText);
 }
 
 FloatArray treeOf(const PlanOutcome& outcome) {
@@ -137,13 +164,16 @@ FloatArray treeOf(const PlanOutcome& outcome) {
 
 void bindPlan(py::module_& module) {
     py::class_<PlanOutcome>(module, "Plan", "What a planner found.")
-        .def_property_readonly("status", &PlanOutcome::status)
-        .def_readonly("path", &PlanOutcome::path)
-        .def_readonly("alpha", &PlanOutcome::alpha)
-        .def_readonly("vertices", &PlanOutcome::vertices)
-        .def_readonly("views", &PlanOutcome::views)
-        .def_readonly("seconds", &PlanOutcome::planSeconds)
-        .def_property_readonly("tree", &treeOf);
+        .def_property_readonly("status", &PlanOutcome::status,
+                               "done, no path, or failed (its cost is not finite).")
+        .def_readonly("path", &PlanOutcome::path, "The best path; None if there is none.")
+        .def_readonly("alpha", &PlanOutcome::alpha, "Weight of the length in the cost.")
+        .def_readonly("vertices", &PlanOutcome::vertices, "Number of vertices of the tree.")
+        .def_readonly("views", &PlanOutcome::views, "Number of views rendered.")
+        .def_readonly("seconds", &PlanOutcome::planSeconds, "Duration of the planning [s].")
+        .def_property_readonly("tree", &treeOf,
+                               "Edges of the tree: both ends of each (N, 2, 3) [m].")
+        .def("__repr__", &planText);
 }
 
 py::dict flyPath(const Problem& self, const EvaluatedPath& path, unsigned flights, unsigned jobs,
@@ -179,20 +209,26 @@ void bindPlanning(py::module_& module) {
         .def(py::init(&makeProblem), "config"_a, "overrides"_a = std::vector<std::string>{},
              "config: a YAML file, or a dictionary of the same keys, whose paths are relative to "
              "the working directory. overrides: \"key.path=value\".")
-        .def_property_readonly("config", [](const Problem& self) { return toYaml(self.config); })
-        .def_property_readonly("camera",
-                               [](const Problem& self) { return self.config.camera.camera(); })
+        .def_property_readonly(
+            "config", [](const Problem& self) { return toYaml(self.config); },
+            "The complete config as YAML.")
+        .def_property_readonly(
+            "camera", [](const Problem& self) { return self.config.camera.camera(); },
+            "The camera of the config.")
         .def_property_readonly(
             "views",
             [](const Problem& self) {
                 const TexturedOcTree* map = self.world.map();
                 return Views{self.world.sharedViews(), map == nullptr ? 0. : map->getResolution()};
-            })
+            },
+            "The scene or map of the config, to render views from.")
         .def_property_readonly(
-            "T_b_c", [](const Problem& self) { return arrayOf(self.config.camera.T_b_c()); })
+            "T_b_c", [](const Problem& self) { return arrayOf(self.config.camera.T_b_c()); },
+            "Pose of the camera on the body (4, 4).")
         .def_property_readonly(
             "initial_covariance",
-            [](const Problem& self) -> Matrix6 { return self.problem.initialCovariance(); })
+            [](const Problem& self) -> Matrix6 { return self.problem.initialCovariance(); },
+            "Of T_c_w at the start before any view (6, 6), camera frame.")
         .def(
             "kappa",
             [](Problem& self) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Recorded flights.
+#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "bindings.hpp"
@@ -47,13 +48,29 @@ ReplayOptions optionsOf(const py::object& dataset, const py::kwargs& given) {
     return options;
 }
 
+/// An error that names options as this function does: "--least-sigma" is least_sigma.
+InputError withNamesOfOptions(const InputError& error) {
+    std::string text;
+    bool isOption = false;
+    const std::string given = error.what();
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        if (given.compare(i, 2, "--") == 0) {
+            isOption = true;
+            i += 2;
+        }
+        isOption = isOption && i < given.size() && (std::islower(given[i]) != 0 || given[i] == '-');
+        if (i < given.size()) text += isOption && given[i] == '-' ? '_' : given[i];
+    }
+    return {"replay", "", text};
+}
+
 py::dict replayed(const py::object& dataset, const py::kwargs& given) {
     const ReplayOptions options = optionsOf(dataset, given);
     nlohmann::json numbers;
     std::vector<double> times;
     std::vector<Pose> poses;
     std::vector<Matrix6> covariances;
-    interruptible([&](const std::atomic<bool>& interrupted) {
+    const auto track = [&](const std::atomic<bool>& interrupted) {
         const Replay replay(options);
         const ReplayRun run = replay.run([&] { return interrupted.load(); });
         numbers = replayResult(replay.recording().sequence, run, evaluate(run));
@@ -63,7 +80,13 @@ py::dict replayed(const py::object& dataset, const py::kwargs& given) {
             poses.push_back(frame.tracked.T_c_w.mean);
             covariances.push_back(frame.tracked.T_c_w.covariance);
         }
-    });
+    };
+    try {
+        interruptible(track);
+    } catch (const InputError& error) {
+        if (std::string(error.what()).find("--") == std::string::npos) throw;
+        throw withNamesOfOptions(error);
+    }
     py::dict result = objectOf(numbers);
     result["time"] = stacked(times);
     result["T_c_w"] = stacked(poses);

@@ -46,13 +46,13 @@ PhotometricOptions optionsOf(double sigma, double scale, int stride) {
     return options;
 }
 
-Matrix6 information(const FloatArray& image, const FloatArray& depth, const Camera& camera,
+Matrix6 information(const py::object& image, const FloatArray& depth, const Camera& camera,
                     double sigma, double scale, int stride) {
     return photometricInformation(viewOf(image, depth, camera), camera,
                                   optionsOf(sigma, scale, stride));
 }
 
-FloatArray contribution(const FloatArray& image, const FloatArray& depth, const Camera& camera,
+FloatArray contribution(const py::object& image, const FloatArray& depth, const Camera& camera,
                         const std::optional<Array>& direction, double sigma, double scale) {
     const View view = viewOf(image, depth, camera);
     const PhotometricOptions options = optionsOf(sigma, scale, 1);
@@ -61,7 +61,7 @@ FloatArray contribution(const FloatArray& image, const FloatArray& depth, const 
     return arrayOf(contributionImage(view, camera, d, options));
 }
 
-std::size_t fused(TexturedOcTree& map, const FloatArray& image, const FloatArray& depth,
+std::size_t fused(TexturedOcTree& map, const py::object& image, const FloatArray& depth,
                   const Camera& camera, const Array& T_c_w, double maxRange) {
     if (!(maxRange > 0.)) throw py::value_error("max_range: must be positive");
     const View view = viewOf(image, depth, camera);
@@ -90,16 +90,19 @@ void bindMap(py::module_& module) {
         .def(py::init<double>(), "resolution"_a = 0.05)
         .def_static(
             "load", [](const py::object& file) { return loadTexturedOcTree(pathOf(file)); },
-            "file"_a)
+            "file"_a, "Reads a textured OctoMap (.ot), as save() and `photonav map` write it.")
         .def(
             "save",
             [](const TexturedOcTree& map, const py::object& file) {
                 saveTexturedOcTree(map, pathOf(file));
             },
-            "file"_a)
-        .def("fuse", &fused, "image"_a, "depth"_a, "camera"_a, "T_c_w"_a, "max_range"_a = 4.,
-             "Adds an image with depth taken at a pose. Returns in how many bricks of 4^3 cells "
-             "occupancy changed.")
+            "file"_a, "Writes the map as an OctoMap file (.ot); an existing file is replaced.")
+        .def(
+            "fuse", &fused, "image"_a, "depth"_a, "camera"_a, "T_c_w"_a, "max_range"_a = 4.,
+            "Adds an image with depth taken at a pose. image: grey values in [0, 1], or uint8, "
+            "which "
+            "is divided by 255. depth: [m], 0: no surface. Returns in how many bricks of 4^3 cells "
+            "occupancy changed.")
         .def("occupied", &occupied,
              "Centres (N, 3) and mean grey values (N,) of the occupied cells; NaN: never observed.")
         .def(
@@ -109,8 +112,9 @@ void bindMap(py::module_& module) {
                              map.getResolution()};
             },
             "A snapshot to render views from.")
-        .def_property_readonly("resolution",
-                               [](const TexturedOcTree& map) { return map.getResolution(); });
+        .def_property_readonly(
+            "resolution", [](const TexturedOcTree& map) { return map.getResolution(); },
+            "Edge of a cell [m].");
 }
 
 }  // namespace
@@ -128,11 +132,12 @@ void bindViews(py::module_& module) {
     module.def("information", &information, "image"_a, "depth"_a, "camera"_a, "sigma"_a = 0.02,
                "scale"_a = kSmoothedNoiseScale, "stride"_a = 1,
                "Fisher information (6, 6) of the camera pose from one noise-free image with depth, "
-               "camera frame.");
+               "camera frame. image: grey values in [0, 1], or uint8, which is divided by 255. "
+               "depth: [m], 0: no surface.");
     module.def("contribution", &contribution, "image"_a, "depth"_a, "camera"_a,
                "direction"_a = py::none(), "sigma"_a = 0.02, "scale"_a = kSmoothedNoiseScale,
                "What every pixel adds to the information about a direction (6,), or about all "
-               "together.");
+               "together. image and depth: as for information().");
 }
 
 }  // namespace photonav::python

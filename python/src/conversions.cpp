@@ -3,14 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <stdexcept>
 
 namespace photonav::python {
 namespace {
 
-constexpr double kRigid = 1e-6;  // of R^T R - 1, that numbers of files have
+constexpr double kRigid = 1e-6;     // of R^T R - 1, that numbers of files have
+constexpr float kMostNoise = 0.1F;  // of grey values beyond 0 and 1
 
 template <int N>
 Eigen::Matrix<double, N, N> squareOf(const Array& array, const char* name) {
@@ -34,6 +37,23 @@ Array stackedMatrices(const std::vector<Value>& values) {
         out += Rows * Columns;
     }
     return array;
+}
+
+std::span<float> pixelsOf(ImageF& image) { return {image.bitmap, image.getSize()}; }
+
+/// An image without what computations would pass over in silence.
+ImageF imageOf(const FloatArray& array, const char* name, const Camera& camera) {
+    if (array.ndim() != 2 || array.shape(0) != camera.height || array.shape(1) != camera.width) {
+        throw std::invalid_argument(fmt::format("{}: expected the camera's shape ({}, {})", name,
+                                                camera.height, camera.width));
+    }
+    ImageF image(camera.height, camera.width);
+    std::copy(array.data(), array.data() + array.size(), image.bitmap);
+    if (std::ranges::all_of(pixelsOf(image), [](float v) { return std::isfinite(v); })) {
+        return image;
+    }
+    throw std::invalid_argument(
+        fmt::format("{}: not finite (a depth of 0 stands for no surface)", name));
 }
 
 }  // namespace
@@ -80,18 +100,24 @@ FloatArray arrayOf(const ImageF& image) {
     return array;
 }
 
-View viewOf(const FloatArray& image, const FloatArray& depth, const Camera& camera) {
-    const auto read = [&](const FloatArray& array, const char* name) {
-        if (array.ndim() != 2 || array.shape(0) != camera.height ||
-            array.shape(1) != camera.width) {
-            throw std::invalid_argument(fmt::format("{}: expected the camera's shape ({}, {})",
-                                                    name, camera.height, camera.width));
-        }
-        ImageF pixels(camera.height, camera.width);
-        std::copy(array.data(), array.data() + array.size(), pixels.bitmap);
-        return pixels;
-    };
-    return {read(image, "image"), read(depth, "depth")};
+View viewOf(const py::object& image, const FloatArray& depth, const Camera& camera) {
+    const FloatArray pixels = FloatArray::ensure(image);
+    if (!pixels) {
+        PyErr_Clear();
+        throw std::invalid_argument("image: expected an array of numbers");
+    }
+    const py::array given = py::array::ensure(image);
+    const bool isBytes = given.dtype().kind() == 'u' && given.itemsize() == 1;
+    View view{imageOf(pixels, "image", camera), imageOf(depth, "depth", camera)};
+    if (isBytes) {
+        for (float& grey : pixelsOf(view.intensity)) grey /= 255.F;
+    }
+    const auto [least, most] = std::ranges::minmax_element(pixelsOf(view.intensity));
+    if (*least < -kMostNoise || *most > 1.F + kMostNoise) {
+        throw std::invalid_argument(fmt::format(
+            "image: expected grey values in [0, 1], found {:.4g} to {:.4g}", *least, *most));
+    }
+    return view;
 }
 
 Array stacked(const std::vector<Pose>& poses) { return stackedMatrices<4, 4>(poses); }

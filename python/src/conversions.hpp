@@ -32,8 +32,11 @@ Matrix6 matrixOf(const Array& array, const char* name);
 Eigen::VectorXd vectorOf(const Array& array, py::ssize_t size, const char* name);
 
 FloatArray arrayOf(const ImageF& image);
-/// @throws std::invalid_argument unless both are of the camera's size
-View viewOf(const FloatArray& image, const FloatArray& depth, const Camera& camera);
+/// @param image grey values in [0, 1], or bytes, which are divided by 255
+/// @throws std::invalid_argument unless both are finite and of the camera's size, and the grey
+/// values
+///         are in their range, give or take noise
+View viewOf(const py::object& image, const FloatArray& depth, const Camera& camera);
 
 Array stacked(const std::vector<Pose>& poses);              ///< (N, 4, 4)
 Array stacked(const std::vector<Matrix6>& matrices);        ///< (N, 6, 6)

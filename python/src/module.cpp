@@ -9,7 +9,9 @@ PYBIND11_MODULE(_photonav, module) {
     using namespace photonav::python;
     ompl::msg::noOutputHandler();
     module.attr("__version__") = PHOTONAV_VERSION;
-    py::register_exception<photonav::InputError>(module, "InputError", PyExc_ValueError);
+    py::register_exception<photonav::InputError>(module, "InputError", PyExc_ValueError)
+        .attr("__doc__") =
+        "A file, option or value that cannot be used; the message is \"FILE: KEY: REASON\".";
     bindGeometry(module);
     bindViews(module);
     bindPlanning(module);

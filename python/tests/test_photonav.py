@@ -95,12 +95,53 @@ class ViewsAndMaps(unittest.TestCase):
         self.assertGreater(valid.mean(), 0.9)
         self.assertLess(np.abs(seen - image)[valid].mean(), 0.05)
 
+    def test_bytes_are_scaled_and_other_ranges_refused(self):
+        image, depth = self.views.render(self.camera, self.above_texture)
+        grey = np.round(255 * image)
+        information = photonav.information(grey.astype(np.uint8), depth, self.camera)
+        np.testing.assert_allclose(information, photonav.information(grey / 255, depth, self.camera), rtol=1e-4)
+        self.assertGreater(information[0, 0], 1)
+        map_ = photonav.Map(0.05)
+        map_.fuse(grey.astype(np.uint8), depth, self.camera, self.above_texture)
+        self.assertLessEqual(np.nanmax(map_.occupied()[1]), 1)
+        for call in (
+            lambda image, depth: photonav.information(image, depth, self.camera),
+            lambda image, depth: photonav.contribution(image, depth, self.camera),
+            lambda image, depth: map_.fuse(image, depth, self.camera, self.above_texture),
+        ):
+            with self.assertRaisesRegex(ValueError, r"image: expected grey values in \[0, 1\], found .* to 2"):
+                call(grey, depth)
+            with self.assertRaisesRegex(ValueError, "image: not finite"):
+                call(np.full_like(image, np.nan), depth)
+            with self.assertRaisesRegex(ValueError, "depth: not finite"):
+                call(image, np.full_like(depth, np.nan))
+        noisy = image + 0.02 * np.random.default_rng(1).normal(size=image.shape)
+        photonav.information(noisy, depth, self.camera)
+
     def test_errors_name_file_and_argument(self):
         with self.assertRaisesRegex(photonav.InputError, "none.ot"):
             photonav.Views.load("/no/such/none.ot")
         self.assertTrue(issubclass(photonav.InputError, ValueError))
         with self.assertRaisesRegex(ValueError, r"depth: expected the camera's shape \(120, 188\)"):
             photonav.information(np.zeros((120, 188)), np.zeros((2, 2)), self.camera)
+
+
+class Documentation(unittest.TestCase):
+    def test_all_that_is_public_has_a_docstring(self):
+        classes = [photonav.Camera, photonav.Views, photonav.Map, photonav.Path, photonav.Plan, photonav.Problem]
+        public = [getattr(photonav, name) for name in dir(photonav) if not name.startswith("_")]
+        for owner in classes:
+            public += [getattr(owner, name) for name in dir(owner) if not name.startswith("_")]
+        for each in public:
+            if callable(each) or isinstance(each, property):
+                lines = [line for line in (each.__doc__ or "").splitlines() if " -> " not in line]
+                self.assertTrue("".join(lines).strip(), each)
+
+    def test_objects_say_what_they_are(self):
+        self.assertEqual(repr(photonav.Camera(64, 48, 90)), "<Camera 64x48, fx 32.0, fy 32.0, cx 31.5, cy 23.5>")
+        plan = photonav.Problem(TWO_TEXTURES, QUICK).plan()
+        self.assertRegex(repr(plan.path), r"<Path of belief_rrt_star: \d+ points, \d+\.\d\d m, cost .*>")
+        self.assertRegex(repr(plan), r"<Plan: done, 200 vertices, .* s, path <Path of .*>>")
 
 
 class Planning(unittest.TestCase):
@@ -204,6 +245,8 @@ class Replay(unittest.TestCase):
         self.assertLess(result["ate_rmse_m"], 0.1)
         with self.assertRaisesRegex(photonav.InputError, "no such option, did you mean 'odometry'"):
             photonav.replay(SOURCE / "data" / "flight_down", odometri=True)
+        with self.assertRaisesRegex(photonav.InputError, "^replay: map: needed, or odometry: nothing to find"):
+            photonav.replay(SOURCE / "data" / "flight_down")
 
 
 if __name__ == "__main__":
