@@ -101,10 +101,6 @@ bool isScanConfig(const std::string& file) { return hasKey(file, "scans"); }
 
 void readMapConfig(const std::string& file, MapOptions& options) { keysOf(options).read(file); }
 
-void readScanConfig(const std::string& file, ScanMapOptions& options) {
-    keysOf(options).read(file);
-}
-
 std::optional<MapOptions> optionsOfMap(const std::string& mapFile) {
     namespace fs = std::filesystem;
     if (mapFile.empty()) return {};

@@ -19,7 +19,7 @@ KeyTable keysOf(ScanMapOptions& options);
 /// direction, stereo method and depth scale that were used, and absolute paths.
 std::string toYaml(const MapOptions& options, const Recording& recording);
 
-/// As above, for a map of laser scans and readScanConfig().
+/// As above, for a map of laser scans; keysOf(ScanMapOptions&) reads it.
 std::string toYaml(const ScanMapOptions& options);
 
 /// Whether a file is the config of a map of a recording: it has a key `dataset`.
@@ -33,7 +33,6 @@ bool isScanConfig(const std::string& file);
 /// Sets the options whose keys are in the file; paths are relative to the folder of the file.
 /// @throws InputError naming file, key and reason
 void readMapConfig(const std::string& file, MapOptions& options);
-void readScanConfig(const std::string& file, ScanMapOptions& options);
 
 /// The options with which a map was made from a recording: `photonav map` writes them as
 /// config.yaml into the folder of the map.

@@ -107,11 +107,11 @@ TEST_F(ScanCommand, ItsConfigMakesTheMapAgain) {
     ASSERT_TRUE(isScanConfig(config));
     EXPECT_FALSE(isMapConfig(config));
     ScanCommandOptions again;
-    readScanConfig(config, again);
+    keysOf(again).read(config);
     again.out = folder.path() / "again";
     EXPECT_EQ(runScanMap(again, running).result["voxels"], voxels);
     writeText(folder.path() / "typo.yaml", "scans: scans\nresolutoin: 0.1\n");
-    expectInputError([&] { readScanConfig((folder.path() / "typo.yaml").string(), again); },
+    expectInputError([&] { keysOf(again).read((folder.path() / "typo.yaml").string()); },
                      {"typo.yaml", "resolutoin"});
 }
 
