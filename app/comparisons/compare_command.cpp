@@ -24,10 +24,10 @@ class CompareProgress {
     explicit CompareProgress(const CompareOptions& options)
         : line_(options.quiet), rest_(itemsOf(options)), asked_(itemsOf(options).size()) {}
 
-    void begin(const std::string& name, const CompareMethod& method, std::uint32_t seed) {
+    void begin(const std::string& name, const CompareMethod& method) {
         begin_ = watch_.seconds();
-        line_.show(fmt::format("{} of {} runs, {}: {}, seed {}{}", done_, asked_, name,
-                               method.label(), seed, rest_.text(begin_)));
+        line_.show(fmt::format("{} of {} runs, {}: {}{}", done_, asked_, name, method.label(),
+                               rest_.text(begin_)));
     }
     void end(const CompareMethod& method) {
         ++done_;
@@ -60,7 +60,7 @@ std::vector<CompareRun> runMethods(const Config& config, const World& world,
     for (const CompareMethod& method : compareMethods()) {
         for (unsigned i = 0; i < options.runs; ++i) {
             const std::uint32_t seed = config.seed + i;
-            progress.begin(name, method, seed);
+            progress.begin(name, method);
             try {
                 CompareRun run = runMethod(config, world, method, seed, interrupted);
                 if (interrupted) return runs;

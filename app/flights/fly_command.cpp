@@ -37,8 +37,10 @@ std::vector<FlightSet> planAll(const Config& config, PlanningProblem& problem, P
         RemainingGrowth growth(config.vertices);
         auto outcome = problem.solve(name, interrupted, [&](const PlanProgress& progress) {
             growth.add(progress);
-            line.show(fmt::format("planning: {}, {}", name,
-                                  progressText(progress, config.vertices, growth)));
+            const auto rest = growth.seconds();
+            line.show(fmt::format(
+                "planning: {}, {} of {} vertices{}", name, progress.vertices, config.vertices,
+                rest ? fmt::format(", about {} to the last search", durationText(*rest)) : ""));
         });
         if (outcome.path) add(std::move(*outcome.path));
     };
