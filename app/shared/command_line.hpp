@@ -84,9 +84,6 @@ void addOutput(CLI::App& parser, const OutputOptions& output, const std::string&
 /// Adds --quiet.
 void addQuiet(CLI::App& parser, bool& quiet);
 
-/// Words in lines of at most 80 columns, all but the first indented.
-std::string wrapped(const std::string& text, std::size_t indent);
-
 /// The format of the help texts: at most 80 columns.
 std::shared_ptr<CLI::FormatterBase> helpFormat();
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The text of --help: at most 80 columns wide.
-#include <sstream>
-
 #include "shared/command_line.hpp"
+#include "shared/wrapped_text.hpp"
 
 namespace photonav {
 namespace {
 
-constexpr std::size_t kWidth = 80, kColumn = 26;  // of the text, and where descriptions begin
+constexpr std::size_t kColumn = 26;  // where descriptions begin
 
 std::string row(const std::string& name, const std::string& description) {
     std::string line = "  " + name;
@@ -16,7 +15,7 @@ std::string row(const std::string& name, const std::string& description) {
     } else {
         line += "\n" + std::string(kColumn, ' ');
     }
-    return line + wrapped(description, kColumn) + "\n";
+    return line + wrappedText(description, kColumn) + "\n";
 }
 
 /// CLI11 appends to the name of the type the values that are allowed: a set, which is shown, or a
@@ -36,7 +35,7 @@ class HelpFormat : public CLI::Formatter {
     }
     std::string make_description(const CLI::App* app) const override {
         const bool isCommand = app->get_parent() != nullptr;
-        return (isCommand ? wrapped(app->get_description(), 0) : app->get_description()) + "\n";
+        return (isCommand ? wrappedText(app->get_description(), 0) : app->get_description()) + "\n";
     }
     std::string make_subcommand(const CLI::App* command) const override {
         return row(command->get_name(), command->get_description());
@@ -56,22 +55,6 @@ class HelpFormat : public CLI::Formatter {
 };
 
 }  // namespace
-
-std::string wrapped(const std::string& text, std::size_t indent) {
-    std::istringstream words(text);
-    std::string word, lines;
-    std::size_t column = indent;
-    while (words >> word) {
-        if (column > indent && column + 1 + word.size() > kWidth) {
-            lines += "\n" + std::string(indent, ' ');
-            column = indent;
-        }
-        if (column > indent) lines += ' ', ++column;
-        lines += word;
-        column += word.size();
-    }
-    return lines;
-}
 
 std::shared_ptr<CLI::FormatterBase> helpFormat() { return std::make_shared<HelpFormat>(); }
 

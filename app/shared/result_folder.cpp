@@ -9,8 +9,9 @@
 #include "io/error.hpp"
 #include "io/interrupted.hpp"
 #include "result/json_values.hpp"
-#include "shared/command_line.hpp"
+#include "shared/command_io.hpp"
 #include "shared/path_inside.hpp"
+#include "shared/wrapped_text.hpp"
 
 namespace photonav {
 namespace fs = std::filesystem;
@@ -113,7 +114,7 @@ void printTable(const ReportTable& table) {
     std::size_t width = 0;
     for (const auto& row : table.rows) width = std::max(width, row.first.size() + 2);
     for (const auto& [label, value] : table.rows) {
-        fmt::print("{:<{}}{}\n", label, width, wrapped(value, width));
+        fmt::print("{:<{}}{}\n", label, width, wrappedText(value, width));
     }
 }
 

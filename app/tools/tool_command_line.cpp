@@ -15,6 +15,7 @@
 #include "recordings/replay_command.hpp"
 #include "shared/command_line.hpp"
 #include "shared/result_folder.hpp"
+#include "shared/wrapped_text.hpp"
 #include "tools/doctor_command.hpp"
 
 namespace photonav {
@@ -52,9 +53,9 @@ std::string asText(const std::string& table) {
             cells.size() >= kCells && row.starts_with("| ") && !row.starts_with("| key");
         if (!isKey) continue;
         const std::string unit = cells[3].empty() ? "" : fmt::format(" [{}]", cells[3]);
-        text += wrapped(fmt::format("{} = {}{}", cells[1], cells[2], unit), 0) + "\n";
+        text += wrappedText(fmt::format("{} = {}{}", cells[1], cells[2], unit), 0) + "\n";
         for (const std::string& words : {cells[4], cells[5]}) {
-            if (!words.empty()) text += "    " + wrapped(words, 4) + "\n";
+            if (!words.empty()) text += "    " + wrappedText(words, 4) + "\n";
         }
     }
     return text;

@@ -144,7 +144,7 @@ TEST_F(CheckCommand, LinesFitIntoEightyColumns) {
     const Execution run = check(file + " --headings 2 --flights 1 " + scene());
     std::istringstream lines(run.output);
     for (std::string line; std::getline(lines, line);) {
-        if (!line.starts_with("report: ")) EXPECT_LE(characters(line), 80U) << line;
+        EXPECT_TRUE(characters(line) <= 80U || line.starts_with("report: ")) << line;
     }
     EXPECT_NE(run.output.find("1 arrived, 0 collided"), std::string::npos) << run.output;
 }
