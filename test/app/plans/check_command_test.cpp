@@ -125,9 +125,9 @@ TEST_F(CheckCommand, UnknownCellsAreNotCollisions) {
     const std::string map = halfKnownMap(folder_);
     const std::string way = folder_.write("way.txt", "0 0 1\n3 0 1\n");
     const Execution run = check(way + " --headings 0 --map " + map);
-    EXPECT_NE(run.output.find("in collision                        none"), std::string::npos)
+    EXPECT_NE(run.output.find("in collision                       none"), std::string::npos)
         << run.output;
-    EXPECT_NE(run.output.find("next to unknown cells               0.00 to 1."), std::string::npos)
+    EXPECT_NE(run.output.find("next to unknown cells              0.00 to 1."), std::string::npos)
         << run.output;
     EXPECT_EQ(result()["unknown_cells"].size(), 1U);
     EXPECT_TRUE(result()["collisions"].empty());

@@ -45,7 +45,7 @@ TEST(PlanProgress, NoTimeIsPromisedForTheLastSearchAndTheDescent) {
     EXPECT_FALSE(growthTo(1000, 1000, 1.).seconds());
     const std::string growing = progressText({500, 0.5, 4., 7}, 1000, growthTo(500, 1000, 1.));
     EXPECT_EQ(growing,
-              "500 of 1000 vertices, best cost 4.000, 7 views, about 0 s to the last search");
+              "500 of 1000 vertices, best cost 4.000, 7 views, about 1 s to the last search");
     const std::string early = progressText({500, 2., kInfinity, 7}, 1000, RemainingGrowth(1000));
     EXPECT_EQ(early, "500 of 1000 vertices, no path yet, 7 views, 2 s so far");
     const std::string last = progressText({1000, 11., 3.25, 7}, 1000, growthTo(1000, 1000, 1.));
