@@ -23,7 +23,7 @@ TEST(UnknownCells, AreNamedAsTheReasonWhereNoOccupiedCellIsNear) {
     EXPECT_TRUE(message().starts_with("map.yaml: start: in collision: clearance")) << message();
     EXPECT_TRUE(message().ends_with(", next to unknown cells (map.unknown: occupied)"));
     map->updateNode(p.x(), p.y(), p.z(), 3.5F);
-    EXPECT_TRUE(message().ends_with("robot.radius 0.2 m")) << message();
+    EXPECT_TRUE(message().ends_with("robot.radius 0.3 m")) << message();
 }
 
 }  // namespace
