@@ -18,7 +18,7 @@ TEST(SweepTables, PutThePaperBesideOurs) {
     const std::string table = sweepTable(cells);
     EXPECT_NE(table.find("40.45"), std::string::npos) << table;
     EXPECT_EQ(table.find("paper", table.find("\nrrt_star")), std::string::npos) << table;
-    EXPECT_NE(table.find("(traces in m^2)"), std::string::npos) << table;
+    EXPECT_NE(table.find("(traces in m²)"), std::string::npos) << table;
     // As many decimals as the smallest trace, 1.5e-5, can be read with.
     config.paper.clear();
     const std::string small =
