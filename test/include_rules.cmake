@@ -28,7 +28,7 @@ set(folders_mission_runs io scene result config)
 set(folders_mission_sweep io geometry space belief planners result problem runs)
 set(folders_mission_recording io geometry photometry bag dataset evaluation alignment depth result config
     problem)
-set(folders_mission_mapping io map dataset evaluation depth result config recording)
+set(folders_mission_mapping io map render dataset evaluation alignment depth result config recording)
 set(folders_mission_replay io geometry photometry render dataset evaluation alignment estimation result config
     problem recording mapping)
 set(folders_mission_robot render estimation control)

@@ -16,11 +16,10 @@ MonocularOptions optionsFor(const FusionOptions& fusion) {
 
 }  // namespace
 
-MonocularFusion::MonocularFusion(TexturedOcTree& map, const Camera& camera,
+MonocularFusion::MonocularFusion(ExposedFusion& fusion, const Camera& camera,
                                  const FusionOptions& options,
                                  std::function<void(const Reference&)> onReference)
-    : map_(map),
-      camera_(camera),
+    : fusion_(fusion),
       options_(options),
       onReference_(std::move(onReference)),
       depth_(camera, optionsFor(options)) {
@@ -44,7 +43,7 @@ void MonocularFusion::fuseReference(const DepthFilter& filter) {
     count(filter, view.depth);
     if (onReference_) onReference_({filter, recorded_, timestamp_});
     ++references_;
-    fuse(map_, view, camera_, filter.pose(), options_);
+    fusion_.add(view, filter.pose(), options_);
 }
 
 void MonocularFusion::count(const DepthFilter& filter, const ImageF& found) {

@@ -10,7 +10,7 @@
 
 #include "dataset/sequence.hpp"
 #include "depth/monocular_depth.hpp"
-#include "map/map_fusion.hpp"
+#include "mapping/exposed_fusion.hpp"
 
 namespace photonav {
 
@@ -24,10 +24,10 @@ class MonocularFusion {
         double timestamp;        ///< of the image [s]
     };
 
-    /// @param map     must outlive this object
+    /// @param fusion  fuses the views of references; must outlive this object
     /// @param camera  must outlive this object
     /// @param onReference called with every reference image before its depth is fused; may be empty
-    MonocularFusion(TexturedOcTree& map, const Camera& camera, const FusionOptions& options,
+    MonocularFusion(ExposedFusion& fusion, const Camera& camera, const FusionOptions& options,
                     std::function<void(const Reference&)> onReference);
 
     /// Adds the next image. Recorded depth is only compared, never fused.
@@ -47,8 +47,7 @@ class MonocularFusion {
     void fuseReference(const DepthFilter& filter);
     void count(const DepthFilter& filter, const ImageF& found);
 
-    TexturedOcTree& map_;
-    const Camera& camera_;
+    ExposedFusion& fusion_;
     FusionOptions options_;
     std::function<void(const Reference&)> onReference_;
     MonocularDepth depth_;

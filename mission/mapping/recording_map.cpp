@@ -86,16 +86,17 @@ FusedRecording fuseRecording(TexturedOcTree& map, const Recording& recording,
     const Sequence& sequence = recording.sequence;
     FusionOptions fusion = options.fusion;
     fusion.isStopped = isStopped;
+    ExposedFusion direct(map, sequence.camera, options.exposure);
     std::optional<MonocularFusion> monocular;
     if (options.depth == "monocular") {
-        monocular.emplace(map, sequence.camera, options.fusion, calls.onReference);
+        monocular.emplace(direct, sequence.camera, options.fusion, calls.onReference);
     }
     const auto add = [&](const RecordedFrame& frame) {
         try {
             if (monocular) {
                 monocular->add(frame);
             } else {
-                fuse(map, frame.view, sequence.camera, frame.T_c_w, fusion);
+                direct.add(frame.view, frame.T_c_w, fusion);
             }
         } catch (const std::invalid_argument& error) {  // sizes are checked: cells are too small
             throw InputError("--resolution", "", error.what());

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/exposed_fusion.hpp"
+
+#include <algorithm>
+
+#include "alignment/fitted_exposure.hpp"
+#include "alignment/image_pyramid.hpp"
+
+namespace photonav {
+namespace {
+
+constexpr unsigned kLargestWidth = 200;  // of compared images [pixels]: exposures need no more
+
+Camera smallCamera(Camera camera) {
+    while (camera.width > kLargestWidth) camera = halved(camera);
+    return camera;
+}
+
+void removeExposure(ImageF& image, const Exposure& exposure) {
+    for (unsigned k = 0; k < image.getSize(); ++k) {
+        const double grey = (image.bitmap[k] - exposure.offset) / exposure.gain;
+        image.bitmap[k] = static_cast<float>(std::clamp(grey, 0., 1.));
+    }
+}
+
+}  // namespace
+
+ExposedFusion::ExposedFusion(TexturedOcTree& map, const Camera& camera, bool estimate)
+    : map_(map), camera_(camera), small_(smallCamera(camera)), estimate_(estimate) {}
+
+void ExposedFusion::add(View observed, const Pose& T_c_w, const FusionOptions& options) {
+    if (estimate_ && !isFirst_) estimateExposure(observed.intensity, T_c_w);
+    if (estimate_) removeExposure(observed.intensity, exposure_);
+    const MapChange change = fuse(map_, observed, camera_, T_c_w, options);
+    isFirst_ = false;
+    if (!estimate_) return;
+    if (views_) {
+        views_->update(map_, change);
+    } else {
+        views_ = std::make_unique<VoxelSnapshots>(map_, UnknownPolicy::free);
+    }
+}
+
+void ExposedFusion::estimateExposure(const ImageF& observed, const Pose& T_c_w) {
+    ImageF small = observed;
+    while (small.getWidth() > small_.width) small = halvedAsRendered(small);
+    views_->current()->render(small_, T_c_w, view_);
+    exposure_ = fittedExposure(small, view_, exposure_);
+}
+
+}  // namespace photonav
