@@ -14,7 +14,9 @@ struct MotionNoise {
     double turn = 1.;    ///< standard deviation of the change of angular velocity [rad/s]
 };
 
-/// Constant velocity in the camera frame; 0 before the first observe() and after forget().
+/// Constant velocity in the camera frame, and its covariance; both 0 before the first observe() and
+/// after forget(). A direction in which images do not inform has the velocity that was extrapolated
+/// to it: there the covariance grows from image to image, and that of the position faster.
 class MotionModel {
   public:
     explicit MotionModel(const MotionNoise& noise) : noise_(noise) {}
@@ -22,25 +24,36 @@ class MotionModel {
     /// The predicted motion T_next_now after `seconds`, covariance in the next camera frame.
     UncertainPose predict(double seconds) const {
         const double dt = std::max(0., seconds);
-        UncertainPose motion{expSE3(dt * velocity_), Matrix6::Zero()};
-        motion.covariance.diagonal() << Eigen::Vector3d::Constant(square(noise_.speed * dt)),
-            Eigen::Vector3d::Constant(square(noise_.turn * dt));
-        return motion;
+        Vector6 change;
+        change << Eigen::Vector3d::Constant(noise_.speed), Eigen::Vector3d::Constant(noise_.turn);
+        Matrix6 covariance = covariance_;
+        covariance.diagonal() += change.cwiseAbs2();
+        return {expSE3(dt * velocity_), dt * dt * covariance};
     }
 
-    /// Sets the velocity by a motion of the camera that took `seconds`.
-    void observe(const Pose& T_next_now, double seconds) {
-        if (seconds > 0.) velocity_ = logSE3(T_next_now) / seconds;
+    /// Sets the velocity by a motion T_next_now of the camera that took `seconds`.
+    void observe(const UncertainPose& motion, double seconds) {
+        if (!(seconds > 0.)) return;
+        velocity_ = logSE3(motion.mean) / seconds;
+        covariance_ = motion.covariance / (seconds * seconds);
     }
 
     /// Sets the velocity to 0.
-    void forget() { velocity_.setZero(); }
+    void forget() { *this = MotionModel(noise_); }
 
   private:
-    static double square(double x) { return x * x; }
-
     MotionNoise noise_;
     Vector6 velocity_ = Vector6::Zero();
+    Matrix6 covariance_ = Matrix6::Zero();  ///< of velocity_
 };
+
+/// Covariance of a motion after the pose that it led to was observed: that of a smoother.
+/// @param motion    before, as MotionModel::predict()
+/// @param predicted, observed covariances of the pose after the motion; all in the same frame
+inline Matrix6 motionAfter(const Matrix6& motion, const Matrix6& predicted,
+                           const Matrix6& observed) {
+    const Matrix6 gain = predicted.ldlt().solve(motion).transpose();
+    return motion - gain * (predicted - observed) * gain.transpose();
+}
 
 }  // namespace photonav

@@ -187,7 +187,7 @@ std::optional<Tracker::Match> Tracker::findInMap(const ImageF& image, const Pose
     for (const UncertainPose& prior : priors) {
         Alignment alignment = map_->align(image, prior);
         if (&prior == &priors.front()) frame.alignment = alignment;
-        if (!agrees(alignment, options_.map)) continue;
+        if (!agrees(alignment, options_.map) || isAsUncertainAsLost(alignment.covariance)) continue;
         if (isResolvedBy(alignment, prior)) {
             if (relation_) alignment = MapErrors::withoutWeak(alignment, prior);
             return Match{alignment, {alignment.T_c_w, alignment.covariance}, {}, false};
@@ -264,7 +264,8 @@ void Tracker::onMatched(const View& view, const Match& match, const Pose& before
     frame.keyframe = match.keyframe;
     belief_ = beliefAfter(match);
     // The pose before is that of the last image tracked, images lost since then or not.
-    velocity_.observe(belief_.mean * before.inverse(),
+    velocity_.observe({belief_.mean * before.inverse(),
+                       motionAfter(sinceTracked_, frame.predicted.covariance, belief_.covariance)},
                       trackedTime_ ? frame.time - *trackedTime_ : 0.);
     trackedTime_ = frame.time;
     trackedCovariance_ = belief_.covariance;
@@ -317,12 +318,21 @@ bool Tracker::isMapInconsistent(const View& view) const {
            now_ - *loss_.since() > options_.loss.inconsistentAfter;
 }
 
-UncertainPose Tracker::bounded(UncertainPose belief) const {
+/// Standard deviations that a belief may have, relative to its own.
+Vector6 Tracker::roomOf(const Matrix6& covariance) const {
     Vector6 most;
     most << Eigen::Vector3d::Constant(options_.loss.maxTranslation),
         Eigen::Vector3d::Constant(options_.loss.maxRotation);
-    const Vector6 sigma = belief.covariance.diagonal().cwiseMax(1e-30).cwiseSqrt();
-    const Vector6 factor = most.cwiseQuotient(sigma).cwiseMin(1.);
+    return most.cwiseQuotient(covariance.diagonal().cwiseMax(1e-30).cwiseSqrt());
+}
+
+/// Without odometry, a pose that is as uncertain as that of a camera lost for long is none.
+bool Tracker::isAsUncertainAsLost(const Matrix6& covariance) const {
+    return !hasOdometry_ && roomOf(covariance).minCoeff() < 1.;
+}
+
+UncertainPose Tracker::bounded(UncertainPose belief) const {
+    const Vector6 factor = roomOf(belief.covariance).cwiseMin(1.);
     belief.covariance = factor.asDiagonal() * belief.covariance * factor.asDiagonal();
     return belief;
 }

@@ -114,6 +114,8 @@ class Tracker {
     void onMatched(const View& view, const Match& match, const Pose& before, TrackedFrame& frame);
     void onRejected(const View& view, const Pose& stayed, TrackedFrame& frame);
     bool isMapInconsistent(const View& view) const;
+    Vector6 roomOf(const Matrix6& covariance) const;
+    bool isAsUncertainAsLost(const Matrix6& covariance) const;
     UncertainPose bounded(UncertainPose belief) const;
 
     Camera camera_;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "estimation/motion_model.hpp"
 
 namespace photonav {
@@ -71,17 +73,49 @@ TEST(MotionModel, GoesOnAtTheVelocityObservedLast) {
     MotionModel model({.speed = 0.5, .turn = 1.});
     Vector6 xi;
     xi << 0.1, 0., 0.2, 0., 0.05, 0.;
-    model.observe(expSE3(xi), 0.5);
+    model.observe({expSE3(xi), Matrix6::Zero()}, 0.5);
     const UncertainPose motion = model.predict(0.25);
     EXPECT_LT((logSE3(motion.mean) - 0.5 * xi).norm(), 1e-12);
     Vector6 variance;
     variance << Eigen::Vector3d::Constant(0.125 * 0.125), Eigen::Vector3d::Constant(0.0625);
     EXPECT_LT((motion.covariance.diagonal() - variance).norm(), 1e-12);
-    model.observe(expSE3(2. * xi), 0.);  // two images of one time: no velocity
+    model.observe({expSE3(2. * xi), Matrix6::Zero()}, 0.);  // two images of one time: no velocity
     EXPECT_LT((logSE3(model.predict(0.5).mean) - xi).norm(), 1e-12);
     EXPECT_TRUE(model.predict(-1.).mean.isApprox(Pose::Identity()));
     model.forget();
     EXPECT_TRUE(model.predict(0.5).mean.isApprox(Pose::Identity()));
+}
+
+TEST(MotionModel, IsAsUncertainAsTheMotionThatItGoesOn) {
+    MotionModel model({.speed = 0.5, .turn = 1.});
+    model.observe({Pose::Identity(), 0.04 * Matrix6::Identity()}, 0.5);
+    const Vector6 variances = model.predict(0.5).covariance.diagonal();
+    EXPECT_NEAR(variances[0], 0.0625 + 0.04, 1e-12);
+    EXPECT_NEAR(variances[5], 0.25 + 0.04, 1e-12);
+    model.forget();
+    EXPECT_NEAR(model.predict(0.5).covariance(0, 0), 0.0625, 1e-12);
+}
+
+/// A pose x and a motion m lead to x + m, which is observed: the update of both.
+TEST(MotionModel, AMotionIsUpdatedByThePoseThatItLedTo) {
+    std::mt19937_64 random(4);
+    const auto covariance = [&random](double scale) {
+        const Matrix6 A =
+            Matrix6::NullaryExpr([&random] { return std::normal_distribution<double>()(random); });
+        return Matrix6(scale * A * A.transpose());
+    };
+    const Matrix6 before = covariance(1.), motion = covariance(2.), noise = covariance(0.5);
+    Eigen::Matrix<double, 12, 12> both;
+    both << before, Matrix6::Zero(), Matrix6::Zero(), motion;
+    Eigen::Matrix<double, 6, 12> H;
+    H << Matrix6::Identity(), Matrix6::Identity();
+    const Matrix6 predicted = before + motion;
+    const Eigen::Matrix<double, 12, 6> gain = both * H.transpose() * (predicted + noise).inverse();
+    const Eigen::Matrix<double, 12, 12> updated = both - gain * H * both;
+    const Matrix6 observed = H * updated * H.transpose();
+    const Matrix6 expected = updated.bottomRightCorner<6, 6>();
+    EXPECT_LT((motionAfter(motion, predicted, observed) - expected).norm(), 1e-9);
+    EXPECT_LT((motionAfter(motion, predicted, predicted) - motion).norm(), 1e-9);
 }
 
 }  // namespace
