@@ -214,8 +214,9 @@ void trackInMaps() {
     AlignmentOptions replayed = inMesh;
     replayed.cellSize = map.getResolution();
     replayed.modelErrors.surface = surfaceError(MapKind::surfaces, replayed.cellSize);
+    replayed.modelNoise = ModelNoise::inCovariance;
     AlignmentOptions flown = replayed;
-    flown.modelNoise = ModelNoise::measured;
+    flown.modelNoise = ModelNoise::inPose;
     fmt::print("188x120 images in a map, starts 2 cm and 1 degree off: median and p90 of 100\n");
     for (const auto& [name, angle] : {std::pair{"45 degrees", 0.25}, {"down", 0.5}}) {
         const double below = angle * std::numbers::pi;

@@ -164,6 +164,7 @@ AlignmentOptions optionsIn(MapKind kind, double cellSize) {
     AlignmentOptions options = realCameraOptions(kAreaBlur);
     options.modelErrors.surface = surfaceError(kind, cellSize);
     options.cellSize = kind == MapKind::mesh ? 0. : cellSize;
+    if (kind != MapKind::mesh) options.modelNoise = ModelNoise::inCovariance;
     options.robust = RobustWeight::huber;
     return options;
 }

@@ -131,7 +131,7 @@ void compareDepth(const View& truth, const View& seen, const Camera& camera, Res
 Result judge(const MeshRenderer& mesh, const VoxelRenderer& map, const World& world) {
     const Camera camera = trackingCamera();
     AlignmentOptions options;
-    options.modelNoise = ModelNoise::measured;
+    options.modelNoise = ModelNoise::inPose;
     DenseAligner aligner(map, camera, options);
     std::mt19937 random(2);
     std::normal_distribution<double> normal;

@@ -62,7 +62,7 @@ AlignmentOptions flightAlignment(const Config& config, MapKind map, double cellS
     alignment.trust.leastSigmaRotation = fly.leastSigmaRotation.value_or(0.);
     if (map != MapKind::mesh) {
         // Odometry carries what the map's noise leaves open; replays without it would drift there.
-        alignment.modelNoise = ModelNoise::measured;
+        alignment.modelNoise = ModelNoise::inPose;
     }
     alignment.modelErrors.surface = surfaceError(map, cellSize);
     alignment.cellSize = cellSize;

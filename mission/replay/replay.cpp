@@ -162,7 +162,10 @@ AlignmentOptions alignmentOf(const ReplayOptions& options, const Sequence& seque
         alignment = realCameraOptions(sequence.blur.value_or(kAreaBlur));
         alignment.modelErrors.surface = map.surfaceError();
         alignment.cellSize = map.resolution();
-        // The motion is only guessed, so that nothing else stops a pose from sliding away.
+        // The motion is only guessed: in directions that are almost noise the pose follows the
+        // image all the same, or it would drift.
+        if (map.kind != MapKind::mesh) alignment.modelNoise = ModelNoise::inCovariance;
+        // Nothing but the image stops a pose from sliding away.
         alignment.trust.maxUnexplained = 0.25;
         if (sequence.informationScale) alignment.photometric.scale = *sequence.informationScale;
     }

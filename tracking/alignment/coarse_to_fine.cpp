@@ -20,6 +20,8 @@ constexpr double kMinDamping = 1e-3;
 constexpr double kMaxDamping = 1e4;
 constexpr int kMeasurements = 3;  // of the slope, at most
 constexpr double kCertain = 0.6;  // share of the information
+/// Response of the image to the model's gradients from which on the model's noise does not matter.
+constexpr double kHardlyNoise = 0.8;
 /// Relative noise of the cost. The used pixels change from pose to pose, and with them the cost, by
 /// more than small steps do. (Steps by J M do not quite follow the gradient of the cost, either.)
 constexpr double kCostNoise = 1e-3;
@@ -61,6 +63,7 @@ class Search {
     bool descend();
     bool measureSlope();
     bool isTextureCertain();
+    SharedSlope shared() const { return sharedSlope(comparison_.tiles(level_, at_.exposure)); }
     MeasuredInformation measured();
     bool improve(double& damping);
     Iterate evaluate(const Pose& T_c_w, const Exposure& exposure);
@@ -89,7 +92,7 @@ class Search {
     const UncertainPose* prior_;
     std::size_t level_ = 0;
     Loss loss_;
-    Matrix6 slope_ = Matrix6::Identity();  ///< M of measuredSlope(), times that of sharedSlope()
+    Matrix6 slope_ = Matrix6::Identity();  ///< the pose follows J slope_
     Iterate at_;
     int iterations_ = 0;
     bool isCompared_ = false;  ///< at_ is the last comparison
@@ -213,17 +216,17 @@ bool Search::measureSlope() {
         ++iterations_;
         return scaled(compare(T_away_here * at_.T_c_w), weight());
     });
-    if (options_.modelNoise == ModelNoise::measured) {
-        slope_ *= sharedSlope(comparison_.tiles(level_, at_.exposure));
-    }
+    if (options_.modelNoise == ModelNoise::inPose) slope_ *= shared().slope;
     return true;
 }
 
 /// Whether the image changes as J says in all directions. With an assumed noise this is not known:
-/// residuals show where edges jump. Nor is it for a model whose noise looks like texture.
+/// residuals show where edges jump. Nor is it where the model's noise looks like texture.
 bool Search::isTextureCertain() {
-    return options_.measureCovariance && options_.modelNoise == ModelNoise::none &&
-           certainShare(comparison_.resampledTiles()) > kCertain;
+    if (!options_.measureCovariance || options_.modelNoise == ModelNoise::inPose) return false;
+    const bool isNoisy = options_.modelNoise == ModelNoise::inCovariance;
+    if (isNoisy && shared().least < kHardlyNoise) return false;
+    return certainShare(comparison_.resampledTiles()) > kCertain;
 }
 
 /// The information of the image by its residuals; the pose becomes that at which image, so
@@ -239,7 +242,8 @@ MeasuredInformation Search::measured() {
     image.repeating /= options_.informationScale;
     at_.T_c_w = expSE3(step(image.equations, 0.)) * at_.T_c_w;
     relateToPrior(at_);
-    return image;
+    const bool isNoisy = options_.modelNoise == ModelNoise::inCovariance;
+    return isNoisy ? respondingBy(shared().slope, image) : image;
 }
 
 /// It matters only where the residuals exceed the noise.
@@ -267,7 +271,7 @@ void Search::judgeTexture(Alignment& a) {
     if (level > 0) comparison_.compare(level, at_.T_c_w, at_.exposure, loss_);
     // Halving lowers the noise by more than two.
     const double sigma = std::ldexp(options_.photometric.sigma, -static_cast<int>(level));
-    const bool isNoisy = options_.modelNoise == ModelNoise::measured || options_.cellSize > 0.;
+    const bool isNoisy = options_.modelNoise != ModelNoise::none || options_.cellSize > 0.;
     a.residual.texture =
         sharedTexture(comparison_.tiles(level, at_.exposure), sigma / at_.exposure.gain, isNoisy);
     const bool claims = a.verdict == Verdict::converged;

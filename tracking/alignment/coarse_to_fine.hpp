@@ -9,9 +9,13 @@
 
 namespace photonav {
 
-/// Whether a model that can be rendered contains noise, whose gradients must be distinguished from
-/// those of texture (shared_gradients.hpp).
-enum class ModelNoise { none, measured };
+/// What the noise of a model that can be rendered concerns. Its gradients look like those of
+/// texture (shared_gradients.hpp).
+enum class ModelNoise {
+    none,          ///< the model has no noise
+    inCovariance,  ///< the covariance counts only the gradients that model and image share
+    inPose,        ///< so does the pose: it does not move in directions that are noise alone
+};
 
 struct AlignmentOptions {
     /// Image noise and selection of pixels, as in the planner; `scale` is the calibrated factor on
@@ -42,7 +46,8 @@ struct AlignmentOptions {
     /// Calibrated factor on the information by the residuals (calibration.hpp).
     double informationScale = 1.;
     /// Use measuredSlope() if the model can be rendered: where texture is not certain
-    /// (certainShare()), and everywhere if the noise is assumed or the model is noisy.
+    /// (certainShare()), and everywhere if the noise of the images is assumed, or ModelNoise is
+    /// `inPose`.
     bool measureSlope = true;
 };
 

@@ -35,7 +35,7 @@ double certainly(double kappa, double variance) {
 
 }  // namespace
 
-Matrix6 sharedSlope(const std::vector<GradientTile>& tiles) {
+SharedSlope sharedSlope(const std::vector<GradientTile>& tiles) {
     Matrix6 model = Matrix6::Zero(), shared = Matrix6::Zero();
     for (const GradientTile& tile : tiles) {
         const TileMotion motion(tile);
@@ -43,11 +43,11 @@ Matrix6 sharedSlope(const std::vector<GradientTile>& tiles) {
         shared += motion.squared(tile.shared);
     }
     auto [kappa, V] = eigensystem(shared, model);
-    if (tiles.empty() || !V.allFinite()) return Matrix6::Zero();
+    if (tiles.empty() || !V.allFinite()) return {};
     for (int i = 0; i < 6; ++i) {
         kappa[i] = certainly(kappa[i], scatterAlong(V.col(i), tiles, kappa[i]));
     }
-    return V * kappa.asDiagonal() * V.transpose() * model;
+    return {V * kappa.asDiagonal() * V.transpose() * model, kappa.minCoeff()};
 }
 
 std::optional<SharedTexture> sharedTexture(const std::vector<GradientTile>& tiles, double sigma,

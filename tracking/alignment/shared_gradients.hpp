@@ -22,8 +22,11 @@ namespace photonav {
 ///     kappa - (z s)^2 / kappa,   z = 3,
 /// so that noise has no response at all and texture loses next to nothing. It is limited to 1,
 /// because images are sharper than maps.
-/// @return M; rows and columns refer to the left perturbation (rho, phi) of the camera pose
-Matrix6 sharedSlope(const std::vector<GradientTile>& tiles);
+struct SharedSlope {
+    Matrix6 slope = Matrix6::Zero();  ///< M, of the left perturbation (rho, phi) of the camera pose
+    double least = 0.;                ///< smallest value of kappa
+};
+SharedSlope sharedSlope(const std::vector<GradientTile>& tiles);
 
 /// How much of the texture that a model predicts an image shows at the predicted pixels.
 struct SharedTexture {

@@ -77,7 +77,7 @@ TEST(FlightSetup, AlignmentsGoByTheKindOfMap) {
     EXPECT_NEAR(cells.modelErrors.surface, 0.058, 1e-9);
     EXPECT_NEAR(surfaces.modelErrors.surface, 0.01, 1e-9);
     EXPECT_EQ(mesh.modelNoise, ModelNoise::none);
-    EXPECT_EQ(surfaces.modelNoise, ModelNoise::measured);
+    EXPECT_EQ(surfaces.modelNoise, ModelNoise::inPose);
     EXPECT_EQ(mesh.blur, 0.4);
     EXPECT_EQ(mesh.cellSize, 0.);  // else images are compared as they are
     EXPECT_EQ(cells.cellSize, 0.1);
