@@ -116,6 +116,7 @@ def replayRows(label, result):
     yield {
         "recording": label,
         "tracked": f"{result['tracked']} of {result['frames']}",
+        "degenerate": str(result["degenerate"]),
         "absolute, RMS": f"{millimetres(result['ate_rmse_m'])}, {number(result['ate_rotation_rmse_deg'], 2)} deg",
         "largest": millimetres(result["ate_max_m"]),
         "per frame": relative("frame") or "",

@@ -70,7 +70,7 @@ class Tables(unittest.TestCase):
     def test_aShortReplayHasNoRelativeErrors(self):
         errors = dict.fromkeys(["ate_rmse_m", "ate_rotation_rmse_deg", "ate_max_m", "nees_per_dof", "nees_median_per_dof"])
         parts = dict.fromkeys(["nees_position_per_dof", "nees_rotation_per_dof"], {"mean": None, "median": 1.15})
-        result = {**errors, **parts, "tracked": 1, "frames": 2, "converged_beyond_5_sigma": 0,
+        result = {**errors, **parts, "tracked": 1, "degenerate": 1, "frames": 2, "converged_beyond_5_sigma": 0,
                   "rpe": {"frame": {"translation_m": 0.0053, "rotation_deg": 0.21}, "second": None}}
         (row,) = self.tables.replayRows("castle", result)
         self.assertEqual(row["per frame"], "5.3 mm, 0.21 deg")
