@@ -3,23 +3,22 @@
 
 #include <algorithm>
 
-#include "alignment/fitted_exposure.hpp"
+#include "alignment/fitted_gain.hpp"
 #include "alignment/image_pyramid.hpp"
 
 namespace photonav {
 namespace {
 
-constexpr unsigned kLargestWidth = 200;  // of compared images [pixels]: exposures need no more
+constexpr unsigned kLargestWidth = 200;  // of compared images [pixels]: gains need no more
 
 Camera smallCamera(Camera camera) {
     while (camera.width > kLargestWidth) camera = halved(camera);
     return camera;
 }
 
-void removeExposure(ImageF& image, const Exposure& exposure) {
+void removeGain(ImageF& image, double gain) {
     for (unsigned k = 0; k < image.getSize(); ++k) {
-        const double grey = (image.bitmap[k] - exposure.offset) / exposure.gain;
-        image.bitmap[k] = static_cast<float>(std::clamp(grey, 0., 1.));
+        image.bitmap[k] = std::min(1.F, static_cast<float>(image.bitmap[k] / gain));
     }
 }
 
@@ -29,8 +28,8 @@ ExposedFusion::ExposedFusion(TexturedOcTree& map, const Camera& camera, bool est
     : map_(map), camera_(camera), small_(smallCamera(camera)), estimate_(estimate) {}
 
 void ExposedFusion::add(View observed, const Pose& T_c_w, const FusionOptions& options) {
-    if (estimate_ && !isFirst_) estimateExposure(observed.intensity, T_c_w);
-    if (estimate_) removeExposure(observed.intensity, exposure_);
+    if (estimate_ && !isFirst_) estimateGain(observed.intensity, T_c_w);
+    if (estimate_) removeGain(observed.intensity, gain_);
     const MapChange change = fuse(map_, observed, camera_, T_c_w, options);
     isFirst_ = false;
     if (!estimate_) return;
@@ -41,11 +40,11 @@ void ExposedFusion::add(View observed, const Pose& T_c_w, const FusionOptions& o
     }
 }
 
-void ExposedFusion::estimateExposure(const ImageF& observed, const Pose& T_c_w) {
+void ExposedFusion::estimateGain(const ImageF& observed, const Pose& T_c_w) {
     ImageF small = observed;
     while (small.getWidth() > small_.width) small = halvedAsRendered(small);
     views_->current()->render(small_, T_c_w, view_);
-    exposure_ = fittedExposure(small, view_, exposure_);
+    gain_ = fittedGain(small, view_, gain_);
 }
 
 }  // namespace photonav

@@ -4,20 +4,19 @@
 
 #include <memory>
 
-#include "alignment/normal_equations.hpp"
 #include "map/map_fusion.hpp"
 #include "render/voxel_snapshots.hpp"
 
 namespace photonav {
 
-/// Fuses images into a map, as fuse() does, with the exposure of the first image. The gain and
-/// offset of every later image are estimated by a view of the map at its pose (fittedExposure()),
-/// and removed from its grey values. Otherwise the images of a camera with automatic exposure would
-/// leave edges in the map, where one ends and another one begins.
+/// Fuses images into a map, as fuse() does, with the exposure of the first image. The gain of every
+/// later image is estimated by a view of the map at its pose (fittedGain()), and its grey values
+/// are divided by it. Otherwise the images of a camera with automatic exposure would leave edges in
+/// the map, where one ends and another one begins.
 class ExposedFusion {
   public:
     /// @param map    must outlive this object
-    /// @param estimate whether exposures are estimated; otherwise all are taken as equal
+    /// @param estimate whether gains are estimated; otherwise all are taken as equal
     ExposedFusion(TexturedOcTree& map, const Camera& camera, bool estimate);
 
     /// @param observed as the camera took it
@@ -25,10 +24,10 @@ class ExposedFusion {
     void add(View observed, const Pose& T_c_w, const FusionOptions& options);
 
     /// Of the last image, relative to the map.
-    const Exposure& exposure() const { return exposure_; }
+    double gain() const { return gain_; }
 
   private:
-    void estimateExposure(const ImageF& observed, const Pose& T_c_w);
+    void estimateGain(const ImageF& observed, const Pose& T_c_w);
 
     TexturedOcTree& map_;
     Camera camera_, small_;  ///< of the images, and of the views that they are compared with
@@ -36,7 +35,7 @@ class ExposedFusion {
     bool isFirst_ = true;
     std::unique_ptr<VoxelSnapshots> views_;
     View view_;
-    Exposure exposure_;
+    double gain_ = 1.;
 };
 
 }  // namespace photonav

@@ -48,7 +48,7 @@ KeyTable keysOf(MapOptions& options) {
               .value = [&options] { return yamlNumber(options.fusion.minRange); }});
     keys.number({"max_range", "m", "farthest surface that is mapped"}, options.fusion.maxRange,
                 {0., kFarthestRange});
-    keys.flag({"exposure", "", "estimate gain and offset of every image"}, options.exposure);
+    keys.flag({"exposure", "", "estimate the gain of every image"}, options.exposure);
     keys.choice({"unknown_to_camera", "",
                  "how cells that no ray has visited appear in the views that evaluate "
                  "the map, as `map.unknown_to_camera` of a plan"},

@@ -16,7 +16,7 @@ struct MapOptions : RecordingOptions {
     FusionOptions fusion;
     std::string depth = "recorded";  ///< "recorded", or "monocular": depth is estimated from the
                                      ///< images of one camera and their poses
-    bool exposure = true;  ///< estimate gain and offset of every image, as ExposedFusion does
+    bool exposure = true;            ///< estimate the gain of every image, as ExposedFusion does
     /// Unknown cells in the views by which the map is evaluated.
     UnknownPolicy unknownToCamera = UnknownPolicy::free;
 };

@@ -33,7 +33,7 @@ double errorOfMap(bool estimate, double& worstGain) {
     worstGain = 0.;
     for (int i = 0; i < 15; ++i) {
         fusion.add(takenFrom(poseOf(i), gainOf(i)), poseOf(i), {});
-        worstGain = std::max(worstGain, std::abs(fusion.exposure().gain / gainOf(i) - 1.));
+        worstGain = std::max(worstGain, std::abs(fusion.gain() / gainOf(i) - 1.));
     }
     const VoxelRenderer views(map, UnknownPolicy::free);
     double sum = 0., pixels = 0.;
@@ -54,18 +54,16 @@ TEST(ExposedFusion, MapsImagesOfAutomaticExposureAsIfItWereFixed) {
     double gainError = 0., unused = 0.;
     const double compensated = errorOfMap(true, gainError);
     const double asTaken = errorOfMap(false, unused);
-    EXPECT_LT(gainError, 0.03);
+    EXPECT_LT(gainError, 0.02);
     EXPECT_LT(compensated, 0.5 * asTaken);
 }
 
-/// To the bit: nothing is estimated where nothing changes.
 TEST(ExposedFusion, LeavesImagesOfAFixedExposureAsTheyAre) {
     TexturedOcTree map(0.05);
     ExposedFusion fusion(map, kCamera, true);
-    for (int i = 0; i < 10; ++i) {
+    for (int i = 0; i < 35; ++i) {
         fusion.add(takenFrom(poseOf(i), 1.), poseOf(i), {});
-        EXPECT_EQ(fusion.exposure().gain, 1.) << i;
-        EXPECT_EQ(fusion.exposure().offset, 0.) << i;
+        EXPECT_NEAR(fusion.gain(), 1., 0.01) << i;
     }
 }
 

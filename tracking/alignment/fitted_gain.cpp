@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "alignment/fitted_exposure.hpp"
+#include "alignment/fitted_gain.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,6 @@
 namespace photonav {
 namespace {
 
-using Eigen::Matrix2d;
-using Eigen::Vector2d;
-
 constexpr unsigned kBlock = 8;                  // edge [pixels]
 constexpr float kBlack = 1.5F / 255.F;          // clipped below
 constexpr float kWhite = 1.F - kBlack;          // clipped above
@@ -20,8 +17,7 @@ constexpr double kCauchy = 2.385;               // residual at which weights are
 constexpr int kRounds = 10;                     // of weights
 constexpr double kByChance = 9.;                // squared difference [variances]
 constexpr double kGainSigma = 0.1;              // of the change from image to image
-constexpr double kOffsetSigma = 0.003;
-constexpr double kMostChange = 2.;  // factor on the gain from image to image
+constexpr double kMostChange = 2.;              // factor on the gain from image to image
 
 struct BlockMeans {
     double observed, predicted;
@@ -55,11 +51,11 @@ std::vector<BlockMeans> blockMeans(const ImageF& observed, const View& predicted
     return blocks;
 }
 
-double robustSigmaOf(const std::vector<BlockMeans>& blocks, const Vector2d& exposure) {
+double robustSigmaOf(const std::vector<BlockMeans>& blocks, double gain) {
     std::vector<double> residuals;
     residuals.reserve(blocks.size());
     for (const BlockMeans& b : blocks) {
-        residuals.push_back(std::abs(b.observed - exposure[0] * b.predicted - exposure[1]));
+        residuals.push_back(std::abs(b.observed - gain * b.predicted));
     }
     const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
     std::nth_element(residuals.begin(), middle, residuals.end());
@@ -68,36 +64,30 @@ double robustSigmaOf(const std::vector<BlockMeans>& blocks, const Vector2d& expo
 
 }  // namespace
 
-Exposure fittedExposure(const ImageF& observed, const View& predicted, const Exposure& last) {
-    if (observed.getSize() != predicted.intensity.getSize() ||
+double fittedGain(const ImageF& observed, const View& predicted, double last) {
+    if (observed.getHeight() != predicted.intensity.getHeight() ||
         observed.getWidth() != predicted.intensity.getWidth()) {
-        throw std::invalid_argument("exposure: image and view differ in size");
+        throw std::invalid_argument("gain: image and view differ in size");
     }
     const std::vector<BlockMeans> blocks = blockMeans(observed, predicted);
     if (blocks.empty()) return last;
-    const Vector2d before{last.gain, last.offset};
-    const Matrix2d prior =
-        Vector2d(1. / (kGainSigma * kGainSigma), 1. / (kOffsetSigma * kOffsetSigma)).asDiagonal();
-    Vector2d exposure = before;
-    Matrix2d information = prior;
+    double change = 0., information = 0.;
     for (int round = 0; round < kRounds; ++round) {
-        const double sigma = robustSigmaOf(blocks, exposure);
-        information = prior;
-        Vector2d right = Vector2d::Zero();
+        const double sigma = robustSigmaOf(blocks, last + change);
+        double right = 0.;
+        information = 1. / (kGainSigma * kGainSigma);
         for (const BlockMeans& b : blocks) {
-            const Vector2d a{b.predicted, 1.};
-            const double residual = b.observed - a.dot(exposure);
+            const double residual = b.observed - (last + change) * b.predicted;
             const double weight = 1. / (1. + std::pow(residual / (kCauchy * sigma), 2));
-            information += weight / (sigma * sigma) * a * a.transpose();
-            right += weight / (sigma * sigma) * (b.observed - a.dot(before)) * a;
+            information += weight * b.predicted * b.predicted / (sigma * sigma);
+            right += weight * b.predicted * (b.observed - last * b.predicted) / (sigma * sigma);
         }
-        exposure = before + information.ldlt().solve(right);
+        change = right / information;
     }
-    const Vector2d change = exposure - before;
-    const double factor = exposure[0] / last.gain;
+    const double factor = (last + change) / last;
     const bool isPlausible = factor < kMostChange && factor * kMostChange > 1.;
-    const bool isChance = change.dot(information * change) < kByChance;
-    return isPlausible && !isChance ? Exposure{exposure[0], exposure[1]} : last;
+    const bool isChance = change * change * information < kByChance;
+    return isPlausible && !isChance ? last + change : last;
 }
 
 }  // namespace photonav
