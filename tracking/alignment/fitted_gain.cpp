@@ -15,7 +15,7 @@ constexpr float kWhite = 1.F - kBlack;          // clipped above
 constexpr double kLeastBlockSigma = 1. / 255.;  // of a block's mean [grey value]
 constexpr double kCauchy = 2.385;               // residual at which weights are a half [sigma]
 constexpr int kRounds = 10;                     // of weights
-constexpr double kByChance = 9.;                // squared difference [variances]
+constexpr double kGainByChance = 9.;            // squared difference [variances]
 constexpr double kGainSigma = 0.1;              // of the change from image to image
 constexpr double kMostChange = 2.;              // factor on the gain from image to image
 
@@ -86,7 +86,7 @@ double fittedGain(const ImageF& observed, const View& predicted, double last) {
     }
     const double factor = (last + change) / last;
     const bool isPlausible = factor < kMostChange && factor * kMostChange > 1.;
-    const bool isChance = change * change * information < kByChance;
+    const bool isChance = change * change * information < kGainByChance;
     return isPlausible && !isChance ? last + change : last;
 }
 

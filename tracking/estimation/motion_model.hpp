@@ -47,13 +47,17 @@ class MotionModel {
     Matrix6 covariance_ = Matrix6::Zero();  ///< of velocity_
 };
 
-/// Covariance of a motion after the pose that it led to was observed: that of a smoother.
+/// A motion after the pose that it led to was observed: that of a smoother. A correction of the
+/// pose corrects the motion as far as the motion, not the pose before it, was uncertain.
 /// @param motion    before, as MotionModel::predict()
-/// @param predicted, observed covariances of the pose after the motion; all in the same frame
-inline Matrix6 motionAfter(const Matrix6& motion, const Matrix6& predicted,
-                           const Matrix6& observed) {
-    const Matrix6 gain = predicted.ldlt().solve(motion).transpose();
-    return motion - gain * (predicted - observed) * gain.transpose();
+/// @param predicted, observed the pose after the motion; all covariances in the same frame
+inline UncertainPose motionAfter(const UncertainPose& motion, const UncertainPose& predicted,
+                                 const UncertainPose& observed) {
+    const Matrix6 gain = predicted.covariance.ldlt().solve(motion.covariance).transpose();
+    const Vector6 correction = logSE3(observed.mean * predicted.mean.inverse());
+    return {
+        expSE3(gain * correction) * motion.mean,
+        motion.covariance - gain * (predicted.covariance - observed.covariance) * gain.transpose()};
 }
 
 }  // namespace photonav

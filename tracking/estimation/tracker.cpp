@@ -264,8 +264,8 @@ void Tracker::onMatched(const View& view, const Match& match, const Pose& before
     frame.keyframe = match.keyframe;
     belief_ = beliefAfter(match);
     // The pose before is that of the last image tracked, images lost since then or not.
-    velocity_.observe({belief_.mean * before.inverse(),
-                       motionAfter(sinceTracked_, frame.predicted.covariance, belief_.covariance)},
+    const UncertainPose motion{frame.predicted.mean * before.inverse(), sinceTracked_};
+    velocity_.observe(motionAfter(motion, frame.predicted, belief_),
                       trackedTime_ ? frame.time - *trackedTime_ : 0.);
     trackedTime_ = frame.time;
     trackedCovariance_ = belief_.covariance;

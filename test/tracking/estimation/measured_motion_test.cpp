@@ -114,8 +114,19 @@ TEST(MotionModel, AMotionIsUpdatedByThePoseThatItLedTo) {
     const Eigen::Matrix<double, 12, 12> updated = both - gain * H * both;
     const Matrix6 observed = H * updated * H.transpose();
     const Matrix6 expected = updated.bottomRightCorner<6, 6>();
-    EXPECT_LT((motionAfter(motion, predicted, observed) - expected).norm(), 1e-9);
-    EXPECT_LT((motionAfter(motion, predicted, predicted) - motion).norm(), 1e-9);
+    // The means by small translations, for which SE(3) is a vector space.
+    Vector6 found;
+    found << 1e-3, -2e-3, 3e-3, 0., 0., 0.;
+    const Vector6 correction = predicted * (predicted + noise).inverse() * found;
+    const Vector6 ofMotion = (gain * found).tail<6>();
+    const UncertainPose after = motionAfter(
+        {Pose::Identity(), motion}, {Pose::Identity(), predicted}, {expSE3(correction), observed});
+    EXPECT_LT((after.covariance - expected).norm(), 1e-9);
+    EXPECT_LT((logSE3(after.mean) - ofMotion).norm(), 0.02 * ofMotion.norm());
+    const UncertainPose same = motionAfter(
+        {Pose::Identity(), motion}, {Pose::Identity(), predicted}, {Pose::Identity(), predicted});
+    EXPECT_LT((same.covariance - motion).norm(), 1e-9);
+    EXPECT_TRUE(same.mean.isApprox(Pose::Identity()));
 }
 
 }  // namespace
