@@ -18,11 +18,21 @@ namespace photonav {
 using nlohmann::json;
 namespace {
 
-/// The progress of all runs of all configs on a line.
+/// All runs of all configs.
+std::vector<SweepItem> itemsOf(const CompareOptions& options) {
+    std::vector<SweepItem> items;
+    for (std::size_t i = 0; i < options.configs.size() * options.runs; ++i) {
+        for (const CompareMethod& method : compareMethods()) items.push_back({method.label()});
+    }
+    return items;
+}
+
+/// The progress of all runs on a line.
 class CompareProgress {
   public:
-    explicit CompareProgress(const CompareOptions& options)
-        : line_(options.quiet), rest_(itemsOf(options)), asked_(itemsOf(options).size()) {}
+    /// @param items all runs
+    CompareProgress(const std::vector<SweepItem>& items, bool quiet)
+        : line_(quiet), rest_(items), asked_(items.size()) {}
 
     void begin(const std::string& name, const CompareMethod& method) {
         begin_ = watch_.seconds();
@@ -37,14 +47,6 @@ class CompareProgress {
     void clear() { line_.clear(); }
 
   private:
-    static std::vector<SweepItem> itemsOf(const CompareOptions& options) {
-        std::vector<SweepItem> items;
-        for (std::size_t i = 0; i < options.configs.size() * options.runs; ++i) {
-            for (const CompareMethod& method : compareMethods()) items.push_back({method.label()});
-        }
-        return items;
-    }
-
     ProgressLine line_;
     RemainingTime rest_;
     Stopwatch watch_;
@@ -112,7 +114,7 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
     FolderTransaction folder = beginResult(options.out, inputs);
     json result = resultJson("compare", {{"scenarios", json::array()}});
     CompareReport report(folder.path(), options.commandLine, configs.size() == 1);
-    CompareProgress progress(options);
+    CompareProgress progress(itemsOf(options), options.quiet);
     bool anyPath = false;
     for (const Config& given : configs) {
         const World world(given);

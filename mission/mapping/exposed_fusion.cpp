@@ -28,10 +28,11 @@ ExposedFusion::ExposedFusion(TexturedOcTree& map, const Camera& camera, bool est
     : map_(map), camera_(camera), small_(smallCamera(camera)), estimate_(estimate) {}
 
 void ExposedFusion::add(View observed, const Pose& T_c_w, const FusionOptions& options) {
-    if (estimate_ && !isFirst_) estimateGain(observed.intensity, T_c_w);
-    if (estimate_) removeGain(observed.intensity, gain_);
+    if (views_) {
+        estimateGain(observed.intensity, T_c_w);
+        removeGain(observed.intensity, gain_);
+    }
     const MapChange change = fuse(map_, observed, camera_, T_c_w, options);
-    isFirst_ = false;
     if (!estimate_) return;
     if (views_) {
         views_->update(map_, change);

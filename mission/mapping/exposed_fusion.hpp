@@ -32,8 +32,7 @@ class ExposedFusion {
     TexturedOcTree& map_;
     Camera camera_, small_;  ///< of the images, and of the views that they are compared with
     bool estimate_;
-    bool isFirst_ = true;
-    std::unique_ptr<VoxelSnapshots> views_;
+    std::unique_ptr<VoxelSnapshots> views_;  ///< of the map; null before the first image
     View view_;
     double gain_ = 1.;
 };

@@ -34,8 +34,7 @@ Eigen::VectorXd vectorOf(const Array& array, py::ssize_t size, const char* name)
 FloatArray arrayOf(const ImageF& image);
 /// @param image grey values in [0, 1], or bytes, which are divided by 255
 /// @throws std::invalid_argument unless both are finite and of the camera's size, and the grey
-/// values
-///         are in their range, give or take noise
+///         values are in their range, give or take noise
 View viewOf(const py::object& image, const FloatArray& depth, const Camera& camera);
 
 Array stacked(const std::vector<Pose>& poses);              ///< (N, 4, 4)

@@ -63,7 +63,7 @@ class Search {
     bool descend();
     bool measureSlope();
     bool isTextureCertain();
-    SharedSlope shared() const { return sharedSlope(comparison_.tiles(level_, at_.exposure)); }
+    const SharedSlope& shared();
     MeasuredInformation measured();
     bool improve(double& damping);
     Iterate evaluate(const Pose& T_c_w, const Exposure& exposure);
@@ -95,14 +95,16 @@ class Search {
     Matrix6 slope_ = Matrix6::Identity();  ///< the pose follows J slope_
     Iterate at_;
     int iterations_ = 0;
-    bool isCompared_ = false;  ///< at_ is the last comparison
-    bool done_ = false;        ///< with this level, as the last step was small
+    bool isCompared_ = false;            ///< at_ is the last comparison
+    std::optional<SharedSlope> shared_;  ///< of the last comparison, once it was asked for
+    bool done_ = false;                  ///< with this level, as the last step was small
 };
 
 Iterate Search::evaluate(const Pose& T_c_w, const Exposure& exposure) {
     Iterate at{T_c_w, exposure, comparison_.compare(level_, T_c_w, exposure, loss_)};
     ++iterations_;
     isCompared_ = true;
+    shared_.reset();
     relateToPrior(at);
     return at;
 }
@@ -203,6 +205,12 @@ bool Search::descend() {
         adaptLoss(0.7);
     }
     return false;
+}
+
+/// How much of the model's gradients the image shares in the last comparison.
+const SharedSlope& Search::shared() {
+    if (!shared_) shared_ = sharedSlope(comparison_.tiles(level_, at_.exposure));
+    return *shared_;
 }
 
 /// Measures the slope of the image over the uncertainty of the pose: of the model, and how much of

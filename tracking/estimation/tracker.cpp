@@ -264,9 +264,11 @@ void Tracker::onMatched(const View& view, const Match& match, const Pose& before
     frame.keyframe = match.keyframe;
     belief_ = beliefAfter(match);
     // The pose before is that of the last image tracked, images lost since then or not.
-    const UncertainPose motion{frame.predicted.mean * before.inverse(), sinceTracked_};
-    velocity_.observe(motionAfter(motion, frame.predicted, belief_),
-                      trackedTime_ ? frame.time - *trackedTime_ : 0.);
+    if (!hasOdometry_ && trackedTime_) {
+        const UncertainPose motion{frame.predicted.mean * before.inverse(), sinceTracked_};
+        velocity_.observe(motionAfter(motion, frame.predicted, belief_),
+                          frame.time - *trackedTime_);
+    }
     trackedTime_ = frame.time;
     trackedCovariance_ = belief_.covariance;
     sinceTracked_.setZero();

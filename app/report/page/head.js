@@ -65,13 +65,14 @@ function exploreVerdict(r) {
          `with a position error of ${say(times(100, r.position_rmse_m), 'cm')} rms (NEES ${say(r.nees_per_dof)}; 1 if consistent).`;
 }
 
+const sumOf = (cells, key) => cells.reduce((total, cell) => total + cell[key], 0);
+
 /// From where the servo converges, and how fast.
 function servoVerdict({basin = [], modes = []}) {
   if (!basin.length) return '';
-  const sum = (key) => basin.reduce((total, cell) => total + cell[key], 0);
   const slowest = modes[0]?.rate_per_s > 0 ? `, and small offsets in the slowest direction (${modes[0].in_words}) ` +
       `decay with a time constant of ${say(1 / modes[0].rate_per_s, 's')}` : '; the view leaves a direction open';
-  return `${say(sum('converged'))} of ${say(sum('trials'))} starts converge to the goal’s view${slowest}.`;
+  return `${say(sumOf(basin, 'converged'))} of ${say(sumOf(basin, 'trials'))} starts converge to the goal’s view${slowest}.`;
 }
 
 function fillHead() {
@@ -108,9 +109,8 @@ function flyTiles({planners}) {
 }
 
 function servoTiles({basin = [], modes = [], position_sigma_m: position, rotation_sigma_rad: rotation, condition, time}) {
-  const sum = (key) => basin.reduce((total, cell) => total + cell[key], 0);
   return [
-    ['starts that converge', sum('converged'), `of ${sum('trials')}`],
+    ['starts that converge', sumOf(basin, 'converged'), `of ${sumOf(basin, 'trials')}`],
     ['time constant, slowest direction', modes[0]?.rate_per_s > 0 ? 1 / modes[0].rate_per_s : null, 's'],
     ['position from one image, 1σ', times(1000, position), 'mm'],
     ['rotation from one image, 1σ', times(180 / Math.PI, rotation), '°'],
