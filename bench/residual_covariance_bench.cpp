@@ -145,7 +145,7 @@ class Row {
     int beyond_ = 0, lost_ = 0, degenerate_ = 0;
 };
 
-/// A map of every image, with the noise of a depth camera.
+/// A map of every image, with the noise of a camera and of a depth camera.
 std::shared_ptr<TexturedOcTree> mapOf(const Place& place, double resolution) {
     auto map = std::make_shared<TexturedOcTree>(resolution);
     const Camera camera = cameraOf(376);
@@ -154,6 +154,7 @@ std::shared_ptr<TexturedOcTree> mapOf(const Place& place, double resolution) {
     for (const Pose& T_c_w : place.poses) {
         place.world.render(camera, T_c_w, view);
         addDepthNoise(view.depth, {}, random);
+        view.intensity = independentNoise(view.intensity, random);
         fuse(*map, view, camera, T_c_w);
     }
     return map;
