@@ -20,6 +20,10 @@ constexpr double kPoseNoise = 3e-3;
 // Least weight of the past: about as many views of full weight.
 constexpr float kMostSurfaceWeight = 50.F / (kPoseNoise * kPoseNoise);
 
+/// Points of one surface are less than this apart, by noise of depth [standard deviations].
+constexpr double kSameSurface = 3.;
+constexpr int kMostAcross = 3;  // cells
+
 constexpr std::size_t kBricksAtOnce = 1 << 16;  // between two looks at FusionOptions::isStopped
 
 /// A change in parts of what is tolerated.
@@ -85,7 +89,8 @@ void CellScan::observeFaces(TexturedOcTreeNode& node, const Array3i& cell, const
         if (eye && sums[0] > kLeastShare * surfaceWeight) {
             const auto weight = static_cast<float>(std::abs(d[a]) * sums[0] / range) + 1e-6F;
             node.faces[face].observe(seen.firstGrey + sums[1] / sums[0], weight, maxWeight);
-            observeSurface(node.surfaces.obtain(face), sums, range * resolution_);
+            observeSurface(node.surfaces.obtain(face), acrossCells(cell, face, range * resolution_),
+                           range * resolution_);
             continue;
         }
         const bool looksAway = eye && !(side > 0 ? (*eye)[a] > cell[a] + 1 : (*eye)[a] < cell[a]);
@@ -96,6 +101,34 @@ void CellScan::observeFaces(TexturedOcTreeNode& node, const Array3i& cell, const
         node.faces[face].observe(grey, weight, maxWeight);
     }
     node.surfaces.refreshShown();
+}
+
+/// The sums of a face together with those of the cells before and behind it that show the same
+/// surface. Noise of depth spreads the points of a surface near the border of two cells over both.
+/// The mean of the points in one of them would be displaced to its side.
+/// @param range of the cell from the camera [m]
+CellPixels::Sums CellScan::acrossCells(const Array3i& cell, int face, double range) const {
+    const int a = face / 2;
+    const auto most = static_cast<float>(kSameSurface * kDepthNoise * range * range / resolution_);
+    CellPixels::Sums sum = pixelsOf(cell)->faces[face];
+    const CellPixels::Sums own = sum / sum[0];
+    for (const int step : {-1, 1}) {
+        Array3i other = cell;
+        for (int n = 1; n <= kMostAcross; ++n) {
+            other[a] += step;
+            const CellPixels* pixels = pixelsOf(other);
+            if (pixels == nullptr || pixels->faces[face][0] == 0.F) break;
+            CellPixels::Sums beside = pixels->faces[face];
+            beside[2 + a] += static_cast<float>(step * n) * beside[0];  // from the cell's centre
+            const float distance =                                      // along the normal
+                own[5] * (beside[2] / beside[0] - own[2]) +
+                own[6] * (beside[3] / beside[0] - own[3]) +
+                own[7] * (beside[4] / beside[0] - own[4]);
+            if (std::abs(distance) > most) break;
+            sum += beside;
+        }
+    }
+    return sum;
 }
 
 /// @param range of the cell from the camera [m]
@@ -152,9 +185,7 @@ MapChange CellScan::apply(TexturedOcTree& map, const std::optional<Vector3d>& ey
     const auto texture = [&](TexturedOcTreeNode& node, const BrickObservation& brick,
                              unsigned bit) {
         const Array3i cell = cellAt(brick, bit);
-        const CellPixels& seen =
-            memory_.pixels[memory_.bricksHit[memory_.brickPixels[brickOf(cell)]].cells[bit]];
-        observeFaces(node, cell, seen, eye, static_cast<float>(options.maxFaceWeight));
+        observeFaces(node, cell, *pixelsOf(cell), eye, static_cast<float>(options.maxFaceWeight));
     };
     const auto keep = [&](const TexturedOcTreeNode& node, const BrickObservation& brick,
                           unsigned bit) {

@@ -162,6 +162,12 @@ class CellScan {
     bool isHit(const Eigen::Array3i& cell) const {
         return (hitInBrick(brickOf(cell)) >> bitOf(cell) & 1U) != 0;
     }
+    /// Null for a cell that is not hit.
+    const CellPixels* pixelsOf(const Eigen::Array3i& cell) const {
+        if (!isHit(cell)) return nullptr;
+        const BrickPixels& brick = memory_.bricksHit[memory_.brickPixels[brickOf(cell)]];
+        return &memory_.pixels[brick.cells[bitOf(cell)]];
+    }
     std::size_t brickOf(const Eigen::Array3i& cell) const {
         const Eigen::Array3i c = cell - first_;
         return (std::size_t(c.z() >> 2) * bricks_.y() + (c.y() >> 2)) * bricks_.x() + (c.x() >> 2);
@@ -177,6 +183,7 @@ class CellScan {
     std::vector<BrickObservation> observedBricks() const;
     void observeFaces(TexturedOcTreeNode& node, const Eigen::Array3i& cell, const CellPixels& seen,
                       const std::optional<Eigen::Vector3d>& eye, float maxWeight) const;
+    CellPixels::Sums acrossCells(const Eigen::Array3i& cell, int face, double range) const;
     void observeSurface(FaceSurface& surface, const CellPixels::Sums& sums, double range) const;
 
     double resolution_;

@@ -220,13 +220,12 @@ TEST(Surfaces, AreSeenAtTheFacesOfCellsIfFusionLeavesThemOut) {
     EXPECT_LT(mapped.errorsAt(around(0.1, 12)).mean, -0.01);
 }
 
-TEST(Surfaces, OfNoisyDepthAreMeans) {
-    MappedScene mapped(room(), moved({0.013, 0.021, 0.037}));
+/// With the noise of a depth camera.
+void fuseNoisy(MappedScene& mapped, const std::vector<Pose>& poses_c_s, const Pose& T_s_w) {
     std::mt19937 random(1);
     std::normal_distribution<float> normal;
     View view;
-    const Pose T_s_w = moved({0.013, 0.021, 0.037});
-    for (const Pose& T_c_s : around(0., 48)) {
+    for (const Pose& T_c_s : poses_c_s) {
         mapped.mesh.render(mapped.camera, T_c_s, view);
         for (unsigned i = 0; i < view.depth.getSize(); ++i) {
             float& z = view.depth.bitmap[i];
@@ -234,11 +233,38 @@ TEST(Surfaces, OfNoisyDepthAreMeans) {
         }
         fuse(mapped.map, view, mapped.camera, T_c_s * T_s_w);
     }
+}
+
+TEST(Surfaces, OfNoisyDepthAreMeans) {
+    const Pose T_s_w = moved({0.013, 0.021, 0.037});
+    MappedScene mapped(room(), T_s_w);
+    fuseNoisy(mapped, around(0., 48), T_s_w);
     const auto errors = mapped.errorsAt(around(0.1, 12));
     EXPECT_LT(std::abs(errors.mean), 0.004);
     EXPECT_LT(errors.quantile(0.9), 0.015);
     EXPECT_LT(errors.wrong, 0.01);
     EXPECT_LT(errors.missing, 0.02);
+}
+
+/// The noise spreads the points of such a floor over two layers of cells.
+TEST(Surfaces, OfNoisyDepthOnTheBorderOfCellsAreMeans) {
+    Scene floor = withTexture();
+    addPlane(floor, {-3., -3., 0.}, {6., 0., 0.}, {0., 6., 0.}, 0);
+    std::vector<Pose> poses, between;
+    for (int i = 0; i < 16; ++i) {
+        const Vector3d eye(0.3 * (i % 4), 0.3 * (i / 4), 1.8);
+        poses.push_back(lookAt(eye, {1.5 - eye.x(), 0.5, 0.}));
+        between.push_back(lookAt(eye + Vector3d(0.1, 0.1, -0.1), {1. - eye.x(), 0.4, 0.}));
+    }
+    for (const double edge : {0.05, 0.025}) {
+        MappedScene mapped(floor, Pose::Identity(), edge);
+        fuseNoisy(mapped, poses, Pose::Identity());
+        const auto errors = mapped.errorsAt(between);
+        EXPECT_LT(std::abs(errors.mean), 0.001) << edge;
+        EXPECT_LT(errors.quantile(0.9), 0.006) << edge;
+        EXPECT_LT(errors.wrong, 0.01) << edge;
+        EXPECT_LT(errors.missing, 0.1) << edge;  // some views show what no fused view does
+    }
 }
 
 /// Rounding puts such a floor on either side of the border between two layers of cells.
