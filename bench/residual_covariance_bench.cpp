@@ -36,6 +36,8 @@ namespace {
 using Random = std::mt19937_64;
 using Picture = std::function<ImageF(const ImageF&, Random&)>;
 
+constexpr int kSamples = 6;  // along each side of a pixel
+
 Camera cameraOf(unsigned width) {
     return makeCamera(width, width == 640 ? 480 : 120 * width / 188, 70. * std::numbers::pi / 180.);
 }
@@ -60,7 +62,10 @@ ImageF realCamera(const ImageF& ideal, Random& random) {
 
 const std::vector<std::pair<std::string, Picture>>& pictures() {
     static const std::vector<std::pair<std::string, Picture>> all = {
-        {"noise", independentNoise}, {"real camera", realCamera}, {"other light", otherLight}};
+        {"no noise", [](const ImageF& ideal, Random&) { return ideal; }},
+        {"noise", independentNoise},
+        {"real camera", realCamera},
+        {"other light", otherLight}};
     return all;
 }
 
@@ -181,7 +186,7 @@ KeyframeOptions keyframeOptions() {
 void localise(const std::string& name, const Place& place, const ViewSource& model,
               const AlignmentOptions& options, unsigned width, int count) {
     const Camera camera = cameraOf(width);
-    const AreaSensor sensor(place.world, 4);
+    const AreaSensor sensor(place.world, kSamples);
     DenseAligner aligner(model, camera, options);
     std::vector<Row> rows(pictures().size());
     Random random(11);
@@ -214,7 +219,7 @@ View recorded(const ViewSource& sensor, const Camera& camera, const Pose& T_c_w,
 
 void odometry(const Place& place, unsigned width, int count) {
     const Camera camera = cameraOf(width);
-    const AreaSensor sensor(place.world, 4);
+    const AreaSensor sensor(place.world, kSamples);
     for (const auto& [name, picture] : pictures()) {
         Row row;
         Random random(5);
@@ -235,7 +240,7 @@ void odometry(const Place& place, unsigned width, int count) {
 void chains(const Place& place, unsigned width, int count) {
     constexpr std::size_t kLength = 40;
     const Camera camera = cameraOf(width);
-    const AreaSensor sensor(place.world, 4);
+    const AreaSensor sensor(place.world, kSamples);
     const Matrix6 motion = (25. * priorSigmas().cwiseAbs2()).asDiagonal();
     Row row;
     Random random(6);
