@@ -88,6 +88,7 @@ CommandReport runReplay(const ReplayCommandOptions& options, const std::atomic<b
     json& result = report.result;
     result = resultJson("replay", replayResult(sequence, run, errors));
     result["interrupted"] = run.interrupted;
+    result["mode"] = modeOf(run.odometry ? std::nullopt : std::optional(replay.map().kind));
     result["options"] = optionsJson(replay.options());
     result["dataset"] = datasetJson(replay);
     result["time"] = {{"total_s", watch.seconds()},

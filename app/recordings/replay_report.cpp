@@ -22,6 +22,9 @@ namespace fs = std::filesystem;
 
 constexpr Color kEstimateColor = kIndigo, kTruthColor = kPurple;  // as on the page
 constexpr double kOverconfident = 3.;  // NEES per degree of freedom that is stated in words
+/// Standard deviation of a squared point spread beyond which images do not contradict a blur of one
+/// pixel where there is none [pixels^2].
+constexpr double kTooVague = 0.5;
 
 /// "0.0123 m", or `none` for a missing value.
 std::string number(const json& value, double factor, const char* format,
@@ -56,6 +59,8 @@ std::string calibrationText(const json& c) {
 std::string blurText(const json& blur) {
     const std::string assumed = fmt::format("{:.2f} pixels assumed", blur["assumed"].get<double>());
     if (!blur["estimated"].is_number()) return assumed;
+    const double sigma = blur["variance_sigma"];
+    if (sigma > kTooVague) return assumed + "; these images do not show it";
     return fmt::format("{}, {:.2f} by the images{}", assumed, blur["estimated"].get<double>(),
                        blur["contradicts"].get<bool>() ? ": give `blur` in camera.yaml" : "");
 }
@@ -135,13 +140,14 @@ using TableRows = std::vector<std::pair<std::string, std::string>>;
 
 /// With a warning where covariances are overconfident.
 std::string neesText(const json& result) {
-    const double nees = result["nees_per_dof"];
-    const std::string text =
-        fmt::format("{:.3g}, {:.3g}", nees, result["nees_median_per_dof"].get<double>());
+    const double nees = result["nees_per_dof"], median = result["nees_median_per_dof"];
+    const std::string text = fmt::format("{:.3g}, {:.3g}", nees, median);
     if (nees < kOverconfident || result.contains("calibration")) return text;
-    return text +
-           fmt::format(": overconfident, errors are {:.1f} times the predicted ones (--calibrate)",
-                       std::sqrt(nees));
+    if (median < kOverconfident) return text + ": overconfident in some images (frames.csv)";
+    return text + fmt::format(
+                      ": overconfident, errors are {:.1f} times the predicted ones in the "
+                      "median (--calibrate)",
+                      std::sqrt(median));
 }
 
 TableRows errorRows(const json& result) {
@@ -206,6 +212,11 @@ ReportTable replaySummary(const json& result) {
         {"skipped, gaps in time",
          fmt::format("{}, {}", result["skipped"].size(), result["gaps"].size())},
     };
+    if (result["mode"] == "cells") {
+        table.rows.emplace_back("map",
+                                "has no surfaces inside its cells: poses may be wrong by half a "
+                                "cell, and covariances too small; make it again (photonav map)");
+    }
     for (auto& row : errorRows(result)) table.rows.push_back(std::move(row));
     table.rows.emplace_back(
         isStereo ? "pixels with depth from stereo" : "pixels with recorded depth",

@@ -14,12 +14,6 @@ namespace {
 constexpr const char* kOdometry = "odometry";
 constexpr const char* kAnyMap = "map";  // of files before maps had kinds
 
-const char* modeOf(std::optional<MapKind> map) {
-    if (!map) return kOdometry;
-    if (*map == MapKind::mesh) return "mesh";
-    return *map == MapKind::cells ? "cells" : "surfaces";
-}
-
 struct CalibrationFile {
     Calibration calibration;
     std::string mode;  ///< empty: not said
@@ -60,6 +54,12 @@ Calibration readOfKind(const std::string& file, std::optional<MapKind> map) {
 }
 
 }  // namespace
+
+const char* modeOf(std::optional<MapKind> map) {
+    if (!map) return kOdometry;
+    if (*map == MapKind::mesh) return "mesh";
+    return *map == MapKind::cells ? "cells" : "surfaces";
+}
 
 std::string toYaml(const Calibration& c, std::optional<MapKind> map) {
     const auto digits = [](double value) { return fmt::format("{:.3g}", value); };

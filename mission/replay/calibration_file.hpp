@@ -11,6 +11,10 @@
 
 namespace photonav {
 
+/// What images are aligned to, in files and results: `odometry` (keyframes), `mesh`, `cells`
+/// without surfaces inside, or `surfaces`.
+const char* modeOf(std::optional<MapKind> map);
+
 /// YAML that readCalibration() can read. A comment gives the same values as command-line options.
 /// @param map kind of the map to which images were aligned; none: keyframes (odometry)
 std::string toYaml(const Calibration& calibration, std::optional<MapKind> map);

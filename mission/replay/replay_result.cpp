@@ -175,11 +175,22 @@ bool isLostForGood(const ReplayRun& run) {
     return !run.interrupted;
 }
 
+/// Tracked images that do not determine all directions.
+std::ptrdiff_t countDegenerate(const ReplayRun& run) {
+    return std::ranges::count_if(run.frames, [](const ReplayedFrame& frame) {
+        return frame.status == FrameStatus::tracked &&
+               frame.tracked.alignment.verdict == Verdict::degenerate;
+    });
+}
+
 std::string verdictOf(const ReplayRun& run) {
     const std::size_t tracked = count(run, FrameStatus::tracked);
     const std::size_t lost = count(run, FrameStatus::lost);
     if (tracked == 0 && lost > 0) return "lost at once: " + whyLostAtOnce(run, lost);
     std::string text = fmt::format("tracked {} of {} frames", tracked, run.frames.size());
+    if (const auto degenerate = countDegenerate(run); degenerate > 0) {
+        text += fmt::format(" ({} degenerate)", degenerate);
+    }
     if (lost > 0) text += fmt::format(", lost {}", lost);
     const std::size_t black = countBlack(run);
     if (black > 0) text += fmt::format(" ({} of them black)", black);
@@ -201,10 +212,6 @@ json replayResult(const Sequence& sequence, const ReplayRun& run, const ReplayEr
     const bool evaluated = !errors.frames.empty() && !isTooShortToAlign(run, errors);
     const std::vector<double> nees = neesOf(errors, &NormalisedError::pose);
     const double none = std::numeric_limits<double>::quiet_NaN();
-    const auto degenerate = std::count_if(run.frames.begin(), run.frames.end(), [](const auto& f) {
-        return f.status == FrameStatus::tracked &&
-               f.tracked.alignment.verdict == Verdict::degenerate;
-    });
     std::set<double> keyframes;
     for (const ReplayedFrame& frame : run.frames) {
         if (frame.tracked.keyframe) keyframes.insert(*frame.tracked.keyframe);
@@ -213,7 +220,7 @@ json replayResult(const Sequence& sequence, const ReplayRun& run, const ReplayEr
             {"frames", run.frames.size()},
             {"recorded", sequence.recorded},
             {"tracked", tracked},
-            {"degenerate", degenerate},
+            {"degenerate", countDegenerate(run)},
             {"lost", lost},
             {"unreadable", count(run, FrameStatus::unreadable)},
             {"keyframes", keyframes.size()},

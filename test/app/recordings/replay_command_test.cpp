@@ -239,6 +239,7 @@ TEST_F(ReplayCommand, LeavesFoldersThatWereThere) {
 /// directions only.
 TEST(ReplaySummary, NamesWhatIsNotRight) {
     json result = {{"verdict", "tracked 9 of 9 frames"},
+                   {"mode", "cells"},
                    {"tracked", 9},
                    {"degenerate", 2},
                    {"lost", 0},
@@ -268,13 +269,24 @@ TEST(ReplaySummary, NamesWhatIsNotRight) {
             return row.second.find(words) != std::string::npos;
         });
     };
-    EXPECT_TRUE(said("overconfident, errors are 7.0 times the predicted ones"));
+    EXPECT_TRUE(said("overconfident, errors are 6.3 times the predicted ones in the median"));
     EXPECT_TRUE(said("9 (2 degenerate), 0, 0"));
+    EXPECT_TRUE(said("no surfaces inside its cells"));
+    result["mode"] = "surfaces";
+    EXPECT_FALSE(said("no surfaces"));
     EXPECT_TRUE(said("10 % of the motion, assumed (noise 0.7 mm at 1 m"));
     result["dataset"]["depth_error"] = 0.;
     EXPECT_FALSE(said("of the motion"));
+    result["nees_median_per_dof"] = 1.1;
+    EXPECT_TRUE(said("overconfident in some images"));
+    EXPECT_FALSE(said("times the predicted"));
     result["nees_per_dof"] = 1.2;
     EXPECT_FALSE(said("overconfident"));
+    result["blur"] = {
+        {"assumed", 0.29}, {"estimated", 0.}, {"variance_sigma", 0.1}, {"contradicts", false}};
+    EXPECT_TRUE(said("0.29 pixels assumed, 0.00 by the images"));
+    result["blur"]["variance_sigma"] = 0.8;
+    EXPECT_TRUE(said("0.29 pixels assumed; these images do not show it"));
 }
 
 TEST_F(ReplayCommand, FromTheCommandLine) {

@@ -163,5 +163,12 @@ TEST_F(ReplayFixture, ABlackStereoRecordingIsLost) {
     EXPECT_EQ(result["verdict"], "lost at once: all 4 images are black");
 }
 
+TEST_F(ReplayFixture, TheVerdictCountsImagesThatDoNotDetermineAllDirections) {
+    run();
+    replayed.frames[3].tracked.alignment.verdict = Verdict::degenerate;
+    const json result = replayResult({}, replayed, evaluate(replayed));
+    EXPECT_EQ(result["verdict"], "tracked 12 of 12 frames (1 degenerate)");
+}
+
 }  // namespace
 }  // namespace photonav
