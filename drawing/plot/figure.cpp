@@ -242,25 +242,21 @@ class FigureLayout {
 
 namespace {
 
-/// Draws into memory, whose size is known afterwards, and from there on a surface of that size.
+/// Draws into memory, where the size becomes known, and again on a surface of that size: cairo
+/// writes wrong SVG from drawings of unknown size.
 /// @param create gives the surface of a width and a height
+/// @param svgTexts as of the Painter
 template <typename Create>
-Surface drawn(const Figure& figure, const Create& create) {
+Surface drawn(const Figure& figure, const Create& create, std::string* svgTexts = nullptr) {
     const Surface record(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr),
                          &cairo_surface_destroy);
     Painter recorder(record.get());
     const Eigen::Vector2d size = FigureLayout(figure, recorder).draw().array().ceil();
     Surface surface(create(size.x(), size.y()), &cairo_surface_destroy);
-    const std::unique_ptr<cairo_t, decltype(&cairo_destroy)> cairo(cairo_create(surface.get()),
-                                                                   &cairo_destroy);
-    cairo_set_source_rgb(cairo.get(), 1., 1., 1.);
-    cairo_paint(cairo.get());
-    cairo_set_source_surface(cairo.get(), record.get(), 0., 0.);
-    cairo_paint(cairo.get());
-    const cairo_status_t status = cairo_status(cairo.get());
-    if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
-    if (status != CAIRO_STATUS_SUCCESS)
-        throw std::runtime_error(std::string("figure: ") + cairo_status_to_string(status));
+    Painter painter(surface.get(), svgTexts);
+    painter.box({0., 0., size.x(), size.y()}, kWhite);
+    FigureLayout(figure, painter).draw();
+    painter.check();
     return surface;
 }
 
@@ -279,11 +275,14 @@ std::string Figure::png() const {
 }
 
 std::string Figure::svg() const {
-    std::string bytes;
-    drawn(*this, [&](double width, double height) {
-        return cairo_svg_surface_create_for_stream(&appendTo, &bytes, width, height);
-    });
-    return bytes;
+    std::string bytes, texts;  // cairo would write texts as outlines
+    drawn(
+        *this,
+        [&](double width, double height) {
+            return cairo_svg_surface_create_for_stream(&appendTo, &bytes, width, height);
+        },
+        &texts);
+    return bytes.insert(bytes.rfind("</svg>"), texts);
 }
 
 std::string Figure::pdf() const {

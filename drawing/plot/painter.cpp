@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plot/painter.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
+#include <stdexcept>
 
 namespace photonav {
 namespace {
@@ -26,6 +30,43 @@ Surface surfaceOf(const Picture& picture) {
     return image;
 }
 
+/// The picture with every pixel as `factor` x `factor` pixels.
+Surface magnified(const Surface& image, int factor, cairo_filter_t filter) {
+    const int columns = factor * cairo_image_surface_get_width(image.get());
+    const int rows = factor * cairo_image_surface_get_height(image.get());
+    Surface large(cairo_image_surface_create(CAIRO_FORMAT_RGB24, columns, rows),
+                  &cairo_surface_destroy);
+    const std::unique_ptr<cairo_t, decltype(&cairo_destroy)> cairo(cairo_create(large.get()),
+                                                                   &cairo_destroy);
+    cairo_scale(cairo.get(), factor, factor);
+    cairo_set_source_surface(cairo.get(), image.get(), 0., 0.);
+    cairo_pattern_set_filter(cairo_get_source(cairo.get()), filter);
+    cairo_pattern_set_extend(cairo_get_source(cairo.get()), CAIRO_EXTEND_PAD);
+    cairo_paint(cairo.get());
+    return large;
+}
+
+/// The text, with bytes that are not UTF-8 replaced: after those cairo draws nothing more. Names of
+/// files may have them.
+std::string utf8(const std::string& text) {
+    using nlohmann::json;
+    return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+/// Text of SVG. Control characters are not allowed there.
+std::string escapedForSvg(const std::string& text) {
+    std::string escaped;
+    for (const char c : text) {
+        if (c == '&')
+            escaped += "&amp;";
+        else if (c == '<')
+            escaped += "&lt;";
+        else
+            escaped += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    }
+    return escaped;
+}
+
 double bounded(double coordinate) { return std::clamp(coordinate, -1e5, 1e5); }  // cairo's are 24.8
 
 }  // namespace
@@ -39,6 +80,22 @@ Png pngOf(const Picture& picture) {
     Png bytes;
     cairo_surface_write_to_png_stream(surfaceOf(picture).get(), &appendTo, &bytes);
     return bytes;
+}
+
+Painter::Painter(cairo_surface_t* surface, std::string* svgTexts)
+    : cairo_(cairo_create(surface), &cairo_destroy), svgTexts_(svgTexts) {
+    // Texts have the same width on all surfaces.
+    const std::unique_ptr<cairo_font_options_t, decltype(&cairo_font_options_destroy)> options(
+        cairo_font_options_create(), &cairo_font_options_destroy);
+    cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
+    cairo_set_font_options(cairo_.get(), options.get());
+}
+
+void Painter::check() const {
+    const cairo_status_t status = cairo_status(cairo_.get());
+    if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
+    if (status != CAIRO_STATUS_SUCCESS)
+        throw std::runtime_error(std::string("figure: ") + cairo_status_to_string(status));
 }
 
 void Painter::setColor(const Color& color) {
@@ -111,14 +168,19 @@ void Painter::hatching(const Frame& frame, const Color& color, double width) {
 void Painter::picture(const Picture& picture, const Frame& frame, bool smooth) {
     if (picture.pixels.empty()) return;
     cairo_t* cairo = cairo_.get();
-    const Surface image = surfaceOf(picture);
+    const cairo_filter_t filter = smooth ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST;
+    // Magnified here, because some viewers of SVG and PDF interpolate pixels and others do not.
+    const double scale = std::min(frame.width / picture.columns, frame.height / picture.rows());
+    const int factor = static_cast<int>(std::lround(scale));
+    Surface image = surfaceOf(picture);
+    if (factor > 1) image = magnified(image, factor, filter);
     cairo_save(cairo);
     cairo_rectangle(cairo, frame.x, frame.y, frame.width, frame.height);
     cairo_translate(cairo, frame.x, frame.y);
-    cairo_scale(cairo, frame.width / picture.columns, frame.height / picture.rows());
+    cairo_scale(cairo, frame.width / cairo_image_surface_get_width(image.get()),
+                frame.height / cairo_image_surface_get_height(image.get()));
     cairo_set_source_surface(cairo, image.get(), 0., 0.);
-    cairo_pattern_set_filter(cairo_get_source(cairo),
-                             smooth ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST);
+    cairo_pattern_set_filter(cairo_get_source(cairo), filter);
     cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
     cairo_fill(cairo);
     cairo_restore(cairo);
@@ -133,11 +195,21 @@ void Painter::setFont(double size) {
 double Painter::textWidth(const std::string& content, double size) {
     setFont(size);
     cairo_text_extents_t extents;
-    cairo_text_extents(cairo_.get(), content.c_str(), &extents);
+    cairo_text_extents(cairo_.get(), utf8(content).c_str(), &extents);
     return extents.x_advance;
 }
 
 void Painter::text(const std::string& content, const Point& at, Align align, const Font& font) {
+    if (svgTexts_ != nullptr) {
+        constexpr const char* kAnchors[]{"start", "middle", "end"};
+        *svgTexts_ += fmt::format(
+            R"(<text font-family="DejaVu Sans, Verdana, sans-serif" font-size="{}" fill="{}" )"
+            R"(text-anchor="{}" transform="translate({:.6g} {:.6g}){}">{}</text>)"
+            "\n",
+            font.size, hexColor(font.color), kAnchors[static_cast<int>(align)], at.x(), at.y(),
+            font.upward ? " rotate(-90)" : "", escapedForSvg(utf8(content)));
+        return;
+    }
     const double share = align == Align::left ? 0. : align == Align::center ? 0.5 : 1.;
     cairo_t* cairo = cairo_.get();
     cairo_save(cairo);
@@ -145,7 +217,7 @@ void Painter::text(const std::string& content, const Point& at, Align align, con
     if (font.upward) cairo_rotate(cairo, -0.5 * std::numbers::pi);
     cairo_move_to(cairo, -share * textWidth(content, font.size), 0.);
     setColor(font.color);
-    cairo_show_text(cairo, content.c_str());
+    cairo_show_text(cairo, utf8(content).c_str());
     cairo_new_path(cairo);
     cairo_restore(cairo);
 }

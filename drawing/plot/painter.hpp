@@ -40,7 +40,8 @@ cairo_status_t appendTo(void* text, const unsigned char* bytes, unsigned count);
 
 class Painter {
   public:
-    explicit Painter(cairo_surface_t* surface) : cairo_(cairo_create(surface), &cairo_destroy) {}
+    /// @param svgTexts if not null, texts are appended to it as SVG elements, not drawn
+    explicit Painter(cairo_surface_t* surface, std::string* svgTexts = nullptr);
 
     /// A line through the points, `width` pixels wide; a point that is not finite leaves a gap.
     void line(const std::vector<Point>& points, const Color& color, double width,
@@ -52,6 +53,7 @@ class Painter {
     /// Diagonal lines. The lines of neighbouring frames join.
     void hatching(const Frame& frame, const Color& color, double width);
     /// A picture stretched over a frame.
+    /// @param smooth true: pixels are interpolated
     void picture(const Picture& picture, const Frame& frame, bool smooth);
 
     /// One line of text; `at` is on the base line.
@@ -64,11 +66,15 @@ class Painter {
     /// Draws the marks of `draw`, cut at the frame.
     void clipped(const Frame& frame, const std::function<void()>& draw);
 
+    /// @throws std::bad_alloc, or std::runtime_error, if something could not be drawn
+    void check() const;
+
   private:
     void setColor(const Color& color);
     void setFont(double size);
 
     std::unique_ptr<cairo_t, decltype(&cairo_destroy)> cairo_;
+    std::string* svgTexts_;
 };
 
 }  // namespace photonav

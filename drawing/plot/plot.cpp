@@ -30,21 +30,28 @@ void drawHatched(Painter& painter, const Frame& frame) {
     painter.hatching(frame, kHatch, 1.2);
 }
 
-/// Samples of the legend.
+/// A translucent colour on white.
+Color onWhite(const Color& color, double opacity) {
+    const auto mixed = [&](std::uint8_t part) {
+        return static_cast<std::uint8_t>(std::lround(255. - opacity * (255. - part)));
+    };
+    return {mixed(color.red), mixed(color.green), mixed(color.blue)};
+}
+
+/// Samples of the legend. They are opaque: SVG does not show translucent horizontal lines.
 auto lineSample(const Style& style) {
     return [style](Painter& painter, const Frame& f) {
         const double y = middle(f).y();
         Style thin = style;
         thin.width = std::min(style.width, 0.6 * f.height);
-        painter.translucent(std::max(style.opacity, 0.5), [&] {
-            drawLine(painter, {{f.x, y}, {f.right(), y}}, thin);
-        });
+        thin.color = onWhite(style.color, std::max(style.opacity, 0.5));
+        drawLine(painter, {{f.x, y}, {f.right(), y}}, thin);
     };
 }
 
 auto boxSample(const Style& style) {
-    return [style](Painter& painter, const Frame& f) {
-        painter.translucent(style.opacity, [&] { painter.box(f, style.color); });
+    return [color = onWhite(style.color, style.opacity)](Painter& painter, const Frame& f) {
+        painter.box(f, color);
     };
 }
 

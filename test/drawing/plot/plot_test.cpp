@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <regex>
 #include <stdexcept>
 
 #include "drawing/plot/decoded.hpp"
@@ -183,6 +184,43 @@ TEST(Figure, WritesThreeFormatsByTheNameOfTheFile) {
     }
     EXPECT_THROW(figure.save(folder.path() / "a.gif"), InputError);
     EXPECT_THROW(Figure{}.png(), std::invalid_argument);
+}
+
+TEST(Figure, VectorGraphicsHoldTextsAsText) {
+    Plot plot = bare();
+    plot.title = "1 < 2 & \x01";
+    const Figure figure{"title", {{plot}}};
+    const std::string svg = figure.svg();
+    EXPECT_NE(svg.find(">title</text>"), std::string::npos);
+    EXPECT_NE(svg.find(">1 &lt; 2 &amp;  </text>"), std::string::npos);
+    EXPECT_NE(figure.pdf().find("/ToUnicode"), std::string::npos);
+}
+
+TEST(Figure, TranslucentMarksOfSvgAreInsideThePage) {
+    Plot plot = bare();
+    plot.curve({{1., 1.}, {2., 2.}}, {.color = kRed, .opacity = 0.5, .name = "curve"});
+    const std::string svg = Figure{"title", {{plot}}}.svg();
+    const std::regex link("url\\(#([a-z0-9]+)\\)");
+    for (std::sregex_iterator it(svg.begin(), svg.end(), link), end; it != end; ++it)
+        EXPECT_NE(svg.find("id=\"" + (*it)[1].str() + "\""), std::string::npos) << (*it)[1];
+    EXPECT_EQ(svg.find("width=\"16777215\""), std::string::npos);  // of an unlimited surface
+}
+
+TEST(Figure, SmallPicturesAreMagnifiedForAllViewers) {
+    Plot plot = bare();
+    plot.picture({{kRed, kBlue, kBlue, kBlue}, 2},
+                 {Eigen::Vector2d(1., 1.), Eigen::Vector2d(3., 3.)}, false);
+    const Figure figure{"", {{plot}}};
+    EXPECT_NE(figure.svg().find("width=\"200\" height=\"200\" xlink:href=\"data:image/png"),
+              std::string::npos);
+}
+
+TEST(Figure, ATitleThatIsNotUtf8LeavesTheRestOfTheFigure) {
+    Plot plot = bare();
+    plot.dots({{1., 1.}}, {.color = kRed, .width = 40.});
+    const Figure figure{"cut \xE2", {{plot}}, Figure::Legend::none};
+    EXPECT_GT(countOf(decoded(figure.png(), "cut"), kRed), 1000);
+    EXPECT_NE(figure.svg().find(">cut \xEF\xBF\xBD</text>"), std::string::npos);
 }
 
 /// CIELAB distance of two colours for a reader whose sight is given by a matrix on linear RGB.
