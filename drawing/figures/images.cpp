@@ -17,7 +17,7 @@ Picture pictureOf(const ImageF& shape, const ColorAt& colorAt) {
     return picture;
 }
 
-/// A picture with a colour bar, each pixel drawn as a square of a whole number of pixels.
+/// A picture with axes and a colour bar, each pixel drawn as a square of a whole number of pixels.
 /// @param colorAt colour of a share in [0, 1] of the scale
 Figure pixelsFigure(const std::string& title, Picture picture, const Axis& scale,
                     Color (*colorAt)(double)) {
@@ -25,6 +25,7 @@ Figure pixelsFigure(const std::string& title, Picture picture, const Axis& scale
     if (picture.pixels.empty()) throw std::invalid_argument("pixelsFigure: the picture is empty");
     const int columns = picture.columns;
     Plot plot = Plot::image(std::move(picture), columns * std::max(1, kWidest / columns));
+    plot.hasAxes = true;
     plot.colorBar(scale, colorAt);
     return {.title = title, .rows = {{plot}}};
 }

@@ -37,8 +37,8 @@ Picture differencePicture(const ImageF& observed, const View& predicted);
 /// @throws std::invalid_argument if the sizes differ or the images are empty
 Picture contributionPicture(const ImageF& intensity, const ImageF& contribution);
 
-/// A grey picture and a contributionPicture() with colour bars. Every pixel is drawn as a square of
-/// a whole number of pixels.
+/// A grey picture and a contributionPicture() with pixel axes and colour bars. Every pixel is drawn
+/// as a square of a whole number of pixels.
 /// @throws std::invalid_argument if the images are empty
 Figure greyFigure(const std::string& title, const ImageF& image);
 Figure contributionFigure(const std::string& title, const ImageF& intensity,

@@ -150,18 +150,10 @@ class Sketch {
     }
 
   private:
-    Eigen::Vector2d pixel(const Eigen::Vector3d& p_w) const {
-        return camera_.project(T_c_w_ * p_w);
-    }
-
-    /// y is upward in plots.
-    Plot::Point at(const Eigen::Vector3d& p_w) const {
-        const Eigen::Vector2d p = pixel(p_w);
-        return {p.x(), kPictureHeight - p.y()};
-    }
+    Plot::Point at(const Eigen::Vector3d& p_w) const { return camera_.project(T_c_w_ * p_w); }
 
     bool isVisible(const Eigen::Vector3d& p_w) const {
-        const Eigen::Vector2d p = pixel(p_w).array().round();
+        const Eigen::Vector2d p = at(p_w).array().round();
         if (p.x() < 0. || p.y() < 0. || p.x() >= kPictureWidth || p.y() >= kPictureHeight)
             return true;
         const float depth = view_.depth[static_cast<unsigned>(p.y())][static_cast<unsigned>(p.x())];

@@ -23,7 +23,8 @@ std::string number(double value, int digits) {
 }
 
 std::vector<Tick> linearTicks(const Axis& axis, int wanted) {
-    const double raw = (axis.max - axis.min) / std::max(1, wanted);
+    const auto [low, high] = std::minmax(axis.min, axis.max);
+    const double raw = (high - low) / std::max(1, wanted);
     const double decade = std::pow(10., std::floor(std::log10(raw)));
     double step = 10. * decade;
     for (const double nice : {5., 2., 1.})
@@ -31,8 +32,8 @@ std::vector<Tick> linearTicks(const Axis& axis, int wanted) {
     if (axis.whole) step = std::max(step, 1.);
     const int digits = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
     const double slack = 1e-6 * step;
-    const auto first = static_cast<long>(std::ceil((axis.min - slack) / step));
-    const auto last = static_cast<long>(std::floor((axis.max + slack) / step));
+    const auto first = static_cast<long>(std::ceil((low - slack) / step));
+    const auto last = static_cast<long>(std::floor((high + slack) / step));
     std::vector<Tick> ticks;
     for (long k = first; k <= last; ++k) {
         const double value = static_cast<double>(k) * step;

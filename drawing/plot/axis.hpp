@@ -11,17 +11,18 @@ namespace photonav {
 struct Axis {
     static constexpr double kAuto = std::numeric_limits<double>::quiet_NaN();
 
-    double min = kAuto, max = kAuto;  ///< limits; kAuto: from the data; positive if `log`
-    bool log = false;                 ///< logarithmic axis
-    std::string label = {};           ///< quantity and unit
-    bool whole = false;               ///< ticks at whole numbers only
+    /// Limits: kAuto: from the data. Positive if `log`; otherwise max < min reverses the axis.
+    double min = kAuto, max = kAuto;
+    bool log = false;        ///< logarithmic axis
+    std::string label = {};  ///< quantity and unit
+    bool whole = false;      ///< ticks at whole numbers only
 
     /// The position of a value: 0 at min, 1 at max. Infinite values, and on a logarithmic axis
     /// values <= 0, are at the ends.
     double fraction(double value) const;
 
     /// This axis with limits that enclose the given values in place of kAuto. Values that are not
-    /// finite, or not positive on a logarithmic axis, are ignored. min < max in any case.
+    /// finite, or not positive on a logarithmic axis, are ignored. min < max unless both are given.
     Axis fittedTo(const std::vector<double>& values) const;
 };
 

@@ -23,8 +23,10 @@ struct Mapping {
         return pixels;
     }
     Frame at(const Eigen::AlignedBox2d& box) const {
-        const Point low = at(Point(box.min())), high = at(Point(box.max()));
-        return {low.x(), high.y(), high.x() - low.x(), low.y() - high.y()};
+        Eigen::AlignedBox2d pixels(at(Point(box.min())));
+        pixels.extend(at(Point(box.max())));
+        const Point size = pixels.sizes();
+        return {pixels.min().x(), pixels.min().y(), size.x(), size.y()};
     }
 };
 

@@ -74,11 +74,12 @@ Plot Plot::image(Picture picture, double width, bool smooth) {
     const Eigen::Vector2d size(picture.columns, picture.rows());
     Plot plot;
     plot.hasAxes = false;
-    plot.x = {0., size.x()};
-    plot.y = {0., size.y()};
+    const Eigen::Vector2d corner = Eigen::Vector2d::Constant(-0.5), opposite = corner + size;
+    plot.x = {.min = corner.x(), .max = opposite.x(), .label = "u [px]"};
+    plot.y = {.min = opposite.y(), .max = corner.y(), .label = "v [px]"};
     plot.width = width;
     plot.height = width * size.y() / size.x();
-    plot.picture(std::move(picture), {Eigen::Vector2d::Zero(), size}, smooth);
+    plot.picture(std::move(picture), {corner, opposite}, smooth);
     return plot;
 }
 

@@ -43,7 +43,8 @@ class Plot {
     /// @throws std::invalid_argument if the area is empty
     static Plot map(const Eigen::AlignedBox2d& area, double side);
 
-    /// A plot of a picture, without axes.
+    /// A plot of a picture in pixel coordinates (u, v): pixel centres lie at integers, v points
+    /// downward. Without axes.
     /// @param width width of the frame [px]; the height follows from the picture
     /// @param smooth true: pixels are interpolated
     static Plot image(Picture picture, double width, bool smooth = false);

@@ -186,6 +186,8 @@ TEST(Figures, PixelsAreWholeSquaresBesideTheirScale) {
     EXPECT_GT(bright, 10 * 26 * 26);  // and the end of the colour bar
     EXPECT_GT(countOf(weighted, inferno(0.5)), 10);
     EXPECT_THROW(greyFigure("", ImageF()), std::invalid_argument);
+    for (const char* text : {">u [px]</text>", ">v [px]</text>", ">15</text>"})
+        EXPECT_NE(greyFigure("", one).svg().find(text), std::string::npos) << text;
 }
 
 TEST(Figures, PixelsWithoutASurfaceHaveTheirOwnColor) {

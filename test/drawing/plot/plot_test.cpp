@@ -47,6 +47,7 @@ TEST(Axis, TicksAreRoundAndInside) {
     EXPECT_EQ(labels({3.1e-4, 4.2e-4, true}, 3), "3.5·10⁻⁴ 4·10⁻⁴ ");
     EXPECT_EQ(labels({0.21, 0.42, true}, 4), "0.25 0.30 0.35 0.40 ");
     EXPECT_EQ(labels({.min = 0.5, .max = 4.5, .whole = true}, 10), "1 2 3 4 ");
+    EXPECT_EQ(labels({10., 0.}, 5), "0 2 4 6 8 10 ");
 }
 
 TEST(Axis, LimitsAreGivenOrFromTheData) {
@@ -130,6 +131,16 @@ TEST(Plot, PictureIsStretchedOverItsBox) {
     const cv::Mat3b image = drawn(plot, "picture");
     EXPECT_EQ(boundsOf(image, kRed), cv::Rect(120, 120, 100, 50));
     EXPECT_EQ(boundsOf(image, kBlue), cv::Rect(120, 120, 200, 100));
+}
+
+TEST(Plot, ImagesHavePixelCoordinates) {
+    Plot plot = Plot::image({{kRed, kBlue, kBlue, kBlue, kBlue, kBlue}, 2}, 200.);
+    const cv::Mat3b image = drawn(plot, "image");
+    EXPECT_EQ(boundsOf(image, kRed), cv::Rect(20, 20, 100, 100));
+    EXPECT_EQ(boundsOf(image, kBlue), cv::Rect(20, 20, 200, 300));
+    const Color green{0, 255, 0};
+    plot.fill({{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}}, {.color = green});
+    EXPECT_EQ(boundsOf(drawn(plot, "first_pixel"), green), cv::Rect(20, 20, 100, 100));
 }
 
 TEST(Plot, EllipseHasTheCovarianceOfItsOutline) {
