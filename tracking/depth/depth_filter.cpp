@@ -104,13 +104,6 @@ View DepthFilter::view() const {
     return view;
 }
 
-double DepthFilter::shareConverged() const {
-    const auto converged = std::count_if(seeds_.begin(), seeds_.end(), [](const Seed& seed) {
-        return seed.state == DepthState::converged;
-    });
-    return static_cast<double>(converged) / static_cast<double>(seeds_.size());
-}
-
 double DepthFilter::shareNarrowed() const {
     const float half = 0.5F * priorVariance(options_);
     const auto narrowed = std::count_if(seeds_.begin(), seeds_.end(),

@@ -54,7 +54,6 @@ class DepthFilter {
 
     /// State of the pixel in row v and column u.
     DepthState state(unsigned v, unsigned u) const { return seeds_[v * camera_.width + u].state; }
-    double shareConverged() const;  ///< share of all pixels that have converged
     /// Share of all pixels whose variance of inverse depth is at most half of the first one.
     double shareNarrowed() const;
     /// Median depth of the converged pixels [m]; none if no pixel has converged.
