@@ -168,7 +168,7 @@ FilmScript::FilmScript(const FlightLog& log, const TopView& scene)
 
 Plot FilmScript::tracePanel(double time) const {
     Plot plot;
-    plot.title = "Uncertainty";
+    plot.title = "Uncertainty of the pose";
     plot.width = kFilmSide;
     plot.height = kFilmSide * 0.64;
     double least = std::numeric_limits<double>::infinity(), largest = 0.;
@@ -212,12 +212,12 @@ Figure FilmScript::frame(double time, std::size_t moment) const {
     Figure figure{.legend = Figure::Legend::none};
     figure.title = fmt::format("{}, {:5.1f} s, {:4.1f} m flown", log_.planner, time, now.length);
     Plot scene = scenePanel(log_, now, scene_, kFilmSide);
-    scene.title = "Scene, tree, plan";
+    scene.title = "True scene, tree and plan";
     figure.rows = {
         {scene,
-         grid("Free and occupied",
+         grid("Map: free (white), obstacles (black)",
               pictureOf(log_, moment, &MomentPictures::obstacles, obstaclePicture)),
-         grid("Information of views",
+         grid("Information of a view (bright: much)",
               pictureOf(log_, moment, &MomentPictures::information,
                         [&](const std::string& f) { return informationPicture(f, range_); }))},
         {image("Camera", &MomentPictures::observed),
