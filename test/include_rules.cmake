@@ -61,7 +61,7 @@ set(folders_app_recordings io geometry map render dataset result config recordin
     report shared)
 set(folders_app_plans io geometry map dataset planners result problem recording mapping flight check
     figures report shared recordings)
-set(folders_app_comparisons io geometry planners result config problem sweep figures report shared)
+set(folders_app_comparisons io geometry planners result config problem sweep figures report shared plans)
 set(folders_app_tools io bag planners config problem mapping interchange shared recordings)
 set(folders_app_ io shared)
 

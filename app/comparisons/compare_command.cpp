@@ -10,6 +10,7 @@
 #include "io/error.hpp"
 #include "io/interrupted.hpp"
 #include "io/stopwatch.hpp"
+#include "plans/plan_progress.hpp"
 #include "result/json_values.hpp"
 #include "shared/many_runs.hpp"
 #include "shared/result_folder.hpp"
@@ -45,6 +46,7 @@ class CompareProgress {
         rest_.count(method.label(), now - begin_, now);
     }
     void clear() { line_.clear(); }
+    ProgressLine& line() { return line_; }
 
   private:
     ProgressLine line_;
@@ -119,7 +121,10 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
     for (const Config& given : configs) {
         const World world(given);
         PlanningProblem(given, world).checkPlaces();
-        ProblemRuns problem{withKappa(given, world, interrupted), options.runs, {}};
+        ProblemRuns problem{withKappa(given, world, interrupted,
+                                      shownOn(progress.line(), given.vertices, kForKappa)),
+                            options.runs,
+                            {}};
         problem.runs = runMethods(problem.config, world, options, progress, interrupted);
         progress.clear();
         for (const CompareRun& run : problem.runs) anyPath = anyPath || run.outcome.path;

@@ -11,6 +11,7 @@
 #include "io/error.hpp"
 #include "io/file_lock.hpp"
 #include "io/stopwatch.hpp"
+#include "plans/plan_progress.hpp"
 #include "shared/many_runs.hpp"
 #include "sweep/reference_search.hpp"
 
@@ -30,8 +31,9 @@ void prepareFolder(const fs::path& folder) {
 
 /// With the effort of references, but the kappa of the sweeps that are compared with them.
 Config withEffort(const Config& config, const ReferenceOptions& options, const World& world,
-                  const std::atomic<bool>& interrupted) {
-    Config effort = withKappa(config, world, interrupted);
+                  ProgressLine& line, const std::atomic<bool>& interrupted) {
+    Config effort =
+        withKappa(config, world, interrupted, shownOn(line, config.vertices, kForKappa));
     effort.vertices = options.vertices;
     effort.search.labels = options.labels;
     return effort;
@@ -80,9 +82,8 @@ int runReference(const ReferenceOptions& options, const std::atomic<bool>& inter
     if (options.fromScratch) {
         for (const double alpha : given.sweep.alphas) table.setAside(alpha);
     }
-    const Config config = withEffort(given, options, world, interrupted);
-
     ProgressLine line(options.quiet);
+    const Config config = withEffort(given, options, world, line, interrupted);
     RemainingTime rest(itemsOf(config.sweep, options.runs));
     const Stopwatch watch;
     bool isComplete = true;

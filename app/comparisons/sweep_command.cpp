@@ -7,6 +7,7 @@
 #include "io/error.hpp"
 #include "io/reading.hpp"
 #include "io/stopwatch.hpp"
+#include "plans/plan_progress.hpp"
 #include "problem/planning_problem.hpp"
 
 namespace photonav {
@@ -69,9 +70,10 @@ int sweepAll(const ManyRunsOptions& options, const std::atomic<bool>& interrupte
         SweepJournal::create(folder.path(), header, runsSoFar<SweepKind>(options, folder, header));
 
     const auto open = journal.missing(items);
-    const Config planned = withKappa(config, world, interrupted);  // of all seeds
+    ProgressLine line(options.quiet);
+    const Config planned = withKappa(config, world, interrupted,  // of all seeds
+                                     shownOn(line, config.vertices, kForKappa));
     {
-        ProgressLine line(options.quiet);
         RemainingTime rest(open);
         const Stopwatch running;
         std::size_t done = items.size() - open.size();
@@ -83,6 +85,7 @@ int sweepAll(const ManyRunsOptions& options, const std::atomic<bool>& interrupte
             line.show(fmt::format("{} of {} runs, {} done{}", ++done, items.size(),
                                   nameOf(run.item), rest.text(wall)));
         });
+        line.clear();
     }
     const bool stopped = interrupted && !journal.missing(items).empty();
     if (stopped && leavesEarlierRuns(folder, journal)) return kInterrupted;

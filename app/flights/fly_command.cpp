@@ -33,17 +33,10 @@ std::vector<FlightSet> planAll(const Config& config, PlanningProblem& problem, P
         sets.push_back({std::move(path), std::move(plan), {}});
     };
     const auto solve = [&](const std::string& name) {
-        line.show("planning: " + name);
-        RemainingGrowth growth(config.vertices);
-        auto outcome = problem.solve(name, interrupted, [&](const PlanProgress& progress) {
-            growth.add(progress);
-            const auto rest = growth.seconds();
-            line.show(fmt::format(
-                "planning: {}, {} of {} vertices{}", name, progress.vertices, config.vertices,
-                rest ? fmt::format(", about {} to the last search", durationText(*rest)) : ""));
-        });
+        auto outcome = problem.solve(name, interrupted, shownOn(line, config.vertices, name));
         if (outcome.path) add(std::move(*outcome.path));
     };
+    problem.kappa(interrupted, shownOn(line, config.vertices, kForKappa));
     if (!config.fly.plan.empty()) {
         const PlannedPath path = readPlannedPath(config.fly.plan, config);
         add(problem.evaluate(path.planner, path.waypoints, interrupted));

@@ -8,6 +8,7 @@
 #include "flights/posters_report.hpp"
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
+#include "plans/plan_progress.hpp"
 #include "posters/posters_result.hpp"
 #include "result/json_values.hpp"
 #include "shared/place_option.hpp"
@@ -62,12 +63,14 @@ int runPosters(const PostersOptions& options, const std::atomic<bool>& interrupt
         options, "posters", inputsOf(problem.config, {options.candidates, options.trajectory}));
     ProgressLine line(options.quiet);
     const std::size_t most = mostSets(problem);
-    const PosterRanking ranking =
-        rankPosters(problem, interrupted, [&](std::size_t done, const PosterIndices& set) {
+    const PosterRanking ranking = rankPosters(
+        problem, interrupted,
+        [&](std::size_t done, const PosterIndices& set) {
             line.show(fmt::format("{} of at most {} sets studied, now {}", done, most,
                                   nameOf(set, problem.posters)),
                       static_cast<double>(done) / static_cast<double>(most));
-        });
+        },
+        shownOn(line, problem.config.vertices, kForKappa));
     line.clear();
     nlohmann::json result = postersResult(problem, ranking);
     result["time"]["total_s"] = watch.seconds();

@@ -116,14 +116,14 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
     std::optional<EvaluatedPath> baseline;
     {
         ProgressLine line(options.quiet);
-        RemainingGrowth growth(config.vertices);
-        outcome = problem.solve(config.planner, interrupted, [&](const PlanProgress& progress) {
-            growth.add(progress);
-            line.show(progressText(progress, config.vertices, growth));
-        });
+        problem.kappa(interrupted, shownOn(line, config.vertices, kForKappa));
+        outcome = problem.solve(config.planner, interrupted,
+                                shownOn(line, config.vertices, config.planner));
         if (config.compareWithRrtStar && usesViews(config.planner) && !interrupted) {
-            line.show("RRT* for comparison");
-            baseline = problem.solve("rrt_star", interrupted).path;
+            baseline = problem
+                           .solve("rrt_star", interrupted,
+                                  shownOn(line, config.vertices, "rrt_star for comparison"))
+                           .path;
         }
     }
     std::vector<TreeEvolution> evolutions;

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "planners/belief_rrt_star.hpp"
-#include "shared/command_io.hpp"
 
 namespace photonav {
 
@@ -34,12 +33,20 @@ std::string progressText(const PlanProgress& progress, unsigned vertices,
                                  : "no path yet";
     const auto rest = growth.seconds();
     const std::string soFar = fmt::format("{:.0f} s so far", progress.seconds);
-    const std::string time = progress.vertices >= vertices ? "last search and descent, " + soFar
+    const std::string time = progress.vertices >= vertices ? "improving the path, " + soFar
                              : rest
-                                 ? fmt::format("about {} to the last search", durationText(*rest))
+                                 ? fmt::format("about {} to the last vertex", durationText(*rest))
                                  : soFar;
     return fmt::format("{} of {} vertices, {}, {} views, {}", progress.vertices, vertices, cost,
                        progress.views, time);
+}
+
+OnPlanProgress shownOn(ProgressLine& line, unsigned vertices, const std::string& purpose) {
+    return [&line, vertices, purpose,
+            growth = RemainingGrowth(vertices)](const PlanProgress& progress) mutable {
+        growth.add(progress);
+        line.show(fmt::format("{}: {}", purpose, progressText(progress, vertices, growth)));
+    };
 }
 
 }  // namespace photonav

@@ -7,8 +7,12 @@
 #include <vector>
 
 #include "problem/planning_problem.hpp"
+#include "shared/command_io.hpp"
 
 namespace photonav {
+
+/// What rrt_star grows for before planners with automatic kappa, for shownOn().
+inline constexpr const char* kForKappa = "kappa by rrt_star";
 
 /// Predicts the time until the last vertex is added. The model is a power law, time over number of
 /// vertices, fitted to two points: the present number of vertices and half of it. Before a first
@@ -30,6 +34,11 @@ class RemainingGrowth {
     double vertices_;
     std::vector<PlanProgress> history_;
 };
+
+/// Shows the progress of a planner on a line.
+/// @param vertices number of vertices at the end
+/// @param purpose begin of the line, "kappa by rrt_star"
+OnPlanProgress shownOn(ProgressLine& line, unsigned vertices, const std::string& purpose);
 
 /// One line of text: vertices, best cost and views so far, and the time so far or the time left.
 /// @param vertices number of vertices at the end

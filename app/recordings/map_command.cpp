@@ -62,6 +62,7 @@ void compareFrames(const MapCommandOptions& options, const Recording& recording,
     const std::size_t stride = (count + kMostPictures - 1) / kMostPictures;  // of pictures
     View predicted;
     for (std::size_t k = 0; k < count && !interrupted; ++k) {
+        if (options.comparison) options.comparison(k, count);
         const RecordedFrame frame = recording.load(k * step);
         if (interrupted) return;
         if (isBlack(frame.view.intensity)) continue;

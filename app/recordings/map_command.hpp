@@ -20,6 +20,8 @@ struct MapCommandOptions : MapOptions {
 
     /// Called after each fused frame with the number of frames done and their total number.
     std::function<void(std::size_t done, std::size_t total)> progress;
+    /// Called before each frame is compared.
+    std::function<void(std::size_t done, std::size_t total)> comparison;
 };
 
 /// Makes a map from a dataset and writes into options.out:

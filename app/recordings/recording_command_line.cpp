@@ -50,10 +50,15 @@ int runOnDataset(Options& options, const std::string& command, const std::string
         options.out = fs::path("out") / (command + "-" + folderName(dataset));
     }
     ProgressLine line(options.quiet);
-    options.progress = [&line, steps](std::size_t done, std::size_t total) {
-        line.show(fmt::format("{} of {} {}", done, total, steps),
-                  static_cast<double>(done) / static_cast<double>(total));
+    const auto showing = [&line](const char* doing) {
+        return [&line, doing](std::size_t done, std::size_t total) {
+            if (done == 0) line.beginPhase();
+            line.show(fmt::format("{} of {} {}", done, total, doing),
+                      static_cast<double>(done) / static_cast<double>(total));
+        };
     };
+    options.progress = showing(steps);
+    if constexpr (requires { options.comparison; }) options.comparison = showing("compared");
     const auto report = run();
     line.clear();
     if (report.folder.empty()) return report.exitCode;

@@ -224,11 +224,12 @@ std::vector<double> rankKey(const PosterSet& set, RankBy by) {
 }
 
 PosterRanking rankPosters(const PosterProblem& given, const std::atomic<bool>& interrupted,
-                          const std::function<void(std::size_t, const PosterIndices&)>& onBegin) {
+                          const std::function<void(std::size_t, const PosterIndices&)>& onBegin,
+                          const OnPlanProgress& onKappa) {
     PosterProblem problem = given;
     const PosterStudyOptions& options = given.options;
     if (options.hasPath && !options.trajectory) {
-        problem.config = withKappa(given.config, worldWith(given, {}), interrupted);
+        problem.config = withKappa(given.config, worldWith(given, {}), interrupted, onKappa);
     }
     const auto isBefore = [&](const PosterSet& a, const PosterSet& b) {
         return rankKey(a, options.rankBy) < rankKey(b, options.rankBy);

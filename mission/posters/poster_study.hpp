@@ -88,8 +88,10 @@ std::vector<double> rankKey(const PosterSet& set, RankBy by);
 /// of collisions and better than the new one.
 /// @param onBegin called before a set is studied, with the number of sets that are done and the
 ///        posters of this set; never called twice at a time
+/// @param onKappa as of PlanningProblem::kappa()
 /// @throws Interrupted when interrupted before the first set is done
 PosterRanking rankPosters(const PosterProblem& problem, const std::atomic<bool>& interrupted,
-                          const std::function<void(std::size_t, const PosterIndices&)>& onBegin);
+                          const std::function<void(std::size_t, const PosterIndices&)>& onBegin,
+                          const OnPlanProgress& onKappa = {});
 
 }  // namespace photonav

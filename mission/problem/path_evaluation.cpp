@@ -107,9 +107,10 @@ EvaluatedPath PlanningProblem::evaluate(const std::string& planner,
     return evaluated;
 }
 
-Config withKappa(Config config, const World& world, const std::atomic<bool>& interrupted) {
+Config withKappa(Config config, const World& world, const std::atomic<bool>& interrupted,
+                 const OnPlanProgress& onProgress) {
     if (isAutomatic(config.belief.kappa)) {
-        config.belief.kappa = PlanningProblem(config, world).kappa(interrupted);
+        config.belief.kappa = PlanningProblem(config, world).kappa(interrupted, onProgress);
     }
     return config;
 }
@@ -119,19 +120,21 @@ BeliefModel& PlanningProblem::evaluator() {
     return *evaluator_;
 }
 
-double PlanningProblem::kappa(const std::atomic<bool>& interrupted) {
+double PlanningProblem::kappa(const std::atomic<bool>& interrupted,
+                              const OnPlanProgress& onProgress) {
     if (isAutomatic(config_.belief.kappa)) {
-        config_.belief.kappa = balancedKappa(interrupted);
+        config_.belief.kappa = balancedKappa(interrupted, onProgress);
         evaluator_ =
             std::make_shared<BeliefModel>(space_, field_, optionsWith(config_.belief.kappa));
     }
     return config_.belief.kappa;
 }
 
-double PlanningProblem::balancedKappa(const std::atomic<bool>& interrupted) {
+double PlanningProblem::balancedKappa(const std::atomic<bool>& interrupted,
+                                      const OnPlanProgress& onProgress) {
     const InterruptionScope scope = interruptedBy(interrupted);
     const auto planner = makePlanner("rrt_star", evaluator_, config_.seed);
-    planner->solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+    grow(*planner, interrupted, onProgress);
     ompl::geometric::PathGeometric path(si_);
     if (planner->bestPath().empty()) {
         const auto line = definition();

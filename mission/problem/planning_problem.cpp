@@ -118,31 +118,7 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
     const Stopwatch watch;
     const BeliefModel& model = planner->model();
     PlanOutcome outcome;
-    const auto progress = [&] {
-        return PlanProgress{planner->vertices(), watch.seconds(), planner->bestCost(),
-                            model.field().views()};
-    };
-    double shown = 0.;  // [s]
-    const auto show = [&](const PlanProgress& now) {
-        shown = now.seconds;
-        if (onProgress) onProgress(now);
-    };
-    std::size_t next = kProgressInterval;
-    const auto isDone = [&] {
-        if (planner->vertices() >= next) {
-            show(outcome.progress.emplace_back(progress()));
-            next = planner->vertices() + kProgressInterval;
-        } else if (watch.seconds() > shown + kShowInterval) {  // in the last search and descent
-            show(progress());
-        }
-        return interrupted.load();
-    };
-    {
-        const InterruptionScope scope = interruptedBy(interrupted);
-        planner->solve(ob::PlannerTerminationCondition(isDone));
-    }
-    show(outcome.progress.emplace_back(progress()));
-
+    outcome.progress = grow(*planner, interrupted, onProgress);
     outcome.alpha = model.options().alpha;
     outcome.vertices = planner->vertices();
     outcome.iterations = planner->iterations();
@@ -160,6 +136,37 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
         outcome.path.reset();
     }
     return outcome;
+}
+
+/// @return the progress every kProgressInterval vertices, and at the end
+std::vector<PlanProgress> PlanningProblem::grow(BeliefPlanner& planner,
+                                                const std::atomic<bool>& interrupted,
+                                                const OnPlanProgress& onProgress) {
+    const Stopwatch watch;
+    std::vector<PlanProgress> steps;
+    const auto progress = [&] {
+        return PlanProgress{planner.vertices(), watch.seconds(), planner.bestCost(),
+                            planner.model().field().views()};
+    };
+    double shown = 0.;  // [s]
+    const auto show = [&](const PlanProgress& now) {
+        shown = now.seconds;
+        if (onProgress) onProgress(now);
+    };
+    std::size_t next = kProgressInterval;
+    const auto isDone = [&] {
+        if (planner.vertices() >= next) {
+            show(steps.emplace_back(progress()));
+            next = planner.vertices() + kProgressInterval;
+        } else if (watch.seconds() > shown + kShowInterval) {  // in the last search and descent
+            show(progress());
+        }
+        return interrupted.load();
+    };
+    const InterruptionScope scope = interruptedBy(interrupted);
+    planner.solve(ob::PlannerTerminationCondition(isDone));
+    show(steps.emplace_back(progress()));
+    return steps;
 }
 
 /// Checks the tree, and evaluates the path.

@@ -128,8 +128,10 @@ class PlanningProblem {
     /// (on the straight line if rrt_star finds no path): it is the path's distance, including
     /// turns, divided by the charged trace (0 if no trace is charged). It is computed when first
     /// needed and does not change afterwards, also if the map changes.
+    /// @param onProgress called while rrt_star grows, as by solve()
     /// @throws Interrupted when it is interrupted inside a large view
-    double kappa(const std::atomic<bool>& interrupted = kNotInterrupted);
+    double kappa(const std::atomic<bool>& interrupted = kNotInterrupted,
+                 const OnPlanProgress& onProgress = {});
 
     /// Evaluates a path given by its waypoints.
     /// @param planner name of the planner, stored in the result
@@ -187,7 +189,9 @@ class PlanningProblem {
     }
 
   private:
-    double balancedKappa(const std::atomic<bool>& interrupted);
+    double balancedKappa(const std::atomic<bool>& interrupted, const OnPlanProgress& onProgress);
+    std::vector<PlanProgress> grow(BeliefPlanner& planner, const std::atomic<bool>& interrupted,
+                                   const OnPlanProgress& onProgress);
     BeliefOptions optionsWith(double kappa) const;
     std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
                                                const std::shared_ptr<BeliefModel>& model,
@@ -220,7 +224,9 @@ class PlanningProblem {
 
 /// The config with automatic kappa replaced by its value, for several problems that must share
 /// kappa although they differ in seed or number of vertices.
+/// @param onProgress as of PlanningProblem::kappa()
 Config withKappa(Config config, const World& world,
-                 const std::atomic<bool>& interrupted = kNotInterrupted);
+                 const std::atomic<bool>& interrupted = kNotInterrupted,
+                 const OnPlanProgress& onProgress = {});
 
 }  // namespace photonav

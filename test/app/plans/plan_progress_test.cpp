@@ -45,13 +45,12 @@ TEST(PlanProgress, NoTimeIsPromisedForTheLastSearchAndTheDescent) {
     EXPECT_FALSE(growthTo(1000, 1000, 1.).seconds());
     const std::string growing = progressText({500, 0.5, 4., 7}, 1000, growthTo(500, 1000, 1.));
     EXPECT_EQ(growing,
-              "500 of 1000 vertices, best cost 4.000, 7 views, about 1 s to the last search");
+              "500 of 1000 vertices, best cost 4.000, 7 views, about 1 s to the last vertex");
     const std::string early = progressText({500, 2., kInfinity, 7}, 1000, RemainingGrowth(1000));
     EXPECT_EQ(early, "500 of 1000 vertices, no path yet, 7 views, 2 s so far");
     const std::string last = progressText({1000, 11., 3.25, 7}, 1000, growthTo(1000, 1000, 1.));
     EXPECT_EQ(last,
-              "1000 of 1000 vertices, best cost 3.250, 7 views, last search and descent, 11 s so "
-              "far");
+              "1000 of 1000 vertices, best cost 3.250, 7 views, improving the path, 11 s so far");
 }
 
 }  // namespace

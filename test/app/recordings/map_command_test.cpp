@@ -46,9 +46,15 @@ TEST_F(MapCommand, MapsATexturedFloorAndPredictsItsImages) {
         EXPECT_EQ(done, ++calls);
         EXPECT_EQ(total, 6U);
     };
+    std::vector<std::size_t> compared;
+    options.comparison = [&](std::size_t done, std::size_t total) {
+        compared.push_back(done);
+        EXPECT_EQ(total, 3U);
+    };
     const CommandReport report = runMap(options, running);
     EXPECT_EQ(report.exitCode, 0);
     EXPECT_EQ(calls, 6U);
+    EXPECT_EQ(compared, (std::vector<std::size_t>{0, 1, 2}));
     const auto& result = report.result;
     EXPECT_EQ(result["command"], "map");
     EXPECT_EQ(result["frames"]["used"], 6);

@@ -69,5 +69,17 @@ TEST_F(Progress, ShowsTheTimeLeft) {
     }
 }
 
+TEST_F(Progress, NamesWhatIsDone) {
+    const std::string out = " --out " + folder_.string();
+    const std::string planning = onTerminal("plan " + config("two_textures") + kQuickPlan +
+                                            "--set planner.kappa=auto" + out);
+    const std::string mapping =
+        onTerminal("map " PHOTONAV_SOURCE_DIR "/data/flight_down --frames 0:4" + out);
+    for (const char* text :
+         {"kappa by rrt_star: ", "\rbelief_rrt_star: ", "rrt_star for comparison: "})
+        EXPECT_NE(planning.find(text), std::string::npos) << planning;
+    EXPECT_NE(mapping.find("0 of 1 compared"), std::string::npos) << mapping;
+}
+
 }  // namespace
 }  // namespace photonav

@@ -31,6 +31,22 @@ TEST(AutomaticKappa, IsThatOfTheShortestPath) {
     }
 }
 
+TEST(AutomaticKappa, ShowsTheGrowthOfItsTreeOnce) {
+    const Config config =
+        loadConfig(PHOTONAV_SOURCE_DIR "/config/two_textures.yaml",
+                   {"planner.vertices=150", "planner.view_pitch=0.5", "planner.kappa=auto"});
+    const World world(config);
+    PlanningProblem problem(config, world);
+    std::vector<std::size_t> shown;
+    const auto show = [&](const PlanProgress& progress) { shown.push_back(progress.vertices); };
+    problem.kappa(kNotInterrupted, show);
+    ASSERT_GE(shown.size(), 3U);
+    EXPECT_EQ(shown.back(), 150U);
+    const std::size_t calls = shown.size();
+    problem.kappa(kNotInterrupted, show);
+    EXPECT_EQ(shown.size(), calls);
+}
+
 TEST(AutomaticKappa, IsAskedForOnlyWhereItIsNotGiven) {
     const Config config =
         loadConfig(PHOTONAV_SOURCE_DIR "/config/two_textures.yaml");  // the paper's 2.5
