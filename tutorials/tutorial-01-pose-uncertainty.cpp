@@ -138,6 +138,8 @@ int main(int argc, char** argv) {
     plot.curve(contour(fourth), {.color = {20, 60, 160}, .name = "fourth order on SE(3), 3σ"});
     plot.curve(contour(second), {.color = {230, 120, 20}, .name = "second order on SE(3), 3σ"});
     plot.curve({{0., 0.}, position(fourth.mean)}, {.name = "mean motion"});
-    Figure{"Ten uncertain motions of 1 m", {{plot}}}.save("pose_uncertainty.png");
-    std::puts("wrote pose_uncertainty.png");
+    const Figure figure{"Ten uncertain motions of 1 m", {{plot}}};
+    for (const std::string ending : {".png", ".svg", ".pdf"})
+        figure.save("pose_uncertainty" + ending);
+    std::puts("wrote pose_uncertainty.png, .svg and .pdf");
 }

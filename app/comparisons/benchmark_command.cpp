@@ -88,10 +88,9 @@ void writeReport(const fs::path& folder, const BenchmarkOptions& options, const 
     writeFileAtomically(folder / "benchmark.log", outcome.log);
     writeResultFolder(
         folder, report,
-        {{"progress.png",
-          {"Cost of the best path over time, a line per run of the planners that minimise it.",
-           costOverTimeFigure("Best cost over time", config.sweep.planners, comparable(outcome))
-               .png()}}});
+        {{"progress",
+          "Cost of the best path over time, a line per run of the planners that minimise it.",
+          costOverTimeFigure("Best cost over time", config.sweep.planners, comparable(outcome))}});
 }
 
 }  // namespace

@@ -45,11 +45,11 @@ std::vector<DrawnPath> firstPaths(const ProblemRuns& problem) {
     return paths;
 }
 
-Png fromAbove(const Config& config, const World& world, const std::vector<DrawnPath>& paths) {
+Figure fromAbove(const Config& config, const World& world, const std::vector<DrawnPath>& paths) {
     TopView view = viewFromAbove(config, world, paths);
     view.title = fmt::format("{}, alpha {}", nameOf(config), config.belief.alpha);
     view.ellipseScale = 0.;
-    return topViewFigure(view).png();
+    return topViewFigure(view);
 }
 
 }  // namespace
@@ -69,9 +69,8 @@ void CompareReport::add(const ProblemRuns& problem, const World& world) {
     const TextTable table = comparisonTable(problem.runs);
     writeFileAtomically(folder_ / (name + ".md"), alignedMarkdown(table));
     std::vector<DrawnPath> paths = firstPaths(problem);
-    figures_.push_back({name + ".png",
-                        {fmt::format("{}: the first path of every method, from above.", name),
-                         fromAbove(problem.config, world, paths)}});
+    figures_.push_back({name, fmt::format("{}: the first path of every method, from above.", name),
+                        fromAbove(problem.config, world, paths)});
     if (names_.empty()) begin(problem, world, std::move(paths));
     names_.push_back(name);
     page_.textTables.push_back(

@@ -136,14 +136,13 @@ void writeSweepReport(const fs::path& folder, const Config& config, const World&
     report.paths = pathsByAlpha(config, world, outcome);
 
     writeSweepTables(folder, result, reference);
-    writeFileAtomically(folder / "sweep.png", sweepFigure(outcome.name, cells).png());
-    writeFileAtomically(folder / "pareto.png",
-                        frontFigure(outcome.name, cells, outcome.runs).png());
-    writeResultFolder(folder, report,
-                      {{"paths.png",
-                        {"The cheapest path of " + config.sweep.planners.front() +
-                             " for every alpha, from above.",
-                         topViewFigure(pathsView(config, world, report.paths)).png()}}});
+    writeFigure(folder, "sweep", sweepFigure(outcome.name, cells));
+    writeFigure(folder, "pareto", frontFigure(outcome.name, cells, outcome.runs));
+    writeResultFolder(
+        folder, report,
+        {{"paths",
+          "The cheapest path of " + config.sweep.planners.front() + " for every alpha, from above.",
+          topViewFigure(pathsView(config, world, report.paths))}});
 }
 
 std::string sweepTable(const std::vector<SweepCell>& cells) {

@@ -80,33 +80,32 @@ std::vector<NamedFigure> figuresOf(const ExplorationSetup& setup, const World& w
     map.paths = {drawnBeliefs(flights.front(), setup.config.belief.characteristicLength)};
     map.background = mapFromAbove(flights.front(), setup.config, map);
     std::vector<NamedFigure> figures{
-        {"map.png",
-         {"What the first flight mapped, from above, and where it believed to be, with 3σ "
-          "ellipses; the true positions beside it.",
-          topViewFigure(map).png()}},
-        {"top_view.png",
-         {"The true scene from above, with the true positions of all flights.",
-          topViewFigure(view).png()}},
-        {"trace.png",
-         {"Trace of the belief and NEES (1: consistent) over the path flown, and the time of "
-          "the updates.",
-          explorationFigure(flights, setup.config.belief.characteristicLength).png()}},
-        {"bands.png",
-         {"Trace of the beliefs along the normalised path: mean of the flights of a planner, and "
-          "the band in which 95 % of them are.",
-          traceBandsFigure(flights, setup.config.belief.characteristicLength).png()}}};
+        {"map",
+         "What the first flight mapped, from above, and where it believed to be, with 3σ "
+         "ellipses; the true positions beside it.",
+         topViewFigure(map)},
+        {"top_view", "The true scene from above, with the true positions of all flights.",
+         topViewFigure(view)},
+        {"trace",
+         "Trace of the belief and NEES (1: consistent) over the path flown, and the time of "
+         "the updates.",
+         explorationFigure(flights, setup.config.belief.characteristicLength)},
+        {"bands",
+         "Trace of the beliefs along the normalised path: mean of the flights of a planner, and "
+         "the band in which 95 % of them are.",
+         traceBandsFigure(flights, setup.config.belief.characteristicLength)}};
     if (!outcome.log || outcome.log->moments.empty()) return figures;
     view.trees.clear();
-    figures.push_back({"stages.png",
-                       {"The first flight in stages. Above: the true scene, the path flown and, "
-                        "transparent, the plan. In the middle: what is free at the height of the "
-                        "robot (white), too near to an obstacle (brown), an obstacle (black) or "
-                        "not seen yet (grey). Below: the information of views with the robot's "
-                        "heading.",
-                        stagesFigure(*outcome.log, view).png()}});
-    figures.push_back({"plans.png",
-                       {"Plans of the first flight, dark to bright over time, and the path flown.",
-                        plansFigure(*outcome.log, view).png()}});
+    figures.push_back({"stages",
+                       "The first flight in stages. Above: the true scene, the path flown and, "
+                       "transparent, the plan. In the middle: what is free at the height of the "
+                       "robot (white), too near to an obstacle (brown), an obstacle (black) or "
+                       "not seen yet (grey). Below: the information of views with the robot's "
+                       "heading.",
+                       stagesFigure(*outcome.log, view)});
+    figures.push_back({"plans",
+                       "Plans of the first flight, dark to bright over time, and the path flown.",
+                       plansFigure(*outcome.log, view)});
     return figures;
 }
 

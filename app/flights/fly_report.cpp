@@ -52,14 +52,14 @@ ReportTable tableOf(const FlightSet& set) {
     return table;
 }
 
-Png topView(const Config& config, const World& world, const std::vector<FlightSet>& sets,
-            const std::vector<DrawnPath>& paths) {
+Figure topView(const Config& config, const World& world, const std::vector<FlightSet>& sets,
+               const std::vector<DrawnPath>& paths) {
     TopView view = viewFromAbove(config, world, paths);
     view.title = "Plans and true positions of the flights";
     for (std::size_t k = 0; k < sets.size(); ++k) {
         if (!sets[k].flights.empty()) view.trees.push_back(drawnFlights(sets[k]));
     }
-    return topViewFigure(view).png();
+    return topViewFigure(view);
 }
 
 std::vector<NamedFigure> figuresOf(const Config& config, const World& world,
@@ -68,20 +68,20 @@ std::vector<NamedFigure> figuresOf(const Config& config, const World& world,
     std::vector<NamedFigure> figures;
     if (!sets.empty()) {
         figures.push_back(
-            {"errors.png",
-             {"Error of the estimated position at each image, and the standard deviation "
-              "that the plan predicted.",
-              errorBandsFigure(sets).png()}});
+            {"errors",
+             "Error of the estimated position at each image, and the standard deviation "
+             "that the plan predicted.",
+             errorBandsFigure(sets)});
     }
-    figures.push_back({"top_view.png",
-                       {"From above: plans with the predicted 3σ ellipses, and the true positions "
-                        "of the flights.",
-                        topView(config, world, sets, paths)}});
+    figures.push_back({"top_view",
+                       "From above: plans with the predicted 3σ ellipses, and the true positions "
+                       "of the flights.",
+                       topView(config, world, sets, paths)});
     if (!sets.empty()) {
         figures.push_back(
-            {"nees.png",
-             {"Mean NEES along the plan: 1 if the covariances are consistent with the errors.",
-              neesFigure(sets).png()}});
+            {"nees",
+             "Mean NEES along the plan: 1 if the covariances are consistent with the errors.",
+             neesFigure(sets)});
     }
     return figures;
 }

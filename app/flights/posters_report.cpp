@@ -144,15 +144,13 @@ void writePostersReport(const fs::path& folder, const PosterProblem& problem,
     page.paths = pathsOf(problem, sets);
     page.tables = tablesOf(problem, ranking);
     std::vector<NamedFigure> figures{
-        {"maps.png",
-         {"From above: each set of posters (outlined) and its path, the best first.",
-          posterMapsFigure(problem, sets).png()}},
-        {"goals.png", {"The image at the goal.", posterGoalsFigure(sets).png()}}};
+        {"maps", "From above: each set of posters (outlined) and its path, the best first.",
+         posterMapsFigure(problem, sets)},
+        {"goals", "The image at the goal.", posterGoalsFigure(sets)}};
     if (!page.paths.empty()) {
         figures.insert(figures.begin(),
-                       {"sigma.png",
-                        {"Standard deviation of the position along its weakest direction.",
-                         posterSigmaFigure(sets).png()}});
+                       {"sigma", "Standard deviation of the position along its weakest direction.",
+                        posterSigmaFigure(sets)});
     }
     writeResultFolder(folder, page, figures);
 }

@@ -85,14 +85,12 @@ void writeServoReport(const fs::path& folder, const ServoReport& report,
     View view;
     report.goal.views.render(camera, (report.goal.T_w_b * report.goal.T_b_c).inverse(), view);
     std::vector<NamedFigure> figures{
-        {"basin.png",
-         {"The share of starts that converge.",
-          servoBasinFigure(report.options, report.study).png()}},
-        {"goal.png", {"The goal's image.", greyFigure("The goal's image", view.intensity).png()}}};
+        {"basin", "The share of starts that converge.",
+         servoBasinFigure(report.options, report.study)},
+        {"goal", "The goal's image.", greyFigure("The goal's image", view.intensity)}};
     if (report.study.openDirections() < report.study.modes.size()) {
         figures.push_back(
-            {"modes.png",
-             {"The decrease of small offsets.", servoModesFigure(report.study).png()}});
+            {"modes", "The decrease of small offsets.", servoModesFigure(report.study)});
     }
     writeResultFolder(folder, page, figures);
 }

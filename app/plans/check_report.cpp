@@ -85,23 +85,21 @@ std::vector<NamedFigure> checkFigures(const CheckOutcome& report,
     if (!report.flights.flights.empty()) add(drawnFlights(report.flights));
     add(lostStretches(checked));
     std::vector<NamedFigure> figures{
-        {"top_view.png",
-         {fmt::format("From above: the trajectory with 3σ ellipses of the position{}, and headings "
-                      "that would reduce the trace by more than a tenth.",
-                      isLost ? ", where the camera is lost" : ""),
-          topViewFigure(view).png()}},
-        {"sigma.png",
-         {"Standard deviations along the weakest direction, with every image.",
-          sigmaFigure(checked).png()}}};
+        {"top_view",
+         fmt::format("From above: the trajectory with 3σ ellipses of the position{}, and headings "
+                     "that would reduce the trace by more than a tenth.",
+                     isLost ? ", where the camera is lost" : ""),
+         topViewFigure(view)},
+        {"sigma", "Standard deviations along the weakest direction, with every image.",
+         sigmaFigure(checked)}};
     if (checked.places.front().best) {
-        figures.push_back({"headings.png",
-                           {"Trace of the covariance after one view, for every heading at every "
-                            "place of the trajectory.",
-                            headingsFigure(checked).png()}});
+        figures.push_back({"headings",
+                           "Trace of the covariance after one view, for every heading at every "
+                           "place of the trajectory.",
+                           headingsFigure(checked)});
     }
-    figures.push_back({"trace.png",
-                       {"Trace of the pose covariance along the trajectory.",
-                        traceFigure("Trace along the trajectory", paths, true).png()}});
+    figures.push_back({"trace", "Trace of the pose covariance along the trajectory.",
+                       traceFigure("Trace along the trajectory", paths, true)});
     return figures;
 }
 

@@ -68,24 +68,23 @@ json resultOf(const Place& place, const Matrix6& Lambda, const Grids& grids) {
 std::vector<NamedFigure> viewFigures(const View& view, const Config& config) {
     const Camera camera = config.camera.camera();
     const auto contribution = [&](const std::string& title, const auto&... direction) {
-        return contributionFigure(title, view.intensity,
-                                  contributionImage(view, camera, direction..., config.photometric))
-            .png();
+        return contributionFigure(
+            title, view.intensity,
+            contributionImage(view, camera, direction..., config.photometric));
     };
     std::vector<NamedFigure> figures{
-        {"view.png",
-         {fmt::format("The predicted view, of {} x {} pixels.", camera.width, camera.height),
-          greyFigure("The predicted view", view.intensity).png()}},
-        {"contribution.png",
-         {"The contribution of every pixel to the information, all directions together: its root, "
-          "as a share of the pixel that only 0.5 % of the pixels exceed. Over the darkened view.",
-          contribution("Contribution to the information")}}};
+        {"view", fmt::format("The predicted view, of {} x {} pixels.", camera.width, camera.height),
+         greyFigure("The predicted view", view.intensity)},
+        {"contribution",
+         "The contribution of every pixel to the information, all directions together: its root, "
+         "as a share of the pixel that only 0.5 % of the pixels exceed. Over the darkened view.",
+         contribution("Contribution to the information")}};
     for (int i = 0; i < 6; ++i) {
         const std::string about = kDirections[i].what;
         figures.push_back(
-            {fmt::format("contribution_{}.png", kDirections[i].name),
-             {fmt::format("The pixels that inform about {}, on the same kind of scale.", about),
-              contribution("Contribution: " + about, Vector6(Vector6::Unit(i)))}});
+            {fmt::format("contribution_{}", kDirections[i].name),
+             fmt::format("The pixels that inform about {}, on the same kind of scale.", about),
+             contribution("Contribution: " + about, Vector6(Vector6::Unit(i)))});
     }
     return figures;
 }
@@ -93,17 +92,14 @@ std::vector<NamedFigure> viewFigures(const View& view, const Config& config) {
 std::vector<NamedFigure> heatMaps(const Grids& grids, const std::string& place) {
     const auto heatMap = [&](const char* title, const char* label, const Eigen::ArrayXXd& values) {
         return heatMapFigure(
-                   {fmt::format("{} at {}", title, place), label, grids.area, values, true})
-            .png();
+            {fmt::format("{} at {}", title, place), label, grids.area, values, true});
     };
-    return {{"information.png",
-             {"Trace of the Fisher information of one view.",
-              heatMap("Information of one view", "trace of the Fisher information [1/m², 1/rad²]",
-                      grids.information)}},
-            {"uncertainty.png",
-             {"Standard deviation of the position after one view.",
-              heatMap("Uncertainty after one view", "standard deviation of the position [m]",
-                      grids.sigma)}}};
+    return {{"information", "Trace of the Fisher information of one view.",
+             heatMap("Information of one view", "trace of the Fisher information [1/m², 1/rad²]",
+                     grids.information)},
+            {"uncertainty", "Standard deviation of the position after one view.",
+             heatMap("Uncertainty after one view", "standard deviation of the position [m]",
+                     grids.sigma)}};
 }
 
 double heightOf(const InfoOptions& options, const Config& config) {

@@ -108,48 +108,45 @@ std::vector<NamedFigure> planFigures(const Config& config, const World& world,
                                      const std::optional<RecordedComparison>& recorded,
                                      const std::vector<DrawnPath>& paths) {
     std::vector<NamedFigure> figures{
-        {"top_view.png",
-         {"From above: search tree, paths and 3σ ellipses of the position.",
-          topViewFigure(topView(config, world, outcome, paths)).png()}}};
+        {"top_view", "From above: search tree, paths and 3σ ellipses of the position.",
+         topViewFigure(topView(config, world, outcome, paths))}};
     if (!paths.empty() && world.hasTexture()) {
-        figures.push_back({"information.png",
-                           {config.space == StateKind::position
-                                ? "Trace of the Fisher information of one view, over the area."
-                                : "Trace of the Fisher information of one view, over the area, "
-                                  "with the heading of "
-                                  "the start; along the paths the heading changes.",
-                            heatMapFigure(heatMap(config, problem)).png()}});
+        figures.push_back({"information",
+                           config.space == StateKind::position
+                               ? "Trace of the Fisher information of one view, over the area."
+                               : "Trace of the Fisher information of one view, over the area, "
+                                 "with the heading of "
+                                 "the start; along the paths the heading changes.",
+                           heatMapFigure(heatMap(config, problem))});
     }
     if (config.bounds.sizes().z() > 0. && world.hasTexture()) {
         figures.push_back(
-            {"perspective.png",
-             {"In perspective, cut open above the bounds of the robot and at the near walls. The "
-              "paths have shadows, and are thin where they are hidden.",
-              perspectiveFigure(*cutawayViews(world, config.bounds),
-                                perspective(config, world, outcome, paths))
-                  .png()}});
+            {"perspective",
+             "In perspective, cut open above the bounds of the robot and at the near walls. The "
+             "paths have shadows, and are thin where they are hidden.",
+             perspectiveFigure(*cutawayViews(world, config.bounds),
+                               perspective(config, world, outcome, paths))});
     }
     if (!paths.empty()) {
-        figures.push_back({"trace.png",
-                           {"Trace of the pose covariance along the path.",
-                            traceFigure("Uncertainty along the path", paths, true).png()}});
+        figures.push_back({"trace", "Trace of the pose covariance along the path.",
+                           traceFigure("Uncertainty along the path", paths, true)});
     }
     if (outcome.path && world.hasTexture()) {
-        figures.push_back({"views.png",
-                           {"What the camera would see along the path: the most informative view "
-                            "of each sixth of it.",
-                            viewsFigure(*outcome.path, config, world).png()}});
+        figures.push_back({"views",
+                           "What the camera would see along the path: the most informative view "
+                           "of each sixth of it.",
+                           viewsFigure(*outcome.path, config, world)});
     }
     if (recorded) {
         const auto mean = meanDifference(*recorded);
         figures.push_back(
-            {"recorded_frames.png",
-             {"Views along the path and the recorded frames nearest to them" +
-                  (mean ? fmt::format("; the mean absolute difference between the frames and the "
-                                      "predictions at their poses is {:.3f}.",
-                                      *mean)
-                        : "; the map predicts none of their pixels."),
-              recordedFramesFigure(*recorded).png()}});
+            {"recorded_frames",
+             "Views along the path and the recorded frames nearest to them" +
+                 (mean ? fmt::format("; the mean absolute difference between the frames and the "
+                                     "predictions at their poses is {:.3f}.",
+                                     *mean)
+                       : "; the map predicts none of their pixels."),
+             recordedFramesFigure(*recorded)});
     }
     return figures;
 }
@@ -180,11 +177,11 @@ void writePlanReport(const fs::path& folder, const Config& config, const World& 
     if (!evolutions.empty()) {
         const TopView map = topView(config, world, outcome, {});
         figures.push_back(
-            {"tree_evolution.png",
-             {"The trees as they grow, and the best path so far. They were grown again for this "
-              "figure, with a pause at every number of vertices; the path found by then guides the "
-              "samples, so the last path may differ from the result above.",
-              treeEvolutionFigure(map, evolutions, {10, 500, config.vertices}).png()}});
+            {"tree_evolution",
+             "The trees as they grow, and the best path so far. They were grown again for this "
+             "figure, with a pause at every number of vertices; the path found by then guides the "
+             "samples, so the last path may differ from the result above.",
+             treeEvolutionFigure(map, evolutions, {10, 500, config.vertices})});
         for (const TreeStage& stage : evolutions.front().stages) {
             report.frames.push_back({fmt::format("{} vertices", stage.vertices),
                                      treeEvolutionFigure(map, evolutions, {stage.vertices}).png()});

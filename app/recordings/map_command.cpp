@@ -26,14 +26,14 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::size_t kMostPictures = 40;  // of images beside their predictions
-constexpr const char* kConvergence = "convergence.png";
 
-ReportFigure figureOf(const ConvergenceFigure& convergence) {
-    return {fmt::format("Depth from the images: {} of {} reference images, the depth found, the "
+NamedFigure figureOf(const ConvergenceFigure& convergence) {
+    return {"convergence",
+            fmt::format("Depth from the images: {} of {} reference images, the depth found, the "
                         "state of every pixel (grey: still open), and the error where depth was "
                         "recorded.",
                         convergence.rows(), convergence.references()),
-            convergence.figure().png()};
+            convergence.figure()};
 }
 
 MapRun makeMap(const MapCommandOptions& options, const Recording& recording,
@@ -46,7 +46,7 @@ MapRun makeMap(const MapCommandOptions& options, const Recording& recording,
     static_cast<FusedRecording&>(run) =
         fuseRecording(map, recording, options, [&] { return interrupted.load(); },
                       {options.progress, onReference});
-    if (convergence.rows() > 0) run.figures.push_back({kConvergence, figureOf(convergence)});
+    if (convergence.rows() > 0) run.figures.push_back(figureOf(convergence));
     return run;
 }
 

@@ -94,9 +94,8 @@ NamedFigure overview(const TexturedOcTree& map, const std::string& title) {
     Eigen::AlignedBox3d box;
     map.getMetricMin(box.min().x(), box.min().y(), box.min().z());
     map.getMetricMax(box.max().x(), box.max().y(), box.max().z());
-    return {"overview.png",
-            {"The map in perspective.",
-             perspectiveFigure(VoxelRenderer(map, UnknownPolicy::free), {title, box, {}}).png()}};
+    return {"overview", "The map in perspective.",
+            perspectiveFigure(VoxelRenderer(map, UnknownPolicy::free), {title, box, {}})};
 }
 
 ReportTable mapSummary(const json& result) {

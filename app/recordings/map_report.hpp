@@ -25,7 +25,7 @@ struct MapRun : FusedRecording {
 /// @param number of the frame among the used ones
 ReportFrame pictureOf(const RecordedFrame& frame, std::size_t number, const View& predicted);
 
-/// A perspective view of the map, from above one of its corners: overview.png.
+/// A perspective view of the map, from above one of its corners: overview.
 NamedFigure overview(const TexturedOcTree& map, const std::string& title);
 
 /// The main numbers of result.json, with labels.

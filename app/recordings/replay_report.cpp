@@ -92,7 +92,7 @@ Eigen::AlignedBox2d areaOf(const std::vector<DrawnPath>& paths) {
     return {Eigen::Vector2d(area.center() - half), Eigen::Vector2d(area.center() + half)};
 }
 
-Png topView(const std::vector<DrawnPath>& paths, const std::string& title) {
+Figure topView(const std::vector<DrawnPath>& paths, const std::string& title) {
     TopView view;
     view.title = title;
     view.paths = paths;
@@ -101,7 +101,7 @@ Png topView(const std::vector<DrawnPath>& paths, const std::string& title) {
     view.goal = paths[0].points.back().position;
     view.goalName = "end";
     view.ellipseScale = readableEllipseScale({paths[0]}, view.area.sizes().maxCoeff());
-    return topViewFigure(view).png();
+    return topViewFigure(view);
 }
 
 std::vector<NamedFigure> figuresOf(const ReplayRun& run, const ReplayErrors& errors,
@@ -115,14 +115,14 @@ std::vector<NamedFigure> figuresOf(const ReplayRun& run, const ReplayErrors& err
                                               "whole.",
                                               *run.alignedFrame)
                                         : "From above.";
-        figures.push_back({"top_view.png", {caption, topView(paths, name)}});
+        figures.push_back({"top_view", caption, topView(paths, name)});
     }
     if (!run.frames.empty()) {
         figures.push_back(
-            {"errors.png",
-             {"Error and predicted standard deviation (root of the trace) over time; below, the "
-              "NEES per degree of freedom, 1 on average if the covariances are consistent.",
-              replayErrorsFigure("Error and prediction", run, errors).png()}});
+            {"errors",
+             "Error and predicted standard deviation (root of the trace) over time; below, the "
+             "NEES per degree of freedom, 1 on average if the covariances are consistent.",
+             replayErrorsFigure("Error and prediction", run, errors)});
     }
     if (!run.strips.empty()) {
         const char* caption =
@@ -131,7 +131,7 @@ std::vector<NamedFigure> figuresOf(const ReplayRun& run, const ReplayErrors& err
                   "difference (violet: none, yellow: 0.25 of the grey scale)."
                 : "Observed; the map rendered at the estimated pose and exposure; their difference "
                   "(violet: none, yellow: 0.25 of the grey scale).";
-        figures.push_back({"strips.png", {caption, stripsFigure(run.strips).png()}});
+        figures.push_back({"strips", caption, stripsFigure(run.strips)});
     }
     return figures;
 }

@@ -54,12 +54,19 @@ void writeReport(const std::filesystem::path& file, std::string_view content) {
     replaceFile(file, reportPage(content));
 }
 
+Png writeFigure(const std::filesystem::path& folder, const std::string& name,
+                const Figure& figure) {
+    Png png = figure.png();
+    writeFileAtomically(folder / (name + ".png"), png);
+    figure.save(folder / (name + ".svg"));
+    figure.save(folder / (name + ".pdf"));
+    return png;
+}
+
 void writeResultFolder(const std::filesystem::path& folder, ReportData& report,
                        const std::vector<NamedFigure>& figures) {
-    for (const NamedFigure& named : figures) {
-        writeFileAtomically(folder / named.name, named.figure.image);
-        report.figures.push_back(named.figure);
-    }
+    for (const auto& [name, caption, figure] : figures)
+        report.figures.push_back({caption, writeFigure(folder, name, figure)});
     if (!report.config.empty()) writeFileAtomically(folder / "config.yaml", report.config);
     const std::string text = reportJson(report);
     writeFileAtomically(folder / "report.json", text);

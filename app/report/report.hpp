@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "plot/picture.hpp"
+#include "plot/figure.hpp"
 #include "problem/planning_problem.hpp"
 #include "result/text_table.hpp"
 #include "shapes/paths.hpp"
@@ -107,11 +107,16 @@ std::string reportPage(std::string_view content);
 /// @throws InputError if the file cannot be written
 void writeReport(const std::filesystem::path& file, std::string_view content);
 
-/// A figure with the name of its file in the result folder.
+/// A figure of the page, and the name of its files in the result folder.
 struct NamedFigure {
-    std::string name;
-    ReportFigure figure;
+    std::string name;  ///< without ending
+    std::string caption;
+    Figure figure;
 };
+
+/// Writes a figure as <name>.png, <name>.svg and <name>.pdf into a result folder.
+/// @return the PNG
+Png writeFigure(const std::filesystem::path& folder, const std::string& name, const Figure& figure);
 
 /// Writes the figures, config.yaml (unless the report has no config), report.json and report.html,
 /// and adds the figures to the report. result.json is not written here: the command writes it last,

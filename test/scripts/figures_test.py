@@ -32,7 +32,9 @@ class Figures(unittest.TestCase):
         picture = "pictures/3-clouds-pose_uncertainty.png"
         self.assertIn(picture, page)
         self.assertIn("prefers-color-scheme:dark", page)
-        self.assertTrue((self.out / picture).exists())
+        for kind in (".png", ".svg", ".pdf"):
+            self.assertTrue((self.out / picture).with_suffix(kind).exists())
+        self.assertIn(f"<a href='{picture[:-4]}.pdf'>PDF</a>", page)
         self.assertNotIn("tutorial-01", self.make("3").stdout)
         record = self.out / "records/clouds.json"
         record.write_text(json.dumps({**json.loads(record.read_text()), "inputs": "others"}))

@@ -83,7 +83,7 @@ TEST_F(SweepCommand, WritesEverythingItPromises) {
     ASSERT_EQ(run.exitCode, 0) << run.output;
     for (const char* name :
          {"result.json", "config.yaml", "runs.jsonl", "runs.csv", "summary.csv", "sweep.png",
-          "pareto.png", "paths.png", "report.json", "report.html"}) {
+          "sweep.svg", "pareto.png", "paths.png", "report.json", "report.html"}) {
         EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
     }
     const json r = result("out");

@@ -25,8 +25,9 @@ class PlanCommand : public CommandTest {};
 TEST_F(PlanCommand, WritesEverythingItPromises) {
     const Execution run = plan(std::string("--audit") + kQuickPlan);
     ASSERT_EQ(run.exitCode, 0) << run.output;
-    for (const char* name : {"result.json", "config.yaml", "path.tum", "top_view.png", "trace.png",
-                             "views.png", "information.png", "report.json", "report.html"}) {
+    for (const char* name :
+         {"result.json", "config.yaml", "path.tum", "top_view.png", "trace.png", "trace.svg",
+          "trace.pdf", "views.png", "information.png", "report.json", "report.html"}) {
         EXPECT_TRUE(fs::exists(folder_ / name)) << name;
     }
     const json r = result();

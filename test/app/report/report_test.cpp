@@ -53,6 +53,18 @@ TEST(Base64, KnownValues) {  // RFC 4648
     EXPECT_EQ(base64Encode("\xff\xfe\xfd"), "//79");
 }
 
+TEST_F(ReportTest, FiguresAreOnThePageAndInThreeFormats) {
+    ReportData data = sampleReport();
+    Plot plot;
+    plot.curve({{0., 0.}, {1., 1.}}, {});
+    writeResultFolder(folder_, data, {{"my.trace", "A curve.", {"curve", {{plot}}}}});
+    ASSERT_EQ(data.figures.size(), 1U);
+    EXPECT_EQ(data.figures[0].caption, "A curve.");
+    EXPECT_EQ(test::contentOf(folder_ / "my.trace.png"), data.figures[0].image);
+    EXPECT_NE(test::contentOf(folder_ / "my.trace.svg").find(">curve</text>"), std::string::npos);
+    EXPECT_EQ(test::contentOf(folder_ / "my.trace.pdf").find("%PDF"), 0U);
+}
+
 TEST(ReportJson, HoldsTheNumbersAsTheyAre) {
     ReportData data = sampleReport();
     data.voxels = {{0.F, 0.F, 0.F, 1.F, 0.F, 0.F}, {10, 200}, 0.05};

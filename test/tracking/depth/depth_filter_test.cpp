@@ -160,7 +160,7 @@ TEST_F(DepthFilterTest, AReferenceWithoutTextureOrMotionIsGivenUp) {
     EXPECT_EQ(depth.givenUp(), 2);
     const auto last = depth.finish();
     ASSERT_TRUE(last);
-    EXPECT_GT(last->shareConverged(), 0.2);
+    EXPECT_GT(shareConverged(*last), 0.2);
 }
 
 }  // namespace
