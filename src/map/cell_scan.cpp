@@ -32,6 +32,14 @@ float share(float change, double tolerance) {
     return change / std::max(static_cast<float>(tolerance), 1e-30F);
 }
 
+/// @param depthNoise standard deviation of a pixel's depth [m]
+void observe(FaceSurface& surface, const CellPixels::Sums& sums, double depthNoise) {
+    const CellPixels::Sums mean = sums / sums[0];
+    const double variance = depthNoise * depthNoise / sums[0] + kPoseNoise * kPoseNoise;
+    surface.observe({mean[2], mean[3], mean[4]}, {mean[5], mean[6], mean[7]},
+                    static_cast<float>(1. / variance), kMostSurfaceWeight);
+}
+
 }  // namespace
 
 /// Amanatides and Woo's traversal, without branches, because the next axis cannot be predicted.
@@ -75,11 +83,14 @@ void CellScan::castRays(const Vector3d& eye) {
 }
 
 void CellScan::observeFaces(TexturedOcTreeNode& node, const Array3i& cell, const CellPixels& seen,
-                            const std::optional<Vector3d>& eye, float maxWeight) const {
+                            const std::optional<Vector3d>& eye,
+                            const FusionOptions& options) const {
     const auto grey = static_cast<float>(seen.greySum / seen.count);
     Vector3d d = Vector3d::Ones();
     if (eye) d = (cell.cast<double>() + 0.5).matrix() - *eye;
     const double range = d.norm();
+    const double depthNoise = options.depthNoise * std::pow(range * resolution_, 2);
+    const auto maxWeight = static_cast<float>(options.maxFaceWeight);
     const double pixelsPerLength = seen.count / range;
     const float surfaceWeight = seen.surfaceWeight();
     for (int face = 0; face < 6; ++face) {
@@ -89,8 +100,7 @@ void CellScan::observeFaces(TexturedOcTreeNode& node, const Array3i& cell, const
         if (eye && sums[0] > kLeastShare * surfaceWeight) {
             const auto weight = static_cast<float>(std::abs(d[a]) * sums[0] / range) + 1e-6F;
             node.faces[face].observe(seen.firstGrey + sums[1] / sums[0], weight, maxWeight);
-            observeSurface(node.surfaces.obtain(face), acrossCells(cell, face, range * resolution_),
-                           range * resolution_);
+            observe(node.surfaces.obtain(face), acrossCells(cell, face, depthNoise), depthNoise);
             continue;
         }
         const bool looksAway = eye && !(side > 0 ? (*eye)[a] > cell[a] + 1 : (*eye)[a] < cell[a]);
@@ -106,10 +116,10 @@ void CellScan::observeFaces(TexturedOcTreeNode& node, const Array3i& cell, const
 /// The sums of a face together with those of the cells before and behind it that show the same
 /// surface. Noise of depth spreads the points of a surface near the border of two cells over both.
 /// The mean of the points in one of them would be displaced to its side.
-/// @param range of the cell from the camera [m]
-CellPixels::Sums CellScan::acrossCells(const Array3i& cell, int face, double range) const {
+/// @param depthNoise standard deviation [m]
+CellPixels::Sums CellScan::acrossCells(const Array3i& cell, int face, double depthNoise) const {
     const int a = face / 2;
-    const auto most = static_cast<float>(kSameSurface * kDepthNoise * range * range / resolution_);
+    const auto most = static_cast<float>(kSameSurface * depthNoise / resolution_);
     CellPixels::Sums sum = pixelsOf(cell)->faces[face];
     const CellPixels::Sums own = sum / sum[0];
     for (const int step : {-1, 1}) {
@@ -129,16 +139,6 @@ CellPixels::Sums CellScan::acrossCells(const Array3i& cell, int face, double ran
         }
     }
     return sum;
-}
-
-/// @param range of the cell from the camera [m]
-void CellScan::observeSurface(FaceSurface& surface, const CellPixels::Sums& sums,
-                              double range) const {
-    const CellPixels::Sums mean = sums / sums[0];
-    const double depthNoise = kDepthNoise * range * range;
-    const double variance = depthNoise * depthNoise / sums[0] + kPoseNoise * kPoseNoise;
-    surface.observe({mean[2], mean[3], mean[4]}, {mean[5], mean[6], mean[7]},
-                    static_cast<float>(1. / variance), kMostSurfaceWeight);
 }
 
 std::uint64_t CellScan::crossedInBrick(const Array3i& corner) const {
@@ -185,7 +185,7 @@ MapChange CellScan::apply(TexturedOcTree& map, const std::optional<Vector3d>& ey
     const auto texture = [&](TexturedOcTreeNode& node, const BrickObservation& brick,
                              unsigned bit) {
         const Array3i cell = cellAt(brick, bit);
-        observeFaces(node, cell, *pixelsOf(cell), eye, static_cast<float>(options.maxFaceWeight));
+        observeFaces(node, cell, *pixelsOf(cell), eye, options);
     };
     const auto keep = [&](const TexturedOcTreeNode& node, const BrickObservation& brick,
                           unsigned bit) {

@@ -13,10 +13,6 @@
 
 namespace photonav {
 
-/// Standard deviation of a pixel's depth, divided by the depth squared [1/m], typical of
-/// structured-light and stereo cameras.
-inline constexpr double kDepthNoise = 1.5e-3;
-
 /// The pixels of one observation whose rays end in the same cell: their grey values, and sums over
 /// their points and normals for each face of the cell.
 struct CellPixels {
@@ -182,9 +178,9 @@ class CellScan {
     std::uint64_t crossedInBrick(const Eigen::Array3i& corner) const;
     std::vector<BrickObservation> observedBricks() const;
     void observeFaces(TexturedOcTreeNode& node, const Eigen::Array3i& cell, const CellPixels& seen,
-                      const std::optional<Eigen::Vector3d>& eye, float maxWeight) const;
-    CellPixels::Sums acrossCells(const Eigen::Array3i& cell, int face, double range) const;
-    void observeSurface(FaceSurface& surface, const CellPixels::Sums& sums, double range) const;
+                      const std::optional<Eigen::Vector3d>& eye,
+                      const FusionOptions& options) const;
+    CellPixels::Sums acrossCells(const Eigen::Array3i& cell, int face, double depthNoise) const;
 
     double resolution_;
     Eigen::Array3i first_, bricks_;

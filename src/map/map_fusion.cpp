@@ -95,13 +95,14 @@ void checkInput(const View& observed, const Camera& camera, const Pose& T_c_w) {
 /// some depth is not larger than its own by more than noise, or there is none. (Beside it, since
 /// along an outline the pixel may show what is behind, and at a grazing angle depth changes by more
 /// than its noise from pixel to pixel.)
-bool remains(const ImageF& depth, const CellFrame& frame, const Vector3d& point) {
+bool remains(const ImageF& depth, const CellFrame& frame, double depthNoise,
+             const Vector3d& point) {
     const Vector3d p_c = frame.inCamera(point);
     if (p_c.z() <= 0.) return true;
     const Eigen::Vector2d pixel = frame.camera.project(p_c);
     const auto u = std::lround(pixel.x()), v = std::lround(pixel.y());
     if (u < 1 || v < 1 || u + 1 >= depth.getWidth() || v + 1 >= depth.getHeight()) return true;
-    const double noise = std::max(0.5 * frame.resolution, 3. * kDepthNoise * p_c.z() * p_c.z());
+    const double noise = std::max(0.5 * frame.resolution, 3. * depthNoise * p_c.z() * p_c.z());
     for (long j = v - 1; j <= v + 1; ++j) {
         for (long i = u - 1; i <= u + 1; ++i) {
             const float z = depth[static_cast<unsigned>(j)][static_cast<unsigned>(i)];
@@ -243,8 +244,9 @@ MapChange fuse(TexturedOcTree& map, const View& observed, const Camera& camera, 
     }
     fillBetween(scan, observed, frame, options, normals);
     scan.castRays(frame.eye);
-    return scan.apply(map, frame.eye, options,
-                      [&](const Vector3d& point) { return remains(observed.depth, frame, point); });
+    return scan.apply(map, frame.eye, options, [&](const Vector3d& point) {
+        return remains(observed.depth, frame, options.depthNoise, point);
+    });
 }
 
 MapChange fuseScan(TexturedOcTree& map, const ScanPoints& points,

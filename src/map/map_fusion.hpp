@@ -14,6 +14,9 @@ namespace photonav {
 struct FusionOptions {
     double minRange = 0.2;  ///< nearer depths are not used [m, along the optical axis]
     double maxRange = 4.0;  ///< farther surfaces are not mapped; space up to this becomes free [m]
+    /// Standard deviation of a pixel's depth at 1 m, which grows with depth squared [m]. The
+    /// default is typical of structured-light and stereo cameras.
+    double depthNoise = 1.5e-3;
     /// Largest relative second difference of inverse depth of a pixel that is used. Beyond it is a
     /// depth edge, where sensors mix two depths.
     double depthJump = 0.05;
