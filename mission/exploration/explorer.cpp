@@ -19,7 +19,8 @@ namespace photonav {
 namespace {
 
 /// Number of steps in a row into unobserved space that may leave the map unchanged; then the robot
-/// hovers. A single camera without depth sees nothing until it has moved.
+/// hovers. A single camera sees no depth until it has moved: it may take some steps at the start,
+/// and none later, which would lead into obstacles that it has not mapped.
 constexpr int kMostBlindSteps = 1;
 constexpr int kMostMonocularSteps = 6;
 /// Time without an update, while the plan is only a part of the way, after which the next image
@@ -247,7 +248,7 @@ void Explorer::takeOver(Replanned replanned) {
     views_ = replanned.views;
     tracker_.setMap(views());
     pilot_.setMap(views());
-    if (replanned.hasMapGrown) blindInARow_ = 0;
+    if (replanned.hasMapGrown && !isMonocular()) blindSteps_ = 0;
     hasPath_ = replanned.reachesGoal;
     lastUpdate_ = time_;
     flyOn(std::move(replanned.way));
@@ -280,7 +281,7 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
     if (way->isLook && isLooking()) return;
     if (way->isBlind && !mayStepBlindly()) return hover();
     patience_.onWay(way->isStopped, time_);
-    blindInARow_ += way->isBlind;
+    blindSteps_ += way->isBlind;
     record_.blindSteps += way->isBlind;
     follow(std::move(*way));
 }
@@ -300,9 +301,10 @@ bool Explorer::isLooking() const {
     return std::abs(turn) > kLooksThere;
 }
 
+bool Explorer::isMonocular() const { return config_.explore.sensor == ExploreSensor::monocular; }
+
 bool Explorer::mayStepBlindly() const {
-    const bool isMonocular = config_.explore.sensor == ExploreSensor::monocular;
-    return blindInARow_ < (isMonocular ? kMostMonocularSteps : kMostBlindSteps);
+    return blindSteps_ < (isMonocular() ? kMostMonocularSteps : kMostBlindSteps);
 }
 
 void Explorer::hover() {

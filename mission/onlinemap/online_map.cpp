@@ -16,7 +16,6 @@ constexpr double kDisparity = 0.2;  // standard deviation of block matching [pix
 // Hits in a row after which a cell is occupied however long it was free, less a half for rounding.
 // A wrong hit beside a surface makes a cell occupied with the square of its probability.
 constexpr float kHitsToOccupy = 1.5F;
-constexpr float kForgotten = -0.01F;  // log odds: free, until a surface is seen there once
 
 }  // namespace
 
@@ -48,6 +47,7 @@ OnlineMap::OnlineMap(const Config& config, const TexturedOcTree* known)
       looksDown_(!looksAhead(config.camera.T_b_c())) {
     if (config.explore.unknownInformation == UnknownInformation::predicted) unseen_.emplace();
     fusion_.maxRange = config.explore.range;
+    fusion_.depthNoise = depthSigmaAtOneMetre(config);
     cells_->setClampingThresMin(octomap::probability(-kHitsToOccupy * cells_->getProbHitLog()));
     if (known != nullptr) addKnown();
 }
@@ -112,9 +112,7 @@ MapChange OnlineMap::forget(const View& shown, const Camera& camera, const Pose&
         const octomap::OcTreeKey key = cells_->coordToKey(p_w.x(), p_w.y(), p_w.z());
         const TexturedOcTreeNode* known = cells_->search(key);
         if (known == nullptr || !cells_->isNodeOccupied(*known)) return;
-        TexturedOcTreeNode* cell = cells_->setNodeValue(key, kForgotten, true);
-        cell->faces = {};
-        cell->surfaces.clear();
+        cells_->makeUnknown(key);
         change.occupancy.push_back(brickOf(key));
     };
     for (unsigned v = 0; v < shown.depth.getHeight(); ++v) {

@@ -69,7 +69,7 @@ class OnlineMap {
     /// @throws Interrupted when `isStopped` says so
     MapChange fuse(const View& image, const Camera& camera, const Pose& T_c_w,
                    const IsStopped& isStopped = {});
-    /// Removes the surfaces that a view of the map shows. They count as free until they are
+    /// Removes the surfaces that a view of the map shows. Their cells are unknown until they are
     /// observed again. @return the change of map and obstacles
     MapChange forget(const View& shown, const Camera& camera, const Pose& T_c_w);
     /// Marks the space of the body as free, see ObstacleMap::addBody(). @return the change of

@@ -80,6 +80,11 @@ TexturedOcTreeNode::TexturedOcTreeNode(const TexturedOcTreeNode& other)
     }
 }
 
+void TexturedOcTreeNode::releaseChildren() {
+    delete[] children;
+    children = nullptr;
+}
+
 std::optional<float> TexturedOcTreeNode::meanGrey() const {
     double sum = 0., weight = 0.;
     for (const FaceTexture& face : faces) {
@@ -296,6 +301,27 @@ void TexturedOcTree::updateCell(TexturedOcTreeNode& node, bool justMade, unsigne
         change.greyChange = std::max({change.greyChange, painted, weighed});
         change.surfaceMotion = std::max(change.surfaceMotion, moved);
     }
+}
+
+void TexturedOcTree::makeUnknown(const octomap::OcTreeKey& cell) {
+    if (search(cell) == nullptr) return;
+    if (makeUnknownBelow(*root, tree_depth - 1, cell)) clear();
+}
+
+/// @param level of the children @returns whether none of them is left
+bool TexturedOcTree::makeUnknownBelow(TexturedOcTreeNode& node, unsigned level,
+                                      const octomap::OcTreeKey& cell) {
+    if (!nodeHasChildren(&node)) expandNode(&node);
+    const auto child = octomap::computeChildIdx(cell, static_cast<int>(level));
+    if (level == 0 || makeUnknownBelow(*getNodeChild(&node, child), level - 1, cell)) {
+        deleteNodeChild(&node, child);
+    }
+    if (nodeHasChildren(&node)) {
+        node.updateOccupancyChildren();
+        return false;
+    }
+    node.releaseChildren();
+    return true;
 }
 
 bool TexturedOcTree::hasSurfaces() const {

@@ -72,6 +72,9 @@ class TexturedOcTreeNode : public octomap::OcTreeNode {
     std::optional<ShownGreys> shownGreys() const;
     ShownWeights shownWeights() const;
 
+    /// Frees the memory for children, all of which were deleted.
+    void releaseChildren();
+
     // Required by OctoMap. Pruning merges leaves only if their faces and surfaces are equal as
     // well.
     void copyData(const TexturedOcTreeNode& from);
@@ -141,6 +144,9 @@ class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
     void updateBricks(std::span<BrickObservation> bricks, const TextureCell& texture,
                       const KeepCell& keep = {});
 
+    /// Makes a cell unknown. (OctoMap's deleteNode() fails for the last child of a node.)
+    void makeUnknown(const octomap::OcTreeKey& cell);
+
     /// Whether any cell has surfaces inside.
     bool hasSurfaces() const;
 
@@ -153,6 +159,7 @@ class TexturedOcTree : public octomap::OccupancyOcTreeBase<TexturedOcTreeNode> {
   private:
     struct Update;
     struct PlacedBrick;
+    bool makeUnknownBelow(TexturedOcTreeNode& node, unsigned level, const octomap::OcTreeKey& cell);
     void updateNodes(TexturedOcTreeNode& node, bool justMade, unsigned level,
                      std::span<const PlacedBrick> bricks, const Update& update);
     void updateBrick(TexturedOcTreeNode& node, bool justMade, unsigned level, unsigned firstBit,

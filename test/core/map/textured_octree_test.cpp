@@ -74,5 +74,32 @@ TEST(TexturedOcTree, BrickUpdatesEqualSingleUpdates) {
     EXPECT_TRUE(bricks == singles);
 }
 
+TEST(TexturedOcTree, MakesCellsUnknown) {
+    TexturedOcTree map(0.1);
+    const auto keyOf = [&](double x) { return map.coordToKey(x, 0.05, 0.05); };
+    for (const double x : {0.05, 0.15, 0.25, 5.05}) map.updateNode(keyOf(x), true);
+    for (int i = 0; i < 8; ++i) {  // merged into one node
+        map.updateNode(octomap::OcTreeKey(100 + i % 2, 100 + i / 2 % 2, 100 + i / 4), false);
+    }
+    map.prune();
+    map.makeUnknown(keyOf(0.05));
+    map.makeUnknown(octomap::OcTreeKey(100, 100, 100));
+    EXPECT_EQ(map.search(keyOf(0.05)), nullptr);
+    EXPECT_TRUE(map.isNodeOccupied(map.search(keyOf(0.15))));
+    EXPECT_EQ(map.search(octomap::OcTreeKey(100, 100, 100)), nullptr);
+    EXPECT_FALSE(map.isNodeOccupied(map.search(octomap::OcTreeKey(101, 100, 100))));
+    EXPECT_EQ(map.size(), map.calcNumNodes());
+    map.makeUnknown(keyOf(5.05));  // with all nodes above it that have no other cell
+    EXPECT_EQ(map.search(keyOf(5.15)), nullptr);
+    EXPECT_EQ(map.search(keyOf(5.05), 14), nullptr);
+    for (int i = 1; i < 8; ++i) {
+        map.makeUnknown(octomap::OcTreeKey(100 + i % 2, 100 + i / 2 % 2, 100 + i / 4));
+    }
+    for (const double x : {0.15, 0.25, 0.25}) map.makeUnknown(keyOf(x));
+    EXPECT_EQ(map.size(), 0U);
+    map.updateNode(keyOf(0.05), true);
+    EXPECT_TRUE(map.isNodeOccupied(map.search(keyOf(0.05))));
+}
+
 }  // namespace
 }  // namespace photonav

@@ -83,6 +83,9 @@ TEST_F(MapOfABox, ForgetsWhatIsInView) {
     const Pose low = lookFrom({0.05, 0.35, 2.}, test::kDown);
     const MapChange change = map.forget(shownBy(low), camera, low);
     EXPECT_FALSE(isFloorObstacle(-0.55, 0.05));
+    for (const double z : {0.05, -0.05}) {  // a wall that was forgotten is no free space
+        EXPECT_EQ(map.cells()->search(-0.55, 0.05, z), nullptr);
+    }
     EXPECT_LT(surfaces(T_c_w), before / 2);
     EXPECT_GT(surfaces(aside), asideBefore / 5);  // what both see is gone
     const auto lists = [&](double x, double y, double z) {
