@@ -29,9 +29,11 @@ void printFlight(const ExplorationResult& flight, const ExplorationSummary& s) {
     fmt::print("{} after {:.1f} m and {:.1f} s{}\n", nameOf(flight.end), flight.flown,
                flight.duration, flight.reason.empty() ? "" : ": " + flight.reason);
     fmt::print(
-        "position error (rms) {}, NEES {:.2f} (1: consistent), goal error {}\n"
+        "position error (rms) {}, NEES {:.2f} (1: consistent)\n"
+        "goal error {}, believed standard deviation {} (root of the trace)\n"
         "{} keyframes{}\n",
-        lengthText(s.positionRmse), s.nees, lengthText(flight.goalError), flight.keyframes,
+        lengthText(s.positionRmse), s.nees, lengthText(flight.goalError),
+        lengthText(std::sqrt(s.goalTrace)), flight.keyframes,
         std::isfinite(s.updateMedian) ? fmt::format(", update {:.0f} ms (95 %: {:.0f} ms)",
                                                     1e3 * s.updateMedian, 1e3 * s.update95)
                                       : "");
@@ -51,7 +53,7 @@ void printSummary(const std::vector<ExplorationSummary>& summaries) {
                               fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian),
                               lengthText(s.goalError), fmt::format("{:.1f} s", s.duration),
                               fmt::format("{:.1f} m", s.length),
-                              fmt::format("{:.3g}", s.meanTrace)});
+                              fmt::format("{:.3g} m²", s.meanTrace)});
     }
     fmt::print("{}", alignedText(table));
 }
