@@ -24,6 +24,10 @@ constexpr std::size_t kEllipsoids = 50;
 constexpr double kEllipsoidSigmas = 3.;  // of the ellipsoids' half axes, as in reports
 constexpr double kLeastAxis = 1e-4;      // [m]: nothing is drawn without extent
 
+/// The parts of an entity that are not used here, which Foxglove's definition requires.
+constexpr std::array kEmptyLists{"metadata",  "arrows", "cubes", "cylinders",
+                                 "triangles", "texts",  "models"};
+
 json objectSchema(const json& properties) {
     return {{"type", "object"}, {"properties", properties}};
 }
@@ -56,15 +60,18 @@ json sceneSchema() {
                                     {"colors", listSchema(color)},
                                     {"indices", listSchema(typed("integer"))}});
     const json sphere = objectSchema({{"pose", poseSchema()}, {"size", point}, {"color", color}});
-    const json entity = objectSchema({{"timestamp", timeSchema()},
-                                      {"frame_id", typed("string")},
-                                      {"id", typed("string")},
-                                      {"lifetime", timeSchema()},
-                                      {"frame_locked", typed("boolean")},
-                                      {"lines", listSchema(line)},
-                                      {"spheres", listSchema(sphere)}});
+    json entity{{"timestamp", timeSchema()},
+                {"frame_id", typed("string")},
+                {"id", typed("string")},
+                {"lifetime", timeSchema()},
+                {"frame_locked", typed("boolean")},
+                {"lines", listSchema(line)},
+                {"spheres", listSchema(sphere)}};
+    for (const char* list : kEmptyLists) entity[list] = listSchema(objectSchema(json::object()));
+    const json deletion = objectSchema(
+        {{"timestamp", timeSchema()}, {"type", typed("integer")}, {"id", typed("string")}});
     return objectSchema(
-        {{"deletions", listSchema(objectSchema({}))}, {"entities", listSchema(entity)}});
+        {{"deletions", listSchema(deletion)}, {"entities", listSchema(objectSchema(entity))}});
 }
 
 std::map<std::string, std::string, std::less<>> makeSchemas() {
@@ -193,10 +200,11 @@ std::string pathMessage(double time, const DrawnPath& path) {
                     {"thickness", kThickness}, {"scale_invariant", true},
                     {"points", points},        {"color", colorJson(path.color, 1.)},
                     {"colors", json::array()}, {"indices", json::array()}};
-    const json entity{
+    json entity{
         {"timestamp", timeJson(time)}, {"frame_id", kFrame},    {"id", path.name},
         {"lifetime", timeJson(0.)},    {"frame_locked", false}, {"lines", json::array({line})},
         {"spheres", spheres}};
+    for (const char* list : kEmptyLists) entity[list] = json::array();
     return json{{"deletions", json::array()}, {"entities", json::array({entity})}}.dump();
 }
 

@@ -51,14 +51,23 @@ def records(data, start, end):
     assert start == end
 
 
+def check_schema(schema):
+    """Readers find the fields of messages in the schema before they read any."""
+    assert schema["type"] in KINDS, f"a schema of type {schema['type']}"
+    if schema["type"] == "object":
+        assert isinstance(schema["properties"], dict), "a schema of an object without properties"
+        for part in schema["properties"].values():
+            check_schema(part)
+    if schema["type"] == "array":
+        check_schema(schema["items"])
+
+
 def conforms(value, schema):
-    if not schema:
-        return True
     if not isinstance(value, KINDS[schema["type"]]):
         return value is None and schema["type"] == "number"
     if schema["type"] == "object":
-        properties = schema.get("properties", {})
-        return all(key in properties and conforms(item, properties[key]) for key, item in value.items())
+        properties = schema["properties"]
+        return value.keys() == properties.keys() and all(conforms(value[key], properties[key]) for key in value)
     if schema["type"] == "array":
         return all(conforms(item, schema["items"]) for item in value)
     return schema.get("contentEncoding") != "base64" or bool(base64.b64decode(value, validate=True))
@@ -85,6 +94,7 @@ def read(data):
             number, name, encoding = fields.number("H"), fields.text(), fields.text()
             assert number > 0 and encoding == "jsonschema"
             schemas[number] = name, json.loads(fields.block())
+            check_schema(schemas[number][1])
         elif opcode == CHANNEL:
             number, schema, topic, encoding = fields.number("H"), fields.number("H"), fields.text(), fields.text()
             assert encoding == "json" and schema in schemas
