@@ -10,6 +10,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/Logger.hpp>
@@ -25,6 +26,7 @@
 #include "io/error.hpp"
 #include "io/reading.hpp"
 #include "scene/mesh_check.hpp"
+#include "scene/obj_text.hpp"
 
 /// Debian's assimp is built with assertions, which end the program where a file breaks what an
 /// importer takes for granted. Here they end the import: the library calls this definition in place
@@ -97,41 +99,40 @@ std::optional<std::string> baseTextureName(const aiMaterial& material) {
     return std::nullopt;
 }
 
-/// A copy of an OBJ file in which points and lines are comments. Only triangles are wanted, and
-/// assimp's importer (5.2) writes beyond its arrays where a mesh has faces and lines of one vertex.
-Assimp::IOStream* withoutLines(Assimp::IOStream& obj) {
-    const std::size_t size = obj.FileSize();
-    auto text = std::make_unique<std::uint8_t[]>(size);  // NOLINT(modernize-avoid-c-arrays)
-    const std::size_t read = obj.Read(text.get(), 1, size);
-    bool isFirst = true;  // of its line
-    for (std::size_t i = 0; i < read; ++i) {
-        if (isFirst && (text[i] == 'l' || text[i] == 'p')) text[i] = '#';
-        isFirst = text[i] == '\n' || text[i] == '\r' || text[i] == '\f' || text[i] == '\0' ||
-                  (isFirst && (text[i] == ' ' || text[i] == '\t'));
-    }
-    // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): assimp closes, and so deletes, it
-    return new Assimp::MemoryIOStream(text.release(), read, true);
-}
-
 /// Remembers which files assimp opened: the mesh, its buffers, its materials.
 class RememberingFiles : public Assimp::DefaultIOSystem {
   public:
     RememberingFiles(const std::string& mesh, std::vector<std::string>& files)
-        : obj_(meshFormatOf(mesh) == MeshFormat::obj ? mesh : ""), files_(files) {}
+        : mesh_(mesh), isObj_(meshFormatOf(mesh) == MeshFormat::obj), files_(files) {}
 
     Assimp::IOStream* Open(const char* file, const char* mode) override {
         if (!std::filesystem::is_regular_file(file)) return nullptr;  // a pipe may never end
         Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
         const bool isNew = std::find(files_.begin(), files_.end(), file) == files_.end();
         if (stream != nullptr && isNew) files_.emplace_back(file);
-        if (stream == nullptr || file != obj_) return stream;
-        Assimp::IOStream* copy = withoutLines(*stream);
+        if (stream == nullptr || !isObj_) return stream;
+        const std::string text = contentOf(*stream);
         Close(stream);
-        return copy;
+        return streamOf(file == mesh_ ? withoutLines(text) : withColours(text));
     }
 
   private:
-    std::string obj_;  ///< the mesh, if it is of this format
+    static std::string contentOf(Assimp::IOStream& stream) {
+        std::string content(stream.FileSize(), '\0');
+        content.resize(stream.Read(content.data(), 1, content.size()));
+        return content;
+    }
+
+    static Assimp::IOStream* streamOf(const std::string& text) {
+        auto bytes =
+            std::make_unique<std::uint8_t[]>(text.size());  // NOLINT(modernize-avoid-c-arrays)
+        std::ranges::copy(text, bytes.get());
+        // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): assimp closes, and so deletes, it
+        return new Assimp::MemoryIOStream(bytes.release(), text.size(), true);
+    }
+
+    std::string mesh_;
+    bool isObj_;
     std::vector<std::string>& files_;
 };
 

@@ -117,16 +117,6 @@ TEST(MeshIo, ObjKeepsItsAxesAndCountsVUpward) {
     EXPECT_NEAR(scene.textures.at(scene.triangles[0].texture).image[0][1], 0.8, 1e-4);
 }
 
-/// With lines and faces of one vertex, assimp's importer writes beyond its arrays.
-TEST(MeshIo, LinesAndPointsOfObjAreNotRead) {
-    const TemporaryFolder folder;
-    const Scene scene = loadMesh(folder.write("mesh.obj",
-                                              "v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
-                                              "p -2 4 2 -1\nl 4\nl 1 99\n \tp 99\n"
-                                              "f 1 2 3\nl 2\nl 2 3 \\\n2 2\nf 1 3 4\n"));
-    EXPECT_EQ(scene.triangles.size(), 2U);
-}
-
 TEST(MeshIo, PlyVertexColoursAreInterpolated) {
     const TemporaryFolder folder;
     const Scene scene = loadMesh(folder.write("mesh.ply", R"(ply

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// OBJ files and their material libraries, changed so that assimp reads them as they are meant.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace photonav {
+
+/// An OBJ file in which points and lines are comments. Only triangles are wanted, and assimp's
+/// importer (5.2) writes beyond its arrays where a mesh has faces and lines of one vertex.
+std::string withoutLines(std::string obj);
+
+/// A material library (.mtl) in which every material starts as white. Blender gives no colour to a
+/// material with a texture; assimp would multiply the texture by 0.6.
+std::string withColours(std::string_view library);
+
+}  // namespace photonav
