@@ -160,7 +160,7 @@ Sequence readColmapSequence(const std::string& folder) {
 }
 
 void writeColmapModel(const std::string& folder, const Camera& camera,
-                      const std::vector<ColmapImage>& images) {
+                      std::vector<ColmapImage> images) {
     const auto write = [&](const char* name, const std::string& text) {
         writeFileAtomically(fs::path(folder) / name, text);
     };
@@ -168,6 +168,7 @@ void writeColmapModel(const std::string& folder, const Camera& camera,
                                      "1 PINHOLE {} {} {:.9g} {:.9g} {:.9g} {:.9g}\n",
                                      camera.width, camera.height, camera.fx(), camera.fy(),
                                      camera.cx() + kPixelCentre, camera.cy() + kPixelCentre));
+    std::ranges::sort(images, {}, &ColmapImage::name);
     std::string text =
         "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n# POINTS2D[] as (X, Y, "
         "POINT3D_ID)\n";

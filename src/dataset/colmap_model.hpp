@@ -28,9 +28,11 @@ struct ColmapImage {
     Pose T_c_w = Pose::Identity();
 };
 
-/// Writes cameras.txt (PINHOLE), images.txt and points3D.txt, without points.
+/// Writes cameras.txt (PINHOLE), images.txt and points3D.txt, without points. Images are numbered
+/// from 1 on by their sorted names, as in the database that COLMAP makes of the same images with
+/// one thread: it takes images of a model and of a database for the same by their numbers.
 /// @throws InputError when a file cannot be written
 void writeColmapModel(const std::string& folder, const Camera& camera,
-                      const std::vector<ColmapImage>& images);
+                      std::vector<ColmapImage> images);
 
 }  // namespace photonav

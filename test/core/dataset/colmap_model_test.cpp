@@ -59,7 +59,9 @@ TEST_F(ColmapModel, SurvivesItsFiles) {
     Pose T_c_w(Eigen::AngleAxisd(0.3, Eigen::Vector3d(1., 2., 3.).normalized()));
     T_c_w.translation() << 0.1, -2., 1. / 3.;
     const std::string folder = folder_.path().string();
-    writeColmapModel(folder, camera, {{"rgb/0.png", T_c_w}, {"rgb/1.png", Pose::Identity()}});
+    writeColmapModel(folder, camera, {{"rgb/2.png", T_c_w}, {"rgb/10.png", Pose::Identity()}});
+    const std::string images = test::contentOf(folder_.path() / "images.txt");
+    EXPECT_NE(images.find("\n1 1 0 0 0 0 0 0 1 rgb/10.png\n\n2 "), std::string::npos) << images;
     const Sequence sequence = read();
     EXPECT_TRUE(fs::exists(folder_.path() / "points3D.txt"));
     EXPECT_EQ(sequence.camera.project({1., 2., 3.}), camera.project({1., 2., 3.}));
