@@ -164,31 +164,6 @@ TEST_F(MapFile, ExportsSurfacesAsPoints) {
     EXPECT_NEAR(normal[2], 1.F, 1e-3);
 }
 
-/// Needs Debian's cloudcompare, which opens what others write, too.
-TEST_F(MapFile, CloudCompareOpensTheSurfaces) {
-    if (std::system("command -v CloudCompare > /dev/null") != 0) {
-        GTEST_SKIP() << "CloudCompare is not installed";
-    }
-    saveSurfaceCloud(carpetMap(), file("surfaces.ply"));
-    const std::string command = "QT_QPA_PLATFORM=offscreen timeout 60 CloudCompare -SILENT -O '" +
-                                file("surfaces.ply") + "' -C_EXPORT_FMT ASC -SAVE_CLOUDS FILE '" +
-                                file("points.asc") + "' > /dev/null 2>&1";
-    ASSERT_EQ(std::system(command.c_str()), 0);
-    std::ifstream text(file("points.asc"));
-    std::size_t points = 0;
-    Eigen::Vector3d p, colour, n;
-    while (text >> p.x() >> p.y() >> p.z() >> colour.x() >> colour.y() >> colour.z() >> n.x() >>
-           n.y() >> n.z()) {
-        ++points;
-        ASSERT_NEAR(p.z(), 0.02, 1e-3);
-        ASSERT_NEAR(n.z(), 1., 1e-3);
-        ASSERT_EQ(colour, Eigen::Vector3d::Constant(colour.x()));
-        ASSERT_GT(colour.x(), 40.);  // the carpet's grey values, 0.18 to 0.82
-        ASSERT_LT(colour.x(), 215.);
-    }
-    EXPECT_EQ(points, PointCloudFile(file("surfaces.ply")).size());
-}
-
 TEST_F(MapFile, DamagedOrForeignFilesAreNamed) {
     std::ofstream(file("text.ot")) << "a letter\n";
     EXPECT_NE(complaint("text.ot").find("not an OctoMap file"), std::string::npos);
