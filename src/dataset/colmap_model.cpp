@@ -22,9 +22,10 @@ namespace fs = std::filesystem;
 constexpr double kPixelCentre = 0.5;  // of the first pixel; ours is at 0
 constexpr std::size_t kImageFields = 10;
 
+/// A binary model is found as well, to say what to do with it.
 std::optional<fs::path> modelIn(const fs::path& folder) {
     for (const char* name : {"", "sparse", "sparse/0"}) {
-        for (const char* file : {"cameras.txt", "images.txt"}) {
+        for (const char* file : {"cameras.txt", "images.txt", "cameras.bin"}) {
             if (fs::exists(folder / name / file)) return folder / name;
         }
     }
@@ -141,6 +142,11 @@ Sequence readColmapSequence(const std::string& folder) {
     return reading(folder, [&] {
         const std::optional<fs::path> model = modelIn(folder);
         if (!model) throw InputError(folder, "", "no cameras.txt and images.txt of COLMAP");
+        if (!fs::exists(*model / "cameras.txt") && fs::exists(*model / "cameras.bin")) {
+            throw InputError((*model / "cameras.bin").string(), "",
+                             "a binary model; `colmap model_converter --output_type TXT` makes "
+                             "it text");
+        }
         const fs::path images = fs::path(folder) / "images";
         Sequence sequence;
         sequence.cameraFile = (*model / "cameras.txt").string();

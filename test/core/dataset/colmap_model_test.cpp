@@ -97,6 +97,10 @@ TEST_F(ColmapModel, OfAnotherKindIsRefused) {
     std::filesystem::remove(folder_.path() / "sparse/0/images.txt");
     EXPECT_TRUE(isColmapFolder(folder_.path().string()));
     expectReason("images.txt: no such file");
+    std::filesystem::rename(folder_.path() / "sparse/0/cameras.txt",
+                            folder_.path() / "sparse/0/cameras.bin");
+    EXPECT_TRUE(isColmapFolder(folder_.path().string()));
+    expectReason("cameras.bin: a binary model; `colmap model_converter --output_type TXT`");
 }
 
 }  // namespace
