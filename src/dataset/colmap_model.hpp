@@ -9,8 +9,8 @@
 
 namespace photonav {
 
-/// Whether a folder holds a model, in it, in sparse/ or in sparse/0/: cameras.txt and images.txt, or
-/// a binary one, which readColmapSequence() refuses with what to do.
+/// Whether a folder holds a model, in it, in sparse/ or in sparse/0/: cameras.txt and images.txt,
+/// or a binary one, which readColmapSequence() refuses with what to do.
 bool isColmapFolder(const std::string& folder);
 
 /// Reads cameras.txt and images.txt, but does not load the images, which lie in the subfolder

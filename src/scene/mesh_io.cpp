@@ -111,9 +111,9 @@ class RememberingFiles : public Assimp::DefaultIOSystem {
         const bool isNew = std::find(files_.begin(), files_.end(), file) == files_.end();
         if (stream != nullptr && isNew) files_.emplace_back(file);
         if (stream == nullptr || !isObj_) return stream;
-        const std::string text = contentOf(*stream);
+        std::string text = contentOf(*stream);
         Close(stream);
-        return streamOf(file == mesh_ ? withoutLines(text) : withColours(text));
+        return streamOf(file == mesh_ ? withoutLines(std::move(text)) : withColours(text));
     }
 
   private:
