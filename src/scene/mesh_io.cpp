@@ -103,36 +103,44 @@ std::optional<std::string> baseTextureName(const aiMaterial& material) {
 class RememberingFiles : public Assimp::DefaultIOSystem {
   public:
     RememberingFiles(const std::string& mesh, std::vector<std::string>& files)
-        : mesh_(mesh), isObj_(meshFormatOf(mesh) == MeshFormat::obj), files_(files) {}
+        : obj_(meshFormatOf(mesh) == MeshFormat::obj ? mesh : ""), files_(files) {}
 
     Assimp::IOStream* Open(const char* file, const char* mode) override {
         if (!std::filesystem::is_regular_file(file)) return nullptr;  // a pipe may never end
         Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
         const bool isNew = std::find(files_.begin(), files_.end(), file) == files_.end();
         if (stream != nullptr && isNew) files_.emplace_back(file);
-        if (stream == nullptr || !isObj_) return stream;
-        std::string text = contentOf(*stream);
-        Close(stream);
-        return streamOf(file == mesh_ ? withoutLines(std::move(text)) : withColours(text));
+        if (stream == nullptr || obj_.empty()) return stream;
+        return file == obj_ ? withoutLines(stream) : withWhiteMaterials(stream);
     }
 
   private:
-    static std::string contentOf(Assimp::IOStream& stream) {
-        std::string content(stream.FileSize(), '\0');
-        content.resize(stream.Read(content.data(), 1, content.size()));
-        return content;
+    Assimp::IOStream* withoutLines(Assimp::IOStream* obj) {
+        const std::size_t size = obj->FileSize();
+        auto bytes = std::make_unique<std::uint8_t[]>(size);  // NOLINT(modernize-avoid-c-arrays)
+        const std::size_t read = obj->Read(bytes.get(), 1, size);
+        Close(obj);
+        commentLines({reinterpret_cast<char*>(bytes.get()), read});
+        return streamOf(bytes.release(), read);
     }
 
-    static Assimp::IOStream* streamOf(const std::string& text) {
+    Assimp::IOStream* withWhiteMaterials(Assimp::IOStream* library) {
+        std::string text(library->FileSize(), '\0');
+        text.resize(library->Read(text.data(), 1, text.size()));
+        Close(library);
+        text = withColours(text);
         auto bytes =
             std::make_unique<std::uint8_t[]>(text.size());  // NOLINT(modernize-avoid-c-arrays)
         std::ranges::copy(text, bytes.get());
-        // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): assimp closes, and so deletes, it
-        return new Assimp::MemoryIOStream(bytes.release(), text.size(), true);
+        return streamOf(bytes.release(), text.size());
     }
 
-    std::string mesh_;
-    bool isObj_;
+    static Assimp::IOStream* streamOf(std::uint8_t* bytes, std::size_t size) {
+        // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): assimp closes, and so deletes, it
+        return new Assimp::MemoryIOStream(bytes, size, true);
+    }
+
+    std::string obj_;  ///< the mesh, if it is of this format
     std::vector<std::string>& files_;
 };
 

@@ -5,14 +5,13 @@
 
 namespace photonav {
 
-std::string withoutLines(std::string obj) {
+void commentLines(std::span<char> obj) {
     bool isFirst = true;  // of its line
     for (char& c : obj) {
         if (isFirst && (c == 'l' || c == 'p')) c = '#';
         isFirst = c == '\n' || c == '\r' || c == '\f' || c == '\0' ||
                   (isFirst && (c == ' ' || c == '\t'));
     }
-    return obj;
 }
 
 std::string withColours(std::string_view library) {
