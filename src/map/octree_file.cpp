@@ -215,9 +215,8 @@ std::unique_ptr<TexturedOcTree> readOcTree(const std::string& file) {
     const Header header = readHeader(stream, file);
     auto map = std::make_unique<TexturedOcTree>(header.resolution);
     NodeReader reader(stream, file, header.nodes, *map);
-    const bool known = header.binary ? header.id == "OcTree"
-                                     : header.id == map->getTreeType() || header.id == "OcTree" ||
-                                           header.id == "ColorOcTree";
+    const bool ofOctomap = header.id == "OcTree" || header.id == "ColorOcTree";
+    const bool known = ofOctomap || (!header.binary && header.id == map->getTreeType());
     if (!known) {
         throw InputError(file, "id",
                          "a map of class \"" + header.id + "\"" + (header.binary ? " (.bt)" : "") +

@@ -14,8 +14,8 @@ bool isOcTreeFile(const std::string& file);
 
 /// Reads a map. Besides our own .ot (class TexturedOcTree), it reads files of other OctoMap
 /// programs: .ot of class ColorOcTree (all six faces of an occupied cell take the luma of its
-/// colour, with weight 1) and .ot or .bt of class OcTree (occupancy only: such a map can be used
-/// for obstacle avoidance, but its views have no information).
+/// colour, with weight 1), .ot of class OcTree and .bt of both (occupancy only: such a map can be
+/// used for obstacle avoidance, but its views have no information).
 /// @throws InputError when the file is missing, is none of these, is cut short or damaged (its node
 ///         count is compared with its header, nothing may follow), or holds values that are not
 ///         finite

@@ -52,6 +52,28 @@ TEST(OctomapTools, SeeTheOccupiedCells) {
     EXPECT_EQ(cubes, occupied);
 }
 
+/// An .ot and a .bt of convert_octree, which keeps the class of the colours in its .bt, too.
+TEST(OctomapTools, WriteMapsThatAreRead) {
+    if (!isInstalled("convert_octree")) {
+        GTEST_SKIP() << "convert_octree (octomap-tools) is not installed";
+    }
+    const test::TemporaryFolder folder;
+    const TexturedOcTree map = carpetMap();
+    saveBinaryOcTree(map, folder.file("map.bt"));
+    saveColorOcTree(map, folder.file("grey.ot"));
+    for (const auto& [from, to] : {std::pair{"map.bt", "map.ot"}, {"grey.ot", "grey.bt"}}) {
+        const Execution run =
+            otherProgram("convert_octree " + folder.file(from) + " " + folder.file(to));
+        ASSERT_EQ(run.exitCode, 0) << run.output;
+        const auto read = loadTexturedOcTree(folder.file(to));
+        for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+            const auto* node = read->search(leaf.getKey());
+            ASSERT_NE(node, nullptr);
+            ASSERT_EQ(read->isNodeOccupied(node), map.isNodeOccupied(*leaf)) << to;
+        }
+    }
+}
+
 /// A line of CloudCompare's text format.
 struct CloudPoint {
     Eigen::Vector3d position, colour, normal;
