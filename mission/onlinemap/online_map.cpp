@@ -47,7 +47,10 @@ OnlineMap::OnlineMap(const Config& config, const TexturedOcTree* known)
       looksDown_(!looksAhead(config.camera.T_b_c())) {
     if (config.explore.unknownInformation == UnknownInformation::predicted) unseen_.emplace();
     fusion_.maxRange = config.explore.range;
-    fusion_.depthNoise = depthSigmaAtOneMetre(config);
+    // Matched depths err alike in neighbouring pixels: their noise does not say which are of one
+    // surface.
+    if (config.explore.sensor == ExploreSensor::depth)
+        fusion_.depthNoise = config.explore.depthSigma;
     cells_->setClampingThresMin(octomap::probability(-kHitsToOccupy * cells_->getProbHitLog()));
     if (known != nullptr) addKnown();
 }
