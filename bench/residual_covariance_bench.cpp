@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Are covariances right where nothing was fitted? Images that no model here can make (pixels
-// average over their area, with noise, with a lens, with another light) are localised in a mesh and
-// in maps of cells, and aligned to images with depth, with one set of defaults. A table of
-// docs/experiments/tracking.md.
+// average over their area, without and with noise, with a lens, with another light) are localised
+// in a mesh and in maps of cells, and aligned to images with depth, with one set of defaults. A
+// table of docs/experiments/tracking.md.
 #include <fmt/format.h>
 
 #include <cstdlib>

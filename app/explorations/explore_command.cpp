@@ -30,7 +30,7 @@ void printFlight(const ExplorationResult& flight, const ExplorationSummary& s) {
                flight.duration, flight.reason.empty() ? "" : ": " + flight.reason);
     fmt::print(
         "position error (rms) {}, NEES {:.2f} (1: consistent)\n"
-        "goal error {}, believed standard deviation {} (root of the trace)\n"
+        "goal error {}, believed standard deviation of the pose {} (root of the weighted trace)\n"
         "{} keyframes{}\n",
         lengthText(s.positionRmse), s.nees, lengthText(flight.goalError),
         lengthText(std::sqrt(s.goalTrace)), flight.keyframes,

@@ -34,7 +34,7 @@ ReportTable tableOf(const ExplorationSummary& s) {
              {"true distance to the goal at the end, median", lengthText(s.goalError)},
              {"length and duration, mean", fmt::format("{:.1f} m, {:.1f} s", s.length, s.duration)},
              {"trace of the beliefs, mean and at the end",
-              fmt::format("{:.3g}, {:.3g}", s.meanTrace, s.goalTrace)},
+              fmt::format("{:.3g}, {:.3g} m²", s.meanTrace, s.goalTrace)},
              {"time of an update, median", text("{:.0f} ms", 1e3 * s.updateMedian)},
              {"time of an update, 95 %", text("{:.0f} ms", 1e3 * s.update95)}}};
 }

@@ -11,7 +11,7 @@
 
 namespace photonav {
 
-/// What rrt_star grows for before planners with automatic kappa, for shownOn().
+/// Beginning of the progress line while rrt_star computes the automatic kappa, for shownOn().
 inline constexpr const char* kForKappa = "kappa by rrt_star";
 
 /// Predicts the time until the last vertex is added. The model is a power law, time over number of
@@ -37,7 +37,7 @@ class RemainingGrowth {
 
 /// Shows the progress of a planner on a line.
 /// @param vertices number of vertices at the end
-/// @param purpose begin of the line, "kappa by rrt_star"
+/// @param purpose beginning of the line, "kappa by rrt_star"
 OnPlanProgress shownOn(ProgressLine& line, unsigned vertices, const std::string& purpose);
 
 /// One line of text: vertices, best cost and views so far, and the time so far or the time left.

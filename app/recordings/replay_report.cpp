@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr Color kEstimateColor = kIndigo, kTruthColor = kPurple;  // as on the page
 constexpr double kOverconfident = 3.;  // NEES per degree of freedom that is stated in words
-/// Standard deviation of a squared point spread beyond which images do not contradict a blur of one
-/// pixel where there is none [pixels^2].
+/// Above this standard deviation of the measured squared point spread, sharp images and images with
+/// a blur of one pixel cannot be told apart [pixels^2].
 constexpr double kTooVague = 0.5;
 
 /// "0.0123 m", or `none` for a missing value.
@@ -60,7 +60,8 @@ std::string blurText(const json& blur) {
     const std::string assumed = fmt::format("{:.2f} pixels assumed", blur["assumed"].get<double>());
     if (!blur["estimated"].is_number()) return assumed;
     const double sigma = blur["variance_sigma"];
-    if (sigma > kTooVague) return assumed + "; these images do not show it";
+    if (sigma > kTooVague && !blur["contradicts"].get<bool>())
+        return assumed + "; these images do not show it";
     return fmt::format("{}, {:.2f} by the images{}", assumed, blur["estimated"].get<double>(),
                        blur["contradicts"].get<bool>() ? ": give `blur` in camera.yaml" : "");
 }
@@ -215,7 +216,8 @@ ReportTable replaySummary(const json& result) {
     if (result["mode"] == "cells") {
         table.rows.emplace_back("map",
                                 "has no surfaces inside its cells: poses may be wrong by half a "
-                                "cell, and covariances too small; make it again (photonav map)");
+                                "cell, and covariances too small (photonav map makes surfaces "
+                                "from images with depth)");
     }
     for (auto& row : errorRows(result)) table.rows.push_back(std::move(row));
     table.rows.emplace_back(

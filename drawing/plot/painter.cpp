@@ -166,7 +166,7 @@ void Painter::hatching(const Frame& frame, const Color& color, double width) {
 }
 
 void Painter::picture(const Picture& picture, const Frame& frame, bool smooth) {
-    if (picture.pixels.empty()) return;
+    if (picture.pixels.empty() || !(frame.width > 0. && frame.height > 0.)) return;
     cairo_t* cairo = cairo_.get();
     const cairo_filter_t filter = smooth ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST;
     // Magnified here, because some viewers of SVG and PDF interpolate pixels and others do not.
@@ -200,6 +200,7 @@ double Painter::textWidth(const std::string& content, double size) {
 }
 
 void Painter::text(const std::string& content, const Point& at, Align align, const Font& font) {
+    if (content.empty() || !at.allFinite()) return;
     if (svgTexts_ != nullptr) {
         constexpr const char* kAnchors[]{"start", "middle", "end"};
         *svgTexts_ += fmt::format(

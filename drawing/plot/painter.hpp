@@ -40,7 +40,8 @@ cairo_status_t appendTo(void* text, const unsigned char* bytes, unsigned count);
 
 class Painter {
   public:
-    /// @param svgTexts if not null, texts are appended to it as SVG elements, not drawn
+    /// @param svgTexts if not null, texts are appended to it as SVG elements, not drawn. They are
+    /// above everything that is drawn, without clipping and opacity
     explicit Painter(cairo_surface_t* surface, std::string* svgTexts = nullptr);
 
     /// A line through the points, `width` pixels wide; a point that is not finite leaves a gap.

@@ -18,9 +18,9 @@
 namespace photonav {
 namespace {
 
-/// Number of steps in a row into unobserved space that may leave the map unchanged; then the robot
-/// hovers. A single camera sees no depth until it has moved: it may take some steps at the start,
-/// and none later, which would lead into obstacles that it has not mapped.
+/// Number of steps into unobserved space while the map does not grow; then the robot hovers. A
+/// single camera sees no depth until it has moved: it may take some such steps in a flight, but
+/// more would lead into obstacles that it has not mapped.
 constexpr int kMostBlindSteps = 1;
 constexpr int kMostMonocularSteps = 6;
 /// Time without an update, while the plan is only a part of the way, after which the next image
@@ -248,7 +248,7 @@ void Explorer::takeOver(Replanned replanned) {
     views_ = replanned.views;
     tracker_.setMap(views());
     pilot_.setMap(views());
-    if (replanned.hasMapGrown && !isMonocular()) blindSteps_ = 0;
+    if (replanned.hasMapGrown) blindSinceGrowth_ = 0;
     hasPath_ = replanned.reachesGoal;
     lastUpdate_ = time_;
     flyOn(std::move(replanned.way));
@@ -281,7 +281,7 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
     if (way->isLook && isLooking()) return;
     if (way->isBlind && !mayStepBlindly()) return hover();
     patience_.onWay(way->isStopped, time_);
-    blindSteps_ += way->isBlind;
+    blindSinceGrowth_ += way->isBlind;
     record_.blindSteps += way->isBlind;
     follow(std::move(*way));
 }
@@ -301,10 +301,11 @@ bool Explorer::isLooking() const {
     return std::abs(turn) > kLooksThere;
 }
 
-bool Explorer::isMonocular() const { return config_.explore.sensor == ExploreSensor::monocular; }
-
 bool Explorer::mayStepBlindly() const {
-    return blindSteps_ < (isMonocular() ? kMostMonocularSteps : kMostBlindSteps);
+    if (config_.explore.sensor == ExploreSensor::monocular) {
+        return record_.blindSteps < kMostMonocularSteps;
+    }
+    return blindSinceGrowth_ < kMostBlindSteps;
 }
 
 void Explorer::hover() {

@@ -142,7 +142,6 @@ class Explorer {
     void showMoment(Replanned replanned);
     void flyOn(std::optional<FlyablePart> way);
     bool isLooking() const;
-    bool isMonocular() const;
     bool mayStepBlindly() const;
     void follow(FlyablePart part);
     void hover();
@@ -183,7 +182,7 @@ class Explorer {
         double since = 0.;  // [s]
     };
     std::optional<Look> look_;  // that the robot turns to
-    int blindSteps_ = 0;        // since the map last grew; of a single camera, since the start
+    int blindSinceGrowth_ = 0;  // blind steps since the map last grew
     double lastUpdate_ = 0.;    // time of the last update [s]
     Corrections corrections_;
     ExplorationRecord record_;

@@ -128,7 +128,6 @@ MapChange OnlineMap::forget(const View& shown, const Camera& camera, const Pose&
             }
         }
     }
-    cells_->updateInnerOccupancy();
     change.normalize();
     updateKnown(change);
     change.join(obstacles_.update(*cells_, change));

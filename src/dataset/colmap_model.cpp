@@ -24,8 +24,8 @@ constexpr std::size_t kImageFields = 10;
 
 /// A binary model is found as well, to say what to do with it.
 std::optional<fs::path> modelIn(const fs::path& folder) {
-    for (const char* name : {"", "sparse", "sparse/0"}) {
-        for (const char* file : {"cameras.txt", "images.txt", "cameras.bin"}) {
+    for (const char* file : {"cameras.txt", "images.txt", "cameras.bin"}) {
+        for (const char* name : {"", "sparse", "sparse/0"}) {
             if (fs::exists(folder / name / file)) return folder / name;
         }
     }

@@ -10,7 +10,7 @@
 namespace photonav {
 
 /// Whether a folder holds a model, in it, in sparse/ or in sparse/0/: cameras.txt and images.txt,
-/// or a binary one, which readColmapSequence() refuses with what to do.
+/// or a binary one: readColmapSequence() refuses it and names the command that converts it.
 bool isColmapFolder(const std::string& folder);
 
 /// Reads cameras.txt and images.txt, but does not load the images, which lie in the subfolder
@@ -30,7 +30,7 @@ struct ColmapImage {
 
 /// Writes cameras.txt (PINHOLE), images.txt and points3D.txt, without points. Images are numbered
 /// from 1 on by their sorted names, as in the database that COLMAP makes of the same images with
-/// one thread: it takes images of a model and of a database for the same by their numbers.
+/// one thread: COLMAP matches the images of model and database by their numbers.
 /// @throws InputError when a file cannot be written
 void writeColmapModel(const std::string& folder, const Camera& camera,
                       std::vector<ColmapImage> images);

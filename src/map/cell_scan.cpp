@@ -20,9 +20,10 @@ constexpr double kPoseNoise = 3e-3;
 // Least weight of the past: about as many views of full weight.
 constexpr float kMostSurfaceWeight = 50.F / (kPoseNoise * kPoseNoise);
 
-/// Points of one surface are less than this apart, by noise of depth [standard deviations].
+/// Means of neighbouring cells that are nearer than this along the normal are of one surface
+/// [standard deviations of depth].
 constexpr double kSameSurface = 3.;
-constexpr int kMostAcross = 3;  // cells
+constexpr int kMostAcross = 3;  // cells; less than the margin of the scan's box
 
 constexpr std::size_t kBricksAtOnce = 1 << 16;  // between two looks at FusionOptions::isStopped
 
@@ -33,7 +34,7 @@ float share(float change, double tolerance) {
 }
 
 /// @param depthNoise standard deviation of a pixel's depth [m]
-void observe(FaceSurface& surface, const CellPixels::Sums& sums, double depthNoise) {
+void observeSurface(FaceSurface& surface, const CellPixels::Sums& sums, double depthNoise) {
     const CellPixels::Sums mean = sums / sums[0];
     const double variance = depthNoise * depthNoise / sums[0] + kPoseNoise * kPoseNoise;
     surface.observe({mean[2], mean[3], mean[4]}, {mean[5], mean[6], mean[7]},
@@ -100,7 +101,8 @@ void CellScan::observeFaces(TexturedOcTreeNode& node, const Array3i& cell, const
         if (eye && sums[0] > kLeastShare * surfaceWeight) {
             const auto weight = static_cast<float>(std::abs(d[a]) * sums[0] / range) + 1e-6F;
             node.faces[face].observe(seen.firstGrey + sums[1] / sums[0], weight, maxWeight);
-            observe(node.surfaces.obtain(face), acrossCells(cell, face, depthNoise), depthNoise);
+            observeSurface(node.surfaces.obtain(face), acrossCells(cell, face, depthNoise),
+                           depthNoise);
             continue;
         }
         const bool looksAway = eye && !(side > 0 ? (*eye)[a] > cell[a] + 1 : (*eye)[a] < cell[a]);

@@ -58,11 +58,11 @@ struct CellPixels {
 /// whole bricks of 4 x 4 x 4 cells. Coordinates are in cells: OctoMap's keys minus kKeyOfZero.
 class CellScan {
   public:
-    /// @param cells box of cells that rays can reach [cells]
+    /// @param cells box of cells that rays can reach [cells]; four more are kept on every side
     /// @param resolution edge of a cell [m]
     CellScan(const Eigen::AlignedBox3d& cells, double resolution)
         : resolution_(resolution),
-          first_(cells.min().array().floor().cast<int>() / 4 * 4 - 4),
+          first_((cells.min().array() / 4.).floor().cast<int>() * 4 - 4),
           bricks_((cells.max().array().floor().cast<int>() - first_) / 4 + 2),
           stride_{1, std::ptrdiff_t{4} * bricks_.x(),
                   std::ptrdiff_t{16} * bricks_.x() * bricks_.y()},

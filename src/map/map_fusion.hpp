@@ -52,8 +52,8 @@ struct FusionOptions {
 /// Surfaces: every pixel has a normal n from the depth image. Along each axis a it counts with
 /// weight n_a^2 for the face of its end cell that n points to. If the weights for a face exceed 15
 /// % of all weights in the cell, the face observes their mean point and normal (see FaceSurface)
-/// and their mean grey value. Point and normal are means over the cells before and behind, too, if
-/// their points lie within three standard deviations of the depth's noise of the same plane: noise
+/// and their mean grey value. Point and normal are means over up to three cells before and behind,
+/// too, if these are nearer to the same plane than three standard deviations of depth noise, which
 /// spreads a surface near the border of two cells over both. All other faces of an end cell that
 /// face the camera, and are not covered by another end cell, observe the mean grey value of the
 /// cell's pixels. The weight of grey values is (number of pixels) * |n . d|, where n is the normal

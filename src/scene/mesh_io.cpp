@@ -111,7 +111,7 @@ class RememberingFiles : public Assimp::DefaultIOSystem {
         const bool isNew = std::find(files_.begin(), files_.end(), file) == files_.end();
         if (stream != nullptr && isNew) files_.emplace_back(file);
         if (stream == nullptr || obj_.empty()) return stream;
-        return file == obj_ ? withoutLines(stream) : withWhiteMaterials(stream);
+        return file == obj_ ? withoutLines(stream) : whitened(stream);
     }
 
   private:
@@ -124,11 +124,11 @@ class RememberingFiles : public Assimp::DefaultIOSystem {
         return streamOf(bytes.release(), read);
     }
 
-    Assimp::IOStream* withWhiteMaterials(Assimp::IOStream* library) {
+    Assimp::IOStream* whitened(Assimp::IOStream* library) {
         std::string text(library->FileSize(), '\0');
         text.resize(library->Read(text.data(), 1, text.size()));
         Close(library);
-        text = withColours(text);
+        text = withWhiteMaterials(text);
         auto bytes =
             std::make_unique<std::uint8_t[]>(text.size());  // NOLINT(modernize-avoid-c-arrays)
         std::ranges::copy(text, bytes.get());

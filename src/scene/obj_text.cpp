@@ -14,7 +14,7 @@ void commentLines(std::span<char> obj) {
     }
 }
 
-std::string withColours(std::string_view library) {
+std::string withWhiteMaterials(std::string_view library) {
     std::string text;
     while (!library.empty()) {
         const std::size_t end = library.find_first_of("\r\n");

@@ -14,6 +14,6 @@ void commentLines(std::span<char> obj);
 
 /// A material library (.mtl) in which every material starts as white. Blender gives no colour to a
 /// material with a texture; assimp would multiply the texture by 0.6.
-std::string withColours(std::string_view library);
+std::string withWhiteMaterials(std::string_view library);
 
 }  // namespace photonav

@@ -287,6 +287,8 @@ TEST(ReplaySummary, NamesWhatIsNotRight) {
     EXPECT_TRUE(said("0.29 pixels assumed, 0.00 by the images"));
     result["blur"]["variance_sigma"] = 0.8;
     EXPECT_TRUE(said("0.29 pixels assumed; these images do not show it"));
+    result["blur"]["contradicts"] = true;
+    EXPECT_TRUE(said("give `blur` in camera.yaml"));
 }
 
 TEST_F(ReplayCommand, FromTheCommandLine) {
