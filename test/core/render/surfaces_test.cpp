@@ -259,7 +259,7 @@ TEST(Surfaces, OfNoisyDepthOnTheBorderOfCellsAreMeans) {
     }
     using Case = std::pair<double, float>;
     for (const auto& [edge, sigma] :
-         {Case(0.05, 0.0015F), Case(0.025, 0.0015F), Case(0.05, 6e-3F)}) {
+         {Case(0.05, 0.0015F), Case(0.025, 0.0015F), Case(0.05, 3e-3F)}) {
         MappedScene mapped(floor, Pose::Identity(), edge);
         fuseNoisy(mapped, poses, Pose::Identity(), sigma);
         const auto errors = mapped.errorsAt(between);
