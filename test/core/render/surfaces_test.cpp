@@ -257,9 +257,9 @@ TEST(Surfaces, OfNoisyDepthOnTheBorderOfCellsAreMeans) {
         poses.push_back(lookAt(eye, {1.5 - eye.x(), 0.5, 0.}));
         between.push_back(lookAt(eye + Vector3d(0.1, 0.1, -0.1), {1. - eye.x(), 0.4, 0.}));
     }
-    using Case = std::pair<double, float>;
+    using CellAndNoise = std::pair<double, float>;
     for (const auto& [edge, sigma] :
-         {Case(0.05, 0.0015F), Case(0.025, 0.0015F), Case(0.05, 3e-3F)}) {
+         {CellAndNoise(0.05, 0.0015F), CellAndNoise(0.025, 0.0015F), CellAndNoise(0.05, 3e-3F)}) {
         MappedScene mapped(floor, Pose::Identity(), edge);
         fuseNoisy(mapped, poses, Pose::Identity(), sigma);
         const auto errors = mapped.errorsAt(between);
