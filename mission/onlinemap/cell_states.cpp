@@ -33,10 +33,7 @@ CellStates::Brick CellStates::brickOf(const TexturedOcTree& map, const Eigen::Ar
     visitLeaves(map, *node,
                 [&](const TexturedOcTreeNode& leaf, const Eigen::Array3i& lowest, int edge) {
                     std::uint64_t& mask = map.isNodeOccupied(leaf) ? brick.occupied : brick.free;
-                    // The bits of a cube are consecutive: brickBit() has OctoMap's order.
-                    const Eigen::Array3<unsigned> first = lowest.cast<unsigned>();
-                    const std::uint64_t cube = ~std::uint64_t{0} >> (64 - edge * edge * edge);
-                    mask |= cube << brickBit(first.x(), first.y(), first.z());
+                    mask |= cubeBits(lowest, edge);
                 });
     return brick;
 }

@@ -67,4 +67,27 @@ void visitLeaves(const TexturedOcTree& map, const TexturedOcTreeNode& node, cons
     if (isLeaf) visit(node, lowest, edge);
 }
 
+/// The cells of a cube within a brick, as bits brickBit(): OctoMap's order, so they are
+/// consecutive.
+/// @param lowest the first cell, relative to the brick's first
+/// @param edge 1, 2 or 4 [cells]
+inline std::uint64_t cubeBits(const Eigen::Array3i& lowest, int edge) {
+    const Eigen::Array3<unsigned> first = lowest.cast<unsigned>();
+    return ~std::uint64_t{0} >> (64 - edge * edge * edge)
+                                    << brickBit(first.x(), first.y(), first.z());
+}
+
+/// The cells of a brick that are free or occupied, as bits brickBit().
+/// @param brick index in the world, as in MapChange
+inline std::uint64_t knownCells(const TexturedOcTree& map, const Eigen::Array3i& brick) {
+    std::uint64_t known = 0;
+    if (const TexturedOcTreeNode* node = findBrick(map, brick)) {
+        visitLeaves(map, *node,
+                    [&](const TexturedOcTreeNode&, const Eigen::Array3i& lowest, int edge) {
+                        known |= cubeBits(lowest, edge);
+                    });
+    }
+    return known;
+}
+
 }  // namespace photonav

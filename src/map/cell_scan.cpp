@@ -2,9 +2,12 @@
 #include "map/cell_scan.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <span>
+
+#include "map/brick_leaves.hpp"
 
 namespace photonav {
 namespace {
@@ -175,15 +178,34 @@ std::vector<BrickObservation> CellScan::observedBricks() const {
     return observed;
 }
 
+/// In the index of CellScan, where keys have no offset.
+Array3i CellScan::cellAt(const BrickObservation& brick, unsigned bit) {
+    const int b = static_cast<int>(bit);
+    return Array3i(brick.corner[0], brick.corner[1], brick.corner[2]) - kKeyOfZero +
+           Array3i((b & 1) | (b >> 2 & 2), (b >> 1 & 1) | (b >> 3 & 2),
+                   (b >> 2 & 1) | (b >> 4 & 2));
+}
+
+/// Leaves unknown cells unknown whose centres are not seen through. Of a cell with a surface inside
+/// rays cross the part in front, and errors of the pose show the surface a little inside the next
+/// cells.
+void CellScan::keepUnknown(const TexturedOcTree& map, const PointCheck& seesThrough,
+                           std::vector<BrickObservation>& bricks) {
+    for (BrickObservation& brick : bricks) {
+        if (brick.missed == 0) continue;
+        const std::uint64_t known = knownCells(map, cellAt(brick, 0) / 4);
+        for (std::uint64_t rest = brick.missed & ~known; rest != 0; rest &= rest - 1) {
+            const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+            if (seesThrough(cellAt(brick, bit).cast<double>() + 0.5)) continue;
+            brick.missed &= ~(std::uint64_t{1} << bit);
+        }
+    }
+}
+
 MapChange CellScan::apply(TexturedOcTree& map, const std::optional<Vector3d>& eye,
-                          const FusionOptions& options, const SurfaceCheck& remains) const {
+                          const FusionOptions& options, const DepthChecks& depth) const {
     std::vector<BrickObservation> bricks = observedBricks();
-    const auto cellAt = [](const BrickObservation& brick, unsigned bit) -> Array3i {
-        const int b = static_cast<int>(bit);
-        return Array3i(brick.corner[0], brick.corner[1], brick.corner[2]) - kKeyOfZero +
-               Array3i((b & 1) | (b >> 2 & 2), (b >> 1 & 1) | (b >> 3 & 2),
-                       (b >> 2 & 1) | (b >> 4 & 2));
-    };
+    if (depth.seesThrough) keepUnknown(map, depth.seesThrough, bricks);
     const auto texture = [&](TexturedOcTreeNode& node, const BrickObservation& brick,
                              unsigned bit) {
         const Array3i cell = cellAt(brick, bit);
@@ -192,10 +214,10 @@ MapChange CellScan::apply(TexturedOcTree& map, const std::optional<Vector3d>& ey
     const auto keep = [&](const TexturedOcTreeNode& node, const BrickObservation& brick,
                           unsigned bit) {
         const Vector3d centre = cellAt(brick, bit).cast<double>() + 0.5;
-        for (unsigned f = 0; remains && f < 6; ++f) {
+        for (unsigned f = 0; depth.remains && f < 6; ++f) {
             const FaceSurface& surface = node.surfaces[f];
             if (!surface.observed()) continue;
-            if (remains(centre + surface.meanPoint().cast<double>())) return true;
+            if (depth.remains(centre + surface.meanPoint().cast<double>())) return true;
         }
         return false;
     };

@@ -116,16 +116,22 @@ class CellScan {
     /// @param eye position of the camera [cells]
     void castRays(const Eigen::Vector3d& eye);
 
-    /// Whether a surface point of the map [cells] may still be there: the observation does not see
-    /// through it.
-    using SurfaceCheck = std::function<bool(const Eigen::Vector3d& point)>;
+    /// What the depth image says of a point of the map [cells].
+    using PointCheck = std::function<bool(const Eigen::Vector3d& point)>;
+    struct DepthChecks {
+        /// Whether a surface point may still be there: asked for occupied cells that rays crossed,
+        /// before they become free. Empty: none remains.
+        PointCheck remains;
+        /// Whether it sees through a point: asked for the centres of unknown cells that rays
+        /// crossed, before they become free. Empty: it does.
+        PointCheck seesThrough;
+    };
 
     /// Updates the map by this observation.
     /// @param eye position of the camera [cells]; without it, surfaces are observed from all sides
-    /// @param remains checks the surfaces of occupied cells that rays crossed; empty: none remains
     /// @returns what changed in the map
     MapChange apply(TexturedOcTree& map, const std::optional<Eigen::Vector3d>& eye,
-                    const FusionOptions& options, const SurfaceCheck& remains = {}) const;
+                    const FusionOptions& options, const DepthChecks& depth = {}) const;
 
   private:
     static constexpr std::int32_t kNoPixels = -1;
@@ -177,6 +183,9 @@ class CellScan {
     }
     std::uint64_t crossedInBrick(const Eigen::Array3i& corner) const;
     std::vector<BrickObservation> observedBricks() const;
+    static Eigen::Array3i cellAt(const BrickObservation& brick, unsigned bit);
+    static void keepUnknown(const TexturedOcTree& map, const PointCheck& seesThrough,
+                            std::vector<BrickObservation>& bricks);
     void observeFaces(TexturedOcTreeNode& node, const Eigen::Array3i& cell, const CellPixels& seen,
                       const std::optional<Eigen::Vector3d>& eye,
                       const FusionOptions& options) const;

@@ -112,6 +112,16 @@ bool remains(const ImageF& depth, const CellFrame& frame, double depthNoise,
     return false;
 }
 
+/// Whether the pixel that a point is projected to shows something farther away.
+bool seesThrough(const ImageF& depth, const CellFrame& frame, const Vector3d& point) {
+    const Vector3d p_c = frame.inCamera(point);
+    if (p_c.z() <= 0.) return false;
+    const Eigen::Vector2d pixel = frame.camera.project(p_c);
+    const auto u = std::lround(pixel.x()), v = std::lround(pixel.y());
+    if (u < 0 || v < 0 || u >= depth.getWidth() || v >= depth.getHeight()) return false;
+    return depth[static_cast<unsigned>(v)][static_cast<unsigned>(u)] > p_c.z();
+}
+
 /// The surface between a pixel and the three next to it, right and below.
 struct Quad {
     std::array<double, 4> inverseDepth;  ///< of (u, v), (u + 1, v), (u, v + 1), (u + 1, v + 1)
@@ -244,9 +254,13 @@ MapChange fuse(TexturedOcTree& map, const View& observed, const Camera& camera, 
     }
     fillBetween(scan, observed, frame, options, normals);
     scan.castRays(frame.eye);
-    return scan.apply(map, frame.eye, options, [&](const Vector3d& point) {
+    const auto surfaceRemains = [&](const Vector3d& point) {
         return remains(observed.depth, frame, options.depthNoise, point);
-    });
+    };
+    const auto isFree = [&](const Vector3d& centre) {
+        return seesThrough(observed.depth, frame, centre);
+    };
+    return scan.apply(map, frame.eye, options, {surfaceRemains, isFree});
 }
 
 MapChange fuseScan(TexturedOcTree& map, const ScanPoints& points,

@@ -47,7 +47,11 @@ struct FusionOptions {
 /// holes. Behind surfaces, and along pixels without depth (not positive, or below minRange),
 /// nothing changes: unknown cells stay unknown. A crossed cell that is occupied and has surfaces
 /// also stays unchanged, unless the depth image sees through the mean point of each of its
-/// surfaces. So a ray at a grazing angle, or close to a surface, does not delete the surface.
+/// surfaces. So a ray at a grazing angle, or close to a surface, does not delete the surface. A
+/// crossed cell that is unknown becomes free only if the depth image sees through its centre. The
+/// cell of a surface is also crossed in front of the surface, and with errors of the pose from
+/// places beside it: were it free there, obstacles would have holes where the image does not show
+/// them.
 ///
 /// Surfaces: every pixel has a normal n from the depth image. Along each axis a it counts with
 /// weight n_a^2 for the face of its end cell that n points to. If the weights for a face exceed 15
