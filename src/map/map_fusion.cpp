@@ -112,14 +112,15 @@ bool remains(const ImageF& depth, const CellFrame& frame, double depthNoise,
     return false;
 }
 
-/// Whether the pixel that a point is projected to shows something farther away.
+/// Whether the pixel nearest to the projection of a point shows something farther away.
 bool seesThrough(const ImageF& depth, const CellFrame& frame, const Vector3d& point) {
     const Vector3d p_c = frame.inCamera(point);
     if (p_c.z() <= 0.) return false;
-    const Eigen::Vector2d pixel = frame.camera.project(p_c);
-    const auto u = std::lround(pixel.x()), v = std::lround(pixel.y());
-    if (u < 0 || v < 0 || u >= depth.getWidth() || v >= depth.getHeight()) return false;
-    return depth[static_cast<unsigned>(v)][static_cast<unsigned>(u)] > p_c.z();
+    const Eigen::Array2d last(depth.getWidth() - 1., depth.getHeight() - 1.);
+    const Eigen::Array2d pixel = frame.camera.project(p_c).array().max(0.).min(last);
+    const auto u = static_cast<unsigned>(std::lround(pixel.x()));
+    const auto v = static_cast<unsigned>(std::lround(pixel.y()));
+    return depth[v][u] > p_c.z();
 }
 
 /// The surface between a pixel and the three next to it, right and below.
