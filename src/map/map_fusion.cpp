@@ -38,7 +38,8 @@ bool atDepthEdge(const ImageF& depth, unsigned v, unsigned u, double jump) {
 
 /// Rays and points of a pinhole camera in units of cells.
 struct CellFrame {
-    Eigen::Matrix3d R;  ///< camera to world, metres to cells
+    Eigen::Matrix3d R;         ///< camera to world, metres to cells
+    Eigen::Matrix3d toCamera;  ///< its inverse
     Vector3d eye;
     const Camera& camera;
     double resolution;
@@ -47,6 +48,7 @@ struct CellFrame {
 
     CellFrame(const Camera& cam, const Pose& T_c_w, double cellSize)
         : R(T_c_w.linear().transpose() / cellSize),
+          toCamera(cellSize * T_c_w.linear()),
           eye(-R * T_c_w.translation()),
           camera(cam),
           resolution(cellSize) {
@@ -61,9 +63,7 @@ struct CellFrame {
     }
 
     /// A point in the camera frame [m].
-    Vector3d inCamera(const Vector3d& p) const {
-        return resolution * resolution * R.transpose() * (p - eye);
-    }
+    Vector3d inCamera(const Vector3d& p) const { return toCamera * (p - eye); }
 
     Vector3d rowDirection(unsigned v) const {
         return (v - camera.cy()) / camera.fy() * R.col(1) + R.col(2);
@@ -118,9 +118,8 @@ bool seesThrough(const ImageF& depth, const CellFrame& frame, const Vector3d& po
     if (p_c.z() <= 0.) return false;
     const Eigen::Array2d last(depth.getWidth() - 1., depth.getHeight() - 1.);
     const Eigen::Array2d pixel = frame.camera.project(p_c).array().max(0.).min(last);
-    const auto u = static_cast<unsigned>(std::lround(pixel.x()));
-    const auto v = static_cast<unsigned>(std::lround(pixel.y()));
-    return depth[v][u] > p_c.z();
+    const Eigen::Array2<unsigned> nearest = (pixel + 0.5).cast<unsigned>();
+    return depth[nearest.y()][nearest.x()] > p_c.z();
 }
 
 /// The surface between a pixel and the three next to it, right and below.
