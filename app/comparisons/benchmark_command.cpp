@@ -9,6 +9,7 @@
 #include "figures/sweep_figures.hpp"
 #include "io/atomic_file.hpp"
 #include "io/stopwatch.hpp"
+#include "plans/plan_progress.hpp"
 #include "problem/planning_problem.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
@@ -32,6 +33,7 @@ json benchmarkResult(const Config& config, const BenchmarkOutcome& outcome, bool
     json result = resultJson("benchmark", {{"status", sweepStatus(outcome.runs, stopped)},
                                            {"planners", config.sweep.planners},
                                            {"alpha", config.belief.alpha},
+                                           {"kappa", config.belief.kappa},
                                            {"first_seed", config.seed},
                                            {"runs_per_planner", config.sweep.runs},
                                            {"time", {{"total_s", seconds}}},
@@ -97,25 +99,25 @@ void writeReport(const fs::path& folder, const BenchmarkOptions& options, const 
 
 int runBenchmark(const BenchmarkOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
-    const Config config = loadBenchmarkConfig(options);
-    const World world(config);
-    PlanningProblem(config, world).checkPlaces();
-    FolderTransaction folder = beginResult(options, "benchmark", inputsOf(config));
+    const Config given = loadBenchmarkConfig(options);
+    const World world(given);
+    PlanningProblem(given, world).checkPlaces();
+    FolderTransaction folder = beginResult(options, "benchmark", inputsOf(given));
 
-    BenchmarkOutcome outcome;
+    ProgressLine line(options.quiet);
+    const Config config = withKappaSaid(given, world, line, interrupted);
+    line.beginPhase();
     const std::size_t asked = config.sweep.planners.size() * config.sweep.runs;
-    {
-        ProgressLine line(options.quiet);
-        std::size_t done = 0;
-        outcome = benchmarkPlanners(
-            config, world, {options.interval, options.timeLimit}, interrupted,
-            [&](const SweepItem& item) {
-                line.show(
-                    fmt::format("{} of {} runs, {} seed {}", done, asked, item.planner, item.seed),
-                    static_cast<double>(done) / static_cast<double>(asked));
-                ++done;
-            });
-    }
+    std::size_t done = 0;
+    const BenchmarkOutcome outcome = benchmarkPlanners(
+        config, world, {options.interval, options.timeLimit}, interrupted,
+        [&](const SweepItem& item) {
+            line.show(
+                fmt::format("{} of {} runs, {} seed {}", done, asked, item.planner, item.seed),
+                static_cast<double>(done) / static_cast<double>(asked));
+            ++done;
+        });
+    line.clear();
     const bool stopped = outcome.runs.size() < asked;
     if (stopped && keepsEarlierResult(folder, outcome.runs.empty())) return kInterrupted;
     const double seconds = watch.seconds();

@@ -121,10 +121,8 @@ int runCompare(const CompareOptions& options, const std::atomic<bool>& interrupt
     for (const Config& given : configs) {
         const World world(given);
         PlanningProblem(given, world).checkPlaces();
-        ProblemRuns problem{withKappa(given, world, interrupted,
-                                      shownOn(progress.line(), given.vertices, kForKappa)),
-                            options.runs,
-                            {}};
+        ProblemRuns problem{
+            withKappaSaid(given, world, progress.line(), interrupted), options.runs, {}};
         problem.runs = runMethods(problem.config, world, options, progress, interrupted);
         progress.clear();
         for (const CompareRun& run : problem.runs) anyPath = anyPath || run.outcome.path;

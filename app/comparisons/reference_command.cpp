@@ -32,8 +32,7 @@ void prepareFolder(const fs::path& folder) {
 /// With the effort of references, but the kappa of the sweeps that are compared with them.
 Config withEffort(const Config& config, const ReferenceOptions& options, const World& world,
                   ProgressLine& line, const std::atomic<bool>& interrupted) {
-    Config effort =
-        withKappa(config, world, interrupted, shownOn(line, config.vertices, kForKappa));
+    Config effort = withKappaSaid(config, world, line, interrupted);
     effort.vertices = options.vertices;
     effort.search.labels = options.labels;
     return effort;

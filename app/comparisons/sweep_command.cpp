@@ -71,8 +71,7 @@ int sweepAll(const ManyRunsOptions& options, const std::atomic<bool>& interrupte
 
     const auto open = journal.missing(items);
     ProgressLine line(options.quiet);
-    const Config planned = withKappa(config, world, interrupted,  // of all seeds
-                                     shownOn(line, config.vertices, kForKappa));
+    const Config planned = withKappaSaid(config, world, line, interrupted);  // for all seeds
     {
         RemainingTime rest(open);
         const Stopwatch running;
@@ -94,7 +93,7 @@ int sweepAll(const ManyRunsOptions& options, const std::atomic<bool>& interrupte
                     watch);
 }
 
-int mergeSweep(const ManyRunsOptions& options) {
+int mergeSweep(const ManyRunsOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
     const auto shards = readShards<SweepKind>(options.merge);
     JournalHeader header = shards.front().header();
@@ -105,7 +104,8 @@ int mergeSweep(const ManyRunsOptions& options) {
     checkSeeds(config, config.sweep.runs);
     const ReferenceCosts reference = referenceOf(config);
     const World world(config);
-    const Config planned = withKappa(config, world);
+    ProgressLine line(options.quiet);
+    const Config planned = withKappaSaid(config, world, line, interrupted);
     const auto items = sweepItems(config);
     auto runs = gather(options, shards, items);
     FolderTransaction folder = beginSweep(options, config, target);
@@ -119,7 +119,7 @@ int mergeSweep(const ManyRunsOptions& options) {
 }  // namespace
 
 int runSweep(const ManyRunsOptions& options, const std::atomic<bool>& interrupted) {
-    return isMerge(options, SweepKind::kWords) ? mergeSweep(options)
+    return isMerge(options, SweepKind::kWords) ? mergeSweep(options, interrupted)
                                                : sweepAll(options, interrupted);
 }
 

@@ -15,6 +15,7 @@
 #include "io/error.hpp"
 #include "io/stopwatch.hpp"
 #include "onlinemap/known_map.hpp"
+#include "plans/plan_progress.hpp"
 #include "report/problem_report.hpp"
 #include "result/json_values.hpp"
 #include "result/text_table.hpp"
@@ -263,6 +264,10 @@ int exploreAll(const ExploreOptions& options, const std::atomic<bool>& interrupt
     const World world = trueWorld(config);
     const PlanningProblem problem(config, world);
     const ExplorationSetup setup = setUpExploration(problem);
+    {
+        ProgressLine line(options.quiet);
+        sayKappa(line, config, setup.config.belief.kappa);
+    }
     const std::string name = fs::path(options.config).stem().string();
     FlightWatch watch(setup.config, world, items.front(), interrupted);
     if (address) {

@@ -36,7 +36,8 @@ std::vector<FlightSet> planAll(const Config& config, PlanningProblem& problem, P
         auto outcome = problem.solve(name, interrupted, shownOn(line, config.vertices, name));
         if (outcome.path) add(std::move(*outcome.path));
     };
-    problem.kappa(interrupted, shownOn(line, config.vertices, kForKappa));
+    const double kappa = problem.kappa(interrupted, kappaShownOn(line, config));
+    if (!interrupted) sayKappa(line, config, kappa);
     if (!config.fly.plan.empty()) {
         const PlannedPath path = readPlannedPath(config.fly.plan, config);
         add(problem.evaluate(path.planner, path.waypoints, interrupted));

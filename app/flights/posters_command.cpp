@@ -58,19 +58,20 @@ bool isSolved(const PosterSet& best, const PosterStudyOptions& options) {
 
 int runPosters(const PostersOptions& options, const std::atomic<bool>& interrupted) {
     const Stopwatch watch;
-    const PosterProblem problem = problemOf(options);
+    PosterProblem problem = problemOf(options);
     FolderTransaction folder = beginResult(
         options, "posters", inputsOf(problem.config, {options.candidates, options.trajectory}));
     ProgressLine line(options.quiet);
+    if (plansPaths(problem)) {
+        problem.config = withKappaSaid(problem.config, worldWith(problem, {}), line, interrupted);
+    }
     const std::size_t most = mostSets(problem);
-    const PosterRanking ranking = rankPosters(
-        problem, interrupted,
-        [&](std::size_t done, const PosterIndices& set) {
+    const PosterRanking ranking =
+        rankPosters(problem, interrupted, [&](std::size_t done, const PosterIndices& set) {
             line.show(fmt::format("{} of at most {} sets studied, now {}", done, most,
                                   nameOf(set, problem.posters)),
                       static_cast<double>(done) / static_cast<double>(most));
-        },
-        shownOn(line, problem.config.vertices, kForKappa));
+        });
     line.clear();
     nlohmann::json result = postersResult(problem, ranking);
     result["time"]["total_s"] = watch.seconds();

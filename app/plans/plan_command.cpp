@@ -74,7 +74,8 @@ std::optional<RecordedComparison> compareWithImages(const Config& config, const 
 /// At every 1, 2 and 5 times a power of ten, up to the number of vertices; of an interrupted
 /// command, the stages that all planners have reached.
 std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, PlanningProblem& problem,
-                                    std::size_t vertices, const std::atomic<bool>& interrupted) {
+                                    std::size_t vertices, ProgressLine& line,
+                                    const std::atomic<bool>& interrupted) {
     std::vector<std::size_t> stages;
     for (std::size_t ten = 10; ten < vertices; ten *= 10) {
         for (const std::size_t k : {1, 2, 5}) {
@@ -85,7 +86,9 @@ std::vector<TreeEvolution> growthOf(const std::set<std::string>& planners, Plann
     std::vector<TreeEvolution> evolutions;
     evolutions.reserve(planners.size());
     for (const std::string& planner : planners) {
-        evolutions.push_back(growInStages(problem, planner, stages, interrupted));
+        evolutions.push_back(
+            growInStages(problem, planner, stages, interrupted,
+                         shownOn(line, static_cast<unsigned>(vertices), "tree of " + planner)));
     }
     std::size_t reached = stages.size();
     for (const TreeEvolution& evolution : evolutions) {
@@ -114,9 +117,10 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
 
     PlanOutcome outcome;
     std::optional<EvaluatedPath> baseline;
+    std::vector<TreeEvolution> evolutions;
     {
         ProgressLine line(options.quiet);
-        problem.kappa(interrupted, shownOn(line, config.vertices, kForKappa));
+        problem.kappa(interrupted, kappaShownOn(line, config));
         outcome = problem.solve(config.planner, interrupted,
                                 shownOn(line, config.vertices, config.planner));
         if (config.compareWithRrtStar && usesViews(config.planner) && !interrupted) {
@@ -125,10 +129,11 @@ int runPlan(const PlanOptions& options, const std::atomic<bool>& interrupted) {
                                   shownOn(line, config.vertices, "rrt_star for comparison"))
                            .path;
         }
+        if (options.evolution) {
+            evolutions =
+                growthOf({"rrt_star", config.planner}, problem, config.vertices, line, interrupted);
+        }
     }
-    std::vector<TreeEvolution> evolutions;
-    if (options.evolution)
-        evolutions = growthOf({"rrt_star", config.planner}, problem, config.vertices, interrupted);
     const bool stopped = interrupted;
     if (stopped && keepsEarlierResult(folder, !outcome.path)) return kInterrupted;
     nlohmann::json result = planResult(config, problem.kappa(), outcome, baseline, stopped);

@@ -49,4 +49,20 @@ OnPlanProgress shownOn(ProgressLine& line, unsigned vertices, const std::string&
     };
 }
 
+OnPlanProgress kappaShownOn(ProgressLine& line, const Config& config) {
+    return shownOn(line, config.vertices, "kappa by rrt_star");
+}
+
+void sayKappa(ProgressLine& line, const Config& given, double kappa) {
+    if (!isAutomatic(given.belief.kappa)) return;
+    line.say(fmt::format("planner.kappa: auto is {:.4g} 1/m²", kappa));
+}
+
+Config withKappaSaid(const Config& given, const World& world, ProgressLine& line,
+                     const std::atomic<bool>& interrupted) {
+    Config config = withKappa(given, world, interrupted, kappaShownOn(line, given));
+    if (!interrupted) sayKappa(line, given, config.belief.kappa);
+    return config;
+}
+
 }  // namespace photonav

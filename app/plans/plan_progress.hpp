@@ -11,9 +11,6 @@
 
 namespace photonav {
 
-/// Beginning of the progress line while rrt_star computes the automatic kappa, for shownOn().
-inline constexpr const char* kForKappa = "kappa by rrt_star";
-
 /// Predicts the time until the last vertex is added. The model is a power law, time over number of
 /// vertices, fitted to two points: the present number of vertices and half of it. Before a first
 /// path is found and searched, the tree grows so fast that its times predict nothing. The last
@@ -37,8 +34,19 @@ class RemainingGrowth {
 
 /// Shows the progress of a planner on a line.
 /// @param vertices number of vertices at the end
-/// @param purpose beginning of the line, "kappa by rrt_star"
+/// @param purpose beginning of the line, such as the planner's name
 OnPlanProgress shownOn(ProgressLine& line, unsigned vertices, const std::string& purpose);
+
+/// Shows on a line how rrt_star grows, from whose path automatic kappa is computed.
+OnPlanProgress kappaShownOn(ProgressLine& line, const Config& config);
+
+/// Says on a line which kappa was chosen, if it was to be chosen.
+/// @param given the config as it was read
+void sayKappa(ProgressLine& line, const Config& given, double kappa);
+
+/// withKappa(), with progress and the value on a line.
+Config withKappaSaid(const Config& given, const World& world, ProgressLine& line,
+                     const std::atomic<bool>& interrupted);
 
 /// One line of text: vertices, best cost and views so far, and the time so far or the time left.
 /// @param vertices number of vertices at the end

@@ -52,6 +52,12 @@ void ProgressLine::show(const std::string& text, double share) {
     show(isKnown ? text + remainingText(phase_.seconds() * (1. - share) / share) : text);
 }
 
+void ProgressLine::say(const std::string& text) {
+    if (!enabled_) return;
+    clear();
+    printMessage(text);
+}
+
 /// A terminal may go away while the command runs.
 void ProgressLine::write(const std::string& text) {
     enabled_ = std::fwrite(text.data(), 1, text.size(), stderr) == text.size();

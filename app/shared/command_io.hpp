@@ -61,6 +61,9 @@ class ProgressLine {
     /// @param share done, in [0, 1]
     void show(const std::string& text, double share);
 
+    /// Prints a line that stays, whatever the period.
+    void say(const std::string& text);
+
     /// Begins another phase of the work, whose shares begin at 0.
     void beginPhase() { phase_ = {}; }
     void clear();

@@ -9,6 +9,7 @@
 #include "map/textured_octree.hpp"
 #include "onlinemap/known_map.hpp"
 #include "onlinemap/online_map.hpp"
+#include "replanning/online_planner.hpp"
 
 namespace photonav {
 namespace {
@@ -97,6 +98,15 @@ Config withCellsOf(const TexturedOcTree* known, Config config) {
     return config;
 }
 
+/// The kappa of all flights, whose costs are compared: the automatic one is chosen in the map that
+/// they begin with.
+double kappaOf(const ExplorationSetup& setup) {
+    const Config& config = setup.config;
+    if (!isAutomatic(config.belief.kappa)) return config.belief.kappa;
+    const OnlineMap map(config, setup.known.get());
+    return OnlinePlanner(config, map, explorePlanner("belief_rrt_star"), config.seed).kappa();
+}
+
 }  // namespace
 
 ExplorerOptions explorerOptions(const Config& given) {
@@ -118,6 +128,7 @@ ExplorationSetup setUpExploration(const PlanningProblem& problem) {
     ExplorationSetup setup{config, setUpFlight(problem).world, flightOf(config, known.get()),
                            known};
     checkMap(setup);
+    setup.config.belief.kappa = kappaOf(setup);
     SimulatedCameraOptions& camera = setup.flight.robot.camera;
     camera.depth = depthSensorOf(config.explore.sensor);
     camera.depthNoise = {config.explore.depthSigma, config.explore.depthMissing};

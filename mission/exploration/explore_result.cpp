@@ -87,6 +87,7 @@ json exploreResult(const ExplorationSetup& setup, const ExplorationSet& outcome)
                     : flights.front().hasArrived() ? "done"
                                                    : "not arrived: " + flights.front().reason},
          {"seed", setup.config.seed},
+         {"kappa", setup.config.belief.kappa},
          {"known_map", setup.known ? json(setup.config.mapFile) : json()},
          {"flights_ended", outcome.ended},
          {"flights_asked", outcome.asked},

@@ -223,13 +223,16 @@ std::vector<double> rankKey(const PosterSet& set, RankBy by) {
     return key;
 }
 
+bool plansPaths(const PosterProblem& problem) {
+    return problem.options.hasPath && !problem.options.trajectory;
+}
+
 PosterRanking rankPosters(const PosterProblem& given, const std::atomic<bool>& interrupted,
-                          const std::function<void(std::size_t, const PosterIndices&)>& onBegin,
-                          const OnPlanProgress& onKappa) {
+                          const std::function<void(std::size_t, const PosterIndices&)>& onBegin) {
     PosterProblem problem = given;
     const PosterStudyOptions& options = given.options;
-    if (options.hasPath && !options.trajectory) {
-        problem.config = withKappa(given.config, worldWith(given, {}), interrupted, onKappa);
+    if (plansPaths(given)) {
+        problem.config = withKappa(given.config, worldWith(given, {}), interrupted);
     }
     const auto isBefore = [&](const PosterSet& a, const PosterSet& b) {
         return rankKey(a, options.rankBy) < rankKey(b, options.rankBy);

@@ -81,6 +81,9 @@ void checkPosters(const PosterProblem& problem);
 /// not decide.
 std::vector<double> rankKey(const PosterSet& set, RankBy by);
 
+/// Whether paths are planned, so that kappa matters.
+bool plansPaths(const PosterProblem& problem);
+
 /// Studies the scene without posters and with every single poster. Then, up to options.most
 /// posters, it adds each remaining poster to the best set so far, as long as the best set improves.
 /// Posters with coincident surfaces are not combined. All paths are planned with the same seed and
@@ -88,10 +91,8 @@ std::vector<double> rankKey(const PosterSet& set, RankBy by);
 /// of collisions and better than the new one.
 /// @param onBegin called before a set is studied, with the number of sets that are done and the
 ///        posters of this set; never called twice at a time
-/// @param onKappa as of PlanningProblem::kappa()
 /// @throws Interrupted when interrupted before the first set is done
 PosterRanking rankPosters(const PosterProblem& problem, const std::atomic<bool>& interrupted,
-                          const std::function<void(std::size_t, const PosterIndices&)>& onBegin,
-                          const OnPlanProgress& onKappa = {});
+                          const std::function<void(std::size_t, const PosterIndices&)>& onBegin);
 
 }  // namespace photonav

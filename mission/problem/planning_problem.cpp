@@ -138,7 +138,6 @@ PlanOutcome PlanningProblem::solve(const std::shared_ptr<BeliefPlanner>& planner
     return outcome;
 }
 
-/// @return the progress every kProgressInterval vertices, and at the end
 std::vector<PlanProgress> PlanningProblem::grow(BeliefPlanner& planner,
                                                 const std::atomic<bool>& interrupted,
                                                 const OnPlanProgress& onProgress) {

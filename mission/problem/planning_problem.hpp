@@ -159,6 +159,11 @@ class PlanningProblem {
     /// @throws std::invalid_argument for another name
     std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
                                                std::optional<std::uint32_t> seed = {});
+    /// Grows a planner's tree to its number of vertices. The path is not evaluated; solve() does
+    /// both.
+    /// @return the progress every few vertices, and at the end
+    std::vector<PlanProgress> grow(BeliefPlanner& planner, const std::atomic<bool>& interrupted,
+                                   const OnPlanProgress& onProgress);
     /// As long as the result exists, rendering large views for planners and evaluations ends with
     /// Interrupted when the flag is set.
     [[nodiscard]] InterruptionScope interruptedBy(const std::atomic<bool>& interrupted) {
@@ -190,8 +195,6 @@ class PlanningProblem {
 
   private:
     double balancedKappa(const std::atomic<bool>& interrupted, const OnPlanProgress& onProgress);
-    std::vector<PlanProgress> grow(BeliefPlanner& planner, const std::atomic<bool>& interrupted,
-                                   const OnPlanProgress& onProgress);
     BeliefOptions optionsWith(double kappa) const;
     std::shared_ptr<BeliefPlanner> makePlanner(const std::string& name,
                                                const std::shared_ptr<BeliefModel>& model,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/interrupted.hpp"
+#include "io/stopwatch.hpp"
 
 namespace photonav {
 namespace ob = ompl::base;
@@ -12,10 +13,10 @@ namespace ob = ompl::base;
 namespace {
 
 TreeStage grow(BeliefPlanner& planner, PlanningProblem& problem,
-               const std::atomic<bool>& interrupted) {
+               const std::atomic<bool>& interrupted, const OnPlanProgress& onProgress) {
     TreeStage stage;
     const InterruptionScope scope = problem.interruptedBy(interrupted);
-    planner.solve(ob::PlannerTerminationCondition([&] { return interrupted.load(); }));
+    problem.grow(planner, interrupted, onProgress);
     stage.vertices = planner.vertices();
     stage.tree = drawnEdges(planner);
     if (planner.bestPath().empty()) return stage;
@@ -32,13 +33,18 @@ TreeStage grow(BeliefPlanner& planner, PlanningProblem& problem,
 
 TreeEvolution growInStages(PlanningProblem& problem, const std::string& name,
                            const std::vector<std::size_t>& vertices,
-                           const std::atomic<bool>& interrupted) {
+                           const std::atomic<bool>& interrupted, const OnPlanProgress& onProgress) {
+    const Stopwatch watch;
+    const auto onGrowth = [&](PlanProgress progress) {
+        progress.seconds = watch.seconds();  // not that of the stage
+        if (onProgress) onProgress(progress);
+    };
     const auto planner = problem.makePlanner(name);
     TreeEvolution evolution{planner->getName(), {}};
     for (const std::size_t stop : vertices) {
         planner->params().setParam("max_vertices", std::to_string(stop));
         try {
-            TreeStage stage = grow(*planner, problem, interrupted);
+            TreeStage stage = grow(*planner, problem, interrupted, onGrowth);
             if (interrupted) break;
             evolution.stages.push_back(std::move(stage));
         } catch (const Interrupted&) {

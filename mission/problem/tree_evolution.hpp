@@ -24,10 +24,12 @@ struct TreeEvolution {
 /// Grows a planner in stages. The planner's solve() ends at every stage, where belief_rrt_star
 /// searches its roadmap. The result of the last stage therefore differs slightly from the result
 /// without stages. An interrupted planner has only the stages before.
+/// @param onProgress called while the planner grows, with the time since its first vertex
 /// @param vertices numbers of vertices of the stages, in rising order
 TreeEvolution growInStages(PlanningProblem& problem, const std::string& planner,
                            const std::vector<std::size_t>& vertices,
-                           const std::atomic<bool>& interrupted);
+                           const std::atomic<bool>& interrupted,
+                           const OnPlanProgress& onProgress = {});
 
 /// The edges of a planner's tree. An edge is listed once, also if several beliefs use it.
 std::vector<TreeSegment> drawnEdges(const BeliefPlanner& planner);

@@ -62,6 +62,7 @@ class OnlinePlanner {
     /// away.) Empty if the robot is there and looks at the goal, or if an obstacle was seen on a
     /// plan that is made once.
     const std::vector<BeliefPoint>& path() const { return path_; }
+    double kappa() { return problem_.kappa(); }
     bool reachesGoal() const { return reachesGoal_; }  ///< whether path() ends at the goal
 
     /// Renders views of the present map.

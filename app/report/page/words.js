@@ -34,7 +34,7 @@ const kGroups = {
     'First flight': ['planner', 'arrived', 'end', 'reason', 'length', 'duration_s', 'goal_error_m', 'position_rmse_m', 'nees_per_dof',
                      'arrival_probability', 'least_clearance_m', 'collisions'],
     'Camera': ['images', 'keyframes', 'rejected_images', 'times_lost', 'lost_s', 'blind_steps'],
-    'Work': ['status', 'flights_asked', 'flights_ended', 'wall_s', 'time.total_s', 'seed'],
+    'Work': ['status', 'flights_asked', 'flights_ended', 'wall_s', 'time.total_s', 'seed', 'kappa'],
   },
   servo: {'Goal': ['position_sigma_m', 'rotation_sigma_rad', 'condition', 'goal.depth_m', 'goal.position', 'goal.yaw']},
 };

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "app/command_test.hpp"
+#include "app/explorations/quick_exploration.hpp"
 
 namespace photonav {
 namespace {
@@ -32,6 +33,14 @@ TEST(ProgressLine, IsALinePerPeriodWithoutATerminal) {
     EXPECT_EQ(printed(false, 0.2, {0., 0.25, 0.3, 0.5}), "photonav: at 0.25\nphotonav: at 0.5\n");
     EXPECT_EQ(printed(false, 30., {0., 0.02}), "");
     EXPECT_EQ(printed(true, 0., {0., 0.02}), "");
+}
+
+TEST(ProgressLine, SaysWhatStaysAtOnce) {
+    for (const bool quiet : {false, true}) {
+        testing::internal::CaptureStderr();
+        ProgressLine(quiet).say("this");
+        EXPECT_EQ(testing::internal::GetCapturedStderr(), quiet ? "" : "photonav: this\n");
+    }
 }
 
 TEST(ProgressLine, HasTheTimeLeftOfThePhase) {
@@ -72,13 +81,31 @@ TEST_F(Progress, ShowsTheTimeLeft) {
 TEST_F(Progress, NamesWhatIsDone) {
     const std::string out = " --out " + folder_.string();
     const std::string planning = onTerminal("plan " + config("two_textures") + kQuickPlan +
-                                            "--set planner.kappa=auto" + out);
+                                            "--evolution --set planner.kappa=auto" + out);
     const std::string mapping =
         onTerminal("map " PHOTONAV_SOURCE_DIR "/data/flight_down --frames 0:4" + out);
     for (const char* text :
-         {"kappa by rrt_star: ", "\rbelief_rrt_star: ", "rrt_star for comparison: "})
+         {"kappa by rrt_star: ", "\rbelief_rrt_star: ", "rrt_star for comparison: ",
+          "tree of rrt_star: ", "tree of belief_rrt_star: "}) {
         EXPECT_NE(planning.find(text), std::string::npos) << planning;
+    }
     EXPECT_NE(mapping.find("0 of 1 compared"), std::string::npos) << mapping;
+}
+
+/// `plan` prints it with the shares of the cost.
+TEST_F(Progress, EveryCommandSaysTheAutomaticKappa) {
+    const std::string problem = " " + config("two_textures") + kQuickPlan +
+                                "--set planner.kappa=auto --out " + folder_.string() + " ";
+    for (const std::string& command :
+         {"sweep" + problem + "--runs 1 --alpha 0.5 --planners rrt_star",
+          "compare" + problem + "--runs 1", "benchmark" + problem + "--runs 1 --planners rrt_star",
+          "fly" + problem + "--flights 1",
+          "posters" + problem + "--trials 1 --candidates " + config("posters/two_textures"),
+          "explore" + problem + kQuickExploration}) {
+        const std::string output = photonav(command).output;
+        EXPECT_NE(output.find("photonav: planner.kappa: auto is "), std::string::npos)
+            << command << ": " << output;
+    }
 }
 
 }  // namespace
