@@ -27,25 +27,25 @@ class Figures(unittest.TestCase):
     def test_isMadeOnceForTheSameInputs(self):
         first = self.make("3")
         self.assertEqual(first.returncode, 0, first.stderr)
-        self.assertIn("tutorial-01", first.stdout)
+        self.assertIn("propagation-clouds", first.stdout)
         page = (self.out / "index.html").read_text()
-        picture = "pictures/3-clouds-pose_uncertainty.png"
+        picture = "pictures/3-clouds-propagation_clouds.png"
         self.assertIn(picture, page)
         self.assertIn("prefers-color-scheme:dark", page)
         for kind in (".png", ".svg", ".pdf"):
             self.assertTrue((self.out / picture).with_suffix(kind).exists())
         self.assertIn(f"<a href='{picture[:-4]}.pdf'>PDF</a>", page)
-        self.assertNotIn("tutorial-01", self.make("3").stdout)
+        self.assertNotIn("propagation-clouds", self.make("3").stdout)
         record = self.out / "records/clouds.json"
         record.write_text(json.dumps({**json.loads(record.read_text()), "inputs": "others"}))
-        self.assertIn("tutorial-01", self.make("3").stdout)
+        self.assertIn("propagation-clouds", self.make("3").stdout)
 
     def test_figuresOfEarlierCallsStayInThePage(self):
         self.assertEqual(self.make("10").returncode, 0)
         self.assertEqual(self.make("3").returncode, 0)
         page = (self.out / "index.html").read_text()
         self.assertLess(page.index("<h2>Figure 3</h2>"), page.index("<h2>Figure 10</h2>"))
-        for picture in ("3-clouds-pose_uncertainty.png", "10-stripes-0.1-trace.png"):
+        for picture in ("3-clouds-propagation_clouds.png", "10-stripes-0.1-trace.png"):
             self.assertIn(f"src='pictures/{picture}'", page)
             self.assertTrue((self.out / "pictures" / picture).exists())
 
