@@ -72,20 +72,18 @@ int sweepAll(const ManyRunsOptions& options, const std::atomic<bool>& interrupte
     const auto open = journal.missing(items);
     ProgressLine line(options.quiet);
     const Config planned = withKappaSaid(config, world, line, interrupted);  // for all seeds
-    {
-        RemainingTime rest(open);
-        const Stopwatch running;
-        std::size_t done = items.size() - open.size();
-        line.show(fmt::format("{} of {} runs", done, items.size()));
-        runItems(planned, world, open, options.jobs, interrupted, [&](const SweepRun& run) {
-            journal.append(run);
-            const double wall = running.seconds();
-            rest.count(run.item.planner, run.seconds, wall);
-            line.show(fmt::format("{} of {} runs, {} done{}", ++done, items.size(),
-                                  nameOf(run.item), rest.text(wall)));
-        });
-        line.clear();
-    }
+    RemainingTime rest(open);
+    const Stopwatch running;
+    std::size_t done = items.size() - open.size();
+    line.show(fmt::format("{} of {} runs", done, items.size()));
+    runItems(planned, world, open, options.jobs, interrupted, [&](const SweepRun& run) {
+        journal.append(run);
+        const double wall = running.seconds();
+        rest.count(run.item.planner, run.seconds, wall);
+        line.show(fmt::format("{} of {} runs, {} done{}", ++done, items.size(), nameOf(run.item),
+                              rest.text(wall)));
+    });
+    line.clear();
     const bool stopped = interrupted && !journal.missing(items).empty();
     if (stopped && leavesEarlierRuns(folder, journal)) return kInterrupted;
     return conclude(options, planned, world, folder,
