@@ -115,6 +115,31 @@ TEST_F(ReportBrowserTest, FiguresAreSofterInDarkMode) {
     EXPECT_EQ(published(open(data, "", "", kFilter).dom, "filter"), "none");
 }
 
+/// Also where a figure or a tile is alone in the last row; and nothing is cut off on a phone.
+TEST_F(ReportBrowserTest, RowsAreFilledAndFitThePage) {
+    ReportData data = sampleReport();
+    data.figures.assign(3, {"A figure.", data.views.front().image});
+    constexpr const char* kLayout = R"js(
+      setTimeout(() => {
+        const end = (box) => Math.round(box.getBoundingClientRect().right);
+        const ragged = [...document.querySelectorAll('.tiles, .charts, .figures, .tables')].filter((section) => {
+          const shown = [...section.children].filter((box) => box.offsetWidth > 0);
+          return shown.length && Math.abs(end(shown.at(-1)) - end(section)) > 1;
+        });
+        const cut = [...document.querySelectorAll('body, #cost > div')].filter(
+            (box) => box.scrollWidth > box.clientWidth);
+        document.documentElement.dataset.ragged = ragged.map((section) => section.id || 'nameless').join(' ') || 'none';
+        document.documentElement.dataset.cut = cut.map((box) => box.tagName).join(' ') || 'none';
+      }, 1500);
+    )js";
+    for (const char* size : {"--window-size=1280,2200", "--window-size=1000,2200",
+                             "--window-size=500,2200 --force-device-scale-factor=1.25"}) {
+        const std::string dom = open(data, "", size, kLayout).dom;
+        EXPECT_EQ(published(dom, "ragged"), "none") << size;
+        EXPECT_EQ(published(dom, "cut"), "none") << size;
+    }
+}
+
 TEST_F(ReportBrowserTest, FlightsBeginWithWhatWasFlown) {
     ReportData data = sampleReport();
     data.result = {{"command", "fly"},
