@@ -10,6 +10,9 @@ namespace photonav {
 namespace {
 
 constexpr unsigned kTile = 16;  // edge of the largest tiles [pixels]
+/// Scenes have faces at round coordinates. A camera in the plane of a face would see nothing but
+/// that plane, so no camera is at round coordinates [pixels].
+const Eigen::Vector3d kAside(0.0731, -0.0417, -0.0113);
 
 /// Small tiles, each rendered by a camera right above it, scaled for the lowest surface. What is
 /// higher is seen larger and displaced, by less than a pixel in tiles that are small enough.
@@ -32,6 +35,7 @@ class ParallelPicture {
 
     const ImageF& picture() const { return picture_; }
     const ImageF& depths() const { return depths_; }
+    const Eigen::Array2d& step() const { return step_; }
 
   private:
     /// The square of this edge at a pixel, in four parts if it is too large for what is in it.
@@ -42,6 +46,7 @@ class ParallelPicture {
         T_w_c.linear() = Eigen::Vector3d(1., -1., -1.).asDiagonal();
         T_w_c.translation() << area_.min().x() + (u + 0.5 * edge) * step_.x(),
             area_.max().y() - (v + 0.5 * edge) * step_.y(), top_;
+        T_w_c.translation() += step_.x() * kAside;
         View view;
         views_.render(camera, T_w_c.inverse(), view);
         if (0.5 * edge * (1. - nearest(view.depth) / depth_) > 1.) {
@@ -90,13 +95,55 @@ void outlineSteps(ImageF& picture, const ImageF& depth) {
     }
 }
 
+bool contains(const std::vector<Eigen::Vector2d>& convex, const Eigen::Vector2d& p) {
+    bool isLeft = false, isRight = false;
+    for (std::size_t i = 0; i < convex.size(); ++i) {
+        const Eigen::Vector2d side = convex[(i + 1) % convex.size()] - convex[i];
+        const Eigen::Vector2d way = p - convex[i];
+        const double cross = side.x() * way.y() - side.y() * way.x();
+        isLeft = isLeft || cross > 0.;
+        isRight = isRight || cross < 0.;
+    }
+    return !(isLeft && isRight);
+}
+
+/// A camera at the height of the cut looks into a solid, whose top is above it.
+/// @param corner of the picture: smallest x, largest y
+/// @param step edges of a pixel [m]
+void fillCut(ImageF& picture, const Prism& solid, const Eigen::Vector2d& corner,
+             const Eigen::Array2d& step) {
+    constexpr float kCut = 0.3F;
+    Eigen::AlignedBox2d box;  // in pixels, v downward
+    for (const Eigen::Vector2d& p : solid.footprint) {
+        box.extend(
+            Eigen::Vector2d((p.x() - corner.x()) / step.x(), (corner.y() - p.y()) / step.y()));
+    }
+    const Eigen::Array2d size(picture.getWidth(), picture.getHeight());
+    const Eigen::Array2i from = box.min().array().max(0.).min(size).floor().cast<int>();
+    const Eigen::Array2i to = box.max().array().max(0.).min(size).ceil().cast<int>();
+    for (int v = from.y(); v < to.y(); ++v) {
+        for (int u = from.x(); u < to.x(); ++u) {
+            const Eigen::Vector2d centre(corner.x() + (u + 0.5) * step.x(),
+                                         corner.y() - (v + 0.5) * step.y());
+            if (contains(solid.footprint, centre)) picture[v][u] = kCut;
+        }
+    }
+}
+
 }  // namespace
 
 ImageF pictureFromAbove(const ViewSource& views, const Eigen::AlignedBox2d& area, double top,
-                        double lowest, double pixelSize) {
+                        double lowest, double pixelSize, const std::vector<Prism>& solids) {
     const ParallelPicture rendered(views, area, top, lowest, pixelSize);
     ImageF picture = rendered.picture();
     outlineSteps(picture, rendered.depths());
+    const Eigen::Vector2d corner(area.min().x(), area.max().y());
+    const double middle = 0.5 * (lowest + top);
+    for (const Prism& solid : solids) {
+        if (solid.low < middle && top <= solid.high) {
+            fillCut(picture, solid, corner, rendered.step());
+        }
+    }
     return picture;
 }
 

@@ -133,7 +133,8 @@ Eigen::AlignedBox3d World::extent() const {
 }
 
 ImageF World::pictureFromAbove(const Eigen::AlignedBox2d& area, double z, double pixelSize) const {
-    return photonav::pictureFromAbove(*views_, area, z, extent().min().z(), pixelSize);
+    return photonav::pictureFromAbove(*views_, area, z, extent().min().z(), pixelSize,
+                                      scene_ ? scene_->solids : std::vector<Prism>());
 }
 
 }  // namespace photonav
