@@ -56,7 +56,7 @@ set(folders_app_shared io geometry result config runs report)
 set(folders_app_flights io geometry render dataset planners alignment result config problem servo recording replay
     flight check posters flightlog figures report shared plans)
 set(folders_app_explorations io map render dataset result config problem runs flight onlinemap replanning exploration
-    flightlog figures live report shared flights)
+    flightlog figures live report shared plans flights)
 set(folders_app_recordings io geometry map render dataset result config recording mapping replay figures
     report shared)
 set(folders_app_plans io geometry map dataset planners result problem recording mapping flight check
