@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -12,8 +13,21 @@ namespace photonav {
 namespace {
 
 constexpr int kDisparityUnit = 16;  // OpenCV gives sixteenths of pixels
+/// OpenCV's block matching rounds up, from 256ths of a pixel: its disparities are too large by this
+/// in the mean, and depths too small by 0.5 % at 6 pixels.
+constexpr float kRoundedUp = 15.F / 32.F;  // [kDisparityUnit]
 constexpr int kMaxDisparities = 512;
 constexpr int kLeastBlock = 5;  // of OpenCV's block matching [pixels]
+
+// Of the texture that a block has: beyond this standard deviation of its disparity a block may as
+// well match the next pixel.
+constexpr double kMostSigma = 1.;  // [pixels]
+/// Standard deviation of the Gaussian whose derivative lets as much noise through as Sobel's
+/// filter.
+constexpr double kSobelWidth = 0.68;  // [pixels]
+// The middle of a block, as a part of its edge, and the least share of texture there. Texture that
+// is spread evenly has the share 1.
+constexpr double kMiddle = 0.4, kShareInMiddle = 0.25;
 
 cv::Matx33d matrixOf(const Camera& camera) {
     return {camera.fx(), 0., camera.cx(), 0., camera.fy(), camera.cy(), 0., 0., 1.};
@@ -58,6 +72,30 @@ cv::Ptr<cv::StereoMatcher> makeMatcher(const StereoOptions& o, const cv::Size& i
     return matcher;
 }
 
+/// Mean over blocks of the squared horizontal gradient of an image, which is the information about
+/// disparity [squared grey values per pixel].
+cv::Mat meanSquare(const cv::Mat& gradient, int block) {
+    cv::Mat mean;
+    cv::sqrBoxFilter(gradient, mean, CV_32F, {block, block}, {-1, -1}, true, cv::BORDER_REFLECT);
+    return mean;
+}
+
+/// Pixels whose block of texture is strong enough, and not all at its rim: 255, others 0.
+/// A disparity that is found by least squares has the variance 2 noise^2 / sum of g^2, where g is
+/// the gradient without noise. Smoothing makes g less, so that this is an upper limit.
+cv::Mat texturedPixels(const cv::Mat& image, int block, const StereoOptions& options) {
+    cv::Mat gradient;
+    cv::Sobel(image, gradient, CV_32F, 1, 0, 3, 1. / 8.);
+    const double noise = 255. * options.noise;
+    const double width = std::hypot(options.blur, kSobelWidth);
+    const double ofNoise = noise * noise / (8. * std::numbers::pi * std::pow(width, 4));
+    const double least = 2. * noise * noise / (kMostSigma * kMostSigma * block * block);
+    const int middle = static_cast<int>(kMiddle * block) | 1;
+    const cv::Mat inBlock = meanSquare(gradient, block) - ofNoise;
+    const cv::Mat inMiddle = meanSquare(gradient, middle) - ofNoise;
+    return (inBlock >= least) & (inMiddle >= kShareInMiddle * inBlock);
+}
+
 }  // namespace
 
 struct StereoDepth::Impl {
@@ -72,11 +110,13 @@ struct StereoDepth::Impl {
     /// Rectified images with `count` black columns before them: OpenCV gives no disparity to as
     /// many first columns, although far surfaces are seen there by the right camera as well.
     std::array<cv::Mat, 2> padded;
+    std::array<cv::Mat, 2> smooth;  ///< the same, smoothed; without smoothing `padded` itself
     cv::Mat disparity;
     cv::Ptr<cv::StereoMatcher> matcher;
 
     Impl(const DistortedCamera& left, const DistortedCamera& right, const StereoOptions& o);
     void rectify(const vpImage<unsigned char>& image, std::size_t side);
+    void match();
 };
 
 StereoDepth::Impl::Impl(const DistortedCamera& left, const DistortedCamera& right,
@@ -146,6 +186,21 @@ void StereoDepth::Impl::rectify(const vpImage<unsigned char>& image, std::size_t
     }
     cv::Mat rectified = padded[side].colRange(count, padded[side].cols);
     cv::remap(small[side], rectified, maps[side][0], maps[side][1], cv::INTER_LINEAR);
+    if (!(options.blur > 0.)) {
+        smooth[side] = padded[side];
+        return;
+    }
+    cv::Mat smoothed;  // without the black columns
+    cv::GaussianBlur(rectified, smoothed, {}, options.blur, 0., cv::BORDER_REFLECT);
+    cv::copyMakeBorder(smoothed, smooth[side], 0, 0, count, 0, cv::BORDER_CONSTANT);
+}
+
+void StereoDepth::Impl::match() {
+    matcher->compute(smooth[0], smooth[1], disparity);
+    if (!(options.noise > 0.)) return;
+    const cv::Rect image(count, 0, smooth[0].cols - count, smooth[0].rows);
+    const cv::Mat textured = texturedPixels(smooth[0](image), matcher->getBlockSize(), options);
+    disparity(image).setTo(0, ~textured);
 }
 
 StereoDepth::StereoDepth(const DistortedCamera& left, const DistortedCamera& right,
@@ -163,12 +218,13 @@ void StereoDepth::operator()(const StereoImages& images, View& view) {
     Impl& m = *impl_;
     m.rectify(images.left, 0);
     m.rectify(images.right, 1);
-    m.matcher->compute(m.padded[0], m.padded[1], m.disparity);
+    m.match();
     view.intensity.resize(m.camera.height, m.camera.width);
     view.depth.resize(m.camera.height, m.camera.width);
     const auto numerator = static_cast<float>(kDisparityUnit * m.camera.fx() * m.baseline);
     const auto least =
         static_cast<std::int16_t>(std::max(1., std::ceil(numerator / m.options.maxDepth)));
+    const float roundedUp = m.options.method == StereoMethod::blockMatching ? kRoundedUp : 0.F;
     // Half a block, and what its edge filter and the comparison with the next disparity need, are
     // in the right image, too.
     const int margin = m.matcher->getBlockSize() / 2 + 2;
@@ -179,7 +235,8 @@ void StereoDepth::operator()(const StereoImages& images, View& view) {
             view.intensity[v][u] = static_cast<float>(grey[u]) / 255.F;
             const int most = kDisparityUnit * (static_cast<int>(u) - margin);
             const bool isFound = shift[u] >= least && shift[u] <= most;
-            view.depth[v][u] = isFound ? numerator / static_cast<float>(shift[u]) : 0.F;
+            view.depth[v][u] =
+                isFound ? numerator / (static_cast<float>(shift[u]) - roundedUp) : 0.F;
         }
     }
 }

@@ -25,6 +25,14 @@ struct StereoOptions {
     int uniqueness = 10;  ///< margin of the best match over the second best [%]
     int texture = 10;     ///< blocks with less contrast are left out (OpenCV's textureThreshold)
     int speckle = 60;     ///< smaller patches of depth are left out [pixels]
+    /// Standard deviation of a Gaussian that smooths the images before they are matched, so that
+    /// weak texture stands out from noise; 0: none [pixels after halving]
+    double blur = 0.;
+    /// Standard deviation of the noise of grey values in [0, 1], independent from pixel to pixel.
+    /// If it is given, a block has a depth only if its texture fixes the disparity to one pixel
+    /// (standard deviation), and only if some of this texture is in the middle of the block:
+    /// otherwise it is the depth of something beside. 0: not given.
+    double noise = 0.;
 };
 
 /// Makes views of the left camera, rectified and undistorted, with depth.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "depth/stereo_depth.hpp"
 
+#include <random>
+
 #include "euroc_dataset.hpp"
 
 namespace photonav {
@@ -53,6 +55,32 @@ TEST_F(StereoWall, BlockMatchingFindsItsDepthThroughDistortionAndTwist) {
     expectDepths({.halvings = 0, .minDepth = 1.2, .blockSize = 11}, 0.85);
 }
 
+/// In the mean of all pixels disparities are exact to 0.02 pixels: an error of all depths is one of
+/// the whole motion.
+TEST_F(StereoWall, BlockMatchingHasNoBias) {
+    StereoDepth stereo(wall.camera(0), wall.camera(1),
+                       {.halvings = 0, .minDepth = 1.2, .blockSize = 11});
+    const Camera& camera = stereo.camera();
+    const double fb = camera.fx() * stereo.baseline();
+    double sum = 0., count = 0.;
+    for (int i = 0; i < 3; ++i) {
+        View view;
+        stereo(images(i), view);
+        const Pose T_w_r = wall.T_w_b(i) * wall.camera(0).T_b_c * stereo.T_r_c().inverse();
+        for (unsigned v = 0; v < camera.height; ++v) {
+            for (unsigned u = 0; u < camera.width; ++u) {
+                const Eigen::Vector3d ray((u - camera.cx()) / camera.fx(),
+                                          (v - camera.cy()) / camera.fy(), 1.);
+                const double error = fb / view.depth[v][u] - fb / wall.depth(T_w_r, ray);
+                if (!(view.depth[v][u] > 0.F) || std::abs(error) > 0.5) continue;
+                sum += error;
+                ++count;
+            }
+        }
+    }
+    EXPECT_NEAR(sum / count, 0., 0.02);
+}
+
 TEST_F(StereoWall, SemiGlobalMatchingFindsMore) {
     expectDepths(
         {.method = StereoMethod::semiGlobal, .halvings = 0, .minDepth = 1.2, .blockSize = 15}, 0.9);
@@ -101,6 +129,46 @@ TEST_F(StereoWall, BlocksAreNotLargerThanTheImages) {
     }
     EXPECT_THROW(StereoDepth(wall.camera(0), wall.camera(1), {.halvings = 2}),
                  std::invalid_argument);
+}
+
+/// Blocks beside texture would match it, and seem to be as near. Noise alone has no depth.
+TEST(Stereo, OnlyPixelsOnTextureHaveDepth) {
+    const Camera camera = makeCamera(160, 60, 1.2);
+    const DistortedCamera left{camera, Eigen::Vector4d::Zero(), Pose::Identity(), {}};
+    DistortedCamera right = left;
+    right.T_b_c.translation().x() = 0.1;
+    constexpr unsigned kBegin = 70, kEnd = 110, kShift = 8;  // of the texture, in the left image
+    StereoImages pair{{60, 160}, {60, 160}};
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(128., 5.);
+    std::uniform_int_distribution<int> grey(0, 255);
+    for (unsigned v = 0; v < 60; ++v) {
+        for (unsigned u = 0; u < 160; ++u) {
+            pair.left[v][u] = static_cast<unsigned char>(noise(random));
+            pair.right[v][u] = static_cast<unsigned char>(noise(random));
+        }
+        for (unsigned u = kBegin; u < kEnd; ++u) {
+            pair.right[v][u - kShift] = pair.left[v][u] = static_cast<unsigned char>(grey(random));
+        }
+    }
+    const auto depths = [&](double ofNoise) {
+        StereoDepth stereo(left, right,
+                           {.halvings = 0, .blockSize = 21, .blur = 1., .noise = ofNoise});
+        View view;
+        stereo(pair, view);
+        std::array<int, 2> found{};  // beside the texture, and on it
+        for (unsigned v = 0; v < 60; ++v) {
+            for (unsigned u = 0; u < 160; ++u) {
+                const bool isOn = u + 2 >= kBegin && u < kEnd + 2;
+                found[isOn ? 1 : 0] += view.depth[v][u] > 0.F ? 1 : 0;
+            }
+        }
+        return found;
+    };
+    const auto all = depths(0.), onTexture = depths(5. / 255.);
+    EXPECT_GT(all[0], 300);
+    EXPECT_LT(onTexture[0], all[0] / 3);
+    EXPECT_GT(onTexture[1], 0.9 * all[1]);
 }
 
 TEST_F(StereoWall, RejectsCamerasInTheWrongOrderAndImagesOfAnotherSize) {
