@@ -37,6 +37,11 @@ void addMappingKeys(KeyTable& keys, ExploreConfig& c) {
                 c.depthMissing, {0., 1.});
     keys.number({"baseline", "m", "distance between the cameras of `stereo`"}, c.baseline,
                 {0.01, 10.});
+    keys.number({"projector", "",
+                 "infrared projector of `stereo`, whose random dots give texture to uniform "
+                 "surfaces: brightness of the dots at 1 m relative to the other light; it falls "
+                 "with the square of distance; 0: no projector"},
+                c.projector, {0., 100.});
     keys.number({"vertical_sigma", "rad",
                  "standard deviation of the vertical, which the accelerometer measures with every "
                  "image; 0: it is not measured"},

@@ -35,6 +35,8 @@ struct ExploreConfig {
     double depthSigma = 0.0015;
     double depthMissing = 0.02;  ///< depth sensor: share of pixels without a measurement
     double baseline = 0.11;      ///< baseline of the stereo camera [m]
+    /// Contrast, at 1 m, of the pattern that the projector of the stereo camera adds; 0: none.
+    double projector = 1.;
     /// Standard deviation of the vertical that the accelerometer measures with every image [rad];
     /// 0: the vertical is not measured.
     double verticalSigma = 0.01;

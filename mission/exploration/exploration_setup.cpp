@@ -133,11 +133,13 @@ ExplorationSetup setUpExploration(const PlanningProblem& problem) {
     camera.depth = depthSensorOf(config.explore.sensor);
     camera.depthNoise = {config.explore.depthSigma, config.explore.depthMissing};
     camera.baseline = config.explore.baseline;
+    camera.projector = config.explore.projector;
     camera.verticalSigma = config.explore.verticalSigma;
     setup.flight.robot.body.gyroscopeNoise = config.explore.gyroscopeNoise;
     setup.flight.arrivalTolerance = config.explore.goalTolerance;
     PhotometricOptions ofSensor = config.photometric;
     ofSensor.scale = 1.;
+    camera.stereo.noise = config.photometric.sigma;
     camera.pairNoise = config.fly.camera == "real" ? realNoise() : assumedNoise(ofSensor);
     return setup;
 }

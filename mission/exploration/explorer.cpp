@@ -20,7 +20,8 @@ namespace {
 
 /// Number of steps into unobserved space while the map does not grow; then the robot hovers. A
 /// single camera sees no depth until it has moved: it may take some such steps in a flight, but
-/// more would lead into obstacles that it has not mapped.
+/// more would lead into obstacles that it has not mapped. Stereo takes none: what it does not
+/// observe may be a surface without texture.
 constexpr int kMostBlindSteps = 1;
 constexpr int kMostMonocularSteps = 6;
 /// Time without an update, while the plan is only a part of the way, after which the next image
@@ -302,8 +303,13 @@ bool Explorer::isLooking() const {
 }
 
 bool Explorer::mayStepBlindly() const {
-    if (config_.explore.sensor == ExploreSensor::monocular) {
-        return record_.blindSteps < kMostMonocularSteps;
+    switch (config_.explore.sensor) {
+        case ExploreSensor::stereo:
+            return false;
+        case ExploreSensor::monocular:
+            return record_.blindSteps < kMostMonocularSteps;
+        case ExploreSensor::depth:
+            break;
     }
     return blindSinceGrowth_ < kMostBlindSteps;
 }

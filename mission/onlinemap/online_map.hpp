@@ -19,7 +19,7 @@ namespace photonav {
 bool looksAhead(const Pose& T_b_c);
 
 /// Standard deviation of measured depth at 1 m, which grows with depth squared [m]: depth_sigma of
-/// a depth sensor; for stereo and monocular depth it follows from 0.2 pixels of disparity.
+/// a depth sensor; for stereo and monocular depth it follows from 0.25 pixels of disparity.
 double depthSigmaAtOneMetre(const Config& config);
 
 /// The region in which obstacles of a depth image matter: the heights that the robot may reach.

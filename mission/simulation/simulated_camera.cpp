@@ -31,6 +31,7 @@ SimulatedCamera::SimulatedCamera(const ViewSource& world, const Camera& camera, 
     DistortedCamera right = left;
     right.T_b_c.translation().x() = options.baseline;
     stereo_.emplace(left, right, options.stereo);
+    if (options.projector > 0.) projector_.emplace(camera, options.projector);
 }
 
 bool SimulatedCamera::isBlack(double time) {
@@ -73,7 +74,7 @@ void SimulatedCamera::measureDepth(const Pose& T_c_w, View& view) {
         case DepthSensor::rgbd:
             return addDepthNoise(view.depth, options_.depthNoise, depthRandom_, options_.isStopped);
         case DepthSensor::stereo:
-            (*stereo_)({pictureOf(view.intensity), rightImage(T_c_w)}, view);
+            (*stereo_)(takePair(T_c_w, view), view);
     }
 }
 
@@ -85,12 +86,20 @@ vpImage<unsigned char> SimulatedCamera::pictureOf(ImageF ideal) {
     return bytes;
 }
 
-vpImage<unsigned char> SimulatedCamera::rightImage(const Pose& T_c_w) {
-    View view;
+/// @param left ideal view of the left camera
+StereoImages SimulatedCamera::takePair(const Pose& T_c_w, View left) {
+    View right;
     Pose T_r_l = Pose::Identity();
     T_r_l.translation().x() = -options_.baseline;
-    sensor_.render(camera_, T_r_l * T_c_w, view);
-    return pictureOf(std::move(view.intensity));
+    sensor_.render(camera_, T_r_l * T_c_w, right);
+    if (projector_) {
+        projector_->illuminate(left, left.depth, 0.);
+        projector_->illuminate(right, left.depth, options_.baseline);
+    }
+    StereoImages pair;
+    pair.left = pictureOf(std::move(left.intensity));
+    pair.right = pictureOf(std::move(right.intensity));
+    return pair;
 }
 
 std::optional<CameraFrame> SimulatedCamera::receive(double time) {

@@ -12,6 +12,7 @@
 #include "estimation/observation.hpp"
 #include "render/area_sensor.hpp"
 #include "simulation/camera_noise.hpp"
+#include "simulation/pattern_projector.hpp"
 
 namespace photonav {
 
@@ -25,7 +26,9 @@ struct SimulatedCameraOptions {
     DepthSensor depth = DepthSensor::none;
     DepthNoiseOptions depthNoise = {};  ///< noise of DepthSensor::rgbd
     double baseline = 0.11;             ///< baseline of DepthSensor::stereo [m]
-    StereoOptions stereo{.halvings = 0, .blockSize = 21};
+    double projector =
+        0.;  ///< contrast of its PatternProjector, which lights only the pair; 0: none
+    StereoOptions stereo{.halvings = 0, .blockSize = 21, .uniqueness = 20, .blur = 2.};
     /// Noise of the images that stereo matching uses: only the noise of the sensor, whereas the
     /// noise of the robot's images may also represent errors of a model. Empty: no noise.
     ImageNoise pairNoise = {};
@@ -76,7 +79,7 @@ class SimulatedCamera {
     std::optional<MeasuredVertical> measureVertical(const Pose& T_c_w);
     void measureDepth(const Pose& T_c_w, View& view);
     vpImage<unsigned char> pictureOf(ImageF ideal);
-    vpImage<unsigned char> rightImage(const Pose& T_c_w);
+    StereoImages takePair(const Pose& T_c_w, View left);
 
     AreaSensor sensor_;
     Camera camera_;
@@ -84,6 +87,7 @@ class SimulatedCamera {
     SimulatedCameraOptions options_;
     std::mt19937_64 random_, depthRandom_, verticalRandom_;
     std::optional<StereoDepth> stereo_;
+    std::optional<PatternProjector> projector_;
     double next_ = 0.;  // time of the next exposure [s]
     std::deque<CameraFrame> onTheWay_;
 };

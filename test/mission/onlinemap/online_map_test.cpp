@@ -144,7 +144,7 @@ TEST(DepthSigma, OfStereoIsThatOfDisparities) {
     EXPECT_EQ(depthSigmaAtOneMetre(config), config.explore.depthSigma);
     config.explore.sensor = ExploreSensor::stereo;
     const double f = config.camera.camera().fx();
-    EXPECT_NEAR(depthSigmaAtOneMetre(config), 0.2 / (f * config.explore.baseline), 1e-12);
+    EXPECT_NEAR(depthSigmaAtOneMetre(config), 0.25 / (f * config.explore.baseline), 1e-12);
 }
 
 /// How far new walls are told from known ones does not depend on the size of small cells.

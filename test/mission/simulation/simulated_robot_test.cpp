@@ -179,21 +179,34 @@ TEST(SimulatedCamera, StereoWorksAtTheLeastHeightOfACamera) {
     EXPECT_EQ(frame->view.depth.getHeight(), 8U);
 }
 
+class BlankFloor : public ::testing::Test {
+  protected:
+    /// Depth that a stereo camera measures from a height of 2 m.
+    ImageF depth(double projector) const {
+        const MeshRenderer floor(test::floorOf(uniformTexture(0.6F)));
+        const SimulatedCameraOptions options{.depth = DepthSensor::stereo,
+                                             .projector = projector,
+                                             .pairNoise = assumedNoise({.sigma = 0.02})};
+        SimulatedCamera camera(floor, makeCamera(188, 120, 1.2),
+                               assumedNoise({.sigma = 0.02, .scale = 0.08}), options, 1);
+        EXPECT_TRUE(camera.expose(0., lookFrom({0., 0., 2.}, kDown)));
+        return camera.receive(0.)->view.depth;
+    }
+    static double share(const ImageF& depth, double least, double most) {
+        return static_cast<double>(std::count_if(depth.bitmap, depth.bitmap + depth.getSize(),
+                                                 [&](float z) { return z > least && z < most; })) /
+               depth.getSize();
+    }
+};
+
 /// Noise that is correlated between pixels stands for errors of a model. It is not in the pair: it
 /// would look like texture.
-TEST(SimulatedCamera, StereoFindsNothingOnABlankFloor) {
-    const MeshRenderer floor(test::floorOf(uniformTexture(0.6F)));
-    const SimulatedCameraOptions options{.depth = DepthSensor::stereo,
-                                         .pairNoise = assumedNoise({.sigma = 0.02})};
-    SimulatedCamera camera(floor, makeCamera(188, 120, 1.2),
-                           assumedNoise({.sigma = 0.02, .scale = 0.08}), options, 1);
-    ASSERT_TRUE(camera.expose(0., lookFrom({0., 0., 2.}, kDown)));
-    const auto frame = camera.receive(0.);
-    ASSERT_TRUE(frame);
-    const ImageF& depth = frame->view.depth;
-    const auto found = std::count_if(depth.bitmap, depth.bitmap + depth.getSize(),
-                                     [](float z) { return z > 0.F; });
-    EXPECT_LT(found, 0.01 * depth.getSize());
+TEST_F(BlankFloor, StereoFindsNothing) { EXPECT_LT(share(depth(0.), 0., 100.), 0.01); }
+
+TEST_F(BlankFloor, AProjectorGivesItTexture) {
+    const ImageF found = depth(1.);
+    EXPECT_GT(share(found, 1.8, 2.2), 0.55);  // the rest is near the borders
+    EXPECT_LT(share(found, 0., 1.8) + share(found, 2.2, 100.), 0.02);
 }
 
 }  // namespace
