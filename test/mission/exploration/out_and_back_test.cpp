@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "exploration/explorer.hpp"
-#include "flight/flight_setup.hpp"
+#include "flight/flight.hpp"
 #include "flight/flight_statistics.hpp"
 #include "mission/exploration/room_to_explore.hpp"
 #include "onlinemap/mapper.hpp"
