@@ -98,8 +98,10 @@ std::vector<NamedFigure> checkFigures(const CheckOutcome& report,
                            "place of the trajectory.",
                            headingsFigure(checked)});
     }
-    figures.push_back({"trace", "Trace of the pose covariance along the trajectory.",
-                       traceFigure("Trace along the trajectory", paths, true)});
+    figures.push_back(
+        {"trace",
+         "Trace of the pose covariance along the trajectory, before and after every image.",
+         traceFigure("Trace along the trajectory", paths, true)});
     return figures;
 }
 

@@ -128,8 +128,9 @@ std::vector<NamedFigure> planFigures(const Config& config, const World& world,
                                perspective(config, world, outcome, paths))});
     }
     if (!paths.empty()) {
-        figures.push_back({"trace", "Trace of the pose covariance along the path.",
-                           traceFigure("Uncertainty along the path", paths, true)});
+        figures.push_back(
+            {"trace", "Trace of the pose covariance along the path, before and after every image.",
+             traceFigure("Uncertainty along the path", paths, true)});
     }
     if (outcome.path && world.hasTexture()) {
         figures.push_back({"views",

@@ -37,12 +37,14 @@ json numbers(const Eigen::MatrixBase<Derived>& matrix) {
 }
 
 json pointToJson(const PathPoint& point) {
-    return {{"position", numbers(point.position)},
-            {"T_w_c_rows", numbers(point.T_w_c.matrix().topRows<3>())},
-            {"trace", point.trace},
-            {"position_covariance", numbers(point.positionCovariance)},
-            {"distance", point.distance},
-            {"cost", point.cost}};
+    json content{{"position", numbers(point.position)},
+                 {"T_w_c_rows", numbers(point.T_w_c.matrix().topRows<3>())},
+                 {"trace", point.trace},
+                 {"position_covariance", numbers(point.positionCovariance)},
+                 {"distance", point.distance},
+                 {"cost", point.cost}};
+    if (point.traceBefore) content["trace_before"] = *point.traceBefore;
+    return content;
 }
 
 json pathToJson(const DrawnPath& path) {

@@ -39,6 +39,7 @@ DrawnPath drawnPath(const EvaluatedPath& path, const Pose& T_b_c) {
     for (const BeliefPoint& point : path.points) {
         result.points.push_back(
             makePathPoint(belief(point, T_b_c), point.trace, point.length, point.cost));
+        result.points.back().traceBefore = point.traceBefore;
     }
     return result;
 }

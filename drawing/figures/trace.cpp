@@ -13,8 +13,11 @@ Figure traceFigure(const std::string& title, const std::vector<DrawnPath>& paths
     plot.height = 420.;
     for (auto path = paths.rbegin(); path != paths.rend(); ++path) {
         Plot::Points curve;
-        for (const PathPoint& point : path->points) curve.emplace_back(point.distance, point.trace);
-        plot.curve(curve, {.color = path->color, .width = 2.6, .name = path->name});
+        for (const PathPoint& point : path->points) {
+            if (point.traceBefore) curve.emplace_back(point.distance, *point.traceBefore);
+            curve.emplace_back(point.distance, point.trace);
+        }
+        plot.curve(curve, {.color = path->color, .width = 1.6, .name = path->name});
     }
     return {title, {{plot}}};
 }

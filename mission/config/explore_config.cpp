@@ -54,7 +54,7 @@ void addMappingKeys(KeyTable& keys, ExploreConfig& c) {
     keys.number({"range", "m", "surfaces farther away are not mapped"}, c.range, {0.5, 12.});
     keys.number(
         {"resolution", "m",
-         fmt::format("edge of the map's cells; if not given, that of the cells of a known map "
+         fmt::format("edge of the map's cells; if not given, the edge of a known map's cells "
                      "(`map.file` beside `scene.file`), {} without one",
                      kExploreCell)},
         c.resolution, {kLeastExploreCell, kMostExploreCell});

@@ -83,19 +83,20 @@ function createCharts(onPick) {
     }));
   }
 
-  function curvesOf(key, log) {
+  /// @param keys of a point's values, in their order along the path
+  function curvesOf(keys, log) {
     return paths.map((path) => ({
       label: path.name, borderColor: path.color, backgroundColor: path.color,
-      data: path.points.filter((point) => typeof point[key] === 'number' && (!log || point[key] > 0))
-          .map((point) => ({x: point.distance, y: point[key]})),
+      data: path.points.flatMap((point) => keys.map((key) => ({x: point.distance, y: point[key]})))
+          .filter(({y}) => typeof y === 'number' && (!log || y > 0)),
     })).filter((curve) => curve.data.length > 0);
   }
 
   function drawAll(log) {
     charts.splice(0).forEach((chart) => chart.destroy());
     if (paths.length) {
-      draw('trace-chart', curvesOf('trace', log), 'distance [m]', 'trace [m²]', {log});
-      draw('cost-chart', curvesOf('cost', false), 'distance [m]', 'cost');
+      draw('trace-chart', curvesOf(['trace_before', 'trace'], log), 'distance [m]', 'trace [m²]', {log});
+      draw('cost-chart', curvesOf(['cost'], false), 'distance [m]', 'cost');
     }
     const progress = data.progress.filter((step) => typeof step.cost === 'number')
         .map((step) => ({x: step.vertices, y: step.cost}));

@@ -8,8 +8,10 @@ function costParts({baseline, ...planned}) {
       {length: path.metric_length, uncertainty: path.metric_length * path.mean_trace}));
 }
 
-const costAt = (alpha, kappa, {length, uncertainty}) =>
-    ({ofLength: alpha * length, ofUncertainty: (1 - alpha) * kappa * uncertainty});
+function costAt(alpha, kappa, {length, uncertainty}) {
+  const ofLength = alpha * length, ofUncertainty = (1 - alpha) * kappa * uncertainty;
+  return {ofLength, ofUncertainty, sum: ofLength + ofUncertainty};
+}
 
 /// The alpha at which two paths cost the same; null: one of them is cheaper at every alpha.
 function equalAlpha(kappa, [a, b]) {
@@ -23,7 +25,8 @@ function costAdvice(kappa, parts) {
   if (parts.length < 2) return advice;
   const equal = equalAlpha(kappa, parts), [first, second] = paths.map(({name}) => name);
   const isLonger = parts[0].length > parts[1].length;
-  return `${advice} ` + (equal === null ? 'The same one of these two paths is cheaper at every alpha.'
+  const isFirstCheaper = costAt(0.5, kappa, parts[0]).sum < costAt(0.5, kappa, parts[1]).sum;
+  return `${advice} ` + (equal === null ? `${isFirstCheaper ? first : second} is cheaper at every alpha.`
       : `These two paths cost the same at alpha ${say(equal)}: ${isLonger ? first : second} is cheaper below it, ` +
         `${isLonger ? second : first} above it.`);
 }
@@ -37,7 +40,7 @@ function fillCost() {
     const at = Number(slider.value);
     element('cost-alpha-value').textContent = `${at}${at === alpha ? ', as planned' : ''}`;
     element('cost-rows').replaceChildren(...parts.map((part, i) => {
-      const {ofLength, ofUncertainty} = costAt(at, kappa, part), sum = ofLength + ofUncertainty;
+      const {ofLength, ofUncertainty, sum} = costAt(at, kappa, part);
       const share = make('meter', undefined, {min: 0, max: 1, value: ofLength / sum});
       const row = make('tr'), bar = make('td');
       bar.append(share);

@@ -58,7 +58,7 @@ function numberGroups(result) {
 }
 
 function addAllNumbers() {
-  const box = make('div', undefined, {className: 'wide'}), columns = make('div', undefined, {className: 'columns'});
+  const box = make('details', undefined, {className: 'wide'}), columns = make('div', undefined, {className: 'columns'});
   for (const [title, pairs] of numberGroups(data.result)) {
     const group = make('div'), table = make('table', undefined, {className: 'numbers'});
     rows(table, pairs);
@@ -66,6 +66,6 @@ function addAllNumbers() {
     columns.append(group);
   }
   if (!columns.childElementCount) return;
-  box.append(make('h2', 'All numbers'), columns);
+  box.append(make('summary', 'All numbers'), columns);
   element('tables').append(box);
 }

@@ -48,7 +48,7 @@ const kTitles = {
 
 /// Label and unit of keys, or of paths, whose own words do not say enough.
 const kNames = {
-  metric_length: ['Length with rotations counted', 'm'], length_share: ['Share of the length in the cost', '%'],
+  metric_length: ['Length with rotations counted', 'm'], length_share: ['Share of the length, with rotations, in the cost', '%'],
   uncertainty_share: ['Share of the uncertainty in the cost', '%'],
   goal_trace: ['Trace at the goal', 'm²'], trace_before_view: ['Trace before the view', 'm²'],
   information_trace: ['Trace of the information (1/m² and 1/rad², added)', ''],
