@@ -178,7 +178,9 @@ int run(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);
-        printMessage(fmt::format("{} (see photonav --help)", complaint(app, error)));
+        const auto given = app.get_subcommands();
+        const std::string command = given.empty() ? "" : given.back()->get_name() + " ";
+        printMessage(fmt::format("{} (see photonav {}--help)", complaint(app, error), command));
         return kBadInput;
     }
     for (const Command& command : commands) {

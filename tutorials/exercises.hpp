@@ -32,14 +32,16 @@ inline bool asksForCheck(int argc, char** argv) {
     return argc > 1 && std::string(argv[1]) == "--check";
 }
 
-/// Handles `--check ANSWER1 [ANSWER2]`, where "-" leaves an exercise out.
+/// Handles `--check ANSWER1 [ANSWER2]`, where "-" leaves an exercise out. There is no other option.
 /// @return exit code: 0 all right, 1 not all, 2 not understood; none where no check is asked for
 inline std::optional<int> checkAnswers(int argc, char** argv,
                                        const std::vector<Exercise>& exercises) {
-    if (!asksForCheck(argc, argv)) return {};
+    const bool isOption = argc > 1 && std::string(argv[1]).starts_with("--");
+    if (!isOption) return {};
     const std::vector<std::string> texts(argv + 2, argv + argc);
     std::vector<std::optional<double>> given;
-    bool isUnderstood = !texts.empty() && texts.size() <= exercises.size();
+    bool isUnderstood =
+        asksForCheck(argc, argv) && !texts.empty() && texts.size() <= exercises.size();
     for (const std::string& text : texts) {
         given.push_back(numberIn(text));
         isUnderstood = isUnderstood && (given.back() || text == "-");

@@ -139,9 +139,9 @@ function createView3d(canvas, onPick) {
             new THREE.Vector3((low[0] - 0.35) * gridStep, j * gridStep, z), 19));
     }
     ground.add(label('x [m]', cssColor('--ink'),
-        new THREE.Vector3((high[0] + 0.9) * gridStep, (low[1] - 0.3) * gridStep, z), 22));
+        new THREE.Vector3((high[0] + 1.5) * gridStep, (low[1] - 0.3) * gridStep, z), 22));
     ground.add(label('y [m]', cssColor('--ink'),
-        new THREE.Vector3((low[0] - 0.3) * gridStep, (high[1] + 0.9) * gridStep, z), 22));
+        new THREE.Vector3((low[0] - 0.3) * gridStep, (high[1] + 1.5) * gridStep, z), 22));
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.Float32BufferAttribute(points, 3));
     ground.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: cssColor('--grid')})));

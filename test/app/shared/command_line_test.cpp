@@ -39,7 +39,7 @@ TEST_F(CommandLine, BadInputIsOneLineAndExitCodeTwo) {
         expectBadInput(run, "photonav: --seed: ");
         expectBadInput(photonav(std::string(command) + " x.yaml --seed 0"), "photonav: --seed: ");
     }
-    expectBadInput(photonav("plan --bar"), "--bar: no such option");
+    expectBadInput(photonav("plan --bar"), "--bar: no such option (see photonav plan --help)");
     for (const char* arguments : {"check x.tum --max-sigma nan", "servo x.yaml --gain nan",
                                   "servo x.yaml --duration -nan", "info x.yaml --height nan"}) {
         expectBadInput(photonav(arguments), "nan' is not a number");
