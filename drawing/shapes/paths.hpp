@@ -20,7 +20,7 @@ inline constexpr Color kStartColor{22, 128, 57}, kGoalColor{160, 28, 92};
 struct PathPoint {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< camera centre, world frame [m]
     Pose T_w_c = Pose::Identity();
-    double trace = 0.0;  ///< weightedTrace() of the 6x6 covariance [m^2]
+    double trace = 0.0;                      ///< weightedTrace() of the 6x6 covariance [m^2]
     std::optional<double> traceBefore = {};  ///< before the image at the point; none: not known
     /// Covariance of `position`, world frame [m^2].
     Eigen::Matrix3d positionCovariance = Eigen::Matrix3d::Zero();
