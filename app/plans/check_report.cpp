@@ -129,8 +129,11 @@ ReportTable summaryOf(const CheckOutcome& report) {
         fmt::format("with a believed probability of {:.1f} %", 100. * checked.arrivalProbability));
     row("mean trace", fmt::format("{:.3g} m²", checked.meanTrace));
     if (report.turned) {
-        row("with the best headings",
-            fmt::format("{:.3g} m²; {}", report.turned->meanTrace, verdictOf(*report.turned)));
+        // Each is the best for its own image, not for the whole trajectory.
+        const bool isBetter = report.turned->meanTrace < checked.meanTrace;
+        row("with the best headings", fmt::format("{:.3g} m²{}; {}", report.turned->meanTrace,
+                                                  isBetter ? "" : ", no better than the given ones",
+                                                  verdictOf(*report.turned)));
     }
     const bool isWithin = report.obstruction.outside.empty();
     row("in collision", stretchesText(report.obstruction.collisions) +
