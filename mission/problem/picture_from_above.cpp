@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/camera.hpp"
+#include "geometry/convex_polygon.hpp"
 
 namespace photonav {
 namespace {
@@ -95,18 +96,6 @@ void outlineSteps(ImageF& picture, const ImageF& depth) {
     }
 }
 
-bool contains(const std::vector<Eigen::Vector2d>& convex, const Eigen::Vector2d& p) {
-    bool isLeft = false, isRight = false;
-    for (std::size_t i = 0; i < convex.size(); ++i) {
-        const Eigen::Vector2d side = convex[(i + 1) % convex.size()] - convex[i];
-        const Eigen::Vector2d way = p - convex[i];
-        const double cross = side.x() * way.y() - side.y() * way.x();
-        isLeft = isLeft || cross > 0.;
-        isRight = isRight || cross < 0.;
-    }
-    return !(isLeft && isRight);
-}
-
 /// A camera at the height of the cut looks into a solid, whose top is above it.
 /// @param corner of the picture: smallest x, largest y
 /// @param step edges of a pixel [m]
@@ -125,7 +114,7 @@ void fillCut(ImageF& picture, const Prism& solid, const Eigen::Vector2d& corner,
         for (int u = from.x(); u < to.x(); ++u) {
             const Eigen::Vector2d centre(corner.x() + (u + 0.5) * step.x(),
                                          corner.y() - (v + 0.5) * step.y());
-            if (contains(solid.footprint, centre)) picture[v][u] = kCut;
+            if (isInConvexPolygon(centre, solid.footprint)) picture[v][u] = kCut;
         }
     }
 }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "geometry/convex_polygon.hpp"
 #include "map/brick_leaves.hpp"
 
 namespace photonav {
@@ -180,19 +181,6 @@ void markTriangle(const std::array<Eigen::Vector3d, 3>& corners, const ObstacleC
     }
 }
 
-/// Whether p lies in a convex polygon.
-bool isInside(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& polygon) {
-    bool left = false, right = false;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Eigen::Vector2d side = polygon[(i + 1) % polygon.size()] - polygon[i];
-        const Eigen::Vector2d to = p - polygon[i];
-        const double area = side.x() * to.y() - side.y() * to.x();
-        left = left || area > 0.;
-        right = right || area < 0.;
-    }
-    return !(left && right);
-}
-
 /// Marks the cells whose centre is in a prism; cell i has its centre at i times the resolution.
 void markPrism(const Prism& prism, const ObstacleCells& cells) {
     Eigen::AlignedBox2d around;
@@ -207,9 +195,8 @@ void markPrism(const Prism& prism, const ObstacleCells& cells) {
          y < end.y() && y * cells.layout.resolution <= around.max().y(); ++y) {
         for (int x = std::max(firstAt(around.min().x()), origin.x());
              x < end.x() && x * cells.layout.resolution <= around.max().x(); ++x) {
-            if (!isInside({x * cells.layout.resolution, y * cells.layout.resolution},
-                          prism.footprint))
-                continue;
+            const Eigen::Vector2d centre(x * cells.layout.resolution, y * cells.layout.resolution);
+            if (!isInConvexPolygon(centre, prism.footprint)) continue;
             cells.fill({x, y, lowest}, {x + 1, y + 1, above}, true);
         }
     }
