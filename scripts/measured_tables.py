@@ -77,6 +77,7 @@ def explorationRows(label, result):
             "ends": ends(counts),
             "length": number(s["length"], 1) + " m",
             "duration": number(s["duration_s"], 0) + " s",
+            "decided after": number(s["decided_after_m"], 1) + " m" if s["decided_after_m"] is not None else "",
             "mean trace": number(s["mean_trace"], 4) + " m²",
             "goal trace": number(s["goal_trace"], 4) + " m²",
             "goal error": millimetres(s["goal_error_m"]),

@@ -46,15 +46,16 @@ void printFlight(const ExplorationResult& flight, const ExplorationSummary& s) {
 
 void printSummary(const std::vector<ExplorationSummary>& summaries) {
     TextTable table{{"planner", "arrived", "collisions", "error (rms)", "NEES (median)",
-                     "goal error", "duration", "length", "mean trace"},
+                     "goal error", "duration", "length", "decided after", "mean trace"},
                     {}};
     for (const ExplorationSummary& s : summaries) {
-        table.rows.push_back({s.planner, fmt::format("{} of {}", s.arrived, s.flights),
-                              fmt::format("{}", s.collisions), lengthText(s.positionRmse),
-                              fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian),
-                              lengthText(s.goalError), fmt::format("{:.1f} s", s.duration),
-                              fmt::format("{:.1f} m", s.length),
-                              fmt::format("{:.3g} m²", s.meanTrace)});
+        table.rows.push_back(
+            {s.planner, fmt::format("{} of {}", s.arrived, s.flights),
+             fmt::format("{}", s.collisions), lengthText(s.positionRmse),
+             fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian), lengthText(s.goalError),
+             fmt::format("{:.1f} s", s.duration), fmt::format("{:.1f} m", s.length),
+             std::isfinite(s.decidedAfter) ? fmt::format("{:.1f} m", s.decidedAfter) : "never",
+             fmt::format("{:.3g} m²", s.meanTrace)});
     }
     fmt::print("{}", alignedText(table));
 }

@@ -33,6 +33,8 @@ ReportTable tableOf(const ExplorationSummary& s) {
               fmt::format("{:.2f}, {:.2f}", s.nees, s.neesMedian)},
              {"true distance to the goal at the end, median", lengthText(s.goalError)},
              {"length and duration, mean", fmt::format("{:.1f} m, {:.1f} s", s.length, s.duration)},
+             {"flown when the way around the obstacles was decided, mean",
+              text("{:.1f} m", s.decidedAfter)},
              {"trace of the beliefs, mean and at the end",
               fmt::format("{:.3g}, {:.3g} m²", s.meanTrace, s.goalTrace)},
              {"time of an update, median", text("{:.0f} ms", 1e3 * s.updateMedian)},

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "exploration/homotopy.hpp"
 #include "io/stopwatch.hpp"
 #include "render/interruptible_views.hpp"
 
@@ -91,7 +92,11 @@ void Exploration::enterEnd() {
     result_.believedGoal = explorer_.arrival()->position;
     result_.arrivalProbability = explorer_.arrival()->probability;
     if (result_.end != FlightEnd::arrived) return;
-    if (evaluator_.goalError() <= setup_.config.explore.goalTolerance) return;
+    if (evaluator_.goalError() <= setup_.config.explore.goalTolerance) {
+        const HomotopyClasses classes(setup_.truth.clearance, setup_.config.bounds);
+        result_.decidedAfter = flownUntilDecided(result_, setup_.truth.T_b_c, classes);
+        return;
+    }
     result_.end = FlightEnd::astray;
     result_.reason = fmt::format("the pose was {:.2f} m wrong at the goal", result_.goalError);
 }

@@ -2,6 +2,8 @@
 // The flight of a simulated robot to a goal in an unknown scene.
 #pragma once
 
+#include <limits>
+
 #include "exploration/explorer.hpp"
 #include "flight/flight_setup.hpp"
 
@@ -11,6 +13,8 @@ namespace photonav {
 /// length of the true path so far [m].
 struct ExplorationResult : FlightResult, ExplorationRecord {
     double wallSeconds = 0.;  ///< wall-clock time of the simulation [s]
+    /// Of a flight that arrived: see flownUntilDecided() [m].
+    double decidedAfter = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The unknown scene and the conditions of flight.

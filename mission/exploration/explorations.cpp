@@ -41,7 +41,7 @@ ExplorationSummary summarise(std::span<const ExplorationResult> flights,
     if (flights.empty()) return s;
     s.planner = flights.front().planner;
     constexpr double kNoFlight = ExplorationSummary::kNone;
-    std::vector<double> nees, goalErrors, durations, lengths, traces, goalTraces, updates;
+    std::vector<double> nees, goalErrors, durations, lengths, decided, traces, goalTraces, updates;
     double square = 0., samples = 0.;
     const auto traceOf = [&](const FlightSample& sample) {
         return weightedTrace(sample.belief.covariance, characteristicLength);
@@ -52,6 +52,7 @@ ExplorationSummary summarise(std::span<const ExplorationResult> flights,
         goalErrors.push_back(flight.goalError);
         durations.push_back(flight.duration);
         lengths.push_back(flight.flown);
+        if (!std::isnan(flight.decidedAfter)) decided.push_back(flight.decidedAfter);
         for (const PlanUpdate& update : flight.updates) updates.push_back(seconds(update));
         if (flight.samples.empty()) continue;
         if (const double x = neesPerDof(flight); !std::isnan(x)) nees.push_back(x);
@@ -67,6 +68,7 @@ ExplorationSummary summarise(std::span<const ExplorationResult> flights,
     s.goalError = median(goalErrors, kNoFlight);
     s.duration = mean(durations, kNoFlight);
     s.length = mean(lengths, kNoFlight);
+    s.decidedAfter = mean(decided, kNoFlight);
     s.meanTrace = mean(traces, kNoFlight);
     s.goalTrace = mean(goalTraces, kNoFlight);
     if (updates.empty()) return s;

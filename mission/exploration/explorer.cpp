@@ -250,13 +250,14 @@ void Explorer::takeOver(Replanned replanned) {
     tracker_.setMap(views());
     pilot_.setMap(views());
     if (replanned.hasMapGrown) blindSinceGrowth_ = 0;
-    hasPath_ = replanned.reachesGoal;
+    hasPath_ = !replanned.toGoal.empty();
     lastUpdate_ = time_;
     flyOn(std::move(replanned.way));
     PlanUpdate& update = replanned.update;
     update.time = time_;
     if (background_) monitor_.onPlan(replanned.request.imageTime, update.isEndedByClock);
     record_.updates.push_back(update);
+    record_.plans.push_back(std::move(replanned.toGoal));
     if (on_.update) on_.update(record_);
     if (on_.moment) showMoment(std::move(replanned));
 }

@@ -67,6 +67,9 @@ struct ExplorationRecord {
     int keyframes = 0;   ///< number of images fused into the map
     int blindSteps = 0;  ///< number of steps into space that could not be observed first
     std::vector<PlanUpdate> updates;
+    /// After every update: the waypoints to the goal, from above; empty: no way was known. Not kept
+    /// in journals.
+    std::vector<std::vector<Eigen::Vector2d>> plans;
     /// The map made by the robot; null: not kept. In real time it is written until the flight ends.
     std::shared_ptr<TexturedOcTree> map;
     std::optional<RealTimeSummary> realTime = {};  ///< of a flight in real time that has ended

@@ -92,6 +92,7 @@ json lineOf(const ExplorationResult& flight, json updates) {
             {"times_lost", flight.timesLost},
             {"goal_error", flight.goalError},
             {"arrival_probability", flight.arrivalProbability},
+            {"decided_after", finiteOrNull(flight.decidedAfter)},
             {"least_clearance", finiteOrNull(flight.leastClearance)},
             {"images", flight.images},
             {"rejected_images", flight.rejectedImages},
@@ -142,6 +143,7 @@ ExplorationResult TrialKind::load(const json& line, const fs::path& folder) {
     flight.timesLost = countOf(line, "times_lost");
     flight.goalError = nonNegative(line, "goal_error");
     flight.arrivalProbability = nonNegative(line, "arrival_probability");
+    flight.decidedAfter = numberOrNone(line, "decided_after");
     flight.leastClearance = numberOrNone(line, "least_clearance");
     flight.images = countOf(line, "images");
     flight.rejectedImages = countOf(line, "rejected_images");

@@ -28,6 +28,14 @@ SpaceAhead spaceIn(const OnlineMap& map, const Config& config, const ExplorePlan
                 isAhead && config.space != StateKind::position && kind.headings != Headings::fixed};
 }
 
+std::vector<Eigen::Vector2d> waypointsFromAbove(const std::vector<BeliefPoint>& path) {
+    std::vector<Eigen::Vector2d> places;
+    for (const BeliefPoint& point : path) {
+        if (point.isWaypoint) places.emplace_back(point.T_w_b.translation().head<2>());
+    }
+    return places;
+}
+
 }  // namespace
 
 double clearanceInView(const ObstaclesInView& inView, const Eigen::Vector3d& p_w, double radius,
@@ -52,7 +60,7 @@ Replanned Replanner::replan(ReplanRequest request, const PlanningLimits& limits)
     if (isFirst_) replanned.change.join(map_.whole());  // for those who saw no earlier change
     isFirst_ = false;
     replanned.views = planner_.views();
-    replanned.reachesGoal = planner_.reachesGoal();
+    if (planner_.reachesGoal()) replanned.toGoal = waypointsFromAbove(planner_.path());
     replanned.way = flyableWay(replanned.request);
     return replanned;
 }

@@ -21,7 +21,7 @@ TRIAL = {
     "position_rmse_m": 0.027, "nees_per_dof": 0.764, "times_lost": 2, "updates": [],
 }
 SUMMARY = {"length": 9.23, "duration_s": 17.2, "goal_error_m": 0.05, "position_rmse_m": 0.027, "nees_per_dof": 0.764,
-           "nees_median_flight_per_dof": 0.764, "update_median_ms": 18.5, "mean_trace": 0.0125, "goal_trace": 0.0375}
+           "nees_median_flight_per_dof": 0.764, "update_median_ms": 18.5, "decided_after_m": 2.34, "mean_trace": 0.0125, "goal_trace": 0.0375}
 FLOWN = {"seed": 1, "planners": [{"planner": "belief_rrt_star", **PLANNER}, {"planner": "rrt_star", **PLANNER}]}
 EXPLORED = {"summary": [{"planner": "rrt_star", **SUMMARY}],
             "trials": [{"planner": "rrt_star", "seed": seed, **TRIAL} for seed in (1, 2)] +
@@ -65,6 +65,7 @@ class Tables(unittest.TestCase):
         (row,) = self.tables.explorationRows("kitchen", EXPLORED)
         self.assertEqual(row["ends"], "2 uncertain")
         self.assertEqual(row["times lost"], "4")
+        self.assertEqual(row["decided after"], "2.3 m")
         self.assertEqual([row["seed"] for row in self.tables.trialRows("kitchen", EXPLORED)], ["1", "2", "1"])
 
     def test_aShortReplayHasNoRelativeErrors(self):

@@ -46,6 +46,7 @@ TEST(ExplorationSummary, CountsEndsAndAveragesTheRest) {
         flights[i].duration = 10. * static_cast<double>(i + 1);
         flights[i].flown = static_cast<double>(i);
     }
+    flights[0].decidedAfter = 1.5;
     const ExplorationSummary s = summarise(flights, 2.);
     EXPECT_EQ(s.planner, "rrt_star");
     EXPECT_EQ(s.flights, 3U);
@@ -54,6 +55,7 @@ TEST(ExplorationSummary, CountsEndsAndAveragesTheRest) {
     EXPECT_EQ(s.goalError, 0.3);
     EXPECT_NEAR(s.duration, 20., 1e-9);
     EXPECT_NEAR(s.length, 1., 1e-9);
+    EXPECT_EQ(s.decidedAfter, 1.5);  // of those that arrived
     // Over exposures, not over flights: a long flight counts for more.
     EXPECT_NEAR(s.positionRmse, std::sqrt((0.01 + 3. * 0.09) / 4.), 1e-9);
     const double unit = 3. + 3. * 4.;  // a radian counts as two metres

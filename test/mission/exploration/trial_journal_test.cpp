@@ -38,6 +38,7 @@ ExplorationResult makeFlight(const TrialItem& item) {
     flight.lostTime = 0.04;
     flight.timesLost = 2;
     flight.goalError = 1e-300;
+    flight.decidedAfter = 0.1;
     flight.leastClearance = 0.7;
     flight.images = 30;
     flight.rejectedImages = 4;
