@@ -9,13 +9,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "depth/disparity_refinement.hpp"
+
 namespace photonav {
 namespace {
 
 constexpr int kDisparityUnit = 16;  // OpenCV gives sixteenths of pixels
-/// OpenCV's block matching rounds up, from 256ths of a pixel: its disparities are too large by this
-/// in the mean, and depths too small by 0.5 % at 6 pixels.
-constexpr float kRoundedUp = 15.F / 32.F;  // [kDisparityUnit]
+constexpr double kLeastNoise = 1.;  // of refined images [grey values]
 constexpr int kMaxDisparities = 512;
 constexpr int kLeastBlock = 5;  // of OpenCV's block matching [pixels]
 
@@ -111,12 +111,14 @@ struct StereoDepth::Impl {
     /// many first columns, although far surfaces are seen there by the right camera as well.
     std::array<cv::Mat, 2> padded;
     std::array<cv::Mat, 2> smooth;  ///< the same, smoothed; without smoothing `padded` itself
-    cv::Mat disparity;
+    cv::Mat matched;                ///< in units of 1 / kDisparityUnit, as wide as `padded`
+    cv::Mat disparity;              ///< CV_32F [pixels]
     cv::Ptr<cv::StereoMatcher> matcher;
 
     Impl(const DistortedCamera& left, const DistortedCamera& right, const StereoOptions& o);
     void rectify(const vpImage<unsigned char>& image, std::size_t side);
     void match();
+    void leaveOutBorder();
 };
 
 StereoDepth::Impl::Impl(const DistortedCamera& left, const DistortedCamera& right,
@@ -195,12 +197,32 @@ void StereoDepth::Impl::rectify(const vpImage<unsigned char>& image, std::size_t
     cv::copyMakeBorder(smoothed, smooth[side], 0, 0, count, 0, cv::BORDER_CONSTANT);
 }
 
+/// Disparities of the left image's pixels, 0 for none.
 void StereoDepth::Impl::match() {
-    matcher->compute(smooth[0], smooth[1], disparity);
-    if (!(options.noise > 0.)) return;
+    matcher->compute(smooth[0], smooth[1], matched);
     const cv::Rect image(count, 0, smooth[0].cols - count, smooth[0].rows);
-    const cv::Mat textured = texturedPixels(smooth[0](image), matcher->getBlockSize(), options);
-    disparity(image).setTo(0, ~textured);
+    matched(image).convertTo(disparity, CV_32F, 1. / kDisparityUnit);
+    if (options.noise > 0.) {
+        const cv::Mat textured = texturedPixels(smooth[0](image), matcher->getBlockSize(), options);
+        disparity.setTo(0., ~textured);
+    }
+    leaveOutBorder();
+    std::array<cv::Mat, 2> pair;
+    for (int i = 0; i < 2; ++i) padded[i](image).convertTo(pair[i], CV_32F);
+    refineDisparities(pair[0], pair[1], matcher->getBlockSize(),
+                      std::max(255. * options.noise, kLeastNoise), disparity);
+}
+
+/// Leaves out disparities whose block is not in the right image, with what the edge filter and the
+/// comparison with the next disparity need.
+void StereoDepth::Impl::leaveOutBorder() {
+    const int margin = matcher->getBlockSize() / 2 + 2;
+    for (int v = 0; v < disparity.rows; ++v) {
+        auto* row = disparity.ptr<float>(v);
+        for (int u = 0; u < disparity.cols; ++u) {
+            if (row[u] > static_cast<float>(u - margin)) row[u] = 0.F;
+        }
+    }
 }
 
 StereoDepth::StereoDepth(const DistortedCamera& left, const DistortedCamera& right,
@@ -219,24 +241,17 @@ void StereoDepth::operator()(const StereoImages& images, View& view) {
     m.rectify(images.left, 0);
     m.rectify(images.right, 1);
     m.match();
+    const auto focalTimesBaseline = static_cast<float>(m.camera.fx() * m.baseline);
+    const auto least = static_cast<float>(
+        std::max(1. / kDisparityUnit, m.camera.fx() * m.baseline / m.options.maxDepth));
     view.intensity.resize(m.camera.height, m.camera.width);
     view.depth.resize(m.camera.height, m.camera.width);
-    const auto numerator = static_cast<float>(kDisparityUnit * m.camera.fx() * m.baseline);
-    const auto least =
-        static_cast<std::int16_t>(std::max(1., std::ceil(numerator / m.options.maxDepth)));
-    const float roundedUp = m.options.method == StereoMethod::blockMatching ? kRoundedUp : 0.F;
-    // Half a block, and what its edge filter and the comparison with the next disparity need, are
-    // in the right image, too.
-    const int margin = m.matcher->getBlockSize() / 2 + 2;
     for (unsigned v = 0; v < m.camera.height; ++v) {
         const auto* grey = m.padded[0].ptr<std::uint8_t>(static_cast<int>(v)) + m.count;
-        const auto* shift = m.disparity.ptr<std::int16_t>(static_cast<int>(v)) + m.count;
+        const auto* disparity = m.disparity.ptr<float>(static_cast<int>(v));
         for (unsigned u = 0; u < m.camera.width; ++u) {
             view.intensity[v][u] = static_cast<float>(grey[u]) / 255.F;
-            const int most = kDisparityUnit * (static_cast<int>(u) - margin);
-            const bool isFound = shift[u] >= least && shift[u] <= most;
-            view.depth[v][u] =
-                isFound ? numerator / (static_cast<float>(shift[u]) - roundedUp) : 0.F;
+            view.depth[v][u] = disparity[u] >= least ? focalTimesBaseline / disparity[u] : 0.F;
         }
     }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth from a calibrated camera pair: rectification and OpenCV's block matching.
+// Depth from a calibrated camera pair: rectification, OpenCV's block matching, and least squares
+// for the fraction of a pixel.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "depth/stereo_depth.hpp"
 
+#include <algorithm>
 #include <random>
+#include <vector>
 
 #include "euroc_dataset.hpp"
 
@@ -55,14 +57,15 @@ TEST_F(StereoWall, BlockMatchingFindsItsDepthThroughDistortionAndTwist) {
     expectDepths({.halvings = 0, .minDepth = 1.2, .blockSize = 11}, 0.85);
 }
 
-/// In the mean of all pixels disparities are exact to 0.02 pixels: an error of all depths is one of
-/// the whole motion.
-TEST_F(StereoWall, BlockMatchingHasNoBias) {
+/// An error of all disparities is one of the whole motion. OpenCV's block matching alone has errors
+/// of 0.07 pixels in the median, and a mean of 0.03.
+TEST_F(StereoWall, DisparitiesAreExactToAFewHundredthsOfAPixel) {
     StereoDepth stereo(wall.camera(0), wall.camera(1),
                        {.halvings = 0, .minDepth = 1.2, .blockSize = 11});
     const Camera& camera = stereo.camera();
     const double fb = camera.fx() * stereo.baseline();
-    double sum = 0., count = 0.;
+    double sum = 0.;
+    std::vector<double> errors;
     for (int i = 0; i < 3; ++i) {
         View view;
         stereo(images(i), view);
@@ -74,11 +77,14 @@ TEST_F(StereoWall, BlockMatchingHasNoBias) {
                 const double error = fb / view.depth[v][u] - fb / wall.depth(T_w_r, ray);
                 if (!(view.depth[v][u] > 0.F) || std::abs(error) > 0.5) continue;
                 sum += error;
-                ++count;
+                errors.push_back(std::abs(error));
             }
         }
     }
-    EXPECT_NEAR(sum / count, 0., 0.02);
+    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+    std::nth_element(errors.begin(), middle, errors.end());
+    EXPECT_NEAR(sum / static_cast<double>(errors.size()), 0., 0.01);
+    EXPECT_LT(*middle, 0.03);
 }
 
 TEST_F(StereoWall, SemiGlobalMatchingFindsMore) {

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "depth/disparity_refinement.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+namespace photonav {
+namespace {
+
+constexpr int kIterations = 2;
+constexpr float kFarthest = 1.F;  // from the disparity that was matched [pixels]
+/// Standard deviation of the slopes of disparity that is assumed beforehand.
+constexpr double kSlope = 0.3;
+/// Gaussian that smooths the images, so that they are nearly linear between pixels.
+constexpr double kSmooth = 0.7;  // [pixels]
+
+/// Both images, smoothed, and their horizontal gradients.
+struct Pair {
+    cv::Mat left, right, ofLeft, ofRight;
+
+    Pair(const cv::Mat& l, const cv::Mat& r) {
+        cv::GaussianBlur(l, left, {}, kSmooth, 0., cv::BORDER_REFLECT);
+        cv::GaussianBlur(r, right, {}, kSmooth, 0., cv::BORDER_REFLECT);
+        cv::Sobel(left, ofLeft, CV_32F, 1, 0, 3, 1. / 8.);
+        cv::Sobel(right, ofRight, CV_32F, 1, 0, 3, 1. / 8.);
+    }
+};
+
+/// The grey value, or gradient, of a row of the right image at the match of a pixel.
+float at(const float* row, float u, int last) {
+    const int first = static_cast<int>(u);
+    const float part = u - static_cast<float>(first);
+    return (1.F - part) * row[first] + part * row[std::min(first + 1, last)];
+}
+
+/// The contrast of the left image divided by that of the right one, over all matched pixels.
+double contrastRatio(const Pair& pair, const cv::Mat& disparity) {
+    Eigen::Array2d sum(0., 0.), square(0., 0.);
+    double n = 0.;
+    for (int v = 0; v < disparity.rows; ++v) {
+        const auto* d = disparity.ptr<float>(v);
+        for (int u = 0; u < disparity.cols; ++u) {
+            if (!(d[u] > 0.F) || static_cast<float>(u) < d[u]) continue;
+            const Eigen::Array2d grey(
+                pair.left.at<float>(v, u),
+                at(pair.right.ptr<float>(v), static_cast<float>(u) - d[u], disparity.cols - 1));
+            sum += grey;
+            square += grey * grey;
+            ++n;
+        }
+    }
+    const Eigen::Array2d variance = square - sum * sum / std::max(n, 1.);
+    return variance.minCoeff() > 0. ? std::sqrt(variance[0] / variance[1]) : 1.;
+}
+
+/// The parts of a block's normal equations for the unknowns a, b, c of D = a + b u + c v, and o,
+/// an offset between the two images. Each pixel has the equation g (a + b u + c v) - o = y. The
+/// parts are the sums of g^2 times 1, u, v, u^2, u v, v^2; of g y and g times 1, u, v; of y, and
+/// the number of pixels.
+enum Part { gg, ggu, ggv, gguu, gguv, ggvv, gy, gyu, gyv, g1, gu, gv, y1, n1, kParts };
+using Parts = Eigen::Array<double, (kParts + 3) / 4 * 4, 1>;  // in whole registers
+
+/// The equations of a row of pixels. Where the right image is moved by the present disparity d, the
+/// left one is e brighter, and g is the mean gradient of the two. But for an offset, e + g (D - d)
+/// vanishes at the disparity D; so y = g d - e.
+void equationsOf(const Pair& pair, const cv::Mat& disparity, double contrast, int v,
+                 std::vector<Parts>& row) {
+    const int last = disparity.cols - 1;
+    const auto* d = disparity.ptr<float>(v);
+    const auto ratio = static_cast<float>(contrast);
+    for (int u = 0; u <= last; ++u) {
+        const float from = static_cast<float>(u) - d[u];
+        if (!(d[u] > 0.F) || from < 0.F) {
+            row[u].setZero();
+            continue;
+        }
+        const float moved = ratio * at(pair.right.ptr<float>(v), from, last);
+        const float ofMoved = ratio * at(pair.ofRight.ptr<float>(v), from, last);
+        const double g = 0.5 * (pair.ofLeft.at<float>(v, u) + ofMoved);
+        const double y = g * d[u] - (pair.left.at<float>(v, u) - moved);
+        const double x = g * u, z = g * v;
+        row[u] << g * g, g * x, g * z, x * x, x * z, z * z, y * g, y * x, y * z, g, x, z, y, 1., 0.,
+            0.;
+    }
+}
+
+/// The disparity at the middle (u, v) of a block.
+/// @param information of the assumption about slopes
+float solve(const Parts& s, double u, double v, double information) {
+    // From the corner of the image to the middle of the block
+    const double du = s[ggu] - u * s[gg], dv = s[ggv] - v * s[gg];
+    const double duv = s[gguv] - u * s[ggv] - v * du;
+    const Eigen::Vector3d g(s[g1], s[gu] - u * s[g1], s[gv] - v * s[g1]);
+    const Eigen::Vector3d b(s[gy], s[gyu] - u * s[gy], s[gyv] - v * s[gy]);
+    Eigen::Matrix3d A;
+    A << s[gg], du, dv,                                      //
+        du, s[gguu] - u * (s[ggu] + du) + information, duv,  //
+        dv, duv, s[ggvv] - v * (s[ggv] + dv) + information;
+    A -= g * g.transpose() / s[n1];  // without the offset
+    return static_cast<float>(A.inverse().row(0).dot(b - s[y1] / s[n1] * g));
+}
+
+/// One Gauss-Newton step of every disparity. Sums over blocks are kept up to date from row to row,
+/// and from pixel to pixel.
+void improve(const Pair& pair, int block, double information, const cv::Mat& matched,
+             cv::Mat& disparity) {
+    const int width = disparity.cols, height = disparity.rows, half = block / 2;
+    const double contrast = contrastRatio(pair, disparity);
+    std::vector<std::vector<Parts>> rows(block, std::vector<Parts>(width, Parts::Zero()));
+    std::vector<Parts> columns(width, Parts::Zero());
+    for (int v = -half; v < height; ++v) {
+        const int enters = v + half;
+        std::vector<Parts>& row = rows[enters % block];
+        for (int u = 0; u < width; ++u) columns[u] -= row[u];  // leaves
+        if (enters < height) {
+            equationsOf(pair, disparity, contrast, enters, row);
+            for (int u = 0; u < width; ++u) columns[u] += row[u];
+        } else {
+            std::fill(row.begin(), row.end(), Parts::Zero());
+        }
+        if (v < 0) continue;
+        Parts sum = Parts::Zero();
+        for (int u = 0; u < std::min(half, width); ++u) sum += columns[u];
+        for (int u = 0; u < width; ++u) {
+            if (u + half < width) sum += columns[u + half];
+            if (u - half - 1 >= 0) sum -= columns[u - half - 1];
+            float& d = disparity.at<float>(v, u);
+            if (!(d > 0.F)) continue;
+            const float better = solve(sum, u, v, information);
+            const bool isNear = std::abs(better - matched.at<float>(v, u)) <= kFarthest;
+            d = isNear && better > 0.F ? better : 0.F;
+        }
+    }
+}
+
+}  // namespace
+
+void refineDisparities(const cv::Mat& left, const cv::Mat& right, int block, double noise,
+                       cv::Mat& disparity) {
+    const Pair pair(left, right);
+    const cv::Mat matched = disparity.clone();
+    for (int i = 0; i < kIterations; ++i) {
+        improve(pair, block, 2. * noise * noise / (kSlope * kSlope), matched, disparity);
+    }
+}
+
+}  // namespace photonav
