@@ -145,6 +145,8 @@ class Explorer {
     void showMoment(Replanned replanned);
     void flyOn(std::optional<FlyablePart> way);
     bool isLooking() const;
+    bool isPeering() const;
+    std::optional<FlyablePart> peer() const;
     bool mayStepBlindly() const;
     void follow(FlyablePart part);
     void hover();
@@ -185,6 +187,12 @@ class Explorer {
         double since = 0.;  // [s]
     };
     std::optional<Look> look_;  // that the robot turns to
+    struct Peer {
+        Pose T_w_b = Pose::Identity();  // where it leads
+        double since = 0.;              // [s]
+        bool isFlown = false;           // or has been replaced by another way
+    };
+    std::optional<Peer> peer_;  // the last one
     int blindSinceGrowth_ = 0;  // blind steps since the map last grew
     double lastUpdate_ = 0.;    // time of the last update [s]
     Corrections corrections_;

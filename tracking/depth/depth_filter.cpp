@@ -34,15 +34,16 @@ DepthFilter::DepthFilter(ImageF reference, const Camera& camera, const Pose& T_r
     : reference_(std::move(reference)), camera_(camera), T_r_w_(T_r_w), options_(options) {
     checkSize(reference_, camera_);
     const auto middle = static_cast<float>(0.5 / options_.minDepth);
-    const Seed unknown{middle, priorVariance(options_), 10.F, 10.F, DepthState::searching};
+    const Seed unknown{middle, priorVariance(options_), options_.prior, options_.prior,
+                       DepthState::searching};
     seeds_.assign(reference_.getSize(), unknown);
 }
 
 void DepthFilter::observe(const ImageF& image, const Pose& T_c_w) {
     checkSize(image, camera_);
-    EpipolarSearch search(
-        reference_, image, camera_, T_c_w * T_r_w_.inverse(),
-        {options_.sigma, options_.matchSigma, options_.minScore, options_.maxSteps});
+    EpipolarSearch search(reference_, image, camera_, T_c_w * T_r_w_.inverse(),
+                          {options_.sigma, options_.scale, options_.matchSigma, options_.minScore,
+                           options_.maxSteps});
     const double range = 1. / options_.minDepth;
     for (unsigned v = 0; v < camera_.height; ++v) {
         for (unsigned u = 0; u < camera_.width; ++u) {

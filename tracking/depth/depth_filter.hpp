@@ -14,12 +14,18 @@ namespace photonav {
 struct DepthFilterOptions {
     double minDepth = 0.5;  ///< least depth of surfaces [m]; the largest depth is not limited
     double sigma = 0.01;    ///< standard deviation of the image noise, grey values in [0, 1]
+    /// Share of the pixels' information that counts: less than 1 for noise that is correlated
+    /// between pixels, as PhotometricOptions::scale.
+    double scale = 1.;
     /// Standard deviation of a match along its epipolar line without image noise, by errors of
     /// poses and interpolation [pixels].
     double matchSigma = 0.25;
-    double minScore = 0.6;      ///< least correlation of matching patches
-    double converged = 0.02;    ///< standard deviation of a converged depth [share of the depth]
-    double minInliers = 0.6;    ///< least share of inliers of a converged depth
+    double minScore = 0.6;    ///< least correlation of matching patches
+    double converged = 0.02;  ///< standard deviation of a converged depth [share of the depth]
+    double minInliers = 0.6;  ///< least share of inliers of a converged depth
+    /// Inliers, and as many outliers, that are assumed before the first image. A depth converges
+    /// after half as many matches at the earliest.
+    float prior = 10.F;
     double maxOutliers = 0.95;  ///< share of outliers at which a pixel is given up
     int maxSteps = 120;         ///< longer searches along an epipolar line are skipped [pixels]
 };

@@ -8,7 +8,8 @@ namespace photonav {
 MonocularDepth::MonocularDepth(const Camera& camera, const MonocularOptions& options)
     : camera_(camera), options_(options) {}
 
-std::optional<DepthFilter> MonocularDepth::add(const ImageF& image, const Pose& T_c_w) {
+std::optional<DepthFilter> MonocularDepth::add(const ImageF& image, const Pose& T_c_w,
+                                               bool isNeeded) {
     std::optional<DepthFilter> finished;
     if (filter_) {
         filter_->observe(image, T_c_w);
@@ -16,7 +17,7 @@ std::optional<DepthFilter> MonocularDepth::add(const ImageF& image, const Pose& 
         if (isUninformative()) {
             ++givenUp_;
             images_ = 0;
-        } else if (hasMovedOn(T_c_w)) {
+        } else if (hasMovedOn(T_c_w) || (isNeeded && hasDepth())) {
             finished = finish();
         } else {
             return {};
@@ -42,9 +43,11 @@ bool MonocularDepth::isUninformative() const {
 bool MonocularDepth::hasMovedOn(const Pose& T_c_w) const {
     const Pose motion = T_c_w * filter_->pose().inverse();
     if (Eigen::AngleAxisd(motion.linear()).angle() > options_.maxTurn) return true;
-    const auto depth = filter_->medianDepth();
-    return images_ >= options_.minImages && depth &&
-           motion.translation().norm() > options_.maxShift * *depth;
+    return hasDepth() && motion.translation().norm() > options_.maxShift * *filter_->medianDepth();
+}
+
+bool MonocularDepth::hasDepth() const {
+    return images_ >= options_.minImages && filter_->medianDepth();
 }
 
 }  // namespace photonav

@@ -26,10 +26,12 @@ class MonocularDepth {
     explicit MonocularDepth(const Camera& camera, const MonocularOptions& options = {});
 
     /// Adds an image with the camera pose T_c_w.
+    /// @param isNeeded whether the image becomes the next reference as soon as the present one has
+    ///        any depth
     /// @return the filter of the last reference, if this image becomes the next reference and the
     ///        last one was not given up
     /// @throws std::invalid_argument for an image of another size than the camera's
-    std::optional<DepthFilter> add(const ImageF& image, const Pose& T_c_w);
+    std::optional<DepthFilter> add(const ImageF& image, const Pose& T_c_w, bool isNeeded = false);
 
     /// Whether the last image added has become the reference.
     bool isAtReference() const { return filter_ && images_ == 0; }
@@ -41,6 +43,7 @@ class MonocularDepth {
 
   private:
     bool hasMovedOn(const Pose& T_c_w) const;
+    bool hasDepth() const;
     bool isUninformative() const;
 
     Camera camera_;
