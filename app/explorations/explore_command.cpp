@@ -54,7 +54,7 @@ void printSummary(const std::vector<ExplorationSummary>& summaries) {
              fmt::format("{}", s.collisions), lengthText(s.positionRmse),
              fmt::format("{:.2f} ({:.2f})", s.nees, s.neesMedian), lengthText(s.goalError),
              fmt::format("{:.1f} s", s.duration), fmt::format("{:.1f} m", s.length),
-             std::isfinite(s.decidedAfter) ? fmt::format("{:.1f} m", s.decidedAfter) : "never",
+             std::isfinite(s.decidedAfter) ? fmt::format("{:.1f} m", s.decidedAfter) : "-",
              fmt::format("{:.3g} m²", s.meanTrace)});
     }
     fmt::print("{}", alignedText(table));

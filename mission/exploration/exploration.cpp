@@ -93,7 +93,8 @@ void Exploration::enterEnd() {
     result_.arrivalProbability = explorer_.arrival()->probability;
     if (result_.end != FlightEnd::arrived) return;
     if (evaluator_.goalError() <= setup_.config.explore.goalTolerance) {
-        const HomotopyClasses classes(setup_.truth.clearance, setup_.config.bounds);
+        const HomotopyClasses classes(setup_.truth.clearance, setup_.config.robotRadius,
+                                      setup_.config.bounds);
         result_.decidedAfter = flownUntilDecided(result_, setup_.truth.T_b_c, classes);
         return;
     }

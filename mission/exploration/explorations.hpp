@@ -57,7 +57,7 @@ struct ExplorationSummary {
     double goalError = kNone;     ///< true distance to the goal at the end: median [m]
     double duration = kNone;      ///< mean [s]
     double length = kNone;        ///< length of the true path: mean [m]
-    /// Of the flights that arrived: see flownUntilDecided(): mean [m]
+    /// Of the flights that arrived on a way that was planned: see flownUntilDecided(): mean [m]
     double decidedAfter = kNone;
     double meanTrace = kNone;  ///< weighted trace of the belief: mean over all exposures [m^2]
     double goalTrace = kNone;  ///< weighted trace at the last exposure: mean [m^2]

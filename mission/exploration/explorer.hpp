@@ -145,8 +145,8 @@ class Explorer {
     void showMoment(Replanned replanned);
     void flyOn(std::optional<FlyablePart> way);
     bool isLooking() const;
-    bool isPeering() const;
-    std::optional<FlyablePart> peer() const;
+    bool isClimbing() const;
+    std::optional<FlyablePart> climb() const;
     bool mayStepBlindly() const;
     void follow(FlyablePart part);
     void hover();
@@ -186,15 +186,11 @@ class Explorer {
         double yaw = 0.;    // [rad]
         double since = 0.;  // [s]
     };
-    std::optional<Look> look_;  // that the robot turns to
-    struct Peer {
-        Pose T_w_b = Pose::Identity();  // where it leads
-        double since = 0.;              // [s]
-        bool isFlown = false;           // or has been replaced by another way
-    };
-    std::optional<Peer> peer_;  // the last one
-    int blindSinceGrowth_ = 0;  // blind steps since the map last grew
-    double lastUpdate_ = 0.;    // time of the last update [s]
+    std::optional<Look> look_;          // that the robot turns to
+    std::vector<Pose> climbed_;         // poses of the body from where it has climbed to see depth
+    std::optional<double> climbUntil_;  // while it does: when it gives up at the latest [s]
+    int blindSinceGrowth_ = 0;          // blind steps since the map last grew
+    double lastUpdate_ = 0.;            // time of the last update [s]
     Corrections corrections_;
     ExplorationRecord record_;
     std::optional<FlightEnd> end_;

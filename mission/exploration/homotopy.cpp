@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
+#include "geometry/constants.hpp"
 #include "geometry/winding_number.hpp"
 
 namespace photonav {
@@ -12,28 +14,33 @@ namespace {
 
 constexpr double kGrid = 0.1;  // [m]
 
-/// Whether there is an obstacle within half the grid's spacing at all heights.
-bool isObstacle(const std::function<double(const Eigen::Vector3d&)>& clearance,
+/// Whether a place of the grid is at an obstacle at some height, and the robot has no room there at
+/// any.
+bool isObstacle(const std::function<double(const Eigen::Vector3d&)>& clearance, double radius,
                 const Eigen::Vector2d& p_w, const Eigen::AlignedBox3d& bounds_w) {
+    constexpr double kAtObstacle = 0.5 * std::numbers::sqrt2 * kGrid;
+    double least = kInfinity;
     const double height = bounds_w.sizes().z();
     const int steps = static_cast<int>(std::ceil(height / kGrid));
     for (int i = 0; i <= steps; ++i) {
         const double z = bounds_w.min().z() + height * i / std::max(steps, 1);
-        if (clearance({p_w.x(), p_w.y(), z}) > 0.5 * kGrid) return false;
+        const double here = clearance({p_w.x(), p_w.y(), z});
+        if (here >= radius) return false;
+        least = std::min(least, here);
     }
-    return true;
+    return least <= kAtObstacle;
 }
 
 }  // namespace
 
 HomotopyClasses::HomotopyClasses(const std::function<double(const Eigen::Vector3d& p_w)>& clearance,
-                                 const Eigen::AlignedBox3d& bounds_w) {
+                                 double radius, const Eigen::AlignedBox3d& bounds_w) {
     const Eigen::Vector2d least = bounds_w.min().head<2>();
     const Eigen::Vector2d sizes = bounds_w.sizes().head<2>();
     for (int i = 0; kGrid * i <= sizes.x(); ++i) {
         for (int j = 0; kGrid * j <= sizes.y(); ++j) {
             const Eigen::Vector2d p_w = least + kGrid * Eigen::Vector2d(i, j);
-            if (isObstacle(clearance, p_w, bounds_w)) obstacles_w_.push_back(p_w);
+            if (isObstacle(clearance, radius, p_w, bounds_w)) obstacles_w_.push_back(p_w);
         }
     }
 }

@@ -25,7 +25,7 @@ struct Replanned {
     bool hasMapGrown = false;                      ///< the images changed the state of a cell
     std::vector<CellStates::Brick> cells = {};     ///< the bricks whose cells changed
     std::shared_ptr<const ViewSource> views = {};  ///< of the new map
-    std::vector<Eigen::Vector2d> toGoal = {};  ///< the plan's waypoints, if it leads to the goal
+    std::vector<Eigen::Vector2d> toGoal = {};  ///< waypoints of the plan; empty: it ends elsewhere
     /// The part of the plan that may be flown, from request.T_c_w on; none: there is no plan.
     std::optional<FlyablePart> way = {};
     PlanUpdate update = {};  ///< without the time

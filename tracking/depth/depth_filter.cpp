@@ -34,8 +34,8 @@ DepthFilter::DepthFilter(ImageF reference, const Camera& camera, const Pose& T_r
     : reference_(std::move(reference)), camera_(camera), T_r_w_(T_r_w), options_(options) {
     checkSize(reference_, camera_);
     const auto middle = static_cast<float>(0.5 / options_.minDepth);
-    const Seed unknown{middle, priorVariance(options_), options_.prior, options_.prior,
-                       DepthState::searching};
+    const auto prior = static_cast<float>(options_.prior);
+    const Seed unknown{middle, priorVariance(options_), prior, prior, DepthState::searching};
     seeds_.assign(reference_.getSize(), unknown);
 }
 
@@ -110,6 +110,13 @@ double DepthFilter::shareNarrowed() const {
     const auto narrowed = std::count_if(seeds_.begin(), seeds_.end(),
                                         [&](const Seed& seed) { return seed.variance <= half; });
     return static_cast<double>(narrowed) / static_cast<double>(seeds_.size());
+}
+
+double DepthFilter::shareConverged() const {
+    const auto converged = std::count_if(seeds_.begin(), seeds_.end(), [](const Seed& seed) {
+        return seed.state == DepthState::converged;
+    });
+    return static_cast<double>(converged) / static_cast<double>(seeds_.size());
 }
 
 std::optional<double> DepthFilter::medianDepth() const {

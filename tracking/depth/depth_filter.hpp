@@ -23,9 +23,9 @@ struct DepthFilterOptions {
     double minScore = 0.6;    ///< least correlation of matching patches
     double converged = 0.02;  ///< standard deviation of a converged depth [share of the depth]
     double minInliers = 0.6;  ///< least share of inliers of a converged depth
-    /// Inliers, and as many outliers, that are assumed before the first image. A depth converges
-    /// after half as many matches at the earliest.
-    float prior = 10.F;
+    /// Inliers, and as many outliers, that are assumed before the first image. The more, the more
+    /// matches a depth needs to converge.
+    double prior = 10.;
     double maxOutliers = 0.95;  ///< share of outliers at which a pixel is given up
     int maxSteps = 120;         ///< longer searches along an epipolar line are skipped [pixels]
 };
@@ -62,6 +62,7 @@ class DepthFilter {
     DepthState state(unsigned v, unsigned u) const { return seeds_[v * camera_.width + u].state; }
     /// Share of all pixels whose variance of inverse depth is at most half of the first one.
     double shareNarrowed() const;
+    double shareConverged() const;  ///< of all pixels
     /// Median depth of the converged pixels [m]; none if no pixel has converged.
     std::optional<double> medianDepth() const;
     const Pose& pose() const { return T_r_w_; }  ///< T_r_w

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <vector>
@@ -11,7 +12,8 @@ namespace photonav {
 namespace {
 
 constexpr int kIterations = 2;
-constexpr float kFarthest = 1.F;  // from the disparity that was matched [pixels]
+constexpr float kFarthest = 1.F;   // from the disparity that was matched [pixels]
+constexpr double kMostSigma = 1.;  // largest standard deviation of a disparity [pixels]
 /// Standard deviation of the slopes of disparity that is assumed beforehand.
 constexpr double kSlope = 0.3;
 /// Gaussian that smooths the images, so that they are nearly linear between pixels.
@@ -81,32 +83,40 @@ void equationsOf(const Pair& pair, const cv::Mat& disparity, double contrast, in
         const float ofMoved = ratio * at(pair.ofRight.ptr<float>(v), from, last);
         const double g = 0.5 * (pair.ofLeft.at<float>(v, u) + ofMoved);
         const double y = g * d[u] - (pair.left.at<float>(v, u) - moved);
-        const double x = g * u, z = g * v;
-        row[u] << g * g, g * x, g * z, x * x, x * z, z * z, y * g, y * x, y * z, g, x, z, y, 1., 0.,
-            0.;
+        const double byU = g * u, byV = g * v;
+        row[u] << g * g, g * byU, g * byV, byU * byU, byU * byV, byV * byV, y * g, y * byU, y * byV,
+            g, byU, byV, y, 1., 0., 0.;
     }
 }
 
-/// The disparity at the middle (u, v) of a block.
-/// @param information of the assumption about slopes
-float solve(const Parts& s, double u, double v, double information) {
+/// What a block says of the disparity of its middle.
+struct Disparity {
+    double mean, information;  ///< [pixels], [(grey values / pixel)^2]
+};
+
+/// @param u,v middle of the block
+/// @param ofSlopes information of the assumption about slopes
+Disparity solve(const Parts& s, double u, double v, double ofSlopes) {
     // From the corner of the image to the middle of the block
     const double du = s[ggu] - u * s[gg], dv = s[ggv] - v * s[gg];
     const double duv = s[gguv] - u * s[ggv] - v * du;
     const Eigen::Vector3d g(s[g1], s[gu] - u * s[g1], s[gv] - v * s[g1]);
     const Eigen::Vector3d b(s[gy], s[gyu] - u * s[gy], s[gyv] - v * s[gy]);
     Eigen::Matrix3d A;
-    A << s[gg], du, dv,                                      //
-        du, s[gguu] - u * (s[ggu] + du) + information, duv,  //
-        dv, duv, s[ggvv] - v * (s[ggv] + dv) + information;
+    A << s[gg], du, dv,                                   //
+        du, s[gguu] - u * (s[ggu] + du) + ofSlopes, duv,  //
+        dv, duv, s[ggvv] - v * (s[ggv] + dv) + ofSlopes;
     A -= g * g.transpose() / s[n1];  // without the offset
-    return static_cast<float>(A.inverse().row(0).dot(b - s[y1] / s[n1] * g));
+    const Eigen::Vector3d row = A.inverse().row(0);
+    return {row.dot(b - s[y1] / s[n1] * g), 1. / row[0]};
 }
 
 /// One Gauss-Newton step of every disparity. Sums over blocks are kept up to date from row to row,
 /// and from pixel to pixel.
-void improve(const Pair& pair, int block, double information, const cv::Mat& matched,
+void improve(const Pair& pair, int block, double noise, const cv::Mat& matched,
              cv::Mat& disparity) {
+    const double variance = 2. * noise * noise;  // of the difference of two grey values
+    const double ofSlopes = variance / (kSlope * kSlope);
     const int width = disparity.cols, height = disparity.rows, half = block / 2;
     const double contrast = contrastRatio(pair, disparity);
     std::vector<std::vector<Parts>> rows(block, std::vector<Parts>(width, Parts::Zero()));
@@ -129,9 +139,11 @@ void improve(const Pair& pair, int block, double information, const cv::Mat& mat
             if (u - half - 1 >= 0) sum -= columns[u - half - 1];
             float& d = disparity.at<float>(v, u);
             if (!(d > 0.F)) continue;
-            const float better = solve(sum, u, v, information);
+            const Disparity found = solve(sum, u, v, ofSlopes);
+            const auto better = static_cast<float>(found.mean);
             const bool isNear = std::abs(better - matched.at<float>(v, u)) <= kFarthest;
-            d = isNear && better > 0.F ? better : 0.F;
+            const bool isSure = found.information * kMostSigma * kMostSigma >= variance;
+            d = isNear && isSure && better > 0.F ? better : 0.F;
         }
     }
 }
@@ -143,7 +155,7 @@ void refineDisparities(const cv::Mat& left, const cv::Mat& right, int block, dou
     const Pair pair(left, right);
     const cv::Mat matched = disparity.clone();
     for (int i = 0; i < kIterations; ++i) {
-        improve(pair, block, 2. * noise * noise / (kSlope * kSlope), matched, disparity);
+        improve(pair, block, noise, matched, disparity);
     }
 }
 

@@ -8,16 +8,16 @@ namespace photonav {
 
 /// Refines the disparities of two rectified images by least squares (B. Lucas, T. Kanade, An
 /// Iterative Image Registration Technique, 1981). In a block the disparity is a linear function
-/// D(u, v) of the pixel, the one that minimises the squared differences between the left image and
-/// the right one moved by D. The disparity of the middle pixel is D there: on a slanted surface,
-/// too, it does not depend on where in the block the texture is.
+/// D(u, v) of the pixel: the one that minimises the squared differences between the left image and
+/// the right one moved by D, but for an offset between the two. The disparity of the middle pixel
+/// is D there: on a slanted surface, too, it does not depend on where in the block the texture is.
+/// The contrast of the images may differ by a factor, which is that of all matched pixels.
 /// @param left,right CV_32F, of the same size
 /// @param block edge of a block, odd [pixels]
-/// @param noise standard deviation of the images' noise, in the unit of their grey values. Where
-/// the
-///        texture determines slopes no better than this, they are nearly 0
+/// @param noise standard deviation of the images' noise, above 0, in the unit of their grey values
 /// @param[in,out] disparity CV_32F [pixels]: found by matching, right to a pixel, 0 where there is
-///        none. Afterwards refined; 0 where that would be more than a pixel away
+///        none. Afterwards refined; 0 where that would be more than a pixel away, or where the
+///        block's texture does not determine it to a pixel (standard deviation)
 void refineDisparities(const cv::Mat& left, const cv::Mat& right, int block, double noise,
                        cv::Mat& disparity);
 

@@ -17,7 +17,7 @@ std::optional<DepthFilter> MonocularDepth::add(const ImageF& image, const Pose& 
         if (isUninformative()) {
             ++givenUp_;
             images_ = 0;
-        } else if (hasMovedOn(T_c_w) || (isNeeded && hasDepth())) {
+        } else if (hasMovedOn(T_c_w) || (isNeeded && isUseful())) {
             finished = finish();
         } else {
             return {};
@@ -43,11 +43,13 @@ bool MonocularDepth::isUninformative() const {
 bool MonocularDepth::hasMovedOn(const Pose& T_c_w) const {
     const Pose motion = T_c_w * filter_->pose().inverse();
     if (Eigen::AngleAxisd(motion.linear()).angle() > options_.maxTurn) return true;
-    return hasDepth() && motion.translation().norm() > options_.maxShift * *filter_->medianDepth();
+    const auto depth = filter_->medianDepth();
+    return images_ >= options_.minImages && depth &&
+           motion.translation().norm() > options_.maxShift * *depth;
 }
 
-bool MonocularDepth::hasDepth() const {
-    return images_ >= options_.minImages && filter_->medianDepth();
+bool MonocularDepth::isUseful() const {
+    return images_ >= options_.minImages && filter_->shareConverged() >= options_.minConverged;
 }
 
 }  // namespace photonav

@@ -16,6 +16,8 @@ struct MonocularOptions {
     /// given up, because the image is blank or the camera does not move. A reference without any
     /// converged depth is given up after ten times as many images.
     double minNarrowed = 0.01;
+    /// Least share of converged pixels of a reference that ends because it is needed.
+    double minConverged = 0.02;
 };
 
 /// Runs one depth filter after the other. Each image updates the filter of the latest reference
@@ -27,7 +29,7 @@ class MonocularDepth {
 
     /// Adds an image with the camera pose T_c_w.
     /// @param isNeeded whether the image becomes the next reference as soon as the present one has
-    ///        any depth
+    ///        depths (MonocularOptions::minConverged)
     /// @return the filter of the last reference, if this image becomes the next reference and the
     ///        last one was not given up
     /// @throws std::invalid_argument for an image of another size than the camera's
@@ -43,7 +45,7 @@ class MonocularDepth {
 
   private:
     bool hasMovedOn(const Pose& T_c_w) const;
-    bool hasDepth() const;
+    bool isUseful() const;
     bool isUninformative() const;
 
     Camera camera_;

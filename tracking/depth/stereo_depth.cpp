@@ -15,7 +15,8 @@ namespace photonav {
 namespace {
 
 constexpr int kDisparityUnit = 16;  // OpenCV gives sixteenths of pixels
-constexpr double kLeastNoise = 1.;  // of refined images [grey values]
+/// Noise of images whose noise is not given: their disparities are refined with it [grey values].
+constexpr double kUsualNoise = 1.;
 constexpr int kMaxDisparities = 512;
 constexpr int kLeastBlock = 5;  // of OpenCV's block matching [pixels]
 
@@ -207,10 +208,12 @@ void StereoDepth::Impl::match() {
         disparity.setTo(0., ~textured);
     }
     leaveOutBorder();
+    // Semi-global matching has small blocks, and takes disparities from what is around them.
+    if (options.method == StereoMethod::semiGlobal) return;
     std::array<cv::Mat, 2> pair;
     for (int i = 0; i < 2; ++i) padded[i](image).convertTo(pair[i], CV_32F);
-    refineDisparities(pair[0], pair[1], matcher->getBlockSize(),
-                      std::max(255. * options.noise, kLeastNoise), disparity);
+    const double noise = options.noise > 0. ? 255. * options.noise : kUsualNoise;
+    refineDisparities(pair[0], pair[1], matcher->getBlockSize(), noise, disparity);
 }
 
 /// Leaves out disparities whose block is not in the right image, with what the edge filter and the

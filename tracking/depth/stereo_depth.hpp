@@ -11,7 +11,7 @@
 namespace photonav {
 
 enum class StereoMethod {
-    blockMatching,  ///< StereoBM, quick
+    blockMatching,  ///< StereoBM, quick; refined by least squares (refineDisparities())
     semiGlobal,     ///< StereoSGBM, denser, several times slower
 };
 

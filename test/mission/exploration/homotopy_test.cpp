@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace photonav {
 namespace {
@@ -17,7 +18,7 @@ class Column : public testing::Test {
             const double aside = (p_w.head<2>() - Eigen::Vector2d(5., 0.)).cwiseAbs().maxCoeff();
             return std::hypot(std::max(aside - 0.5, 0.), above.z());
         };
-        return {clearance, {Eigen::Vector3d(0., -3., 1.), Eigen::Vector3d(10., 3., 2.)}};
+        return {clearance, 0.3, {Eigen::Vector3d(0., -3., 1.), Eigen::Vector3d(10., 3., 2.)}};
     }
 
     const GroundTrack left{{0., 0.}, {5., 1.5}, {10., 0.}};
@@ -40,6 +41,7 @@ TEST_F(Column, PartsTheWaysThatPassItOnDifferentSides) {
 TEST_F(Column, ThatCanBeFlownOverPartsNone) {
     const HomotopyClasses classes = classesFor(1.5);
     EXPECT_TRUE(classes.areSame(left, right));
+    EXPECT_FALSE(classesFor(1.8).areSame(left, right));  // too little room above
 }
 
 /// A flight around the left side of the column, one metre per second and sample.
@@ -48,7 +50,7 @@ ExplorationResult flightLeft() {
     for (int i = 0; i <= 10; ++i) {
         FlightSample sample;
         sample.time = sample.distance = i;
-        sample.T_c_w.translation() << -i, -1.5 * std::sin(0.1 * M_PI * i),
+        sample.T_c_w.translation() << -i, -1.5 * std::sin(0.1 * std::numbers::pi * i),
             0.;  // minus the position
         flight.samples.push_back(sample);
     }

@@ -90,7 +90,7 @@ TEST_F(DepthFilterTest, CorrelatedNoiseIsNotTakenForStrongNoise) {
 
 TEST_F(DepthFilterTest, AWeakPriorNeedsFewerImages) {
     const ImageF reference = seen(0).intensity;
-    DepthFilter filter(reference, camera, pose(0), {.prior = 3.F});
+    DepthFilter filter(reference, camera, pose(0), {.prior = 3.});
     DepthFilter patient(reference, camera, pose(0));
     for (int i = 2; i <= 12; i += 2) {
         const ImageF image = seen(i).intensity;
