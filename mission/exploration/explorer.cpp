@@ -31,10 +31,6 @@ constexpr double kWait = 1.;
 constexpr double kLooksThere = 0.1;
 /// Longest turn toward a place [s].
 constexpr double kLongestLook = 5.;
-// A single camera that sees no way climbs by this to see depth, if the bounds leave room for at
-// least so much. It does so once at a place, for each heading.
-constexpr double kClimb = 0.4, kLeastClimb = 0.15;      // [m]
-constexpr double kSamePlace = 0.1, kSameHeading = 0.3;  // [m], [rad]
 /// Longest improvement of a plan in real time [s].
 constexpr double kPlanTime = 0.5;
 
@@ -169,7 +165,7 @@ bool Explorer::onStep(const Observation& observation, const std::vector<TrackedF
 
 /// Whether the robot is where its present plan ends, short of the goal, and no other one is made.
 bool Explorer::isWaiting() const {
-    if (isWhole_ || isClimbing() || (background_ && background_->isBusy())) return false;
+    if (isWhole_ || (background_ && background_->isBusy())) return false;
     return pilot_.route().isAtGoal() || time_ - lastUpdate_ > kWait;
 }
 
@@ -285,14 +281,6 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
     if (background_) way = fromHere(*way);
     if (way->isStopped && !hasPath_) return hover();
     if (way->isLook && isLooking()) return;
-    if (way->isBlind && isClimbing()) return;
-    if (auto up = way->isBlind ? climb() : std::nullopt) {
-        patience_.onWay(false, time_);
-        climbed_.push_back(up->plan.front().T_w_b);
-        follow(std::move(*up));
-        climbUntil_ = time_ + kClimb / config_.fly.speed + kLongestLook;
-        return;
-    }
     if (way->isBlind && !mayStepBlindly()) return hover();
     patience_.onWay(way->isStopped, time_);
     blindSinceGrowth_ += way->isBlind;
@@ -303,7 +291,6 @@ void Explorer::flyOn(std::optional<FlyablePart> way) {
 void Explorer::follow(FlyablePart part) {
     isWhole_ = part.isWhole;
     look_.reset();
-    climbUntil_.reset();
     if (part.isLook) look_ = Look{yawOf(part.plan.back().T_w_b), time_};
     pilot_.setPlan(std::move(part.plan));
 }
@@ -314,35 +301,6 @@ bool Explorer::isLooking() const {
     if (!look_ || time_ - look_->since > kLongestLook) return false;
     const double turn = std::remainder(look_->yaw - yawOf(here()), 2. * std::numbers::pi);
     return std::abs(turn) > kLooksThere;
-}
-
-bool Explorer::isClimbing() const {
-    return climbUntil_ && time_ < *climbUntil_ && !pilot_.route().isAtGoal();
-}
-
-/// A single camera sees depth only while it moves, and best while it moves across its view. It
-/// climbs: as on any other way, nothing is taken to hang above a place that was seen
-/// (OnlineMap::isSeen()), nor above the start.
-std::optional<FlyablePart> Explorer::climb() const {
-    if (config_.explore.sensor != ExploreSensor::monocular) return {};
-    const Pose T_w_b = here();
-    const Eigen::Vector3d p_w = T_w_b.translation();
-    const auto isHere = [&](const Pose& from) {
-        const double turn = std::remainder(yawOf(from) - yawOf(T_w_b), 2. * std::numbers::pi);
-        return (from.translation() - p_w).head<2>().norm() < kSamePlace &&
-               std::abs(turn) < kSameHeading;
-    };
-    if (std::any_of(climbed_.begin(), climbed_.end(), isHere)) return {};
-    const double height = std::min(config_.bounds.max().z() - p_w.z(), kClimb);
-    if (height < kLeastClimb) return {};
-    for (const double share : {0.5, 1.}) {
-        const Eigen::Vector3d place = p_w + share * height * Eigen::Vector3d::UnitZ();
-        if (replanner_.clearanceBeside(place) < config_.robotRadius) return {};
-    }
-    FlyablePart part{.plan = hovering(T_w_b, tracker_.belief().covariance)};
-    part.plan.back().T_w_b.pretranslate(height * Eigen::Vector3d::UnitZ());
-    part.plan.back().distance = height;
-    return part;
 }
 
 bool Explorer::mayStepBlindly() const {

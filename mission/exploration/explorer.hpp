@@ -145,8 +145,6 @@ class Explorer {
     void showMoment(Replanned replanned);
     void flyOn(std::optional<FlyablePart> way);
     bool isLooking() const;
-    bool isClimbing() const;
-    std::optional<FlyablePart> climb() const;
     bool mayStepBlindly() const;
     void follow(FlyablePart part);
     void hover();
@@ -186,11 +184,9 @@ class Explorer {
         double yaw = 0.;    // [rad]
         double since = 0.;  // [s]
     };
-    std::optional<Look> look_;          // that the robot turns to
-    std::vector<Pose> climbed_;         // poses of the body from where it has climbed to see depth
-    std::optional<double> climbUntil_;  // while it does: when it gives up at the latest [s]
-    int blindSinceGrowth_ = 0;          // blind steps since the map last grew
-    double lastUpdate_ = 0.;            // time of the last update [s]
+    std::optional<Look> look_;  // that the robot turns to
+    int blindSinceGrowth_ = 0;  // blind steps since the map last grew
+    double lastUpdate_ = 0.;    // time of the last update [s]
     Corrections corrections_;
     ExplorationRecord record_;
     std::optional<FlightEnd> end_;

@@ -14,15 +14,12 @@ namespace {
 // maps of explorations of rooms of 8 m; their errors grow with the distance from the start.
 const Vector6 kKnownVariances{{4e-4, 4e-4, 4e-4, 1.6e-5, 1.6e-5, 1e-4}};
 
-/// Images come a quarter of a metre apart, unless more are asked for: few see the same surface. A
-/// depth to 3 % is as exact as a cell of the map is large.
+/// Images come a quarter of a metre apart: few see the same surface.
 MonocularOptions monocularFor(const PhotometricOptions& photometric) {
     MonocularOptions options;
     options.minImages = 4;
-    options.filter.prior = 4.;
-    options.filter.converged = 0.03;
-    options.filter.sigma = photometric.sigma;
-    options.filter.scale = std::min(1., photometric.scale);
+    // The matching of patches counts pixels as independent.
+    options.filter.sigma = photometric.sigma / std::sqrt(std::min(1., photometric.scale));
     return options;
 }
 
@@ -62,7 +59,7 @@ std::optional<MapInput> Mapper::choose(const TrackedFrame& tracked, const View& 
                                        const View& shown, bool isNeeded) {
     const bool isInconsistent = tracked.isMapInconsistent;
     std::optional<Keyframe> keyframe =
-        depth_ ? addToFilter(tracked, image, isNeeded)
+        depth_ ? addToFilter(tracked, image)
                : chooseImage(tracked, image, shown, isNeeded || isInconsistent);
     keyframes_ += keyframe ? 1 : 0;
     if (!keyframe && !isInconsistent && !(depth_ && isNeeded)) return {};
@@ -81,14 +78,13 @@ std::optional<MapInput::Keyframe> Mapper::chooseImage(const TrackedFrame& tracke
 }
 
 std::optional<MapInput::Keyframe> Mapper::addToFilter(const TrackedFrame& tracked,
-                                                      const View& image, bool isNeeded) {
+                                                      const View& image) {
     if (!choice_.isUsable(tracked, image)) {
         depth_->finish();  // the pose may be wrong: what was found so far cannot be gone on with
         return {};
     }
     std::optional<Keyframe> keyframe;
-    const std::optional<DepthFilter> finished =
-        depth_->add(image.intensity, tracked.T_c_w.mean, isNeeded);
+    const std::optional<DepthFilter> finished = depth_->add(image.intensity, tracked.T_c_w.mean);
     if (finished) keyframe = Keyframe{finished->view(), finished->pose(), reference_};
     if (depth_->isAtReference()) reference_ = errors_->addPose(tracked.T_c_w);
     return keyframe;

@@ -45,8 +45,7 @@ class Mapper {
     void addKnown(const TexturedOcTree& known, const Place& start);
     std::optional<Keyframe> chooseImage(const TrackedFrame& tracked, const View& image,
                                         const View& shown, bool isNeeded);
-    std::optional<Keyframe> addToFilter(const TrackedFrame& tracked, const View& image,
-                                        bool isNeeded);
+    std::optional<Keyframe> addToFilter(const TrackedFrame& tracked, const View& image);
 
     Camera camera_;
     std::shared_ptr<MapErrors> errors_;

@@ -34,16 +34,15 @@ DepthFilter::DepthFilter(ImageF reference, const Camera& camera, const Pose& T_r
     : reference_(std::move(reference)), camera_(camera), T_r_w_(T_r_w), options_(options) {
     checkSize(reference_, camera_);
     const auto middle = static_cast<float>(0.5 / options_.minDepth);
-    const auto prior = static_cast<float>(options_.prior);
-    const Seed unknown{middle, priorVariance(options_), prior, prior, DepthState::searching};
+    const Seed unknown{middle, priorVariance(options_), 10.F, 10.F, DepthState::searching};
     seeds_.assign(reference_.getSize(), unknown);
 }
 
 void DepthFilter::observe(const ImageF& image, const Pose& T_c_w) {
     checkSize(image, camera_);
-    EpipolarSearch search(reference_, image, camera_, T_c_w * T_r_w_.inverse(),
-                          {options_.sigma, options_.scale, options_.matchSigma, options_.minScore,
-                           options_.maxSteps});
+    EpipolarSearch search(
+        reference_, image, camera_, T_c_w * T_r_w_.inverse(),
+        {options_.sigma, options_.matchSigma, options_.minScore, options_.maxSteps});
     const double range = 1. / options_.minDepth;
     for (unsigned v = 0; v < camera_.height; ++v) {
         for (unsigned u = 0; u < camera_.width; ++u) {
@@ -110,13 +109,6 @@ double DepthFilter::shareNarrowed() const {
     const auto narrowed = std::count_if(seeds_.begin(), seeds_.end(),
                                         [&](const Seed& seed) { return seed.variance <= half; });
     return static_cast<double>(narrowed) / static_cast<double>(seeds_.size());
-}
-
-double DepthFilter::shareConverged() const {
-    const auto converged = std::count_if(seeds_.begin(), seeds_.end(), [](const Seed& seed) {
-        return seed.state == DepthState::converged;
-    });
-    return static_cast<double>(converged) / static_cast<double>(seeds_.size());
 }
 
 std::optional<double> DepthFilter::medianDepth() const {

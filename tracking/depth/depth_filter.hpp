@@ -14,18 +14,12 @@ namespace photonav {
 struct DepthFilterOptions {
     double minDepth = 0.5;  ///< least depth of surfaces [m]; the largest depth is not limited
     double sigma = 0.01;    ///< standard deviation of the image noise, grey values in [0, 1]
-    /// Share of the pixels' information that counts: less than 1 for noise that is correlated
-    /// between pixels, as PhotometricOptions::scale.
-    double scale = 1.;
     /// Standard deviation of a match along its epipolar line without image noise, by errors of
     /// poses and interpolation [pixels].
     double matchSigma = 0.25;
-    double minScore = 0.6;    ///< least correlation of matching patches
-    double converged = 0.02;  ///< standard deviation of a converged depth [share of the depth]
-    double minInliers = 0.6;  ///< least share of inliers of a converged depth
-    /// Inliers, and as many outliers, that are assumed before the first image. The more, the more
-    /// matches a depth needs to converge.
-    double prior = 10.;
+    double minScore = 0.6;      ///< least correlation of matching patches
+    double converged = 0.02;    ///< standard deviation of a converged depth [share of the depth]
+    double minInliers = 0.6;    ///< least share of inliers of a converged depth
     double maxOutliers = 0.95;  ///< share of outliers at which a pixel is given up
     int maxSteps = 120;         ///< longer searches along an epipolar line are skipped [pixels]
 };
@@ -62,7 +56,6 @@ class DepthFilter {
     DepthState state(unsigned v, unsigned u) const { return seeds_[v * camera_.width + u].state; }
     /// Share of all pixels whose variance of inverse depth is at most half of the first one.
     double shareNarrowed() const;
-    double shareConverged() const;  ///< of all pixels
     /// Median depth of the converged pixels [m]; none if no pixel has converged.
     std::optional<double> medianDepth() const;
     const Pose& pose() const { return T_r_w_; }  ///< T_r_w

@@ -107,9 +107,9 @@ EpipolarMatch EpipolarSearch::operator()(unsigned u, unsigned v, double low, dou
     const double x = axis == 0 ? (place.x() - camera_.cx()) / camera_.fx()
                                : (place.y() - camera_.cy()) / camera_.fy();
     EpipolarMatch match{.outcome = found, .w = (q[axis] - x * q.z()) / (x * t.z() - t[axis])};
-    const double variance = options_.matchSigma * options_.matchSigma +
-                            line.spacing * line.spacing * 2. * options_.sigma * options_.sigma /
-                                (options_.scale * gradient_);
+    const double variance =
+        options_.matchSigma * options_.matchSigma +
+        line.spacing * line.spacing * 2. * options_.sigma * options_.sigma / gradient_;
     match.sigma = std::sqrt(variance) / (camera_.projectionJacobian(point(match.w)) * t).norm();
     return match;
 }

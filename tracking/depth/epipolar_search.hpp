@@ -22,7 +22,7 @@ struct EpipolarMatch {
 };
 
 struct EpipolarOptions {
-    double sigma, scale, matchSigma, minScore;  ///< see DepthFilterOptions
+    double sigma, matchSigma, minScore;  ///< see DepthFilterOptions
     int maxSteps;
 };
 

@@ -8,8 +8,7 @@ namespace photonav {
 MonocularDepth::MonocularDepth(const Camera& camera, const MonocularOptions& options)
     : camera_(camera), options_(options) {}
 
-std::optional<DepthFilter> MonocularDepth::add(const ImageF& image, const Pose& T_c_w,
-                                               bool isNeeded) {
+std::optional<DepthFilter> MonocularDepth::add(const ImageF& image, const Pose& T_c_w) {
     std::optional<DepthFilter> finished;
     if (filter_) {
         filter_->observe(image, T_c_w);
@@ -17,7 +16,7 @@ std::optional<DepthFilter> MonocularDepth::add(const ImageF& image, const Pose& 
         if (isUninformative()) {
             ++givenUp_;
             images_ = 0;
-        } else if (hasMovedOn(T_c_w) || (isNeeded && isUseful())) {
+        } else if (hasMovedOn(T_c_w)) {
             finished = finish();
         } else {
             return {};
@@ -46,10 +45,6 @@ bool MonocularDepth::hasMovedOn(const Pose& T_c_w) const {
     const auto depth = filter_->medianDepth();
     return images_ >= options_.minImages && depth &&
            motion.translation().norm() > options_.maxShift * *depth;
-}
-
-bool MonocularDepth::isUseful() const {
-    return images_ >= options_.minImages && filter_->shareConverged() >= options_.minConverged;
 }
 
 }  // namespace photonav

@@ -16,8 +16,6 @@ struct MonocularOptions {
     /// given up, because the image is blank or the camera does not move. A reference without any
     /// converged depth is given up after ten times as many images.
     double minNarrowed = 0.01;
-    /// Least share of converged pixels of a reference that ends because it is needed.
-    double minConverged = 0.02;
 };
 
 /// Runs one depth filter after the other. Each image updates the filter of the latest reference
@@ -28,12 +26,10 @@ class MonocularDepth {
     explicit MonocularDepth(const Camera& camera, const MonocularOptions& options = {});
 
     /// Adds an image with the camera pose T_c_w.
-    /// @param isNeeded whether the image becomes the next reference as soon as the present one has
-    ///        depths (MonocularOptions::minConverged)
     /// @return the filter of the last reference, if this image becomes the next reference and the
     ///        last one was not given up
     /// @throws std::invalid_argument for an image of another size than the camera's
-    std::optional<DepthFilter> add(const ImageF& image, const Pose& T_c_w, bool isNeeded = false);
+    std::optional<DepthFilter> add(const ImageF& image, const Pose& T_c_w);
 
     /// Whether the last image added has become the reference.
     bool isAtReference() const { return filter_ && images_ == 0; }
@@ -45,7 +41,6 @@ class MonocularDepth {
 
   private:
     bool hasMovedOn(const Pose& T_c_w) const;
-    bool isUseful() const;
     bool isUninformative() const;
 
     Camera camera_;

@@ -93,24 +93,10 @@ TEST_F(RoomToExplore, ASingleCameraEndsItsFlightBeforeWhatItHasNotMeasured) {
         const ExplorationResult flight = flown(test::roomToExplore(), seed);
         EXPECT_TRUE(flight.end == FlightEnd::arrived || flight.end == FlightEnd::noWay) << seed;
         EXPECT_GT(flight.leastClearance, 0.125);
+        EXPECT_GT(flight.blindSteps, 1);
         EXPECT_LE(flight.blindSteps, 6);
         EXPECT_GT(flight.map->size(), 500U);
     }
-}
-
-/// Climbing, a single camera sees the depth of what is ahead before it flies there.
-TEST_F(RoomToExplore, ASingleCameraClimbsWhereItSeesNoWay) {
-    config.explore.sensor = ExploreSensor::monocular;
-    const ExplorationResult flight = flown(test::roomToExplore());
-    double highest = -kInfinity;  // before it flies on
-    for (const FlightSample& sample : flight.samples) {
-        const Eigen::Vector3d p_w = sample.T_c_w.inverse().translation();
-        if ((p_w - flight.samples.front().T_c_w.inverse().translation()).head<2>().norm() > 0.2) {
-            break;
-        }
-        highest = std::max(highest, p_w.z());
-    }
-    EXPECT_GT(highest - flight.samples.front().T_c_w.inverse().translation().z(), 0.15);
 }
 
 /// Views whose first part interrupts the flight.

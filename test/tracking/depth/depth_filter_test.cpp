@@ -72,36 +72,6 @@ TEST_F(DepthFilterTest, FindsTheDepthOfWhatHasTexture) {
     }
 }
 
-/// Noise that is correlated between pixels makes matches less exact, but hides no more texture.
-TEST_F(DepthFilterTest, CorrelatedNoiseIsNotTakenForStrongNoise) {
-    const double scale = 0.08;
-    const ImageF reference = seen(0).intensity;
-    DepthFilter filter(reference, camera, pose(0), {.sigma = 0.02, .scale = scale});
-    DepthFilter strong(reference, camera, pose(0), {.sigma = 0.02 / std::sqrt(scale)});
-    for (int i = 1; i <= 16; ++i) {
-        const ImageF image = seen(i).intensity;
-        filter.observe(image, pose(i));
-        strong.observe(image, pose(i));
-    }
-    EXPECT_GT(shareConverged(filter), 0.2);
-    EXPECT_GT(shareConverged(filter), 2. * shareConverged(strong));
-    EXPECT_GT(shareRight(filter.view(), seen(0), 0.1), 0.9);
-}
-
-TEST_F(DepthFilterTest, AWeakPriorNeedsFewerImages) {
-    const ImageF reference = seen(0).intensity;
-    DepthFilter filter(reference, camera, pose(0), {.prior = 3.});
-    DepthFilter patient(reference, camera, pose(0));
-    for (int i = 2; i <= 12; i += 2) {
-        const ImageF image = seen(i).intensity;
-        filter.observe(image, pose(i));
-        patient.observe(image, pose(i));
-    }
-    EXPECT_LT(shareConverged(patient), 0.02);
-    EXPECT_GT(shareConverged(filter), 0.2);
-    EXPECT_GT(shareRight(filter.view(), seen(0), 0.1), 0.95);
-}
-
 TEST_F(DepthFilterTest, BrightnessDoesNotMatter) {
     DepthFilter filter(seen(0).intensity, camera, pose(0));
     for (int i = 1; i <= 12; ++i) {
@@ -168,22 +138,6 @@ TEST_F(DepthFilterTest, ReferencesFollowTheFlight) {
     EXPECT_TRUE(depth.finish());
     EXPECT_FALSE(depth.finish());
     EXPECT_EQ(depth.givenUp(), 0);
-}
-
-TEST_F(DepthFilterTest, AReferenceWithDepthEndsWhereItIsNeeded) {
-    MonocularOptions options;
-    options.maxShift = 10.;
-    options.minImages = 3;
-    MonocularDepth patient(camera, options), needed(camera, options);
-    std::optional<DepthFilter> finished;
-    for (int i = 0; i <= 12 && !finished; ++i) {
-        const ImageF image = seen(i).intensity;
-        EXPECT_FALSE(patient.add(image, pose(i)));
-        finished = needed.add(image, pose(i), true);
-        EXPECT_EQ(needed.isAtReference(), i == 0 || finished.has_value());
-    }
-    ASSERT_TRUE(finished);
-    EXPECT_GT(shareConverged(*finished), 0.);
 }
 
 TEST_F(DepthFilterTest, AReferenceWithoutTextureOrMotionIsGivenUp) {
