@@ -6,6 +6,10 @@
 
 namespace photonav {
 
+/// A disparity whose block has less texture than fixes it to this standard deviation may as well be
+/// that of the next pixel, and is none [pixels].
+inline constexpr double kMostDisparitySigma = 1.;
+
 /// Refines the disparities of two rectified images by least squares (B. Lucas, T. Kanade, An
 /// Iterative Image Registration Technique, 1981). In a block the disparity is a linear function
 /// D(u, v) of the pixel: the one that minimises the squared differences between the left image and
@@ -17,7 +21,7 @@ namespace photonav {
 /// @param noise standard deviation of the images' noise, above 0, in the unit of their grey values
 /// @param[in,out] disparity CV_32F [pixels]: found by matching, right to a pixel, 0 where there is
 ///        none. Afterwards refined; 0 where that would be more than a pixel away, or where the
-///        block's texture does not determine it to a pixel (standard deviation)
+///        block's texture does not determine it (kMostDisparitySigma)
 void refineDisparities(const cv::Mat& left, const cv::Mat& right, int block, double noise,
                        cv::Mat& disparity);
 

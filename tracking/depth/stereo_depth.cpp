@@ -20,9 +20,6 @@ constexpr double kUsualNoise = 1.;
 constexpr int kMaxDisparities = 512;
 constexpr int kLeastBlock = 5;  // of OpenCV's block matching [pixels]
 
-// Of the texture that a block has: beyond this standard deviation of its disparity a block may as
-// well match the next pixel.
-constexpr double kMostSigma = 1.;  // [pixels]
 /// Standard deviation of the Gaussian whose derivative lets as much noise through as Sobel's
 /// filter.
 constexpr double kSobelWidth = 0.68;  // [pixels]
@@ -90,7 +87,8 @@ cv::Mat texturedPixels(const cv::Mat& image, int block, const StereoOptions& opt
     const double noise = 255. * options.noise;
     const double width = std::hypot(options.blur, kSobelWidth);
     const double ofNoise = noise * noise / (8. * std::numbers::pi * std::pow(width, 4));
-    const double least = 2. * noise * noise / (kMostSigma * kMostSigma * block * block);
+    const double least =
+        2. * noise * noise / (kMostDisparitySigma * kMostDisparitySigma * block * block);
     const int middle = static_cast<int>(kMiddle * block) | 1;
     const cv::Mat inBlock = meanSquare(gradient, block) - ofNoise;
     const cv::Mat inMiddle = meanSquare(gradient, middle) - ofNoise;
