@@ -51,7 +51,9 @@ TEST(YamlFile, AKeyWithoutValueIsNotTheWordNull) {
 }
 
 TEST(YamlFile, DeepNestingIsRefused) {
-    EXPECT_EQ(saidAbout("a:\n" + std::string(100000, '[')), "a.yaml: line 2: is nested too deeply");
+    // Appended: GCC 12 takes the sum of a literal and such a string for an overflow.
+    const std::string deep = std::string("a:\n").append(100000, '[');
+    EXPECT_EQ(saidAbout(deep), "a.yaml: line 2: is nested too deeply");
 }
 
 TEST(YamlFile, SecondDocumentsAreRefused) {
