@@ -78,7 +78,7 @@ TEST_F(SlantedSurface, HasNoneWhereThereWasNoneAndWithoutTexture) {
 
 /// Blocks end at the borders of the images, where they know less.
 TEST_F(SlantedSurface, HasDisparitiesUpToTheBordersOfASmallImage) {
-    const cv::Rect part(40, 20, 31, 9);  // lower than a block
+    const cv::Rect part(40, 20, 31, 9);       // lower than a block
     cv::Mat small = disparity(part).clone();  // of images that are cut alike
     refineDisparities(left(part).clone(), right(part).clone(), kBlock, 1., small);
     for (int v = 0; v < part.height; ++v) {
