@@ -38,6 +38,7 @@ FlightOptions flightOptions(const Config& config, MapKind map, double cellSize) 
     double& blindTime = flight.tracker.loss.blindTime;
     blindTime = fly.latency + std::max(blindTime, 4. * flight.robot.camera.period);
     flight.pilot.route.limits.maxSpeed = fly.speed;
+    flight.pilot.route.limits.maxYawRate = fly.turnRate;
     flight.pilot.photometric = flight.tracker.map.photometric;
     flight.pilot.photometricGoal = fly.photometricGoal;
     flight.bodyRadius = fly.bodyRadius > 0. ? fly.bodyRadius : 0.5 * config.robotRadius;

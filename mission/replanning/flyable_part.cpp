@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "replanning/flyable_part.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -56,16 +57,38 @@ std::vector<PlannedView> cut(const std::vector<PlannedView>& plan, double length
     return begin;
 }
 
+/// The turn from a heading to the direction of a place [rad]; nothing for a place above or below.
+std::optional<double> turnToward(const Eigen::Vector3d& p_w, const Eigen::Vector3d& from_w,
+                                 double yaw) {
+    const Eigen::Vector2d way = (p_w - from_w).head<2>();
+    if (way.norm() < kStep) return {};
+    return std::remainder(std::atan2(way.y(), way.x()) - yaw, 2. * std::numbers::pi);
+}
+
 /// A turn on the spot toward a place; nothing where the robot faces it already.
 std::optional<std::vector<PlannedView>> lookAt(const Eigen::Vector3d& p_w,
                                                const PlannedView& here) {
-    const Eigen::Vector3d way = p_w - here.T_w_b.translation();
-    const double turn =
-        std::remainder(std::atan2(way.y(), way.x()) - yawOf(here.T_w_b), 2. * std::numbers::pi);
-    if (std::abs(turn) < kFacing || way.head<2>().norm() < kStep) return {};
+    const auto turn = turnToward(p_w, here.T_w_b.translation(), yawOf(here.T_w_b));
+    if (!turn || std::abs(*turn) < kFacing) return {};
     auto plan = hovering(here.T_w_b, here.covariance);
-    plan.back().T_w_b.rotate(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
+    plan.back().T_w_b.rotate(Eigen::AngleAxisd(*turn, Eigen::Vector3d::UnitZ()));
     return plan;
+}
+
+/// Turns the headings of a plan on the way, so that the robot has a place in view where the plan
+/// ends and need not stop there to look. As late as it can: a heading may also differ by as much as
+/// the robot turns on the rest of the plan.
+void turnOnTheWay(std::vector<PlannedView>& plan, const Eigen::Vector3d& p_w,
+                  const SpaceAhead& space) {
+    const Eigen::Vector3d end = plan.back().T_w_b.translation();
+    for (std::size_t i = 1; i < plan.size(); ++i) {
+        const auto turn = turnToward(p_w, end, yawOf(plan[i].T_w_b));
+        if (!turn) return;
+        const double rest = plan.back().distance - plan[i].distance;
+        const double most = space.inView + rest * space.turnPerMetre;
+        const double missing = *turn - std::clamp(*turn, -most, most);
+        plan[i].T_w_b.rotate(Eigen::AngleAxisd(missing, Eigen::Vector3d::UnitZ()));
+    }
 }
 
 }  // namespace
@@ -154,6 +177,7 @@ FlyablePart flyablePart(const std::vector<PlannedView>& plan, const SpaceAhead& 
         // Not even what lies beyond the hidden places was seen.
         way.isBlind = space.hidden > 0. && seen < space.hidden + kStep && seen <= free;
         way.plan = cut(plan, std::min({seen, free, whole}));
+        if (space.canLook && seen <= free) turnOnTheWay(way.plan, newPlace, space);
     } else {
         way.isBlind = true;
         way.plan = cut(plan, std::min({kBlindStep, free, whole}));

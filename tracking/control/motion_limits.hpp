@@ -8,7 +8,7 @@ namespace photonav {
 /// Limits of velocity and acceleration of a MAV near hover.
 struct MotionLimits {
     double maxSpeed = 1.;            ///< [m/s]
-    double maxYawRate = 1.;          ///< [rad/s]
+    double maxYawRate = 2.;          ///< [rad/s]
     double maxAcceleration = 2.;     ///< [m/s^2]
     double maxYawAcceleration = 4.;  ///< [rad/s^2]
 };

@@ -79,7 +79,7 @@ TEST(SmoothPath, StaysWithinToleranceOfThePlanAndEndsWhereItDoes) {
             const double yaw =
                 corners[from][3] +
                 share * (corners[std::min(from + 1, corners.size() - 1)][3] - corners[from][3]);
-            EXPECT_LT(std::abs(here[3] - yaw), tolerance.yaw + 0.02);
+            EXPECT_LT(std::abs(here[3] - yaw), tolerance.yaw + 0.02 * MotionLimits().maxYawRate);
         }
         EXPECT_LT(farthest, tolerance.position);
         EXPECT_GT(farthest, 0.5 * tolerance.position) << "it makes use of the tolerance";
@@ -143,7 +143,7 @@ TEST(SmoothPath, SlowsDownAtSharpCornersAlone) {
 
 TEST(SmoothPath, TurnsOnTheSpotAndStays) {
     const double wrapped = 3. - 2. * std::numbers::pi;  // half a turn to the left of 0
-    const SmoothPath turn({{1., 2., 3., 0.}, {1., 2., 3., wrapped}}, {}, {});
+    const SmoothPath turn({{1., 2., 3., 0.}, {1., 2., 3., wrapped}}, {.maxYawRate = 1.}, {});
     EXPECT_NEAR(turn.end(), 3., 1e-9);
     EXPECT_GT(turn.at(1.5).station[3], 1.);
     EXPECT_LT(flown(turn).seconds, 3.4);
