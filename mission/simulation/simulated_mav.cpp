@@ -61,19 +61,22 @@ UncertainPose SimulatedMav::step(const BodyVelocity& command, double dt) {
     const double left = lag > 0. ? std::exp(-dt / lag) : 0.;
     const double mean = lag > 0. ? lag / dt * (1. - left) : 0.;
     const auto respond = [&](auto now, auto wanted) { return wanted + (now - wanted) * left; };
-    Vector6 motion = Vector6::Zero();  // of the body, in its own axes
-    motion.head<3>() = dt * (command.linear + mean * (velocity_.linear - command.linear));
+    // A body that turns keeps its velocity in the world.
+    const Eigen::Vector3d wanted_w = T_w_b_.linear() * command.linear;
+    Eigen::Vector3d motion_w = dt * (wanted_w + mean * (velocity_w_ - wanted_w));
     if (options_.drift > 0.) {
         changeDrift(dt);
-        motion.head<3>() += dt * (T_w_b_.linear().transpose() * drift_w_);
+        motion_w += dt * drift_w_;
     }
-    motion[5] = dt * (command.yawRate + mean * (velocity_.yawRate - command.yawRate));
-    velocity_.linear = respond(velocity_.linear, Eigen::Vector3d(command.linear)).eval();
-    velocity_.yawRate = respond(velocity_.yawRate, command.yawRate);
+    const double turn = dt * (command.yawRate + mean * (yawRate_ - command.yawRate));
+    velocity_w_ = respond(velocity_w_, wanted_w).eval();
+    yawRate_ = respond(yawRate_, command.yawRate);
 
-    const Pose T_next_now = expSE3(-motion);
-    T_w_b_ = T_w_b_ * T_next_now.inverse();
-    const double way = motion.head<3>().norm() + options_.rotationWeight * std::abs(motion[5]);
+    Pose T_now_next(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
+    T_now_next.translation() = T_w_b_.linear().transpose() * motion_w;
+    const Pose T_next_now = T_now_next.inverse();
+    T_w_b_ = T_w_b_ * T_now_next;
+    const double way = motion_w.norm() + options_.rotationWeight * std::abs(turn);
     // The true motion is exp(xi^) times the measured one.
     Vector6 xi = std::sqrt(way) * draw(noiseRoot_, random_);
     Matrix6 covariance = way * options_.odometryNoise;

@@ -25,10 +25,10 @@ struct MavOptions {
     double driftTime = 2.;  ///< correlation time of the drift [s]
 };
 
-/// The true pose of the body, moved by velocity commands with a first-order lag and by drift, and
-/// its odometry: the motion of every step is measured with noise whose covariance is odometryFactor
-/// times the assumed one. The rotation that a gyroscope measures is fused with it. Deterministic
-/// for a seed.
+/// The true pose of the body, moved by velocity commands and by drift, and its odometry. The body
+/// has inertia: its velocity in the world follows the commands with a first-order lag. Odometry:
+/// the motion of every step is measured with noise whose covariance is odometryFactor times the
+/// assumed one. The rotation that a gyroscope measures is fused with it. Deterministic for a seed.
 class SimulatedMav {
   public:
     /// @param T_w_b initial pose
@@ -42,7 +42,7 @@ class SimulatedMav {
 
     const Pose& T_w_b() const { return T_w_b_; }
     /// Present velocity due to the commands, without drift, in body axes.
-    const BodyVelocity& velocity() const { return velocity_; }
+    BodyVelocity velocity() const { return {T_w_b_.linear().transpose() * velocity_w_, yawRate_}; }
 
   private:
     void changeDrift(double dt);
@@ -51,8 +51,9 @@ class SimulatedMav {
     Pose T_w_b_;
     MavOptions options_;
     Matrix6 noiseRoot_;  // noiseRoot noiseRoot^T is the odometry's covariance per metre
-    BodyVelocity velocity_;
-    Eigen::Vector3d drift_w_ = Eigen::Vector3d::Zero();  // [m/s]
+    Eigen::Vector3d velocity_w_ = Eigen::Vector3d::Zero();  // [m/s]
+    double yawRate_ = 0.;                                   // [rad/s]
+    Eigen::Vector3d drift_w_ = Eigen::Vector3d::Zero();     // [m/s]
     std::mt19937_64 random_, driftRandom_, gyroscopeRandom_;
 };
 

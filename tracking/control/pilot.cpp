@@ -121,7 +121,12 @@ void Pilot::approachOnImage(const ImageF& image, const Pose& T_w_b) {
 }
 
 BodyVelocity Pilot::command(const Tracker& tracker, double time, double dt) {
-    command_ = limited(decide(tracker, time, dt), command_, options_.route.limits, dt);
+    // A body that turns keeps its velocity in the world: so long as the command follows it, the
+    // limit of acceleration is not used up by turning.
+    const Eigen::Matrix3d R_w_b = bodyOf(tracker.belief().mean).linear();
+    const BodyVelocity last{R_w_b.transpose() * axes_ * command_.linear, command_.yawRate};
+    command_ = limited(decide(tracker, time, dt), last, options_.route.limits, dt);
+    axes_ = R_w_b;
     return command_;
 }
 

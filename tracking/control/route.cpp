@@ -98,11 +98,8 @@ Route::Reference Route::advance(const UncertainPose& belief, double dt, const Is
     const double rate = std::min({rate_ + growth * options_.responseTime, most,
                                   responded < path_.end() ? path_.rateLimit(responded) : 0.});
     const SmoothPath::Point later = path_.at(responded);
-    // The body responds in its own axes, which turn until then.
-    const Eigen::AngleAxisd turn(here.station[3] - later.station[3], Eigen::Vector3d::UnitZ());
     return {poseOf(here.station),
-            {T_w_b.linear().transpose() * (turn * (rate * later.first.head<3>())),
-             rate * later.first[3]}};
+            {T_w_b.linear().transpose() * (rate * later.first.head<3>()), rate * later.first[3]}};
 }
 
 bool Route::needs(const PlannedView& view, const UncertainPose& belief) const {

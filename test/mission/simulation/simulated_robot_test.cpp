@@ -19,6 +19,21 @@ TEST(SimulatedMav, FollowsCommandsWithALag) {
     EXPECT_NEAR(mav.T_w_b().translation().x(), 0.5 - 0.5 * (1. - std::exp(-1.)), 1e-9);
 }
 
+/// Without new commands to the side, a body that turns flies straight on.
+TEST(SimulatedMav, KeepsItsVelocityInTheWorldWhileItTurns) {
+    SimulatedMav mav(Pose::Identity(), {.lag = 1e3}, 1);
+    SimulatedMav obedient(Pose::Identity(), {.lag = 0.}, 1);
+    obedient.step({{1., 0., 0.}, 0.}, 0.1);
+    EXPECT_TRUE(obedient.T_w_b().translation().isApprox(Eigen::Vector3d(0.1, 0., 0.)));
+    for (int i = 0; i < 100; ++i) mav.step({{1e3, 0., 0.}, 0.}, 0.01);  // to 1 m/s
+    const Eigen::Vector3d before = mav.velocity().linear;
+    for (int i = 0; i < 100; ++i) mav.step({mav.velocity().linear, 2e3}, 0.01);
+    const Eigen::Matrix3d R_w_b = mav.T_w_b().linear();
+    EXPECT_LT(R_w_b(0, 0), 0.6) << "it has turned";
+    EXPECT_TRUE((R_w_b * mav.velocity().linear).isApprox(before, 0.01));
+    EXPECT_NEAR(mav.T_w_b().translation().y(), 0., 0.01);
+}
+
 /// Odometry of 300 flights of two seconds along an arc.
 struct MeasuredArcs {
     explicit MeasuredArcs(const MavOptions& options) {

@@ -27,19 +27,19 @@ struct Body {
     Pose T_b_c = cameraMount(90. * kDegree);
     Pose T_w_b = Pose::Identity();
     double lag = 0.;  // [s]
-    BodyVelocity velocity = {};
+    Eigen::Vector3d velocity_w = Eigen::Vector3d::Zero();
+    double yawRate = 0.;
 
     UncertainPose belief(double variance = 1e-6) const {
         return {(T_w_b * T_b_c).inverse(), variance * Matrix6::Identity()};
     }
     void move(const BodyVelocity& command) {
         const double left = lag > 0. ? std::exp(-kStep / lag) : 0.;
-        velocity.linear = (command.linear + left * (velocity.linear - command.linear)).eval();
-        velocity.yawRate = command.yawRate + left * (velocity.yawRate - command.yawRate);
-        Vector6 motion = Vector6::Zero();
-        motion.head<3>() = kStep * velocity.linear;
-        motion[5] = kStep * velocity.yawRate;
-        T_w_b = T_w_b * expSE3(motion);
+        const Eigen::Vector3d wanted_w = T_w_b.linear() * command.linear;
+        velocity_w = (wanted_w + left * (velocity_w - wanted_w)).eval();
+        yawRate = command.yawRate + left * (yawRate - command.yawRate);
+        T_w_b.translation() += kStep * velocity_w;
+        T_w_b.rotate(Eigen::AngleAxisd(kStep * yawRate, Eigen::Vector3d::UnitZ()));
     }
 };
 
@@ -73,6 +73,22 @@ TEST(Route, AnticipatesTheBodysResponse) {
         return most;
     };
     EXPECT_LT(mostBehind(0.25), 0.5 * mostBehind(0.));
+}
+
+/// A body that turns fast and responds late is commanded along the route, not aside of it.
+TEST(Route, StaysOnItsWayWhileTheBodyTurns) {
+    Body body{.lag = 0.25};
+    std::vector<PlannedView> plan = straightTo(6., 5);
+    for (std::size_t i = 0; i < plan.size(); ++i)
+        plan[i].T_w_b.rotate(Eigen::AngleAxisd(3. * double(i), Eigen::Vector3d::UnitZ()));
+    Route route(plan, body.T_b_c, {.responseTime = body.lag});
+    double aside = 0.;
+    for (double time = 0.; !route.isAtGoal() && time < 20.; time += kStep) {
+        body.move(route.advance(body.belief(), kStep).velocity);
+        aside = std::max(aside, std::abs(body.T_w_b.translation().y()));
+    }
+    EXPECT_NEAR(body.T_w_b.translation().x(), 6., 0.1);
+    EXPECT_LT(aside, 0.02);
 }
 
 TEST(Route, PassesCloseWaypointsWithoutSlowingDown) {
@@ -125,7 +141,7 @@ TEST(Route, HaltsAndGoesOn) {
     for (double time = 0.; time < 2.; time += kStep) {
         body.move(route.advance(body.belief(), kStep).velocity);
     }
-    EXPECT_NEAR(body.velocity.linear.x(), 1., 1e-9);
+    EXPECT_NEAR(body.velocity_w.x(), 1., 1e-9);
     route.halt();
     EXPECT_LT(route.advance(body.belief(), kStep).velocity.linear.x(), 0.5);
 }
